@@ -22,6 +22,7 @@ from cad_io.errors import ReadError
 from cad_io.face.measure import Measure, measure
 from cad_io.face.recognise import recognise
 from cad_io.face.trim import Trim, trim_of
+from cad_io.files import fingerprint
 from cad_io.kernel import edges_of, explore, faces, is_kernel_error, may_refuse, shape_map, translated
 from cad_io.kernel.assembly import Node
 from cad_io.part.blends import Bare, blends
@@ -71,10 +72,12 @@ class Part:
         Numbers of the faces that were picked on the object which the part was made from.
     lost : sequence of LostFace, optional
         Faces written in the file that are not here, or not as written; faces without a finite size are added here.
+    references : sequence of (str, str or None), optional
+        Files that the part's file refers to: the path from its folder and the SHA-256; None: it is not there.
 
     Attributes
     ----------
-    shape, file, sha256, unit, layers, tree, picked : as given
+    shape, file, sha256, unit, layers, tree, picked, references : as given
     aside : mapping
         By face number: why nothing more is to be asked of the kernel about this face. It is not judged. See `without`.
     lost : tuple of LostFace
@@ -113,8 +116,10 @@ class Part:
         warnings: tuple[str, ...] = (),
         picked: tuple[int, ...] = (),
         lost: tuple[LostFace, ...] = (),
+        references: tuple[tuple[str, str | None], ...] = (),
     ) -> None:
         self.shape, self.file, self.sha256, self.picked = shape, file, sha256, picked
+        self.references = references
         self.aside: Mapping[int, str] = {}
         self.unit = unit
         with translated("looking for faces", error=ReadError, file=file):
@@ -159,12 +164,17 @@ class Part:
         return {
             "shape": self.shape, "file": self.file, "sha256": self.sha256, "unit": self.unit, "names": self._names,
             "colours": self._colours, "layers": self.layers, "tree": self.tree, "warnings": self._said,
-            "picked": self.picked, "lost": self.lost,
+            "picked": self.picked, "lost": self.lost, "references": self.references,
         }  # fmt: skip
 
     def __repr__(self) -> str:
         size = " x ".join(f"{length:.4g}" for length in self.size)
         return f"Part({self.file or 'shape'}, {len(self._faces)} faces, {size} mm)"
+
+    @property
+    def fingerprint(self) -> str:
+        """Checksum of its file with all that this refers to; empty where it is of no file."""
+        return "" if self.sha256 is None else fingerprint(self.sha256, self.references)
 
     @property
     def faces(self) -> tuple[FaceInfo, ...]:

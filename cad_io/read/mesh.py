@@ -3,7 +3,6 @@
 import hashlib
 import io
 import os
-import stat
 import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -13,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cad_io import files
 from cad_io.arrays import Floats, Record
 from cad_io.errors import ReadError
 from cad_io.read.skins import Skins, skins
@@ -97,11 +97,11 @@ def is_mesh(source: Any) -> bool:
 
 def _content(file: str) -> bytes:
     try:
-        if not stat.S_ISREG(os.stat(file).st_mode):
-            raise ReadError("is no file: a folder, a pipe or a device", file=file)
-        return Path(file).read_bytes()
+        return files.content(file)
     except FileNotFoundError:
         raise ReadError("no such file", file=file) from None
+    except files.IrregularError:
+        raise ReadError("is no file: a folder, a pipe or a device", file=file) from None
     except MemoryError:
         raise ReadError("is too large for the memory allowed: give more, or a coarser mesh", file=file) from None
     except (OSError, ValueError) as error:

@@ -1,6 +1,5 @@
 """Read a part: STEP, IGES or BREP files, kernel shapes, CadQuery and build123d objects."""
 
-import hashlib
 import math
 import os
 from collections.abc import Callable
@@ -17,6 +16,7 @@ from OCP.TopoDS import TopoDS_Shape
 
 from cad_io.arrays import LostFace
 from cad_io.errors import ReadError
+from cad_io.files import checksum, checksums
 from cad_io.kernel import explore, faces, silence, translated
 from cad_io.kernel.assembly import Node
 from cad_io.kernel.components import unwrapped
@@ -26,6 +26,8 @@ from cad_io.read.document import Read
 from cad_io.read.isolation import Crashed, Found
 from cad_io.read.isolation import guarded as in_copy
 from cad_io.read.objects import from_object
+from cad_io.read.references import beside, followed, names
+from cad_io.read.referred import Referred, referred
 from cad_io.read.sniff import load
 from cad_io.units import in_mm
 
@@ -113,30 +115,42 @@ def _find(source: Any, unit: str | None, timeout: float) -> Found:
 
 def _read_file(file: str, unit: str | None, timeout: float) -> Found:
     kind, data = load(file)
-    known = {"file": file, "sha256": hashlib.sha256(data).hexdigest()}
-    with translated("reading the file", error=ReadError, file=file):
-        if kind not in _LOADERS:
+    known: Found = {"file": file, "sha256": checksum(data)}
+    if kind not in _LOADERS:
+        with translated("reading the file", error=ReadError, file=file):
             return known | _found(Read(_scaled(_read_brep(file, kind), unit)))
-        loaded = _LOADERS[kind](file, data, unit)
-        if not loaded.risky:
-            return known | _found(loaded.transfer())
+    loader, others = partial(_LOADERS[kind], file, data, unit), Referred()
+    if kind == "step" and names(data):
+        if unit is not None:
+            raise ReadError("refers to other files, which state units of their own: leave out the unit", file=file)
+        others = referred(file, data, timeout)
+        loader = partial(loader, foreign=others.foreign)
+        known["references"] = checksums(followed(data, beside(file)))
+    with translated("reading the file", error=ReadError, file=file):
+        loaded = loader()
+        if not (loaded.risky or others.risky):
+            return known | _transferred(lambda: loaded, others)
     # A crash costs no more than a copy: try with less and less.
-    again = partial(_LOADERS[kind], file, data, unit, names=False)
+    again = partial(loader, names=False)
     for reload in (lambda: loaded, again, partial(again, careful=True)):
         try:
-            return known | in_copy(partial(_transferred, reload), timeout, file)
+            return known | in_copy(partial(_transferred, reload, others), timeout, file)
         except Crashed as error:
             crash = error
     raise crash
 
 
-def _transferred(load_again: Callable[[], Loaded]) -> Found:
+def _transferred(load_again: Callable[[], Loaded], others: Referred) -> Found:
     loaded = load_again()
     with translated("reading the file", error=ReadError, file=loaded.file):
-        return _found(loaded.transfer())
+        try:
+            return _found(loaded.transfer(), others)
+        except step.NothingError as error:
+            raise ReadError(f"{error.cause}; {others.lost[0]}", file=error.file) if others.lost else error from None
 
 
-def _found(read: Read) -> Found:
+def _found(read: Read, others: Referred | None = None) -> Found:
+    read.lost += [] if others is None else others.lost
     edgeless = [n for n, face in enumerate(faces(read.shape), 1) if next(explore(face, TopAbs_EDGE), None) is None]
     told = {each.face for each in read.lost}
     read.lost += [LostFace("", read.names.get(n, ""), "it has no edges", n) for n in edgeless if n not in told]

@@ -2,12 +2,12 @@
 
 import os
 import re
-import stat
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
+from cad_io import files
 from cad_io.errors import ReadError
 
 #: Bytes that must tell the kind.
@@ -39,9 +39,11 @@ def load(file: str) -> tuple[str, bytes]:
         There is no such file, or it is not one that can be read.
     """
     with _opened(file) as stream:
-        kind = sniff(stream.read(_HEAD), file)
-        stream.seek(0)
-        return kind, stream.read()
+        data = stream.read(_HEAD)
+        kind = sniff(data, file)
+        data += stream.read()
+    files.note(file, data)
+    return kind, data
 
 
 def kind(file: str) -> str:
@@ -58,14 +60,13 @@ def _opened(file: str) -> Iterator[BinaryIO]:
     except UnicodeEncodeError:
         raise ReadError("its name is no text in UTF-8, which the CAD kernel asks for: rename it", file=file) from None
     try:
-        mode = os.stat(file).st_mode
-        if stat.S_ISDIR(mode):
-            raise ReadError("is a folder, not a file", file=file)
-        if not stat.S_ISREG(mode):
-            # The kernel opens it once more, and some have no end.
-            raise ReadError("is a pipe or a device, not a file: save its content in a file", file=file)
-        with open(file, "rb") as stream:
+        # The kernel opens it once more, and a pipe or a device has no end.
+        with files.open_regular(files.permitted(file)) as stream:
             yield stream
+    except files.IrregularError:
+        folder = os.path.isdir(file)
+        what = "is a folder, not a file" if folder else "is a pipe or a device, not a file: save its content in a file"
+        raise ReadError(what, file=file) from None
     except FileNotFoundError:
         raise ReadError("no such file", file=file) from None
     except MemoryError:

@@ -5,6 +5,7 @@ without a message. So files that are known to hang are refused before the transf
 the process (`Loaded.risky`), and the result of each face is checked afterwards.
 """
 
+import os
 import re
 from collections import defaultdict
 from collections.abc import Iterator
@@ -63,7 +64,7 @@ _SUBSHAPES = "read.stepcaf.subshapes.name"
 _MOST_NAMED = 3
 
 
-class _NothingError(ReadError):
+class NothingError(ReadError):
     """No face came out."""
 
 
@@ -81,6 +82,8 @@ class Loaded:
         Ask the kernel for names, colours and layers, on which it crashes in some faulty files.
     careful : bool
         Leave out every face that uses something faulty.
+    foreign : int
+        Faces that come from files which this one refers to: they are none of its own.
 
     Attributes
     ----------
@@ -94,9 +97,10 @@ class Loaded:
     """
 
     def __init__(
-        self, file: str, data: bytes, unit: str | None = None, *, names: bool = True, careful: bool = False
+        self, file: str, data: bytes, unit: str | None = None, *, names: bool = True, careful: bool = False, foreign: int = 0
     ) -> None:  # fmt: skip
         self.file, self.data, self.unit, self.names, self.careful = file, data, unit, names, careful
+        self.foreign = foreign
         STEPCAFControl_Controller.Init_s()
         self.reader = STEPCAFControl_Reader()
         self.reader.SetColorMode(names)
@@ -106,7 +110,8 @@ class Loaded:
         before = Interface_Static.IVal_s(_SUBSHAPES)
         Interface_Static.SetIVal_s(_SUBSHAPES, int(names))
         try:
-            status = self.reader.ReadFile(file)
+            # Files that it refers to are looked for in its folder only where its path is whole, else where the process works.
+            status = self.reader.ReadFile(os.path.abspath(file))
         finally:
             Interface_Static.SetIVal_s(_SUBSHAPES, before)
         if status != IFSelect_RetDone:
@@ -142,17 +147,20 @@ class Loaded:
         mended = mend(self.model, self.faults if self.careful else ()) if traced else {}
         try:
             result = self._shape()
-        except _NothingError:
+        except NothingError:
             if self.careful or not self.faults:
                 raise
             # One bad vertex can cost a whole solid: without the faces at it, the others may come.
-            return Loaded(self.file, self.data, self.unit, names=self.names, careful=True).transfer()
-        found, written = _distinct_faces(result.shape), sum(len(kind.findall(self.data)) for kind in _FACES)
+            return self._again(names=self.names, careful=True).transfer()
+        found, written = (
+            distinct_faces(result.shape) - self.foreign,
+            sum(len(kind.findall(self.data)) for kind in _FACES),
+        )
         if not traced:
             # All is well, or else the file is read again with marks: only then can be told what is lost.
             if found >= written and not self.model.trouble(fails=True) and not self._doubtful(result.shape):
                 return result
-            return Loaded(self.file, self.data, self.unit).transfer(traced=True)
+            return self._again().transfer(traced=True)
         shapes = faces(result.shape)
         numbers = self._unmark(result, shapes, real)
         lost = Lost(self.model, self._idents(), self.faults, mended, shapes, numbers, self._scale())
@@ -164,6 +172,9 @@ class Loaded:
         result.lost += [LostFace("", "", "it is written, but could not be read")] * max(0, written - found - gone)
         result.warnings += self._warnings(lost)
         return result
+
+    def _again(self, **how: bool) -> "Loaded":
+        return Loaded(self.file, self.data, self.unit, foreign=self.foreign, **how)
 
     def _refuse(self) -> None:
         """Points and directions that are no numbers, used by a shape: the transfer would take for ever, or a guess."""
@@ -196,7 +207,7 @@ class Loaded:
         done = self.reader.Transfer(document)
         shapes = [XCAFDoc_ShapeTool.GetShape_s(label) for label in each(roots(document))] if done else []
         if not any(any(explore(shape, TopAbs_FACE)) for shape in shapes):
-            raise _NothingError(f"{nothing}: export it as a solid or surface model", file=self.file)
+            raise NothingError(f"{nothing}: export it as a solid or surface model", file=self.file)
         result = Read(unwrapped(as_one(shapes)))
         add_attributes(document, result)
         return result
@@ -293,7 +304,7 @@ def _length_unit(reader: STEPCAFControl_Reader) -> float:
     return 1.0
 
 
-def _distinct_faces(shape: TopoDS_Shape) -> int:
+def distinct_faces(shape: TopoDS_Shape) -> int:
     """Faces counted once however often the assembly shows them."""
     placed_once = TopTools_IndexedMapOfShape()
     for face in explore(shape, TopAbs_FACE):

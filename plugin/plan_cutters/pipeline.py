@@ -157,7 +157,7 @@ def run(
         if ready.conditions.machine.limited:
             verdicts = judge(replace(ready, conditions=ready.conditions.machineless), cutter)
         maps = posture_maps(
-            ready.samples, cutter, ready.conditions, verdicts, part=ready.scene.part.sha256 or "", progress=tell,
+            ready.samples, cutter, ready.conditions, verdicts, part=ready.scene.part.fingerprint, progress=tell,
             inside=ready.inside_bodies, about=question(ready, cutter), most=options.map_budget,
         )  # fmt: skip
     document = result.plan

@@ -1,11 +1,12 @@
 """The command as a process of a call: its progress is passed on, and it ends with the call, whatever ends that."""
 
 import contextlib
+import json
 import os
 import re
 import signal
 import sys
-from collections.abc import Awaitable, Callable, Mapping, Sequence
+from collections.abc import Awaitable, Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from subprocess import DEVNULL
@@ -13,6 +14,7 @@ from subprocess import DEVNULL
 import anyio
 from anyio.abc import ByteReceiveStream, Process
 
+from cad_io.files import WITHIN
 from plan_cutters.agents.limits import CallError, Limits
 
 #: Told of each step of the work: seconds since it began, and words about it.
@@ -37,11 +39,18 @@ class Ended:
 
 
 async def run(
-    words: Sequence[str], cwd: Path, limits: Limits, tell: Onlooker, *, answers: Sequence[int] = (0, 1, 4)
+    words: Sequence[str],
+    cwd: Path,
+    limits: Limits,
+    tell: Onlooker,
+    *,
+    within: Sequence[Path],
+    answers: Sequence[int] = (0, 1, 4),
 ) -> Ended:
     """Run `plan-cutters` with some words.
 
-    It ends with this call, however that ends, and with this process.
+    It ends with this call, however that ends, and with this process. It reads files in the folders `within` alone, those that
+    are named by files, too.
 
     Raises
     ------
@@ -55,7 +64,9 @@ async def run(
              f"from plan_cutters.command.entry import begin; begin({name!r})")  # fmt: skip
     await tell(0.0, "starting")
     process = await anyio.open_process(
-        [sys.executable, "-c", begin, *words[1:], *more], stdin=DEVNULL, cwd=cwd, env=_environment(limits),
+        [sys.executable, "-c", begin, *words[1:], *more], stdin=DEVNULL, cwd=cwd,
+        env={**os.environ, MOST_SAMPLES: str(limits.samples), WITHIN: json.dumps([*map(str, within)]), "NO_COLOR": "1",
+             "TERM": "dumb"},
         start_new_session=True,
     )  # fmt: skip
     kept, said = bytearray(), bytearray()
@@ -72,10 +83,6 @@ async def run(
     if code not in answers:
         raise CallError(_line(faults[-1]) if faults else f"the command ended with exit code {code} and said nothing")
     return Ended(code, bytes(kept), faults)
-
-
-def _environment(limits: Limits) -> Mapping[str, str]:
-    return {**os.environ, MOST_SAMPLES: str(limits.samples), "NO_COLOR": "1", "TERM": "dumb"}
 
 
 def _line(fault: str) -> str:

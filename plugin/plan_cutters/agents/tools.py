@@ -20,7 +20,7 @@ from plan_cutters.agents.answers import (
     Sample,
     Vector,
 )
-from plan_cutters.agents.child import Onlooker, run
+from plan_cutters.agents.child import Ended, Onlooker, run
 from plan_cutters.agents.limits import CallError
 from plan_cutters.agents.plan_file import PlanFile, chosen, cutter_of, plan_of
 from plan_cutters.agents.postures import postures_of
@@ -60,9 +60,12 @@ class Call:
     cwd: Path
     tell: Onlooker
 
+    async def _run(self, words: Sequence[str], **more: Any) -> Ended:
+        return await run(words, self.cwd, self.room.limits, self.tell, within=self.room.roots.folders, **more)
+
     async def plan(self, words: Sequence[str]) -> tuple[PlanFile, int]:
         """Plan a part; the plan and the exit code."""
-        ended = await run(["plan", *words, "--json=-"], self.cwd, self.room.limits, self.tell)
+        ended = await self._run(["plan", *words, "--json=-"])
         return plan_of(ended.output, "the plan"), ended.code
 
     async def map(self, asked: MapQuestion, most: int, spec: str | None = None) -> tuple[bytes, int]:
@@ -73,7 +76,7 @@ class Call:
             "--json=-",
             f"--out={self.cwd / 'map.png'}",
         ]
-        ended = await run(["map", *words], self.cwd, self.room.limits, self.tell)
+        ended = await self._run(["map", *words])
         return ended.output, ended.code
 
     async def tools_of(self, library: str) -> list[tuple[str, str]]:
@@ -84,9 +87,7 @@ class Call:
         CallError
             There are too many.
         """
-        ended = await run(
-            ["tools", self.room.file(library), "--json"], self.cwd, self.room.limits, self.tell, answers=(0,)
-        )
+        ended = await self._run(["tools", self.room.file(library), "--json"], answers=(0,))
         found = [
             (each["id"], next(iter(each["names"]), ""))
             for one in json.loads(ended.output)["libraries"]

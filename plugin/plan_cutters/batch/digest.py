@@ -10,11 +10,6 @@ from typing import Any
 import numpy as np
 
 
-def checksum(data: bytes) -> str:
-    """SHA-256 of the content of a file."""
-    return hashlib.sha256(data).hexdigest()
-
-
 def sources(*folders: Path) -> str:
     """A short checksum of all Python sources in some folders, with their names."""
     found = [

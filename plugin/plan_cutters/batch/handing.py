@@ -38,9 +38,9 @@ class Offer:
     said: str
 
 
-def packed(options: bytes, part: bytes | None, offer: Offer | None = None) -> bytes:
+def packed(options: bytes, part: bytes | None, offer: Offer | None = None, key: bytes | None = None) -> bytes:
     """The content of the file."""
-    return pickle.dumps({"options": options, "part": part, "offer": offer}, protocol=5)
+    return pickle.dumps({"options": options, "part": part, "offer": offer, "key": key}, protocol=5)
 
 
 def options() -> "Options | None":
@@ -62,6 +62,12 @@ def part() -> "Part":
 def offer() -> Offer | None:
     """The cluster that is lent to this process; None where there is none."""
     return _content()["offer"] if FILE in os.environ else None
+
+
+def key() -> bytes | None:
+    """The key of kept verdicts that was handed to this process; None where there is none."""
+    found: bytes | None = _content()["key"] if FILE in os.environ else None
+    return found
 
 
 @functools.cache

@@ -2,11 +2,14 @@
 
 import contextlib
 import copy
+import os
 import pickle
 from dataclasses import dataclass, replace
 from pathlib import PurePath, PureWindowsPath
 from typing import Any
 
+from cad_io import files as user_files
+from plan_cutters.batch.content import content
 from plan_cutters.batch.row import PartRow
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
@@ -29,12 +32,15 @@ class Settings:
     step_schema : str
     read_timeout : float
         Seconds that reading may take.
+    read : tuple of str
+        SHA-256 of each file that the options were read from: libraries, machine and setup files, and what these name.
     """
 
     options: Options
     formats: tuple[str, ...] = ("json",)
     step_schema: str = "ap242"
     read_timeout: float = 120.0
+    read: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -96,14 +102,14 @@ def handed(options: Options) -> Handed:
         if fixture.kind or not isinstance(fixture.source, str):
             return fixture
         if fixture.source not in names:
+            found = content(fixture.source, _read)
             name = PurePath(PureWindowsPath(fixture.source).name).name
+            # What it refers to is called as it is called there: it gets a folder of its own.
+            name = f"fixture-{len(names) + 1}/{name}" if found.references else name
             while name in files:
                 name = f"_{name}"
-            try:
-                with open(fixture.source, "rb") as opened:
-                    files[name] = opened.read()
-            except OSError as error:
-                raise OptionError(f"cannot be read: {error.strerror}", file=fixture.source) from None
+            files[name] = found.data
+            files.update((f"{os.path.dirname(name)}/{other}", data) for other, data in found.within())
             names[fixture.source] = name
         # A copy past the checks: they looked at the same words.
         return _with(fixture, source=names[fixture.source])
@@ -121,6 +127,13 @@ def handed(options: Options) -> Handed:
             "give numbers, words or files"
         ) from None
     return Handed(packed, tuple(sorted(files.items())))
+
+
+def _read(file: str) -> bytes:
+    try:
+        return user_files.content(file)
+    except OSError as error:
+        raise OptionError(f"cannot be read: {error.strerror or error}", file=file) from None
 
 
 def _with(record: Any, **values: Any) -> Any:

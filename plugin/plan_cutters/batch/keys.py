@@ -6,7 +6,8 @@ from dataclasses import fields
 from importlib import metadata
 from pathlib import Path
 
-from plan_cutters.batch.digest import checksum, digest, sources
+from cad_io.files import checksum
+from plan_cutters.batch.digest import digest, sources
 from plan_cutters.batch.job import Handed, Settings
 
 #: Packages whose results may differ from version to version: they count in a key, and must be the same on all machines.
@@ -38,7 +39,8 @@ def _installed(name: str) -> str:
 
 
 def settings_key(settings: Settings, there: Handed) -> str:
-    """Checksum of all but the part: effective options with tools, machine and fixtures, what is written, versions.
+    """Checksum of all but the part: effective options with tools, machine and fixtures, every file that was read for them, what
+    is written, versions.
 
     The number of threads and the limits of time change no result and do not count.
     """
@@ -47,6 +49,7 @@ def settings_key(settings: Settings, there: Handed) -> str:
     asked = [
         options,
         sorted(settings.formats),
+        sorted(settings.read),
         settings.step_schema,
         version(),
         [_installed(name) for name in _COUNTED],

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any, Unpack
 
+from cad_io.files import noted
 from plan_cutters.batch.job import UNREADABLE, USAGE, Fault, Job, Settings, faced
 from plan_cutters.batch.row import PartRow
 from plan_cutters.domain.signatures import spelled_out
@@ -52,7 +53,7 @@ class Planned:
 def plan_many(
     parts: Iterable[Any], client: Any = None, *, out: str | os.PathLike[str] | None = None,
     formats: Sequence[str] = ("json",), force: bool = False, timeout_part: float | None = None,
-    limit_memory: float | None = None, **options: Unpack[PlanOptions],
+    limit_memory: float | None = None, verdicts_key: str | os.PathLike[str] | None = None, **options: Unpack[PlanOptions],
 ) -> Iterator[Planned]:  # fmt: skip
     """Plan many parts, each in a process of its own; results as they come, a failed part among them.
 
@@ -73,6 +74,8 @@ def plan_many(
         Seconds for a part.
     limit_memory : float, optional
         GB for a part.
+    verdicts_key : path, optional
+        File with a key (`files.seal`): what nobody with this key wrote into `out` is not taken, but planned again.
     **options
         As of `plan`; `jobs` is 1 unless it is given.
 
@@ -92,14 +95,17 @@ def plan_many(
     from plan_cutters.batch import cluster
     from plan_cutters.batch.run import Terms, outcomes
     from plan_cutters.batch.store import Store
+    from plan_cutters.files.seal import key_of
     from plan_cutters.report.folder import read_formats
 
     if isinstance(parts, str | os.PathLike):
         raise OptionError("parts is one path: give a list of parts, or use the command `batch` for folders")
-    settings = Settings(
-        Options.of({"jobs": 1, **options}), tuple(dict.fromkeys(("json", *read_formats(",".join(formats)))))
-    )
-    store = None if out is None else Store(os.fspath(out))
+    with noted() as files:
+        asked = Options.of({"jobs": 1, **options})
+    settings = Settings(asked, tuple(dict.fromkeys(("json", *read_formats(",".join(formats))))),
+                        read=tuple(filter(None, files.values())))  # fmt: skip
+    secret = None if verdicts_key is None else key_of(os.fspath(verdicts_key))
+    store = None if out is None else Store(os.fspath(out), secret)
     token = store.begin() if store else ""
     with contextlib.ExitStack() as stack:
         if store:
@@ -109,7 +115,7 @@ def plan_many(
             count, memory = cluster.workers_of(None, memory, settings.options.jobs)
             client = stack.enter_context(cluster.opened(None, count))
         faults: list[PartRow] = []
-        terms = Terms(force, timeout_part, memory)
+        terms = Terms(force, timeout_part, memory, secret)
         jobs = _jobs(parts, settings, terms, faults)
         for outcome in outcomes(jobs, client, terms, out=store, token=token):
             yield Planned(outcome.row, dict(outcome.files), None if store is None else store.root_url)

@@ -1,10 +1,13 @@
 """One part, whose cutters are judged by the workers of a cluster, or were judged before."""
 
+import os
 from typing import Any, Unpack
 
 from plan_cutters import pipeline
 from plan_cutters.document.clock import Progress
 from plan_cutters.domain.signatures import spelled_out
+from plan_cutters.errors import OptionError
+from plan_cutters.files.seal import key_of
 from plan_cutters.option_types import PlanOptions
 from plan_cutters.options import Options
 from plan_cutters.result import Result
@@ -18,6 +21,7 @@ def plan(
     progress: Progress | None = None,
     client: Any = None,
     verdicts: str | None = None,
+    verdicts_key: str | os.PathLike[str] | None = None,
     **options: Unpack[PlanOptions],
 ) -> Result:
     """Judge each cutter on the target faces of a part, as `pipeline.plan` does, which says more of parts and options.
@@ -31,6 +35,8 @@ def plan(
         Of a Dask cluster, whose workers judge the samples of a large part. The result is the same, bit for bit.
     verdicts : str, optional
         Folder or URL in which the verdicts of each cutter are kept (`batch.verdicts.Kept`).
+    verdicts_key : path, optional
+        File with a key (`files.seal`): what nobody with this key wrote there is not taken.
     **options
         Every attribute of `Options`, by its name; angles in degrees, too: `tilt_deg=(0, 60)`.
 
@@ -51,10 +57,15 @@ def plan(
     >>> result.selected
     'R6L80'
     """
-    return pipeline.plan(part, progress=progress, judged=judging(client, verdicts), **options)
+    if verdicts_key is not None and verdicts is None:
+        raise OptionError("verdicts_key seals the verdicts of a folder: give it as verdicts, or leave the key out")
+    key = None if verdicts_key is None else key_of(os.fspath(verdicts_key))
+    return pipeline.plan(part, progress=progress, judged=judging(client, verdicts, key=key), **options)
 
 
-def judging(client: Any = None, verdicts: str | None = None, otherwise: Judge | None = None) -> Judge:
+def judging(
+    client: Any = None, verdicts: str | None = None, otherwise: Judge | None = None, key: bytes | None = None
+) -> Judge:
     """What judges with a cluster, with kept verdicts, with both, or with neither: then `otherwise`."""
     judged: Judge = otherwise or judge
     if client is not None:
@@ -64,5 +75,5 @@ def judging(client: Any = None, verdicts: str | None = None, otherwise: Judge | 
     if verdicts is not None:
         from plan_cutters.batch.verdicts import Kept
 
-        judged = Kept(verdicts, judged)
+        judged = Kept(verdicts, judged, key)
     return judged

@@ -11,9 +11,10 @@ from typing import Any, Protocol
 
 from plan_cutters.batch import cluster as clusters
 from plan_cutters.batch import keys, store
+from plan_cutters.batch.content import content
 from plan_cutters.batch.job import UNREADABLE, USAGE, Fault, Handed, Job, Settings, handed
 from plan_cutters.batch.row import PartRow
-from plan_cutters.batch.work import Outcome, Task, kept, work
+from plan_cutters.batch.work import Outcome, Task, content_of, kept, work
 from plan_cutters.errors import PlanError
 
 #: Tasks in flight for each thread of the cluster, and at least so many: the next one is there when a thread is free.
@@ -44,11 +45,14 @@ class Terms:
         Seconds for a part.
     memory : float, optional
         Bytes for a part.
+    secret : bytes, optional
+        Seals what is kept in the output (`files.seal`).
     """
 
     force: bool = False
     timeout: float | None = None
     memory: float | None = None
+    secret: bytes | None = None
     packed: dict[int, tuple[Settings, Handed, str]] = field(default_factory=dict)
 
     def of(self, settings: Settings) -> tuple[Handed, str]:
@@ -124,10 +128,10 @@ def outcomes(
         for job in jobs:
             try:
                 there, key = terms.of(job.settings)
-                data = store.read(job.file) if store.in_memory(job.file) else None
-                task = Task(job.name, job.file, data, job.part, there,
+                here = content(job.file) if store.in_memory(job.file) else None
+                task = Task(job.name, job.file, here, job.part, there,
                             _words(job.settings, terms), key, where, token, terms.force, terms.timeout, versions,
-                            job.file if "://" in job.file else os.path.abspath(job.file))  # fmt: skip
+                            job.file if "://" in job.file else os.path.abspath(job.file), terms.secret)  # fmt: skip
                 if travels and out is not None and not terms.force and (row := _kept(task, out)):
                     faulty.append(Outcome(row, {}))
                     continue
@@ -260,8 +264,7 @@ def _words(settings: Settings, terms: Terms) -> tuple[str, ...]:
 
 
 def _kept(task: Task, out: store.Store) -> PartRow | None:
-    data = task.part or (store.read(task.file) if task.data is None else task.data)
-    return kept(out, task.folder, keys.key(keys.checksum(data), task.settings), task.name, task.file)
+    return kept(out, task.folder, keys.key(content_of(task).key, task.settings), task.name, task.file)
 
 
 def foreseen(parts: Iterable[Job | Fault], out: store.Store, terms: Terms) -> Iterator[PartRow]:

@@ -5,6 +5,7 @@ there the marker of a part is removed first and written last, so that a part wit
 """
 
 import contextlib
+import hashlib
 import json
 import os
 import secrets
@@ -13,14 +14,19 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from cad_io.files import checksum, open_regular
 from plan_cutters.batch.row import PartRow
 from plan_cutters.errors import PlanError
 from plan_cutters.files.lock import Lock
+from plan_cutters.files.regular import regular_bytes
+from plan_cutters.files.seal import seal
 
-#: In the folder of a part that is done: its row, and the sizes of its files.
+#: In the folder of a part that is done: its row, and the checksums of its files.
 MARKER = "done.json"
 #: Beside the folders of the parts: what is being made.
 _ASIDE = ".batch"
+#: Most bytes of a marker.
+_MARKER_BYTES = 16 << 20
 _MISSING = 'is not there: pip install "plan-cutters[batch]"'
 
 
@@ -90,6 +96,8 @@ class Store:
     ----------
     url : str
         Path or URL of its folder.
+    key : bytes, optional
+        Seals the markers of parts: one without its seal is none (`files.seal`).
 
     Raises
     ------
@@ -97,8 +105,8 @@ class Store:
         There is no such file system.
     """
 
-    def __init__(self, url: str) -> None:
-        self.url = url
+    def __init__(self, url: str, key: bytes | None = None) -> None:
+        self.url, self._key = url, key
         self._fs, root = file_system(url)
         self.local = type(self._fs).__name__ == "LocalFileSystem"
         self.root = os.path.abspath(root) if self.local else root.rstrip("/")
@@ -179,11 +187,13 @@ class Store:
         if content is None:
             return None
         try:
-            said = json.loads(content)
-            row = PartRow(**said["row"])
-            if all(self._size(f"{folder}/{name}") == size for name, size in said["files"].items()):
+            marker = json.loads(content)
+            row, files = PartRow(**marker["row"]), dict(marker["sha256"])
+            if marker["seal"] != seal(marker, self._key) or not files:
+                return None
+            if all(self._checksum(f"{folder}/{name}") == sha256 for name, sha256 in files.items()):
                 return row
-        except (ValueError, TypeError, LookupError, AttributeError):
+        except (ValueError, TypeError, LookupError, AttributeError, RecursionError):
             pass
         return None
 
@@ -195,9 +205,12 @@ class Store:
         PlanError
             They cannot be written: the part is not done.
         """
-        sizes = {name: _length(what) for name, what in files.items()}
-        marker = json.dumps({"row": row.model_dump(), "files": sizes}, indent=1).encode()
         try:
+            said = {
+                "row": row.model_dump(mode="json"),
+                "sha256": {name: _checksum(what) for name, what in files.items()},
+            }
+            marker = json.dumps(said | {"seal": seal(said, self._key)}, indent=1).encode()
             if self.local:
                 self._rename(folder, files, marker)
             else:
@@ -244,19 +257,25 @@ class Store:
 
     def _content(self, name: str) -> bytes | None:
         try:
+            if self.local:
+                return regular_bytes(self._at(name), _MARKER_BYTES)
             return bytes(self._fs.cat_file(self._at(name)))
-        except OSError:
+        except (OSError, PlanError):
             return None
 
-    def _size(self, name: str) -> int | None:
+    def _checksum(self, name: str) -> str | None:
+        """SHA-256 of a whole file; None where it cannot be read."""
         try:
-            return int(self._fs.size(self._at(name)))
-        except (OSError, TypeError):
+            return _checksum(Path(self._at(name)) if self.local else bytes(self._fs.cat_file(self._at(name))))
+        except (OSError, ValueError):
             return None
 
     def _at(self, name: str) -> str:
         return f"{self.root}/{name}"
 
 
-def _length(what: Path | bytes) -> int:
-    return what.stat().st_size if isinstance(what, Path) else len(what)
+def _checksum(what: Path | bytes) -> str:
+    if isinstance(what, bytes):
+        return checksum(what)
+    with open_regular(what) as opened:
+        return hashlib.file_digest(opened, "sha256").hexdigest()

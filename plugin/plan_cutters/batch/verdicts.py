@@ -3,6 +3,7 @@
 import contextlib
 import functools
 import hashlib
+import hmac
 import json
 import os
 import secrets
@@ -16,12 +17,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cad_io.arrays import Floats
 from plan_cutters.batch.digest import digest, sources
 from plan_cutters.batch.store import file_system
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.verdicts import NO_REASON, REASONS, UNJUDGED, WORDS, Verdicts
+from plan_cutters.domain.posture import PostureRange
+from plan_cutters.domain.verdicts import REASONS, UNJUDGED, WORDS, Verdicts
 from plan_cutters.errors import PlanError
 from plan_cutters.files.regular import regular_bytes
+from plan_cutters.files.seal import stamp
 from plan_cutters.scene.ground import Ground
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.question import METHOD
@@ -36,6 +40,8 @@ _COLUMNS = {"verdict": ("u1", ()), "axis": ("<f8", (3,)), "tilt_direction": ("<f
 _A_SAMPLE = sum(np.dtype(kind).itemsize * (shape or (1,))[0] for kind, shape in _COLUMNS.values())
 #: Rooms on whose sources verdicts depend, and the packages.
 _ROOMS, _PACKAGES = ("domain", "kernels", "scene", "stages"), ("numba", "numpy", "scipy")
+#: Unit vectors and angles of postures agree to this.
+_SLACK = 1e-9
 #: Most bytes of an entry, some ten million samples.
 _MOST = 1 << 30
 #: The end of an entry's name.
@@ -56,6 +62,8 @@ class Kept:
         Folder, or URL that fsspec knows.
     otherwise : Judge, optional
         Judges what is not there.
+    key : bytes, optional
+        Seals entries: those that nobody with this key wrote are not taken (`files.seal`).
 
     Attributes
     ----------
@@ -70,9 +78,9 @@ class Kept:
         A package is missing, or the URL has no meaning.
     """
 
-    def __init__(self, where: str, otherwise: Judge = judge) -> None:
+    def __init__(self, where: str, otherwise: Judge = judge, key: bytes | None = None) -> None:
         self._folder: _Local | _Remote = _Remote(where) if "://" in where else _Local(where)
-        self._where, self._otherwise = where, otherwise
+        self._where, self._otherwise, self._key = where, otherwise, key
         self._of: tuple[Any, ...] = ()
         self._ground = b""
         self.found = self.judged = 0
@@ -93,9 +101,9 @@ class Kept:
             return self._otherwise(ready, cutter, rows, known, progress=progress, work=work)
         own = hashlib.sha256(self._digest(ready) + digest(replace(cutter, name=""))).hexdigest()
         name = digest(None if known is None or (known.verdict == UNJUDGED).all() else _stated(known)).hex()[:32]
-        n = len(ready.samples)
+        name += self._owner
         for entry in self._entries(own, name):
-            if (unpacked := self._read(own, entry, n)) is not None:
+            if (unpacked := self._read(own, entry, ready)) is not None:
                 verdicts, looked = unpacked
                 self.found += 1
                 break
@@ -104,10 +112,15 @@ class Kept:
             verdicts = self._otherwise(ready, cutter, known=known, progress=progress, work=counted)
             looked = counted.looked
             self.judged += 1
-            self._write(own, name, packed(verdicts, looked, own))
+            self._write(own, name, packed(verdicts, looked, own, self._key))
         if work is not None:
             work.add(looked)
         return verdicts
+
+    @property
+    def _owner(self) -> str:
+        """The end of the names of entries with this key: those of others are neither read nor written over."""
+        return "" if self._key is None else f"-{stamp(b'entries', self._key)[:16]}"
 
     def _digest(self, ready: Prepared) -> bytes:
         """The checksum of a ground and of this program; taken once for the cutters of a setup."""
@@ -128,9 +141,9 @@ class Kept:
         except Exception as error:
             self._fault(own, "cannot be read", error)
             return
-        yield from sorted(each for each in others if each != name)
+        yield from sorted(each for each in others if each != name and each[32:] == self._owner)
 
-    def _read(self, own: str, name: str, n: int) -> tuple[Verdicts, int] | None:
+    def _read(self, own: str, name: str, ready: Prepared) -> tuple[Verdicts, int] | None:
         try:
             content = self._folder.get(_place(own, name))
         except Exception as error:
@@ -139,7 +152,9 @@ class Kept:
         if content is None:
             return None
         try:
-            return unpacked(content, n, own)
+            found = unpacked(content, len(ready.samples), own, self._key)
+            require_postures(found[0], ready.samples.normal, ready.options.postures)
+            return found
         except (ValueError, TypeError, LookupError, OverflowError, RecursionError, MemoryError, zlib.error) as error:
             self._fault(own, "is damaged and not used", error)
             return None
@@ -155,19 +170,19 @@ class Kept:
         self.faults.append(f"{self._where}: kept verdicts {own[:12]}: {what} ({why})")
 
 
-def packed(verdicts: Verdicts, looked: int, key: str) -> bytes:
-    """Write verdicts, the work that they took and the key that they belong to as one entry."""
+def packed(verdicts: Verdicts, looked: int, key: str, secret: bytes | None = None) -> bytes:
+    """Write verdicts, the work that they took and the key that they belong to as one entry, stamped with a secret if any."""
     columns = b"".join(
         np.ascontiguousarray(getattr(verdicts, name), kind).tobytes() for name, (kind, _) in _COLUMNS.items()
     )
     content = zlib.compress(columns, 1)
     head = {"key": key, "samples": len(verdicts.verdict), "looked": looked}
     said = json.dumps(head, sort_keys=True).encode()
-    return _MAGIC + hashlib.sha256(said + content).hexdigest().encode() + b"\n" + said + b"\n" + content
+    return _MAGIC + stamp(said + content, secret).encode() + b"\n" + said + b"\n" + content
 
 
-def unpacked(entry: bytes, n: int, key: str) -> tuple[Verdicts, int]:
-    """Read what `packed` wrote for n samples and a key.
+def unpacked(entry: bytes, n: int, key: str, secret: bytes | None = None) -> tuple[Verdicts, int]:
+    """Read what `packed` wrote for n samples and a key, with the same secret.
 
     Raises
     ------
@@ -178,8 +193,8 @@ def unpacked(entry: bytes, n: int, key: str) -> tuple[Verdicts, int]:
         raise ValueError("no entry of verdicts")
     checksum, _, rest = entry[len(_MAGIC) :].partition(b"\n")
     said, _, content = rest.partition(b"\n")
-    if hashlib.sha256(said + content).hexdigest().encode() != checksum:
-        raise ValueError("its checksum differs")
+    if not hmac.compare_digest(stamp(said + content, secret).encode(), checksum):
+        raise ValueError("its checksum differs" if secret is None else "it is not sealed with this key")
     head = json.loads(said)
     looked = head["looked"]
     if head["key"] != key or head["samples"] != n or type(looked) is not int or looked < 0:
@@ -194,10 +209,37 @@ def unpacked(entry: bytes, n: int, key: str) -> tuple[Verdicts, int]:
         arrays.append(np.frombuffer(columns[place : place + size], kind).reshape(n, *shape).copy())
         place += size
     verdicts = Verdicts(*arrays)
-    words, reasons = list(WORDS), [*range(len(REASONS)), NO_REASON]
-    if not (np.isin(verdicts.verdict, words).all() and np.isin(verdicts.reason, reasons).all()):
+    if not np.isin(verdicts.verdict, list(WORDS)).all():
         raise ValueError("it holds verdicts that there are not")
+    if not (verdicts.not_reached == (verdicts.reason < len(REASONS))).all():
+        raise ValueError("its reasons do not go with its verdicts")
     return verdicts, looked
+
+
+def require_postures(verdicts: Verdicts, normal: Floats, postures: PostureRange) -> None:
+    """Refuse verdicts whose postures are none at these samples: each stands at a tilt and rotation that may be searched.
+
+    Parameters
+    ----------
+    verdicts : Verdicts
+    normal : (n, 3) float
+        Of the samples.
+    postures : PostureRange
+
+    Raises
+    ------
+    ValueError
+    """
+    at = verdicts.reached
+    tilt, axis, across, normal = verdicts.tilt[at, None], verdicts.axis[at], verdicts.tilt_direction[at], normal[at]
+    low, high = postures.tilt
+    turned = (verdicts.rotation[at] >= 0) & (verdicts.rotation[at] < len(postures.rotations))
+    with np.errstate(all="ignore"):
+        stands = np.abs(axis - np.cos(tilt) * normal - np.sin(tilt) * across) <= _SLACK
+        unit = np.abs((across * across).sum(axis=1) - 1.0) + np.abs((across * normal).sum(axis=1)) <= _SLACK
+        within = (tilt[:, 0] >= low - _SLACK) & (tilt[:, 0] <= high + _SLACK)
+    if not (stands.all() and unit.all() and within.all() and turned.all()):
+        raise ValueError("it holds postures that there are not")
 
 
 @functools.cache

@@ -13,6 +13,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any
 
 from plan_cutters.batch import handing, keys, store
+from plan_cutters.batch.content import Content, content
 from plan_cutters.batch.job import TIMED_OUT, UNREADABLE, USAGE, Handed
 from plan_cutters.batch.row import PartRow
 from plan_cutters.errors import PlanError
@@ -36,8 +37,8 @@ class Task:
     ----------
     name, file : str
         As of the `Job`.
-    data : bytes, optional
-        Content of the file, where workers cannot read it.
+    content : Content, optional
+        Of the file, where workers cannot read it.
     part : bytes, optional
         The pickled part, where it is no file.
     handed : Handed
@@ -56,11 +57,13 @@ class Task:
         Of where the batch was begun.
     source : str
         The file as workers find it, in whatever folder they run.
+    secret : bytes, optional
+        Seals what is kept in the output (`files.seal`).
     """
 
     name: str
     file: str
-    data: bytes | None
+    content: Content | None
     part: bytes | None
     handed: Handed
     words: tuple[str, ...]
@@ -72,6 +75,7 @@ class Task:
     versions: Mapping[str, str]
 
     source: str = ""
+    secret: bytes | None = None
 
     @property
     def folder(self) -> str:
@@ -113,21 +117,21 @@ def work(task: Task) -> Outcome:
     try:
         if why := _unfit(task.versions):
             return unfit(why)
-        output = None if task.store is None else store.Store(task.store)
+        output = None if task.store is None else store.Store(task.store, task.secret)
         if output is not None and not output.seen(task.token):
             return unfit(f"{_here()}: this worker does not see {task.store} (give a folder that all machines share, or a URL), "
                           "or another batch has begun there since")  # fmt: skip
         try:
-            data = task.part or (store.read(task.source or task.file) if task.data is None else task.data)
+            found = content_of(task)
         except PlanError as error:
             return failed(str(error).replace(task.source or task.file, task.file), UNREADABLE)
-        key = keys.key(keys.checksum(data), task.settings)
+        key = keys.key(found.key, task.settings)
         if output is not None and not task.force and (row := kept(output, task.folder, key, task.name, task.file)):
             return Outcome(row, {})
         with tempfile.TemporaryDirectory(prefix="plan-", dir=_scratch(), ignore_cleanup_errors=True) as name:
             folder = Path(name)
-            code, line = _planned(task, data, folder)
-            made = _files(folder / "out")
+            code, line = planned(task, found, folder)
+            made = files_of(folder / "out")
             if code not in _PLANNED or PLAN not in made:
                 return failed(line or f"ended with exit code {code} and no plan", code if code > 1 else UNREADABLE, key)
             row = _row(task, made[PLAN].read_bytes(), key, code, time.monotonic() - began)
@@ -141,6 +145,17 @@ def work(task: Task) -> Outcome:
         return failed(f"{_here()}: {error.strerror or error}", USAGE, key)
     except Exception as error:
         return failed(f"internal error ({type(error).__name__}: {error})", UNREADABLE, key)
+
+
+def content_of(task: Task) -> Content:
+    """Of the part of a task.
+
+    Raises
+    ------
+    PlanError
+        It cannot be read.
+    """
+    return Content(task.part) if task.part else task.content or content(task.source or task.file)
 
 
 def kept(output: store.Store, folder: str, key: str, name: str, file: str) -> PartRow | None:
@@ -247,17 +262,19 @@ def _make_room() -> None:
     secede()
 
 
-def _planned(task: Task, data: bytes, folder: Path) -> tuple[int, str]:
+def planned(task: Task, found: Content, folder: Path) -> tuple[int, str]:
     """Run the command in a folder; its exit code, and the last line that it said."""
     name = PurePosixPath(task.file.replace("\\", "/")).name or "part"
     if task.part is None:
-        (folder / name).write_bytes(data)
-    for file, content in task.handed.files:
-        if (folder / file).exists():
+        found.write(folder / name)
+    for file, data in task.handed.files:
+        there = folder / file
+        if there.exists():
             return USAGE, f"{task.file}: a fixture's file is called like the part: rename one"
-        (folder / file).write_bytes(content)
+        there.parent.mkdir(parents=True, exist_ok=True)
+        there.write_bytes(data)
     offer = _offered(folder)
-    (folder / ".handed").write_bytes(handing.packed(task.handed.options, task.part, offer))
+    (folder / ".handed").write_bytes(handing.packed(task.handed.options, task.part, offer, task.secret))
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PLAN_CUTTERS_")}
     environment |= {handing.FILE: str(folder / ".handed"), handing.PARENT: str(os.getpid())}
     words = [sys.executable, "-P", "-m", "plan_cutters", "plan", f"./{name}", "-o", "out", "--quiet", *task.words]
@@ -308,7 +325,7 @@ def _end(child: "subprocess.Popen[bytes]") -> None:
         child.wait()
 
 
-def _files(folder: Path) -> dict[str, Path]:
+def files_of(folder: Path) -> dict[str, Path]:
     """Files of a plan, the plan itself last."""
     found = {each.relative_to(folder).as_posix(): each for each in sorted(folder.rglob("*")) if each.is_file()}
     return {name: path for name, path in found.items() if name != PLAN} | {

@@ -77,7 +77,7 @@ _many = heading("Many parts")
        help="Most memory of a part.  [default: an equal share of 3/4 of this machine's, at least 4]")  # fmt: skip
 @_many("--force", is_flag=True, help="Plan again what is done already.")
 @_many("--dry-run", is_flag=True, help="Say what would be planned, and do nothing.")
-@options("read_timeout", "debug", jobs={"help": "Threads of each part.  [default: 1]"})
+@options("verdicts_key", "read_timeout", "debug", jobs={"help": "Threads of each part.  [default: 1]"})
 def command(sources: tuple[str, ...], **given: Any) -> int:
     """Plan many parts: files, folders, globs, lists, and manifests (TOML, CSV) with options of each part; here or at URLs.
 
@@ -88,6 +88,7 @@ def command(sources: tuple[str, ...], **given: Any) -> int:
     from plan_cutters.batch.run import Terms
     from plan_cutters.batch.store import Store
     from plan_cutters.errors import OptionError
+    from plan_cutters.files.seal import key_of
 
     parts = _parts(sources, given)
     if all(isinstance(part, Fault) for part in parts):
@@ -102,8 +103,9 @@ def command(sources: tuple[str, ...], **given: Any) -> int:
         raise OptionError("--limit-memory must be at least 2 GB")
     if given["cluster"] is not None and given["workers"] is not None:
         raise OptionError("--workers is about this machine: leave it out with --cluster")
-    out = Store(given["out"])
-    terms = Terms(given["force"], given["timeout_part"], memory)
+    secret = None if given["verdicts_key"] is None else key_of(given["verdicts_key"])
+    out = Store(given["out"], secret)
+    terms = Terms(given["force"], given["timeout_part"], memory, secret)
     if given["dry_run"]:
         return _foreseen(parts, out, terms)
     return _all(parts, out, terms, given)
@@ -221,12 +223,15 @@ def _beside(word: str, folder: str) -> str:
 
 def _settings(given: dict[str, Any]) -> "Settings":
     """The settings of parts, from the words of the command line: what is wrong with them is said before anything is begun."""
+    from cad_io.files import noted
     from plan_cutters.batch.job import Settings
     from plan_cutters.command.validation import look_at, options_of, refuse_unasked
     from plan_cutters.report.folder import read_formats
 
     refuse_unasked({**given, "check_operations": None})
-    asked = options_of({**given, "jobs": given["jobs"] or 1})
+    with noted() as files:
+        asked = options_of({**given, "jobs": given["jobs"] or 1})
     look_at(asked)
     formats = _FORMATS if given["formats"] is None else read_formats(given["formats"])
-    return Settings(asked, tuple(dict.fromkeys(("json", *formats))), given["step_schema"], given["read_timeout"])
+    return Settings(asked, tuple(dict.fromkeys(("json", *formats))), given["step_schema"], given["read_timeout"],
+                    tuple(filter(None, files.values())))  # fmt: skip

@@ -5,11 +5,10 @@ import json
 import os
 import re
 import shutil
-import subprocess
-import sys
 import tempfile
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -25,6 +24,8 @@ from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.files.whole import whole
 
 if TYPE_CHECKING:
+    from plan_cutters.batch.content import Content
+    from plan_cutters.batch.job import Handed, Settings
     from plan_cutters.comparison.model import PlanDifference
 
 _SELF = "plan-cutters changed"
@@ -43,7 +44,7 @@ _OURS = (
     "-h",
     "--version",
 )
-_FORMATS = "json,html,png"
+_FORMATS = ("json", "html", "png")
 _PLANNED = (0, 1, 4)
 
 _commits, _output, _rules = heading("Commits"), heading("Output"), heading("Rule")
@@ -73,6 +74,53 @@ class Row:
         return (
             (at >= 1 and (lost or bool(self.failed))) or (at >= 2 and bool(self.unreachable)) or (at >= 3 and doubtful)
         )
+
+
+@dataclass(frozen=True)
+class Request:
+    """How the parts are planned: the options after `--`, read once, so that all parts have the same tools.
+
+    Attributes
+    ----------
+    settings : Settings
+    handed : Handed
+    words : tuple of str
+        Of the command line, for what is no option of the plan.
+    """
+
+    settings: "Settings"
+    handed: "Handed"
+    words: tuple[str, ...]
+
+    @classmethod
+    def of(cls, asked: Sequence[str]) -> "Request":
+        """Read the options, and every file that they name.
+
+        Raises
+        ------
+        CadIoError, OptionError, PlanError
+            An option has no meaning, or a file cannot be used.
+        """
+        from cad_io.files import noted
+        from plan_cutters.batch.job import Settings, handed
+        from plan_cutters.command.cli import command as plan
+        from plan_cutters.command.validation import look_at, options_of, refuse_unasked
+
+        with plan.make_context(_SELF, ["part", *asked]) as context:
+            given = dict(context.params)
+        if len(given["parts"]) > 1:
+            raise OptionError(f"{given['parts'][1]} cannot stand after --: only options can")
+        refuse_unasked(given)
+        with noted() as files:
+            options = options_of(given)
+        look_at(options)
+        settings = Settings(options, _FORMATS, given["step_schema"], read=tuple(filter(None, files.values())))
+        words = ["--formats", ",".join(_FORMATS), *(["--debug"] if given["debug"] else [])]
+        for name in ("step_schema", "read_timeout", "timeout", "memory", "cluster", "verdicts", "verdicts_key"):
+            if given[name] is not None:
+                here = name in ("cluster", "verdicts", "verdicts_key") and "://" not in given[name]
+                words += [f"--{name.replace('_', '-')}", os.path.abspath(given[name]) if here else str(given[name])]
+        return cls(settings, handed(options), tuple(words))
 
 
 @click.command(
@@ -133,7 +181,8 @@ def command(asked: tuple[str, ...], **given: Any) -> int:
     out = Path(given["out"])
     with tempfile.TemporaryDirectory() as aside:
         cache = Path(given["cache"] or aside)
-        rows = [_compared(part, began, head, asked, cache, out) for part in parts]
+        request = Request.of(asked) if parts else None
+        rows = [_compared(part, began, head, request, cache, out) for part in parts]
     links: dict[Path, str] = {}
     if given["pictures_branch"] and rows:
         try:
@@ -149,10 +198,12 @@ def command(asked: tuple[str, ...], **given: Any) -> int:
     return 1 if failing else 0
 
 
-def _compared(part: Changed, began: str, head: str, asked: Sequence[str], cache: Path, out: Path) -> Row:
+def _compared(part: Changed, began: str, head: str, request: Request | None, cache: Path, out: Path) -> Row:
     """Plan a part as it was and as it is; what cannot be planned is told in the row. A part that is gone is not planned."""
-    if part.new is None:
+    if part.new is None or request is None:
         return Row(part)
+    from plan_cutters.batch.content import content as all_of
+    from plan_cutters.batch.store import MARKER
     from plan_cutters.comparison.folders import PLAN, read_plan
     from plan_cutters.comparison.pictures import picture_of
     from plan_cutters.comparison.plans import compare
@@ -161,18 +212,18 @@ def _compared(part: Changed, began: str, head: str, asked: Sequence[str], cache:
 
     found: dict[str, Path] = {}
     why: dict[str, str] = {}
-    known: dict[bytes, Path] = {}
+    known: dict[Content, Path] = {}
     for side, at, path in (("after", head, part.new), ("before", began, part.old)):
         if path is None:
             continue
         say(f"{path}: {'as it was' if side == 'before' else 'as it is'}")
         try:
-            data = content(at, path)
+            data = all_of(path, partial(content, at))
             # A part that was only renamed is planned once.
-            known[data] = kept = known.get(data) or _planned(data, Path(path).name, asked, cache)
+            known[data] = kept = known.get(data) or _planned(data, path, request, cache)
             found[side] = out / side / part.name
             shutil.rmtree(found[side], ignore_errors=True)
-            shutil.copytree(kept, found[side])
+            shutil.copytree(kept, found[side], ignore=shutil.ignore_patterns(MARKER))
         except PlanError as fault:
             why[side] = str(fault) if fault.file == path else f"{path}: {fault}"
     plans = {side: read_plan(folder / PLAN) for side, folder in found.items()}
@@ -193,51 +244,36 @@ def _compared(part: Changed, began: str, head: str, asked: Sequence[str], cache:
     )  # fmt: skip
 
 
-def _planned(data: bytes, name: str, asked: Sequence[str], cache: Path) -> Path:
-    """The folder of a plan of some bytes in the cache, planned unless it is there.
+def _planned(found: "Content", path: str, request: Request, cache: Path) -> Path:
+    """The folder of a plan of a part in the cache, planned unless it is there.
 
     Raises
     ------
     PlanError
         It cannot be planned.
     """
-    kept = cache / _key(data, name, asked)
-    if (kept / "plan.json").is_file():
-        return kept
+    from plan_cutters.batch import keys, work
+    from plan_cutters.batch.rows_of_plans import row_of
+    from plan_cutters.batch.store import Store
+    from plan_cutters.document.model import Plan
+
+    name = Path(path).name
+    key = keys.key(found.key, keys.settings_key(request.settings, request.handed))
+    # The part's name stands in its plan.
+    folder = keys.key(key, keys.checksum(name.encode("utf-8", "surrogateescape")))
+    store = Store(str(cache))
+    if work.kept(store, folder, key, name, path) is not None:
+        return cache / folder
     cache.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(dir=cache, prefix=".") as folder:
-        part, made = Path(folder) / name, Path(folder) / "plan"
-        part.write_bytes(data)
-        words = [sys.executable, "-m", "plan_cutters", "plan", f"{part.absolute()}", *asked,
-                 "-o", f"{made.absolute()}", "--formats", _FORMATS, "--quiet"]  # fmt: skip
-        done = subprocess.run(
-            words, stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False, errors="replace"
-        )
-        if done.returncode not in _PLANNED or not (made / "plan.json").is_file():
-            said = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
-            raise PlanError(said[-1].removeprefix("plan-cutters: ").replace(f"{part.absolute()}: ", ""))
-        # Whole or not at all: another run may keep the same content at the same time.
-        if not kept.exists():
-            os.replace(made, kept)
-    return kept
-
-
-def _key(data: bytes, name: str, asked: Sequence[str]) -> str:
-    """Of all that a plan is made of: the part, the options, every file beside those that options name, and the version."""
-    from plan_cutters.batch.digest import digest
-    from plan_cutters.batch.keys import version
-
-    beside = []
-    for word in asked:
-        # FILE@x,y,z, FILE:inch, FILE#C,A, --option=FILE; setup files name others beside them.
-        for text in (word, word.partition("=")[2]):
-            path = next((p for p in (Path(text), *(Path(text.partition(c)[0]) for c in "@#:")) if p.is_file()), None)
-            beside += (
-                sorted((each.name, each.read_bytes()) for each in path.parent.iterdir() if each.is_file())
-                if path
-                else []
-            )
-    return digest([version(), _FORMATS, name, data, list(asked), beside]).hex()
+    task = work.Task(name, path, None, None, request.handed, request.words, key, None, "", False, None, {})
+    with tempfile.TemporaryDirectory(dir=cache, prefix=".") as place:
+        code, line = work.planned(task, found, Path(place))
+        made = work.files_of(Path(place) / "out")
+        if code not in _PLANNED or work.PLAN not in made:
+            raise PlanError(line or f"ended with exit code {code} and no plan")
+        plan = Plan.model_validate_json(made[work.PLAN].read_bytes())
+        store.publish(folder, made, row_of(plan, name=name, file=path, code=code, key=key, folder=folder, seconds=0.0))
+    return cache / folder
 
 
 def _links(rows: Sequence[Row], branch: str) -> dict[Path, str]:

@@ -96,6 +96,7 @@ def _compiling(options: "Options", quiet: bool) -> Callable[[str], None]:
 def _judging(given: dict[str, Any]) -> "Iterator[Judge]":
     """What judges the cutters, with the cluster and the kept verdicts that were asked for; it says what came of these."""
     from plan_cutters.batch.one import judging
+    from plan_cutters.files.seal import key_of
 
     with ExitStack() as stack:
         client = None
@@ -108,7 +109,8 @@ def _judging(given: dict[str, Any]) -> "Iterator[Judge]":
             from plan_cutters.batch.lending import Lent
 
             lent = stack.enter_context(closing(Lent(offer)))
-        judged = judging(client, given["verdicts"], lent)
+        key = handing.key() if given["verdicts_key"] is None else key_of(given["verdicts_key"])
+        judged = judging(client, given["verdicts"], lent, key)
         yield judged
     if given["verdicts"] is not None:
         from plan_cutters.batch.verdicts import Kept

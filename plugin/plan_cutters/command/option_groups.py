@@ -314,6 +314,12 @@ _OPTIONS = (
         "that one is judged.",
     ),
     _run(
+        "--verdicts-key",
+        type=File("FILE"),
+        help="File with a key of 16 bytes or more that seals kept verdicts: those that nobody with this key wrote are not "
+        "taken.",
+    ),
+    _run(
         "--read-timeout",
         type=float,
         default=120.0,

@@ -89,10 +89,10 @@ def _words(parts: Sequence[str], given: dict[str, Any]) -> None:
             raise OptionError(
                 f"--setup auto plans what it proposes, and --{name.replace('_', '-')} plans nothing: name the setup"
             )
-        if given[name] is not None and (word := next((w for w in ("cluster", "verdicts") if given[w] is not None), "")):
-            raise OptionError(
-                f"--{word} is about planning, and --{name.replace('_', '-')} plans nothing: leave one of them out"
-            )
+        planning = [word for word in ("cluster", "verdicts", "verdicts_key") if given[word] is not None]
+        if given[name] is not None and planning:
+            one, other = (word.replace("_", "-") for word in (planning[0], name))
+            raise OptionError(f"--{one} is about planning, and --{other} plans nothing: leave one of them out")
     refuse_unasked(given)
     if given["check_operations"] is not None and len(parts) > 1:
         raise OptionError("--check-operations is about one part")
@@ -102,6 +102,12 @@ def _words(parts: Sequence[str], given: dict[str, Any]) -> None:
         raise OptionError("no such file, or it is no file", file=given["postures"])
     if not 0.0 < given["read_timeout"] < math.inf:
         raise OptionError("--read-timeout must be a positive number of seconds")
+    if given["verdicts_key"] is not None:
+        from plan_cutters.files.seal import key_of
+
+        if given["verdicts"] is None:
+            raise OptionError("--verdicts-key seals kept verdicts: give it with --verdicts, or leave it out")
+        key_of(given["verdicts_key"])
     if given["timeout"] is not None and not 0.0 < given["timeout"] < math.inf:
         raise OptionError("--timeout must be a positive number of seconds")
     if given["memory"] is not None and not LEAST_MEMORY <= given["memory"] * 1e9 < 1e18:

@@ -34,7 +34,8 @@ def match_faces(old: Plan, new: Plan) -> list[tuple[FaceEntry, FaceEntry, FaceMa
     older version says no place, then number, form and area agree; a name stands once on each side and the form agrees; of what
     is left, two are each other's nearest in place and area, by far, and of one form.
     """
-    if old.part.sha256 and (old.part.sha256, old.effective.unit) == (new.part.sha256, new.effective.unit):
+    bytes_of = [(plan.part.sha256, plan.part.references, plan.effective.unit) for plan in (old, new)]
+    if old.part.sha256 and bytes_of[0] == bytes_of[1]:
         there = {face.id: face for face in new.faces}
         return [(face, there[face.id], "same file") for face in old.faces if face.id in there]
     size = math.hypot(*(max(a, b) for a, b in zip(old.part.size_mm, new.part.size_mm, strict=True)))

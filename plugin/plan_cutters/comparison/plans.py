@@ -5,6 +5,7 @@ from collections import Counter
 from collections.abc import Collection, Iterable
 from typing import Any
 
+from cad_io.files import fingerprint
 from plan_cutters.comparison.matching import match_cutters, match_faces
 from plan_cutters.comparison.model import ASKED, Change, CutterDifference, FaceDifference, FaceState, PlanDifference
 from plan_cutters.comparison.states import (
@@ -15,7 +16,9 @@ from plan_cutters.comparison.states import (
     reached_whole,
     unreachable,
 )
+from plan_cutters.document.fixture_entry import FixtureEntry
 from plan_cutters.document.model import CutterEntry, FaceEntry, Plan
+from plan_cutters.document.part_info import PartInfo
 from plan_cutters.report.story.names import called
 
 #: Shares of an area that differ by no more are the same: samples of a changed part lie in other places.
@@ -101,7 +104,7 @@ def _changes(old: Plan, new: Plan, despite: Collection[str]) -> Iterable[Change]
             proposed = what == "setup" and old.setup_proposal is not None and new.setup_proposal is not None
             yield Change(what=what, old=_text(mine), new=_text(theirs), hinders=what not in despite and not proposed)
     others: tuple[tuple[str, Any, Any], ...] = (
-        ("part", (old.part.sha256 or "")[:12], (new.part.sha256 or "")[:12]),
+        ("part", _bytes(old.part), _bytes(new.part)),
         ("tools", sorted(c.id for c in old.cutters), sorted(c.id for c in new.cutters)),
         ("version", old.versions.get("plan_cutters"), new.versions.get("plan_cutters")),
         ("missing", len(old.missing), len(new.missing)),
@@ -124,8 +127,13 @@ def _asked(plan: Plan) -> dict[str, Any]:
         "machine": (plan.machine.name, plan.machine.tilt_limit_deg,
                     *((a.name, a.carries, a.direction, a.limits_deg) for a in plan.machine.rotary or ())),
         "setup": [(e.setup, e.placement), *zip(e.other_setups, e.other_placements or [None] * len(e.other_setups), strict=False)],
-        "fixtures": [(f.name, f.sha256, f.unit, f.placement, tuple(f.setups)) for f in plan.fixtures],
+        "fixtures": [(f.name, _bytes(f), f.unit, f.placement, tuple(f.setups)) for f in plan.fixtures],
     }  # fmt: skip
+
+
+def _bytes(entry: PartInfo | FixtureEntry) -> str:
+    """A short checksum of a file with all that it refers to; empty where there is no file."""
+    return fingerprint(entry.sha256 or "", [(each.file, each.sha256) for each in entry.references])[:12]
 
 
 def _text(value: Any) -> str:

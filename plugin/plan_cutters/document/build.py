@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from cad_io import Part, SurfaceSamples
 from cad_io.kernel.assembly import component_of
 from plan_cutters import __version__
+from plan_cutters.document.fixtures import references
 from plan_cutters.document.frozen import filled, posture, vector
 from plan_cutters.document.listed import listed
 from plan_cutters.document.model import (
@@ -141,6 +142,7 @@ def part_info(scene: Scene, around: Surroundings) -> PartInfo:
     return PartInfo(
         file=Path(part.file).name if part.file else None,
         sha256=part.sha256,
+        references=references(part),
         size_mm=part.size,
         solids=part.solids,
         faces=len(part.faces),

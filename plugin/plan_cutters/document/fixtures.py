@@ -3,8 +3,9 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from cad_io import Part
 from cad_io.read.mesh import Mesh
-from plan_cutters.document.fixture_entry import FixtureEntry
+from plan_cutters.document.fixture_entry import FixtureEntry, ReferenceEntry
 from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
 
 
@@ -28,6 +29,11 @@ def standing_in(each: Sequence[Surroundings]) -> list[tuple[PlacedFixture, list[
     return found
 
 
+def references(part: Part) -> list[ReferenceEntry]:
+    """The files that a part's file refers to."""
+    return [ReferenceEntry(file=file, sha256=sha256) for file, sha256 in part.references]
+
+
 def fixture_entry(standing: PlacedFixture) -> FixtureEntry:
     """A fixture where it stands."""
     fixture, source, triangles = standing.fixture, standing.source, standing.obstacles.triangles
@@ -37,6 +43,7 @@ def fixture_entry(standing: PlacedFixture) -> FixtureEntry:
         name=standing.name,
         file=None if file is None else Path(file).name,
         sha256=None if source is None else source.sha256,
+        references=references(source) if isinstance(source, Part) else [],
         unit=source.unit if isinstance(source, Mesh) else fixture.unit,
         placement=(x, y, z, rx, ry, rz),
         triangles=len(triangles),

@@ -2,6 +2,7 @@
 
 from pydantic import Field
 
+from plan_cutters.document.fixture_entry import ReferenceEntry
 from plan_cutters.document.frozen import Frozen, Vector
 
 
@@ -24,6 +25,7 @@ class SewingInfo(Frozen):
 class PartInfo(Frozen):
     file: str | None
     sha256: str | None
+    references: list[ReferenceEntry] = Field(default=[], description="files that the file refers to")
     size_mm: Vector
     solids: int
     faces: int

@@ -6,7 +6,6 @@ import json
 import lzma
 import os
 import re
-import stat
 import zipfile
 import zlib
 from dataclasses import dataclass, field
@@ -14,6 +13,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar, Self
 
+from cad_io import files
 from plan_cutters.errors import PlanError
 from plan_cutters.files.xml_tree import Element, parse
 
@@ -39,13 +39,10 @@ def data_of(path: str | os.PathLike[str], noun: str, error: type[PlanError]) -> 
     """All bytes of a regular file; `error` names it as no `noun` where it cannot be one."""
     name = Path(path).name
     try:
-        with open(path, "rb", opener=lambda file, flags: os.open(file, flags | getattr(os, "O_NONBLOCK", 0))) as opened:
-            status = os.fstat(opened.fileno())
-            if not stat.S_ISREG(status.st_mode):
-                raise error("is no regular file, but a pipe or a device; give a file", file=name)
-            data = opened.read(_FILE + 1)
-    except IsADirectoryError:
-        raise error(f"is a folder; give a {noun} in it", file=name) from None
+        data = files.content(path, _FILE + 1)
+    except files.IrregularError as fault:
+        what = f"{noun} in it" if os.path.isdir(path) else "file"
+        raise error(f"{fault}; give a {what}", file=name) from None
     except OSError as fault:
         raise error(f"cannot be read: {fault.strerror or fault}", file=name) from None
     except ValueError as fault:

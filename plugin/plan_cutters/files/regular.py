@@ -1,39 +1,10 @@
 """Regular files alone are read: a pipe may be waited for without end, and a device may never end."""
 
 import os
-import stat
 from pathlib import Path
-from typing import BinaryIO
 
+from cad_io.files import IrregularError, open_regular
 from plan_cutters.errors import PlanError
-
-
-class IrregularError(OSError):
-    """A path names a folder, a pipe, a socket or a device."""
-
-
-def open_regular(path: str | os.PathLike[str]) -> BinaryIO:
-    """Open a regular file, or a link to one, to read its bytes; nothing else is waited for.
-
-    Raises
-    ------
-    IrregularError
-        It is something else.
-    OSError
-        It cannot be opened.
-    ValueError
-        It cannot be the name of a file.
-    """
-    flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_NOCTTY", 0) | getattr(os, "O_BINARY", 0)
-    # Some devices act when they are opened; what takes the place of the file meanwhile is looked at, too.
-    _refuse(os.stat(path))
-    opened = os.fdopen(os.open(path, flags), "rb")
-    try:
-        _refuse(os.fstat(opened.fileno()))
-    except BaseException:
-        opened.close()
-        raise
-    return opened
 
 
 def regular_bytes(path: str | os.PathLike[str], most: int) -> bytes | None:
@@ -72,10 +43,3 @@ def regular_bytes(path: str | os.PathLike[str], most: int) -> bytes | None:
     if large or len(data) > most:
         raise PlanError(f"is larger than {most} bytes", file=name)
     return data
-
-
-def _refuse(status: os.stat_result) -> None:
-    if stat.S_ISDIR(status.st_mode):
-        raise IrregularError("is a folder")
-    if not stat.S_ISREG(status.st_mode):
-        raise IrregularError("is no regular file, but a pipe or a device")

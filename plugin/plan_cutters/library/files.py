@@ -1,14 +1,13 @@
 """Files that are tool libraries, or should be."""
 
 import os
-from pathlib import Path
 from typing import ClassVar
 
 from plan_cutters.errors import LibraryError, PlanError
 from plan_cutters.files import content
 from plan_cutters.files.content import lines_of
 
-__all__ = ["MOST_TOOLS", "Content", "data_of", "is_file", "lines_of", "too_many"]
+__all__ = ["MOST_TOOLS", "Content", "data_of", "lines_of", "too_many"]
 
 #: Tools that a file may list: more take more memory than a planner's computer has.
 MOST_TOOLS = 50_000
@@ -24,14 +23,6 @@ class Content(content.Content):
 def data_of(path: str | os.PathLike[str]) -> bytes:
     """All bytes of a regular file."""
     return content.data_of(path, Content.noun, Content.error)
-
-
-def is_file(path: Path) -> bool:
-    """Whether there is a regular file; a name that no system takes is none."""
-    try:
-        return path.is_file()
-    except OSError:
-        return False
 
 
 def too_many(file: str) -> LibraryError:

@@ -9,10 +9,11 @@ from itertools import pairwise
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Any
 
+from cad_io.files import is_there
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.holder import Holder
 from plan_cutters.errors import CutterError, LibraryError
-from plan_cutters.library.files import MOST_TOOLS, Content, data_of, is_file, lines_of, too_many
+from plan_cutters.library.files import MOST_TOOLS, Content, data_of, lines_of, too_many
 from plan_cutters.library.fusion_json import MOST_SECTIONS
 from plan_cutters.library.presets import Preset, take_feed
 from plan_cutters.library.raw_tool import (
@@ -116,7 +117,7 @@ def _bit(folder: Path, path: str) -> Content:
     if not name.lower().endswith(".fctb"):
         raise FaultError(f"path {shown(path)} is no .fctb file")
     for each in (folder / place / name for place in _FOLDERS):
-        if is_file(each):
+        if is_there(each):
             try:
                 bit = Content(each, data_of(each))
             except LibraryError as error:

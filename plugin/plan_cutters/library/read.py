@@ -5,9 +5,10 @@ from collections import Counter
 from pathlib import Path
 from typing import Any, Literal
 
+from cad_io.files import is_there
 from plan_cutters.domain.holder import Holder, positive
 from plan_cutters.errors import CutterError, LibraryError
-from plan_cutters.library.files import Content, data_of, is_file
+from plan_cutters.library.files import Content, data_of
 from plan_cutters.library.formats import FORMATS, recognised
 from plan_cutters.library.milling import Ask, entry_of
 from plan_cutters.library.records import Entry, Library
@@ -128,9 +129,9 @@ def holder_of(given: Any) -> Holder | str:
         return Holder.parse(given)
     except CutterError:
         file, mark, name = given.rpartition("#")
-        if not mark or not is_file(Path(file)):
+        if not mark or not is_there(file):
             file, name = given, ""
-        if not is_file(Path(file)):
+        if not is_there(file):
             if Path(file).suffix.lower() in _SUFFIXES:
                 raise LibraryError("is no file; give one with a holder, or R15L30", file=file) from None
             raise

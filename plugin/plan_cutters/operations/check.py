@@ -66,6 +66,11 @@ def _fits(ready: Prepared, document: Mapping[str, Any], arrays: Mapping[str, NDA
     asked, options = document["effective"], ready.options
     pairs = [
         ("part", document["part"].get("sha256"), ready.scene.part.sha256),
+        (
+            "files that the part refers to",
+            [(each["file"], each["sha256"]) for each in document["part"].get("references", [])],
+            list(ready.scene.part.references),
+        ),
         ("cutters (--cutter, --holder)", asked["cutters"], [cutter.id for cutter in ready.cutters]),
         ("machine (--machine)", asked["machine"], options.machine.name),
         ("setup (--setup)", [round(x, 9) for x in asked["setup"]], [round(x, 9) for x in ready.scene.setup]),

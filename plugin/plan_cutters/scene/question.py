@@ -5,7 +5,6 @@ narrower range of postures. They do not tell the effect of any other change, so 
 """
 
 import dataclasses
-import hashlib
 import json
 import math
 from collections.abc import Callable, Collection, Mapping
@@ -13,8 +12,9 @@ from typing import Any
 
 import numpy as np
 
-from cad_io import Part
+from cad_io import Part, files
 from cad_io.part.orient import orient
+from cad_io.read.references import beside, fingerprint_of
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
@@ -53,7 +53,7 @@ def question(ready: Prepared, cutter: Cutter) -> dict[str, Any]:
     part = scene.part
     return {
         "method": METHOD,
-        "part": part.sha256 or "",
+        "part": part.fingerprint,
         "unit": part.unit,
         "faces": chosen.asked,
         "targets": list(chosen.targets),
@@ -65,7 +65,7 @@ def question(ready: Prepared, cutter: Cutter) -> dict[str, Any]:
         "x": None if options.placement is None or options.placement.x is None else list(options.placement.x),
         "sides_follow_setup": _sides_follow(scene),
         "fixtures": [
-            _fixture(each.fixture, None if each.source is None else each.source.sha256) for each in around.fixtures
+            _fixture(each.fixture, None if each.source is None else _bytes(each.source)) for each in around.fixtures
         ],
         "tolerance": scene.asked,
         "tolerance_kept": ready.conditions.tolerance,
@@ -183,7 +183,7 @@ def words_of(about: Mapping[str, Any], key: str) -> tuple[str, ...]:
 
 
 def checksum(part: Any) -> str:
-    """SHA-256 of a part's file.
+    """Checksum of a part's file, with all that this refers to.
 
     Raises
     ------
@@ -191,12 +191,16 @@ def checksum(part: Any) -> str:
         It cannot be read.
     """
     if isinstance(part, Part):
-        return part.sha256 or ""
+        return part.fingerprint
     try:
-        with open(part, "rb") as file:
-            return hashlib.file_digest(file, "sha256").hexdigest()
-    except (OSError, ValueError) as error:
+        return fingerprint_of(files.content(part), beside(part))
+    except (OSError, ValueError, TypeError) as error:
         raise OptionError(f"cannot be read: {getattr(error, 'strerror', None) or error}", file=str(part)) from None
+
+
+def _bytes(source: Any) -> str | None:
+    """Checksum of what a fixture was read from; None where that is no file."""
+    return (source.fingerprint if isinstance(source, Part) else getattr(source, "sha256", None)) or None
 
 
 def _called(word: str) -> str:
@@ -224,7 +228,7 @@ def _asked_fixture(fixture: Fixture) -> dict[str, Any]:
     if isinstance(source, str) and not fixture.kind:
         found = checksum(source)
     elif not isinstance(source, str):
-        found = getattr(source, "sha256", None)
+        found = _bytes(source)
     return _fixture(fixture, found)
 
 

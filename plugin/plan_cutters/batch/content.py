@@ -1,0 +1,73 @@
+"""The content of a part's file, with that of the files that it refers to: what a part is known by, and what travels."""
+
+import os
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from cad_io.files import checksum, checksums, fingerprint
+from cad_io.read.references import followed
+from plan_cutters.batch import store
+from plan_cutters.errors import PlanError
+
+
+@dataclass(frozen=True)
+class Content:
+    """What a CAD file and the files that it refers to hold.
+
+    Attributes
+    ----------
+    data : bytes
+        Of the file itself.
+    references : tuple of (str, bytes or None)
+        Of each of the others, by its path from the file's folder; None: it is not there.
+    """
+
+    data: bytes
+    references: tuple[tuple[str, bytes | None], ...] = ()
+
+    @property
+    def key(self) -> str:
+        """Checksum of all of it."""
+        return fingerprint(checksum(self.data), checksums(self.references))
+
+    def write(self, file: Path) -> None:
+        """Write the file, and those that it refers to where they lie in or below its folder: what lies elsewhere is missing."""
+        file.write_bytes(self.data)
+        for name, data in self.within():
+            there = file.parent / name
+            there.parent.mkdir(parents=True, exist_ok=True)
+            there.write_bytes(data)
+
+    def within(self) -> Iterator[tuple[str, bytes]]:
+        """The files in or below its folder that it refers to, and that are there."""
+        for name, data in self.references:
+            if data is not None and not os.path.isabs(name) and name.split(os.sep)[0] != "..":
+                yield name, data
+
+
+def content(file: str, read: Callable[[str], bytes] = store.read) -> Content:
+    """Read a file, and all that it refers to.
+
+    Parameters
+    ----------
+    file : str
+        Path or URL.
+    read : callable
+        Content of a file; a PlanError where it cannot be read.
+
+    Raises
+    ------
+    PlanError
+        The file cannot be read. One that it refers to may be missing.
+    """
+    folder, slash, _ = file.rpartition("/")
+
+    def other(name: str) -> bytes | None:
+        try:
+            return read(name if os.path.isabs(name) else f"{folder}{slash}{name}")
+        except PlanError:
+            return None
+
+    data = read(file)
+    return Content(data, tuple(followed(data, other)))
