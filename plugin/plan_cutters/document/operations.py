@@ -156,15 +156,20 @@ class FewestEntry(Frozen):
 
 
 class FastestEntry(Frozen):
-    """How good the fastest plan is, by some samples that stand for the area of all."""
+    """How good the fastest plan is, against a bound by some samples that stand for the area of all."""
 
-    seconds: float = Field(description="with orientations, cutters and setups")
-    bound_seconds: float = Field(description="no choice among the candidates takes less")
+    seconds: float | None = Field(description="as in the fastest plan; null where a width of a pass is not known")
+    bound_seconds: float = Field(
+        description="no choice among the candidates takes less for these samples, counted in the same way: cutting, "
+        "orientations, cutters and setups"
+    )
     at_best_seconds: float = Field(
         description="cutting alone, each sample with its own best axis among the candidates: simultaneous motion at its best, "
         "without its rotary speeds"
     )
-    gap: float = Field(description="how far seconds are above bound_seconds, as a share of these")
+    gap: float | None = Field(
+        description="how far seconds are above bound_seconds, as a share of these, 0 or more; null as they are"
+    )
     samples: int
     candidates: int
 
@@ -176,7 +181,8 @@ class CutterUse(Frozen):
     takes_mm2: dict[str, float] = Field(description="area of its operations, by the name of the plan")
     only_mm2: float = Field(description="judged area that none of the others reaches")
     saves_seconds: float | None = Field(
-        description="of cutting, orientations and other cutters, before its own change; null: the others alone cannot do it"
+        description="the fastest plan found without it less the fastest with it, before its own change; null: no plan was "
+        "found without it"
     )
     change_seconds: float = Field(description="that its change costs; 0 where it is the only one")
 

@@ -63,7 +63,7 @@ def operations_entry(
         index_s=INDEX_TIME if options.index_time is None else options.index_time, index_from=found.index_from,
         change_s=options.change_time, setup_s=options.setup_time,
     )  # fmt: skip
-    plans = [_plan(each, found, samples, area, wanted, assumed) for each in found.plans]
+    plans = [_plan(each, found, samples, area, wanted) for each in found.plans]
     uses = [_use(each, plans, area) for each in found.worth]
     steps = [StepEntry(orientations=s.orientations, share=s.share, at_most=s.at_most) for s in found.curve]
     return OperationsEntry(
@@ -109,8 +109,11 @@ def _fastest(found: Operations) -> FastestEntry | None:
     timed = found.fastest
     if timed is None:
         return None
-    return FastestEntry(seconds=timed.seconds, bound_seconds=timed.bound, at_best_seconds=timed.at_best, gap=timed.gap,
-                        samples=timed.samples, candidates=timed.candidates)  # fmt: skip
+    known = np.isfinite(timed.seconds)
+    return FastestEntry(
+        seconds=timed.seconds if known else None, bound_seconds=timed.bound, at_best_seconds=timed.at_best,
+        gap=timed.gap if known else None, samples=timed.samples, candidates=timed.candidates,
+    )  # fmt: skip
 
 
 def _use(found: Worth, plans: list[OperationPlanEntry], area: Floats) -> CutterUse:
@@ -123,8 +126,7 @@ def _use(found: Worth, plans: list[OperationPlanEntry], area: Floats) -> CutterU
 
 
 def _plan(
-    plan: OperationPlan, found: Operations, samples: SurfaceSamples, area: Floats, wanted: NDArray[np.bool_],
-    assumed: AssumedEntry,
+    plan: OperationPlan, found: Operations, samples: SurfaceSamples, area: Floats, wanted: NDArray[np.bool_]
 ) -> OperationPlanEntry:  # fmt: skip
     whole = float(area.sum())
     operations = [
@@ -133,24 +135,16 @@ def _plan(
     ]
     rest = wanted & (plan.label < 0)
     left = float(area[rest].sum())
-    # The first cutter and the first setup are there anyway.
-    changes = max(0, len({each.cutter for each in operations}) - 1)
-    # How simultaneous motion begins is not known.
-    other = (
-        sum(assumed.index_s if each.index_s is None else each.index_s for each in operations)
-        + assumed.change_s * changes
-    )
-    other += assumed.setup_s * max(0, len({each.setup for each in operations}) - 1)
-    known = [each.seconds for each in operations if each.seconds is not None]
-    cutting = sum(known) if len(known) == len(operations) else None
+    cutting = plan.cutting if np.isfinite(plan.cutting) else None
     held = [each for each in operations if each.proved_share is not None]
     size = sum(each.area_mm2 for each in held)
     share = sum(each.area_mm2 * (each.proved_share or 0.0) for each in held) / size if size > 0.0 else None
     return OperationPlanEntry(
         name=plan.name, orientations=sum(each.mode == "fixed" for each in operations),  # type: ignore[arg-type]
         cut_length_mm=sum(each.cut_length_mm or 0.0 for each in operations), operations=operations,
-        seconds=None if cutting is None else cutting + other, cutting_seconds=cutting, other_seconds=other,
-        ratio_at_most=_ratio(operations, found.fastest), proved_share=share, changes=changes,
+        seconds=None if cutting is None else plan.total, cutting_seconds=cutting, other_seconds=plan.other,
+        ratio_at_most=_ratio(operations, found.fastest), proved_share=share,
+        changes=max(0, len({each.cutter for each in operations}) - 1),
         pieces=len(np.unique(plan.region[plan.region >= 0])),
         approaches_proved=sum(each.approaches_proved or 0 for each in held) if held else None,
         rest=RestEntry(samples=int(rest.sum()), area_mm2=left, share=left / whole if whole > 0.0 else 0.0,

@@ -101,12 +101,14 @@ class Fewest(Record):
 
 @dataclass(frozen=True, slots=True)
 class Fastest:
-    """How good the fastest choice is, by some samples that stand for the area of all.
+    """How good the fastest plan is, against a bound by some samples that stand for the area of all.
 
     Attributes
     ----------
-    seconds, bound : float
-        Of the choice, with the times of its orientations, cutters and setups; no choice among the candidates takes less.
+    seconds : float
+        Of the plan, with the times of its orientations, cutters and setups; nan where a width is not known.
+    bound : float
+        No choice among the candidates takes less, counted in the same way, by these samples.
     at_best : float
         Cutting alone, each sample with its own best axis among the candidates: simultaneous motion at its best.
     area : float
@@ -124,8 +126,11 @@ class Fastest:
 
     @property
     def gap(self) -> float:
-        """How far the choice is above the best of the candidates at most, as a share of the bound."""
-        return self.seconds / self.bound - 1.0 if self.bound > 0.0 else 0.0
+        """How far the plan is above the best of the candidates at most, as a share of the bound.
+
+        Simultaneous motion, which is no candidate, may bring a plan below the bound: then it is 0.
+        """
+        return max(0.0, self.seconds / self.bound - 1.0) if self.bound > 0.0 else 0.0
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -138,8 +143,8 @@ class Worth:
     only : (n,) int64
         Samples that none of the others reaches.
     saves : float, optional
-        Seconds of cutting, orientations and other cutters that it saves, before its own change; None where the others alone
-        cannot do what the operations do.
+        Seconds by which the fastest plan found with it is below the fastest one without it, before its own change; None where
+        no plan without it was found.
     change : float
         Seconds that its change costs: 0 where it is the only one then.
     """
@@ -292,6 +297,8 @@ class OperationPlan:
     lean : (n, 3) float
         Unit direction in which the tool leans, across its contact's normal; where it stands upright, the side of its bottom that
         touches. nan where there is no operation.
+    cutting, other : float
+        Seconds of all cutting, nan where one of them is not known; and of all orientations, of changes of cutters and of setups.
     """
 
     name: str
@@ -303,6 +310,13 @@ class OperationPlan:
     region: Ints
     planes: tuple[Workplane | None, ...]
     lean: Floats
+    cutting: float
+    other: float
+
+    @property
+    def total(self) -> float:
+        """Seconds of all that is counted; nan where they are not known."""
+        return self.cutting + self.other
 
     def like(self, other: "OperationPlan") -> bool:
         """Whether each sample goes with the same cutter, setup and axis in another plan."""

@@ -21,10 +21,19 @@ from plan_cutters.operations.fastest import Costs, Problem, bounded, cheap, exch
 from plan_cutters.operations.fewest import FINEST, Search, search_fewest
 from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.over_all_axes import over_all_axes
-from plan_cutters.operations.plans import CRUMB, Task, best_area, considered, orientations_of, plan_with, small_pieces
+from plan_cutters.operations.plans import (
+    CRUMB,
+    Task,
+    best_area,
+    considered,
+    orientations_of,
+    plan_with,
+    small_pieces,
+    worth_their_turn,
+)
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.proof import proved
-from plan_cutters.operations.rest_areas import allowed, by_size, largest_first, worths
+from plan_cutters.operations.rest_areas import allowed, by_size, largest_first, with_and_without, worths
 from plan_cutters.operations.timing import Paths, Problems, shared_area
 from plan_cutters.options import Options
 from plan_cutters.scene.preparation import Prepared
@@ -70,27 +79,39 @@ def plan_operations(
         fewest = replace(fewest, at_least_any=any_axes, cells=cells)
         whole = float(np.nansum(ready.samples.area[ready.somewhere]))
         steps = curve(task.probes, fewest, task.rows, ready.samples.area, whole, lambda: _even(task, search))
-        plans, timed, worth = [], None, tuple[Worth, ...]()
-        few = fewest.columns.of(fewest.chosen)
-        if options.operations in ("fewest", "both"):
-            plans.append(_capped(task, "fewest", _quicker(task, search, few)))
-        if options.operations in ("fastest", "both"):
-            columns, timed, worth = _fastest(task, search, few)
-            plans.append(_capped(task, "fastest", columns))
-            if len(task.cutters) > 1:
-                plans.append(_capped(task, "largest first", _by_habit(task, search, few)))
-        # What was found of the first plan is neither sought nor said again of others that are the same.
-        first, others = proved(ready, plans[0]), [each for each in plans[1:] if not each.like(plans[0])]
-        again = {each.name: proved(ready, each) for each in others}
-        plans = [first, *(again.get(each.name, replace(first, name=each.name)) for each in plans[1:])]
-    small = tuple(note for each in (first, *others) for note in small_pieces(each, ready.samples, options.overlap))
-    turned = max(sum(each.mode == "fixed" for each in plan.operations) for plan in plans)
-    if options.most_operations is None and turned < len(few):
+        plans, timed, worth = _plans(task, search, fewest.columns.of(fewest.chosen))
+        # What was found of a plan is neither sought nor said again of others that are the same.
+        different = list[OperationPlan]()
+        for k, each in enumerate(plans):
+            same = next((other for other in different if each.like(other)), None)
+            plans[k] = proved(ready, each) if same is None else replace(same, name=each.name)
+            different += [plans[k]] if same is None else []
+    small = tuple(note for each in different for note in small_pieces(each, ready.samples, options.overlap))
+    moving = max(sum(len(each.rows) for each in plan.operations if each.mode == "simultaneous") for plan in plans)
+    if options.most_operations is None and moving > len(fewest.alone):
         small += (f"Orientations that add less than {100 * CRUMB:g} % of the area each are left out of the plans; "
-                  f"--most-operations {len(few)} takes all.",)  # fmt: skip
+                  "--most-operations with a large number takes all.",)  # fmt: skip
     return Operations(options.operations or "", task.cutters, tuple(plans), fewest, steps, task.orientations[0].names,
                       task.probes.made, task.paths.feed, everywhere[0][task.cutters[0]].reason, timed, worth=worth,
                       notes=small, index_from=task.indexing.source)  # fmt: skip
+
+
+def _plans(
+    task: Task, search: Search, few: Columns
+) -> tuple[list[OperationPlan], Fastest | None, tuple[Worth, ...]]:  # fmt: skip
+    """Make the plans that were asked for: the fastest is the one of all plans found here that takes the least time."""
+    which = task.ready.options.operations
+    fewest = _capped(task, "fewest", _quicker(task, search, few))
+    if which == "fewest":
+        return [fewest], None, ()
+    columns, problem, area, chosen = _fastest(task, search, few)
+    found = [_capped(task, "fastest", columns.of(each)) for each in (chosen, *with_and_without(problem, chosen))]
+    habit = [_capped(task, "largest first", _by_habit(task, search, few))] if len(task.cutters) > 1 else []
+    found += [fewest, *habit]
+    fastest = replace(min(found, key=lambda plan: np.nan_to_num(plan.total, nan=np.inf)), name="fastest")
+    at_best = float(problem.cost.min(axis=1, initial=np.inf).sum())
+    timed = Fastest(fastest.total, bounded(problem, chosen).bound, at_best, area, len(problem.cost), len(columns))
+    return [*([fewest] if which == "both" else []), fastest, *habit], timed, worths(task, found)
 
 
 def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], least: LeastSet | None) -> Task:
@@ -153,7 +174,9 @@ def _stored(task: Task, rows: Rows) -> Columns:
 
 
 def _capped(task: Task, name: str, columns: Columns) -> OperationPlan:
-    kept = best_area(task, columns, task.ready.options.most_operations)
+    most = task.ready.options.most_operations
+    timed = most is None and name != "fewest"
+    kept = worth_their_turn(task, columns) if timed else best_area(task, columns, most)
     columns = kept if len(kept) < len(columns) else columns
     habit = name == "largest first"
     return plan_with(task, name, columns, (lambda serves: allowed(task, columns, serves)) if habit else None)
@@ -219,14 +242,10 @@ def _quicker(task: Task, search: Search, fewest: Columns) -> Columns:
     return columns.of(chosen) if whole else fewest
 
 
-def _fastest(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Fastest, tuple[Worth, ...]]:
-    """Columns of least time."""
+def _fastest(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Problem, float, Rows]:
+    """A choice of columns of least time, with the columns, the problem and the area of `_timed`."""
     columns, problem, area, chosen, known, whole = _checked(task, search, fewest, cheap, _ROUNDS)
-    chosen = chosen if whole else np.union1d(chosen, known)
-    found = bounded(problem, chosen)
-    at_best = float(problem.cost.min(axis=1, initial=np.inf).sum())
-    timed = Fastest(found.cost, found.bound, at_best, area, len(problem.cost), len(columns))
-    return columns.of(chosen), timed, worths(task, problem, chosen)
+    return columns, problem, area, chosen if whole else np.union1d(chosen, known)
 
 
 def _by_habit(task: Task, search: Search, fewest: Columns) -> Columns:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.operations import Operation, OperationPlan
+from plan_cutters.domain.operations import Operation, OperationPlan, Workplane
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.operations.candidates import Orientations
 from plan_cutters.operations.indexing import Indexing
@@ -106,7 +106,17 @@ def plan_with(
         operations[k] = replace(operation, clearance=_clearance(task, operation, held))
     region = regions_of(number, edge, area)
     planes = workplanes(operations, task.ready, task.indexing)
-    return OperationPlan(name, tuple(operations), number, table, strip, seconds, region, planes, lean)
+    cutting, other = float(seconds[number >= 0].sum()), _other(task, operations, planes)
+    return OperationPlan(name, tuple(operations), number, table, strip, seconds, region, planes, lean, cutting, other)
+
+
+def _other(task: Task, operations: Sequence[Operation], planes: Sequence[Workplane | None]) -> float:
+    """Seconds of orientations, and of each cutter and each setup after the first, which are there anyway."""
+    options = task.ready.options
+    # How simultaneous motion begins is not known: it takes the time of an orientation that no rates tell.
+    turns = sum(task.indexing.constant if plane is None else plane.index for plane in planes)
+    cutters, setups = len({each.cutter for each in operations}), len({each.setup for each in operations})
+    return turns + options.change_time * max(0, cutters - 1) + options.setup_time * max(0, setups - 1)
 
 
 def _fixed(
@@ -199,6 +209,32 @@ def best_area(task: Task, columns: Columns, most: int | None) -> Columns:
         picked.append(best)
         left = np.where(serves[:, best], 0.0, left)
     return columns.of(np.array(picked, np.int64))
+
+
+def worth_their_turn(task: Task, columns: Columns) -> Columns:
+    """Leave out columns that serve less than `CRUMB` of the area alone and save less time than an orientation takes.
+
+    The one that saves least goes first; what it served goes with the others.
+    """
+    rows, left = task.rows, np.arange(len(columns))
+    area = np.nan_to_num(task.ready.samples.area[rows])
+    serves = task.probes.kept(rows, columns)
+    width = widths(columns, rows, task.ready.samples, task.cutters, task.paths, serves)
+    cost = costs_of(columns, width, serves, area, task.cutters, task.paths)
+    least = CRUMB * float(area @ np.isfinite(cost).any(axis=1))
+    turn = task.indexing.together(columns) / max(1, len(columns))
+    while len(left) > 1:
+        own = cost[:, left]
+        first, second = np.partition(own, 1, axis=1)[:, :2].T
+        alone, best = np.isfinite(first) & ~np.isfinite(second), own.argmin(axis=1)
+        size = np.bincount(best[alone], area[alone], len(left))
+        both = np.isfinite(second)
+        saved = np.bincount(best[both], second[both] - first[both], len(left))
+        crumbs = np.flatnonzero((size < least) & (saved < turn))
+        if not len(crumbs):
+            break
+        left = np.delete(left, crumbs[saved[crumbs].argmin()])
+    return columns.of(left)
 
 
 def orientations_of(ready: Prepared) -> tuple[Orientations, ...]:

@@ -1,12 +1,13 @@
 """Rest areas: what larger cutters leave for smaller ones, what a shop's habit costs, and what each cutter is worth."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters.domain.columns import Columns
-from plan_cutters.domain.operations import Worth
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.operations import OperationPlan, Worth
 from plan_cutters.operations.fastest import Problem, cheap
 from plan_cutters.operations.plans import Task
 
@@ -80,33 +81,41 @@ def allowed(task: Task, columns: Columns, serves: NDArray[np.bool_]) -> NDArray[
     return np.asarray(serves & (place == place.min(axis=1, initial=len(task.cutters))[:, None]))
 
 
-def worths(task: Task, problem: Problem, chosen: Rows) -> tuple[Worth, ...]:
-    """Compare the best choices that are found with each cutter and without it; none for a single cutter."""
-    if len(task.cutters) < 2:
+def worths(task: Task, plans: Sequence[OperationPlan]) -> tuple[Worth, ...]:
+    """Compare the fastest of some plans with each cutter and without it; none for a single cutter, or where no time is known."""
+    plans = [plan for plan in plans if np.isfinite(plan.total)]
+    if len(task.cutters) < 2 or not plans:
         return ()
-    cutters = task.cutters
-    reached = [_reached(task, c)[task.rows] for c in range(len(cutters))]
+    reached = [_reached(task, c)[task.rows] for c in range(len(task.cutters))]
     found = []
     for c in by_size(task):
-        others = np.logical_or.reduce([reached[k] for k in range(len(cutters)) if k != c])
-        saves, change = _saves(problem, chosen, c)
-        found.append(Worth(cutters[c], task.rows[reached[c] & ~others], saves, change))
+        others = np.logical_or.reduce([mine for k, mine in enumerate(reached) if k != c])
+        saves, change = _saves(plans, task.cutters[c], task.ready.options.change_time)
+        found.append(Worth(task.cutters[c], task.rows[reached[c] & ~others], saves, change))
     return tuple(found)
 
 
-def _saves(problem: Problem, chosen: Rows, cutter: int) -> tuple[float | None, float]:
+def _saves(plans: Sequence[OperationPlan], cutter: Cutter, change: float) -> tuple[float | None, float]:
     """Seconds that a cutter saves before its change, and what that costs."""
-    others = np.flatnonzero(problem.cutter != cutter)
-    if not np.isfinite(problem.cost[:, others]).any(axis=1).all():
-        return None, problem.costs.cutter if len(others) else 0.0
-    without = problem.of(others)
-    start = np.flatnonzero(np.isin(others, chosen))
-    least = without.total(cheap(without, start))
-    used = np.flatnonzero(problem.cutter[chosen] == cutter)
-    # Where the best choice has none of it, all its orientations are tried beside that choice.
-    best = chosen if len(used) else _with(problem, chosen, cutter)
-    change = problem.costs.cutter if len(np.unique(problem.cutter[best])) > 1 else 0.0
-    return max(0.0, least - problem.total(best) + change), change
+    used = [(plan.total, {each.cutter for each in plan.operations}) for plan in plans]
+    with_it = [(seconds, len(cutters)) for seconds, cutters in used if cutter in cutters]
+    without = [seconds for seconds, cutters in used if cutter not in cutters]
+    if not with_it:
+        return 0.0, change
+    best, cutters = min(with_it)
+    # The first cutter is there anyway.
+    change = change if cutters > 1 else 0.0
+    return (max(0.0, min(without) - best + change) if without else None), change
+
+
+def with_and_without(problem: Problem, chosen: Rows) -> Iterator[Rows]:
+    """Choices to compare a choice with: for each cutter of it the best of the others, for each other one the best with it."""
+    for cutter in np.unique(problem.cutter).tolist():
+        others = np.flatnonzero(problem.cutter != cutter)
+        if not (problem.cutter[chosen] == cutter).any():
+            yield _with(problem, chosen, cutter)
+        elif np.isfinite(problem.cost[:, others]).any(axis=1).all():
+            yield others[cheap(problem.of(others), np.flatnonzero(np.isin(others, chosen)))]
 
 
 def _with(problem: Problem, chosen: Rows, cutter: int) -> Rows:

@@ -152,8 +152,11 @@ def _fastest(found: OperationsEntry) -> Iterator[str]:
             cutting = sum(each.seconds or 0.0 for each in plan.operations if each.mode == "fixed")
             times = f"at most {_factor(plan.ratio_at_most)} times as long as five axes at once"
             yield f"3+2 ({plan.name}) takes {_duration(cutting)} of cutting, {times}."
-    near = f"the best of {timed.candidates} candidates, by {timed.samples} samples"
-    if timed.gap <= _NO_GAP:
+    some_of = f" of {found.fewest.samples}" if timed.samples < found.fewest.samples - found.fewest.alone else ""
+    near = f"the best of {timed.candidates} candidates, by {timed.samples}{some_of} samples"
+    if timed.gap is None:
+        yield "How far the fastest plan is above the best is not known: a width of a pass is not known."
+    elif timed.gap <= _NO_GAP:
         yield f"No choice takes less than the fastest plan: it is {near}."
     else:
         yield f"The fastest plan is at most {_up(timed.gap)} above {near}."
@@ -191,7 +194,7 @@ def _worth(found: OperationsEntry, use: CutterUse) -> Iterator[str]:
         return
     used = any(use.id == each.cutter for plan in found.plans if plan.name == "fastest" for each in plan.operations)
     if use.saves_seconds is None:
-        yield f"{use.id} is needed: without it no fixed orientation serves all."
+        yield f"{use.id} is needed: no plan was found without it."
     elif use.saves_seconds < 1.0:
         yield f"{use.id} would save nothing."
     elif use.change_seconds <= 0.0:
