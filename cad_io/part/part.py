@@ -72,12 +72,12 @@ class Part:
         Numbers of the faces that were picked on the object which the part was made from.
     lost : sequence of LostFace, optional
         Faces written in the file that are not here, or not as written; faces without a finite size are added here.
-    references : sequence of (str, str or None), optional
-        Files that the part's file refers to: the path from its folder and the SHA-256; None: it is not there.
 
     Attributes
     ----------
-    shape, file, sha256, unit, layers, tree, picked, references : as given
+    shape, file, sha256, unit, layers, tree, picked : as given
+    references : tuple of (str, str or None)
+        Files that the part's file refers to: the path from its folder and the SHA-256; None: it is not there.
     aside : mapping
         By face number: why nothing more is to be asked of the kernel about this face. It is not judged. See `without`.
     lost : tuple of LostFace
@@ -116,10 +116,9 @@ class Part:
         warnings: tuple[str, ...] = (),
         picked: tuple[int, ...] = (),
         lost: tuple[LostFace, ...] = (),
-        references: tuple[tuple[str, str | None], ...] = (),
     ) -> None:
         self.shape, self.file, self.sha256, self.picked = shape, file, sha256, picked
-        self.references = references
+        self.references: tuple[tuple[str, str | None], ...] = ()
         self.aside: Mapping[int, str] = {}
         self.unit = unit
         with translated("looking for faces", error=ReadError, file=file):
@@ -155,6 +154,13 @@ class Part:
             *(LostFace("", self._names.get(n, ""), "it has no finite size", n)
               for n in (np.flatnonzero(~finite) + 1).tolist() if n not in told),
         )  # fmt: skip
+
+    @classmethod
+    def of(cls, found: Found) -> "Part":
+        """Make a part from what a reader has found, by the names of the parameters, with its `references`."""
+        part = cls(**{name: value for name, value in found.items() if name != "references"})
+        part.references = found.get("references", ())
+        return part
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _again, (packed(self._found()), dict(self.aside))
@@ -192,7 +198,7 @@ class Part:
 
     def without(self, aside: Mapping[int, str]) -> "Part":
         """The same part with more faces set aside, by number: why."""
-        part = Part(**self._found())
+        part = Part.of(self._found())
         part.aside = {**self.aside, **aside}
         return part
 
@@ -345,7 +351,7 @@ class Part:
 
 def _again(found: Found, aside: Mapping[int, str]) -> Part:
     """A part that was pickled."""
-    part = Part(**unpacked(found))
+    part = Part.of(unpacked(found))
     part.aside = aside
     return part
 

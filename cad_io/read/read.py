@@ -94,14 +94,14 @@ def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, ti
         return source
     timeout = min(float(timeout), _LONGEST)
     if not guarded:
-        return Part(**_find(source, unit, timeout), unit=unit)
+        return Part.of(_find(source, unit, timeout) | {"unit": unit})
 
     def find() -> Found:
         found = _find(source, unit, timeout)
-        Part(**found)  # which asks the kernel more, better here than outside
+        Part.of(found)  # which asks the kernel more, better here than outside
         return found | {"unit": unit}
 
-    return Part(**in_copy(find, timeout, os.fspath(source) if isinstance(source, str | os.PathLike) else None))
+    return Part.of(in_copy(find, timeout, os.fspath(source) if isinstance(source, str | os.PathLike) else None))
 
 
 def _find(source: Any, unit: str | None, timeout: float) -> Found:

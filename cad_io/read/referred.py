@@ -16,7 +16,7 @@ from cad_io.read.step import Loaded, distinct_faces
 
 @dataclass
 class Referred:
-    """What the files hold that a STEP file refers to, and those that these refer to.
+    """A record of this kind says what the files hold that a STEP file refers to, and those that these refer to.
 
     Attributes
     ----------

@@ -6,7 +6,7 @@ import os
 import re
 import signal
 import sys
-from collections.abc import Awaitable, Callable, Sequence
+from collections.abc import Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from subprocess import DEVNULL
@@ -64,9 +64,7 @@ async def run(
              f"from plan_cutters.command.entry import begin; begin({name!r})")  # fmt: skip
     await tell(0.0, "starting")
     process = await anyio.open_process(
-        [sys.executable, "-c", begin, *words[1:], *more], stdin=DEVNULL, cwd=cwd,
-        env={**os.environ, MOST_SAMPLES: str(limits.samples), WITHIN: json.dumps([*map(str, within)]), "NO_COLOR": "1",
-             "TERM": "dumb"},
+        [sys.executable, "-c", begin, *words[1:], *more], stdin=DEVNULL, cwd=cwd, env=_environment(limits, within),
         start_new_session=True,
     )  # fmt: skip
     kept, said = bytearray(), bytearray()
@@ -83,6 +81,11 @@ async def run(
     if code not in answers:
         raise CallError(_line(faults[-1]) if faults else f"the command ended with exit code {code} and said nothing")
     return Ended(code, bytes(kept), faults)
+
+
+def _environment(limits: Limits, within: Sequence[Path]) -> Mapping[str, str]:
+    folders = json.dumps([*map(str, within)])
+    return {**os.environ, MOST_SAMPLES: str(limits.samples), WITHIN: folders, "NO_COLOR": "1", "TERM": "dumb"}
 
 
 def _line(fault: str) -> str:

@@ -13,7 +13,7 @@ from plan_cutters.errors import PlanError
 
 @dataclass(frozen=True)
 class Content:
-    """What a CAD file and the files that it refers to hold.
+    """The bytes of a CAD file, and of the files that it refers to, are one content.
 
     Attributes
     ----------

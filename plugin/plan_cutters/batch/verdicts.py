@@ -22,7 +22,7 @@ from plan_cutters.batch.digest import digest, sources
 from plan_cutters.batch.store import file_system
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.posture import PostureRange
-from plan_cutters.domain.verdicts import REASONS, UNJUDGED, WORDS, Verdicts
+from plan_cutters.domain.verdicts import NO_REASON, REASONS, UNJUDGED, WORDS, Verdicts
 from plan_cutters.errors import PlanError
 from plan_cutters.files.regular import regular_bytes
 from plan_cutters.files.seal import stamp
@@ -153,7 +153,7 @@ class Kept:
             return None
         try:
             found = unpacked(content, len(ready.samples), own, self._key)
-            require_postures(found[0], ready.samples.normal, ready.options.postures)
+            require_sound(found[0], ready.samples.normal, ready.options.postures)
             return found
         except (ValueError, TypeError, LookupError, OverflowError, RecursionError, MemoryError, zlib.error) as error:
             self._fault(own, "is damaged and not used", error)
@@ -209,15 +209,14 @@ def unpacked(entry: bytes, n: int, key: str, secret: bytes | None = None) -> tup
         arrays.append(np.frombuffer(columns[place : place + size], kind).reshape(n, *shape).copy())
         place += size
     verdicts = Verdicts(*arrays)
-    if not np.isin(verdicts.verdict, list(WORDS)).all():
+    words, reasons = list(WORDS), [*range(len(REASONS)), NO_REASON]
+    if not (np.isin(verdicts.verdict, words).all() and np.isin(verdicts.reason, reasons).all()):
         raise ValueError("it holds verdicts that there are not")
-    if not (verdicts.not_reached == (verdicts.reason < len(REASONS))).all():
-        raise ValueError("its reasons do not go with its verdicts")
     return verdicts, looked
 
 
-def require_postures(verdicts: Verdicts, normal: Floats, postures: PostureRange) -> None:
-    """Refuse verdicts whose postures are none at these samples: each stands at a tilt and rotation that may be searched.
+def require_sound(verdicts: Verdicts, normal: Floats, postures: PostureRange) -> None:
+    """Refuse verdicts that cannot be of these samples: a posture has a tilt and rotation that may be searched, a loss its reason.
 
     Parameters
     ----------
@@ -230,6 +229,8 @@ def require_postures(verdicts: Verdicts, normal: Floats, postures: PostureRange)
     ------
     ValueError
     """
+    if not (verdicts.not_reached == (verdicts.reason != NO_REASON)).all():
+        raise ValueError("its reasons do not go with its verdicts")
     at = verdicts.reached
     tilt, axis, across, normal = verdicts.tilt[at, None], verdicts.axis[at], verdicts.tilt_direction[at], normal[at]
     low, high = postures.tilt
