@@ -12,6 +12,7 @@ from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.operations import Fastest, OperationPlan, Operations, Worth
+from plan_cutters.domain.percent import percent
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.errors import OptionError
 from plan_cutters.library.presets import feed_of
@@ -86,7 +87,7 @@ def plan_operations(
     small = tuple(note for each in (first, *others) for note in small_pieces(each, ready.samples, options.overlap))
     turned = max(sum(each.mode == "fixed" for each in plan.operations) for plan in plans)
     if options.most_operations is None and turned < len(few):
-        small += (f"Orientations that add less than {100 * CRUMB:g} % of the area each are left out of the plans; "
+        small += (f"Orientations that add less than {percent(CRUMB)} of the area each are left out of the plans; "
                   f"--most-operations {len(few)} takes all.",)  # fmt: skip
     return Operations(options.operations or "", task.cutters, tuple(plans), fewest, steps, task.orientations[0].names,
                       task.probes.made, task.paths.feed, everywhere[0][task.cutters[0]].reason, timed, worth=worth,
