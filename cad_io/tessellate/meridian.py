@@ -100,15 +100,15 @@ def meridian(part: Part, origin: Sequence[float], direction: Sequence[float], ch
             number, why = triangles.missing[0]
             raise ReadError(f"how far it reaches is not known: {why}", face=f"F{number}")
         error = triangles.chord_error
-        sides, workspace = _sides(triangles.vertex, base, along), error
+        sides, upward = _sides(triangles.vertex, base, along), error
         lowest = float(sides[:, 1].min()) - error
         if lowest < foot:
             # The true foot is at most twice the error higher: lines hold wherever it is.
-            foot, workspace = lowest, 3.0 * error
+            foot, upward = lowest, 3.0 * error
             line, own = _grown(line, 0.0, 2.0 * error), np.zeros(2 * len(line), bool)
-        line = np.vstack([line, _grown(sides, error, workspace)])
+        line = np.vstack([line, _grown(sides, error, upward)])
         own = np.append(own, np.zeros(len(line) - len(own), bool))
-        off = max(off, error + workspace)
+        off = max(off, error + upward)
     return Meridian(line, own, off, foot, tuple(loose))
 
 

@@ -7,7 +7,7 @@ import os
 import FreeCAD as App
 import FreeCADGui as Gui
 
-from . import camera, model, objects, remembered, runner, windows
+from . import camera, model, objects, remembered, results, runner, windows
 from .windows import QtCore, QtGui
 
 #: Sign and word of a verdict about a cutter, and its colour.
@@ -42,25 +42,6 @@ def open_review(group) -> None:
     if not path or not os.path.exists(path):
         raise model.Refused("the review page of this plan is not there any more: plan again")
     QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(path))
-
-
-def _percent(share: float) -> str:
-    if 0 < share < 0.001:
-        return "< 0.1 %"
-    if 0.999 < share < 1:
-        return "> 99.9 %"
-    return f"{100 * share:.3g} %"
-
-
-def sentence(sample) -> str:
-    """What is known of a sample, with the angles of the machine: of the solution taken, then of the other one."""
-    words = [f"{sample.face}, {sample.away_mm:.2g} mm from the click: {sample.verdict.replace('_', ' ')}"]
-    if sample.reason:
-        words.append(f"for {sample.reason.replace('_', ' ')}")
-    angles = [" ".join(f"{name} {value:g}°" for name, value in each.items()) for each in sample.angles]
-    if angles:
-        words.append("; " + ", or ".join(angles))
-    return " ".join(words).replace(" ;", ";")
 
 
 class Findings(windows.Panel):
@@ -153,14 +134,14 @@ class Findings(windows.Panel):
             share = entry["area_share"].get(code)
             if code not in shown and not share and code not in ALWAYS:
                 continue
-            text = words if share is None else f"{words}: {_percent(share)}"
+            text = words if share is None else f"{words}: {results.percent(share)}"
             self._legend.addRow(windows.swatch(rgb), windows.words(text, f"legend_{code}"))
         self._spots = self.result.spots(cutter)
         self._list.blockSignals(True)
         self._list.clear()
         for spot in self._spots:
             depth = f"{spot.depth_mm:.2f}" if spot.depth_mm is not None else ""
-            item = QtGui.QTreeWidgetItem([spot.face, spot.reason.replace("_", " "), spot.obstacle, depth])
+            item = QtGui.QTreeWidgetItem([spot.face, self.result.reason(spot.reason), spot.obstacle, depth])
             for column in range(4):
                 item.setToolTip(column, spot.text)
             self._list.addTopLevelItem(item)
@@ -267,7 +248,7 @@ class Findings(windows.Panel):
             self._told.setText(str(error))
             return
         self._list.setCurrentItem(None)
-        self._at(sample, sentence(sample))
+        self._at(sample, self.result.sentence(sample))
 
     def _draw_map(self) -> None:
         if self._here is None or self._drawing is not None:

@@ -19,6 +19,14 @@ WORST_FIRST = ("inaccessible", "undecided", "unjudged", "accessible", "interfere
 VERDICTS = {0: "inaccessible", 1: "accessible", 2: "interference_free", 3: "undecided", 255: "unjudged"}
 
 
+def percent(share: float) -> str:
+    """Write a share in percent as the program does: 100 only where it is the whole, and 0 only where there is nothing of it."""
+    if not 0.0 < share < 1.0:
+        return "100 %" if share >= 1.0 else "0 %" if share <= 0.0 else "not known"
+    text = f"{100.0 * share:.1f}"
+    return {"0.0": "<0.1 %", "100.0": ">99.9 %"}.get(text, f"{text.removesuffix('.0')} %")
+
+
 @dataclass(frozen=True)
 class Spot:
     """A worst spot: a sample that a cutter does not reach.
@@ -111,14 +119,17 @@ class Result:
         return self.job.body
 
     def shown(self, cutter: str = "") -> dict[str, Any]:
-        """A cutter of the plan; by default the selected one, else the one that reaches most."""
-        wanted = cutter or self.plan["selected"]
+        """A cutter of the plan; by default the one that the program shows: the selected one, else the one that comes nearest."""
+        wanted = cutter or self.plan.get("shown") or self.plan["selected"]
         if wanted:
             found = next((each for each in self.plan["cutters"] if each["id"] == wanted), None)
             if found is None:
                 raise model.Refused(f"the plan has no cutter {wanted}")
             return found
-        return max(self.plan["cutters"], key=lambda each: each["interference_free"] + each["accessible"])
+        # A plan of an older program, from a document that was saved with it, does not say which one it shows.
+        return min(
+            self.plan["cutters"], key=lambda each: each["area_share"]["inaccessible"] + each["area_share"]["undecided"]
+        )
 
     def cutters(self) -> list[str]:
         """Ids of the cutters, in the order of the plan."""
@@ -147,17 +158,21 @@ class Result:
         for each in plan["cutters"]:
             judged = sum(each[word] for word in WORST_FIRST if word != "unjudged")
             reached = each["interference_free"] + each["accessible"]
-            worst = sorted(each["by_reason"].items(), key=lambda item: -item[1])
-            lost = ", ".join(f"{name.replace('_', ' ')} {count}" for name, count in worst if count)
+            worst = sorted(each["area_share"]["lost_by"].items(), key=lambda item: -item[1])
+            lost = ", ".join(f"{self.reason(code)} {percent(share)}" for code, share in worst)
             finishes = {True: "yes", False: "no", None: "not decided"}[each["feasible"]]
-            line = f"{'*' if each['id'] == plan['selected'] else ' '} {each['id']}: finishes {finishes}"
+            line = f"{'*' if each['id'] == plan['selected'] else ' '} {self.called(each['id'])}: finishes {finishes}"
             line += f", reaches {reached} of {judged} samples"
-            line += f"; lost: {lost}" if lost else ""
+            line += f"; lost: {lost} of the area" if lost else ""
             line += "".join(f"; {word}: {each[word]}" for word in ("undecided", "unjudged") if each[word])
             lines.append(line)
         lines += [f"Warning: {text}" for text in plan["part"]["warnings"]]
         lines += [f"Note: {text}" for text in plan["notes"]]
         return lines
+
+    def reason(self, code: str) -> str:
+        """A reason in the words of the plan; a plan of an older program has none."""
+        return self.plan.get("reason_words", {}).get(code, code.replace("_", " "))
 
     def verdicts(self, cutter: str = "") -> list[str]:
         """Of each face the worst verdict on it, `check` or `ignored`."""
@@ -181,6 +196,15 @@ class Result:
         found = [self._spot(shown, number, each) for number, each in enumerate(shown["witnesses"])]
         return sorted(found, key=lambda spot: -1.0 if spot.depth_mm is None else spot.depth_mm, reverse=True)
 
+    def sentence(self, sample: Sample) -> str:
+        """What is known of a sample, with the angles of the machine: of the solution taken, then of the other one."""
+        verdict = self.plan.get("legend_words", {}).get(sample.verdict, sample.verdict)
+        words = [f"{sample.face}, {sample.away_mm:.2g} mm from the click: {verdict}"]
+        if sample.reason:
+            words.append(f"for {self.reason(sample.reason)}")
+        angles = [" ".join(f"{name} {value:g}°" for name, value in each.items()) for each in sample.angles]
+        return " ".join(words) + (f"; {', or '.join(angles)}" if angles else "")
+
     def _spot(self, cutter: dict[str, Any], number: int, entry: dict[str, Any]) -> Spot:
         posture, axis, tip = entry["best_posture"], None, None
         samples, row = self._arrays, entry.get("sample")
@@ -189,7 +213,7 @@ class Result:
             axis = tuple(posture["axis"])
             tip = tool.tip(cutter, entry["point"], normal, axis, direction)
         depth = entry["depth_mm"]
-        words = [entry["face"], entry["reason"].replace("_", " "), entry["obstacle_face"] or ""]
+        words = [entry["face"], self.reason(entry["reason"]), entry["obstacle_face"] or ""]
         text = " ".join(filter(None, words)) + (f", {depth:.3g} mm deep" if depth is not None else "")
         if entry["verdict"] == "undecided":
             text += " (undecided)"

@@ -173,7 +173,13 @@ export function painted(meta: Meta, title: string, entries: Entry[], samples: Sa
   // What is no surface of the finished part is a share of all; the others are shares of what is left.
   const inside = entries.findIndex((each) => each.label === spoken(meta, "inside_bodies"));
   const left = whole - (area[inside] ?? 0);
-  const shown = entries.map((each, k) => ({ ...each, share: area[k] / ((k === inside ? whole : left) || 1) }));
+  const others = seen.filter((there, k) => there && k !== inside).length;
+  // Samples may stand for no area, and sums are rounded: only what is alone is all.
+  const exact = (share: number, all: boolean): number => (all ? 1 : Math.min(Math.max(share, Number.MIN_VALUE), 1 - Number.EPSILON));
+  const shown = entries.map((each, k) => ({
+    ...each,
+    share: k === inside ? exact(area[k] / (whole || 1), !others) : exact(area[k] / (left || 1), others === 1),
+  }));
   return { title, entries: shown.filter((_, k) => seen[k]), ramp: null, bytes };
 }
 

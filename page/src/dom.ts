@@ -54,5 +54,9 @@ export function degrees(value: number): string {
   return String(tenths === 360 || Object.is(tenths, -0) ? 0 : tenths);
 }
 
-export const percent = (share: number): string =>
-  share > 0 && share < 0.001 ? "<0.1 %" : share < 1 && share > 0.999 ? ">99.9 %" : `${Number((100 * share).toFixed(1))} %`;
+/** A share in percent: 100 only where it is the whole, and 0 only where there is nothing of it. */
+export function percent(share: number): string {
+  if (share <= 0 || share >= 1) return share >= 1 ? "100 %" : "0 %";
+  const text = (100 * share).toFixed(1);
+  return text === "0.0" ? "<0.1 %" : text === "100.0" ? ">99.9 %" : `${Number(text)} %`;
+}

@@ -10,6 +10,7 @@ from plan_cutters.answers.setup_ranking import MOST, Ranking, ranked
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.setups import ProposedSetup, SetupProposal
 from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.percent import exact, percent
 from plan_cutters.domain.placement import Placement, axis_words
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.options import Options
@@ -18,6 +19,8 @@ from plan_cutters.scene.preparation import Prepared
 
 #: Proposals that are planned, at most, and the share of what was promised that a plan must hold.
 _TRIES, _KEPT = 3, 0.99
+#: Shares of area that differ by less are equal.
+_ROUNDING = 1e-9
 
 
 def plan_proposed(
@@ -106,7 +109,13 @@ def _compared(result: Result, ranking: Ranking, chosen: tuple[int, ...]) -> tupl
     promised = served.any(axis=1)
     kept = float(ranking.area[promised & held].sum()) / max(1e-300, float(ranking.area[promised].sum()))
     lost = np.asarray(ranking.area @ (served & ~held[:, None]))
-    return min(1.0, found), min(1.0, kept), chosen[int(lost.argmax())]
+    # Clamped faces are no targets of the plan, but of the area that was to be reached.
+    every = found > 1.0 - _ROUNDING and bool((reached == result.ready.finished).all())
+    return (
+        exact(found, some=bool(reached.any()), whole=every),
+        exact(kept, some=bool(held[promised].any()), whole=bool(held[promised].all())),
+        chosen[int(lost.argmax())],
+    )
 
 
 def _told(
@@ -114,7 +123,8 @@ def _told(
 ) -> Result:  # fmt: skip
     """The same plan with its proposal."""
     served = np.stack([ranking.served[k] for k in chosen], axis=1)
-    alone, together = ranking.share(served), float(ranking.share(np.asarray(served.any(axis=1))[:, None])[0])
+    alone, any_of = ranking.share(served), np.asarray(served.any(axis=1))
+    together = exact(float(ranking.share(any_of[:, None])[0]), some=bool(any_of.any()), whole=bool(any_of.all()))
     share, kept, tried = found
     setups = [
         ProposedSetup(axis=_axis(ranking, k), stands_on=[f"F{n}" for n in ranking.candidates.stands_on[k]],
@@ -127,11 +137,11 @@ def _told(
         for each in setups
     )
     of = f"{len(ranking.served)} of {len(ranking.candidates.axis)} directions searched at {len(ranking.rows)} samples"
-    why = (f"With {of} over a table, {'this one serves' if len(setups) == 1 else 'these serve'} {together:.1%} of the samples' "
-           f"area. The plan reaches {share:.1%} of the target area"
-           f"{'' if held else f', and holds only {kept:.1%} of what was promised'}.")  # fmt: skip
+    why = (f"With {of} over a table, {'this one serves' if len(setups) == 1 else 'these serve'} {percent(together)} of the "
+           f"samples' area. The plan reaches {percent(share)} of the target area"
+           f"{'' if held else f', and holds only {percent(kept)} of what was promised'}.")  # fmt: skip
     entry = SetupProposal(setups=setups, directions=len(ranking.candidates.axis), searched=len(ranking.served),
-                          samples=len(ranking.rows), promised=min(1.0, together), found=share, kept=kept, held=held, tried=tried,
+                          samples=len(ranking.rows), promised=together, found=share, kept=kept, held=held, tried=tried,
                           why=why)  # fmt: skip
     document = result.plan
     notes = [*document.notes, f"Proposed {'setup' if len(setups) == 1 else 'setups'}: {where}. {why}"]

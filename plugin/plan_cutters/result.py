@@ -16,6 +16,7 @@ from plan_cutters.document.on_face import OnFace, on_face
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.kinematics import Kinematics
+from plan_cutters.domain.nearest import nearest
 from plan_cutters.domain.operations import Operations
 from plan_cutters.domain.over_setups import positions
 from plan_cutters.domain.posture import PostureRange
@@ -112,8 +113,8 @@ class Result:
 
     @property
     def shown(self) -> str:
-        """Id of the cutter that the models show: the selected, else the one that reaches the most samples."""
-        return self.selected or max(self.cutters, key=lambda c: c.interference_free + c.accessible).id
+        """Id of the cutter that the models show: the selected, else the one that leaves the least area."""
+        return self.selected or nearest(self.cutters).id
 
     @cached_property
     def clearances(self) -> Clearances:

@@ -15,9 +15,10 @@ from plan_cutters.agents.limits import CallError, Limits
 from plan_cutters.agents.plan_file import PlanFile, chosen, plan_of
 from plan_cutters.agents.roots import Roots
 from plan_cutters.agents.server import made, service_of
-from plan_cutters.agents.telling import compared, explained, percent, planned
+from plan_cutters.agents.telling import compared, explained, planned
 from plan_cutters.agents.tools import fitting
 from plan_cutters.command import mcp as command
+from plan_cutters.domain.percent import percent
 
 
 def made_plan(cutters=3, faces=4, **more):

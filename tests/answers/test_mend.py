@@ -80,11 +80,8 @@ def wall(x, height, way):
 
 def inclined(degrees):
     """A square, its normal leaning from z to x by an angle."""
-    tilt_direction = math.radians(degrees)
-    z, x = (
-        (math.sin(tilt_direction), 0, math.cos(tilt_direction)),
-        (math.cos(tilt_direction), 0, -math.sin(tilt_direction)),
-    )
+    sine, cosine = math.sin(math.radians(degrees)), math.cos(math.radians(degrees))
+    z, x = (sine, 0, cosine), (cosine, 0, -sine)
     return shapes.shell(shapes.plane((-10, 10), (-10, 10), (0, 0, 0), z, x))
 
 

@@ -18,9 +18,10 @@ from plan_cutters import plan
 from plan_cutters.batch import table
 from plan_cutters.batch.index import write_index
 from plan_cutters.batch.row import PartRow
-from plan_cutters.batch.rows_of_plans import reached_share, row_of
+from plan_cutters.batch.rows_of_plans import row_of
 from plan_cutters.batch.summary import NAMED, OUTCOMES, Summary, code_of, outcome, schema_text
 from plan_cutters.document.model import CutterEntry
+from plan_cutters.document.shares import reached_share
 from tests.support.browser import opened
 from tests.support.places import ROOT
 
@@ -114,7 +115,8 @@ def entry(share, **counts):
     ],
 )
 def test_only_all_is_one(share, counts, expected):
-    assert reached_share(entry(share, **counts)) == expected
+    found = entry(share, **counts)
+    assert reached_share(found, found.area_share) == expected
 
 
 # Summary

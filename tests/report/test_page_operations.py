@@ -10,8 +10,9 @@ import pytest
 from plan_cutters import plan
 from plan_cutters.document.operations import StepEntry
 from plan_cutters.document.palette import operation_colour
+from plan_cutters.domain.percent import bound
 from plan_cutters.report.page import operations, write
-from plan_cutters.report.story.operations import in_short, of_the_whole
+from plan_cutters.report.story.operations import in_short, of_the_whole, share_text
 from plan_cutters.report.story.story import story_of
 from tests.support.browser import opened, place_of, seen
 from tests.support.places import ROOT
@@ -112,8 +113,8 @@ def test_the_curve_is_drawn_and_told(planned, read):
     steps = planned.plan.operations.curve
     rows = {"".join(text.split()) for tag, _, text in read.elements if tag == "tr"}
     for step in steps:
-        shares = [step.share] if step.at_most is None else [step.share, operations._up(step.at_most)]
-        assert "".join([str(step.orientations), *map(operations._percent, shares)]).replace(" ", "") in rows
+        most = "" if step.at_most is None else bound(step.at_most)
+        assert f"{step.orientations}{share_text(step.share)}{most}".replace(" ", "") in rows
     (line,) = [a["d"] for tag, a, _ in read.elements if tag == "path" and a.get("class") == "line"]
     heights = [float(y) for y in re.findall(r"V([\d.]+)", line)]
     assert len(heights) == len(steps)
@@ -138,10 +139,8 @@ def test_the_curve_stands_at_its_shares():
 
 
 def test_shares_of_the_curve_are_rounded_to_the_safe_side():
-    assert operations._percent(operations._up(0.98301)) == "98.4 %"
-    assert operations._percent(operations._up(1.0)) == "100 %"
-    assert operations._percent(operations._up(0.75)) == "75 %"
-    assert operations._percent(1.0 - 1e-6) == ">99.9 %"
+    assert [bound(share) for share in (0.98301, 1.0, 0.75)] == ["98.4 %", "100 %", "75 %"]
+    assert share_text(1.0 - 1e-6) == ">99.9 %"
 
 
 def test_looks_differ(planned):

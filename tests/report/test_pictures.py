@@ -11,17 +11,17 @@ from plan_cutters.report.drawing.view import FINER, Body, borders, fitted, frame
 from tests.support.cad_parts import CAD
 
 
-def drawn(corner, outer_tool, owner, height, width):
+def drawn(corner, brightness, owner, height, width):
     depth, seen, shade = (
         np.full((height, width), -np.inf),
         np.full((height, width), -1, np.int32),
         np.zeros((height, width)),
     )
-    draw(corner, outer_tool, owner, depth, seen, shade)
+    draw(corner, brightness, owner, depth, seen, shade)
     return depth, seen, shade
 
 
-def slowly(corner, outer_tool, owner, height, width):
+def slowly(corner, brightness, owner, height, width):
     """Pixel by pixel: the nearest of all triangles whose corners' shares are all positive."""
     depth, seen, shade = np.full((height, width), -np.inf), np.full((height, width), -1), np.zeros((height, width))
     for i in range(height):
@@ -33,7 +33,7 @@ def slowly(corner, outer_tool, owner, height, width):
                 share = np.linalg.solve(table, [j, i, 1.0])
                 near = share @ [a[2], b[2], c[2]]
                 if (share >= 0).all() and near > depth[i, j]:
-                    depth[i, j], seen[i, j], shade[i, j] = near, owner[t], share @ outer_tool[t]
+                    depth[i, j], seen[i, j], shade[i, j] = near, owner[t], share @ brightness[t]
     return depth, seen, shade
 
 
@@ -43,8 +43,8 @@ def test_each_pixel_shows_the_nearest_triangle(seed):
     corner = rng.uniform(-8, 32, (14, 3, 3))
     corner[3] = corner[3, :1]  # a point
     corner[4, 2] = 0.5 * (corner[4, 0] + corner[4, 1])  # a line
-    outer_tool, owner = rng.uniform(0, 1, (14, 3)), rng.permutation(14).astype(np.int32)
-    one, two = drawn(corner, outer_tool, owner, 24, 26), slowly(corner, outer_tool, owner, 24, 26)
+    brightness, owner = rng.uniform(0, 1, (14, 3)), rng.permutation(14).astype(np.int32)
+    one, two = drawn(corner, brightness, owner, 24, 26), slowly(corner, brightness, owner, 24, 26)
     assert np.array_equal(one[1], two[1])
     assert (one[1] >= 0).any()
     assert np.allclose(one[0], two[0])

@@ -6,6 +6,7 @@ from pydantic import Field, ValidationError
 
 from plan_cutters.agents.answers import Entry, LeastSet, Missing, Samples, Value, Witness
 from plan_cutters.agents.limits import CallError
+from plan_cutters.domain.nearest import nearest
 
 #: A cutter by its radius or diameter, and its length.
 _PLAIN = re.compile(r"[rd][\d.]+(l[\d.]+)?")
@@ -141,7 +142,7 @@ class PlanFile(Entry):
     @property
     def shown(self) -> str:
         """Id of the cutter that models and pictures show."""
-        return self.selected or max(self.cutters, key=lambda c: c.reached).id
+        return self.selected or nearest(self.cutters).id
 
 
 def plan_of(text: bytes | str, file: str) -> PlanFile:

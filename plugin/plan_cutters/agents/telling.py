@@ -26,23 +26,12 @@ from plan_cutters.agents.answers import (
 )
 from plan_cutters.agents.limits import CallError
 from plan_cutters.agents.plan_file import Counts, Cutter, Mend, PlanFile
+from plan_cutters.domain.nearest import leaves
+from plan_cutters.domain.percent import percent
 from plan_cutters.domain.reasons import REASONS
 
 #: Shares that differ by less are said as one.
 _SAME = 1e-9
-
-
-def percent(share: float) -> str:
-    """A share in words; what is left of something is never none, nor all of it where something is left.
-
-    >>> percent(0.348), percent(1e-6), percent(0.99999), percent(1.0)
-    ('34.8 %', 'less than 0.1 %', 'more than 99.9 %', '100 %')
-    """
-    if 0.0 < share < 0.001:
-        return "less than 0.1 %"
-    if 0.999 < share < 1.0:
-        return "more than 99.9 %"
-    return f"{100.0 * share:.3g} %"
 
 
 def planned(plan: PlanFile, code: int, most: int, files: Mapping[str, str]) -> PlanAnswer:
@@ -74,8 +63,8 @@ def pictured(plan: PlanFile, code: int, most: int) -> Picture:
 
 
 def ranked(plan: PlanFile) -> list[Cutter]:
-    """The selected cutter first, then those that reach most."""
-    return sorted(plan.cutters, key=lambda c: (c.id != plan.selected, -c.area_share.reached))
+    """The selected cutter first, then those that leave least."""
+    return sorted(plan.cutters, key=lambda c: (c.id != plan.selected, leaves(c)))
 
 
 def _of_plan(plan: PlanFile, code: int, most: int) -> dict[str, Any]:

@@ -34,8 +34,9 @@ from plan_cutters.agents.requests import (
     Question,
     RenderQuestion,
 )
-from plan_cutters.agents.telling import compared, explained, percent, pictured, planned
+from plan_cutters.agents.telling import compared, explained, pictured, planned
 from plan_cutters.agents.words import Room
+from plan_cutters.domain.percent import percent
 from plan_cutters.errors import CutterError
 
 #: How long lists may be, until the answer is short enough.
@@ -152,7 +153,7 @@ async def compare_cutters(asked: CompareQuestion, call: Call) -> Reply:
 
 
 async def render(asked: RenderQuestion, call: Call) -> Reply:
-    """Draw the part with the verdicts of the cutter that the plan selects, or that reaches most."""
+    """Draw the part with the verdicts of the cutter that the plan selects, or that comes nearest."""
     out = call.cwd / "review"
     plan, code = await call.plan([*await _part(asked, call), f"--out={out}", "--formats=json,png"])
     picture = out / "review.png"
@@ -344,7 +345,7 @@ TOOLS = (
     ),
     Tool(
         "render", "A picture of the verdicts",
-        "Draw a part in four views (PNG), coloured by the verdicts of the cutter that is selected, or that reaches most: give "
+        "Draw a part in four views (PNG), coloured by the verdicts of the cutter that is selected, or that comes nearest: give "
         "one cutter to see its verdicts.",
         RenderQuestion, Picture, render,
     ),

@@ -106,8 +106,8 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
     for axis in axes:
         made = replace(state, setups=(*state.setups, (axis, None)))
         missed = known.glance(made, gained)
-        second.append((len(missed), angle(facing, axis), axis, made, missed))
-    best = _plain(second, len(gained))
+        second.append((scan.estimate(missed), angle(facing, axis), axis, made, missed))
+    best = _plain(second, scan.estimate(gained))
     if best is not None:
         _, _, axis, made, missed = best
         move = Move("second_setup", now, axis, sentences.more_setup(axis, angle(now, axis), len(made.setups)))
@@ -116,8 +116,8 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
         return
     some = spread(kept)
     other = []
-    for not_reached, _, axis, _, missed in second:
-        if not_reached < len(gained) and flip_of(ready, axis) == ready.options.flip:
+    for left, _, axis, _, missed in second:
+        if left < scan.estimate(gained) and flip_of(ready, axis) == ready.options.flip:
             made = replace(state, setups=((axis, None),))
             worse = known.glance(made, some)
             share = scan.finished.of_rows(kept) * len(worse) / max(1, len(some))
@@ -130,16 +130,16 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
 
 
 def _plain(
-    second: list[tuple[int, float, Axis, State, Rows]], count: int
-) -> tuple[int, float, Axis, State, Rows] | None:  # fmt: skip
+    second: list[tuple[float, float, Axis, State, Rows]], whole: float
+) -> tuple[float, float, Axis, State, Rows] | None:  # fmt: skip
     """Of setups that miss least that which faces the samples; one along the part's own axes, if that gains nearly as much."""
-    gaining = [each for each in second if each[0] < count]
+    gaining = [each for each in second if each[0] < whole]
     if not gaining:
         return None
     best = min(gaining, key=lambda each: each[:2])
     own = [each for each in gaining if _own(each[2])]
     plain = min(own, key=lambda each: each[:2], default=best)
-    return plain if count - plain[0] >= (1.0 - _OWN) * (count - best[0]) else best
+    return plain if whole - plain[0] >= (1.0 - _OWN) * (whole - best[0]) else best
 
 
 def towards(vector: Floats, otherwise: Axis) -> Axis:

@@ -80,18 +80,19 @@ def given(scan: Scan) -> Iterator[Candidate]:
     if len(others) > _GIVEN:
         # Those that leave least by what is known already.
         alone = [replace(base, cutters=(cutter,), ready=base.ready) for cutter in others]
-        count = [len(known.glance(state, rows[:32])) for state in alone]
-        order = sorted(range(len(others)), key=lambda k: (count[k], k))[:_GIVEN]
+        left = [scan.estimate(known.glance(state, rows[:32])) for state in alone]
+        order = sorted(range(len(others)), key=lambda k: (left[k], k))[:_GIVEN]
         others = [others[k] for k in sorted(order)]
     tried = []
     for cutter in others:
         state = replace(base, cutters=(*base.cutters, cutter))
-        tried.append((len(missed := known.glance(state, rows)), cutter, state, missed))
-    tried = [each for each in tried if each[0] < len(rows)]
+        tried.append((scan.estimate(missed := known.glance(state, rows)), cutter, state, missed))
+    whole = scan.estimate(rows)
+    tried = [each for each in tried if each[0] < whole]
     if not tried:
         return
     least = min(each[0] for each in tried)
-    content = len(rows) - NEARLY * (len(rows) - least)
+    content = whole - NEARLY * (whole - least)
     best = next(each for each in tried if each[0] == least)
     nearly = next(each for each in tried if each[0] <= content)
     for _, cutter, state, missed in {id(each): each for each in (nearly, best)}.values():
@@ -131,8 +132,9 @@ def corner(scan: Scan) -> Iterator[Candidate]:
         made = None if corner == cutter.corner_radius else made_of(cutter, corner_radius=corner)
         if made is not None and made not in scan.given:
             state = replace(scan.state, cutters=(*scan.state.cutters, made))
-            tried.append((len(scan.known.glance(state, few)), abs(corner - cutter.corner_radius), state))
-    tried = [each for each in tried if each[0] < len(few)]
+            left = scan.estimate(scan.known.glance(state, few))
+            tried.append((left, abs(corner - cutter.corner_radius), state))
+    tried = [each for each in tried if each[0] < scan.estimate(few)]
     if tried:
         _, _, state = min(tried, key=lambda each: each[:2])
         made = state.cutters[-1]

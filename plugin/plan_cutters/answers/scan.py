@@ -74,7 +74,8 @@ class Scan:
         """The share of the area that is left, if of the few these are."""
         whole = float(self.finished.area[self.few].sum())
         part = float(self.finished.area[missed].sum()) / whole if whole > 0.0 else len(missed) / max(1, len(self.few))
-        return part * self.finished.of_rows(self.left)
+        # Equal areas are equal, whichever samples stand for them.
+        return round(part * self.finished.of_rows(self.left), 12)
 
     def found(self, move: Move, state: State, missed: Rows, *, nested: bool) -> Candidate:
         """A candidate by what it misses of the few."""

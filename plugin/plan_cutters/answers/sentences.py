@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from plan_cutters.domain.area import Patch, size
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.percent import percent
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.domain.reasons import REASONS as WORDS
 from plan_cutters.domain.verdicts import REASONS
@@ -80,7 +81,7 @@ def faces(ids: Sequence[str], area: float, share: float) -> str:
     much = f"{area:,.0f}" if area >= 100.0 else f"{area:.3g}"
     some = ", ".join(ids[:_FACES]) + " and others" * (len(ids) > _FACES)
     which = ids[0] if len(ids) == 1 else f"{len(ids)} faces ({some})"
-    return f"{which} left out of what is to be finished: {much} mm2, {100.0 * share:.3g} % of the target area"
+    return f"{which} left out of what is to be finished: {much} mm2, {percent(share)} of the target area"
 
 
 def left_out(areas: Sequence[Patch], area: float) -> str:

@@ -15,6 +15,7 @@ from plan_cutters.batch.row import PartRow
 from plan_cutters.batch.summary import OUTCOMES, BatchRun, Outcome, Summary, Table, cause, outcome, summary_of
 from plan_cutters.batch.table import csv_of, parquet_of
 from plan_cutters.document.build import versions
+from plan_cutters.domain.percent import percent
 from plan_cutters.report.markup import finite, plain, policy, template
 from plan_cutters.report.story import numbers
 from plan_cutters.report.story.cutters import reason
@@ -107,14 +108,13 @@ def page(rows: Sequence[PartRow], summary: Summary) -> bytes:
 
 def _shown(row: PartRow) -> _Shown:
     found = outcome(row)
-    whole = row.share is not None and row.share >= 1.0
     return _Shown(
         row=row,
         outcome=found,
         says=cause(row) if found == "failed" else row.verdict,
         wrong="" if found == "failed" else row.error or "",
         made=_made(row),
-        share="" if row.share is None else numbers.percent(row.share, some=row.share > 0.0, whole=whole),
+        share="" if row.share is None else percent(row.share),
         reason=reason(row.reason) if row.reason else "",
         time=_time(row.seconds),
         seconds=row.seconds if math.isfinite(row.seconds) else -1.0,

@@ -25,7 +25,7 @@ class PartRow(BaseModel):
     verdict : str
         The headline of the plan: one sentence.
     cutter : str, optional
-        The cutter selected, or the one that reaches most.
+        The cutter selected, or the one that leaves the least area.
     share : float, optional
         Of the area to machine that this cutter reaches, 0 to 1.
     reason : str, optional

@@ -1,17 +1,13 @@
 """The line of a part in the table of all, made of its plan."""
 
-import math
-
 from plan_cutters.batch.row import PartRow, Status
 from plan_cutters.document.model import CutterEntry, Plan
+from plan_cutters.document.shares import reached_share
+from plan_cutters.domain.nearest import nearest
 from plan_cutters.report.folder import file_name
 from plan_cutters.report.story.cutters import main_reason
 from plan_cutters.report.story.headline import headline
 from plan_cutters.report.story.names import short_names
-from plan_cutters.report.story.numbers import VERDICTS
-from plan_cutters.report.story.scope import nearest
-
-_REACHED = ("interference_free", "accessible")
 
 
 def row_of(
@@ -47,7 +43,7 @@ def row_of(
     """
     names = short_names(plan)
     taken = plan.selected or plan.selected_over_setups or plan.selected_for_setup
-    cutter = next((c for c in plan.cutters if c.id == taken), None) or (nearest(plan) if plan.cutters else None)
+    cutter = next((c for c in plan.cutters if c.id == taken), None) or (nearest(plan.cutters) if plan.cutters else None)
     written = {form: f"{folder}/{file_name(form)}" for form in plan.files} if folder else {}
     return PartRow(
         name=name,
@@ -57,7 +53,7 @@ def row_of(
         code=code,
         verdict=headline(plan, names).title if cutter else "No cutter was judged",
         cutter=names[cutter.id] if cutter else None,
-        share=reached_share(cutter) if cutter else None,
+        share=reached_share(cutter, cutter.area_share) if cutter else None,
         reason=_reason(cutter) if cutter else None,
         cutters=len(plan.cutters),
         samples=plan.samples.judged,
@@ -67,20 +63,6 @@ def row_of(
         page=written.get("html"),
         picture=written.get("png"),
     )
-
-
-def reached_share(cutter: CutterEntry) -> float | None:
-    """Share of the area to machine that a cutter reaches: 1 only if it reaches all, 0 only if nothing; None where not known."""
-    there = {word for word in VERDICTS if cutter.of(word) or getattr(cutter.area_share, word) > 0.0}
-    share = sum(getattr(cutter.area_share, word) for word in _REACHED)
-    if not there or not math.isfinite(share):
-        return None
-    if there <= set(_REACHED):
-        return 1.0
-    if not there & set(_REACHED):
-        return 0.0
-    # Sums are rounded, and samples may stand for no area.
-    return min(max(share, math.ulp(0.0)), math.nextafter(1.0, 0.0))
 
 
 def _reason(cutter: CutterEntry) -> str | None:

@@ -351,13 +351,14 @@ def _bar(folder: Path | None) -> str:
     """What the best cutter reaches of a part, drawn with letters: it needs no picture."""
     from plan_cutters.comparison.folders import PLAN, read_plan
     from plan_cutters.comparison.states import reached
+    from plan_cutters.domain.percent import percent
 
     if folder is None:
         return "-"
     share = max((reached(cutter) for cutter in read_plan(folder / PLAN).cutters), default=0.0)
     # Full only where all is reached.
     full = 10 if share == 1.0 else min(9, int(10 * share))
-    return f"{'█' * full}{'░' * (10 - full)} {100 * share if share == 1.0 else min(99.9, 100 * share):.3g} %"
+    return f"{'█' * full}{'░' * (10 - full)} {percent(share)}"
 
 
 def _hand_on(rows: Sequence[Row], out: Path, text: str, job: str, failing: Sequence[Row]) -> None:

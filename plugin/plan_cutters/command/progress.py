@@ -4,6 +4,7 @@ The process that waits draws it: the clock runs on while the CAD kernel holds th
 """
 
 import contextlib
+import math
 import time
 from collections.abc import Mapping
 from typing import Any
@@ -134,7 +135,7 @@ class Display:
         now = time.monotonic()
         wait = _SOON if now - self.began < 60.0 else _LATER
         if news or (now - self.spoke > wait):
-            share = "" if self.share is None or news else f", {100.0 * self.share:.0f} %"
+            share = "" if self.share is None or news else f", {math.floor(100.0 * self.share)} %"
             terminal.emit(f"{now - self.began:7.1f} s  {self.words if news else self.line}{share}\n")
             self.spoke = now
 
@@ -159,7 +160,7 @@ class Display:
                                 transient=True, auto_refresh=self.itself)  # fmt: skip
             self.bar.start()
             self.task = self.bar.add_task(self.line, total=None, percent="")
-        percent = "" if self.share is None else f"{100.0 * self.share:3.0f} %"
+        percent = "" if self.share is None else f"{math.floor(100.0 * self.share):3d} %"
         total = None if self.share is None else 1.0
         self.bar.update(self.task, description=self.line, total=total, completed=self.share or 0.0, percent=percent)
         self.bar.refresh()

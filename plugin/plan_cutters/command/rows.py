@@ -10,6 +10,7 @@ from rich.table import Table
 from rich.text import Text
 
 from plan_cutters.command.terminal import clean, wrapped
+from plan_cutters.domain.nearest import leaves
 from plan_cutters.report.story.cutters import FEASIBLE
 
 if TYPE_CHECKING:
@@ -44,8 +45,8 @@ def cutter_rows(plan: "Plan", story: "Story", *, verbose: bool) -> list[Any]:
     """A row for each cutter, of many the best alone, and how many more there are."""
     rows = list(story.cutters)
     if not verbose and len(rows) > MOST_ROWS:
-        not_reached = {c.id: c.area_share.not_reached for c in plan.cutters}
-        kept = sorted(rows, key=lambda c: (c.id != story.taken, not_reached[c.id]))[:MOST_ROWS]
+        left = {c.id: leaves(c) for c in plan.cutters}
+        kept = sorted(rows, key=lambda c: (c.id != story.taken, left[c.id]))[:MOST_ROWS]
         rows = [c for c in rows if c in kept]
     here = f", over {1 + len(plan.effective.other_setups)} setups" if plan.effective.other_setups else ""
     found: list[Any] = [f"Share of the area to machine, by the verdict of its samples{here}:"]

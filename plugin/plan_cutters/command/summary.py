@@ -8,11 +8,14 @@ from rich.text import Text
 
 from plan_cutters.command.rows import cell, cutter_rows, worst_faces
 from plan_cutters.command.terminal import show
+from plan_cutters.document.shares import unreached
+from plan_cutters.domain.nearest import leaves
+from plan_cutters.domain.percent import percent
 from plan_cutters.report.story.cutters import left
 from plan_cutters.report.story.headline import area
 from plan_cutters.report.story.names import named
 from plan_cutters.report.story.notes import machine
-from plan_cutters.report.story.numbers import capital, count, percent, unreached
+from plan_cutters.report.story.numbers import capital, count
 from plan_cutters.report.story.story import Story, story_of
 
 if TYPE_CHECKING:
@@ -80,10 +83,10 @@ def not_reached(plan: "Plan", *, verbose: bool = False) -> list[str]:
     near = larger
     if not verbose and len(larger) > _OTHERS:
         taken = plan.selected_over_setups or plan.selected_for_setup
-        near = sorted(larger, key=lambda c: (c.id != taken, c.not_reached))[:_OTHERS]
+        near = sorted(larger, key=lambda c: (c.id != taken, leaves(c)))[:_OTHERS]
     lines = [capital(named(plan, left(plan, c))) for c in larger if c in near]
     if rest := [c for c in larger if c not in near]:
-        ends = [of(rest, key=lambda c: c.area_share.not_reached) for of in (min, max)]
+        ends = [of(rest, key=leaves) for of in (min, max)]
         least, most = (unreached(c, c.area_share) for c in ends)
         which = "larger cutter" if plan.selected else "cutter"
         much = least if least == most else f"{least} to {most}"

@@ -4,7 +4,7 @@ from collections.abc import Iterable, Mapping
 
 from plan_cutters.comparison.model import CutterState, FaceState, Reach
 from plan_cutters.document.model import CutterEntry, FaceEntry, Plan
-from plan_cutters.document.shares import AreaShare, FaceVerdicts, VerdictCounts
+from plan_cutters.document.shares import AreaShare, FaceVerdicts, VerdictCounts, reached_share
 
 #: Rank of what is reached: to fall is a loss. What is inside other bodies is no surface: neither loss nor gain.
 _RANK: dict[Reach, int] = {"reached": 2, "undecided": 1}
@@ -46,7 +46,7 @@ def reached(verdicts: FaceVerdicts | CutterEntry) -> float:
     share = verdicts.area_share
     if share == AreaShare():
         return (verdicts.interference_free + verdicts.accessible) / max(1, _finished(verdicts))
-    return min(1.0, share.interference_free + share.accessible)
+    return reached_share(verdicts, share) or 0.0
 
 
 def reached_whole(verdicts: FaceVerdicts | None) -> bool:

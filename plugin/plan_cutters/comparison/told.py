@@ -11,8 +11,9 @@ from plan_cutters.comparison.model import (
     FaceState,
     PlanDifference,
 )
+from plan_cutters.domain.percent import percent
 from plan_cutters.domain.reasons import REASONS
-from plan_cutters.report.story.numbers import area, count, percent
+from plan_cutters.report.story.numbers import area, count
 
 FACES = ("", "face", "kind", "area", "was", "now")
 CUTTERS = ("", "cutter", "was", "now", "faces lost", "faces won", "changed")
@@ -123,16 +124,12 @@ def _counted(found: PlanDifference, word: str) -> Iterator[str]:
 def _reach(state: FaceState | None, none: str) -> str:
     if state is None:
         return none
-    share = f" {_percent(state.share)}" if state.reach in ("partly", "undecided") else ""
+    share = f" {percent(state.share)}" if state.reach in ("partly", "undecided") else ""
     return f"{state.reach}{share}{_why(state.reason)}"
 
 
 def _state(state: CutterState | None) -> str:
-    return "-" if state is None else f"{_FINISHES[state.finishes]} {_percent(state.share)}{_why(state.reason)}"
-
-
-def _percent(share: float) -> str:
-    return percent(share, some=share > 0.0, whole=share == 1.0)
+    return "-" if state is None else f"{_FINISHES[state.finishes]} {percent(state.share)}{_why(state.reason)}"
 
 
 def _why(reason: str | None) -> str:

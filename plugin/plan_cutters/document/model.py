@@ -353,11 +353,19 @@ class Plan(Frozen):
     faces: list[FaceEntry]
     missing: list[MissingEntry]
     reasons: list[str] = Field(description="what `reason_ID` in samples.npz counts in")
+    reason_words: dict[str, str] = Field(
+        default={}, description="what each of `reasons` is called where people read it; empty in older files"
+    )
     machine: MachineEntry
     fixtures: list[FixtureEntry] = Field(default=[], description="what holds the part: obstacles, never targets")
     libraries: list[LibraryEntry] = Field(default=[], description="tool libraries that were read")
     cutters: list[CutterEntry]
     selected: str | None
+    shown: str | None = Field(
+        default=None,
+        description="id of the cutter that models and pictures show: the selected one, else the one that leaves the least area; "
+        "null in older files",
+    )
     selected_over_setups: str | None = Field(
         default=None,
         description="where several setups were asked for: the first cutter that reaches every judged sample in one or another",

@@ -37,12 +37,14 @@ from plan_cutters.document.operations import OperationsEntry
 from plan_cutters.document.operations_entry import operations_entry
 from plan_cutters.document.palette import MEANING, PALETTE
 from plan_cutters.document.setups import SetupEntry, SetupReach
-from plan_cutters.document.shares import counts
+from plan_cutters.document.shares import counts, unreached
 from plan_cutters.document.travel import travel_entry
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.nearest import nearest
 from plan_cutters.domain.over_setups import positions
+from plan_cutters.domain.reasons import REASONS as WORDS
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE, Verdicts
 from plan_cutters.scene.preparation import Prepared
@@ -81,11 +83,13 @@ def plan_of(
         faces=faces,
         missing=missing_entries(part, around),
         reasons=list(REASONS),
+        reason_words={code: WORDS[code].name for code in REASONS},
         machine=machine_entry(options.machine, ready.conditions.kinematics),
         fixtures=fixture_entries([each.around for each in ready.setups]),
         libraries=[library_entry(library) for library in options.libraries],
         cutters=list(entries),
         selected=selected,
+        shown=selected or nearest(entries).id,
         selection=selection,
         selected_over_setups=None if around.doubtful else next((e.id for e in entries if e.lost_in_all == 0), None),
         selected_for_setup=None if selected else for_setup(entries),
@@ -212,10 +216,10 @@ def selection(entries: Sequence[CutterEntry]) -> tuple[str | None, Selection]:
     """Which cutter wins, of entries from the most wanted down, and why."""
     feasible = [e for e in entries if e.feasible]
     if not feasible:
-        best = min(entries, key=lambda e: e.not_reached)
-        left = best.not_reached
-        why = f"no cutter reaches every sample; {best.id} comes nearest, {left} not reached"
-        if not left:
+        best = nearest(entries)
+        left = f"{unreached(best, best.area_share)} of the area"
+        why = f"no cutter reaches every sample; {best.id} comes nearest and leaves {left}"
+        if not best.not_reached:
             why = f"{best.id} reaches every judged sample, but obstacles are missing: see the notes"
         return None, Selection(rule=RULE, runner_up=None, why=why)
     first = feasible[0]

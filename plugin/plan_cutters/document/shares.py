@@ -1,6 +1,7 @@
 """How much of a surface has each verdict: by samples, and by the area that they stand for."""
 
-from collections.abc import Mapping, Sequence
+import math
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,10 @@ from pydantic import Field
 from cad_io import Part, SurfaceSamples
 from plan_cutters.document.frozen import Frozen
 from plan_cutters.domain.area import weights
+from plan_cutters.domain.percent import exact, percent
 from plan_cutters.domain.verdicts import INACCESSIBLE, REASONS, UNDECIDED, WORDS, Verdicts
+
+_REACHED, _NOT_REACHED = ("interference_free", "accessible"), ("inaccessible", "undecided")
 
 
 class VerdictCounts(Frozen):
@@ -73,6 +77,37 @@ class FaceVerdicts(VerdictCounts):
         description="of the face's area, without what of it lies inside other bodies; 0 where all does",
     )
     inside_share: float = Field(default=0.0, description="of the face's area that lies inside other bodies of the part")
+
+
+def part_of(counts: VerdictCounts, share: AreaShare, words: Iterable[str]) -> str:
+    """How much of an area has one of some verdicts, in percent."""
+    mine, there = set(words), _there(counts, share)
+    return percent(
+        sum(getattr(share, word) for word in mine), some=bool(there & mine), whole=bool(there) and there <= mine
+    )
+
+
+def reached(counts: VerdictCounts, share: AreaShare) -> str:
+    """How much of an area is interference-free or accessible, in percent."""
+    return part_of(counts, share, _REACHED)
+
+
+def unreached(counts: VerdictCounts, share: AreaShare) -> str:
+    """How much of an area is inaccessible or undecided, in percent."""
+    return part_of(counts, share, _NOT_REACHED)
+
+
+def reached_share(counts: VerdictCounts, share: AreaShare) -> float | None:
+    """Share of an area that is reached: 1 only where all is, 0 only where nothing is; None where it is not known."""
+    there, found = _there(counts, share), sum(getattr(share, word) for word in _REACHED)
+    if not there or not math.isfinite(found):
+        return None
+    return exact(found, some=bool(there & set(_REACHED)), whole=there <= set(_REACHED))
+
+
+def _there(counts: VerdictCounts, share: AreaShare) -> set[str]:
+    """Verdicts that there are."""
+    return {word for word in WORDS.values() if counts.of(word) or getattr(share, word) > 0.0}
 
 
 def counts(verdict: NDArray[np.uint8], inside: NDArray[np.bool_] | None = None) -> dict[str, Any]:

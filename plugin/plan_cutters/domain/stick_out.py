@@ -154,8 +154,8 @@ def _lower_side(row: NDArray[np.float64], height: float) -> list[tuple[float, fl
         turn = 0.5 * math.pi / _CHORDS
         out = around / math.cos(0.5 * turn)
         angles = [0.0, *(turn * (i + 0.5) for i in range(_CHORDS)), 0.5 * math.pi]
-        verdicts = [around, *[out] * _CHORDS, around]
-        points = [(radius + r * math.sin(a), centre - r * math.cos(a)) for a, r in zip(angles, verdicts, strict=True)]
+        radii = [around, *[out] * _CHORDS, around]
+        points = [(radius + r * math.sin(a), centre - r * math.cos(a)) for a, r in zip(angles, radii, strict=True)]
         points[0] = (points[0][0], centre - around)
         points[-1] = (radius + around, points[-1][1])
         return [(q0, v0, q1, v1) for (q0, v0), (q1, v1) in pairwise(points)]

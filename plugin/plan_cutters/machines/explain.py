@@ -10,6 +10,7 @@ from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.kinematics import ON_LIMIT, SINGULAR
 from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.percent import exact, percent
 from plan_cutters.errors import MachineError
 
 #: Directions on which shares are counted; a share is known to about 1 / sqrt(this) or better.
@@ -48,7 +49,9 @@ def share(machine: Machine) -> Share:
     if kinematics is not None:
         _, taken, near = kinematics.positions(axis)
         held &= taken >= 0
-    return Share(float(held.mean()), float((held & near).mean()))
+    # Directions beyond an angle may lie between those counted.
+    whole = bool(held.all()) and (machine.tilt_limit is None or machine.tilt_limit >= math.pi)
+    return Share(exact(float(held.mean()), some=bool(held.any()), whole=whole), float((held & near).mean()))
 
 
 def singular(machine: Machine) -> float | None:
@@ -110,7 +113,7 @@ def share_text(machine: Machine, held: float) -> str:
     """The share of directions as people read it: a circle or a single one is none of the sphere."""
     if machine.turns and len(machine.rotary) < 2:
         return "a circle" if machine.rotary else "one"
-    return f"{100.0 * held:.1f} %"
+    return percent(held)
 
 
 def limits_text(axis: Axis) -> str:
@@ -143,12 +146,12 @@ def summary(machine: Machine) -> list[str]:
         )
     found = share(machine)
     if len(rotary) != 1 and (rotary or machine.tilt_limit is not None):
-        said.append(f"It holds {100.0 * found.held:.1f} % of all directions (counted on {DIRECTIONS} of them).")
+        said.append(f"It holds {percent(found.held)} of all directions (counted on {DIRECTIONS} of them).")
     cone = singular(machine)
     if cone is not None:
         said.append(
             f"Singular: within {math.degrees(cone):g} deg of {vector_text(rotary[0].direction)}, either way, {rotary[0].name} "
-            f"turns fast; {100.0 * found.singular:.2f} % of all directions are held there."
+            f"turns fast; {percent(found.singular)} of all directions are held there."
         )
     return said
 

@@ -12,6 +12,7 @@ from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.operations import Fastest, OperationPlan, Operations, Worth
+from plan_cutters.domain.percent import percent
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.errors import OptionError
 from plan_cutters.library.presets import feed_of
@@ -89,7 +90,7 @@ def plan_operations(
     small = tuple(note for each in different for note in small_pieces(each, ready.samples, options.overlap))
     moving = max(sum(len(each.rows) for each in plan.operations if each.mode == "simultaneous") for plan in plans)
     if options.most_operations is None and moving > len(fewest.alone):
-        small += (f"Orientations that add less than {100 * CRUMB:g} % of the area each are left out of the plans; "
+        small += (f"Orientations that add less than {percent(CRUMB)} of the area each are left out of the plans; "
                   "--most-operations with a large number takes all.",)  # fmt: skip
     return Operations(options.operations or "", task.cutters, tuple(plans), fewest, steps, task.orientations[0].names,
                       task.probes.made, task.paths.feed, everywhere[0][task.cutters[0]].reason, timed, worth=worth,

@@ -1,6 +1,6 @@
 """The annotated models: faces split along the boundaries of the verdicts, in STEP and GLB alike.
 
-They show one cutter: the selected one or, where none is feasible, the one that reaches the most.
+They show one cutter: the selected one or, where none is feasible, the one that leaves the least area.
 """
 
 from collections import Counter

@@ -56,9 +56,9 @@ def test_colours_are_linear_light(halves, tmp_path):
     assert (pbr["metallicFactor"], pbr["roughnessFactor"], pbr.get("baseColorFactor")) == (0.0, 0.8, None)
     shown = set()
     for mesh in document["meshes"]:
-        outer_tool = arrays[mesh["primitives"][0]["attributes"]["COLOR_0"]] / 65535
-        assert (outer_tool == outer_tool[0]).all()
-        seen = np.where(outer_tool[0] <= 0.0031308, 12.92 * outer_tool[0], 1.055 * outer_tool[0] ** (1 / 2.4) - 0.055)[
+        linear_rgb = arrays[mesh["primitives"][0]["attributes"]["COLOR_0"]] / 65535
+        assert (linear_rgb == linear_rgb[0]).all()
+        seen = np.where(linear_rgb[0] <= 0.0031308, 12.92 * linear_rgb[0], 1.055 * linear_rgb[0] ** (1 / 2.4) - 0.055)[
             :3
         ]
         (label,) = (k for k, c in COLOURS.items() if np.allclose(seen, c, atol=1e-4))

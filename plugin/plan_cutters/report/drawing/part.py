@@ -15,12 +15,13 @@ from cad_io.errors import WriteError
 from cad_io.kernel import translated
 from cad_io.write import meshes_of
 from plan_cutters.document.palette import LABELS, label, rgb
+from plan_cutters.document.shares import part_of
 from plan_cutters.domain.posture import unit
 from plan_cutters.report.drawing.sheet import DPI, Look, figure, fitting, legend, printable, save, standard, write
 from plan_cutters.report.drawing.view import Body, View, averaged, borders, fitted, frame_towards, view
 from plan_cutters.report.protocol import Judged
 from plan_cutters.report.story.names import short_names
-from plan_cutters.report.story.numbers import VERDICTS, part_of
+from plan_cutters.report.story.numbers import VERDICTS
 
 #: Inches: the sheet, and each view.
 _SHEET, _VIEW = (12.0, 9.6), (5.72, 3.72)
@@ -220,7 +221,7 @@ def _words(sheet: Any, result: Judged, there: set[int], fixtures: bool) -> None:
     taken = (
         "is selected"
         if result.selected == result.shown
-        else "is shown because it reaches the most samples; none is selected"
+        else "is shown because it leaves the least area; none is selected"
     )
     size = " x ".join(f"{x:.4g}" for x in plan.part.size_mm)
     room = _SHEET[0] - 2.0 * 0.18

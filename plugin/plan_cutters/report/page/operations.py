@@ -1,6 +1,5 @@
 """The plan of operations for the page: which sample goes with which operation, their looks, their tables and the curve."""
 
-import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -13,20 +12,18 @@ from plan_cutters.document.model import Plan
 from plan_cutters.document.operations import OperationEntry, OperationPlanEntry, StepEntry
 from plan_cutters.document.palette import OPERATIONS, operation_colour
 from plan_cutters.domain.operations import OperationPlan
+from plan_cutters.domain.percent import bound
 from plan_cutters.report.page.arrays import Arrays
 from plan_cutters.report.page.encode import Stored
 from plan_cutters.report.page.facts import turned_by
 from plan_cutters.report.protocol import Judged
 from plan_cutters.report.story.line import Line
-from plan_cutters.report.story.numbers import percent
-from plan_cutters.report.story.operations import Told, of_the_whole, told
+from plan_cutters.report.story.operations import Told, of_the_whole, share_text, told
 from plan_cutters.report.story.story import Story
 
 #: The drawing of the curve: its size, and the edges of what is plotted in it.
 _WIDE, _HIGH = 360, 170
 _LEFT, _RIGHT, _TOP, _BOTTOM = 46, 352, 8, 132
-#: A share that falls short of all by no more is all of it: areas are sums of rounded numbers.
-_ALL = 1e-9
 #: Patterns of operations, another one each time that the colours come round.
 _PATTERNS = ("plain", "hatch", "cross", "dots")
 #: Numbers along the curve, at most.
@@ -136,19 +133,8 @@ def tables(plan: Plan, story: Story) -> OperationTables | None:
         )
         for each in found.plans
     ]
-    steps = [
-        (s.orientations, _percent(s.share), "" if s.at_most is None else _percent(_up(s.at_most))) for s in found.curve
-    ]
+    steps = [(s.orientations, share_text(s.share), "" if s.at_most is None else bound(s.at_most)) for s in found.curve]
     return OperationTables(of_the_whole(story.operations, story.in_short), plans, steps, curve(found.curve))
-
-
-def _percent(share: float) -> str:
-    return percent(share, some=share > 0.0, whole=share >= 1.0 - _ALL)
-
-
-def _up(share: float) -> float:
-    """A share that is not to be less, to a tenth of a percent."""
-    return math.ceil(1000.0 * (share - _ALL)) / 1000.0
 
 
 def curve(steps: Sequence[StepEntry]) -> Curve | None:

@@ -5,6 +5,7 @@ from typing import Any, NamedTuple
 
 from plan_cutters.document.model import CutterEntry, FaceEntry, Plan
 from plan_cutters.document.palette import label
+from plan_cutters.document.shares import reached
 from plan_cutters.domain.reasons import REASONS
 from plan_cutters.report.page import operations
 from plan_cutters.report.page.facts import Spot
@@ -13,7 +14,7 @@ from plan_cutters.report.story import answers, cutters, headline, numbers
 from plan_cutters.report.story.chip import CHIPS, chip
 from plan_cutters.report.story.names import named
 from plan_cutters.report.story.next_steps import step_told
-from plan_cutters.report.story.numbers import VERDICTS, reached
+from plan_cutters.report.story.numbers import VERDICTS
 from plan_cutters.report.story.story import Story, story_of
 
 #: Faces that are listed, the worst first; cutters whose worst faces and spots are.

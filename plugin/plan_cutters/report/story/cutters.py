@@ -6,7 +6,8 @@ from dataclasses import dataclass
 
 from plan_cutters.document.listed import listed
 from plan_cutters.document.model import CutterEntry, FaceEntry, Plan, WitnessEntry
-from plan_cutters.document.shares import AreaShare
+from plan_cutters.document.shares import AreaShare, part_of, reached, unreached
+from plan_cutters.domain.percent import percent
 from plan_cutters.domain.reasons import REASONS
 from plan_cutters.report.story.headline import area, between
 from plan_cutters.report.story.names import described, named
@@ -17,11 +18,7 @@ from plan_cutters.report.story.numbers import (
     capital,
     figure,
     mm,
-    part_of,
-    percent,
     place,
-    reached,
-    unreached,
 )
 
 #: Faces that are named on which a cutter leaves something.
@@ -144,12 +141,7 @@ def left(plan: Plan, c: CutterEntry) -> str:
     why = ", ".join(reasons(c))
     if c.undecided:
         why += f"; of it {percent(c.area_share.undecided, some=True, whole=False)} is undecided"
-    failing = [
-        name
-        for _, name in sorted(
-            ((-v.not_reached, name) for name, v in c.faces.items() if v.not_reached), key=lambda each: each[0]
-        )
-    ]
+    failing = _by_area_left(plan, c)
     deep = [w for w in c.witnesses if w.depth_mm is not None and not w.inside_bodies]
     where = ""
     if deep:
@@ -205,22 +197,25 @@ def ranked_spots(witnesses: Sequence[WitnessEntry]) -> list[WitnessEntry]:
 
 def worst_faces(plan: Plan, c: CutterEntry, most: int = 5) -> tuple[list[WorstFace], int]:
     """The faces of which a cutter loses the largest area, and how many there are in all."""
-    faces, failing = (
-        {face.id: face for face in plan.faces},
-        [name for name, each in c.faces.items() if each.not_reached],
-    )
+    faces, ranked = {face.id: face for face in plan.faces}, _by_area_left(plan, c)
+    return [_worst(faces[name], c, _area_left(faces[name], c)) for name in ranked[:most]], len(ranked)
 
-    def share(name: str) -> float:
-        return c.faces[name].area_share.not_reached
 
-    def lot(name: str) -> float:
-        return share(name) * (1.0 - c.faces[name].inside_share) * faces[name].area_mm2
+def _by_area_left(plan: Plan, c: CutterEntry) -> list[str]:
+    """Ids of the faces on which a cutter leaves something, the one with the largest area of it first."""
 
-    def known(name: str) -> float:
-        return lot(name) if math.isfinite(faces[name].area_mm2) else 0.0
+    def rank(face: FaceEntry) -> tuple[float, float]:
+        area = _area_left(face, c)
+        return -area if math.isfinite(area) else 0.0, -c.faces[face.id].area_share.not_reached
 
-    ranked = sorted(failing, key=lambda name: (-known(name), -share(name), int(name[1:])))
-    return [_worst(faces[name], c, lot(name)) for name in ranked[:most]], len(ranked)
+    failing = [face for face in plan.faces if face.id in c.faces and c.faces[face.id].not_reached]
+    return [face.id for face in sorted(failing, key=rank)]
+
+
+def _area_left(face: FaceEntry, c: CutterEntry) -> float:
+    """Area of a face that a cutter leaves, mm2; not a number where the face's is not known."""
+    found = c.faces[face.id]
+    return found.area_share.not_reached * (1.0 - found.inside_share) * face.area_mm2
 
 
 def _worst(face: FaceEntry, c: CutterEntry, lot: float) -> WorstFace:

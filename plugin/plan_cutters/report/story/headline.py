@@ -5,10 +5,12 @@ from typing import NamedTuple
 
 from plan_cutters.document.listed import listed
 from plan_cutters.document.model import AreaEntry, CutterEntry, Plan
+from plan_cutters.document.shares import unreached
+from plan_cutters.domain.nearest import nearest
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.report.story.names import described
-from plan_cutters.report.story.numbers import capital, count, some, unreached
-from plan_cutters.report.story.scope import judged, nearest
+from plan_cutters.report.story.numbers import capital, count, some
+from plan_cutters.report.story.scope import judged
 
 
 class Headline(NamedTuple):
@@ -48,7 +50,7 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
                "that needs "
                "another setup.")  # fmt: skip
         return take(c.id, None, why, to=f" in {here}")
-    best = nearest(plan)
+    best = nearest(plan.cutters)
     name = f"{names[best.id]} ({described(best, names[best.id])})"
     unsure = f"No cutter is sure for {part}"
     if not best.not_reached:

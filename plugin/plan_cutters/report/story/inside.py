@@ -5,7 +5,8 @@ from collections.abc import Sequence
 from plan_cutters.document.inside import CoveringBody
 from plan_cutters.document.listed import listed
 from plan_cutters.document.model import Plan
-from plan_cutters.report.story.numbers import figure, percent
+from plan_cutters.domain.percent import percent
+from plan_cutters.report.story.numbers import figure
 
 
 def inside(plan: Plan, most: int = 5) -> list[str]:

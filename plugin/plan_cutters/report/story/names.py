@@ -50,8 +50,8 @@ def called(cutter: "Cutter | CutterEntry") -> str:
     what = kind(cutter)
     corner = f" rc{cutter.corner_radius:.4g}" if cutter.corner_radius and what not in (_BALL, "lollipop") else ""
     taper = math.degrees(cutter.taper) if isinstance(cutter, Cutter) else cutter.taper_deg
-    tilt_direction = f" T{taper:.4g}" if taper else ""
-    return f"{what} D{across}{corner}{tilt_direction} x {cutter.length:.5g}"
+    cone = f" T{taper:.4g}" if taper else ""
+    return f"{what} D{across}{corner}{cone} x {cutter.length:.5g}"
 
 
 def short_names(plan: "Plan") -> dict[str, str]:

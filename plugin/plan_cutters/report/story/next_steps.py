@@ -2,9 +2,9 @@
 
 from plan_cutters.document.answers import ChangeEntry, MendEntry, RunEntry, StepEntry
 from plan_cutters.document.model import CutterEntry, Plan
+from plan_cutters.domain.percent import percent
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.report.story.headline import not_sampled
-from plan_cutters.report.story.numbers import percent
 
 #: Runs that are named one by one.
 _RUNS = 6

@@ -1,34 +1,15 @@
-"""How numbers are told, each form once: shares, lengths, angles, areas, places; what must not be less or more is rounded so."""
+"""How numbers are written, each form once: lengths, angles, areas, places; what must not be less or more is rounded so."""
 
 import math
 from collections.abc import Iterable, Sequence
 
-from plan_cutters.document.shares import AreaShare, VerdictCounts
+from plan_cutters.domain.percent import percent
 from plan_cutters.domain.verdicts import WORDS
 
 #: Verdicts, from best to worst.
 VERDICTS = tuple(WORDS.values())
 #: Numbers of less than this are what rounding leaves of nothing.
 ROUNDING = 1e-9
-_REACHED, _NOT_REACHED = ("interference_free", "accessible"), ("inaccessible", "undecided")
-
-
-def percent(share: float, *, some: bool, whole: bool) -> str:
-    """A share in percent: 100 only where it is the whole, and 0 only where there is nothing of it.
-
-    Examples
-    --------
-    >>> percent(0.00001, some=True, whole=False), percent(0.99999, some=True, whole=False)
-    ('<0.1 %', '>99.9 %')
-    >>> percent(0.5, some=True, whole=False), percent(0.0, some=False, whole=False)
-    ('50 %', '0 %')
-    """
-    if whole:
-        return "100 %"
-    if not some and not share:
-        return "0 %"
-    text = f"{100.0 * share:.1f}"
-    return {"0.0": "<0.1 %", "100.0": ">99.9 %"}.get(text, f"{text.removesuffix('.0')} %")
 
 
 def figure(number: float) -> str:
@@ -57,28 +38,9 @@ def plainly(number: float, digits: int) -> str:
     return text.rstrip("0").rstrip(".") if "." in text else text
 
 
-def part_of(counts: VerdictCounts, share: AreaShare, words: Iterable[str]) -> str:
-    """How much of an area has one of some verdicts, in percent."""
-    mine = set(words)
-    there = {word for word in VERDICTS if counts.of(word) or getattr(share, word) > 0.0}
-    return percent(
-        sum(getattr(share, word) for word in mine), some=bool(there & mine), whole=bool(there) and there <= mine
-    )
-
-
-def reached(counts: VerdictCounts, share: AreaShare) -> str:
-    """How much of an area is interference-free or accessible, in percent."""
-    return part_of(counts, share, _REACHED)
-
-
-def unreached(counts: VerdictCounts, share: AreaShare) -> str:
-    """How much of an area is inaccessible or undecided, in percent."""
-    return part_of(counts, share, _NOT_REACHED)
-
-
 def some(share: float) -> str:
     """A share that is not all, in percent."""
-    return percent(share, some=share > 0.0, whole=False)
+    return percent(share, whole=False)
 
 
 def mm(length: float | None) -> str:

@@ -6,10 +6,11 @@ from typing import NamedTuple
 
 from plan_cutters.document.model import Plan
 from plan_cutters.document.operations import CutterUse, FewestEntry, OperationEntry, OperationPlanEntry, OperationsEntry
+from plan_cutters.domain.percent import bound, percent
 from plan_cutters.report.story.line import Line
 from plan_cutters.report.story.motion import motion, whatever_the_axes
 from plan_cutters.report.story.names import named
-from plan_cutters.report.story.numbers import figure, percent, some
+from plan_cutters.report.story.numbers import ROUNDING, figure, some
 
 #: Operations that are listed, and faces that are named of one.
 _LISTED, _FACES = 12, 4
@@ -70,7 +71,9 @@ def _fewest(found: OperationsEntry) -> Iterator[str]:
     part = next((step for step in found.curve if step.share >= _KNEE * found.curve[-1].share), None)
     if part is not None and part.orientations < few.found:
         end = (
-            "" if part.at_most is None else f" (no choice of {part.orientations} serves more than {some(part.at_most)})"
+            ""
+            if part.at_most is None
+            else f" (no choice of {part.orientations} serves more than {bound(part.at_most)})"
         )
         yield f"{part.orientations} of them finish{'es' * (part.orientations == 1)} {some(part.share)} of the area{end}."
 
@@ -132,8 +135,9 @@ def _work(plan: OperationPlanEntry) -> str:
     return f"{_duration(plan.cutting_seconds)} of cutting and {_duration(plan.other_seconds)} for {_joined(what)}"
 
 
-def _share(share: float) -> str:
-    return percent(share, some=share > 0.0, whole=share >= 1.0 - 1e-9)
+def share_text(share: float) -> str:
+    """A share of the area: what falls short of all by rounding is all of it, for areas are sums of rounded numbers."""
+    return percent(share, whole=share >= 1.0 - ROUNDING)
 
 
 def _little(each: OperationEntry) -> str:
@@ -159,7 +163,7 @@ def _fastest(found: OperationsEntry) -> Iterator[str]:
     elif timed.gap <= _NO_GAP:
         yield f"No choice takes less than the fastest plan: it is {near}."
     else:
-        yield f"The fastest plan is at most {_up(timed.gap)} above {near}."
+        yield f"The fastest plan is at most {bound(timed.gap)} above {near}."
 
 
 def _assumed(found: OperationsEntry) -> Iterator[str]:
@@ -182,7 +186,7 @@ def _habit(found: OperationsEntry) -> Iterator[str]:
     for name in ("largest first", "fastest"):
         taken = [(use.id, use.takes_mm2[name]) for use in found.cutters if use.takes_mm2.get(name, 0.0) > 0.0]
         whole = sum(area for _, area in taken)
-        shares = [f"{_share(area / whole)} with {cutter}" for cutter, area in taken]
+        shares = [f"{share_text(area / whole)} with {cutter}" for cutter, area in taken]
         if len(shares) > 1:
             yield f"Of what is cut, the {name} plan cuts {_joined(shares)}."
 
@@ -212,7 +216,9 @@ def _setups(found: OperationsEntry) -> bool:
 def _listed(each: OperationEntry, setups: bool) -> str:
     took = "" if each.seconds is None else f", {_duration(each.seconds)}"
     where = f" in setup {each.setup + 1}" if setups else ""
-    return f"{each.id}: {each.cutter}{where}, {_turned(each)}: {_share(each.share)} of the area{took}, {_faces(each)}."
+    return (
+        f"{each.id}: {each.cutter}{where}, {_turned(each)}: {share_text(each.share)} of the area{took}, {_faces(each)}."
+    )
 
 
 class Told(NamedTuple):
@@ -268,8 +274,3 @@ def _short(seconds: float) -> str:
 
 def _factor(ratio: float) -> str:
     return f"{math.ceil(10.0 * ratio - 1e-9) / 10.0:.1f}"
-
-
-def _up(share: float) -> str:
-    """A share in percent that is not rounded down."""
-    return f"{math.ceil(1000.0 * share - 1e-9) / 10.0:g} %"

@@ -2,8 +2,9 @@
 
 from plan_cutters.document.model import Plan
 from plan_cutters.document.setups import ProposedSetup
+from plan_cutters.domain.percent import percent
 from plan_cutters.domain.placement import axis_words
-from plan_cutters.report.story.numbers import percent, some
+from plan_cutters.report.story.numbers import some
 
 
 def proposal(plan: Plan) -> tuple[str, ...]:
@@ -15,7 +16,7 @@ def proposal(plan: Plan) -> tuple[str, ...]:
     where = [f"{_stands(each)}, with {axis_words(each.axis)}" for each in found.setups]
     where[0] += " of the part along the spindle"
     told = where[0] if one else "; ".join(f"{k} {each}" for k, each in enumerate(where, 1))
-    share = percent(found.found, some=found.found > 0.0, whole=found.found >= 1.0)
+    share = percent(found.found)
     lines = [f"Proposed {'setup' if one else 'setups'}: {told}. Over a table and nothing else that holds the part, "
              f"{'it reaches' if one else 'they reach'} {share} of the area to machine."]  # fmt: skip
     if not found.held:

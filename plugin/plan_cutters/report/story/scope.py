@@ -2,9 +2,10 @@
 
 from collections.abc import Mapping
 
-from plan_cutters.document.model import CutterEntry, Plan
+from plan_cutters.document.model import Plan
 from plan_cutters.document.scope import Scope
-from plan_cutters.report.story.numbers import percent
+from plan_cutters.domain.nearest import nearest
+from plan_cutters.domain.percent import percent
 
 #: Choices that name kinds of faces, not faces.
 _BY_KIND = frozenset({"sculptured", "blends", "all"})
@@ -64,7 +65,7 @@ def _share(scope: Scope) -> str:
 def not_seen(plan: Plan, names: Mapping[str, str]) -> list[str]:
     """Whether more lies between the samples than the cutter to take, or the one that comes nearest, is wide; in a sentence."""
     taken = plan.selected or plan.selected_over_setups or plan.selected_for_setup
-    entry = next((c for c in plan.cutters if c.id == taken), None) or nearest(plan)
+    entry = next((c for c in plan.cutters if c.id == taken), None) or nearest(plan.cutters)
     if entry.seen:
         return []
     widest = max(plan.faces, key=lambda f: f.gap_mm or 0.0)
@@ -73,8 +74,3 @@ def not_seen(plan: Plan, names: Mapping[str, str]) -> list[str]:
         f"What lies between the samples was not seen: they are up to {plan.samples.max_gap_mm:.3g} mm apart{on}, more than the "
         f"radius of {names[entry.id]}, {entry.radius:.4g} mm. --spacing {entry.radius:.4g} looks more closely."
     ]
-
-
-def nearest(plan: Plan) -> CutterEntry:
-    """The cutter that leaves fewest samples."""
-    return min(plan.cutters, key=lambda c: c.not_reached)

@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from plan_cutters.document.model import CutterEntry, Plan
+from plan_cutters.domain.nearest import nearest
 from plan_cutters.report.story import notes
 from plan_cutters.report.story.answers import answers
 from plan_cutters.report.story.cutters import CutterStory, cutter_story
@@ -89,6 +90,5 @@ def story_of(plan: Plan) -> Story:
 
 
 def shown(plan: Plan) -> CutterEntry:
-    """The cutter that the models show: the selected, else the one that reaches the most samples."""
-    best = max(plan.cutters, key=lambda c: c.interference_free + c.accessible)
-    return next((c for c in plan.cutters if c.id == plan.selected), best)
+    """The cutter that the models show: the selected, else the one that leaves the least area."""
+    return next((c for c in plan.cutters if c.id == plan.selected), None) or nearest(plan.cutters)
