@@ -13,7 +13,7 @@ from plan_cutters import Cutter, Machine, Options, PlanError
 from plan_cutters.batch import verdicts as kept_verdicts
 from plan_cutters.batch.verdicts import Kept, packed, unpacked
 from plan_cutters.document.clock import Clock
-from plan_cutters.domain.verdicts import INACCESSIBLE, UNJUDGED, WORDS, Verdicts
+from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, NO_REASON, UNJUDGED, WORDS, Verdicts
 from plan_cutters.pipeline import prepare, run
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.judge import judge
@@ -242,3 +242,56 @@ def test_python_and_a_wrong_place(tmp_path):
         with pytest.raises(PlanError, match="verdicts") as caught:
             plan_cutters.plan(PART, verdicts=where, **asked)
         assert "\n" not in str(caught.value)
+
+
+FORGERIES = {
+    "no axis": lambda v: {"axis": np.full_like(v.axis, np.nan)},
+    "an axis of another tilt": lambda v: {"tilt": v.tilt + 0.1},
+    "a tilt beyond those searched": lambda v: {"tilt": v.tilt + 7.0, "axis": v.axis},
+    "a direction along the normal": lambda v: {"tilt_direction": v.axis},
+    "a rotation that is none": lambda v: {"rotation": np.full_like(v.rotation, 99)},
+    "accessible without a posture": lambda v: {"verdict": np.full_like(v.verdict, ACCESSIBLE),
+                                               "reason": np.full_like(v.reason, NO_REASON)},
+    "accessible with a reason": lambda v: {"verdict": np.full_like(v.verdict, ACCESSIBLE)},
+    "lost without a reason": lambda v: {"reason": np.full_like(v.reason, NO_REASON)},
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("forgery", FORGERIES)
+def test_verdicts_that_cannot_be_of_these_samples_are_not_taken(tmp_path, forgery):
+    """With their checksum made anew: whoever may write there may write anything, but not nonsense."""
+    asked = {"machine": "tilt:20", "cutters": "R6L60"}  # some are lost, some are not
+    plain = planned(tmp_path, **asked)[0]
+    (entry,) = tmp_path.rglob("*.verdicts")
+    own = entry.parent.name
+    verdicts, looked = unpacked(entry.read_bytes(), len(plain.samples), own)
+    assert {INACCESSIBLE, ACCESSIBLE} <= set(verdicts.verdict.tolist())
+    entry.write_bytes(packed(replace(verdicts, **FORGERIES[forgery](verdicts)), looked, own))
+    result, judged, (fault,) = planned(tmp_path, **asked)
+    assert judged == ["R6L60"]
+    assert "is damaged and not used" in fault
+    assert told(result) == told(plain)
+    assert planned(tmp_path, **asked)[1:] == ([], [])  # it was replaced
+
+
+def test_a_key_keeps_out_what_others_wrote(tmp_path):
+    """Entries of different keys, and those without one, lie beside each other; a name that is forged is not enough."""
+    ready = prepare(PART, Options.of(ASKED))
+    cutter = ready.cutters[0]
+
+    def judged_with(key):
+        kept = Kept(str(tmp_path), key=key)
+        kept(ready, cutter)
+        return kept.judged, kept.faults
+
+    for key in (None, b"k" * 16, b"l" * 16):
+        assert judged_with(key) == (1, [])
+    assert [judged_with(key) for key in (None, b"k" * 16, b"l" * 16)] == [(0, [])] * 3
+    entries = sorted(tmp_path.rglob("*.verdicts"))
+    assert len(entries) == 3
+    mine = next(entry for entry in entries if entry.read_bytes() != entries[0].read_bytes())
+    mine.write_bytes(entries[0].read_bytes())
+    results = [judged_with(key) for key in (None, b"k" * 16, b"l" * 16)]
+    (fault,) = [fault for _, faults in results for fault in faults]
+    assert "not sealed with this key" in fault
+    assert [count for count, _ in results].count(1) == 1

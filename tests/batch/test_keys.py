@@ -9,9 +9,11 @@ import pytest
 
 from plan_cutters import Options
 from plan_cutters.batch import keys
+from plan_cutters.batch.content import content
 from plan_cutters.batch.job import Settings, handed
 from plan_cutters.errors import OptionError
 from tests.support.places import ROOT
+from tests.support.step_references import BALL, BOX, write_assembly
 
 
 def key(formats=("json",), schema="ap242", timeout=120.0, **options):
@@ -55,6 +57,8 @@ def test_the_content_of_fixtures_and_libraries_counts(tmp_path):
     assert key(fixtures=str(vise)) == one
     vise.write_bytes(b"other")
     assert key(fixtures=str(vise)) != one
+    settings = Settings(Options(cutters="R6L80"))
+    assert key(cutters="R6L80") != keys.settings_key(replace(settings, read=("a",)), handed(settings.options))
     vise.unlink()
     with pytest.raises(OptionError, match="No such file"):
         key(fixtures=str(vise))
@@ -92,3 +96,22 @@ def test_a_part_has_the_key_of_its_content():
 def test_settings_are_frozen():
     settings = Settings(Options(cutters="R6L80"))
     assert replace(settings, formats=("json", "png")) != settings
+
+
+def test_files_that_a_part_or_a_fixture_refers_to_count_and_travel(tmp_path):
+    whole = write_assembly(tmp_path / "part")
+    part, fixture = content(str(whole)), key(fixtures=str(whole))
+    there = handed(Options(fixtures=[str(whole), f"{whole}@0,0,50", "box:1,2,3"]))
+    assert {name for name, _ in there.files} == {f"fixture-1/{each}" for each in (whole.name, BOX, BALL)}
+    part.write(tmp_path / "copy.stp")
+    assert (tmp_path / BALL).read_bytes() == whole.with_name(BALL).read_bytes()
+    whole.with_name(BALL).write_bytes(whole.with_name(BALL).read_bytes() + b" ")
+    assert content(str(whole)).key != part.key
+    assert key(fixtures=str(whole)) != fixture
+    # What lies elsewhere, or is not there, is not put anywhere: the reader says that it is missing.
+    whole.write_text(whole.read_text().replace(BALL, f"../{BALL}"))
+    up = content(str(whole))
+    assert [name for name, _ in up.within()] == [BOX]
+    assert dict(up.references)[f"../{BALL}"] is not None
+    (tmp_path / BALL).unlink()
+    assert content(str(whole)).key != up.key

@@ -1,5 +1,6 @@
 """The output: here, in memory and on object storage, whole or not at all."""
 
+import json
 import os
 
 import fsspec
@@ -73,7 +74,47 @@ def test_a_file_that_was_changed_or_lost_makes_the_part_undone(store):
     store.publish("a-plan", FILES, ROW)
     store.put("a-plan/plan.json", b"{}, and more")
     assert store.row("a-plan") is None
+    # Bytes of the same number are others all the same.
+    store.publish("a-plan", FILES, ROW)
+    store.put("a-plan/review.html", b"PAGE")
+    assert store.row("a-plan") is None
     store.put("a-plan/" + MARKER, b"no marker")
+    assert store.row("a-plan") is None
+
+
+def test_a_marker_that_was_edited_is_none(store):
+    store.publish("a-plan", FILES, ROW)
+    marker = json.loads(store._content("a-plan/" + MARKER))
+    for forged in (
+        marker | {"row": marker["row"] | {"code": 1}},
+        marker | {"sha256": {}},
+        marker | {"sha256": {"plan.json": marker["sha256"]["plan.json"]}},
+        {name: value for name, value in marker.items() if name != "seal"},
+        # As it was written once, with sizes alone.
+        {"row": marker["row"], "files": {name: len(data) for name, data in FILES.items()}},
+        [],
+    ):
+        store.put("a-plan/" + MARKER, json.dumps(forged).encode())
+        assert store.row("a-plan") is None
+    store.put("a-plan/" + MARKER, json.dumps(marker).encode())
+    assert store.row("a-plan") == ROW
+
+
+def test_with_a_key_only_markers_of_it_count(tmp_path):
+    mine, others, plain = (Store(str(tmp_path), key) for key in (b"k" * 16, b"l" * 16, None))
+    for writer in (mine, others, plain):
+        writer.publish("a-plan", FILES, ROW)
+        assert [reader.row("a-plan") is not None for reader in (mine, others, plain)] == [
+            reader is writer for reader in (mine, others, plain)
+        ]
+
+
+@pytest.mark.parametrize("name", ["plan.json", MARKER])
+def test_a_pipe_in_the_output_is_not_waited_for(tmp_path, name):
+    store = Store(str(tmp_path))
+    store.publish("a-plan", FILES, ROW)
+    (tmp_path / "a-plan" / name).unlink()
+    os.mkfifo(tmp_path / "a-plan" / name)
     assert store.row("a-plan") is None
 
 
