@@ -18,6 +18,7 @@ from mcp import Client, StdioServerParameters
 
 from tests.support.forked import ENV
 from tests.support.places import SAMPLES
+from tests.support.step_references import BALL, BOX, write_assembly
 
 GROOVE, PEAKS = "v_groove.step", "peaks_and_valleys.step"
 #: The limit of tilt loses samples, and no library is needed for that.
@@ -305,3 +306,30 @@ def test_a_signal_ends_a_server_that_waits_for_its_client(tmp_path):
         assert json.loads(process.stdout.readline())["result"]["serverInfo"]["name"] == "plan-cutters"
         process.terminate()
         assert process.wait(30) == 130
+
+
+def test_what_a_file_in_the_root_names_outside_says_nothing(server):
+    """A library's bits, what a machine includes, and what a STEP file refers to: each leads out of the root."""
+    outside = server.root.parent / f"{server.root.name}-outside"
+    (outside / "Bit").mkdir(parents=True)
+    bit = {"shape": "endmill.fcstd", "name": "secret bit", "parameter": {"Diameter": "furlongs"}}
+    (outside / "Bit/bit.fctb").write_text(json.dumps(bit))
+    (outside / "secret.inc").write_text("[TRAJ]\nLINEAR_UNITS = furlongs\n")
+    names = {"lib.fctl": json.dumps({"tools": [{"nr": 1, "path": "bit.fctb"}], "version": 1}),
+             "m.ini": f"#INCLUDE ../{outside.name}/secret.inc\n[KINS]\nKINEMATICS = xyzac-trt-kins\nJOINTS = 5\n"}  # fmt: skip
+    for name, text in names.items():
+        (server.root / name).write_text(text)
+    (server.root / "Bit").symlink_to(outside / "Bit")
+    whole = write_assembly(outside)
+    text = whole.read_text()
+    for name in (BOX, BALL):
+        text = text.replace(f"'{name}'", f"'../{outside.name}/{name}'")
+    (server.root / whole.name).write_text(text)
+    said = [
+        server.refused("plan_part", part=GROOVE, library="lib.fctl"),
+        server.refused("plan_part", part=GROOVE, cutters=["R6L80"], machine="m.ini"),
+        server.refused("plan_part", part=whole.name, cutters=["R6L80"]),
+    ]
+    assert not any(word in line for line in said for word in ("secret bit", "furlongs"))
+    assert "its bit is neither" in said[0]
+    assert all("outside the folders that may be read" in line for line in said[1:])

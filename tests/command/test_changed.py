@@ -11,11 +11,12 @@ import cadquery as cq
 import pytest
 import yaml
 
-from plan_cutters.command.changed import RULES, Row
+from plan_cutters.batch import keys
+from plan_cutters.command.changed import RULES, Request, Row
 from plan_cutters.command.repository import Changed, changed, content
 from plan_cutters.errors import PlanError
 from tests.support.forked import ENV
-from tests.support.places import ROOT
+from tests.support.places import DATA, ROOT
 
 ACTION = yaml.safe_load((ROOT / "action.yml").read_text(encoding="utf-8"))
 POINTER = "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n"
@@ -169,6 +170,8 @@ def test_mistakes_are_one_line(repository, tmp_path):
         (["--base", "nowhere"], "'nowhere' is not in this repository"),
         (["--base", base, "--", "-o", "there"], "-o cannot stand after --"),
         ([], "give --base"),
+        (["--base", base, "--", "--cutters", "none.fctl"], "none.fctl: cannot be read"),
+        (["--base", base, "--", "other.step"], "other.step cannot stand after --"),
         (["--base", base, "--fail-on", "rain"], "'rain'"),
     ):
         done = command(words, folder)
@@ -200,6 +203,86 @@ def test_what_is_staged_is_found_before_the_commit(tmp_path, monkeypatch):
     git("add", "a.step")
     with pytest.raises(PlanError, match="pointer of Git LFS"):
         content(changed("HEAD", None)[1], "a.step")
+
+
+def shop(folder):
+    """A library of FreeCAD, whose bit lies in another folder, and a machine of LinuxCNC, which includes a file."""
+    for name in ("tools/Library", "tools/Bit", "machine"):
+        (folder / name).mkdir(parents=True)
+    bit = {"shape": "ballend.fcstd", "name": "b", "parameter": {
+        "Diameter": "4 mm", "CuttingEdgeHeight": "20 mm", "Length": "50 mm", "ShankDiameter": "4 mm"}}  # fmt: skip
+    (folder / "tools/Bit/b.fctb").write_text(json.dumps(bit))
+    (folder / "tools/Library/l.fctl").write_text(json.dumps({"tools": [{"nr": 1, "path": "b.fctb"}], "version": 1}))
+    (folder / "machine/base.inc").write_bytes((DATA / "machines/linuxcnc_xyzac-trt.ini").read_bytes())
+    (folder / "machine/m.ini").write_text("[KINS]\nJOINTS = 5\n#INCLUDE base.inc\n")
+    return [
+        "--cutters",
+        "tools/Library/l.fctl",
+        "--assume-stickout",
+        "30",
+        "--holder",
+        "none",
+        "--machine",
+        "machine/m.ini",
+    ]
+
+
+def test_a_file_that_an_option_leads_to_makes_another_key(tmp_path, monkeypatch):
+    """Not the files that options name alone: what these name in turn, wherever it lies."""
+    monkeypatch.chdir(tmp_path)
+    words = shop(tmp_path)
+
+    def key():
+        request = Request.of(words)
+        return keys.settings_key(request.settings, request.handed)
+
+    first = key()
+    assert key() == first
+    seen = {first}
+    for name, old, new in (
+        ("tools/Bit/b.fctb", "4 mm", "12 mm"),
+        ("machine/base.inc", "MAX_LIMIT =   50", "MAX_LIMIT =   40"),
+        ("machine/switchkins_postgui.hal", "", "setp a b"),
+    ):
+        file = tmp_path / name
+        text = file.read_text() if file.exists() else ""
+        assert old in text
+        file.write_text(text.replace(old, new) if old else new)
+        assert key() not in seen
+        seen.add(key())
+        file.write_text(text) if text else file.unlink()
+        assert key() == first
+
+
+def test_a_tool_that_changed_in_another_folder_is_planned_anew(tmp_path):
+    """The bit grows from D4 to D12 in a folder beside that of the library which the option names."""
+    words = shop(tmp_path)[:6]
+    part(tmp_path / "a.step", 8)
+    before = Path.cwd()
+    os.chdir(tmp_path)
+    try:
+        git("init", "-q")
+        git("commit", "-q", "--allow-empty", "-m", "none")
+        git("add", "a.step")
+        git("commit", "-qm", "part")
+    finally:
+        os.chdir(before)
+    asked = ["--base", "HEAD~1", "--cache", "kept", "--fail-on", "none", "--"]
+    plan, ids = tmp_path / "plan-cutters-changed/after/a.step/plan.json", []
+    for size in ("4 mm", "12 mm", "4 mm"):
+        bit = tmp_path / "tools/Bit/b.fctb"
+        bit.write_text(bit.read_text().replace("4 mm", size).replace("12 mm", size))
+        done = command([*asked, "--faces", "all", "--grid", "3", "--area-budget", "0", *words], tmp_path)
+        assert done.returncode == 0, done.stderr
+        ids += [each["id"] for each in json.loads(plan.read_text())["cutters"]]
+    assert [each.partition("L")[0] for each in ids] == ["R2", "R6", "R2"]
+    assert len(list((tmp_path / "kept").glob("*/plan.json"))) == 2
+    # What was changed in the cache by hand is not believed: it is planned anew.
+    for kept in (tmp_path / "kept").glob("*/plan.json"):
+        kept.write_text(kept.read_text().replace('"feasible": false', '"feasible": true '))
+    done = command([*asked, "--faces", "all", "--grid", "3", "--area-budget", "0", *words], tmp_path)
+    assert '"feasible": true ' not in plan.read_text()
+    assert not plan.with_name("done.json").exists()
 
 
 def test_each_rule_is_stricter_than_the_one_before():

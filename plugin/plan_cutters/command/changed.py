@@ -180,7 +180,7 @@ def command(asked: tuple[str, ...], **given: Any) -> int:
     began, head, parts = changed(base, None if given["staged"] else given["head"])
     out = Path(given["out"])
     with tempfile.TemporaryDirectory() as aside:
-        cache = Path(given["cache"] or aside)
+        cache = Path(given["cache"] or aside).absolute()
         request = Request.of(asked) if parts else None
         rows = [_compared(part, began, head, request, cache, out) for part in parts]
     links: dict[Path, str] = {}
