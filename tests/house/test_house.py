@@ -51,8 +51,11 @@ def test_first_sentences_have_a_subject_or_are_imperatives():
 
 def test_what_is_waited_for_in_a_browser_is_a_function():
     """The policy of our pages forbids to evaluate a string: playwright may once, and fails if that has to be asked again."""
-    waits = [(path.name, each) for path in (ROOT / "tests").rglob("*.py")
-             for each in re.findall(r"wait_for_function\(\s*(?:[rf]*\"+)?(.*)", path.read_text()) if path != Path(__file__)]  # fmt: skip
+    waits = [
+        (path.name, each)
+        for path in sorted({*(ROOT / "tests").rglob("*.py")} - {Path(__file__)})
+        for each in re.findall(r"wait_for_function\(\s*(?:[rf]*\"+)?(.*)", path.read_text(encoding="utf-8"))
+    ]
     assert len(waits) > 1
     assert [each for each in waits if not re.match(r"\(?[\w\s,]*\)? =>", each[1])] == []
 
