@@ -12,6 +12,8 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from tests.support.skips import strict
+
 # A machine that is busy with something else is no fault; what else holds here, as in CI, stays.
 settings.register_profile("suite", settings(), deadline=None)
 settings.load_profile("suite")
@@ -24,6 +26,16 @@ LAST = ("document", "domain", "library")
 
 def pytest_sessionstart():
     gc.disable()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport():
+    return strict((yield))
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_make_collect_report():
+    return strict((yield))
 
 
 def pytest_collection_finish():

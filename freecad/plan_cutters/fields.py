@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shlex
+from typing import Any
 
 from . import model, windows
 from .picking import Picker
@@ -46,7 +47,8 @@ class PartBox:
 
     def __init__(self, picker: Picker, choices: Choices, changed) -> None:
         self._picker, self._changed = picker, changed
-        self.document, self.body, self.faces = "", "", ()
+        self.document, self.body = "", ""
+        self.faces: tuple[int, ...] = ()
         self.form, layout = windows.box("Part and faces", "part")
         self._name = windows.words("none: select a body", "body")
         layout.addRow(
@@ -231,7 +233,8 @@ class MachineBox:
 
     def __init__(self, picker: Picker, choices: Choices, changed) -> None:
         self._picker, self._changed = picker, changed
-        self._axis, self._axis_name, self._fixtures = "", "", []
+        self._axis, self._axis_name = "", ""
+        self._fixtures: list[tuple[str, str, Any]] = []
         self.form, layout = windows.box("Machine and setup", "settings")
         self._machine = windows.combo(MACHINES, choices.machine, editable=True)
         self._machine.setObjectName("machine")

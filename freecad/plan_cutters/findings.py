@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from typing import Any
 
 import FreeCAD as App
 import FreeCADGui as Gui
@@ -49,7 +50,10 @@ class Findings(windows.Panel):
 
     def __init__(self, group) -> None:
         self.group, self.result = group, objects.result_of(group)
-        self._seen, self._spots, self._here, self._drawing = None, [], None, None
+        self._seen: camera.Seen | None = None
+        self._spots: list[Any] = []
+        self._here: Any = None
+        self._drawing: runner.Map | None = None
         self.form = [self._verdict_box(), self._legend_box(), self._spots_box()]
         windows.choose(self._cutters, group.Cutter)
         self._cutters.currentIndexChanged.connect(lambda *_: self._other_cutter())
@@ -129,10 +133,10 @@ class Findings(windows.Panel):
         self._headline.setText(line[:1].upper() + line[1:])
         while self._legend.rowCount():
             self._legend.removeRow(0)
-        shown = {getattr(each, "Verdict", "") for each in self.group.Group}
+        coloured = {getattr(each, "Verdict", "") for each in self.group.Group}
         for code, words, rgb in self.result.legend():
             share = entry["area_share"].get(code)
-            if code not in shown and not share and code not in ALWAYS:
+            if code not in coloured and not share and code not in ALWAYS:
                 continue
             text = words if share is None else f"{words}: {results.percent(share)}"
             self._legend.addRow(windows.swatch(rgb), windows.words(text, f"legend_{code}"))

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import importlib
-import importlib.util
 import os
+import types
 from importlib.machinery import SourceFileLoader
 from typing import Any, Callable
 
@@ -138,7 +138,7 @@ def operations_macro() -> Any:
     """
     path = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(__file__))), "PlanOperations.FCMacro")
     loader = SourceFileLoader("plan_operations", path)
-    module = importlib.util.module_from_spec(importlib.util.spec_from_loader("plan_operations", loader))
+    module = types.ModuleType(loader.name)
     exec(compile(loader.get_data(path), path, "exec"), module.__dict__)
-    module.say = say
+    vars(module)["say"] = say
     return module

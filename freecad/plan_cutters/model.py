@@ -78,9 +78,12 @@ class Job:
 
 def job_of(entry: dict[str, Any]) -> Job:
     """A job from what `dataclasses.asdict` made of it, in JSON."""
-    fixed = {name: tuple(value) if isinstance(value, list) else value for name, value in entry.items()}
-    tools = {name: tuple(value) if isinstance(value, list) else value for name, value in entry["tools"].items()}
-    return Job(**{**fixed, "tools": Tools(**tools)})
+    return Job(**{**_fixed(entry), "tools": Tools(**_fixed(entry["tools"]))})
+
+
+def _fixed(entry: dict[str, Any]) -> dict[str, Any]:
+    """The entry with tuples for lists."""
+    return {name: tuple(value) if isinstance(value, list) else value for name, value in entry.items()}
 
 
 def picked(selection) -> tuple[str, str, tuple[int, ...]]:

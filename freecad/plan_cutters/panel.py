@@ -17,7 +17,8 @@ class Panel(windows.Panel):
     """The panel that asks: what is to be machined, with which tools, on which machine."""
 
     def __init__(self) -> None:
-        self._run, self._buttons, self._ready = None, None, False
+        self._run: runner.Run | None = None
+        self._buttons, self._ready = None, False
         choices = remembered.load()
         self.picker = Picker()
         status, layout = windows.box("Plan cutters", "plan_cutters")

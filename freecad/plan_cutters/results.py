@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import json
 import os
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -239,9 +240,9 @@ class Result:
         apart = ((samples["point"] - tuple(point)) ** 2).sum(axis=1)
         row, mine = int(apart.argmin()), entry["id"]
         verdict = VERDICTS.get(int(samples[f"verdict_{mine}"][row]), "unjudged")
-        axis = tuple(float(value) for value in samples[f"axis_{mine}"][row])
+        axis = _three(samples[f"axis_{mine}"][row])
         known = all(value == value for value in axis)  # not a number is none
-        at = tuple(float(value) for value in samples["point"][row])
+        at = _three(samples["point"][row])
         lean = samples[f"lean_{mine}"][row]
         tip = tool.tip(entry, at, samples["normal"][row], axis, lean) if known else None
         reached = verdict in ("accessible", "interference_free")
@@ -252,7 +253,8 @@ class Result:
         )  # fmt: skip
 
     def _angles(self, cutter: str, row: int) -> tuple[dict[str, float], ...]:
-        both, taken = self._arrays.get(f"rotary_{cutter}"), self._arrays.get(f"rotary_taken_{cutter}")
+        arrays = self._arrays or {}
+        both, taken = arrays.get(f"rotary_{cutter}"), arrays.get(f"rotary_taken_{cutter}")
         machine = self.plan.get("machine")
         if both is None or taken is None or not machine or int(taken[row]) < 0:
             return ()
@@ -279,7 +281,12 @@ class Result:
 
 def colour(text: str) -> tuple[float, float, float]:
     """`#D55E00` as FreeCAD has colours."""
-    return tuple(int(text[place : place + 2], 16) / 255.0 for place in (1, 3, 5))
+    return _three(int(text[place : place + 2], 16) / 255.0 for place in (1, 3, 5))
+
+
+def _three(values: Iterable[float]) -> tuple[float, float, float]:
+    x, y, z = (float(value) for value in values)
+    return x, y, z
 
 
 def read(folder: str) -> Result:

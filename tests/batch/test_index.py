@@ -308,7 +308,7 @@ def test_links_stay_in_the_folder(page, folder):
     assert all(link.startswith(f"{folder.as_uri()}/") for link in links), links
     assert "secret" not in page.content()
     # The policy of the page lets its pictures in.
-    page.wait_for_function("document.images.length === 1 && document.images[0].naturalWidth === 1")
+    page.wait_for_function("() => document.images.length === 1 && document.images[0].naturalWidth === 1")
 
 
 def test_columns_are_sorted_by_value_both_ways_and_what_is_not_known_comes_last(page):

@@ -15,6 +15,14 @@ def test_files_for_maintainers_are_there(path):
     assert (ROOT / path).exists()
 
 
+def test_every_page_stands_in_the_menu_once():
+    """`mkdocs build --strict` fails on a page that does not; so does this, sooner."""
+    menu = (ROOT / "mkdocs.yml").read_text(encoding="utf-8").partition("\nnav:\n")[2]
+    named = re.findall(r"^ +- (?:.*: )?(\S+\.(?:md|ipynb))$", menu, re.MULTILINE)
+    pages = {path.relative_to(ROOT / "docs").as_posix() for path in (ROOT / "docs").rglob("*.md")}
+    assert sorted(named) == sorted(pages)
+
+
 def test_ten_questions_have_at_most_three_files_each():
     assert len(ROWS) == 10
     for question, files in ROWS:

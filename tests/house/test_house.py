@@ -1,6 +1,8 @@
 """Every module keeps the promises of CONTRIBUTING.md: its size, the number of arguments of its functions, and its sentences."""
 
 import ast
+import re
+from pathlib import Path
 
 from tests.support.places import ROOT
 
@@ -45,6 +47,17 @@ def headless(path):
 def test_first_sentences_have_a_subject_or_are_imperatives():
     found = [place for path in MODULES for place in headless(path)]
     assert len(found) <= HEADLESS, "\n".join(found)
+
+
+def test_what_is_waited_for_in_a_browser_is_a_function():
+    """The policy of our pages forbids to evaluate a string: playwright may once, and fails if that has to be asked again."""
+    waits = [
+        (path.name, each)
+        for path in sorted({*(ROOT / "tests").rglob("*.py")} - {Path(__file__)})
+        for each in re.findall(r"wait_for_function\(\s*(?:[rf]*\"+)?(.*)", path.read_text(encoding="utf-8"))
+    ]
+    assert len(waits) > 1
+    assert [each for each in waits if not re.match(r"\(?[\w\s,]*\)? =>", each[1])] == []
 
 
 def test_no_test_module_imports_another_one():

@@ -9,7 +9,7 @@ import pytest
 from plan_cutters import Cutter, plan
 from plan_cutters.domain.columns import Columns
 from plan_cutters.operations.fastest import Costs, Problem, fastest
-from plan_cutters.operations.rest_areas import allowed, largest_first, worths
+from plan_cutters.operations.rest_areas import allowed, largest_first, with_and_without, worths
 from tests.support.shapes import trough
 
 LARGE, SMALL = Cutter.parse("R8L80rc8"), Cutter.parse("R3L80rc3")
@@ -28,11 +28,12 @@ def grooved(plane, groove, change):
     return Problem(np.array(seconds), kind, np.zeros(2, np.int32), Costs(0.0, change, 300.0))
 
 
-def task_of(reached):
+def task_of(reached, change):
     verdicts = {
         cutter: SimpleNamespace(reached=np.array(mine)) for cutter, mine in zip((LARGE, SMALL), reached, strict=True)
     }
-    return SimpleNamespace(cutters=(LARGE, SMALL), everywhere=(verdicts,), rows=np.arange(2))
+    ready = SimpleNamespace(options=SimpleNamespace(change_time=change))
+    return SimpleNamespace(cutters=(LARGE, SMALL), everywhere=(verdicts,), rows=np.arange(2), ready=ready)
 
 
 @pytest.mark.parametrize("change", [5.0, 20.0, 60.0])
@@ -44,12 +45,34 @@ def test_the_large_cutter_takes_the_plane_if_that_saves_more_than_its_change(cha
     assert (0 in found.chosen) == (side > 1.0)
     assert 1 in found.chosen
     assert found.bound <= found.cost * (1.0 + 1e-12)
-    large, small = worths(task_of([[True, False], [True, True]]), problem, found.chosen)
+    choices = [found.chosen, *with_and_without(problem, found.chosen)]
+    plans = [plan_of(problem, each) for each in choices]
+    large, small = worths(task_of([[True, False], [True, True]], change), plans)
     assert large.cutter is LARGE
     assert (large.saves, large.change) == (pytest.approx(side * change), change)
     assert len(large.only) == 0
     assert small.saves is None
     assert small.only.tolist() == [1]
+
+
+def plan_of(problem, chosen, more=0.0):
+    operations = [SimpleNamespace(cutter=(LARGE, SMALL)[problem.cutter[each]]) for each in chosen.tolist()]
+    return SimpleNamespace(operations=operations, total=problem.total(chosen) + more)
+
+
+def test_what_a_cutter_saves_is_about_the_plans_and_unknown_times_are_no_plans():
+    problem, both, small = grooved(1e5, 50.0, 20.0), np.array([0, 1]), np.array([1])
+    task = task_of([[True, False], [True, True]], 20.0)
+    plans = [plan_of(problem, both, 7.0), plan_of(problem, small)]
+    saves = problem.total(small) - problem.total(both) - 7.0 + 20.0
+    assert worths(task, plans)[0].saves == pytest.approx(saves)
+    assert worths(task, [plan_of(problem, both, math.nan), plan_of(problem, small)])[0].saves == 0.0
+    assert worths(task, [plan_of(problem, both, math.nan)]) == ()
+
+
+def test_where_nothing_is_reached_there_is_nothing_to_compare():
+    empty = Problem(np.zeros((0, 3)), np.array([0, 0, 1]), np.zeros(3, np.int32), Costs(5.0, 20.0, 0.0))
+    assert list(with_and_without(empty, np.zeros(0, np.int64))) == []
 
 
 def test_the_first_cutter_and_the_first_setup_cost_nothing():

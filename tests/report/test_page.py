@@ -357,7 +357,7 @@ def test_faces_and_the_picture_know_each_other(page, planned):
     assert page.evaluate("review.part.material.uniforms.hot.value") == 0
     row = seen(page, inner(planned, SHOWN, [1], 40))[0]
     page.mouse.move(*place_of(page, row))
-    page.wait_for_function("document.querySelector('#under').textContent.startsWith('F1')")
+    page.wait_for_function("() => document.querySelector('#under').textContent.startsWith('F1')")
     assert "hot" in page.get_attribute('#faces tr[data-face="1"]', "class")
 
 

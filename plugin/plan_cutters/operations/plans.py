@@ -194,21 +194,32 @@ def small_pieces(plan: OperationPlan, samples: SurfaceSamples, overlap: float) -
 
 
 def best_area(task: Task, columns: Columns, most: int | None) -> Columns:
-    """Of some columns so many that serve most of the area, one after the other.
+    """Of some columns so many that serve most of the area, one after the other, and then those that save most time.
 
     `most` None: as many as add each at least `CRUMB` of the area that all serve.
     """
-    serves, left = task.probes.kept(task.rows, columns), np.nan_to_num(task.ready.samples.area[task.rows])
-    picked, least = list[int](), CRUMB * float(left @ serves.any(axis=1)) if most is None else -1.0
+    area, cost = _costs(task, columns)
+    serves, now, picked = np.isfinite(cost), np.full(len(cost), np.inf), list[int]()
+    least = CRUMB * float(area @ serves.any(axis=1))
     for _ in range(len(columns) if most is None else min(most, len(columns))):
-        gain = left @ serves
-        gain[picked] = -1.0
-        best = int(gain.argmax())
-        if picked and gain[best] < least:
+        gain = np.where(np.isfinite(now), 0.0, area) @ serves
+        if most is None and picked and gain.max() < least:
             break
-        picked.append(best)
-        left = np.where(serves[:, best], 0.0, left)
+        if most is not None and gain.max() <= 0.0:
+            some = np.isfinite(now)
+            gain = np.maximum(0.0, now[some, None] - cost[some]).sum(axis=0)
+        gain[picked] = -1.0
+        picked.append(int(gain.argmax()))
+        now = np.minimum(now, cost[:, picked[-1]])
     return columns.of(np.array(picked, np.int64))
+
+
+def _costs(task: Task, columns: Columns) -> tuple[Floats, Floats]:
+    """The area (r,) of the samples of a task, and what each costs with columns (r, k), infinite where one does not serve it."""
+    rows = task.rows
+    area, serves = np.nan_to_num(task.ready.samples.area[rows]), task.probes.kept(rows, columns)
+    width = widths(columns, rows, task.ready.samples, task.cutters, task.paths, serves)
+    return area, costs_of(columns, width, serves, area, task.cutters, task.paths)
 
 
 def worth_their_turn(task: Task, columns: Columns) -> Columns:
@@ -216,11 +227,7 @@ def worth_their_turn(task: Task, columns: Columns) -> Columns:
 
     The one that saves least goes first; what it served goes with the others.
     """
-    rows, left = task.rows, np.arange(len(columns))
-    area = np.nan_to_num(task.ready.samples.area[rows])
-    serves = task.probes.kept(rows, columns)
-    width = widths(columns, rows, task.ready.samples, task.cutters, task.paths, serves)
-    cost = costs_of(columns, width, serves, area, task.cutters, task.paths)
+    (area, cost), left = _costs(task, columns), np.arange(len(columns))
     least = CRUMB * float(area @ np.isfinite(cost).any(axis=1))
     turn = task.indexing.together(columns) / max(1, len(columns))
     while len(left) > 1:

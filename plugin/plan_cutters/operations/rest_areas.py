@@ -110,11 +110,11 @@ def _saves(plans: Sequence[OperationPlan], cutter: Cutter, change: float) -> tup
 
 def with_and_without(problem: Problem, chosen: Rows) -> Iterator[Rows]:
     """Choices to compare a choice with: for each cutter of it the best of the others, for each other one the best with it."""
-    for cutter in np.unique(problem.cutter).tolist():
+    for cutter in np.unique(problem.cutter).tolist() if len(chosen) else []:
         others = np.flatnonzero(problem.cutter != cutter)
         if not (problem.cutter[chosen] == cutter).any():
             yield _with(problem, chosen, cutter)
-        elif np.isfinite(problem.cost[:, others]).any(axis=1).all():
+        elif len(others) and np.isfinite(problem.cost[:, others]).any(axis=1).all():
             yield others[cheap(problem.of(others), np.flatnonzero(np.isin(others, chosen)))]
 
 

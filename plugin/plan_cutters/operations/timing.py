@@ -77,6 +77,8 @@ def costs_of(
 
 def shared_area(samples: SurfaceSamples, all_rows: Rows, rows: Rows) -> Floats:
     """The area (r,) that some samples stand for when each of all gives its own to the nearest of them, on its face if it can."""
+    if not len(rows):
+        return np.zeros(0)
     size = float(np.linalg.norm(np.ptp(samples.point[all_rows], axis=0))) or 1.0
     place = np.column_stack([samples.point, samples.face * (_OTHER_FACE * size)])
     nearest = cKDTree(place[rows]).query(place[all_rows])[1]

@@ -27,18 +27,16 @@ def operations(plan: Plan) -> list[Line]:
     found = plan.operations
     if found is None:
         return []
-    told = [
-        *_rest(found),
-        *_fewest(found),
-        *(line for each in found.plans for line in _plan(found, each)),
-        *_fastest(found),
-        *_assumed(found),
-        *_habit(found),
-        *(line for use in found.cutters for line in _worth(found, use)),
-        *motion(found.motion),
-        *found.notes,
-    ]
-    return [Line(named(plan, text)) for text in told]
+    lines = [*_rest(found), *_fewest(found)]
+    if any(each.operations for each in found.plans):
+        lines += [
+            *(line for each in found.plans for line in _plan(found, each)),
+            *_fastest(found),
+            *_assumed(found),
+            *_habit(found),
+            *(line for use in found.cutters for line in _worth(found, use)),
+        ]
+    return [Line(named(plan, text)) for text in (*lines, *motion(found.motion), *found.notes)]
 
 
 def in_short(plan: Plan) -> list[str]:
