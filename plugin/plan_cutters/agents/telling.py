@@ -150,7 +150,8 @@ def helps(plan: PlanFile, mend: Mend) -> list[Help]:
     steps = [s for s in mend.steps if all(move.thing != "area" for move in s.changes) and s.gained]
     found = [
         Help(what=plan.worded(s.why), things=[m.thing for m in s.changes],
-             finishes=None if mend.unsure and not s.left else not s.left, lost_before=s.lost_before, lost_after=s.lost_after, gained_samples=s.gained, option=s.option)
+             finishes=None if mend.unsure and not s.left else not s.left,
+             lost_before=s.lost_before, lost_after=s.lost_after, gained_samples=s.gained, option=s.option)
         for s in steps
     ]  # fmt: skip
     said = {step.why for step in steps}
