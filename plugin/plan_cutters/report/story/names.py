@@ -114,7 +114,9 @@ def _word(entry: "CutterEntry") -> str:
 
 def called_plainly(entry: "CutterEntry") -> str:
     """The same as `called` for one without a name."""
-    return called(entry.model_copy(update={"name": ""}))
+    from plan_cutters.domain.spec import is_spec
+
+    return called(entry if is_spec(entry.name) else entry.model_copy(update={"name": ""}))
 
 
 def named(plan: "Plan", text: str) -> str:
