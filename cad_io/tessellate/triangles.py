@@ -103,7 +103,7 @@ def tessellate(
             continue
         off = max(off, each.off)
         if left := _uncovered(part, patch.number, each.area, chord):
-            missing[patch.number] = f"its triangles leave {100 * left:.0f} % of it uncovered"
+            missing[patch.number] = f"its triangles leave up to {math.ceil(100.0 * left)} % of it uncovered"
     face = np.repeat(np.array([patch.number for patch in patches], np.int32), np.diff(ends))
     return Triangles(
         vertex=vertex if whole.all() else vertex[whole],

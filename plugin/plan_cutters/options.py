@@ -248,7 +248,7 @@ class Options:
             raise OptionError(f"jobs {self.jobs} must be at least 1 and at most {_MOST_JOBS}")
         for cutter in self.judged:
             if not cutter.large_enough(self.tolerance):
-                raise OptionError(f"tolerance {self.tolerance:g} mm is too coarse for cutter {cutter.id}")
+                raise OptionError(f"tolerance {self.tolerance:g} mm is too coarse for cutter {cutter.typed}")
 
     def _check_kinds(self) -> None:
         """Every value of the type that its attribute says."""

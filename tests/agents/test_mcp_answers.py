@@ -135,6 +135,53 @@ def test_a_cutter_is_meant_by_the_beginning_of_its_name():
             chosen(name, known)
 
 
+def test_cutters_are_named_by_the_words_that_were_given():
+    data = made_plan(cutters=2, selected=None)
+    for entry in data["cutters"]:
+        entry["name"] = f"D{2 * int(entry['id'][1])}L80"
+    lost = data["cutters"][1]
+    step = {"changes": [{"thing": "cutter"}], "lost_before": 0.5, "lost_after": 0.0, "gained": 8, "left": 0,
+            "option": "--cutter D3L80", "why": "R1L80 for the rest"}  # fmt: skip
+    undecided = {
+        "thing": "radius",
+        "helps": None,
+        "asked": 1.0,
+        "why": "is not decided: with 1 mm, 3 samples are undecided",
+    }
+    lost["mend"] = {"steps": [step], "changes": [undecided]}
+    data["selected"], data["selection"] = "R1L80", {"why": "R2L80 is larger but not feasible"}
+    plan = PlanFile.model_validate(data)
+    found = planned(plan, 0, 9, {})
+    assert found.told.startswith(
+        "Take D2L80: it reaches every sample that could be judged (D4L80 is larger but not feasible)."
+    )
+    assert [c.id for c in found.cutters] == ["R1L80", "R2L80"]
+    # A change that could not be decided is no help.
+    said = explained(plan, plan.cutters[1], "F1", 9)
+    assert [each.what for each in said.would_help] == ["D2L80 for the rest"]
+    assert said.told.startswith("D4L80 does not reach 50 % of F1 (2 samples): rear gouge 50 %.")
+    assert "R2L80" not in said.told
+    doubted = undecided | {"doubted": True, "why": "a radius of 1 mm instead of 2 mm, unless a face is in the way"}
+    lost["mend"] = {"steps": [], "changes": [doubted]}
+    plan = PlanFile.model_validate(data)
+    assert [(each.finishes, each.what) for each in explained(plan, plan.cutters[1], "F1", 9).would_help] == [
+        (None, doubted["why"])
+    ]
+
+
+def test_a_cutter_that_reaches_nothing_leaves_all_and_one_that_reaches_something_does_not():
+    data = made_plan(cutters=2)
+    for share, counts, told in (
+        ({"inaccessible": 1.0}, {"accessible": 0, "inaccessible": 4}, "100 %"),
+        ({"inaccessible": 1.0}, {"accessible": 1, "inaccessible": 3}, ">99.9 %"),
+        ({"accessible": 1.0}, {"accessible": 3, "inaccessible": 1}, "<0.1 %"),
+    ):
+        data["cutters"][1] |= {**counts, "area_share": share}
+        data["cutters"] = data["cutters"][1:]
+        assert f"leaves {told} of the area" in planned(PlanFile.model_validate(data), 1, 9, {}).told
+        data = made_plan(cutters=2)
+
+
 @given(st.floats(0, 1))
 def test_a_share_in_words_is_neither_none_nor_all_where_something_is_left(share):
     said = percent(share)

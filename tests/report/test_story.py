@@ -12,8 +12,10 @@ from OCP.TopoDS import TopoDS_Face
 from plan_cutters import plan
 from plan_cutters.command.codes import NOT_ALL_JUDGED, code_of
 from plan_cutters.command.summary import summary
+from plan_cutters.document.answers import ChangeEntry, MendEntry, StepEntry
 from plan_cutters.document.model import WitnessEntry
 from plan_cutters.document.palette import MEANING, PALETTE, label
+from plan_cutters.document.scope import Scope
 from plan_cutters.domain.notes import NoteCode
 from plan_cutters.domain.reasons import NO_CONTACT, REASONS
 from plan_cutters.domain.verdicts import REASONS as CODES
@@ -21,10 +23,15 @@ from plan_cutters.errors import OptionError
 from plan_cutters.hosts.viewer import _posture
 from plan_cutters.report.page.write import page
 from plan_cutters.report.story import notes
+from plan_cutters.report.story.answers import answers
+from plan_cutters.report.story.next_steps import effect
+from plan_cutters.report.story.operations import _fewest
+from plan_cutters.report.story.scope import not_judged
 from plan_cutters.report.story.story import story_of
 from plan_cutters.report.witness import row_of
 from tests.support.cad_parts import box, compound
 from tests.support.places import ROOT
+from tests.support.plan_files import cutter, face, made, verdicts
 
 
 @pytest.fixture(scope="module")
@@ -163,3 +170,61 @@ def test_each_reason_has_all_its_words():
 def test_each_verdict_has_a_name_and_a_colour():
     assert set(PALETTE) == set(MEANING)
     assert all(label(word) and ":" not in label(word) for word in PALETTE)
+
+
+def unsure(thing, why, **more):
+    return ChangeEntry(**({"thing": thing, "helps": None, "now": 1.0, "asked": None, "beyond": None, "left": 3, "looked": 3,
+                           "verified": 0, "cutter": None, "why": why} | more))  # fmt: skip
+
+
+def test_what_is_not_decided_is_said_once_and_of_what():
+    one, other = (
+        "3 of 3 samples are not reached without any limit of the axis",
+        "with 0.0025 mm, 3 samples are undecided",
+    )
+    changes = [
+        unsure("tolerance", f"is not decided: {other}"),
+        unsure("setup", f"is not decided: {one}"),
+        unsure("tilt_limit", f"is not decided: {one}"),
+        unsure("stick_out", "a stick-out of 42 mm instead of 12 mm, unless a face is in the way", doubted=True),
+    ]
+    entry = MendEntry(lost=3, buried=0, why="no change of one thing is known to help", changes=changes)
+    mended = cutter("R6L80", {"F1": verdicts(3)}).model_copy(update={"mend": entry})
+    nothing, undecided = answers(made([face(1)], [mended]))
+    assert nothing.text == "No change of one thing is known to make flat end D12 x 80 finish."
+    assert undecided.text == (
+        f"  Not decided: a finer tolerance ({other}); another setup axis, a machine that tilts further ({one}); a stick-out of "
+        "42 mm instead of 12 mm, unless a face is in the way."
+    )
+    inside = MendEntry(lost=3, buried=3, why="3 samples are within another body", changes=[])
+    (line,) = answers(made([face(1)], [mended.model_copy(update={"mend": inside})]))
+    assert line.text == "Nothing sure would make flat end D12 x 80 finish: 3 samples are within another body."
+
+
+def test_a_step_that_gains_hardly_anything_says_so():
+    step = StepEntry(changes=[], lost_before=0.0071, lost_after=0.0066, gained=5, left=9, cutters=[], setups=[], option=None,
+                     why="", remains=[])  # fmt: skip
+    assert effect(step) == "lost 0.7 % of the area, hardly less than now (5 more samples)"
+
+
+def test_all_faces_are_not_asked_for_again_where_one_is_clamped():
+    scope = Scope(judged=1, judged_mm2=90.0, not_judged=1, not_judged_mm2=10.0, judged_by_kind={"sculptured": 1},
+                  not_judged_by_kind={"plane": 1})  # fmt: skip
+    document = made([face(1), face(2, target=False)], [cutter("R6L80", {"F1": verdicts()})]).model_copy(
+        update={"scope": scope}
+    )
+    assert not_judged(document) == ["1 plane face was not judged, only an obstacle: it is clamped."]
+    asked = document.effective.model_copy(update={"faces": "sculptured"})
+    (line,) = not_judged(document.model_copy(update={"effective": asked}))
+    assert line.endswith("only an obstacle: --faces all.")
+
+
+def test_no_bound_is_rounded_down():
+    """At most 98.301 % is more than 98.3 %."""
+    few = SimpleNamespace(found=3, candidates=9, spacing_deg=1.0, proof="", at_least=2, at_least_any=0)
+    steps = [
+        SimpleNamespace(orientations=2, share=0.981, at_most=0.98301),
+        SimpleNamespace(orientations=3, share=1.0, at_most=None),
+    ]
+    said = " ".join(_fewest(SimpleNamespace(fewest=few, curve=steps)))
+    assert "no choice of 2 serves more than 98.4 %" in said

@@ -7,6 +7,7 @@ from pydantic import Field, ValidationError
 from plan_cutters.agents.answers import Entry, LeastSet, Missing, Samples, Value, Witness
 from plan_cutters.agents.limits import CallError
 from plan_cutters.domain.nearest import nearest
+from plan_cutters.domain.spec import renamed, typed
 
 #: A cutter by its radius or diameter, and its length.
 _PLAIN = re.compile(r"[rd][\d.]+(l[\d.]+)?")
@@ -72,6 +73,7 @@ class Change(Entry):
     option: str | None = None
     lost_before: float | None = None
     lost_after: float | None = None
+    doubted: bool = False
 
 
 class Mend(Entry):
@@ -138,6 +140,10 @@ class PlanFile(Entry):
     legend_words: dict[str, str] = Field(default={})
     files: dict[str, File] = Field(default={})
     not_written: dict[str, str] = Field(default={})
+
+    def worded(self, text: str) -> str:
+        """A text with cutters in the words by which they were given: each of these may be given again."""
+        return renamed(text, {c.id: typed(c.id, c.name) for c in self.cutters})
 
     @property
     def shown(self) -> str:

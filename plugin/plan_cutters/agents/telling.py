@@ -73,8 +73,8 @@ def _of_plan(plan: PlanFile, code: int, most: int) -> dict[str, Any]:
     left, more_left = first(unjudged, most)
     missing, more_missing = first(plan.missing, most)
     return {
-        "part": plan.part.file, "told": _told(plan), "exit_code": code, "samples": plan.samples,
-        "selected": plan.selected or plan.selected_over_setups, "cutters": [_cutter(c, most) for c in cutters],
+        "part": plan.part.file, "told": plan.worded(_told(plan)), "exit_code": code, "samples": plan.samples,
+        "selected": plan.selected or plan.selected_over_setups, "cutters": [_cutter(plan, c, most) for c in cutters],
         "more_cutters": more, "not_judged": left, "more_not_judged": more_left, "missing": missing,
         "more_missing": more_missing,
     }  # fmt: skip
@@ -89,8 +89,8 @@ def _told(plan: PlanFile) -> str:
         said = f"{plan.selected_for_setup} leaves only what the axis limit keeps from every cutter: that needs another setup."
     else:
         best = ranked(plan)[0]
-        why = ", ".join(f"{_reason(code)} {percent(share)}" for code, share in _by_share(best.area_share.lost_by))
-        lost = percent(best.area_share.not_reached)
+        why = ", ".join(f"{_reason(code)} {_lost_by(share)}" for code, share in _by_share(best.area_share.lost_by))
+        lost = _lost(best)
         said = f"No cutter finishes for sure. {best.id} comes nearest and leaves {lost} of the area{f': {why}' if why else ''}."
     if plan.samples.unjudged:
         said += f" {plan.samples.unjudged} of {plan.samples.count} samples could not be judged."
@@ -118,10 +118,10 @@ def _by_share(lost_by: Mapping[str, float]) -> list[tuple[str, float]]:
     return sorted(lost_by.items(), key=lambda item: (-item[1], item[0]))
 
 
-def _cutter(c: Cutter, most: int) -> CutterAnswer:
+def _cutter(plan: PlanFile, c: Cutter, most: int) -> CutterAnswer:
     lost = sorted((-v.area_share.not_reached, name) for name, v in c.faces.items() if v.not_reached)
     faces, more = first([Lost(face=name, share=-share, reason=_main(c.faces[name])) for share, name in lost], most)
-    steps = helps(c.mend) if c.mend else []
+    steps = helps(plan, c.mend) if c.mend else []
     share = c.area_share
     return CutterAnswer(
         id=c.id, name=c.name, feasible=c.feasible, seen=c.seen, reached=share.reached, inaccessible=share.inaccessible,
@@ -130,22 +130,34 @@ def _cutter(c: Cutter, most: int) -> CutterAnswer:
     )  # fmt: skip
 
 
+def _lost(counts: Counts) -> str:
+    """How much of the area is not reached, in percent."""
+    whole = not counts.reached and not counts.unjudged
+    return percent(counts.area_share.not_reached, some=bool(counts.not_reached), whole=whole)
+
+
+def _lost_by(share: float) -> str:
+    """A share that a reason takes of the area: samples may stand for no area."""
+    return percent(share, some=True, whole=False)
+
+
 def _main(counts: Counts) -> str | None:
     return next((code for code, _ in _by_share(counts.area_share.lost_by)), None)
 
 
-def helps(mend: Mend) -> list[Help]:
+def helps(plan: PlanFile, mend: Mend) -> list[Help]:
     """Changes that gain something: steps, then changes of one thing that no step says."""
     steps = [s for s in mend.steps if all(move.thing != "area" for move in s.changes) and s.gained]
     found = [
-        Help(what=s.why, things=[m.thing for m in s.changes], finishes=None if mend.unsure and not s.left else not s.left,
+        Help(what=plan.worded(s.why), things=[m.thing for m in s.changes],
+             finishes=None if mend.unsure and not s.left else not s.left,
              lost_before=s.lost_before, lost_after=s.lost_after, gained_samples=s.gained, option=s.option)
         for s in steps
     ]  # fmt: skip
-    said = {step.what for step in found}
+    said = {step.why for step in steps}
     found += [
         Help(
-            what=c.why,
+            what=plan.worded(c.why),
             things=[c.thing],
             finishes=c.helps,
             lost_before=c.lost_before,
@@ -153,7 +165,7 @@ def helps(mend: Mend) -> list[Help]:
             option=c.option,
         )
         for c in mend.changes
-        if c.helps is not False and c.asked is not None and c.why not in said
+        if (c.helps or c.doubted) and c.asked is not None and c.why not in said
     ]
     return found
 
@@ -201,7 +213,7 @@ def explained(
     for name, entries in lists.items():
         cut[name], cut[f"more_{name}"] = first(entries, most)
     return Explanation(
-        part=plan.part.file, told=told, cutter=cutter.id, face=face, reached=reached, lost_share=share.not_reached,
+        part=plan.part.file, told=plan.worded(told), cutter=cutter.id, face=face, reached=reached, lost_share=share.not_reached,
         counts={"reached": counts.reached, "inaccessible": blocked, "undecided": counts.undecided, "unjudged": counts.unjudged,
                 "inside_bodies": counts.inside_bodies},
         reasons=reasons, help_is_about=about, no_help=none, postures=postures, sample=sample,
@@ -218,7 +230,7 @@ def _told_reason(code: str, share: float) -> Reason:
 def _helping(plan: PlanFile, cutter: Cutter, alone: bool, lost: bool) -> tuple[list[Help], About, str]:
     """Give the changes that would help, the faces that they are about, and why there are none."""
     if cutter.mend is not None:
-        found = helps(cutter.mend)
+        found = helps(plan, cutter.mend)
         why = "" if found else cutter.mend.why or "no change that was tried gains anything"
         return found, "this face" if alone else "all faces of the plan", why
     if not lost:
@@ -255,8 +267,8 @@ def _why(
     doubt = f" Of {face} could not be judged: {unjudged}." if unjudged else ""
     if not counts.not_reached:
         return f"{cutter.id} reaches every judged sample of {face} ({counts.reached}).{doubt}"
-    lost = percent(counts.area_share.not_reached)
-    why = ", ".join(f"{each.name} {percent(each.share)}" for each in reasons) or "no reason is known"
+    lost = _lost(counts)
+    why = ", ".join(f"{each.name} {_lost_by(each.share)}" for each in reasons) or "no reason is known"
     said = f"{cutter.id} does not reach {lost} of {face} ({counts.not_reached} samples): {why}."
     if counts.undecided:
         said += f" {counts.undecided} of them are undecided: neither proved safe nor proved blocked."

@@ -42,7 +42,7 @@ def stick_out(scan: Scan) -> Iterator[Candidate]:
         return _with_first(scan.state, longer(cutter, value(at)))
 
     for at, state, missed in scan.least(make, most, (NEARLY, HALF)):
-        words = sentences.stick_out(value(at), cutter.length)
+        words = sentences.stick_out(value(at), cutter)
         yield scan.found(Move("stick_out", cutter.length, value(at), words), state, missed, nested=False)
 
 
@@ -68,7 +68,7 @@ def holder(scan: Scan) -> Iterator[Candidate]:
     for at, state, missed in scan.least(make, len(_SLIM) - 1):
         asked = max(max(s.radius, s.upper_radius) for s in slimmed(at).stages)
         if asked < now:
-            words = sentences.holder(slimmed(at).id, cutter.holder.id)
+            words = sentences.holder(slimmed(at), cutter)
             yield scan.found(Move("holder", cutter.holder.id, slimmed(at).id, words), state, missed, nested=True)
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.spec import written
+from plan_cutters.domain.spec import spelled, written
 from plan_cutters.errors import PlanError
 from plan_cutters.options import Options
 from plan_cutters.scene.conditions import Conditions
@@ -64,10 +64,16 @@ def _within(now: Conditions, then: Conditions) -> list[str]:
 
 
 def spoken(cutter: Cutter, options: Options) -> str | None:
-    """A cutter in a word that reads as itself in a plan with these options; None if no word does."""
-    try:
-        text = written(replace(cutter, allowance=None, clearance=None))
-        again = Cutter.parse(text).asked(options.allowance, options.holder_clearance, options.holder)
-    except PlanError:
-        return None
-    return text if again.id == cutter.id else None
+    """A cutter in a word that reads as itself in a plan with these options; None if no word does.
+
+    It is in the notation in which the cutter was given, without a holder that the options say.
+    """
+    bare = replace(cutter, allowance=None, clearance=None)
+    for text in (spelled(replace(bare, holder=None)), spelled(bare), written(bare)):
+        try:
+            again = Cutter.parse(text).asked(options.allowance, options.holder_clearance, options.holder)
+        except PlanError:
+            continue
+        if again.id == cutter.id:
+            return text
+    return None

@@ -1,15 +1,18 @@
 """Put changes into words: what-if answers and next steps say the same change in the same words."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters.domain.area import Patch, size
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.percent import percent
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.domain.reasons import REASONS as WORDS
+from plan_cutters.domain.spec import notation, spelled
 from plan_cutters.domain.verdicts import REASONS
 
 Range = tuple[float, float]
@@ -33,22 +36,27 @@ def tilt_limit(asked: float, now: float | None, machine: str) -> str:
     return f"a machine that tilts by {asked:g} deg {instead}"
 
 
-def stick_out(asked: float, now: float) -> str:
-    return f"a stick-out of {asked:g} mm instead of {now:g} mm"
+def stick_out(asked: float, now: Cutter) -> str:
+    how = notation(now.name)
+    return f"a stick-out of {how.mm(asked)} instead of {how.mm(now.length)}"
 
 
-def radius(asked: float, now: float) -> str:
-    return f"a radius of {asked:g} mm instead of {now:g} mm"
+def radius(asked: float, now: Cutter) -> str:
+    """Name a radius as the present cutter was given: by its diameter, if that was."""
+    how = notation(now.name)
+    return f"{how.size(asked)} instead of {how.size(now.radius).rpartition(' of ')[2]}"
 
 
-def corner_radius(asked: float, now: float, whole: float) -> str:
-    """Name a corner radius; that of 0 is a flat end, and that of the `whole` radius a ball end."""
-    ends = {whole: "a ball end", 0.0: "a flat end"}
-    return f"{ends.get(asked, f'a corner radius of {asked:g} mm')} instead of {ends.get(now, f'{now:g} mm')}"
+def corner_radius(asked: float, now: Cutter) -> str:
+    """Name a corner radius; that of 0 is a flat end, and that of the whole radius a ball end."""
+    how, ends = notation(now.name), {now.radius: "a ball end", 0.0: "a flat end"}
+    wanted = ends.get(asked, f"a corner radius of {how.mm(asked)}")
+    return f"{wanted} instead of {ends.get(now.corner_radius, how.mm(now.corner_radius))}"
 
 
-def holder(asked: str, now: str) -> str:
-    return f"a slimmer holder, {asked} instead of {now}"
+def holder(asked: Holder, now: Cutter) -> str:
+    how = notation(now.name)
+    return f"a slimmer holder, {asked.called(how)} instead of {now.holder.called(how) if now.holder else 'none'}"
 
 
 def rest(cutter: str) -> str:
@@ -56,8 +64,8 @@ def rest(cutter: str) -> str:
 
 
 def head(cutter: Cutter) -> str:
-    """Name a cutter without its holder, which is that of the present one."""
-    return cutter.id.partition("H")[0]
+    """Name a cutter without its holder, which is that of the present one, in the notation in which that one was given."""
+    return spelled(replace(cutter, holder=None))
 
 
 def clamped(axis: Sequence[float], degrees: float) -> str:

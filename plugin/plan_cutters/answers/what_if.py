@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from plan_cutters.answers.trial import Case, Left, Step, Trials, first, least
-from plan_cutters.domain.change import Change, Thing, Value
+from plan_cutters.domain.change import UNDECIDED, Change, Thing, Value
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,7 +56,7 @@ def search(thing: Thing, what: WhatIf, trials: Trials) -> Change:
     worst = left if left.count or not len(trials.kept) else Left.by(end, trials.kept)
     if worst.blocked or not worst.count:
         return none(thing, what.now, left.count, why, left.looked)
-    why = f"is not decided: {why}"
+    why = UNDECIDED + why
     return Change(thing, what.now, what.reads(end), None, worst.count, worst.looked, 0, None, None, why)
 
 

@@ -15,6 +15,7 @@ from plan_cutters.domain.change import Change
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Segment
 from plan_cutters.domain.shapes import SAME, flute_length
+from plan_cutters.domain.spec import notation
 from plan_cutters.errors import CutterError
 from plan_cutters.scene.preparation import Prepared
 
@@ -32,14 +33,14 @@ CORNERS = (0.2, 0.3, 0.4, 0.5, 0.8, 1.0, 1.2, 1.5, 1.6, 2.0, 2.5, 3.0, 4.0, 5.0,
 def stick_out(case: Case, trials: Trials) -> WhatIf | Change:
     """Try the least length from the tip to the holder's nose, the flutes as they are; to `GRAIN`."""
     cutter, not_reached = case.cutter, len(trials.not_reached)
-    now = cutter.length
+    now, how = cutter.length, notation(cutter.name)
     if cutter.holder is None:
         return none(
             "stick_out", now, not_reached, "no holder is stated, and a longer cutter only adds to what is in the way"
         )
     most = math.ceil((highest(case.ready, cutter) - now) / GRAIN)
     if most < 1:
-        return none("stick_out", now, not_reached, f"its {now:g} mm already hold the holder above all obstacles")
+        return none("stick_out", now, not_reached, f"its {how.mm(now)} already hold the holder above all obstacles")
 
     def make(length: float) -> Case | None:
         return _with(case, longer(cutter, length))
@@ -51,7 +52,7 @@ def stick_out(case: Case, trials: Trials) -> WhatIf | Change:
         now=now, ways=[way], make=make, ends=[end], nested=True, reads=lambda end: end.cutter.length,
         fails=lambda end, left: f"{left.words} at every stick-out" if left.count else
         "where the holder is out of the way, something else is",
-        serves=lambda asked, made: (sentences.stick_out(asked, now), {"cutters": (made.cutter,)}),
+        serves=lambda asked, made: (sentences.stick_out(asked, cutter), {"cutters": (made.cutter,)}),
     )  # fmt: skip
 
 
@@ -65,7 +66,7 @@ def highest(ready: Prepared, cutter: Cutter) -> float:
 def radius(case: Case, trials: Trials) -> WhatIf | Change:
     """Try smaller radii, the largest first, in steps of `SHARE`."""
     cutter, conditions, not_reached = case.cutter, case.ready.conditions, len(trials.not_reached)
-    now = cutter.radius
+    now, how = cutter.radius, notation(cutter.name)
     if cutter.shape == "form":
         return none("radius", now, not_reached, "the outline of a form cutter has no radius to change alone")
     least_radius = max(THINNEST * conditions.tolerance, SLIMMEST * cutter.length)
@@ -85,16 +86,16 @@ def radius(case: Case, trials: Trials) -> WhatIf | Change:
     assert end is not None
     return WhatIf(
         now=now, ways=[Way(most, value)], make=make, ends=[end], reads=lambda end: end.cutter.radius,
-        fails=lambda end, left: f"with {end.cutter.radius:g} mm, the least tried, {left.words}" if left.count else
-        f"none of {most} radii down to {end.cutter.radius:g} mm serves all samples",
-        serves=lambda asked, made: (sentences.radius(asked, now), {"cutters": (made.cutter,)}),
+        fails=lambda end, left: f"with {how.size(end.cutter.radius)}, the least tried, {left.words}" if left.count else
+        f"none of {most} sizes down to {how.size(end.cutter.radius)} serves all samples",
+        serves=lambda asked, made: (sentences.radius(asked, cutter), {"cutters": (made.cutter,)}),
     )  # fmt: skip
 
 
 def corner_radius(case: Case, trials: Trials) -> WhatIf | Change:
     """Try another corner on an end mill of the same radius, from flat to ball; the nearest that serves is taken."""
     cutter = case.cutter
-    now, r = cutter.corner_radius, cutter.radius
+    now, r, how = cutter.corner_radius, cutter.radius, notation(cutter.name)
     if cutter.shape != "end":
         return none("corner_radius", now, len(trials.not_reached), f"a {cutter.shape} has no corner to change alone")
 
@@ -109,9 +110,9 @@ def corner_radius(case: Case, trials: Trials) -> WhatIf | Change:
 
     return WhatIf(
         now=now, ways=[Way(len(ends), values.__getitem__)], make=make, ends=ends, reads=lambda end: end.cutter.corner_radius,
-        fails=lambda end, left: f"with {end.cutter.corner_radius:g} mm, the best of {len(ends)} tried, {left.words}" if left.count
-        else f"each of {len(ends)} corner radii tried loses some samples",
-        serves=lambda asked, made: (sentences.corner_radius(asked, now, r), {"cutters": (made.cutter,)}),
+        fails=lambda end, left: f"with {how.mm(end.cutter.corner_radius)}, the best of {len(ends)} tried, {left.words}"
+        if left.count else f"each of {len(ends)} corner radii tried loses some samples",
+        serves=lambda asked, made: (sentences.corner_radius(asked, cutter), {"cutters": (made.cutter,)}),
     )  # fmt: skip
 
 

@@ -14,7 +14,7 @@ from plan_cutters.answers import sentences
 from plan_cutters.answers.sentences import samples
 from plan_cutters.answers.trial import Case, Left, Trials
 from plan_cutters.answers.what_if import Way, WhatIf, none
-from plan_cutters.domain.change import Change
+from plan_cutters.domain.change import UNDECIDED, Change
 from plan_cutters.domain.posture import unit
 from plan_cutters.options import LEAST_TOLERANCE
 from plan_cutters.scene.inside_material import inside_bodies, inside_material
@@ -42,14 +42,14 @@ def setup(case: Case, trials: Trials) -> WhatIf | Change:
     if not ready.conditions.machine.limited:
         return none("setup", now, not_reached, "the machine has no limit, so it turns to any axis")
     if any(each.follows_setup for each in ready.scene.fixtures):
-        why = "is not decided: a table lies across the setup axis, so it would lie elsewhere; ask with another --setup"
+        why = f"{UNDECIDED}a table lies across the setup axis, so it would lie elsewhere; ask with another --setup"
         return replace(none("setup", now, not_reached, why), helps=None, why=why)
     unlimited = trials.found["tilt_limit"]
     if unlimited.left:
         # An axis within a limit is one without.
         why = f"{unlimited.left:,} of {unlimited.looked:,} samples are not reached without any limit of the axis"
         change = none("setup", now, unlimited.left, why, unlimited.looked)
-        return change if unlimited.helps is False else replace(change, helps=None, why=f"is not decided: {why}")
+        return change if unlimited.helps is False else replace(change, helps=None, why=UNDECIDED + why)
     tried = {axis: made for axis in directions(ready, trials) if (made := _turned(case, axis)) is not None}
     if not tried:
         return none("setup", now, not_reached, "under every other axis a plan would work on other sides of open faces")
@@ -167,7 +167,7 @@ def tolerance(case: Case, trials: Trials) -> Change:
             break
         left, best = still.count, finer
     return Change("tolerance", now, None if best == now else best, None, left, len(trials.not_reached), 0, None, None,
-                  f"is not decided: with {before:g} mm, the finest tried, {samples(left)} undecided")  # fmt: skip
+                  f"{UNDECIDED}with {before:g} mm, the finest tried, {samples(left)} undecided")  # fmt: skip
 
 
 def closer(case: Case, asked: float) -> Case:

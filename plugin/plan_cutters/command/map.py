@@ -178,6 +178,7 @@ def _text(values: Any) -> str:
 
 def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: dict[str, Any]) -> list[str]:
     """Describe the map line by line: its contact, cutter and search; the first line is its title."""
+    from plan_cutters.domain.spec import notation, parted
     from plan_cutters.report.drawing.sheet import printable
     from plan_cutters.report.story.names import called
     from plan_cutters.report.story.numbers import capital
@@ -188,8 +189,8 @@ def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: 
         step = math.degrees(found.rotations[1] - found.rotations[0])
         apart = f"rotations {step:.4g} deg apart: nothing is said between them"
     proved = f"gouge tolerance {found.tolerance:g} mm" if found.tolerance else "nominal, not certified"
-    held = f", {cutter.holder.name or cutter.holder.id}" if cutter.holder else ""
-    title = f"{capital(called(cutter))}{held} ({cutter.id.partition('H')[0]})"
+    held = f", {cutter.holder.called(notation(cutter.name))}" if cutter.holder else ""
+    title = f"{capital(called(cutter))}{held} ({parted(cutter.typed)[0]})"
     moved = f"; the point asked for is {off:.3g} mm off" if off > 1e-3 else ""
     lines = [
         f"{title} at ({_text(_round(found.point))}) on {face} of {printable(Path(given['part']).name, 80)}",

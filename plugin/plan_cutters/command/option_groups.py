@@ -299,7 +299,8 @@ _OPTIONS = (
     _operations(
         "--check-operations",
         type=File("FILE"),
-        help="Check the plan of operations in a plan.json, with the part and the options that it was made with; write nothing.",
+        help="Check labels, angles and weights of the operations in a plan.json, with the part and the options that it was made "
+        "with; write nothing.",
     ),
     _run("--jobs", type=int, metavar="N", help="Threads.  [default: all cores]"),
     _run(

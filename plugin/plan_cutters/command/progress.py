@@ -160,7 +160,7 @@ class Display:
                                 transient=True, auto_refresh=self.itself)  # fmt: skip
             self.bar.start()
             self.task = self.bar.add_task(self.line, total=None, percent="")
-        percent = "" if self.share is None else f"{math.floor(100.0 * self.share):3d} %"
+        percent = "" if self.share is None else f"{math.floor(100.0 * self.share)} %".rjust(5)
         total = None if self.share is None else 1.0
         self.bar.update(self.task, description=self.line, total=total, completed=self.share or 0.0, percent=percent)
         self.bar.refresh()

@@ -283,8 +283,7 @@ class CutterEntry(VerdictCounts):
     area_share: AreaShare = Field(
         default=AreaShare(),
         description="of the target faces' area without what lies inside other bodies, faces without samples (unjudged) included "
-        "and those of unknown area not; what "
-        "the samples stand for, not what is shown between them: that is in `area`",
+        "and those of unknown area not; what the samples stand for, not what is shown between them: that is in `area`",
     )
     witnesses: list[WitnessEntry] = Field(description="for each face and reason, the deepest that was tried first")
     witnesses_untried: int = Field(default=0, description="those without a depth: others of larger area took all tries")
@@ -353,9 +352,7 @@ class Plan(Frozen):
     faces: list[FaceEntry]
     missing: list[MissingEntry]
     reasons: list[str] = Field(description="what `reason_ID` in samples.npz counts in")
-    reason_words: dict[str, str] = Field(
-        default={}, description="what each of `reasons` is called where people read it; empty in older files"
-    )
+    reason_words: dict[str, str] = Field(default={}, description="what each of `reasons` is called, for people")
     machine: MachineEntry
     fixtures: list[FixtureEntry] = Field(default=[], description="what holds the part: obstacles, never targets")
     libraries: list[LibraryEntry] = Field(default=[], description="tool libraries that were read")
@@ -363,8 +360,7 @@ class Plan(Frozen):
     selected: str | None
     shown: str | None = Field(
         default=None,
-        description="id of the cutter that models and pictures show: the selected one, else the one that leaves the least area; "
-        "null in older files",
+        description="id of the cutter that models show: `selected`, else the one that leaves the least area",
     )
     selected_over_setups: str | None = Field(
         default=None,

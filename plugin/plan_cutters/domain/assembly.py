@@ -194,7 +194,7 @@ def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "outer"
             start = after
     table = np.array([row for row in rows if solid(row)], float).reshape(-1, COLUMNS)
     if len(table) > MOST_PIECES:
-        raise CutterError(f"cutter {cutter.id}: it has more sections than can be judged; give fewer that enclose it")
+        raise CutterError(f"cutter {cutter.typed}: it has more sections than can be judged; give fewer that enclose it")
     found = modes(cutter)
     touching = np.array([_mode(mode, cutter.allowance or 0.0) for mode in found])
     inner, highest = _inner(cutter, bands)

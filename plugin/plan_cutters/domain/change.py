@@ -15,6 +15,9 @@ THINGS: tuple[Thing, ...] = (
     "tolerance", "tilt_range", "stick_out", "setup", "corner_radius", "radius", "tilt_limit", "faces"
 )  # fmt: skip
 
+#: How the cause begins of a change that could not be decided.
+UNDECIDED = "is not decided: "
+
 #: Lengths in mm, angles in degrees, a range of them, a direction, or the ids of faces.
 Value = float | tuple[float, ...] | tuple[str, ...] | None
 

@@ -9,10 +9,11 @@ from cad_io.arrays import Floats
 from plan_cutters.domain.checks import items
 from plan_cutters.domain.degrees import Angle, degrees_too
 from plan_cutters.domain.dimensions import AboveTip, Attributes, Dimensions, Shape, points_of
-from plan_cutters.domain.holder import Holder, Segment, positive, text_of
+from plan_cutters.domain.holder import Holder, Segment, positive
+from plan_cutters.domain.lengths import text_of
 from plan_cutters.domain.shapes import Part, check, flute_length, stages
 from plan_cutters.domain.signatures import spelled_out
-from plan_cutters.domain.spec import dimensions, written
+from plan_cutters.domain.spec import dimensions, parted, typed, written
 from plan_cutters.errors import CutterError
 
 
@@ -45,7 +46,7 @@ class Cutter(Dimensions):
 
     def __post_init__(self) -> None:
         Dimensions.__post_init__(self)
-        check(self, self.id)
+        check(self, self.typed)
 
     @classmethod
     @spelled_out(Attributes, Dimensions)
@@ -150,12 +151,9 @@ class Cutter(Dimensions):
         >>> Cutter.parse("D0.5inL3in").id
         'R6.35L76.2'
         """
-        at = spec.upper().find("H") if isinstance(spec, str) else -1
-        made = cls(**dimensions(spec if at < 0 else spec[:at]))
-        if at >= 0:
-            made = replace(made, holder=Holder.parse(spec[at + 1 :]))
-        given = spec.strip()
-        return made if made.id.lower() == given.lower() else replace(made, name=given)
+        head, holder = parted(spec) if isinstance(spec, str) else (spec, None)
+        made = cls(**dimensions(head), holder=None if holder is None else Holder.parse(holder), name=str(spec).strip())
+        return replace(made, name="") if made.id.lower() == made.name.lower() else made
 
     @classmethod
     def of(cls, given: Any) -> "Cutter":
@@ -194,6 +192,11 @@ class Cutter(Dimensions):
     def id(self) -> str:
         """`R6L80`: the same dimensions, the same id."""
         return written(self)
+
+    @property
+    def typed(self) -> str:
+        """The word by which it was given, `D12L80`, or else its id."""
+        return typed(self.id, self.name)
 
     def asked(self, allowance: float, clearance: float, holder: Holder | None) -> "Cutter":
         """The same, with what is asked for the whole plan where it has none of its own."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from plan_cutters.domain.checks import items, name, number, shown
-from plan_cutters.domain.lengths import LENGTH, across, length
+from plan_cutters.domain.lengths import LENGTH, Notation, across, length
 from plan_cutters.domain.standard_holders import chuck
 from plan_cutters.errors import CutterError
 
@@ -14,11 +14,6 @@ _STAGE = re.compile(
     rf"(?P<by>[RD])(?P<lower>{LENGTH})(?::(?P<upper>{LENGTH}))?L(?P<length>{LENGTH})",
     re.IGNORECASE,
 )
-
-
-def text_of(value: float) -> str:
-    """A number as ids have it."""
-    return f"{value:.10g}"
 
 
 def positive(value: Any, what: str, *, zero: bool = False) -> float:
@@ -59,8 +54,12 @@ class Segment:
     @property
     def id(self) -> str:
         """`R15L30`, or `R15:20L30` for a cone."""
-        upper = "" if self.upper_radius == self.radius else f":{text_of(self.upper_radius)}"
-        return f"R{text_of(self.radius)}{upper}L{text_of(self.length)}"
+        return self.written(Notation("R"))
+
+    def written(self, how: Notation) -> str:
+        """The same in another notation: `D30L30`, or `D30:40L30`."""
+        upper = "" if self.upper_radius == self.radius else f":{how.across(self.upper_radius)}"
+        return f"{how.by}{how.across(self.radius)}{upper}L{how.length(self.length)}"
 
 
 #: Its former name.
@@ -101,7 +100,19 @@ class Holder:
     @property
     def id(self) -> str:
         """Its stages, from the nose up."""
-        return "+".join(stage.id for stage in self.stages)
+        return self.written(Notation("R"))
+
+    def written(self, how: Notation) -> str:
+        """Its stages, from the nose up, in a notation."""
+        return "+".join(stage.written(how) for stage in self.stages)
+
+    def called(self, how: Notation) -> str:
+        """Its name, or else its stages in a notation.
+
+        >>> Holder.parse("er16").called(Notation("D")), Holder.parse("R15L30").called(Notation("D"))
+        ('ER16', 'D30L30')
+        """
+        return self.name or self.written(how)
 
     @classmethod
     def parse(cls, spec: str) -> "Holder":

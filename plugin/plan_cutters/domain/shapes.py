@@ -6,6 +6,7 @@ from typing import Literal, NamedTuple
 
 from plan_cutters.domain.dimensions import Dimensions
 from plan_cutters.domain.holder import Segment
+from plan_cutters.domain.spec import notation
 from plan_cutters.errors import CutterError
 
 #: Parts of an assembly that do not cut, from the flutes up.
@@ -204,7 +205,8 @@ def check(cutter: Dimensions, name: str) -> None:
     if cutter.holder is not None and cutter.holder.bore is not None and 2.0 * last > cutter.holder.bore + SAME:
         raise CutterError(
             f"{name}: its shank of {2.0 * last:g} mm does not fit {cutter.holder.name or 'its holder'}, which takes up to "
-            f"{cutter.holder.bore:g} mm: another holder, or say its flutes and shank (F30S10)"
+            f"{cutter.holder.bore:g} mm: another holder, or say its flutes and shank "
+            f"(F30S{notation(cutter.name).across(0.5 * cutter.holder.bore)})"
         )
 
 

@@ -2,12 +2,13 @@
 
 import math
 import re
+from collections.abc import Mapping
 from typing import Any
 
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.dimensions import Dimensions
-from plan_cutters.domain.holder import Segment, text_of
-from plan_cutters.domain.lengths import LENGTH, across, length
+from plan_cutters.domain.holder import Holder, Segment
+from plan_cutters.domain.lengths import LENGTH, Notation, across, length, text_of
 from plan_cutters.errors import CutterError
 
 _ANGLE = r"-?(?:[0-9]+\.?[0-9]*|\.[0-9]+)"
@@ -16,12 +17,68 @@ _CUTTER = re.compile(
     rf"(?:F(?P<flutes>{LENGTH}))?(?P<necks>(?:N{LENGTH}(?::{LENGTH})?x{LENGTH})*)(?:S(?P<shank>{LENGTH}))?",
     re.IGNORECASE,
 )
+#: The notation of ids.
+_ID = Notation("R")
 _NECK = re.compile(rf"N(?P<radius>{LENGTH})(?::(?P<upper>{LENGTH}))?x(?P<length>{LENGTH})", re.IGNORECASE)
 
 
 def is_spec(text: str) -> bool:
-    """Whether a text is of the form that `dimensions` reads."""
-    return _CUTTER.fullmatch(text.strip()) is not None
+    """Whether a text is of the form that `dimensions` reads, with or without a holder.
+
+    >>> is_spec("D12L80"), is_spec("D12L80Her16"), is_spec("D12L80 Hard"), is_spec("Finisher")
+    (True, True, False, False)
+    """
+    head, holder = parted(text.strip())
+    if _CUTTER.fullmatch(head) is None:
+        return False
+    try:
+        return holder is None or bool(Holder.parse(holder))
+    except CutterError:
+        return False
+
+
+def parted(text: str) -> tuple[str, str | None]:
+    """The word of a cutter, and that of the holder behind its H; None where there is none."""
+    at = text.upper().find("H")
+    return (text, None) if at < 0 else (text[:at], text[at + 1 :])
+
+
+def notation(name: str) -> Notation:
+    """How a cutter was given, by its name: by radius where that is empty or such a word, in inches where they stand in it.
+
+    Tools of libraries have names of their own; shops call them by diameter.
+
+    >>> notation("D0.5inL3in"), notation("r6L80"), notation("Finisher").by
+    (Notation(by='D', inches=True), Notation(by='R', inches=False), 'D')
+    """
+    if not name or is_spec(name):
+        return Notation("D" if name.strip().upper().startswith("D") else "R", "in" in parted(name)[0].lower())
+    return Notation("D")
+
+
+def typed(id: str, name: str) -> str:
+    """A cutter in the word by which it was given; its id where it has another name or none.
+
+    >>> typed("R6L80", "D12L80"), typed("R6L80", ""), typed("R6L80", "Finisher")
+    ('D12L80', 'R6L80', 'R6L80')
+    """
+    return name if is_spec(name) else id
+
+
+def renamed(text: str, names: Mapping[str, str]) -> str:
+    """A text with ids of cutters in other words.
+
+    >>> renamed("R6L80 and R6L80rc1, not R6L80+R2", {"R6L80": "D12", "R6L80rc1": "bull"})
+    'D12 and bull, not R6L80+R2'
+    """
+    # The longest first: an id may begin as another one does. Nor is it the beginning of another cutter's.
+    ids = "|".join(re.escape(name) for name in sorted(names, key=len, reverse=True))
+    return re.sub(rf"(?<!\w)(?:{ids})(?!\w|[.:]\d|\+R)", lambda found: names[found[0]], text) if ids else text
+
+
+def spelled(cutter: Dimensions) -> str:
+    """The word of a cutter in the notation of its name: that of another one made of it, too."""
+    return written(cutter, notation(cutter.name))
 
 
 def dimensions(spec: str) -> dict[str, Any]:
@@ -66,11 +123,11 @@ def _wrong(spec: str) -> str:
             "radius, T5 taper, F20 flutes, N5.5x40 neck, S6 shank")  # fmt: skip
 
 
-def written(cutter: Dimensions) -> str:
-    """The id of a cutter: its dimensions, in the words of `dimensions` where these have words for it."""
-    words = [f"R{text_of(cutter.radius)}L{text_of(cutter.length)}"]
+def written(cutter: Dimensions, how: Notation = _ID) -> str:
+    """A cutter's dimensions in the words of `dimensions`, where these have words for it: its id unless `how` says otherwise."""
+    words = [f"{how.by}{how.across(cutter.radius)}L{how.length(cutter.length)}"]
     if cutter.corner_radius:
-        words.append(f"rc{text_of(cutter.corner_radius)}")
+        words.append(f"rc{how.length(cutter.corner_radius)}")
     if cutter.taper:
         words.append(f"T{text_of(math.degrees(cutter.taper))}")
     if cutter.shape in ("barrel", "lens"):
@@ -81,14 +138,14 @@ def written(cutter: Dimensions) -> str:
         words.append(cutter.shape)
     words += [f"_{text_of(r)}x{text_of(h)}" for r, h in cutter.outline]
     if cutter.flutes is not None:
-        words.append(f"F{text_of(cutter.flutes)}")
+        words.append(f"F{how.length(cutter.flutes)}")
     for neck in cutter.necks:
-        upper = "" if neck.upper_radius == neck.radius else f":{text_of(neck.upper_radius)}"
-        words.append(f"N{text_of(neck.radius)}{upper}x{text_of(neck.length)}")
+        upper = "" if neck.upper_radius == neck.radius else f":{how.across(neck.upper_radius)}"
+        words.append(f"N{how.across(neck.radius)}{upper}x{how.length(neck.length)}")
     if cutter.shank_radius is not None:
-        words.append(f"S{text_of(cutter.shank_radius)}")
+        words.append(f"S{how.across(cutter.shank_radius)}")
     if cutter.holder is not None:
-        words.append(f"H{cutter.holder.id}")
+        words.append(f"H{cutter.holder.written(how)}")
     if cutter.allowance is not None:
         words.append(f"a{text_of(cutter.allowance)}")
     if cutter.clearance is not None:

@@ -1,7 +1,8 @@
-"""Check a written plan of operations against the part, by code that shares nothing with the search.
+"""Check a written plan of operations against the part: its labels, angles and weights, with the test that the search uses, too.
 
 It asks three things. Does each operation serve its samples with the orientation that is written down? Does some operation
 take each sample that is reached? Do the weights load no candidate with more than 1,000,000, so that they prove the bound?
+Whether the tool is free at a sample is judged by `served_by`, as in the search: a fault of that test is found by neither.
 """
 
 from collections.abc import Mapping

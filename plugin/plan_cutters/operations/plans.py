@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, SurfaceSamples
+from plan_cutters.domain.area import size
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import Operation, OperationPlan, Workplane
@@ -184,13 +185,13 @@ def _clearance(task: Task, operation: Operation, held: Verdicts) -> float | None
 def small_pieces(plan: OperationPlan, samples: SurfaceSamples, overlap: float) -> tuple[str, ...]:
     """Say what pieces of a plan are small, where there are any: no neighbouring operation serves all of one of these."""
     mine = plan.region >= 0
-    size = np.bincount(plan.region[mine], np.nan_to_num(samples.area[mine]))
-    small = size < _SMALL * overlap**2
+    areas = np.bincount(plan.region[mine], np.nan_to_num(samples.area[mine]))
+    small = areas < _SMALL * overlap**2
     if not small.any():
         return ()
     many, them = ("one piece", "it") if small.sum() == 1 else (f"{small.sum()} pieces", "all of one of them")
-    return (f"The {plan.name} plan has {many} of less than {_SMALL * overlap**2:g} mm², {size[small].sum():.3g} mm² in all: no "
-            f"operation beside serves {them}.",)  # fmt: skip
+    return (f"The {plan.name} plan has {many} of less than {_SMALL * overlap**2:g} mm2, {size(areas[small].sum())} in all: no "
+            f"neighbouring operation serves {them}.",)  # fmt: skip
 
 
 def best_area(task: Task, columns: Columns, most: int | None) -> Columns:

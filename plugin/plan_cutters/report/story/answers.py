@@ -1,9 +1,10 @@
 """Put the answers after the plan into words: least stick-outs, largest radii, what-if answers and next steps."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from plan_cutters.document.answers import ChangeEntry, MendEntry, RadiusEntry, StickOutEntry
 from plan_cutters.document.model import CutterEntry, Plan
+from plan_cutters.domain.change import UNDECIDED
 from plan_cutters.report.story.cutters import reason
 from plan_cutters.report.story.headline import every
 from plan_cutters.report.story.line import Line
@@ -101,18 +102,29 @@ def _mends(plan: Plan) -> Iterator[Line]:
             continue
         yield from _next(c, c.mend)
         helping = [each.why for each in cures(c.mend) if each.helps]
-        unsure = [each.why for each in cures(c.mend) if each.helps is None]
+        unsure = _unsure([each for each in cures(c.mend) if each.helps is None])
         if helping:
             yield Line(f"{c.id} would finish with {'; or with '.join(helping)}.")
             continue
-        if not c.mend.steps:
-            why = c.mend.why or "no change of one thing was found to help"
-            yield Line(f"Nothing sure would make {c.id} finish: {why}.")
+        if not c.mend.steps and c.mend.changes:
+            yield Line(f"No change of one thing is known to make {c.id} finish.")
+        elif not c.mend.steps:
+            yield Line(f"Nothing sure would make {c.id} finish: {c.mend.why}.")
         if unsure:
-            yield Line(f"  Not decided: {'; '.join(unsure)}.")
+            yield Line(f"  Not decided: {unsure}.")
     if left := len(plan.not_mended):
         which = "cutter that leaves more was" if left == 1 else "cutters that leave more were"
         yield Line(f"{left} more {which} not asked about: --answers mend-all.")
+
+
+def _unsure(changes: Sequence[ChangeEntry]) -> str:
+    """What could not be decided, each cause once behind the things that it is about."""
+    by_cause: dict[str, list[str]] = {}
+    for each in changes:
+        thing, _ = change(each)
+        things = by_cause.setdefault(each.why.removeprefix(UNDECIDED), [])
+        things += [] if each.doubted else [thing[:1].lower() + thing[1:]]
+    return "; ".join(f"{', '.join(things)} ({cause})" if things else cause for cause, things in by_cause.items())
 
 
 def _next(c: CutterEntry, mend: MendEntry) -> Iterator[Line]:

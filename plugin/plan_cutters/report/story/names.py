@@ -31,27 +31,34 @@ def kind(cutter: "Cutter | CutterEntry") -> str:
 
 
 def called(cutter: "Cutter | CutterEntry") -> str:
-    """A cutter by its description and diameter, mm: its name where a person or a library gave one.
+    """A cutter by its description and diameter, mm or inches as it was given: its name where a person or a library gave one.
 
     >>> from plan_cutters.domain.cutter import Cutter
     >>> called(Cutter.parse("R6L80")), called(Cutter.parse("D12L80rc1")), called(Cutter(3, 40, 3, name="Finisher"))
     ('flat end D12 x 80', 'bull nose D12 rc1 x 80', 'Finisher D6')
+    >>> called(Cutter.parse("D0.5inL3inrc1/16in"))
+    'bull nose D0.5in rc0.0625in x 3in'
     """
     # Not before anything is planned: help is shown without numpy.
     from plan_cutters.domain.cutter import Cutter
-    from plan_cutters.domain.spec import is_spec
+    from plan_cutters.domain.spec import is_spec, notation
 
-    across = f"{2.0 * cutter.radius:.5g}"
+    inches = notation(cutter.name).inches
+
+    def size(length: float, digits: int = 5) -> str:
+        return f"{length / 25.4:.{digits}g}in" if inches else f"{length:.{digits}g}"
+
+    across = size(2.0 * cutter.radius)
     name = cutter.name.removesuffix(_DRAWER).strip()
     if name and not is_spec(name):
         # Where the name says the diameter itself, it need not be said again.
         said = re.search(rf"(?<![\d.,]){re.escape(across)}(?![\d]|[.,]\d)", name)
         return name if said else f"{name} D{across}"
     what = kind(cutter)
-    corner = f" rc{cutter.corner_radius:.4g}" if cutter.corner_radius and what not in (_BALL, "lollipop") else ""
+    corner = f" rc{size(cutter.corner_radius, 4)}" if cutter.corner_radius and what not in (_BALL, "lollipop") else ""
     taper = math.degrees(cutter.taper) if isinstance(cutter, Cutter) else cutter.taper_deg
     cone = f" T{taper:.4g}" if taper else ""
-    return f"{what} D{across}{corner}{cone} x {cutter.length:.5g}"
+    return f"{what} D{across}{corner}{cone} x {size(cutter.length)}"
 
 
 def short_names(plan: "Plan") -> dict[str, str]:
@@ -59,7 +66,7 @@ def short_names(plan: "Plan") -> dict[str, str]:
     numbers = _numbers(plan)
     ways: list[list[str]] = []
     for c in plan.cutters:
-        name, head = " ".join([*numbers.get(c.id, [])[:_PLACES], called(c)]), c.id.partition("H")[0]
+        name, head = " ".join([*numbers.get(c.id, [])[:_PLACES], called(c)]), _word(c)
         held = [f"{name}, {c.holder}"] if c.holder else []
         ways.append([name, *held, f"{name} ({head})", c.id])
     # A name that is another's id would be taken for it.
@@ -86,28 +93,34 @@ def _numbers(plan: "Plan") -> dict[str, list[str]]:
 
 def described(entry: "CutterEntry", name: str) -> str:
     """Describe a cutter beyond its name: its kind, and how far it stands out of which holder."""
-    what = called_plainly(entry)
-    from plan_cutters.domain.spec import is_spec
+    from plan_cutters.domain.spec import notation
 
-    # As it was given, so that it can be given again; else as plan and arrays call it.
-    given = entry.name if is_spec(entry.name) else entry.id.partition("H")[0]
-    said = f"{'' if what in name else f'{what}, '}{given}, "
+    what = called_plainly(entry)
+    said = f"{'' if what in name else f'{what}, '}{_word(entry)}, "
+    length = notation(entry.name).mm(round(entry.length, 6))
     holder = [stage for stage in entry.stages if stage.part == "holder"]
     if not holder:
-        return f"{said}judged without a holder, {entry.length:.5g} mm up from its tip"
+        return f"{said}judged without a holder, {length} up from its tip"
     widest = 2.0 * max(max(stage.radius_mm, stage.upper_radius_mm) for stage in holder)
-    return f"{said}{entry.length:.5g} mm out of its holder{f' {entry.holder}' if entry.holder else ''}, up to D{widest:.4g} wide"
+    return f"{said}{length} out of its holder{f' {entry.holder}' if entry.holder else ''}, up to D{widest:.4g} wide"
+
+
+def _word(entry: "CutterEntry") -> str:
+    """Name a cutter as it was given, so that it can be given again; else as plan and arrays call it. Its holder stands beside."""
+    from plan_cutters.domain.spec import parted, typed
+
+    return parted(typed(entry.id, entry.name))[0]
 
 
 def called_plainly(entry: "CutterEntry") -> str:
     """The same as `called` for one without a name."""
-    return called(entry.model_copy(update={"name": ""}))
+    from plan_cutters.domain.spec import is_spec
+
+    return called(entry if is_spec(entry.name) else entry.model_copy(update={"name": ""}))
 
 
 def named(plan: "Plan", text: str) -> str:
     """A text with cutters called as in `short_names`."""
-    names = short_names(plan)
-    # The longest first: an id may begin as another one does.
-    ids = "|".join(re.escape(name) for name in sorted(names, key=len, reverse=True))
-    # Nor is it the beginning of another cutter's, which is not of this plan.
-    return re.sub(rf"(?<!\w)(?:{ids})(?!\w|[.:]\d|\+R)", lambda found: names[found[0]], text)
+    from plan_cutters.domain.spec import renamed
+
+    return renamed(text, short_names(plan))

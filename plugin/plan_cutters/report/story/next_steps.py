@@ -57,11 +57,13 @@ def effect(step: StepEntry) -> str:
     ...                  option=None, why="", remains=[]))
     'lost 34.8 to 32.2 % of the area (883 more samples)'
     """
-    before = percent(step.lost_before, some=True, whole=False).removesuffix(" %")
+    before = percent(step.lost_before, some=True, whole=False)
     after = percent(step.lost_after, some=bool(step.left), whole=False)
     many = f"{step.gained:,} more sample{'' if step.gained == 1 else 's'}"
     end = "; then nothing is lost" if not step.left else ""
-    return f"lost {before} to {after} of the area ({many}){end}"
+    if before == after:
+        return f"lost {before} of the area, hardly less than now ({many}){end}"
+    return f"lost {before.removesuffix(' %')} to {after} of the area ({many}){end}"
 
 
 def is_left_out(step: StepEntry) -> bool:

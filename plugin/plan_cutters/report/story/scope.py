@@ -26,9 +26,10 @@ def not_judged(plan: Plan) -> list[str]:
         return []
     many = scope.not_judged > 1
     what = _listed(scope.not_judged_by_kind)
-    return [
-        f"{what} {'were' if many else 'was'} not judged, only {'obstacles' if many else 'an obstacle'}: --faces all."
-    ]
+    why = "--faces all"
+    if plan.effective.faces.strip() == "all":
+        why = "they are clamped" if many else "it is clamped"
+    return [f"{what} {'were' if many else 'was'} not judged, only {'obstacles' if many else 'an obstacle'}: {why}."]
 
 
 def _asked(plan: Plan, scope: Scope) -> str:
