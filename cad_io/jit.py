@@ -4,15 +4,21 @@ The compiler's own cache looks at one file at a time and misses edits in a modul
 name carries a hash of every source in the folder that makes the decorators, and in the folders below it. The compiler asks for
 the cache folder when a function is decorated: it is set for that moment alone, so that neither the host's own compiled
 functions nor the environment of its processes change, whoever imports the compiler first.
+
+The compiler runs whatever stands in its cache. Ours has a checksum in each file: machine code that a full disk or a power cut
+damaged is never run, but compiled anew, and a cache that cannot be written costs time alone.
 """
 
+import contextlib
 import functools
 import hashlib
+import io
 import os
+import stat
 import struct
 import tempfile
+import warnings
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -23,10 +29,14 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.types import unliteral  # type: ignore[attr-defined]
 
+from cad_io.errors import CacheWarning
+
 VERSION: str = numba.__version__
 
 #: What the compiler is told of every function. Nothing calls one as C does.
 _ENTRY: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
+#: Bytes of the checksum at the end of a file of the cache.
+_CHECKSUM = 32
 #: What the names of the compiler's notes begin with: the environments of functions, and addresses that hold in one process
 #: only, where there are any: what names one is not kept on disk.
 _NOTES = ("_ZN08NumbaEnv", "numba.dynamic.globals")
@@ -34,30 +44,53 @@ _NOTES = ("_ZN08NumbaEnv", "numba.dynamic.globals")
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 
-def _user() -> str:
-    """Tells users of one temporary folder apart; on Windows each has one of their own."""
-    return str(os.getuid()) if hasattr(os, "getuid") else "user"
+def _roots() -> Iterator[Path]:
+    """Folders that may hold ours: as the environment says, or in the user's cache; in the folder for temporary files."""
+    asked = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME")
+    with contextlib.suppress(RuntimeError):  # this user has no home
+        yield Path(asked or Path.home() / ".cache", "plan-cutters")
+    # Windows has a folder for temporary files for each user. Elsewhere all share one: what another user put there is not run.
+    user = os.getuid() if hasattr(os, "getuid") else None
+    with contextlib.suppress(OSError):
+        shared = Path(tempfile.gettempdir(), f"plan-cutters-{'user' if user is None else user}")
+        shared.mkdir(mode=0o700, exist_ok=True)
+        if user is None or shared.stat().st_uid == user:
+            yield shared
 
 
 @functools.cache
 def cache_folder(sources: Path) -> str:
-    """Folder of the machine code of just the sources in a folder and those below it; made if need be."""
-    digest = hashlib.sha256()
+    """Folder of the machine code of just the sources in a folder and those below it; made if need be.
+
+    It is named `kernels-` and a checksum. Another name is that of a folder for this process alone, where no other one can be
+    written; where not even that can be, it is not there.
+    """
+    # Whoever changes how things are compiled or cached is to meet nothing of before.
+    digest = hashlib.sha256(VERSION.encode() + Path(__file__).read_bytes())
     for source in sorted(sources.rglob("*.py")):
         digest.update(source.relative_to(sources).as_posix().encode())
         digest.update(source.read_bytes())
-    name = f"kernels-{digest.hexdigest()[:16]}"
-    asked, home = os.environ.get("NUMBA_CACHE_DIR"), Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache")
-    first = Path(asked) if asked else home
-    for root in (first / "plan-cutters", Path(tempfile.gettempdir()) / f"plan-cutters-{_user()}"):
-        folder = root / name
-        try:
+    folders = [root / f"kernels-{digest.hexdigest()[:16]}" for root in _roots()]
+    for folder in folders:
+        with contextlib.suppress(OSError):
             folder.mkdir(parents=True, exist_ok=True)
             if os.access(folder, os.W_OK):
                 return str(folder)
-        except OSError:
-            continue
-    return tempfile.mkdtemp(prefix="plan-cutters-")
+    try:
+        return tempfile.mkdtemp(prefix="plan-cutters-")
+    except OSError:
+        return str(folders[0]) if folders else os.path.join(os.devnull, "plan-cutters")
+
+
+#: What was warned of already.
+_warned: set[str] = set()
+
+
+def _warn(place: str, fault: str, cause: str) -> None:
+    """Warn of the cache, once in each process for each fault: the first file stands for all."""
+    if fault not in _warned:
+        _warned.add(fault)
+        warnings.warn(f"{place}: {fault} ({cause}); it is compiled anew", CacheWarning, stacklevel=2)
 
 
 #: In newer versions of the compiler they have names without a line in front.
@@ -78,12 +111,72 @@ class _BesideContent(_Asked):
     def get_source_stamp(self) -> str:
         return "by content"
 
+    def ensure_cache_path(self) -> None:
+        """Make the folder if that can be done; saving warns where it is not there."""
+        with contextlib.suppress(OSError):
+            os.makedirs(self.get_cache_path(), exist_ok=True)
 
-@contextmanager
+
+class _Files(caching.IndexDataCacheFile):
+    """The files of one function: an index, and machine code for each kind of arguments; a checksum ends each file.
+
+    What is damaged counts as missing, and is written again. An entry holds its own key, for two processes that add to an index
+    at a time may give two entries one name.
+    """
+
+    def save(self, key: Any, data: Any) -> None:
+        try:
+            super().save(key, (key, data))
+        except OSError as error:
+            _warn(self._cache_path, "machine code cannot be cached", error.strerror or str(error))
+
+    def load(self, key: Any) -> Any:
+        own, data = super().load(key) or (None, None)
+        return data if own == key else None
+
+    def _load_index(self) -> Any:
+        return super()._load_index() if self._whole(self._index_path) else {}
+
+    def _load_data(self, name: str) -> Any:
+        path = self._data_path(name)
+        return super()._load_data(name) if self._whole(path) else None
+
+    @contextlib.contextmanager
+    def _open_for_write(self, filepath: str) -> Iterator[io.BytesIO]:
+        yield (content := io.BytesIO())
+        with super()._open_for_write(filepath) as file:
+            # Whoever reads looks no farther than its pickles.
+            file.write(content.getvalue() + hashlib.sha256(content.getvalue()).digest())
+
+    def _whole(self, path: str) -> bool:
+        """Whether a file is there, and is what was written."""
+        try:
+            if not stat.S_ISREG(os.stat(path).st_mode):
+                raise OSError("it is no regular file")
+            content = Path(path).read_bytes()
+        except (FileNotFoundError, NotADirectoryError):
+            return False
+        except OSError as error:
+            _warn(path, "cached machine code cannot be read", error.strerror or str(error))
+            return False
+        if hashlib.sha256(content[:-_CHECKSUM]).digest() == content[-_CHECKSUM:]:
+            return True
+        _warn(path, "cached machine code is damaged", "its checksum differs")
+        return False
+
+
+def _checked(compiled: Any) -> Any:
+    """Let the cache of a function look at checksums."""
+    cache = compiled._cache
+    cache._cache_file = _Files(cache.cache_path, cache._impl.filename_base, cache._impl.locator.get_source_stamp())
+    return compiled
+
+
+@contextlib.contextmanager
 def _our_cache(sources: Path, *beneath: str) -> Iterator[None]:
     before = numba.config.CACHE_DIR, _Impl._locator_classes
     numba.config.CACHE_DIR = str(Path(cache_folder(sources), *beneath))
-    _Impl._locator_classes = [_BesideContent, *before[1]]
+    _Impl._locator_classes = [_BesideContent]
     try:
         yield
     finally:
@@ -142,7 +235,7 @@ def _also_from_python(kernel: Any, sources: Path) -> Any:
     @functools.cache
     def compiled() -> Any:
         with _our_cache(sources, "called"):
-            return numba.njit(**_ENTRY, _nrt=False)(kernel.py_func)
+            return _checked(numba.njit(**_ENTRY, _nrt=False)(kernel.py_func))
 
     kernel._insert = lambda *overload: None
     kernel._compile_for_args = lambda *args, **kws: compiled()
@@ -161,11 +254,11 @@ def decorators(file: str) -> tuple[Decorator, Decorator]:
 
     def entry(function: Callable[..., Any]) -> Callable[..., Any]:
         with _our_cache(sources):
-            return _once(numba.njit(**_ENTRY)(function))
+            return _once(_checked(numba.njit(**_ENTRY)(function)))
 
     def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
         with _our_cache(sources):
             made = numba.njit(**_ENTRY, _nrt=False, no_cpython_wrapper=True, pipeline_class=_KernelCompiler)(function)
-        return _also_from_python(_once(made), sources)
+        return _also_from_python(_once(_checked(made)), sources)
 
     return entry, kernel

@@ -8,14 +8,16 @@ import signal
 import subprocess
 import sys
 import time
+import warnings
 from itertools import takewhile
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
+from cad_io.errors import CacheWarning
 from plan_cutters import plan
-from plan_cutters.command import entry
+from plan_cutters.command import entry, map, one_part
 from plan_cutters.command import summary as summaries
 from plan_cutters.command.progress import Display
 from plan_cutters.command.rows import _distinct
@@ -557,6 +559,44 @@ def test_an_interrupt_while_it_is_imported_is_one_line(tmp_path):
     done = subprocess.run([sys.executable, "-c", call, str(GROOVE)], cwd=tmp_path, env=ENV, capture_output=True, text=True,
                           check=False)  # fmt: skip
     assert (done.returncode, done.stderr) == (130, "plan-cutters: interrupted; no file is half-written\n")
+
+
+def interrupted_import(*_):
+    """What a compiled module does whose import is interrupted: it raises an error of its own."""
+    try:
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(20)
+    except KeyboardInterrupt:
+        raise ImportError("initialization failed") from None
+
+
+def ended_from_outside(*_):
+    os.kill(os.getpid(), signal.SIGTERM)
+    time.sleep(20)
+
+
+@pytest.mark.parametrize("work", [interrupted_import, ended_from_outside])
+@pytest.mark.parametrize(("command", "module", "name", "words"), [
+    ("plan-cutters", one_part, "one_part", (*QUICK, "--quiet")),
+    ("plan-cutters-map", map, "_options", ("--at", "0,0,0", "--cutter", "R6L80")),
+], ids=["plan", "map"])  # fmt: skip
+def test_an_interrupt_that_becomes_another_error_is_still_one(
+    tmp_path, monkeypatch, command, module, name, words, work
+):
+    monkeypatch.setattr(module, name, work)
+    done = run(GROOVE, *words, cwd=tmp_path, command=command)
+    assert (done.returncode, done.stderr) == (130, f"{command}: interrupted; no file is half-written\n")
+
+
+def test_what_is_warned_of_the_cache_of_the_compiler_is_one_line(tmp_path, monkeypatch):
+    def warned(*_):
+        warnings.warn("a warning of another kind", UserWarning, stacklevel=1)
+        warnings.warn("kernels/search.nbc: is damaged", CacheWarning, stacklevel=1)
+        return 0, ""
+
+    monkeypatch.setattr(one_part, "one_part", warned)
+    done = run(GROOVE, *QUICK, "--quiet", cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "plan-cutters: kernels/search.nbc: is damaged\n")
 
 
 def test_an_interrupt_where_none_can_be_raised_is_taken_again():

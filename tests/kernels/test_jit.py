@@ -1,17 +1,26 @@
 """Kernels are linked into entries, and only entries are made machine code."""
 
 import ast
+import errno
+import importlib.util
 import os
+import shutil
 import subprocess
 import sys
+import tempfile
+import warnings
+from pathlib import Path
 
+import numpy as np
 import pytest
 
+from cad_io import jit
 from cad_io.jit import cache_folder
 from tests.support.forked import ENV
 
 SOURCE = """
 import sys
+import tempfile
 import numpy as np
 from cad_io.jit import decorators
 
@@ -118,3 +127,169 @@ def test_sources_in_rooms_below_count(tmp_path, monkeypatch):
         (room / name).write_text(text)
         folders.append(cache_folder.__wrapped__(tmp_path / "sources"))
     assert len(set(folders)) == 3
+
+
+@pytest.fixture
+def loaded(tmp_path, monkeypatch):
+    """Import the kernels anew, as a later process does; the entry that was asked for, its hits, and what was warned of."""
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
+    (tmp_path / "sources").mkdir()
+    source = tmp_path / "sources" / "kernels_of_test.py"
+    source.write_text(SOURCE)
+
+    def load(x=(4.0, 9.0), writable=True):
+        monkeypatch.setattr(jit, "_warned", set())
+        spec = importlib.util.spec_from_file_location("kernels_of_test", source)
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        numbers = np.array(x)
+        numbers.setflags(write=writable)
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            found = module.total(numbers)
+        return found, sum(module.total.stats.cache_hits.values()), [str(each.message) for each in caught]
+
+    return load
+
+
+def cached(folder, pattern):
+    (found,) = folder.glob(f"cache/plan-cutters/*/sources/{pattern}")
+    return found
+
+
+def middle_zeroed(content):
+    half = len(content) // 2
+    return content[:half] + bytes(64) + content[half + 64 :]
+
+
+DAMAGES = {
+    "empty": lambda content: b"",
+    "cut off": lambda content: content[: len(content) // 2],
+    "last byte": lambda content: content[:-1],
+    "zeros": middle_zeroed,
+}
+
+
+@pytest.mark.parametrize("kind", ["nbi", "nbc"])
+@pytest.mark.parametrize("damage", list(DAMAGES))
+def test_damaged_machine_code_is_not_run_but_made_anew(loaded, tmp_path, kind, damage):
+    assert loaded() == (14.0, 0, [])
+    assert loaded() == (14.0, 1, [])
+    file = cached(tmp_path, f"*.total-*.{kind}")
+    file.write_bytes(DAMAGES[damage](file.read_bytes()))
+    value, hits, (said,) = loaded()
+    assert (value, hits) == (14.0, 0)
+    assert str(file) in said
+    assert "is damaged" in said
+    assert "\n" not in said
+    assert loaded() == (14.0, 1, [])
+
+
+def test_each_damaged_file_is_warned_of_once_in_a_process(loaded, tmp_path):
+    loaded()
+    for file in (tmp_path / "cache").rglob("*.nbi"):
+        file.write_bytes(b"")
+    assert len(loaded()[2]) == 1
+    assert loaded() == (14.0, 1, [])
+
+
+def test_missing_machine_code_is_no_damage(loaded, tmp_path):
+    loaded()
+    cached(tmp_path, "*.total-*.nbc").unlink()
+    assert loaded() == (14.0, 0, [])
+    assert loaded() == (14.0, 1, [])
+
+
+def test_a_pipe_in_place_of_machine_code_is_not_opened(loaded, tmp_path):
+    loaded()
+    file = cached(tmp_path, "*.total-*.nbi")
+    file.unlink()
+    os.mkfifo(file)
+    value, hits, (said,) = loaded()
+    assert (value, hits) == (14.0, 0)
+    assert "no regular file" in said
+    assert loaded() == (14.0, 1, [])
+
+
+def test_a_full_disk_costs_time_alone(loaded, tmp_path, monkeypatch):
+    def full(*_):
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    with monkeypatch.context() as patch:
+        patch.setattr(os, "replace", full)
+        value, hits, (said,) = loaded()
+    assert (value, hits) == (14.0, 0)
+    assert "cannot be cached (No space left on device)" in said
+    assert not any((tmp_path / "cache").rglob("*.tmp.*"))
+    assert loaded() == (14.0, 0, [])
+    assert loaded() == (14.0, 1, [])
+
+
+def test_a_cache_that_disappears_costs_time_alone(loaded, tmp_path):
+    loaded()
+    shutil.rmtree(tmp_path / "cache")
+    (tmp_path / "cache").write_text("a file")
+    value, hits, (said,) = loaded()
+    assert (value, hits) == (14.0, 0)
+    assert "cannot be cached" in said
+
+
+def test_an_entry_under_the_name_of_another_one_is_not_run(loaded, tmp_path):
+    """Two processes that add to an index at a time may both call their first entry the first one."""
+    loaded()
+    first = cached(tmp_path, "*.total-*.1.nbc")
+    loaded(writable=False)
+    second = cached(tmp_path, "*.total-*.2.nbc")
+    second.write_bytes(first.read_bytes())
+    assert loaded(writable=False) == (14.0, 0, [])
+    assert loaded(writable=False) == (14.0, 1, [])
+    assert loaded() == (14.0, 1, [])
+
+
+def folder_of(tmp_path):
+    (tmp_path / "sources").mkdir(exist_ok=True)
+    return Path(cache_folder.__wrapped__(tmp_path / "sources"))
+
+
+@pytest.fixture
+def no_home(tmp_path, monkeypatch):
+    """A user who is not registered, as in many containers; temporary files lie in `tmp`."""
+    for name in ("NUMBA_CACHE_DIR", "XDG_CACHE_HOME"):
+        monkeypatch.delenv(name, raising=False)
+
+    def none():
+        raise RuntimeError("Could not determine home directory.")
+
+    monkeypatch.setattr(Path, "home", none)
+    (tmp_path / "tmp").mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "tmp"))
+    return tmp_path / "tmp"
+
+
+def test_without_a_home_machine_code_lies_among_temporary_files(tmp_path, no_home):
+    folder = folder_of(tmp_path)
+    assert folder.parent == no_home / f"plan-cutters-{os.getuid()}"
+    assert folder.parent.stat().st_mode & 0o777 == 0o700
+    assert folder_of(tmp_path) == folder
+
+
+def test_what_another_user_put_among_temporary_files_is_not_run(tmp_path, no_home, monkeypatch):
+    theirs = folder_of(tmp_path)
+    user = os.getuid()
+    monkeypatch.setattr(os, "getuid", lambda: user + 1)
+    theirs.parent.rename(no_home / f"plan-cutters-{user + 1}")
+    found = folder_of(tmp_path)
+    assert found.parent == no_home
+    assert not found.name.startswith("kernels-")
+
+
+def test_where_nothing_can_be_written_it_works_without_a_cache(loaded, no_home, monkeypatch):
+    def none(**_):
+        raise OSError(errno.EROFS, os.strerror(errno.EROFS))
+
+    monkeypatch.setattr(os, "access", lambda *_: False)
+    monkeypatch.setattr(tempfile, "mkdtemp", none)
+    monkeypatch.setenv("NUMBA_CACHE_DIR", "/proc/nowhere")
+    value, hits, (said,) = loaded()
+    assert (value, hits) == (14.0, 0)
+    assert "cannot be cached" in said

@@ -13,7 +13,7 @@ from typing import Any, NoReturn
 import click
 
 from plan_cutters.command import help_groups, terminal
-from plan_cutters.command.codes import ended, guarded, invoked
+from plan_cutters.command.codes import ended, guarded, interrupt, invoked
 from plan_cutters.command.entry import SUBCOMMANDS
 from plan_cutters.command.option_groups import CODES, EXAMPLES, options
 from plan_cutters.command.supervise import (
@@ -98,11 +98,12 @@ def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
         ended(_SELF, words, lambda: _watched(words, name))
     follow_parent()
     # Whoever started the command may ignore interrupts, as a shell does for what runs in the background: the parent does not.
-    signal.signal(signal.SIGINT, signal.default_int_handler)
+    signal.signal(signal.SIGINT, interrupt)
     keep_interrupts()
     gc.disable()  # nothing of what imports make is garbage; `one_part` turns it on again
     terminal.keep_streams()
     keep_output()
+    terminal.warn_in_lines()
     if GO in os.environ:
         load()
         wait_to_begin()

@@ -36,6 +36,16 @@ def code_of(plan: "Plan") -> int:
     return NOT_ALL_JUDGED if unjudged or unseen else FEASIBLE
 
 
+#: Interrupts that came.
+_interrupts: list[int] = []
+
+
+def interrupt(number: int, _: object) -> NoReturn:
+    """Raise an interrupt as Python does, and remember it: an import that it ends may raise an error of its own instead."""
+    _interrupts.append(number)
+    raise KeyboardInterrupt
+
+
 def guarded(work: Any, debug: bool) -> tuple[int, str]:
     """Run; errors that have a cause become an exit code and a line."""
     from cad_io.errors import CadIoError, WriteError
@@ -48,7 +58,7 @@ def guarded(work: Any, debug: bool) -> tuple[int, str]:
         if debug:
             terminal.emit(traceback.format_exc())
         match error:
-            case KeyboardInterrupt():
+            case _ if _interrupts or isinstance(error, KeyboardInterrupt):
                 return INTERRUPTED, "plan-cutters: interrupted; no file is half-written"
             case terminal.ReaderGone():
                 return READER_GONE, ""
@@ -116,6 +126,7 @@ def ended(name: str, words: Sequence[str], work: Callable[[], int]) -> NoReturn:
             raise click.UsageError(f"{error.format_message().rstrip('.')}{hint}") from None
 
     terminal.keep_streams()
+    terminal.warn_in_lines()
     code, line = guarded(lambda: terminal.handing_out(all_of_it), "--debug" in words)
     if line:
         terminal.error(line.replace("plan-cutters:", f"{name}:", 1))

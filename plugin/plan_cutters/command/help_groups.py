@@ -2,13 +2,14 @@
 
 import os
 import shutil
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import click
 from click.core import ParameterSource
 
 from plan_cutters import __version__
+from plan_cutters.command.values import Words
 
 #: Width of the column of names; what is longer has a line of its own.
 _NAMES = 22
@@ -17,11 +18,32 @@ WIDEST = 100
 
 
 class Grouped(click.Option):
-    """An option under a heading of the help."""
+    """An option under a heading of the help. Lists that are repeated add up; any other option has one value."""
 
     def __init__(self, *words: Any, group: str = "", **more: Any) -> None:
         super().__init__(*words, **more)
         self.group = group
+
+    def add_to_parser(self, parser: Any, ctx: click.Context) -> None:
+        if self.multiple or self.is_flag or self.count:
+            super().add_to_parser(parser, ctx)
+        else:
+            parser.add_option(obj=self, opts=self.opts, dest=self.name, action="append", nargs=self.nargs)
+
+    def consume_value(self, ctx: click.Context, opts: Mapping[str, Any]) -> Any:
+        if not self.multiple and isinstance(values := opts.get(self.name or ""), list):
+            opts = {**opts, self.name or "": self._one(values, ctx)}
+        return super().consume_value(ctx, opts)
+
+    def _one(self, values: list[str], ctx: click.Context) -> str:
+        """The value that repeated ones make; a usage error where they contradict each other."""
+        if ctx.resilient_parsing or all(value == values[0] for value in values):
+            return values[-1]
+        added = self.type.added(values) if isinstance(self.type, Words) else None
+        if added is None and len({self.type_cast_value(ctx, value) for value in values}) > 1:
+            several = " and ".join(dict.fromkeys(values))
+            raise click.UsageError(f"{max(self.opts, key=len)} has one value, not {several}: give one of them", ctx)
+        return values[-1] if added is None else added
 
 
 def heading(title: str) -> Any:

@@ -40,7 +40,9 @@ _questions, _output = heading("Questions"), heading("Output")
 @_questions(
     "--angles", metavar="X,Y,Z", help="Angles that hold this tool axis, from the tip to the spindle: both solutions."
 )
-@_questions("--axis", metavar="A=DEG,C=DEG", help="The tool axis at these angles; those not named are 0.")
+@_questions(
+    "--axis", type=Words("A=DEG,C=DEG", listed=True), help="The tool axis at these angles; those not named are 0."
+)
 @_output("--json", "as_json", is_flag=True, help="All that was understood, as JSON on standard output.")
 @_output("--to-toml", type=File("FILE"), help="Write the machine in our own format.")
 @options("debug")

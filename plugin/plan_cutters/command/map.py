@@ -3,13 +3,14 @@
 import json
 import math
 import os
+import signal
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from plan_cutters.command.codes import ended, invoked
+from plan_cutters.command.codes import ended, interrupt, invoked
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
 from plan_cutters.command.progress import Display
@@ -308,6 +309,8 @@ def main(words: Sequence[str], name: str | None = None) -> NoReturn:
     if name and can_supervise() and not is_child():
         ended(name, words, lambda: _watched(words, name))
     follow_parent()
+    if is_child():
+        signal.signal(signal.SIGINT, interrupt)
     ended(name or _SELF, words, lambda: invoked(command, name or _SELF, words))
 
 

@@ -8,7 +8,7 @@ import click
 from cad_io.units import UNITS
 from plan_cutters.command import values
 from plan_cutters.command.help_groups import heading
-from plan_cutters.command.values import File, Folder, Range, Setup, Words
+from plan_cutters.command.values import Faces, File, Folder, Range, Setup, Words
 from plan_cutters.report.folder import DEFAULT_FORMATS, FORMATS
 
 EXAMPLES = (
@@ -134,7 +134,7 @@ _OPTIONS = (
     _faces(
         "--faces",
         default="sculptured,blends",
-        type=Words("SELECT", values.face_words),
+        type=Faces(),
         help="`sculptured` (faces that are no plane, cylinder, cone, sphere or torus in shape; all faces where none is), "
         "`blends` (fillets and rounds: they join two faces smoothly), `all`, `F3,7-12`, a list of these, `component:NAME`, "
         "`name:REGEX` or `color:#RRGGBB`, after a `!` all but these; the others are not judged, only obstacles.  "
@@ -142,7 +142,7 @@ _OPTIONS = (
     ),
     _faces(
         "--ignore",
-        type=Words("SELECT", values.face_words),
+        type=Faces(),
         multiple=True,
         help="Faces that are neither machined nor obstacles, as construction geometry; the same words. Repeatable.",
     ),

@@ -162,9 +162,10 @@ def supervise(
     code = child.process.returncode
     if code >= 0:
         return code
-    if asked and watch.safe is None:
-        raise KeyboardInterrupt
-    if asked:
+    # Whoever ends all processes of a service, as its manager does, ends the child at the same time.
+    if asked or -code in _stopping():
+        if watch.safe is None:
+            raise KeyboardInterrupt
         raise watch.ended("interrupted", "", interrupted=True)
     name = signal.Signals(-code).name
     if name != "SIGKILL":  # which comes from outside

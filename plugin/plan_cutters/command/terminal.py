@@ -9,10 +9,12 @@ import os
 import re
 import sys
 import unicodedata
+import warnings
 from collections.abc import Callable, Iterator
 from io import StringIO, TextIOWrapper
 from typing import IO, TYPE_CHECKING, Any, Literal
 
+from cad_io.errors import CacheWarning
 from plan_cutters.command.worker import is_child, report
 from plan_cutters.errors import PlanError
 
@@ -144,6 +146,20 @@ def emit(text: str) -> None:
     with contextlib.suppress(OSError, ValueError, AttributeError):
         sys.stderr.write(text)
         sys.stderr.flush()
+
+
+def warn_in_lines() -> None:
+    """Write what is warned of the compiler's cache as lines for people, and all other warnings as Python does."""
+    warnings.simplefilter("always", CacheWarning)
+    before = warnings.showwarning
+
+    def shown(message: Warning | str, category: type[Warning], *place: Any, **more: Any) -> None:
+        if issubclass(category, CacheWarning):
+            error(f"plan-cutters: {message}")
+        else:
+            before(message, category, *place, **more)
+
+    warnings.showwarning = shown
 
 
 def give(text: str) -> None:

@@ -34,12 +34,26 @@ class Words(click.ParamType):
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
         return str(value)
 
+    def added(self, values: Sequence[str]) -> str | None:
+        """One value for all of an option that is repeated; None where they do not add up."""
+        return ",".join(filter(None, values)) if self.listed else None
+
     def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
         before, comma, last = incomplete.rpartition(",") if self.listed else ("", "", incomplete)
         given = before.split(",")
         found = [CompletionItem(f"{before}{comma}{word}") for word in self.offered()
                  if word.startswith(last) and word not in given]  # fmt: skip
         return found or ([FILE] if self.files else [])
+
+
+class Faces(Words):
+    """A selection of faces: lists of numbers and kinds add up; a name, a component, a colour or a `!` stands alone."""
+
+    def __init__(self) -> None:
+        super().__init__("SELECT", face_words, listed=True)
+
+    def added(self, values: Sequence[str]) -> str | None:
+        return None if any(":" in value or "!" in value for value in values) else super().added(values)
 
 
 class File(Words):

@@ -1,5 +1,6 @@
 """The decorators of all kernels of cutters; see `cad_io.jit`."""
 
+import os
 from pathlib import Path
 
 from cad_io.jit import VERSION, cache_folder, decorators
@@ -15,4 +16,5 @@ def at_hand(name: str) -> bool | None:
     None where it is kept for this process alone, since no folder can be written to.
     """
     folder = Path(cache_folder(Path(__file__).parent))
-    return any(folder.glob(f"**/{name}-*.nbc")) if folder.name.startswith("kernels-") else None
+    lasting = folder.name.startswith("kernels-") and os.access(folder, os.W_OK)
+    return any(folder.glob(f"**/{name}-*.nbc")) if lasting else None
