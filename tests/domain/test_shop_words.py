@@ -323,7 +323,7 @@ class TestNames:
         [
             (Cutter.parse("D12L80"), "flat end D12 x 80"),
             (Cutter.parse("R3L40rc3"), "ball end D6 x 40"),
-            (Cutter.parse("D0.5inL3in"), "flat end D12.7 x 76.2"),
+            (Cutter.parse("D0.5inL3in"), "flat end D0.5in x 3in"),
             (Cutter.parse("R6L80rc1T5"), "bull nose D12 rc1 T5 x 80"),
             (Cutter(3, 40, 3, name="Finisher"), "Finisher D6"),
             (Cutter(3, 40, 3, name="6 mm ball, long"), "6 mm ball, long"),
@@ -357,12 +357,12 @@ class TestNames:
         assert names[given[1].id] == given[1].id
         assert names[given[4].id] == "flat end D8 x 80, ER32 (R4L80)"
         assert names[given[0].id] == "flat end D8 x 80, ER16"
-        assert names[given[2].id] == "flat end D10 x 80 (R5L80)"
-        assert names[given[3].id] == "flat end D10 x 80 (R5L80F20S5)"
+        assert names[given[2].id] == "flat end D10 x 80 (D10L80)"
+        assert names[given[3].id] == "flat end D10 x 80 (D10L80F20S10)"
         entry = next(c for c in found.cutters if c.id == given[1].id)
         assert described(entry, "flat end D8 x 80, ER32") == "R4L80, 80 mm out of its holder ER32, up to D50.1 wide"
         inline = plan(box(), cutters="D0.5inL3in", faces="F1", grid=2, area_budget=0).plan
-        assert described(inline.cutters[0], "flat end D12.7 x 76.2").startswith("D0.5inL3in, ")
+        assert described(inline.cutters[0], "flat end D0.5in x 3in").startswith("D0.5inL3in, ")
 
     def test_the_examples_of_help_are_words_that_are_known(self):
         from plan_cutters.command.tools import command

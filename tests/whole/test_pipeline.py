@@ -123,8 +123,10 @@ def test_records_print_their_shapes_and_compare_by_their_numbers():
 def test_an_option_is_declared_once():
     words = [each.name for each in fields(Options)]
     given = list(inspect.signature(plan).parameters)
-    assert given[: 4 + len(words)] == ["part", "progress", "client", "verdicts", *words]
-    assert all(name.endswith("_deg") and name.removesuffix("_deg") in words for name in given[4 + len(words) :])
+    own = ["part", "progress", "client", "verdicts", "verdicts_key"]
+    assert given[: len(own) + len(words)] == [*own, *words]
+    degrees = given[len(own) + len(words) :]
+    assert all(name.endswith("_deg") and name.removesuffix("_deg") in words for name in degrees)
     with pytest.raises(OptionError, match="no option is called tolerence; tolerance"):
         plan(SAMPLES / "v_groove.step", tolerence=0.1)
     with pytest.raises(OptionError, match="no option is called x"):
