@@ -9,6 +9,7 @@ from cad_io.arrays import Floats
 from cad_io.face.trim import Trim
 from cad_io.kernel import domain
 from cad_io.surface import Surface
+from cad_io.surface.forms import lines_within
 
 #: How far lines stay from a border that is a single point, as a share of the range.
 INWARD = 1e-4
@@ -17,6 +18,8 @@ _SAME = 1e-7  # of a range
 _MOST_NODES = 2_000_000
 _LEAST_LINES = 3
 _PROBES = (17, 97)  # least and most probes of speed a direction
+#: Pieces are uneven where one is so small a share of the range; shares of a piece at which it is looked at; pieces at most.
+_UNEVEN, _WITHIN, _PIECES = 1e-3, np.array([0.05, 0.25, 0.5, 0.75, 0.95]), 1000
 
 
 class Lines(NamedTuple):
@@ -66,9 +69,8 @@ def spaced(
     Lines are laid by the largest speed across them, so the gap holds everywhere as far as the probes saw.
     """
     u, v = _ranges(surface, trim, trim.box)
-    spans = surface.adaptor.NbUIntervals(GeomAbs_CN), surface.adaptor.NbVIntervals(GeomAbs_CN)
-    n = [int(np.clip(2 * count + 1, *_PROBES)) for count in spans]
-    share_u, share_v = np.linspace(0.0, 1.0, n[0]), np.linspace(0.0, 1.0, n[1])
+    share_u, share_v = _probes(surface, 0, (u.low, u.high)), _probes(surface, 1, (v.low, v.high))
+    n = len(share_u), len(share_v)
     grid_u, grid_v = np.meshgrid(u.low + share_u * (u.high - u.low), v.low + share_v * (v.high - v.low), indexing="ij")
     d = surface.first(grid_u.ravel(), grid_v.ravel()).reshape(n[0], n[1], 3, 3)
     speed = np.nan_to_num(np.linalg.norm(d[:, :, 1:], axis=3))
@@ -84,6 +86,23 @@ def spaced(
         for length, gap, share in zip(lengths, gaps, (share_u, share_v), strict=True)
     ]
     return Lines(u.lines(shares[0]), v.lines(shares[1]), u.closed, v.closed, (u.low, u.high, v.low, v.high))
+
+
+def _probes(surface: Surface, along: int, ends: tuple[float, float]) -> Floats:
+    """Shares of a range at which speed across lines is looked at: as many as there are pieces, and where pieces are uneven
+    within each of them, for a narrow one may be run through a million times as fast as the rest."""
+    adaptor = surface.adaptor
+    spans = adaptor.NbVIntervals(GeomAbs_CN) if along else adaptor.NbUIntervals(GeomAbs_CN)
+    even = np.linspace(0.0, 1.0, int(np.clip(2 * spans + 1, *_PROBES)))
+    width = ends[1] - ends[0]
+    if surface.form is None or not width > 0.0:
+        return even
+    knots, _ = lines_within(surface.form.knots[along], surface.form.jumps[along], surface.form.period[along], ends)
+    pieces = np.unique(np.concatenate([[0.0], (knots - ends[0]) / width, [1.0]]))
+    if np.diff(pieces).min() >= _UNEVEN or len(pieces) > _PIECES:
+        return even
+    within = pieces[:-1, None] + np.diff(pieces)[:, None] * _WITHIN
+    return np.unique(np.concatenate([even, pieces, within.ravel()]))
 
 
 def _cumulative(speed: Floats, share: Floats) -> Floats:

@@ -2,8 +2,10 @@
 
 With corners p_i, a point p = sum l_i p_i of the triangle and second derivatives H within `spread` of `middle` over a
 rectangle that holds it, Taylor's formula gives `|S(p) - sum l_i S(p_i)| <= 1/2 sum_(i<j) l_i l_j q(p_i - p_j)`, with
-`q(d) = |middle(d, d)| + spread(d, d)`: the squares' weighted sum about p is that of the edges. A table holds middle and
-spread for windows of cells, so that one look tells them for a triangle of any size.
+`q(d) = |middle(d, d)| + spread(d, d)`: the squares' weighted sum about p is that of the edges. Of the spread, what the twist
+Suv adds is shared out to the squares, `|2 du dv| <= k du^2 + dv^2 / k`: k is the triangle's own, for a surface may be run through
+a billion times as fast at one place as at another. A table holds middle and spread for windows of cells, so that one look
+tells them for a triangle of any size.
 """
 
 from typing import Any, NamedTuple
@@ -18,15 +20,17 @@ from cad_io.surface.forms import lines_within
 
 entry, kernel = decorators(__file__)
 
-#: Cells along a surface that is bent one way only, at least, so many times those of one bent both ways; at most, where dense
-#: knots are put together.
+#: Cells along a surface that is bent one way only, at least, so many times those of one bent both ways; at most each way, where
+#: dense knots are put together. Where there are few one way, there may be more the other way.
 _ALONG, _MOST = 4, 256
+#: How often cells are halved where control points swing farther than the surface does: each time they come four times as near.
+_HALVINGS = 8
 #: Cells each way where few triangles are to be laid, more, and many: bounds close in as cells shrink.
 COARSE, MIDDLE, FINE = 8, 24, 64
 #: Knots nearer than this share of the range are one line; what the surface does between them is not proved.
 _NARROW = 1e-9
-#: Columns of a table: Suu, Svv, Suv in the middle, what Suu and Svv may differ by (Suv shared out to them), |Su|, |Sv|.
-_WIDE = 13
+#: Columns of a table: Suu, Svv, Suv in the middle, what each of them may differ by, |Su|, |Sv|.
+_WIDE = 14
 
 
 class Table(NamedTuple):
@@ -63,7 +67,8 @@ class Ground(NamedTuple):
     whole: bool
 
     @staticmethod
-    def of(surface: Surface, box: tuple[float, float, float, float]) -> "Ground":
+    def of(surface: Surface, box: tuple[float, float, float, float], chord: float = np.inf) -> "Ground":
+        """The ground over a rectangle, with lines so dense that bounds within a cell are not much looser than `chord`, mm."""
         none = np.zeros((0, 2))
         unknown = Ground(surface, box, None, (True, True), None, (none, none), False)
         form = surface.form
@@ -78,6 +83,12 @@ class Ground(NamedTuple):
             # A knot at the border itself hides nothing: the piece beyond it is as wide as others, and hardly entered.
             whole = whole and bool((np.diff(knots) > _NARROW * (ends[1] - ends[0])).all())
         bends = _bends(form.bends, lines[0], lines[1])
+        for _ in range(_HALVINGS):
+            loose = _loose(bends, lines, chord)
+            if not any(each.any() for each in loose):
+                break
+            lines = [evenly(each, 1 + times) for each, times in zip(lines, loose, strict=True)]
+            bends = _bends(form.bends, lines[0], lines[1])
         if not _bounded(bends):
             return unknown
         bent = [bool(np.abs(bends.middle[:, :, k]).max() + bends.spread[:, :, k].max() > 0.0) for k in range(3)]
@@ -108,7 +119,7 @@ def table_of(ground: Ground, cells: int = COARSE) -> tuple[Table, bool]:
         same = len(u) == len(ground.lines[0]) and len(v) == len(ground.lines[1])
         bends = ground.bends if same else _bends(form.bends, u, v)
         if _bounded(bends):
-            return _table(_thinned(u), _thinned(v), *ground.kinks, bends), ground.whole
+            return _table(_thinned(u, v), _thinned(v, u), *ground.kinks, bends), ground.whole
         u, v = (np.linspace(ground.box[2 * k], ground.box[2 * k + 1], cells + 1) for k in range(2))
     none = np.zeros((0, 2))
     return _table(u, v, none, none, _guessed(ground.surface, u, v)), False
@@ -116,6 +127,21 @@ def table_of(ground: Ground, cells: int = COARSE) -> tuple[Table, bool]:
 
 def _bounded(bends: Bends) -> bool:
     return bool(np.isfinite(bends.spread).all() and np.isfinite(bends.first).all())
+
+
+def _loose(bends: Bends, lines: list[Floats], chord: float) -> list[NDArray[np.bool_]]:
+    """Which cells along u, and along v, have bounds that are loose: what is not known of their bending is more than what is
+    known, and more than a chord error, mm, across the cell."""
+    found = []
+    for k, each in enumerate(lines):
+        width = np.diff(each)
+        if bends.spread.shape[k] != len(width):
+            return [np.zeros(len(along) - 1, bool) for along in lines]  # cells are put together already
+        spread, middle = bends.spread[:, :, k], np.linalg.norm(bends.middle[:, :, k], axis=2)
+        with np.errstate(over="ignore"):
+            far = 0.125 * spread * np.expand_dims(width * width, 1 - k) > chord
+        found.append((far & (spread > middle)).any(axis=1 - k))
+    return found
 
 
 def _merged(knots: Floats, ends: tuple[float, float]) -> Floats:
@@ -143,19 +169,20 @@ def _subdivided(lines: Floats, count: int) -> Floats:
     return evenly(lines, np.maximum(1, np.ceil(count * np.diff(lines) / (lines[-1] - lines[0]) - 1e-6)).astype(int))
 
 
-def _groups(cells: int) -> NDArray[np.int64]:
-    """Where groups of cells begin, so that there are no more than _MOST."""
-    return np.arange(0, cells, -(-cells // _MOST))
+def _groups(cells: int, across: int) -> NDArray[np.int64]:
+    """Where groups of cells begin, so that there are no more than _MOST, or than fill a square where there are few across."""
+    most = max(_MOST, _MOST * _MOST // max(across, COARSE))
+    return np.arange(0, cells, -(-cells // most))
 
 
-def _thinned(lines: Floats) -> Floats:
+def _thinned(lines: Floats, across: Floats) -> Floats:
     """Lines that are left when cells are put together in groups."""
-    return np.append(lines[:-1][_groups(len(lines) - 1)], lines[-1])
+    return np.append(lines[:-1][_groups(len(lines) - 1, len(across) - 1)], lines[-1])
 
 
 def _bends(of: Any, u: Floats, v: Floats) -> Bends:
     """Bends over cells between lines, groups of them put together where there are too many."""
-    groups_u, groups_v = _groups(len(u) - 1), _groups(len(v) - 1)
+    groups_u, groups_v = _groups(len(u) - 1, len(v) - 1), _groups(len(v) - 1, len(u) - 1)
     if len(groups_u) == len(u) - 1 and len(groups_v) == len(v) - 1:
         return Bends(*of(u, v))
     strips = []
@@ -183,20 +210,16 @@ def _guessed(surface: Surface, u: Floats, v: Floats) -> Bends:
 
 
 def _table(u: Floats, v: Floats, kink_u: Floats, kink_v: Floats, bends: Bends) -> Table:
-    # Suv is shared out to Suu and Svv, |2 du dv| <= k du^2 + dv^2 / k, in the ratio in which steps of one length stand.
-    first = bends.first.reshape(-1, 2).max(axis=0)
-    ratio = float(first[0] / first[1]) if (first > 0).all() and np.isfinite(first).all() else 1.0
     along_u, along_v = _windows(len(u) - 1), _windows(len(v) - 1)
     counts = along_u[:, None] * along_v[None, :]
     start = np.concatenate([[0], np.cumsum(counts)[:-1]]).reshape(counts.shape)
     node = np.zeros((int(counts.sum()), _WIDE))
     cells = node[: len(bends.first.reshape(-1, 2))]
     cells[:, :9] = bends.middle.reshape(-1, 9)
-    spread = bends.spread.reshape(-1, 3)
-    cells[:, 9], cells[:, 10] = spread[:, 0] + ratio * spread[:, 2], spread[:, 1] + spread[:, 2] / ratio
-    cells[:, 11:] = bends.first.reshape(-1, 2)
+    cells[:, 9:12] = bends.spread.reshape(-1, 3)
+    cells[:, 12:] = bends.first.reshape(-1, 2)
     found = Table(u, v, np.ascontiguousarray(kink_u), np.ascontiguousarray(kink_v), node, start, along_u, along_v)
-    _gather(found, ratio)
+    _gather(found)
     return found
 
 
@@ -212,24 +235,19 @@ def _windows(cells: int) -> NDArray[np.int64]:
 
 
 @kernel
-def _join(one, other, ratio, out):
+def _join(one, other, out):
     """Write the bends of two windows together."""
-    uu, vv, uv = 0.0, 0.0, 0.0
-    for c in range(3):
-        uu += (one[c] - other[c]) ** 2
-        vv += (one[3 + c] - other[3 + c]) ** 2
-        uv += (one[6 + c] - other[6 + c]) ** 2
-    uv = 0.5 * np.sqrt(uv)
-    spread_u = max(one[9], other[9]) + 0.5 * np.sqrt(uu) + ratio * uv
-    spread_v = max(one[10], other[10]) + 0.5 * np.sqrt(vv) + uv / ratio
-    for c in range(9):
-        out[c] = 0.5 * (one[c] + other[c])
-    out[9], out[10] = spread_u, spread_v
-    out[11], out[12] = max(one[11], other[11]), max(one[12], other[12])
+    for k in range(3):
+        apart = 0.0
+        for c in range(3 * k, 3 * k + 3):
+            apart += (one[c] - other[c]) ** 2
+            out[c] = 0.5 * (one[c] + other[c])
+        out[9 + k] = max(one[9 + k], other[9 + k]) + 0.5 * np.sqrt(apart)
+    out[12], out[13] = max(one[12], other[12]), max(one[13], other[13])
 
 
 @kernel
-def _fill(table, ratio):
+def _fill(table):
     node, start, along_u, along_v = table.node, table.start, table.along_u, table.along_v
     for k in range(1, len(along_u)):
         step = 1 if k == 1 else 2
@@ -237,7 +255,7 @@ def _fill(table, ratio):
             other = min(i + 1 if k == 1 else 2 * i + 2, along_u[k - 1] - 1)
             for j in range(along_v[0]):
                 below = start[k - 1, 0]
-                _join(node[below + step * i * along_v[0] + j], node[below + other * along_v[0] + j], ratio,
+                _join(node[below + step * i * along_v[0] + j], node[below + other * along_v[0] + j],
                       node[start[k, 0] + i * along_v[0] + j])  # fmt: skip
     for k in range(len(along_u)):
         for m in range(1, len(along_v)):
@@ -246,13 +264,13 @@ def _fill(table, ratio):
                 before, here = start[k, m - 1] + i * along_v[m - 1], start[k, m] + i * along_v[m]
                 for j in range(along_v[m]):
                     other = min(j + 1 if m == 1 else 2 * j + 2, along_v[m - 1] - 1)
-                    _join(node[before + step * j], node[before + other], ratio, node[here + j])
+                    _join(node[before + step * j], node[before + other], node[here + j])
 
 
 @entry
-def _gather(table, ratio):
+def _gather(table):
     """Fill the windows of all levels from the single cells."""
-    _fill(table, ratio)
+    _fill(table)
 
 
 @kernel
@@ -289,13 +307,14 @@ def window(table, low_u, high_u, low_v, high_v):
 
 
 @kernel
-def bend(row, du, dv):
-    """Largest q of a step in the parameter plane: `1/8 q` bounds how far an edge is from its course."""
+def bend(row, share, du, dv):
+    """Largest q of a step in the parameter plane: `1/8 q` bounds how far an edge is from its course. `share`: the triangle's k."""
     uu, vv, uv = du * du, dv * dv, 2.0 * du * dv
     total = 0.0
     for c in range(3):
         total += (row[c] * uu + row[3 + c] * vv + row[6 + c] * uv) ** 2
-    return np.sqrt(total) + row[9] * uu + row[10] * vv
+    twist = row[11] * (share * uu + vv / share) if row[11] > 0.0 else 0.0
+    return np.sqrt(total) + row[9] * uu + row[10] * vv + twist
 
 
 @kernel

@@ -61,8 +61,8 @@ class Patch(NamedTuple):
     proved: bool
 
     @staticmethod
-    def of(part: Part, number: int, mesh: UVMesh) -> "Patch":
-        """The patch of a face that begins with a mesh."""
+    def of(part: Part, number: int, mesh: UVMesh, chord: float = np.inf) -> "Patch":
+        """The patch of a face that begins with a mesh; for a chord error, mm, its bounds need not be much closer than that."""
         surface = part.surface(number)
         curves, exact = packed([b.curve for b in mesh.border],
                                [(float(b.parameter.min()), float(b.parameter.max())) for b in mesh.border])  # fmt: skip
@@ -70,7 +70,7 @@ class Patch(NamedTuple):
         start = Start(np.ascontiguousarray(mesh.uv), mesh.corner.astype(np.int64), curve, ends)
         low, high = reach(curves, mesh.uv, curve, ends)
         box = (low[0], high[0], low[1], high[1])
-        ground = Ground.of(surface, box)
+        ground = Ground.of(surface, box, chord)
         table, proved = table_of(ground)
         return Patch(number, surface, start, ground, table, curves, proved and exact)
 

@@ -5,6 +5,7 @@ import shapely
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints
+from cad_io.tessellate.flips import delaunay
 from cad_io.tessellate.mesh import upright
 
 #: How far from the border cells stay, in cells: triangles between are not to be slivers.
@@ -141,4 +142,4 @@ def _corners(region: shapely.Geometry, points: Floats) -> Ints | None:
     corner = first[row[len(points) :]]
     if (corner >= len(points)).any():
         return None
-    return corner.reshape(-1, 3).astype(np.int32)
+    return delaunay(points, upright(points, corner.reshape(-1, 3).astype(np.int32)))

@@ -101,7 +101,7 @@ def _border(stack, k, table, curves, box):
         if du == 0.0 and dv == 0.0:
             continue
         row = table.node[window(table, box[0] - du, box[1] + du, box[2] - dv, box[3] + dv)]
-        off = row[11] * du + row[12] * dv
+        off = row[12] * du + row[13] * dv
         if not off <= worst:
             worst, edge = off, c
     return worst, edge
@@ -118,9 +118,12 @@ def _look(stack, k, table, curves, chord):
     strayed, border = 0.0, -1
     if stack.curve[k, 0] >= 0 or stack.curve[k, 1] >= 0 or stack.curve[k, 2] >= 0:
         strayed, border = _border(stack, k, table, curves, box)
-    a = bend(row, uv[1, 0] - uv[0, 0], uv[1, 1] - uv[0, 1])
-    b = bend(row, uv[2, 0] - uv[1, 0], uv[2, 1] - uv[1, 1])
-    c = bend(row, uv[0, 0] - uv[2, 0], uv[0, 1] - uv[2, 1])
+    # A triangle as wide in u as du and in v as dv loses least where its k is dv / du.
+    wide, high = box[1] - box[0], box[3] - box[2]
+    share = high / wide if wide > 0.0 and high > 0.0 else 1.0
+    a = bend(row, share, uv[1, 0] - uv[0, 0], uv[1, 1] - uv[0, 1])
+    b = bend(row, share, uv[2, 0] - uv[1, 0], uv[2, 1] - uv[1, 1])
+    c = bend(row, share, uv[0, 0] - uv[2, 0], uv[0, 1] - uv[2, 1])
     inside = most_inside(a, b, c)
     jump_u, line_u = _jumps(table.kink_u, box[0], box[1])
     jump_v, line_v = _jumps(table.kink_v, box[2], box[3])
@@ -134,8 +137,8 @@ def _look(stack, k, table, curves, chord):
         return _Look(off, strayed, border, -1, 0.5)
     # Where an edge takes an odd number of pieces, halves would be cut once too often.
     pieces = np.ceil(np.sqrt(0.125 * max(a, max(b, c)) / chord))
-    share = 0.5 if pieces < 3.0 or pieces > 99.0 else np.floor(0.5 * pieces) / pieces
-    return _Look(off, strayed, 0 if a >= b and a >= c else 1 if b >= c else 2, -1, share)
+    at = 0.5 if pieces < 3.0 or pieces > 99.0 else np.floor(0.5 * pieces) / pieces
+    return _Look(off, strayed, 0 if a >= b and a >= c else 1 if b >= c else 2, -1, at)
 
 
 @kernel

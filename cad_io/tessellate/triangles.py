@@ -80,7 +80,7 @@ def tessellate(
         patches = []
         for number in list(meshes):
             at("own", number)
-            patches.append(Patch.of(part, number, meshes.pop(number)))
+            patches.append(Patch.of(part, number, meshes.pop(number), chord))
         patches, tried = _affordable(part, patches, (chord, guess), budget, jobs, at)
         laid = []
         for patch, each in zip(
