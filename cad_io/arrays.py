@@ -1,6 +1,7 @@
 """The arrays that cross the CAD boundary: mm, part coordinates, radians; frozen, no kernel here."""
 
-from dataclasses import dataclass, fields
+from collections.abc import Collection
+from dataclasses import dataclass, fields, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -237,16 +238,27 @@ class Triangles(Record):
     vertex: Floats
     #: (t,); face number.
     face: Ints
-    #: Bound of the distance between a triangle and the surface that it stands for, mm. Each point of the face, up to its true
-    #: border, has a triangle within it.
+    #: Bound of the distance between a triangle and the surface that it stands for, mm, but on the faces in `loose`. Each point of
+    #: the face, up to its true border, has a triangle within it.
     chord_error: float
     #: Faces without triangles, with the reason.
     missing: tuple[tuple[int, str], ...]
     #: Faces whose surface or border only the kernel can evaluate: there the distance is measured, not proved.
     measured: tuple[int, ...] = ()
+    #: Faces with a larger bound of their own, mm: one face that is hard to follow leaves the others as close as they were asked.
+    loose: tuple[tuple[int, float], ...] = ()
+    #: The bound of each face, mm.
+    errors: tuple[tuple[int, float], ...] = ()
 
     def __len__(self) -> int:
         return len(self.vertex)
+
+    def without(self, faces: Collection[int]) -> "Triangles":
+        """The same without the triangles of some faces."""
+        if not faces:
+            return self
+        left = ~np.isin(self.face, list(faces))
+        return replace(self, vertex=self.vertex[left], face=self.face[left])
 
     @property
     def measured_share(self) -> float:

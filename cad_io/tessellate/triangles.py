@@ -29,6 +29,12 @@ _UNCOVERED = 0.01
 _TOO_MANY, _STEP = 4, 1.02
 #: No smaller chord error is looked for where triangles fill so much of the budget, or so many have been tried; what is aimed at.
 _FILLED, _AIMED, _TURNS = 0.95, 0.98, 5
+#: So many times as large a chord error as asked is taken for all faces alike where the budget binds. Where that is not enough, or where
+#: faces with no more than such a share of the area cost it, these have a chord error of their own, and such a share of the budget
+#: at least.
+_ALIKE, _FEW, _RESERVED = 100.0, 0.05, 0.2
+#: A face is loose if its bound is so many times the chord error of the others.
+_LOOSE = 1.25
 #: Triangles of a face that are kept as they are counted; more are counted first and laid then.
 _ROOM = 1 << 19
 
@@ -49,8 +55,8 @@ def tessellate(
     chord : float
         mm, positive.
     budget : int
-        Most triangles, but for those that it begins with. Where it binds, all are laid for a larger chord
-        error, and `chord_error` says which.
+        Most triangles, but for those that it begins with. Where it binds, a few faces are laid for a larger chord error, and
+        `loose` says which, or all of them are, and `chord_error` says for which one.
     faces : sequence of int, optional
         Face numbers; default all.
     jobs : int, optional
@@ -82,6 +88,7 @@ def tessellate(
             at("own", number)
             patches.append(Patch.of(part, number, meshes.pop(number), chord))
         patches, tried = _affordable(part, patches, (chord, guess), budget, jobs, at)
+        most = min((each.chord for each in tried), default=chord)
         laid = []
         for patch, each in zip(
             patches, _each(lambda i: patches[i].laid(tried[i], budget), range(len(tried)), jobs), strict=True
@@ -92,7 +99,7 @@ def tessellate(
     ends = np.cumsum([0, *(len(each.corner) for each in laid)])
     vertex = np.empty((ends[-1], 3, 3))
     whole = np.ones(len(vertex), bool)
-    off = 0.0
+    off: dict[int, float] = {}
     for patch, first, last in zip(patches, ends[:-1], ends[1:], strict=True):
         # One after the other, and let go: here memory is at its most.
         each, rows = laid.pop(0), slice(first, last)
@@ -101,24 +108,59 @@ def tessellate(
             whole[rows] = np.isfinite(vertex[rows]).all(axis=(1, 2))
             missing[patch.number] = "its surface cannot be evaluated everywhere"
             continue
-        off = max(off, each.off)
+        off[patch.number] = each.off
         if left := _uncovered(part, patch.number, each.area, chord):
             missing[patch.number] = f"its triangles leave up to {math.ceil(100.0 * left)} % of it uncovered"
+    loose = {number: error for number, error in off.items() if error > _LOOSE * most}
+    if len(loose) == len(off):
+        # Nothing is closer: all of it is as close as it is.
+        loose = {}
     face = np.repeat(np.array([patch.number for patch in patches], np.int32), np.diff(ends))
     return Triangles(
         vertex=vertex if whole.all() else vertex[whole],
         face=face if whole.all() else face[whole],
-        chord_error=off,
+        chord_error=max((error for number, error in off.items() if number not in loose), default=0.0),
         missing=tuple(sorted(missing.items())),
         measured=tuple(patch.number for patch in patches if not patch.proved),
+        loose=tuple(sorted(loose.items())),
+        errors=tuple(sorted(off.items())),
     )
 
 
 def _affordable(
     part: Part, patches: Sequence[Patch], asked: tuple[float, float], budget: int, jobs: int, at: At
 ) -> tuple[list[Patch], list[Tried]]:
-    """Patches with tables as fine as is worth while, and triangles of each for the smallest chord error found at which they are
-    within the budget; `asked`: the chord error asked for, and the one at which to begin to look."""
+    """Patches with tables as fine as is worth while, and triangles of each that are within the budget: for the chord error that
+    was asked for where that is possible, else for the smallest ones found; `asked`: the chord error asked for, and the one at
+    which to begin to look."""
+    finer, tried = _alike(part, patches, asked, budget, jobs, at)
+    least, chord = asked[0], max((each.chord for each in tried), default=asked[0])
+    if chord <= least or len(finer) < 2:
+        return finer, tried
+    # A face costs so many triangles for its area: those that cost least are laid as close as was asked.
+    area = np.array([part.faces[patch.number - 1].area for patch in finer])
+    cost = np.array([each.triangles for each in tried]) / np.maximum(area, np.finfo(float).tiny)
+    close: dict[int, Tried] = {}
+    left, reserved = budget - int(_RESERVED * budget), int(_RESERVED * budget)
+    for i in np.argsort(cost, kind="stable").tolist():
+        each = finer[i].tried(least, left, NO_ROOM)
+        if each.triangles > left:
+            break
+        close[i], left = each, left - each.triangles
+    loose = [i for i in range(len(finer)) if i not in close]
+    if not close or not loose or (area[loose].sum() > _FEW * area.sum() and chord <= _ALIKE * least):
+        return finer, tried
+    own, again = _alike(part, [finer[i] for i in loose], (least, chord), left + reserved, jobs, at)
+    for i, patch, each in zip(loose, own, again, strict=True):
+        finer[i], close[i] = patch, each
+    return finer, [close[i] for i in range(len(finer))]
+
+
+def _alike(
+    part: Part, patches: Sequence[Patch], asked: tuple[float, float], budget: int, jobs: int, at: At
+) -> tuple[list[Patch], list[Tried]]:
+    """Patches with tables as fine as is worth while, and triangles of each for the smallest chord error found, one for all, at
+    which they are within the budget; `asked` as above."""
     size, most = float(np.linalg.norm(part.size)), _TOO_MANY * budget
     # Room to work in: one for each thread.
     workspaces = [workspace(min(budget, _ROOM)) for _ in range(jobs)]

@@ -2,7 +2,7 @@
 
 import math
 import platform
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -161,8 +161,10 @@ def _sewing(part: Part) -> SewingInfo | None:
     )
 
 
-def face_entries(part: Part, samples: SurfaceSamples, choice: Chosen) -> list[FaceEntry]:
-    """Every face of the part, judged or not."""
+def face_entries(
+    part: Part, samples: SurfaceSamples, choice: Chosen, errors: Mapping[int, float]
+) -> list[FaceEntry]:
+    """Every face of the part, judged or not; `errors`: how far triangles may be from each, mm."""
     empty, gaps = dict(samples.empty), dict(samples.face_gaps)
     chosen, ignored = set(choice.targets), set(choice.ignored)
     component = component_of(part.tree)
@@ -186,6 +188,7 @@ def face_entries(part: Part, samples: SurfaceSamples, choice: Chosen) -> list[Fa
                 component=component[face.number],
                 samples=int(mine.sum()),
                 gap_mm=gaps.get(face.number),
+                chord_error_mm=errors.get(face.number),
                 unjudged=reason if face.number in chosen else face.unjudged,
             )
         )

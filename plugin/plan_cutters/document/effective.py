@@ -6,10 +6,11 @@ from typing import Any
 import numpy as np
 
 from plan_cutters.document.build import degrees
-from plan_cutters.document.model import Effective
+from plan_cutters.document.model import Effective, LocalTolerance
 from plan_cutters.document.travel import placement_entry
 from plan_cutters.domain.operations import INDEX_TIME
 from plan_cutters.options import Options
+from plan_cutters.scene.obstacles import CHORD_SHARE
 from plan_cutters.scene.preparation import Prepared
 
 
@@ -31,6 +32,7 @@ def effective(ready: Prepared) -> Effective:
         "spacing_mm": max(ready.spacing.values()) if isinstance(ready.spacing, dict) else ready.spacing,
         "sampled_by": "grid" if options.grid is not None else "default" if options.spacing is None else "spacing",
         "tolerance_mm": ready.conditions.tolerance,
+        "local_tolerance": _local(ready),
         "chord_error_mm": around.certain.triangles.chord_error,
         "chord_measured_share": around.certain.triangles.measured_share,
         "obstacle_triangles": len(around.possible.triangles),
@@ -38,6 +40,19 @@ def effective(ready: Prepared) -> Effective:
         "index_time_s": INDEX_TIME if options.index_time is None else options.index_time,
     }
     return Effective(**{name: _as_asked(options, name) for name in Effective.model_fields if name not in made}, **made)
+
+
+def _local(ready: Prepared) -> list[LocalTolerance]:
+    faces, targets = ready.scene.part.faces, set(ready.chosen.targets)
+    whole = sum(faces[number - 1].area for number in targets)
+    found = [
+        LocalTolerance(
+            face=f"F{number}", chord_error_mm=error, tolerance_mm=error / CHORD_SHARE, area_mm2=faces[number - 1].area,
+            share=faces[number - 1].area / whole if number in targets and whole > 0.0 else 0.0,
+        )
+        for number, error in ready.conditions.around.loose.items()
+    ]  # fmt: skip
+    return sorted(found, key=lambda each: (-each.chord_error_mm, int(each.face[1:])))
 
 
 def _as_asked(options: Options, name: str) -> Any:

@@ -27,6 +27,16 @@ class Units(Frozen):
     angle: Literal["deg"] = "deg"
 
 
+class LocalTolerance(Frozen):
+    """A face that obstacle triangles could not be made to follow as closely as all others: what only it may forbid is undecided."""
+
+    face: str
+    chord_error_mm: float = Field(description="bound of the distance between its triangles and its surface")
+    tolerance_mm: float = Field(description="the gouge tolerance for which its triangles would be close enough")
+    area_mm2: float
+    share: float = Field(description="of the area of the target faces; 0 where it is no target")
+
+
 class Effective(Frozen):
     """Every option after defaults."""
 
@@ -57,7 +67,12 @@ class Effective(Frozen):
     rotation_deg: tuple[float, float]
     rotation_step_deg: float
     tolerance_mm: float = Field(description="the gouge tolerance that was kept, raised where a budget binds")
-    chord_error_mm: float = Field(description="bound of the distance between obstacle triangles and the surface")
+    local_tolerance: list[LocalTolerance] = Field(
+        default=[], description="faces that obstacle triangles follow less closely than all others, the loosest first"
+    )
+    chord_error_mm: float = Field(
+        description="bound of the distance between obstacle triangles and the surface, but on faces in `local_tolerance`"
+    )
     chord_measured_share: float = Field(
         default=0.0,
         description="share of the triangles whose distance is measured at points, not proved: on faces whose surface or border "
@@ -129,6 +144,9 @@ class FaceEntry(Frozen):
     samples: int
     gap_mm: float | None = Field(
         default=None, description="as `samples.max_gap_mm`, of this face alone; null where it was not sampled"
+    )
+    chord_error_mm: float | None = Field(
+        default=None, description="bound of the distance between its triangles and its surface; null where it has none"
     )
     unjudged: str | None = Field(description="why the face, or some of its samples, could not be judged")
 

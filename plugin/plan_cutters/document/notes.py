@@ -28,6 +28,7 @@ def notes_of(ready: Prepared, entries: Sequence[CutterEntry]) -> list[Note]:
         *_of_cutters(options, ready.cutters),
         *_of_samples(ready),
         *_of_sides(scene, options, ready.conditions.tolerance),
+        *_of_loose_faces(ready),
         *_of_obstacles(scene.part, around),
         *_of_fixtures(around.fixtures, options.shared_fixtures, several=bool(options.other_setups)),
         *_of_other_fixtures(ready),
@@ -59,6 +60,15 @@ def _of_sides(scene: Scene, options: Options, kept: float) -> Iterator[Note]:
     if kept > 1.001 * scene.asked:
         yield Note("tolerance_raised", f"The tolerance was raised from {scene.asked:g} to {kept:.3g} mm: the obstacle "
                    "triangles could not be made to follow the surface more closely.")  # fmt: skip
+
+
+def _of_loose_faces(ready: Prepared) -> Iterator[Note]:
+    """Which faces triangles do not follow closely, and what that means."""
+    loose = sorted(ready.conditions.around.loose.items(), key=lambda each: (-each[1], each[0]))
+    if loose:
+        names, worst = listed([f"F{number}" for number, _ in loose]), loose[0][1]
+        yield Note("faces_loose", f"The obstacle triangles follow {names} only within {worst:.3g} mm. The faces may be anywhere within "
+                   f"that: what only they may forbid is undecided. All else is judged to {ready.conditions.tolerance:.3g} mm.")  # fmt: skip
 
 
 def _of_spacing(ready: Prepared) -> Iterator[Note]:

@@ -173,8 +173,9 @@ def _together(
             placed = each.fixture.placed(corners)
             boxes.append(np.array([[placed.min(axis=0), placed.max(axis=0)]]))
     triangles = Triangles(
-        np.concatenate(vertex), np.concatenate(face), max(errors), own.triangles.missing, tuple(measured)
-    )
+        np.concatenate(vertex), np.concatenate(face), max(errors), own.triangles.missing, tuple(measured),
+        own.triangles.loose, own.triangles.errors,
+    )  # fmt: skip
     return Obstacles(triangles, np.concatenate(weight), np.concatenate(boxes), max(gaps), near)
 
 

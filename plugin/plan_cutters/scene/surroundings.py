@@ -16,6 +16,7 @@ from cad_io.tessellate.triangles import At
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.scene.obstacles import CHORD_SHARE, Obstacles, weights
+from plan_cutters.scene.thickened import thickened
 
 #: Triangles of a loose face that are looked at to tell whether it lies on a body, about.
 _LOOKED_AT = 50
@@ -108,6 +109,12 @@ class Surroundings(Record):
         )
 
     @property
+    def loose(self) -> dict[int, float]:
+        """Faces that triangles do not follow closely, with the bound of the distance between them, mm: there the surface may be
+        anywhere within it. All else is judged as if it were not so."""
+        return dict(self.certain.triangles.loose)
+
+    @property
     def enclosing(self) -> tuple[Body, ...]:
         """List the bodies that enclose a volume: those of the part, then those of fixtures."""
         return (*self.bodies, *(each.body for each in self.fixtures if each.body is not None))
@@ -166,22 +173,29 @@ def surroundings(
         raise UnjudgeableError(f"no face has triangles that could be in the way: {causes or 'all are left out'}",
                                file=part.file)  # fmt: skip
     found = bodies(part, without=ignored)
-    certain = Obstacles(triangles, weights(triangles, [b for b in found if b.closed]), gap=part.looseness)
+    loose = dict(triangles.loose)
+    close = triangles.without(loose)
+    certain = Obstacles(close, weights(close, [b for b in found if b.closed]), gap=part.looseness)
     stand = stand_ins(part, triangles.missing, chord)
     missing = tuple((n, why, stand.how[n]) for n, why in triangles.missing if stand.how[n] != "edges")
     lost = tuple(each for each in part.lost if each.face is None)
     lying = _on_bodies(certain, found)
     everything = weights(triangles, found)
     caps = np.concatenate([np.zeros((0, 3, 3)), *(body.cap for body in found)])
-    if not len(stand.vertex) and not len(caps) and (everything == certain.weight).all():
+    if not len(stand.vertex) and not len(caps) and not loose and (everything == certain.weight).all():
         return Surroundings(certain, certain, found, missing, lying, lost)
+    # A surface that triangles do not follow closely may be anywhere within their error, and is for certain nowhere.
+    shells = [(n, thickened(triangles.vertex[triangles.face == n], error)) for n, error in loose.items()]
+    shell = np.concatenate([np.zeros((0, 3, 3)), *(made for _, made in shells)])
+    of_shell = np.repeat(np.array([n for n, _ in shells], np.int32), [len(made) for _, made in shells])
     all_triangles = replace(
         triangles,
-        vertex=np.concatenate([triangles.vertex, stand.vertex, caps]),
-        face=np.concatenate([triangles.face, stand.face, np.zeros(len(caps), np.int32)]),
+        vertex=np.concatenate([triangles.vertex, stand.vertex, caps, shell]),
+        face=np.concatenate([triangles.face, stand.face, np.zeros(len(caps), np.int32), of_shell]),
     )
     open_boxes = [_box(triangles, body) for body in found if not body.closed]
-    possible = Obstacles(all_triangles, np.concatenate([everything, stand.weight, np.ones(len(caps), np.int8)]),
+    filled = np.ones(len(caps) + len(shell), np.int8)
+    possible = Obstacles(all_triangles, np.concatenate([everything, stand.weight, filled]),
                        np.array([box for box in open_boxes if np.isfinite(box).all()]).reshape(-1, 2, 3),
                        part.looseness)  # fmt: skip
     return Surroundings(possible, certain, found, missing, lying, lost)
