@@ -307,6 +307,12 @@ def window(table, low_u, high_u, low_v, high_v):
 
 
 @kernel
+def twist_share(wide, high):
+    """The k of a triangle that is as wide along u and along v as this: with it least is lost."""
+    return high / wide if wide > 0.0 and high > 0.0 else 1.0
+
+
+@kernel
 def bend(row, share, du, dv):
     """Largest q of a step in the parameter plane: `1/8 q` bounds how far an edge is from its course. `share`: the triangle's k."""
     uu, vv, uv = du * du, dv * dv, 2.0 * du * dv

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cad_io.jit import decorators
-from cad_io.tessellate.bounds import bend, most_inside, window
+from cad_io.tessellate.bounds import bend, most_inside, twist_share, window
 from cad_io.tessellate.curves import point, strays, workspace
 
 entry, kernel = decorators(__file__)
@@ -118,9 +118,7 @@ def _look(stack, k, table, curves, chord):
     strayed, border = 0.0, -1
     if stack.curve[k, 0] >= 0 or stack.curve[k, 1] >= 0 or stack.curve[k, 2] >= 0:
         strayed, border = _border(stack, k, table, curves, box)
-    # A triangle as wide in u as du and in v as dv loses least where its k is dv / du.
-    wide, high = box[1] - box[0], box[3] - box[2]
-    share = high / wide if wide > 0.0 and high > 0.0 else 1.0
+    share = twist_share(box[1] - box[0], box[3] - box[2])
     a = bend(row, share, uv[1, 0] - uv[0, 0], uv[1, 1] - uv[0, 1])
     b = bend(row, share, uv[2, 0] - uv[1, 0], uv[2, 1] - uv[1, 1])
     c = bend(row, share, uv[0, 0] - uv[2, 0], uv[0, 1] - uv[2, 1])

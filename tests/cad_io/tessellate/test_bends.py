@@ -18,7 +18,7 @@ from cad_io import read_part
 from cad_io.kernel import faces, is_kernel_error
 from cad_io.surface import Surface
 from cad_io.tessellate import tessellate
-from cad_io.tessellate.bounds import FINE, Ground, bend, most_inside, table_of, window
+from cad_io.tessellate.bounds import FINE, Ground, bend, most_inside, table_of, twist_share, window
 from cad_io.tessellate.curves import packed, point, strays, workspace
 from tests.support.cad_parts import as_nurbs, ball, compound, cone, drilled, patch, real, ring, rod
 from tests.support.distances import farthest_from
@@ -132,7 +132,7 @@ def bound_of(table, corners):
     (u0, v0), (u1, v1) = corners.min(axis=0), corners.max(axis=0)
     row = table.node[window(table, u0, u1, v0, v1)]
     steps = np.roll(corners, -1, axis=0) - corners
-    return most_inside(*(bend(row, *step) for step in steps))
+    return most_inside(*(bend(row, twist_share(u1 - u0, v1 - v0), *step) for step in steps))
 
 
 @given(seed=st.integers(0, 10**6), degrees=st.tuples(st.integers(2, 5), st.integers(2, 5)), rational=st.booleans())
