@@ -314,7 +314,8 @@ def twist_share(wide, high):
 
 @kernel
 def bend(row, share, du, dv):
-    """Largest q of a step in the parameter plane: `1/8 q` bounds how far an edge is from its course. `share`: the triangle's k."""
+    """Largest q of a step in the parameter plane: `1/8 q` bounds how far an edge is from its course. `share`: the k of the
+    triangle."""
     uu, vv, uv = du * du, dv * dv, 2.0 * du * dv
     total = 0.0
     for c in range(3):

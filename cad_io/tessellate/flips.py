@@ -12,8 +12,8 @@ from cad_io.jit import decorators
 
 entry, kernel = decorators(__file__)
 
-#: A corner is in the circle of another triangle if it is so far in it, and a corner bends if it bends so much: shares of what rounding
-#: may make of points on one circle and on one line.
+#: A corner is in the circle of another triangle if it is so far in it, and a corner bends if it bends so much: shares of the
+#: terms that cancel where points lie on one circle or on one line.
 _CLEAR = 1e-9
 
 

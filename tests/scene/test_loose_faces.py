@@ -9,8 +9,8 @@ from cad_io.tessellate import tessellate
 from plan_cutters import plan
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INTERFERENCE_FREE, UNDECIDED
 from plan_cutters.scene.obstacles import CHORD_ASKED, CHORD_SHARE
-from tests.support.distances import ROUNDING, farthest_from, surface_points
 from tests.support.cad_parts import real
+from tests.support.distances import ROUNDING, farthest_from, surface_points
 
 PROPELLER, SPRING = real("hard/autogiro_Prop1045_inverso.step", "hard/occtds_bug22869_Spring.igs")
 ASKED = {"cutters": "R3L60rc3F20S3", "spacing": 4, "area_budget": 0}

@@ -28,7 +28,7 @@ class Units(Frozen):
 
 
 class LocalTolerance(Frozen):
-    """A face that obstacle triangles could not be made to follow as closely as all others: what only it may forbid is undecided."""
+    """A face that obstacle triangles do not follow as closely as all others: what only it may forbid is undecided."""
 
     face: str
     chord_error_mm: float = Field(description="bound of the distance between its triangles and its surface")
