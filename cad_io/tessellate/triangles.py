@@ -29,8 +29,8 @@ _UNCOVERED = 0.01
 _TOO_MANY, _STEP = 4, 1.02
 #: No smaller chord error is looked for where triangles fill so much of the budget, or so many have been tried; what is aimed at.
 _FILLED, _AIMED, _TURNS = 0.95, 0.98, 5
-#: Where the budget binds, all faces have a chord error that is up to so many times as large as asked. Where that is not enough, or
-#: where faces with no more than such a share of the area are the cause, these have one of their own, and such a share of the
+#: Where the budget binds, all faces have a chord error that is up to so many times as large as asked. Where that is not enough,
+#: or where faces with no more than such a share of the area are the cause, these have one of their own, and such a share of the
 #: budget at least.
 _ALIKE, _FEW, _RESERVED = 100.0, 0.05, 0.2
 #: A face is loose if its bound is so many times the chord error of the others.

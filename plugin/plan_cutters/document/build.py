@@ -161,9 +161,7 @@ def _sewing(part: Part) -> SewingInfo | None:
     )
 
 
-def face_entries(
-    part: Part, samples: SurfaceSamples, choice: Chosen, errors: Mapping[int, float]
-) -> list[FaceEntry]:
+def face_entries(part: Part, samples: SurfaceSamples, choice: Chosen, errors: Mapping[int, float]) -> list[FaceEntry]:
     """Every face of the part, judged or not; `errors`: how far triangles may be from each, mm."""
     empty, gaps = dict(samples.empty), dict(samples.face_gaps)
     chosen, ignored = set(choice.targets), set(choice.ignored)

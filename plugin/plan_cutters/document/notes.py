@@ -68,8 +68,8 @@ def _of_loose_faces(ready: Prepared) -> Iterator[Note]:
     if loose:
         names, worst = listed([f"F{number}" for number, _ in loose]), loose[0][1]
         kept = ready.conditions.tolerance
-        yield Note("faces_loose", f"The obstacle triangles follow {names} only within {worst:.3g} mm. The surface may be anywhere "
-                   f"within that: what only it may forbid is undecided. All else is judged to {kept:.3g} mm.")  # fmt: skip
+        yield Note("faces_loose", f"The obstacle triangles follow {names} only within {worst:.3g} mm. The surface may be "
+                   f"anywhere within that: what only it may forbid is undecided. All else is judged to {kept:.3g} mm.")  # fmt: skip
 
 
 def _of_spacing(ready: Prepared) -> Iterator[Note]:

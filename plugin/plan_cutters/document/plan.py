@@ -59,7 +59,10 @@ def plan_of(
     """The plan of a part from the entries of its cutters, and what was answered after them."""
     scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
     part, around = scene.part, ready.conditions.around
-    faces, remarks = face_entries(part, samples, choice, dict(around.certain.triangles.errors)), notes_of(ready, entries)
+    faces, remarks = (
+        face_entries(part, samples, choice, dict(around.certain.triangles.errors)),
+        notes_of(ready, entries),
+    )
     absent = {
         *(() if _anything_held(ready) else ("fixture",)),
         *(() if ready.inside_bodies.any() else ("inside_bodies",)),

@@ -20,8 +20,8 @@ _HALVES = np.array([(0, 1, 2), (0, 2, 3)])
 def thickened(vertex: Floats, error: float) -> Floats:
     """A closed skin around all that is within a distance of triangles.
 
-    It runs along the sides of cells whose size is a power of two, on a grid that is the same for all: the skin for an error encloses
-    that of each smaller one.
+    It runs along the sides of cells whose size is a power of two, on a grid that is the same for all: the skin for an error
+    encloses that of each smaller one.
 
     Parameters
     ----------
