@@ -29,8 +29,10 @@ _HALVINGS = 8
 COARSE, MIDDLE, FINE = 8, 24, 64
 #: Knots nearer than this share of the range are one line; what the surface does between them is not proved.
 _NARROW = 1e-9
-#: Columns of a table: Suu, Svv, Suv in the middle, what each of them may differ by, |Su|, |Sv|.
-_WIDE = 14
+#: A first derivative that jumps by so much may belong to a surface with a gap: `forms` says 1e30.
+TORN = 1e20
+#: Columns of a table: Suu, Svv, Suv in the middle, what each of them may differ by, |Su|, |Sv|, the length of a line along u and v.
+_WIDE = 16
 
 
 class Table(NamedTuple):
@@ -217,7 +219,9 @@ def _table(u: Floats, v: Floats, kink_u: Floats, kink_v: Floats, bends: Bends) -
     cells = node[: len(bends.first.reshape(-1, 2))]
     cells[:, :9] = bends.middle.reshape(-1, 9)
     cells[:, 9:12] = bends.spread.reshape(-1, 3)
-    cells[:, 12:] = bends.first.reshape(-1, 2)
+    cells[:, 12:14] = bends.first.reshape(-1, 2)
+    width = np.stack([np.repeat(np.diff(u), len(v) - 1), np.tile(np.diff(v), len(u) - 1)], axis=1)
+    cells[:, 14:] = cells[:, 12:14] * width
     found = Table(u, v, np.ascontiguousarray(kink_u), np.ascontiguousarray(kink_v), node, start, along_u, along_v)
     _gather(found)
     return found
@@ -235,15 +239,17 @@ def _windows(cells: int) -> NDArray[np.int64]:
 
 
 @kernel
-def _join(one, other, out):
-    """Write the bends of two windows together."""
+def _join(one, other, along, out):
+    """Write the bends of two windows together, one behind the other along u (0) or v (1)."""
     for k in range(3):
         apart = 0.0
         for c in range(3 * k, 3 * k + 3):
             apart += (one[c] - other[c]) ** 2
             out[c] = 0.5 * (one[c] + other[c])
         out[9 + k] = max(one[9 + k], other[9 + k]) + 0.5 * np.sqrt(apart)
-    out[12], out[13] = max(one[12], other[12]), max(one[13], other[13])
+    for k in range(2):
+        out[12 + k] = max(one[12 + k], other[12 + k])
+        out[14 + k] = one[14 + k] + other[14 + k] if k == along else max(one[14 + k], other[14 + k])
 
 
 @kernel
@@ -255,7 +261,7 @@ def _fill(table):
             other = min(i + 1 if k == 1 else 2 * i + 2, along_u[k - 1] - 1)
             for j in range(along_v[0]):
                 below = start[k - 1, 0]
-                _join(node[below + step * i * along_v[0] + j], node[below + other * along_v[0] + j],
+                _join(node[below + step * i * along_v[0] + j], node[below + other * along_v[0] + j], 0,
                       node[start[k, 0] + i * along_v[0] + j])  # fmt: skip
     for k in range(len(along_u)):
         for m in range(1, len(along_v)):
@@ -264,7 +270,7 @@ def _fill(table):
                 before, here = start[k, m - 1] + i * along_v[m - 1], start[k, m] + i * along_v[m]
                 for j in range(along_v[m]):
                     other = min(j + 1 if m == 1 else 2 * j + 2, along_v[m - 1] - 1)
-                    _join(node[before + step * j], node[before + other], node[here + j])
+                    _join(node[before + step * j], node[before + other], 1, node[here + j])
 
 
 @entry

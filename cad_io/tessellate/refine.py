@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cad_io.jit import decorators
-from cad_io.tessellate.bounds import bend, most_inside, twist_share, window
+from cad_io.tessellate.bounds import TORN, bend, most_inside, twist_share, window
 from cad_io.tessellate.curves import point, strays, workspace
 
 entry, kernel = decorators(__file__)
@@ -71,6 +71,8 @@ def _jumps(lines, low, high):
     while first < len(lines) and lines[first, 0] < high:
         # Of a ramp that begins at the line.
         off = lines[first, 1] * ((high - lines[first, 0]) * (lines[first, 0] - low) / (high - low))
+        if lines[first, 1] >= TORN:
+            off = max(off, TORN)
         total += off
         if off > most:
             most, where = off, first
@@ -126,7 +128,8 @@ def _look(stack, k, table, curves, chord):
     jump_u, line_u = _jumps(table.kink_u, box[0], box[1])
     jump_v, line_v = _jumps(table.kink_v, box[2], box[3])
     jump = jump_u + jump_v
-    off = inside + strayed + jump
+    # No two points of a piece are farther apart than lines through it are long: however it bends within, if it is not torn.
+    off = min(inside + jump, row[14] + row[15]) + strayed if jump < TORN else jump
     if jump > inside and jump > strayed:
         axis = 0 if jump_u >= jump_v else 1
         line = table.kink_u[line_u, 0] if axis == 0 else table.kink_v[line_v, 0]

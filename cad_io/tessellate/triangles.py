@@ -31,8 +31,8 @@ _TOO_MANY, _STEP = 4, 1.02
 _FILLED, _AIMED, _TURNS = 0.95, 0.98, 5
 #: Where the budget binds, all faces have a chord error that is up to so many times as large as asked. Where that is not enough,
 #: or where faces with no more than such a share of the area are the cause, these have one of their own, and such a share of the
-#: budget at least.
-_ALIKE, _FEW, _RESERVED = 100.0, 0.05, 0.2
+#: budget: few enough that each may stand as a body.
+_ALIKE, _FEW, _OWN = 100.0, 0.05, 0.01
 #: A face is loose if its bound is so many times the chord error of the others.
 _LOOSE = 1.25
 #: Triangles of a face that are kept as they are counted; more are counted first and laid then.
@@ -141,7 +141,8 @@ def _affordable(
     area = np.array([part.faces[patch.number - 1].area for patch in finer])
     cost = np.array([each.triangles for each in tried]) / np.maximum(area, np.finfo(float).tiny)
     close: dict[int, Tried] = {}
-    left, reserved = budget - int(_RESERVED * budget), int(_RESERVED * budget)
+    own_budget = int(_OWN * budget)
+    left = budget - own_budget
     for i in np.argsort(cost, kind="stable").tolist():
         each = finer[i].tried(least, left, NO_ROOM)
         if each.triangles > left:
@@ -150,7 +151,7 @@ def _affordable(
     loose = [i for i in range(len(finer)) if i not in close]
     if not close or not loose or (area[loose].sum() > _FEW * area.sum() and chord <= _ALIKE * least):
         return finer, tried
-    own, again = _alike(part, [finer[i] for i in loose], (least, chord), left + reserved, jobs, at)
+    own, again = _alike(part, [finer[i] for i in loose], (least, chord), own_budget, jobs, at)
     for i, patch, each in zip(loose, own, again, strict=True):
         finer[i], close[i] = patch, each
     return finer, [close[i] for i in range(len(finer))]

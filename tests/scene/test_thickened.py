@@ -1,7 +1,6 @@
 """All places within a distance of triangles are enclosed, and what encloses them grows with the distance."""
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -45,14 +44,15 @@ def near(rng, vertex, error, count=60):
 def test_it_is_closed_and_encloses_all_that_is_near(seed, count, error, scale, away):
     rng = np.random.default_rng(seed)
     vertex = away + scale * rng.uniform(-1.0, 1.0, (1, 1, 3)) + scale * rng.uniform(-0.3, 0.3, (count, 3, 3))
+    # Needles and points are triangles, too.
+    vertex[0, 1] = vertex[0, int(rng.integers(0, 3))]
     skin = thickened(vertex, error)
     assert is_closed(skin)
-    # A triangle may have no thickness at all, and the cells are no smaller than a share of its extent.
-    size = max(2.0 * error, np.ptp(vertex, axis=(0, 1)).max() / 32.0 + error / 8.0)
-    assert winding(skin, near(rng, vertex, error)).round(6).tolist() == [1.0] * 60
-    far = skin.reshape(-1, 3) - vertex.reshape(-1, 3).mean(axis=0)
-    reach = np.linalg.norm(vertex.reshape(-1, 3) - vertex.reshape(-1, 3).mean(axis=0), axis=1).max()
-    assert np.linalg.norm(far, axis=1).max() <= reach + error + 4.0 * np.sqrt(3.0) * size
+    assert winding(skin, near(rng, vertex, error)).min() > 0.99
+    # Nothing is farther from the triangles than the corner of a cube of that size.
+    middle = vertex.reshape(-1, 3).mean(axis=0)
+    far, reach = (np.linalg.norm(each.reshape(-1, 3) - middle, axis=1).max() for each in (skin, vertex))
+    assert far <= reach * (1 + 1e-9) + 1.8 * error + np.ptp(vertex[0], axis=0).max()
 
 
 @given(seed=st.integers(0, 10**6), error=st.floats(1e-3, 1.0), more=st.floats(1.0, 50.0))
@@ -66,7 +66,7 @@ def test_what_encloses_for_an_error_encloses_for_each_smaller_one(seed, error, m
     inward = -np.cross(small[:, 1] - small[:, 0], small[:, 2] - small[:, 0])
     inward /= np.linalg.norm(inward, axis=1)[:, None]
     some = rng.choice(len(middle), min(60, len(middle)), replace=False)
-    assert winding(large, (middle + 1e-6 * inward)[some]).min() == pytest.approx(1.0)
+    assert winding(large, (middle + 1e-6 * inward)[some]).min() > 0.99
 
 
 def test_nothing_is_enclosed_where_there_is_nothing():

@@ -9,6 +9,7 @@ import numpy as np
 from cad_io import Part
 from cad_io.arrays import Floats, LostFace, Record, Triangles
 from cad_io.part.bodies import Body, bodies
+from cad_io.part.part import face_box
 from cad_io.read.mesh import Mesh
 from cad_io.tessellate import tessellate
 from cad_io.tessellate.stand_ins import StandIn, stand_ins
@@ -16,7 +17,7 @@ from cad_io.tessellate.triangles import At
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.scene.obstacles import CHORD_SHARE, Obstacles, weights
-from plan_cutters.scene.thickened import thickened
+from plan_cutters.scene.thickened import boxed, thickened
 
 #: Triangles of a loose face that are looked at to tell whether it lies on a body, about.
 _LOOKED_AT = 50
@@ -185,7 +186,7 @@ def surroundings(
     if not len(stand.vertex) and not len(caps) and not loose and (everything == certain.weight).all():
         return Surroundings(certain, certain, found, missing, lying, lost)
     # A surface that triangles do not follow closely may be anywhere within their error, and is for certain nowhere.
-    shells = [(n, thickened(triangles.vertex[triangles.face == n], error)) for n, error in loose.items()]
+    shells = [(n, _shell(part, n, triangles.vertex[triangles.face == n], error)) for n, error in loose.items()]
     shell = np.concatenate([np.zeros((0, 3, 3)), *(made for _, made in shells)])
     of_shell = np.repeat(np.array([n for n, _ in shells], np.int32), [len(made) for _, made in shells])
     all_triangles = replace(
@@ -199,6 +200,14 @@ def surroundings(
                        np.array([box for box in open_boxes if np.isfinite(box).all()]).reshape(-1, 2, 3),
                        part.looseness)  # fmt: skip
     return Surroundings(possible, certain, found, missing, lying, lost)
+
+
+def _shell(part: Part, number: int, vertex: Floats, error: float) -> Floats:
+    """Triangles (t, 3, 3) of skins that enclose a face, which is within an error of triangles: at the most the box around it."""
+    low, high = face_box(part.face(number), tight=False)
+    if np.isfinite([low, high]).all() and error > 0.5 * float((high - low).max()):
+        return boxed(low, high)
+    return thickened(vertex, error)
 
 
 def _on_bodies(certain: Obstacles, found: Sequence[Body]) -> tuple[int, ...]:
