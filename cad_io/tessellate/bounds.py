@@ -31,7 +31,7 @@ COARSE, MIDDLE, FINE = 8, 24, 64
 _NARROW = 1e-9
 #: A first derivative that jumps by so much may belong to a surface with a gap: `forms` says 1e30.
 TORN = 1e20
-#: Columns of a table: Suu, Svv, Suv in the middle, what each of them may differ by, |Su|, |Sv|, the length of a line along u and v.
+#: Columns of a table: Suu, Svv, Suv in the middle, what each of them may differ by, |Su|, |Sv|, how long lines along u and v are.
 _WIDE = 16
 
 

@@ -78,15 +78,8 @@ def tessellate(
     wanted = [n for n in numbers if n not in missing]
     with translated("meshing", file=part.file):
         BRepTools.Clean_s(part.shape)
-        guess, size = chord, float(np.linalg.norm(part.size))
-        while (count := expected(part, wanted, guess)) > budget and guess < size:
-            guess *= max(_STEP, count / budget)
-        meshes, why = starts(part, wanted, _COARSER * guess, at)
+        patches, guess, why = _begun(part, wanted, chord, budget, at)
         missing.update(why)
-        patches = []
-        for number in list(meshes):
-            at("own", number)
-            patches.append(Patch.of(part, number, meshes.pop(number), chord))
         patches, tried = _affordable(part, patches, (chord, guess), budget, jobs, at)
         most = min((each.chord for each in tried), default=chord)
         laid = []
@@ -127,6 +120,21 @@ def tessellate(
     )
 
 
+def _begun(
+    part: Part, numbers: Sequence[int], chord: float, budget: int, at: At
+) -> tuple[list[Patch], float, dict[int, str]]:
+    """Patches of faces, the chord error for which the budget is expected to do, and why a face has no patch."""
+    guess, size = chord, float(np.linalg.norm(part.size))
+    while (count := expected(part, numbers, guess)) > budget and guess < size:
+        guess *= max(_STEP, count / budget)
+    meshes, why = starts(part, numbers, _COARSER * guess, at)
+    patches = []
+    for number in list(meshes):
+        at("own", number)
+        patches.append(Patch.of(part, number, meshes.pop(number), chord))
+    return patches, guess, why
+
+
 def _affordable(
     part: Part, patches: Sequence[Patch], asked: tuple[float, float], budget: int, jobs: int, at: At
 ) -> tuple[list[Patch], list[Tried]]:
@@ -151,9 +159,12 @@ def _affordable(
     loose = [i for i in range(len(finer)) if i not in close]
     if not close or not loose or (area[loose].sum() > _FEW * area.sum() and chord <= _ALIKE * least):
         return finer, tried
-    own, again = _alike(part, [finer[i] for i in loose], (least, chord), own_budget, jobs, at)
-    for i, patch, each in zip(loose, own, again, strict=True):
-        finer[i], close[i] = patch, each
+    # Begun anew: what was begun for all of the budget may be finer than their own one allows.
+    row = {finer[i].number: i for i in loose}
+    begun, guess, why = _begun(part, list(row), least, own_budget, at)
+    begun += [finer[row[number]] for number in why]
+    for patch, each in zip(*_alike(part, begun, (least, guess), own_budget, jobs, at), strict=True):
+        finer[row[patch.number]], close[row[patch.number]] = patch, each
     return finer, [close[i] for i in range(len(finer))]
 
 

@@ -67,9 +67,9 @@ def _of_loose_faces(ready: Prepared) -> Iterator[Note]:
     loose = sorted(ready.conditions.around.loose.items(), key=lambda each: (-each[1], each[0]))
     if loose:
         names, worst = listed([f"F{number}" for number, _ in loose]), loose[0][1]
-        kept = ready.conditions.tolerance
         yield Note("faces_loose", f"The obstacle triangles follow {names} only within {worst:.3g} mm. The surface may be "
-                   f"anywhere within that: what only it may forbid is undecided. All else is judged to {kept:.3g} mm.")  # fmt: skip
+                   "anywhere within that: what only it may forbid is undecided. All else is judged to "
+                   f"{ready.conditions.tolerance:.3g} mm.")  # fmt: skip
 
 
 def _of_spacing(ready: Prepared) -> Iterator[Note]:
