@@ -25,6 +25,9 @@ from plan_cutters.scene.conditions import Conditions, contacts_of, search_postur
 from plan_cutters.scene.threads import Progress, in_chunks
 from plan_cutters.scene.work import Work
 
+#: A face that triangles follow only within so many tolerances is not searched: all of it is undecided.
+_HOPELESS = 10.0
+
 
 def access(
     samples: SurfaceSamples,
@@ -68,6 +71,11 @@ def access(
         return verdicts.freeze()
     within = np.zeros(n, bool) if inside is None else judged & (inside >= 0)
     verdicts.verdict[within], verdicts.reason[within] = INACCESSIBLE, INSIDE
+    # On a face that may be anywhere within so many tolerances each posture is in doubt, and a search tries them all.
+    loose = [number for number, error in conditions.around.loose.items() if error > _HOPELESS * conditions.tolerance]
+    doubtful = judged & ~within & np.isin(samples.face, loose)
+    verdicts.verdict[doubtful], verdicts.reason[doubtful] = UNDECIDED, TOLERANCE
+    judged &= ~doubtful
     upright = judged & interference_free
     verdicts.stand_upright(upright, samples.normal, samples.direction_max)
     contacts = contacts_of(samples)
