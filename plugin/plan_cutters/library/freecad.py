@@ -5,6 +5,7 @@ itself counts in, unless the bit says that its units are imperial.
 """
 
 import re
+from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Any
@@ -13,6 +14,7 @@ from cad_io.files import is_there
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.holder import Holder
 from plan_cutters.errors import CutterError, LibraryError
+from plan_cutters.library.cutting import slack
 from plan_cutters.library.files import MOST_TOOLS, Content, data_of, lines_of, too_many
 from plan_cutters.library.fusion_json import MOST_SECTIONS
 from plan_cutters.library.presets import Preset, take_feed
@@ -39,12 +41,14 @@ _FEED = re.compile(
 #: Our name of each dimension, and the names that shapes have had for it.
 _PARAMETERS = (
     ("DC", ("Diameter",)),
-    ("RE", ("CornerRadius", "FlatRadius", "TorusRadius")),
+    ("RE", ("CornerRadius",)),
     ("LCF", ("CuttingEdgeHeight", "CuttingEdgeLength")),
     ("OAL", ("Length",)),
     ("DMM", ("ShankDiameter", "ShaftDiameter")),
     ("TIP", ("TipDiameter", "FlatDiameter")),
 )
+#: Fields that one release means as the radius of the flat at the tip, and another as that of the corner.
+_FLATS = ("FlatRadius", "TorusRadius")
 _ANGLE = "CuttingEdgeAngle"
 #: What these shapes have no place for in their drawing.
 _IGNORED = ("NeckDiameter", "NeckLength", _ANGLE)
@@ -187,6 +191,9 @@ def _tool(given: dict[str, Any], place: str, number: int | None) -> Listed:
             if not same:
                 both = f"{present[0]} is {shown(parameters[present[0]])}, {other} is {shown(parameters[other])}"
                 tool.faults.append(f"{both}: they mean the same")
+    if tool.sort:
+        for word in _FLATS:
+            _corner(tool, parameters.get(word), word, length)
     for word in _IGNORED if tool.sort else ():
         if word != _ANGLE or tool.sort != "chamfer mill":
             given_ = str(parameters.get(word) or "")
@@ -199,6 +206,38 @@ def _tool(given: dict[str, Any], place: str, number: int | None) -> Listed:
     if isinstance(attribute, dict):
         take_feed(tool, [Preset("", attribute.get("cutting_feedrate"))], "cutting_feedrate", _feed)
     return tool
+
+
+def _corner(tool: Listed, value: Any, field: str, length: Callable[[Any, str], float]) -> None:
+    """Take the radius of a flat or of a corner as the corner radius, where both readings make the same tool.
+
+    By FreeCAD's surface operation it is the flat's radius; by the drawing of the shape in other releases it is the corner's. Neither
+    tool encloses the other at a contact.
+    """
+    if value in (None, "") or "DC" not in tool.values:
+        return
+    try:
+        found = mm(length(value, field), 1.0, field)
+    except FaultError as fault:
+        tool.faults.append(str(fault))
+        return
+    rest = round(0.5 * tool.values["DC"] - found, 9)
+    if tool.sort == "chamfer mill":
+        if found:
+            tool.doubts.append(f"{field} {found:.10g} is the radius of its corner or of the flat at its tip: give TipDiameter alone")
+    elif tool.states("RE"):
+        corner = tool.values.get("RE", 0.0)
+        if min(abs(corner - found), abs(corner - rest)) > slack(corner):
+            tool.faults.append(f"{tool.said('RE')} and {field} {found:.10g} do not agree, whether that is the radius of the corner or of "
+                               f"the flat at the tip")  # fmt: skip
+    elif abs(rest - found) <= slack(found):
+        tool.values["RE"] = found
+        tool.words["RE"] = field
+    else:
+        other = f"whose corner then has {rest:.10g}" if rest >= 0.0 else "which is then wider than the tool"
+        tool.doubts.append(
+            f"{field} {found:.10g} is the radius of its corner, or of the flat at its tip, {other}: add CornerRadius, which decides"
+        )
 
 
 def _feed(value: Any, field: str) -> float:

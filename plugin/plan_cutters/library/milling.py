@@ -104,6 +104,8 @@ def _cutter(tool: Listed, ask: Ask) -> Cutter:
     sort = _sort(tool)
     if tool.faults:
         raise UnfitError("; ".join(tool.faults), broken=True)
+    if tool.doubts:
+        raise UnfitError("; ".join(tool.doubts))
     _agree(tool)
     _complete(tool, (*tool.needs, *_NEEDS.get(sort, ())), ask)
     if tool.stated is not None:
@@ -185,8 +187,8 @@ def _above(tool: Listed, bare: Cutter, length: float) -> tuple[Segment, ...]:
     shoulder = min(v.get("LN", 0.0), length) - at
     if shoulder > SAME:
         if "DN" not in v:
-            tool.notes.append(f"no {tool.word('DN')}: {tool.said('LN')} as wide as {tool.word('DC')}")
-        found.append(Segment(0.5 * v.get("DN", v["DC"]), round(shoulder, 9)))
+            tool.notes.append(f"no {tool.word('DN')}: {tool.said('LN')} as wide as {_widest(tool, bare)}")
+        found.append(Segment(0.5 * v["DN"] if "DN" in v else _wide(bare, v["DC"]), round(shoulder, 9)))
         at += shoulder
     shaft = up_to(tool.shaft, length - at) if length - at > SAME else ()
     found += shaft
@@ -206,6 +208,19 @@ def _above(tool: Listed, bare: Cutter, length: float) -> tuple[Segment, ...]:
         f"the {len(straight)} sections of its shaft are taken as {len(around)} around them, up to {wider:.3g} mm wider"
     )
     return around
+
+
+def _wide(bare: Cutter, diameter: float) -> float:
+    """The radius of a shoulder without one, mm: no flute reaches farther out."""
+    return round(max(0.5 * diameter, top_radius(bare)), 9)
+
+
+def _widest(tool: Listed, bare: Cutter) -> str:
+    """What `_wide` is the radius of."""
+    wide = 2.0 * _wide(bare, tool.values["DC"])
+    if wide <= tool.values["DC"] + slack(wide):
+        return tool.word("DC")
+    return f"its flutes where they end, {wide / tool.scale:.6g}"
 
 
 def _shank(tool: Listed, at: float, length: float) -> float:
