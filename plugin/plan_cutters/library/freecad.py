@@ -46,12 +46,13 @@ _PARAMETERS = (
     ("OAL", ("Length",)),
     ("DMM", ("ShankDiameter", "ShaftDiameter")),
     ("TIP", ("TipDiameter", "FlatDiameter")),
+    ("DN", ("NeckDiameter",)),
 )
 #: Fields that one release means as the radius of the flat at the tip, and another as that of the corner.
 _FLATS = ("FlatRadius", "TorusRadius")
 _ANGLE = "CuttingEdgeAngle"
-#: What these shapes have no place for in their drawing.
-_IGNORED = ("NeckDiameter", "NeckLength", _ANGLE)
+#: Its drawing does not say from where it counts.
+_NECK = "NeckLength"
 #: What shapes are among mills; the others stay what they are called.
 _SORTS = {
     "endmill": "flat end mill",
@@ -194,13 +195,20 @@ def _tool(given: dict[str, Any], place: str, number: int | None) -> Listed:
     if tool.sort:
         for word in _FLATS:
             _corner(tool, parameters.get(word), word, length)
-    for word in _IGNORED if tool.sort else ():
-        if word != _ANGLE or tool.sort != "chamfer mill":
-            given_ = str(parameters.get(word) or "")
-            if re.search("[1-9]", given_):
-                tool.notes.append(f"{word} {given_[:40]} is not used")
+        neck = str(parameters.get(_NECK) or "")
+        if re.search("[1-9]", neck):
+            tool.notes.append(f"{_NECK} {neck[:40]} is not used")
+    angle = parameters.get(_ANGLE)
     if tool.sort == "chamfer mill":
-        tool.take("TA", parameters.get(_ANGLE), _ANGLE, _half_angle)
+        tool.take("TA", angle, _ANGLE, _half_angle)
+        if kind.lower() == "chamfer" and 0.0 < tool.values.get("TA", 0.0) < 45.0:
+            tool.doubts.append(f"{_ANGLE} {shown(angle)} is the whole angle of its cone or that of its flank from the axis: "
+                               f"write it as TOML (docs/tool_libraries.md)")  # fmt: skip
+    elif tool.sort and angle not in (None, ""):
+        whole = tool.tried(lambda: _angle(angle, _ANGLE), 0.0)
+        if whole not in (0.0, 180.0):
+            tool.doubts.append(f"{_ANGLE} {shown(angle)}: a {kind} has no cone; leave it out, or write it as TOML "
+                               f"(docs/tool_libraries.md)")  # fmt: skip
     tool.words["LPR"] = "length below the holder"
     attribute = given.get("attribute")
     if isinstance(attribute, dict):
@@ -278,17 +286,18 @@ def _length(value: Any, field: str, imperial: bool, tool: Listed) -> float:
     return found * scale
 
 
-def _half_angle(value: Any, field: str) -> float:
-    """FreeCAD gives the whole angle of a point."""
+def _angle(value: Any, field: str) -> float:
     if not isinstance(value, str):
-        return _half(number_of(value, field), field)
+        return number_of(value, field)
     match = _QUANTITY.fullmatch(value)
     if not match or match[2].lower() not in _DEGREES:
         raise FaultError(f"{field} is {shown(value)}, not an angle in degrees")
-    return _half(number_in(match[1], field)[0], field)
+    return number_in(match[1], field)[0]
 
 
-def _half(angle: float, field: str) -> float:
+def _half_angle(value: Any, field: str) -> float:
+    """FreeCAD gives the whole angle of a point."""
+    angle = _angle(value, field)
     if not 0.0 <= angle < 180.0:
         raise FaultError(f"{field} is {angle:g}: the angle of a point lies between 0 and 180 degrees")
     return 0.5 * angle

@@ -111,6 +111,9 @@ def _cutter(tool: Listed, ask: Ask) -> Cutter:
     if tool.stated is not None:
         return _as_stated(tool, tool.stated, ask)
     bare = CUTTING[sort](tool)
+    widest = 2.0 * max(bare.radius, top_radius(bare))
+    if tool.values.get("DCX", 0.0) > widest + slack(widest):
+        raise UnfitError(f"{tool.said('DCX')} is wider than all that its other dimensions say: {widest / tool.scale:.6g}")
     length = _stickout(tool, ask)
     if length < tool.values["LCF"] - slack(length):
         raise UnfitError(f"the assumed stick-out of {length:g} mm is shorter than its flutes, {tool.said('LCF')}")
@@ -184,6 +187,9 @@ def _above(tool: Listed, bare: Cutter, length: float) -> tuple[Segment, ...]:
     """The sections from the end of the flutes to the holder's nose."""
     v, at = tool.values, _top(bare, tool)
     found: list[Segment] = []
+    neck = 0.5 * v["DN"] if "DN" in v and "LN" not in v else 0.0
+    if neck and tool.shaft:
+        raise UnfitError(f"{tool.word('LN')} is missing: where its shaft's sections begin over {tool.said('DN')}")
     shoulder = min(v.get("LN", 0.0), length) - at
     if shoulder > SAME:
         if "DN" not in v:
@@ -194,7 +200,9 @@ def _above(tool: Listed, bare: Cutter, length: float) -> tuple[Segment, ...]:
     found += shaft
     at += math.fsum(stage.length for stage in shaft)
     if length - at > SAME:
-        found.append(Segment(_shank(tool, at, length), round(length - at, 9)))
+        found.append(Segment(max(_shank(tool, at, length), neck), round(length - at, 9)))
+        if neck:
+            tool.notes.append(f"how high {tool.said('DN')} reaches is not known: what stands above its flutes is no thinner")
         if v["DMM"] < v["DC"] - slack(v["DC"]):
             tool.notes.append(f"{tool.said('DMM')} is thinner than {tool.said('DC')}")
         elif v["DMM"] < 2.0 * top_radius(bare) - slack(v["DMM"]):
