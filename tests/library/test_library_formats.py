@@ -323,7 +323,8 @@ NUMBERS = st.floats(0.5, 12).map(lambda v: round(v, 4))
 @settings(max_examples=60, deadline=None)
 def test_inches_and_millimetres_are_the_same_cutters(tmp_path_factory, diameter, neck, more, nose, kind):
     path = tmp_path_factory.mktemp("scaled") / "a.json"
-    tool = fusion(kind, DC=diameter, RE=round((0.5 if kind == "ball end mill" else 0.3) * diameter, 4), LCF=diameter + 1, shoulder_length=diameter + neck + 1,
+    corner = round((0.5 if kind == "ball end mill" else 0.3) * diameter, 4)
+    tool = fusion(kind, DC=diameter, RE=corner, LCF=diameter + 1, shoulder_length=diameter + neck + 1,
                   LB=diameter + neck + more + 5, OAL=60, SFDM=diameter, shoulder_diameter=diameter, shaft=None,
                   holder={"unit": "millimeters", "segments": [
                       section(more, diameter + nose, diameter + 2 * nose)]})  # fmt: skip
@@ -497,7 +498,9 @@ def test_a_tapered_mill_that_is_no_ball_says_so(tmp_path):
 
 
 def test_two_diameters_at_a_tip_are_not_chosen_from(tmp_path):
-    tool = fusion("tapered mill", DC=6, RE=0, tip_diameter=2, TA=5, shoulder_length=None, shoulder_diameter=None, shaft=None)
+    tool = fusion(
+        "tapered mill", DC=6, RE=0, tip_diameter=2, TA=5, shoulder_length=None, shoulder_diameter=None, shaft=None
+    )
     (entry,) = listing(write_json(tmp_path / "a.json", [tool])).entries
     assert entry.cutter is None
     assert not entry.broken
@@ -505,7 +508,9 @@ def test_two_diameters_at_a_tip_are_not_chosen_from(tmp_path):
 
 
 def test_flutes_wider_than_the_shank_are_noted(tmp_path):
-    tool = fusion("tapered mill", DC=2, RE=0, TA=30, shoulder_length=None, shoulder_diameter=None, shaft=None, holder=None)
+    tool = fusion(
+        "tapered mill", DC=2, RE=0, TA=30, shoulder_length=None, shoulder_diameter=None, shaft=None, holder=None
+    )
     (entry,) = listing(write_json(tmp_path / "a.json", [tool]), holder="none").entries
     wide = 2 + 2 * 12 * math.tan(math.radians(30))
     assert f"SFDM 8 is thinner than its flutes where they end, {wide:.6g}" in entry.notes
@@ -549,7 +554,8 @@ def test_hsmworks_tools_in_groups_are_listed(tmp_path):
 def test_hsmworks_holder_in_its_own_unit(tmp_path):
     body = ('body-length="2" diameter="0.5" flute-length="1" shaft-diameter="0.5" overall-length="4" '
             'assembly-gauge-length="3"')  # fmt: skip
-    holder = '<holder unit="millimeters" gauge-length="25.4"><section length="0" diameter="30"/><section length="25.4" diameter="30"/></holder>'
+    sections = '<section length="0" diameter="30"/><section length="25.4" diameter="30"/>'
+    holder = f'<holder unit="millimeters" gauge-length="25.4">{sections}</holder>'
     path = tmp_path / "a.hsmlib"
     path.write_text(
         f'<tool-library><tool type="flat end mill" unit="inches"><body {body}/>{holder}</tool></tool-library>'

@@ -1,6 +1,7 @@
-"""Where a field is missing or can mean two things, the judged tool is no thinner than any of them, or there is none (docs/tool_fields.md)."""
+"""Where a field is missing or can mean two things, the judged tool encloses each of them, or there is none (docs/tool_fields.md)."""
 
 import math
+import re
 import sys
 import types
 
@@ -10,7 +11,6 @@ from hypothesis import strategies as st
 
 from plan_cutters import Cutter, LibraryError
 from plan_cutters.domain.shapes import flute_length
-from plan_cutters.library import read_library
 from plan_cutters.library.read import listing
 from tests.support.places import ROOT
 from tests.support.tool_files import fusion, section, write_bit, write_csv, write_hsmlib, write_json
@@ -45,6 +45,11 @@ def test_both_readings_of_a_quarter_of_the_diameter_are_one_tool(tmp_path, field
     assert bit(tmp_path, **{field: "1.5 mm"}).cutter.id == "R3L40rc1.5F12S3"
 
 
+def test_a_bull_nose_bit_states_its_corner(tmp_path):
+    assert "CornerRadius is missing (the radius of its corner)" in bit(tmp_path).unused
+    assert bit(tmp_path, CornerRadius="0 mm").cutter.corner_radius == 0
+
+
 @pytest.mark.parametrize("field", ["FlatRadius", "TorusRadius"])
 @pytest.mark.parametrize("flat", ["0.5 mm", "2.5 mm"])
 def test_a_corner_radius_decides_if_the_other_agrees_in_one_reading(tmp_path, field, flat):
@@ -56,7 +61,12 @@ def test_a_corner_radius_decides_if_the_other_agrees_in_one_reading(tmp_path, fi
 def record(cutter):
     """What a plan has of a cutter, as far as a bit needs it."""
     stages = [{"part": part, "radius_mm": stage.radius} for part, _, stage in cutter.stages]
-    kept = {"shape": cutter.shape, "radius": cutter.radius, "corner_radius": cutter.corner_radius, "length": cutter.length}
+    kept = {
+        "shape": cutter.shape,
+        "radius": cutter.radius,
+        "corner_radius": cutter.corner_radius,
+        "length": cutter.length,
+    }
     return kept | {"taper_deg": math.degrees(cutter.taper), "flutes_mm": flute_length(cutter), "stages": stages}
 
 
@@ -70,7 +80,9 @@ def macro(monkeypatch):
     return found
 
 
-@pytest.mark.parametrize("spec", ["D6L40F12S6", "D6L40rc0.5F12S6", "D6L40rc1.5F12S4", "D6L40rc2.9F12S8", "D6L40rc3F12S6"])
+@pytest.mark.parametrize(
+    "spec", ["D6L40F12S6", "D6L40rc0.5F12S6", "D6L40rc1.5F12S4", "D6L40rc2.9F12S8", "D6L40rc3F12S6"]
+)
 def test_a_bit_of_the_macro_is_read_as_its_cutter(tmp_path, monkeypatch, spec):
     cutter = Cutter.parse(spec)
     shape, sizes = macro(monkeypatch)["bit_shape"](record(cutter))
@@ -100,6 +112,7 @@ def test_a_shoulder_without_a_diameter_is_as_wide_as_the_flutes_below_it(tmp_pat
         ("tapered mill", {"RE": 1}, "is missing (the angle of its flank from the axis)"),
         ("dovetail mill", {"TA": 5}, "is missing (the radius of its corner)"),
         ("chamfer mill", {"TA": 45}, "is missing (the diameter at its tip)"),
+        ("chamfer mill", {"TA": 45, "tip_diameter": 1, "RE": 1}, "with a corner radius are not read"),
         ("ball end mill", {"TA": 5}, "is missing (the radius of its corner)"),
         ("ball end mill", {"RE": 1}, 'called "ball end mill", but'),
         ("ball end mill", {"RE": 0}, 'called "ball end mill", but'),
@@ -133,11 +146,22 @@ def test_a_zero_is_an_answer(tmp_path, suffix, kind, change, said):
 
 @pytest.mark.parametrize("kind", ["flat end mill", "ball end mill", "chamfer mill", "lollipop mill", "dovetail mill"])
 def test_a_largest_diameter_that_nothing_explains_is_not_ignored(tmp_path, kind):
-    more = {"TA": 5, "tip_diameter": 1} if kind == "chamfer mill" else {"TA": 5, "RE": 0} if kind == "dovetail mill" else {}
-    plain = PLAIN | ({"shoulder_diameter": 4, "shoulder_length": 20, "LCF": 5} if kind == "lollipop mill" else {}) | more
+    more = (
+        {"TA": 45, "tip_diameter": 1}
+        if kind == "chamfer mill"
+        else {"TA": 5, "RE": 0}
+        if kind == "dovetail mill"
+        else {}
+    )
+    plain = (
+        PLAIN | ({"shoulder_diameter": 4, "shoulder_length": 20, "LCF": 5} if kind == "lollipop mill" else {}) | more
+    )
     path = tmp_path / "a.json"
     assert entry(write_json(path, [fusion(kind, DCX=6, **plain)])).cutter
-    assert "DCX 8 is wider than all that its other dimensions say" in entry(write_json(path, [fusion(kind, DCX=8, **plain)])).unused
+    assert (
+        "DCX 8 is wider than all that its other dimensions say"
+        in entry(write_json(path, [fusion(kind, DCX=8, **plain)])).unused
+    )
 
 
 @pytest.mark.parametrize("suffix", WRITERS)
@@ -179,7 +203,9 @@ def test_a_flat_at_the_tip_of_a_cone_is_its_tip_diameter_alone(tmp_path):
 def test_a_first_section_has_a_lower_end(tmp_path):
     path = tmp_path / "a.hsmlib"
     body = '<body body-length="40" diameter="6" flute-length="12" shaft-diameter="6"/>'
-    text = f'<tool-library><tool type="flat end mill" unit="millimeters">{body}<holder>%s</holder></tool></tool-library>'
+    text = (
+        f'<tool-library><tool type="flat end mill" unit="millimeters">{body}<holder>%s</holder></tool></tool-library>'
+    )
     path.write_text(text % '<section length="20" diameter="30"/>')
     with pytest.raises(LibraryError, match="no diameter at its lower end"):
         entry(path)
@@ -216,14 +242,29 @@ def reach(cutter, height):
 )  # fmt: skip
 @settings(max_examples=200, deadline=None)
 def test_what_is_judged_above_the_flutes_encloses_each_reading(tmp_path_factory, tip, neck, height, shank, half, share):
-    """Readings of a shoulder that lacks its diameter: as wide as the tip, or as the flutes' end; of one that lacks its height: any."""
+    """A shoulder without a diameter is as wide as the tip or as the flutes' end; one without a height has any."""
     path = tmp_path_factory.mktemp("fields") / "a.json"
     plain = {"DC": tip, "RE": 0, "TA": half, "LCF": 12, "LB": 40, "SFDM": shank, "shaft": None, "holder": None}
     top = 0.5 * tip + 12 * math.tan(math.radians(half))
-    judged = entry(write_json(path, [fusion("tapered mill", **plain, shoulder_length=height, shoulder_diameter=neck)])).cutter
+    judged = entry(
+        write_json(path, [fusion("tapered mill", **plain, shoulder_length=height, shoulder_diameter=neck)])
+    ).cutter
     assert judged is not None
     at = 12 + 28 * share
     for ends in [12.0, 20.0, 40.0] if height is None and neck else [height or 12.0]:
         for wide in [neck / 2] if neck else [0.5 * tip, top]:
             real = wide if at < ends else 0.5 * shank
             assert reach(judged, at) >= real - 1e-6
+
+
+def test_each_answer_of_the_page_has_its_test():
+    page = (ROOT / "docs" / "tool_fields.md").read_text(encoding="utf-8")
+    tests = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "tests" / "library").glob("*.py"))
+    named = re.findall(r"\b(test_\w+)(?!\.py)\b", page)
+    assert len(set(named)) > 20
+    missing = {
+        name
+        for name in named
+        if f"def {name}(" not in tests and not (ROOT / "tests" / "library" / f"{name}.py").exists()
+    }
+    assert not missing

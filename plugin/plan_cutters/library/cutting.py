@@ -39,7 +39,9 @@ def corner_of(tool: Listed, radius: float, promise: str) -> float:
             tool.notes.append(f"no {tool.word('RE')}: half of {tool.word('DC')}")
             return radius
         if abs(corner - radius) > slack(radius):
-            raise UnfitError(f'called "{tool.kind}", but {tool.said("RE")} is not half of {tool.said("DC")}: correct it, or call it bull nose')
+            raise UnfitError(
+                f'called "{tool.kind}", but {tool.said("RE")} is not half of {tool.said("DC")}: correct it, or call it bull nose'
+            )
     elif promise in ("bull", "slot", "face", "taper") and tool.kind != "taper":
         must_state(tool, "RE", _CORNER)
     if tool.stated is None and abs(corner - radius) <= slack(radius):
@@ -65,7 +67,9 @@ def _end(tool: Listed, promise: str) -> Cutter:
         note_tapered(tool)
         return _leaning(tool, math.radians(tool.values["TA"]))
     if tool.values.get("TIP", 0.0) and abs(tool.values["TIP"] - tool.values["DC"]) > slack(radius):
-        raise UnfitError(f"{tool.said('TIP')} is not {tool.said('DC')}, and there is no {tool.word('TA')}: a straight mill has one diameter")
+        raise UnfitError(
+            f"{tool.said('TIP')} is not {tool.said('DC')}, and there is no {tool.word('TA')}: a straight mill has one diameter"
+        )
     if tool.values.get("RE", 0.0) > radius + slack(radius):
         raise UnfitError(f"{tool.said('RE')} is more than half of {tool.said('DC')}", broken=True)
     return Cutter(radius, flutes, corner_of(tool, radius, promise), tool.name, flutes=flutes)

@@ -219,8 +219,8 @@ def _tool(given: dict[str, Any], place: str, number: int | None) -> Listed:
 def _corner(tool: Listed, value: Any, field: str, length: Callable[[Any, str], float]) -> None:
     """Take the radius of a flat or of a corner as the corner radius, where both readings make the same tool.
 
-    By FreeCAD's surface operation it is the flat's radius; by the drawing of the shape in other releases it is the corner's. Neither
-    tool encloses the other at a contact.
+    By FreeCAD's surface operation it is the flat's radius; by one of its shapes it is the corner's. Neither tool encloses
+    the other at a contact.
     """
     if value in (None, "") or "DC" not in tool.values:
         return
@@ -232,20 +232,21 @@ def _corner(tool: Listed, value: Any, field: str, length: Callable[[Any, str], f
     rest = round(0.5 * tool.values["DC"] - found, 9)
     if tool.sort == "chamfer mill":
         if found:
-            tool.doubts.append(f"{field} {found:.10g} is the radius of its corner or of the flat at its tip: give TipDiameter alone")
+            tool.doubts.append(
+                f"{field} {found:.10g} is the radius of its corner or of the flat at its tip: give TipDiameter alone"
+            )
     elif tool.states("RE"):
         corner = tool.values.get("RE", 0.0)
         if min(abs(corner - found), abs(corner - rest)) > slack(corner):
-            tool.faults.append(f"{tool.said('RE')} and {field} {found:.10g} do not agree, whether that is the radius of the corner or of "
-                               f"the flat at the tip")  # fmt: skip
+            tool.faults.append(f"{tool.said('RE')} and {field} {found:.10g} do not agree, whether that is the radius of the corner "
+                               "or of the flat at the tip")  # fmt: skip
     elif abs(rest - found) <= slack(found):
         tool.values["RE"] = found
         tool.words["RE"] = field
     else:
         other = f"whose corner then has {rest:.10g}" if rest >= 0.0 else "which is then wider than the tool"
-        tool.doubts.append(
-            f"{field} {found:.10g} is the radius of its corner, or of the flat at its tip, {other}: add CornerRadius, which decides"
-        )
+        tool.doubts.append(f"{field} {found:.10g} is the radius of its corner, or of the flat at its tip, {other}: "
+                           "add CornerRadius, which decides")  # fmt: skip
 
 
 def _feed(value: Any, field: str) -> float:

@@ -111,9 +111,11 @@ def _cutter(tool: Listed, ask: Ask) -> Cutter:
     if tool.stated is not None:
         return _as_stated(tool, tool.stated, ask)
     bare = CUTTING[sort](tool)
-    widest = 2.0 * max(bare.radius, top_radius(bare))
+    widest = max(tool.values["DC"], 2.0 * top_radius(bare))
     if tool.values.get("DCX", 0.0) > widest + slack(widest):
-        raise UnfitError(f"{tool.said('DCX')} is wider than all that its other dimensions say: {widest / tool.scale:.6g}")
+        raise UnfitError(
+            f"{tool.said('DCX')} is wider than all that its other dimensions say: {widest / tool.scale:.6g}"
+        )
     length = _stickout(tool, ask)
     if length < tool.values["LCF"] - slack(length):
         raise UnfitError(f"the assumed stick-out of {length:g} mm is shorter than its flutes, {tool.said('LCF')}")
@@ -202,7 +204,9 @@ def _above(tool: Listed, bare: Cutter, length: float) -> tuple[Segment, ...]:
     if length - at > SAME:
         found.append(Segment(max(_shank(tool, at, length), neck), round(length - at, 9)))
         if neck:
-            tool.notes.append(f"how high {tool.said('DN')} reaches is not known: what stands above its flutes is no thinner")
+            tool.notes.append(
+                f"how high {tool.said('DN')} reaches is not known: what stands above its flutes is no thinner"
+            )
         if v["DMM"] < v["DC"] - slack(v["DC"]):
             tool.notes.append(f"{tool.said('DMM')} is thinner than {tool.said('DC')}")
         elif v["DMM"] < 2.0 * top_radius(bare) - slack(v["DMM"]):
