@@ -1,4 +1,4 @@
-"""Where a field is missing or can mean two things, the judged tool encloses each of them, or there is none (docs/tool_fields.md)."""
+"""Where a field is missing or has two meanings, the judged tool encloses each, or there is none (docs/tool_fields.md)."""
 
 import math
 import re
