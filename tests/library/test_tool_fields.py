@@ -60,7 +60,10 @@ def test_a_corner_radius_decides_if_the_other_agrees_in_one_reading(tmp_path, fi
 
 def record(cutter):
     """What a plan has of a cutter, as far as a bit needs it."""
-    stages = [{"part": part, "radius_mm": stage.radius} for part, _, stage in cutter.stages]
+    stages = [
+        {"part": part, "radius_mm": stage.radius, "upper_radius_mm": stage.upper_radius}
+        for part, _, stage in cutter.stages
+    ]
     kept = {
         "shape": cutter.shape,
         "radius": cutter.radius,
@@ -85,9 +88,19 @@ def macro(monkeypatch):
 )
 def test_a_bit_of_the_macro_is_read_as_its_cutter(tmp_path, monkeypatch, spec):
     cutter = Cutter.parse(spec)
+    assert written(tmp_path, monkeypatch, cutter).id == cutter.id
+
+
+@pytest.mark.parametrize(("spec", "shank"), [("R3L40F12N4x8S3", 4), ("R3L40F12N2x8S3", 3), ("R3L40F12N2.8:4x8S3", 4)])
+def test_a_bit_of_the_macro_is_nowhere_thinner_than_a_neck(tmp_path, monkeypatch, spec, shank):
+    assert written(tmp_path, monkeypatch, Cutter.parse(spec)).shank_radius == shank
+
+
+def written(tmp_path, monkeypatch, cutter):
+    """What is read of the bit that the macro makes of a cutter."""
     shape, sizes = macro(monkeypatch)["bit_shape"](record(cutter))
     path = write_bit(tmp_path / "bit.fctb", shape, **{name: f"{value:.9g} mm" for name, value in sizes.items()})
-    assert entry(path, assume_stickout=40.0).cutter.id == cutter.id
+    return entry(path, assume_stickout=40.0).cutter
 
 
 @pytest.mark.parametrize("suffix", WRITERS)

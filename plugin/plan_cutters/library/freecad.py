@@ -239,7 +239,7 @@ def _corner(tool: Listed, value: Any, field: str, length: Callable[[Any, str], f
         corner = tool.values.get("RE", 0.0)
         if min(abs(corner - found), abs(corner - rest)) > slack(corner):
             tool.faults.append(
-                f"{tool.said('RE')} and {field} {found:.10g} do not agree, be that the radius of the corner or of the flat at the tip"
+                f"{tool.said('RE')} and {field} {found:.10g} do not agree, as the radius of the corner or of the flat at the tip"
             )
     elif abs(rest - found) <= slack(found):
         tool.values["RE"] = found
