@@ -161,7 +161,7 @@ def test_what_lacks_something_is_listed_with_the_field(tmp_path, change, said):
         ({"kind": "lollipop mill", "shoulder_diameter": 7}, "thinner"),
         ({"kind": "lollipop mill", "LCF": 2, "shoulder_length": None}, "below the middle"),
         ({"kind": "lollipop mill", "LCF": 5, "RE": 2}, "RE 2 is not half of DC 6"),
-        ({"kind": "dovetail mill", "TA": 30}, "meet below"),
+        ({"kind": "dovetail mill", "TA": 30, "RE": 0}, "meet below"),
         ({"kind": "tapered mill", "TA": 10, "RE": 5}, "does not fit"),
         ({"kind": "chamfer mill", "TA": 45, "tip_diameter": 9}, "tip-diameter 9 is more than DC 6"),
     ],
@@ -196,14 +196,13 @@ def test_equality_is_legal(tmp_path):
     ("kind", "change", "cutter", "note"),
     [
         ("flat end mill", {"RE": 0.5}, "R3L40rc0.5F12", "read as a bull nose"),
-        ("bull nose end mill", {}, "R3L40F12", "read as a flat end"),
+        ("bull nose end mill", {"RE": 0}, "R3L40F12", "read as a flat end"),
         ("bull nose end mill", {"RE": 3}, "R3L40rc3F12", "read as a ball end"),
-        ("ball end mill", {"RE": 1}, "R3L40rc1F12", "read as a bull nose"),
         ("ball end mill", {}, "R3L40rc3F12", "no RE: half of DC"),
         ("flat end mill", {"TA": 3}, "R3L40T3F12", "read as tapered"),
-        ("tapered mill", {"RE": 1}, "R3L40rc1F12", "no TA: read as straight"),
-        ("slot mill", {}, "R3L40F12", ""),
-        ("face mill", {}, "R3L40F12", ""),
+        ("tapered mill", {"RE": 1, "TA": 0}, "R3L40rc1F12", "TA 0: read as straight"),
+        ("slot mill", {"RE": 0}, "R3L40F12", ""),
+        ("face mill", {"RE": 0, "TA": 0}, "R3L40F12", ""),
     ],
 )
 def test_geometry_wins_over_the_name_and_says_so(tmp_path, kind, change, cutter, note):
@@ -217,7 +216,7 @@ def test_leaning_flanks_are_measured_at_the_tip(tmp_path):
     plain = {"shaft": None, "shoulder_length": None, "shoulder_diameter": None}
     tools = [
         fusion("tapered mill", DC=12, RE=2.5, TA=10, LCF=24, LB=72, OAL=144, SFDM=20.46, **plain),
-        fusion("dovetail mill", DC=20, TA=30, LCF=10, LB=40, OAL=80, SFDM=8.45, **plain),
+        fusion("dovetail mill", DC=20, RE=0, TA=30, LCF=10, LB=40, OAL=80, SFDM=8.45, **plain),
     ]
     taper, dovetail = read_library(write_json(tmp_path / "a.json", tools))
     from plan_cutters.domain.shapes import top_radius
@@ -324,7 +323,8 @@ NUMBERS = st.floats(0.5, 12).map(lambda v: round(v, 4))
 @settings(max_examples=60, deadline=None)
 def test_inches_and_millimetres_are_the_same_cutters(tmp_path_factory, diameter, neck, more, nose, kind):
     path = tmp_path_factory.mktemp("scaled") / "a.json"
-    tool = fusion(kind, DC=diameter, RE=round(0.3 * diameter, 4), LCF=diameter + 1, shoulder_length=diameter + neck + 1,
+    corner = round((0.5 if kind == "ball end mill" else 0.3) * diameter, 4)
+    tool = fusion(kind, DC=diameter, RE=corner, LCF=diameter + 1, shoulder_length=diameter + neck + 1,
                   LB=diameter + neck + more + 5, OAL=60, SFDM=diameter, shoulder_diameter=diameter, shaft=None,
                   holder={"unit": "millimeters", "segments": [
                       section(more, diameter + nose, diameter + 2 * nose)]})  # fmt: skip
@@ -498,7 +498,9 @@ def test_a_tapered_mill_that_is_no_ball_says_so(tmp_path):
 
 
 def test_two_diameters_at_a_tip_are_not_chosen_from(tmp_path):
-    tool = fusion("tapered mill", DC=6, tip_diameter=2, TA=5, shoulder_length=None, shoulder_diameter=None, shaft=None)
+    tool = fusion(
+        "tapered mill", DC=6, RE=0, tip_diameter=2, TA=5, shoulder_length=None, shoulder_diameter=None, shaft=None
+    )
     (entry,) = listing(write_json(tmp_path / "a.json", [tool])).entries
     assert entry.cutter is None
     assert not entry.broken
@@ -506,7 +508,9 @@ def test_two_diameters_at_a_tip_are_not_chosen_from(tmp_path):
 
 
 def test_flutes_wider_than_the_shank_are_noted(tmp_path):
-    tool = fusion("tapered mill", DC=2, TA=30, shoulder_length=None, shoulder_diameter=None, shaft=None, holder=None)
+    tool = fusion(
+        "tapered mill", DC=2, RE=0, TA=30, shoulder_length=None, shoulder_diameter=None, shaft=None, holder=None
+    )
     (entry,) = listing(write_json(tmp_path / "a.json", [tool]), holder="none").entries
     wide = 2 + 2 * 12 * math.tan(math.radians(30))
     assert f"SFDM 8 is thinner than its flutes where they end, {wide:.6g}" in entry.notes
@@ -550,7 +554,8 @@ def test_hsmworks_tools_in_groups_are_listed(tmp_path):
 def test_hsmworks_holder_in_its_own_unit(tmp_path):
     body = ('body-length="2" diameter="0.5" flute-length="1" shaft-diameter="0.5" overall-length="4" '
             'assembly-gauge-length="3"')  # fmt: skip
-    holder = '<holder unit="millimeters" gauge-length="25.4"><section length="25.4" diameter="30"/></holder>'
+    sections = '<section length="0" diameter="30"/><section length="25.4" diameter="30"/>'
+    holder = f'<holder unit="millimeters" gauge-length="25.4">{sections}</holder>'
     path = tmp_path / "a.hsmlib"
     path.write_text(
         f'<tool-library><tool type="flat end mill" unit="inches"><body {body}/>{holder}</tool></tool-library>'

@@ -9,6 +9,7 @@ from plan_cutters.library.raw_tool import Listed
 
 #: Dimensions given twice agree up to the rounding of the file, mm and as a share.
 _ROUNDED, _SHARE = 1e-3, 1e-5
+_CORNER = "the radius of its corner"
 
 
 class UnfitError(Exception):
@@ -24,12 +25,25 @@ def slack(value: float) -> float:
     return _ROUNDED + _SHARE * abs(value)
 
 
+def must_state(tool: Listed, key: str, what: str) -> None:
+    """Refuse a tool whose tip is not known without a dimension; 0 says that it has none."""
+    if not tool.states(key):
+        raise UnfitError(f"{tool.word(key)} is missing ({what}): add it; 0 says that it has none")
+
+
 def corner_of(tool: Listed, radius: float, promise: str) -> float:
-    """The corner radius, and what the tool then is where its name says otherwise."""
+    """The corner radius, and what the tool then is where its name says otherwise; a flat end has none unless it says so."""
     corner = tool.values.get("RE", 0.0)
-    if not corner and promise == "ball":
-        tool.notes.append(f"no {tool.word('RE')}: half of {tool.word('DC')}")
-        return radius
+    if promise == "ball":
+        if not tool.states("RE"):
+            tool.notes.append(f"no {tool.word('RE')}: half of {tool.word('DC')}")
+            return radius
+        if abs(corner - radius) > slack(radius):
+            raise UnfitError(
+                f'called "{tool.kind}", but {tool.said("RE")} is not half of {tool.said("DC")}: correct it, or call it bull nose'
+            )
+    elif promise in ("bull", "slot", "face", "taper") and tool.kind != "taper":
+        must_state(tool, "RE", _CORNER)
     if tool.stated is None and abs(corner - radius) <= slack(radius):
         corner = radius
     is_ = "flat" if not corner else "ball" if corner == radius else "bull"
@@ -48,10 +62,14 @@ def note_tapered(tool: Listed) -> None:
 def _end(tool: Listed, promise: str) -> Cutter:
     radius, flutes = 0.5 * tool.values["DC"], tool.values["LCF"]
     if "TA" in tool.values:
+        if promise != "flat":
+            must_state(tool, "RE", _CORNER)
         note_tapered(tool)
         return _leaning(tool, math.radians(tool.values["TA"]))
     if tool.values.get("TIP", 0.0) and abs(tool.values["TIP"] - tool.values["DC"]) > slack(radius):
-        tool.notes.append(f"{tool.said('TIP')} is not used: there is no {tool.word('TA')}")
+        raise UnfitError(
+            f"{tool.said('TIP')} is not {tool.said('DC')}, and there is no {tool.word('TA')}: a straight mill has one diameter"
+        )
     if tool.values.get("RE", 0.0) > radius + slack(radius):
         raise UnfitError(f"{tool.said('RE')} is more than half of {tool.said('DC')}", broken=True)
     return Cutter(radius, flutes, corner_of(tool, radius, promise), tool.name, flutes=flutes)
@@ -84,13 +102,16 @@ def _leaning(tool: Listed, taper: float) -> Cutter:
 
 
 def _taper(tool: Listed) -> Cutter:
+    must_state(tool, "RE", _CORNER)
+    must_state(tool, "TA", "the angle of its flank from the axis")
     if "TA" not in tool.values:
-        tool.notes.append(f"no {tool.word('TA')}: read as straight")
+        tool.notes.append(f"{tool.word('TA')} 0: read as straight")
         return _end(tool, "taper")
     return _leaning(tool, math.radians(tool.values["TA"]))
 
 
 def _dovetail(tool: Listed) -> Cutter:
+    must_state(tool, "RE", _CORNER)
     return _leaning(tool, -math.radians(tool.values["TA"]))
 
 
@@ -99,6 +120,8 @@ def _face(tool: Listed) -> Cutter:
     leans = "TA" if "TA" in v else "DCX" if v.get("DCX", 0.0) > v["DC"] + slack(v["DC"]) else ""
     if leans:
         raise UnfitError(f"{tool.said(leans)}: face mills with leaning edges are not read; write its outline as TOML")
+    if not tool.states("DCX"):
+        must_state(tool, "TA", "the angle of its edges from the axis")
     return _end(tool, "face")
 
 
@@ -109,6 +132,7 @@ def _chamfer(tool: Listed) -> Cutter:
         raise UnfitError(
             f"{tool.said('RE')}: chamfer mills with a corner radius are not read; write its outline as TOML"
         )
+    must_state(tool, "TIP", "the diameter at its tip")
     radius, tip, slope = 0.5 * v["DC"], 0.5 * v.get("TIP", 0.0), math.tan(math.radians(v["TA"]))
     height = (radius - tip) / slope
     points = [(0.0, 0.0), (tip, 0.0)] if tip else [(0.0, 0.0)]

@@ -5,6 +5,7 @@ itself counts in, unless the bit says that its units are imperial.
 """
 
 import re
+from collections.abc import Callable
 from itertools import pairwise
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Any
@@ -13,6 +14,7 @@ from cad_io.files import is_there
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.holder import Holder
 from plan_cutters.errors import CutterError, LibraryError
+from plan_cutters.library.cutting import slack
 from plan_cutters.library.files import MOST_TOOLS, Content, data_of, lines_of, too_many
 from plan_cutters.library.fusion_json import MOST_SECTIONS
 from plan_cutters.library.presets import Preset, take_feed
@@ -39,15 +41,18 @@ _FEED = re.compile(
 #: Our name of each dimension, and the names that shapes have had for it.
 _PARAMETERS = (
     ("DC", ("Diameter",)),
-    ("RE", ("CornerRadius", "FlatRadius", "TorusRadius")),
+    ("RE", ("CornerRadius",)),
     ("LCF", ("CuttingEdgeHeight", "CuttingEdgeLength")),
     ("OAL", ("Length",)),
     ("DMM", ("ShankDiameter", "ShaftDiameter")),
     ("TIP", ("TipDiameter", "FlatDiameter")),
+    ("DN", ("NeckDiameter",)),
 )
+#: Fields that one release means as the radius of the flat at the tip, and another as that of the corner.
+_FLATS = ("FlatRadius", "TorusRadius")
 _ANGLE = "CuttingEdgeAngle"
-#: What these shapes have no place for in their drawing.
-_IGNORED = ("NeckDiameter", "NeckLength", _ANGLE)
+#: Its drawing does not say from where it counts.
+_NECK = "NeckLength"
 #: What shapes are among mills; the others stay what they are called.
 _SORTS = {
     "endmill": "flat end mill",
@@ -187,18 +192,62 @@ def _tool(given: dict[str, Any], place: str, number: int | None) -> Listed:
             if not same:
                 both = f"{present[0]} is {shown(parameters[present[0]])}, {other} is {shown(parameters[other])}"
                 tool.faults.append(f"{both}: they mean the same")
-    for word in _IGNORED if tool.sort else ():
-        if word != _ANGLE or tool.sort != "chamfer mill":
-            given_ = str(parameters.get(word) or "")
-            if re.search("[1-9]", given_):
-                tool.notes.append(f"{word} {given_[:40]} is not used")
+    if tool.sort:
+        for word in _FLATS:
+            _corner(tool, parameters.get(word), word, length)
+        neck = str(parameters.get(_NECK) or "")
+        if re.search("[1-9]", neck):
+            tool.notes.append(f"{_NECK} {neck[:40]} is not used")
+    angle = parameters.get(_ANGLE)
     if tool.sort == "chamfer mill":
-        tool.take("TA", parameters.get(_ANGLE), _ANGLE, _half_angle)
+        tool.take("TA", angle, _ANGLE, _half_angle)
+        if kind.lower() == "chamfer" and 0.0 < tool.values.get("TA", 0.0) < 45.0:
+            tool.doubts.append(f"{_ANGLE} {shown(angle)} is the whole angle of its cone or that of its flank from the axis: "
+                               f"write it as TOML (docs/tool_libraries.md)")  # fmt: skip
+    elif tool.sort and angle not in (None, ""):
+        whole = tool.tried(lambda: _angle(angle, _ANGLE), 0.0)
+        if whole not in (0.0, 180.0):
+            tool.doubts.append(f"{_ANGLE} {shown(angle)}: a {kind} has no cone; leave it out, or write it as TOML "
+                               f"(docs/tool_libraries.md)")  # fmt: skip
     tool.words["LPR"] = "length below the holder"
     attribute = given.get("attribute")
     if isinstance(attribute, dict):
         take_feed(tool, [Preset("", attribute.get("cutting_feedrate"))], "cutting_feedrate", _feed)
     return tool
+
+
+def _corner(tool: Listed, value: Any, field: str, length: Callable[[Any, str], float]) -> None:
+    """Take the radius of a flat or of a corner as the corner radius, where both readings make the same tool.
+
+    By FreeCAD's surface operation it is the flat's radius; by one of its shapes it is the corner's. Neither tool encloses
+    the other at a contact.
+    """
+    if value in (None, "") or "DC" not in tool.values:
+        return
+    try:
+        found = mm(length(value, field), 1.0, field)
+    except FaultError as fault:
+        tool.faults.append(str(fault))
+        return
+    rest = round(0.5 * tool.values["DC"] - found, 9)
+    if tool.sort == "chamfer mill":
+        if found:
+            tool.doubts.append(
+                f"{field} {found:.10g} is the radius of its corner or of the flat at its tip: give TipDiameter alone"
+            )
+    elif tool.states("RE"):
+        corner = tool.values.get("RE", 0.0)
+        if min(abs(corner - found), abs(corner - rest)) > slack(corner):
+            tool.faults.append(
+                f"{tool.said('RE')} and {field} {found:.10g} do not agree, as the radius of the corner or of the flat at the tip"
+            )
+    elif abs(rest - found) <= slack(found):
+        tool.values["RE"] = found
+        tool.words["RE"] = field
+    else:
+        other = f"whose corner then has {rest:.10g}" if rest >= 0.0 else "which is then wider than the tool"
+        tool.doubts.append(f"{field} {found:.10g} is the radius of its corner, or of the flat at its tip, {other}: "
+                           "add CornerRadius, which decides")  # fmt: skip
 
 
 def _feed(value: Any, field: str) -> float:
@@ -239,17 +288,18 @@ def _length(value: Any, field: str, imperial: bool, tool: Listed) -> float:
     return found * scale
 
 
-def _half_angle(value: Any, field: str) -> float:
-    """FreeCAD gives the whole angle of a point."""
+def _angle(value: Any, field: str) -> float:
     if not isinstance(value, str):
-        return _half(number_of(value, field), field)
+        return number_of(value, field)
     match = _QUANTITY.fullmatch(value)
     if not match or match[2].lower() not in _DEGREES:
         raise FaultError(f"{field} is {shown(value)}, not an angle in degrees")
-    return _half(number_in(match[1], field)[0], field)
+    return number_in(match[1], field)[0]
 
 
-def _half(angle: float, field: str) -> float:
+def _half_angle(value: Any, field: str) -> float:
+    """FreeCAD gives the whole angle of a point."""
+    angle = _angle(value, field)
     if not 0.0 <= angle < 180.0:
         raise FaultError(f"{field} is {angle:g}: the angle of a point lies between 0 and 180 degrees")
     return 0.5 * angle

@@ -122,6 +122,10 @@ def _sections(element: Element, scale: float, where: str) -> list[Segment]:
             field = f"{where} {i} {key}"
             values.append(mm(_number(each.given[key], field), scale, field))
         height, upper = values
+        if lower is None and height:
+            raise FaultError(
+                f"{where} 1 has a length and no diameter at its lower end: put a section of length 0 before it"
+            )
         rows.append((height, upper if lower is None else lower, upper))
         lower = upper
     return sections(rows, where)

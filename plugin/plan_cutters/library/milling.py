@@ -104,11 +104,18 @@ def _cutter(tool: Listed, ask: Ask) -> Cutter:
     sort = _sort(tool)
     if tool.faults:
         raise UnfitError("; ".join(tool.faults), broken=True)
+    if tool.doubts:
+        raise UnfitError("; ".join(tool.doubts))
     _agree(tool)
     _complete(tool, (*tool.needs, *_NEEDS.get(sort, ())), ask)
     if tool.stated is not None:
         return _as_stated(tool, tool.stated, ask)
     bare = CUTTING[sort](tool)
+    widest = max(tool.values["DC"], 2.0 * top_radius(bare))
+    if tool.values.get("DCX", 0.0) > widest + slack(widest):
+        raise UnfitError(
+            f"{tool.said('DCX')} is wider than all that its other dimensions say: {widest / tool.scale:.6g}"
+        )
     length = _stickout(tool, ask)
     if length < tool.values["LCF"] - slack(length):
         raise UnfitError(f"the assumed stick-out of {length:g} mm is shorter than its flutes, {tool.said('LCF')}")
@@ -182,17 +189,24 @@ def _above(tool: Listed, bare: Cutter, length: float) -> tuple[Segment, ...]:
     """The sections from the end of the flutes to the holder's nose."""
     v, at = tool.values, _top(bare, tool)
     found: list[Segment] = []
+    neck = 0.5 * v["DN"] if "DN" in v and "LN" not in v else 0.0
+    if neck and tool.shaft:
+        raise UnfitError(f"{tool.word('LN')} is missing: where its shaft's sections begin over {tool.said('DN')}")
     shoulder = min(v.get("LN", 0.0), length) - at
     if shoulder > SAME:
         if "DN" not in v:
-            tool.notes.append(f"no {tool.word('DN')}: {tool.said('LN')} as wide as {tool.word('DC')}")
-        found.append(Segment(0.5 * v.get("DN", v["DC"]), round(shoulder, 9)))
+            tool.notes.append(f"no {tool.word('DN')}: {tool.said('LN')} as wide as {_widest(tool, bare)}")
+        found.append(Segment(0.5 * v["DN"] if "DN" in v else _wide(bare, v["DC"]), round(shoulder, 9)))
         at += shoulder
     shaft = up_to(tool.shaft, length - at) if length - at > SAME else ()
     found += shaft
     at += math.fsum(stage.length for stage in shaft)
     if length - at > SAME:
-        found.append(Segment(_shank(tool, at, length), round(length - at, 9)))
+        found.append(Segment(max(_shank(tool, at, length), neck), round(length - at, 9)))
+        if neck:
+            tool.notes.append(
+                f"how high {tool.said('DN')} reaches is not known: what stands above its flutes is no thinner"
+            )
         if v["DMM"] < v["DC"] - slack(v["DC"]):
             tool.notes.append(f"{tool.said('DMM')} is thinner than {tool.said('DC')}")
         elif v["DMM"] < 2.0 * top_radius(bare) - slack(v["DMM"]):
@@ -206,6 +220,19 @@ def _above(tool: Listed, bare: Cutter, length: float) -> tuple[Segment, ...]:
         f"the {len(straight)} sections of its shaft are taken as {len(around)} around them, up to {wider:.3g} mm wider"
     )
     return around
+
+
+def _wide(bare: Cutter, diameter: float) -> float:
+    """The radius of a shoulder without one, mm: no flute reaches farther out."""
+    return round(max(0.5 * diameter, top_radius(bare)), 9)
+
+
+def _widest(tool: Listed, bare: Cutter) -> str:
+    """What `_wide` is the radius of."""
+    wide = 2.0 * _wide(bare, tool.values["DC"])
+    if wide <= tool.values["DC"] + slack(wide):
+        return tool.word("DC")
+    return f"its flutes where they end, {wide / tool.scale:.6g}"
 
 
 def _shank(tool: Listed, at: float, length: float) -> float:

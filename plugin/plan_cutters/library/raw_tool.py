@@ -120,8 +120,12 @@ class Listed:
         Sections that the file gives above LN (or LCF), from there up.
     holder : Holder, str, optional
         `none`: the file says that there is none.
+    zeros : set of str
+        Dimensions that the file states as 0: it does not lack them.
     faults : list of str
         What could not be read.
+    doubts : list of str
+        Fields that can mean different tools.
     needs : tuple of str
         Dimensions without which there is no cutter.
     stated : Stated, optional
@@ -140,7 +144,9 @@ class Listed:
     words: dict[str, str] = field(default_factory=dict)
     shaft: list[Segment] = field(default_factory=list)
     holder: Holder | Literal["none"] | None = None
+    zeros: set[str] = field(default_factory=set)
     faults: list[str] = field(default_factory=list)
+    doubts: list[str] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
     needs: tuple[str, ...] = ("DC", "LCF")
     stated: Stated | None = None
@@ -158,6 +164,10 @@ class Listed:
     def word(self, key: str) -> str:
         """Give the name that the file has for a dimension."""
         return self.words.get(key, key)
+
+    def states(self, key: str) -> bool:
+        """Whether the file has a dimension, be it 0."""
+        return key in self.values or key in self.zeros
 
     def said(self, key: str) -> str:
         """A dimension as the file has it."""
@@ -178,6 +188,8 @@ class Listed:
                 found = mm(found, self.scale, field, exact=self.stated is not None)
             if found:
                 self.values[key] = found
+            else:
+                self.zeros.add(key)
         except FaultError as fault:
             self.faults.append(str(fault))
 

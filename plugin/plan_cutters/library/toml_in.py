@@ -172,7 +172,7 @@ def _listed(table: Any, place: str, unit: Any, named: dict[str, Holder | None]) 
     tool.kind = model.type
     tool.unit, tool.scale = tool.tried(lambda: unit_of(model.unit or unit, "unit"), ("", 1.0))
     for key in ("DC", "RE", "LPR", "OAL", "DN"):
-        tool.take(key, getattr(model, key), key)
+        tool.take(key, getattr(model, key) if key in model.model_fields_set else None, key)
     tool.take("DMM", None if model.DMM == "same" else model.DMM, "DMM")
     tool.take("TA", model.TA, "TA", _degrees)
     tool.holder = tool.tried(lambda: _holder(model.holder, tool.scale, named), None)
