@@ -225,6 +225,12 @@ class SurfaceSamples(Record):
     empty: tuple[tuple[int, str], ...]
     face_gaps: tuple[tuple[int, float], ...] = ()
 
+    def by_face(self) -> dict[int, NDArray[np.int64]]:
+        """Rows of the samples of each face that has some, ascending, by its number."""
+        numbers, count = np.unique(self.face, return_counts=True)
+        groups = np.split(np.argsort(self.face, kind="stable"), np.cumsum(count)[:-1])
+        return dict(zip(numbers.tolist(), groups, strict=False))
+
     def __len__(self) -> int:
         return len(self.point)
 

@@ -5,6 +5,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from cad_io.arrays import SurfaceSamples
 from plan_cutters import plan
 from plan_cutters.document.shares import face_verdicts, whole_share
 from plan_cutters.domain.verdicts import REASONS, blank
@@ -23,7 +24,9 @@ def part(*areas):
 
 
 def of(face, area, empty=()):
-    return SimpleNamespace(face=np.array(face, np.int32), area=np.array(area, float), empty=empty)
+    made = SimpleNamespace(face=np.array(face, np.int32), area=np.array(area, float), empty=empty)
+    made.by_face = lambda: SurfaceSamples.by_face(made)
+    return made
 
 
 def test_shares_follow_area_not_samples():

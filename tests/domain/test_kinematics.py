@@ -151,6 +151,24 @@ def test_a_tilting_table_in_closed_form(turn, most, tilt_direction):
     assert (inside == (angle <= most))[sure].all()
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_the_ends_of_the_limits_are_held(seed):
+    """An axis that needs just the last angle of a limit is held, also where the limit leaves one angle; the angles turn there."""
+    machine = chain(seed)
+    rng = np.random.default_rng(seed)
+    low = np.radians(rng.choice([-120.0, -90.0, 0.0, 30.0, 90.0], 2))
+    limit = np.stack([low, low + np.radians(rng.choice([0.0, 0.0, 60.0, 180.0], 2))], axis=1)
+    machine = Kinematics(machine.direction, limit, machine.tool)
+    ends = np.array([[first, second] for first in limit[0] for second in limit[1]])
+    axis = machine.axis(ends)
+    angles, taken, _ = machine.positions(axis)
+    assert (taken >= 0).all()
+    held = angles[np.arange(len(axis)), taken]
+    assert (held >= limit[:, 0] - 1e-8).all()
+    assert (held <= limit[:, 1] + 1e-8).all()
+    assert np.allclose(machine.axis(held), axis, atol=1e-7)
+
+
 def test_both_solutions_at_known_angles():
     found = of("trunnion-ac")
     axis = found.axis(np.radians([[30.0, 20.0]]))[0]

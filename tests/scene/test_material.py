@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
-from OCP.gp import gp_Trsf, gp_Vec
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeTorus
+from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Shell, TopoDS_Solid
 
@@ -367,3 +368,21 @@ def _ball_solids(cache=[]):  # noqa: B006 (made once)
     if not cache:
         cache.append(solids_of(ball(10)))
     return cache[0]
+
+
+def test_no_cutter_floats_where_a_shell_crosses_itself():
+    """Two tori whose faces make one shell: what lies within the other is no surface, however short the cutter is."""
+    first = BRepPrimAPI_MakeTorus(gp_Ax2(gp_Pnt(0, 0, 0), gp_Dir(0, 0, 1)), 20, 6).Shape()
+    second = BRepPrimAPI_MakeTorus(gp_Ax2(gp_Pnt(4, 0, 0), gp_Dir(0, 1, 0)), 20, 5).Shape()
+    builder, shell, solid = BRep_Builder(), TopoDS_Shell(), TopoDS_Solid()
+    builder.MakeShell(shell)
+    builder.MakeSolid(solid)
+    for face in (*faces_of(first), *faces_of(second)):
+        builder.Add(shell, face)
+    builder.Add(solid, shell)
+    result = judged(solid, cutter=Cutter.flat(radius=1, length=2), grid=16)
+    x, y, z = result.samples.point.T
+    in_first = np.hypot(np.hypot(x, y) - 20, z) < 6 - 0.1
+    in_second = np.hypot(np.hypot(x - 4, z) - 20, y) < 5 - 0.1
+    assert (in_first | in_second).sum() > 5
+    assert not reached(result)[in_first | in_second].any()

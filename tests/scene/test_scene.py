@@ -111,3 +111,10 @@ def test_the_wall_of_a_void_and_what_fixtures_hold_is_surface_of_the_part():
     sides = Orientation(np.array([1.0, -1.0]), "given", True)
     found = inside_bodies(np.array([-1, 0, 1, 2], np.int32), bodies, sides)
     assert found.tolist() == [False, True, False, False]
+
+
+def test_rows_of_each_face_are_those_of_its_number():
+    samples = plan(ROOT / "samples/pocket_top.step", cutters=["R3L60rc3"], faces="all", grid=4, area_budget=0).samples
+    rows = samples.by_face()
+    assert set(rows) == set(samples.face.tolist())
+    assert all((mine == np.flatnonzero(samples.face == number)).all() for number, mine in rows.items())

@@ -165,10 +165,10 @@ def face_entries(part: Part, samples: SurfaceSamples, choice: Chosen, errors: Ma
     """Every face of the part, judged or not; `errors`: how far triangles may be from each, mm."""
     empty, gaps = dict(samples.empty), dict(samples.face_gaps)
     chosen, ignored = set(choice.targets), set(choice.ignored)
-    component = component_of(part.tree)
+    component, rows = component_of(part.tree), samples.by_face()
     result = []
     for face in part.faces:
-        mine = samples.face == face.number
+        mine = rows.get(face.number, np.zeros(0, np.int64))
         bad = samples.unjudged[mine]
         bad = bad[bad >= 0]
         reason = face.unjudged or empty.get(face.number)
@@ -184,7 +184,7 @@ def face_entries(part: Part, samples: SurfaceSamples, choice: Chosen, errors: Ma
                 area_mm2=face.area,
                 centre_mm=part.centre(face.number),
                 component=component[face.number],
-                samples=int(mine.sum()),
+                samples=len(mine),
                 gap_mm=gaps.get(face.number),
                 chord_error_mm=errors.get(face.number),
                 unjudged=reason if face.number in chosen else face.unjudged,

@@ -121,9 +121,7 @@ def face_verdicts(
 ) -> dict[str, FaceVerdicts]:
     """Sum up the verdicts on each face that has samples, by its id; `inside` as in `counts`."""
     found, inside = {}, np.zeros(len(samples.face), bool) if inside is None else inside
-    numbers, first = np.unique(np.sort(samples.face), return_index=True)
-    groups = np.split(np.argsort(samples.face, kind="stable"), first[1:])
-    for number, mine in zip(numbers.tolist(), groups, strict=False):
+    for number, mine in samples.by_face().items():
         area = weights(samples.area[mine])
         within, seen = inside[mine], mine[~inside[mine]]
         share = _share(reach.verdict[seen], reach.reason[seen], area[~within])

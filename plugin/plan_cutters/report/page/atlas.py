@@ -84,7 +84,7 @@ def _list_of(rows: NDArray[np.int64]) -> Sheet:
 def atlas_of(samples: SurfaceSamples) -> Atlas:
     """Lay out the sheets of all sampled faces, with as fine steps as there is room for."""
     grids = {grid.face: grid for grid in samples.grids}
-    rows = {number: np.flatnonzero(samples.face == number) for number in np.unique(samples.face).tolist()}
+    rows = samples.by_face()
     for finer in _FINER:
         sheets = {}
         for number, mine in rows.items():
