@@ -3,15 +3,13 @@
 Making a part costs next to nothing beside reading it: what is known about a face is worked out when first asked for.
 """
 
-from collections.abc import Callable, Container, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cached_property
 from typing import Any
 
 import numpy as np
-from OCP.Bnd import Bnd_Box
 from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Surface
-from OCP.BRepBndLib import BRepBndLib
 from OCP.ShapeAnalysis import ShapeAnalysis_ShapeTolerance
 from OCP.TopAbs import TopAbs_SOLID
 from OCP.TopLoc import TopLoc_Location
@@ -23,9 +21,10 @@ from cad_io.face.measure import Measure, measure
 from cad_io.face.recognise import recognise
 from cad_io.face.trim import Trim, trim_of
 from cad_io.files import fingerprint
-from cad_io.kernel import edges_of, explore, faces, is_kernel_error, may_refuse, shape_map, translated
+from cad_io.kernel import edges_of, explore, faces, is_kernel_error, shape_map, translated
 from cad_io.kernel.assembly import Node
 from cad_io.part.blends import Bare, blends
+from cad_io.part.boxes import box_of, face_box
 from cad_io.part.packing import Found, packed, unpacked
 from cad_io.part.sew import Sewn, edge_uses, sew
 from cad_io.surface import Surface
@@ -247,7 +246,7 @@ class Part:
     @cached_property
     def _box(self) -> tuple[Floats, Floats]:
         with translated("measuring the part", error=ReadError, file=self.file):
-            return _box(self._faces, self.aside)
+            return box_of(self._faces, self.aside)
 
     def centre(self, number: int) -> tuple[float, float, float] | None:
         """Middle of the kernel's quick box around a face, mm; None where it has no finite size."""
@@ -354,41 +353,6 @@ def _again(found: Found, aside: Mapping[int, str]) -> Part:
     part = Part.of(unpacked(found))
     part.aside = aside
     return part
-
-
-def _box(found: list[TopoDS_Face], aside: Container[int]) -> tuple[Floats, Floats]:
-    """Tight corners of the box around faces.
-
-    The kernel's quick box is padded and its tight one is slow, so the tight one is asked only of faces whose padded
-    box still sticks out of what is covered, the farthest first; of faces set aside it is not asked at all.
-    """
-    loose = np.array([face_box(face, tight=False) for face in found])
-    usable = np.isfinite(loose).all(axis=(1, 2))
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    if not usable.any():
-        return low, high
-    stick = np.concatenate([loose[:, 0] - np.nanmin(loose[usable, 0], axis=0),
-                            np.nanmax(loose[usable, 1], axis=0) - loose[:, 1]], axis=1)  # fmt: skip
-    for i in np.argsort(np.where(usable, stick.min(axis=1), np.inf), kind="stable")[: usable.sum()]:
-        if (loose[i, 0] < low).any() or (loose[i, 1] > high).any():
-            tight = loose[i] if i + 1 in aside else face_box(found[i], tight=True)
-            tight = tight if np.isfinite(tight).all() else loose[i]
-            low, high = np.minimum(low, tight[0]), np.maximum(high, tight[1])
-    return low, high
-
-
-def face_box(face: TopoDS_Face, *, tight: bool) -> Floats:
-    """Corners (2, 3) of the box around a face, nan where it has none; not `tight`: quick, and somewhat wider."""
-    box = Bnd_Box()
-    with may_refuse():
-        if tight:
-            BRepBndLib.AddOptimal_s(face, box, False, False)
-        else:
-            BRepBndLib.Add_s(face, box, False)
-        if not (box.IsVoid() or box.IsOpen()):
-            box.SetGap(0.0)
-            return np.array([box.CornerMin().Coord(), box.CornerMax().Coord()])
-    return np.full((2, 3), np.nan)
 
 
 def _sewing_warnings(stopped: str | None) -> Iterator[str]:

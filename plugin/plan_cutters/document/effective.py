@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from plan_cutters.document.build import degrees
-from plan_cutters.document.model import Effective, LocalTolerance
+from plan_cutters.document.effective_entry import Effective, LocalTolerance
 from plan_cutters.document.travel import placement_entry
 from plan_cutters.domain.operations import INDEX_TIME
 from plan_cutters.options import Options

@@ -1,0 +1,80 @@
+"""The options in force, after defaults, as the plan file states them."""
+
+from typing import Literal
+
+from pydantic import Field
+
+from plan_cutters.document.frozen import Frozen, Vector
+from plan_cutters.document.travel import PlacementEntry
+
+
+class LocalTolerance(Frozen):
+    """A face that obstacle triangles do not follow as closely as all others: what only it may forbid is undecided."""
+
+    face: str
+    chord_error_mm: float = Field(description="bound of the distance between its triangles and its surface")
+    tolerance_mm: float = Field(description="the gouge tolerance for which its triangles would be close enough")
+    area_mm2: float
+    share: float = Field(description="of the area of the target faces; 0 where it is no target")
+
+
+class Effective(Frozen):
+    """Every option after defaults."""
+
+    cutters: list[str]
+    cutter_source: str
+    holder: str | None = Field(default=None, description="of the cutters that were given without one")
+    allowance_mm: float = Field(default=0.0, description="stock left on the surface, unless a cutter says otherwise")
+    holder_clearance_mm: float = Field(
+        default=0.0, description="room asked of neck, shank and holder, where a cutter says none"
+    )
+    unit: str | None = Field(default=None, description="length unit taken instead of the file's")
+    fixtures: list[str] = Field(default=[], description="as on a command line: file or word, placement, unit")
+    machine: str
+    setup: Vector
+    placement: PlacementEntry | None = Field(default=None, description="null where the axis alone was given")
+    other_setups: list[Vector] = Field(default=[], description="in which every cutter was judged, too")
+    propose: bool = Field(default=False, description="always false: what was proposed is in `setup_proposal`")
+    other_placements: list[PlacementEntry | None] = Field(
+        default=[], description="of these; empty if only axes were given"
+    )
+    faces: str
+    ignore: list[str] = Field(default=[], description="faces that are neither targets nor obstacles, as asked for")
+    target_faces: list[str]
+    grid: int | None = Field(description="samples a side and face; null where sampled by spacing")
+    spacing_mm: float | None = Field(description="largest spacing asked for; null where sampled by grid")
+    sampled_by: Literal["default", "spacing", "grid"] = Field(default="default", description="what said how densely")
+    tilt_deg: tuple[float, float]
+    rotation_deg: tuple[float, float]
+    rotation_step_deg: float
+    tolerance_mm: float = Field(description="the gouge tolerance that was kept, raised where a budget binds")
+    local_tolerance: list[LocalTolerance] = Field(
+        default=[], description="faces that obstacle triangles follow less closely than all others, the loosest first"
+    )
+    chord_error_mm: float = Field(
+        description="bound of the distance between obstacle triangles and the surface, but on faces in `local_tolerance`"
+    )
+    chord_measured_share: float = Field(
+        default=0.0,
+        description="share of the triangles whose distance is measured at points, not proved: on faces whose surface or border "
+        "only the CAD kernel can evaluate",
+    )
+    obstacle_triangles: int
+    flip: bool
+    area_budget: int = Field(description="contacts that may be added between the samples")
+    posture_maps: bool
+    map_budget: int | None = Field(default=None, description="samples to map, at most; null: what some minutes allow")
+    answers: list[str] = Field(default=[], description="what was asked for after the plan")
+    length_over_radius: float = Field(default=10.0, description="of the ends whose largest radius is asked for")
+    operations: str | None = Field(default=None, description="plan of operations asked for: fewest, fastest or both")
+    feed_mm_min: float | None = Field(default=None, description="of all cutters; null: of the libraries' presets")
+    scallop_mm: float = 0.01
+    stepover: float = Field(default=0.75, description="widest distance of passes, in diameters")
+    index_step_deg: float | None = Field(default=None, description="rotary axes lock at whole multiples of it alone")
+    index_time_s: float = Field(
+        default=5.0, description="of an orientation, unless rates of the machine's rotary axes say more"
+    )
+    change_time_s: float = 20.0
+    setup_time_s: float = 300.0
+    overlap_mm: float = Field(default=2.0, description="of operations at a common border")
+    most_operations: int | None = None
