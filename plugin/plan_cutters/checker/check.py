@@ -118,13 +118,14 @@ class _Check:
 
     def answer(self) -> Answer:
         """All of it."""
-        found = [*self._samples(), *self._candidates()]
+        found = [*self._files(), *self._samples(), *self._candidates()]
         entry = self.reckoned.entry()
-        # Where labels go with operations that there are not, nothing can be put down.
         if (strange := self._labels()) is not None:
             found.append(strange)
-        if not all(each.holds for each in found):
-            return self._compared(found, entry)
+        first = self._compared(found, entry)
+        if not first.holds:
+            last = Finding(None, "No tool was put down: what is written contradicts itself, or the part, already.")
+            return Answer((*first.findings, last), first.entries)
         self.bench = Bench(self.question, self.tell)
         if self.bench.unread:
             found.append(Finding(None, f"Nothing is known of what {', '.join(self.bench.unread)} are in the way of."))
@@ -139,15 +140,21 @@ class _Check:
         return Clock(self.start + self.seconds * _PARTS[part])
 
     def _compared(self, found: list[Finding], entry: dict[str, Any]) -> Answer:
-        entries = compared(entry, self.question.document["operations"])
+        entries, more = compared(entry, self.question.document["operations"]), [*found]
         for path in entries.unknown:
-            found.append(Finding(False, f"operations.{path} is an entry that this checker does not know."))
+            more.append(Finding(False, f"operations.{path} is an entry that this checker does not know."))
         for line in entries.differ:
-            found.append(Finding(False, f"operations.{line}."))
+            more.append(Finding(False, f"operations.{line}."))
         if not entries.differ:
-            found.append(Finding(True, f"{len(entries.agree)} numbers and words of the plan follow from its samples and labels, "
+            more.append(Finding(True, f"{len(entries.agree)} numbers and words of the plan follow from its samples and labels, "
                                        f"{len(entries.unchecked)} are not checked."))  # fmt: skip
-        return Answer(tuple(found), entries)
+        return Answer(tuple(more), entries)
+
+    def _files(self) -> Iterator[Finding]:
+        """The arrays are those that plan.json names."""
+        for name, (stated, there) in self.question.checksums.items():
+            if stated != there:
+                yield Finding(False, f"{name} is not the file that plan.json names: its SHA-256 is {there[:12]}..., not {stated[:12]}...")
 
     def _samples(self) -> Iterator[Finding]:
         """Samples lie on the exact surface, with its normal on the side of the tool, and stand for its area."""

@@ -1,7 +1,7 @@
 """What a check is about, in plain numbers: the machine, the tools and the setups that the user states, and the files of the plan."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -110,6 +110,8 @@ class Question:
         plan.json.
     operations, samples : mapping
         The arrays of operations.npz and samples.npz.
+    checksums : mapping
+        By file: the SHA-256 that plan.json states, and the file's own.
     """
 
     part: Part
@@ -122,6 +124,7 @@ class Question:
     document: Mapping[str, Any]
     operations: Mapping[str, NDArray[Any]]
     samples: Mapping[str, NDArray[Any]]
+    checksums: Mapping[str, tuple[str, str]] = field(default_factory=dict)
 
 
 def frame_of(setup: Setup) -> Floats:

@@ -1,9 +1,11 @@
 """`--check-operations`: a written plan of operations against the part; nothing is written."""
 
+import hashlib
 import json
 import math
 import time
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,8 +20,8 @@ if TYPE_CHECKING:
     from plan_cutters.checker.question import Question
     from plan_cutters.options import Options
 
-#: Files that must stand beside plan.json, and what they hold.
-_BESIDE = {"operations.npz": "operations of a plan", "samples.npz": "samples of a plan"}
+#: Files that must stand with plan.json, and what they hold.
+_FILES = {"operations.npz": "operations of a plan", "samples.npz": "samples of a plan"}
 
 
 def checked(part: str, file: str, options: "Options", given: dict[str, Any]) -> int:
@@ -34,14 +36,13 @@ def checked(part: str, file: str, options: "Options", given: dict[str, Any]) -> 
     from plan_cutters.checker.check import check
     from plan_cutters.errors import OptionError
 
-    document, arrays = _read(file)
+    document, arrays, checksums = _read(file)
     display = None if is_child() else Display(given["quiet"], 0, time.monotonic(), itself=True)
     progress = Teller(display)
     progress("check", 0, 1)
     try:
-        question = question_of(
-            read_part(part, unit=options.unit, timeout=given["read_timeout"]), options, document, arrays
-        )
+        read = read_part(part, unit=options.unit, timeout=given["read_timeout"])
+        question = replace(question_of(read, options, document, arrays), checksums=checksums)
         answer = check(question, tell=progress.detail)
     except OptionError as error:
         raise OptionError(error.cause, file=file) from None
@@ -199,7 +200,8 @@ def _short(value: Any) -> str:
     return text if len(text) <= 60 else f"{text[:57]}..."
 
 
-def _read(file: str) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
+def _read(file: str) -> tuple[dict[str, Any], dict[str, dict[str, Any]], dict[str, tuple[str, str]]]:
+    """plan.json, the arrays beside it, and of each of these files the SHA-256 that is stated and that it has."""
     from plan_cutters.errors import OptionError
     from plan_cutters.files.arrays import Archive
 
@@ -211,10 +213,14 @@ def _read(file: str) -> tuple[dict[str, Any], dict[str, dict[str, Any]]]:
         raise OptionError(f"is no JSON ({error}): give the plan.json of a plan of operations", file=file) from None
     if not isinstance(document, dict) or document.get("format") != "plan-cutters-plan":
         raise OptionError("is no plan.json of plan-cutters", file=file)
-    arrays = {}
-    for name, noun in _BESIDE.items():
-        if not (beside := Path(file).parent / name).exists():
+    stated = {each["name"]: each["sha256"] for each in document.get("files", {}).values() if isinstance(each, dict)}
+    arrays, checksums = {}, {}
+    for name, noun in _FILES.items():
+        path = Path(file).parent / name
+        if not path.exists():
             raise OptionError(f"{name} must stand beside it: copy all files of the plan", file=file)
-        with Archive(beside, noun, OptionError) as archive:
+        with Archive(path, noun, OptionError) as archive:
             arrays[name] = {each: archive.read(each) for each in archive.headers}
-    return document, arrays
+        if name in stated:
+            checksums[name] = stated[name], hashlib.sha256(path.read_bytes()).hexdigest()
+    return document, arrays, checksums
