@@ -95,11 +95,12 @@ class Bench:
         verdict = np.full(len(rows), MET, np.int8)
         tip = tool.tips(self.point[rows], self.normal[rows], axis, lean)
         able = np.isfinite(tip).all(axis=1) & self._leans(rows, axis)
+        able &= ~np.isin(self.question.samples["face"][rows], [*self.question.setups[setup].clamped])
         for each in self.standing[setup]:
             # What is in the way at no place of its surface may still hold all of the tool.
             able &= ~each.holds(np.where(able[:, None], tip + tool.high * axis, 0.0))
         if len(bad := np.flatnonzero(~able)):
-            words.append(f"sample {rows[bad[0]]}: the tool does not touch there at that tilt, or stands in a fixture")
+            words.append(f"sample {rows[bad[0]]}: the tool cannot touch there at that tilt, the face is clamped, or a fixture is there")
         mine = np.flatnonzero(able)
         flutes, rest = (1.0, 0.0) if surely else (_DEEP, -_NEAR)
         limits = flutes * tolerance - tool.allowance, rest * tolerance - tool.clearance

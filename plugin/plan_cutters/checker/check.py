@@ -294,10 +294,8 @@ class _Check:
                 setup, tool = each["setup"], self.bench.tools[each["cutter"]]
                 axis, there = self._axes(each, rows)
                 open_ += len(rows) - len(there)
-                held = np.isin(self.question.samples["face"][there], [*self.question.setups[setup].clamped])
                 leans += self._other_leans(there, axis, lean[there])
                 found, more = self.bench.looked(setup, tool, there, axis, lean[there], clock)
-                found = np.where(held, MET, found)
                 wrong, open_ = wrong + int((found == MET).sum()), open_ + int((found == OPEN).sum())
                 tested += int((found != OPEN).sum())
                 words += [f"{each['id']}, {one}" for one in more]
@@ -348,7 +346,6 @@ class _Check:
                 mine = np.flatnonzero((cutter[some] == c) & (setup[some] == s))
                 pairs, which = np.tile(rows, len(mine)), np.repeat(mine, len(rows))
                 found = self.bench.serves(s, self.bench.named(c), pairs, axis[some[which]], clock, surely=False)
-                found[np.isin(question.samples["face"][pairs], [*question.setups[s].clamped])] = MET
                 late |= bool((found == OPEN).any())
                 np.add.at(carried, which[found == FREE], np.tile(weight, len(mine))[found == FREE])
             if late:
@@ -386,35 +383,36 @@ class _Check:
             )
         clock, rows = self._clock("covered"), np.flatnonzero(self.reckoned.reached)
         self.tell(f"the {len(chosen)} chosen candidates at all samples")
-        served, doubt = np.zeros(len(rows), bool), np.zeros(len(rows), bool)
-        table = np.zeros((len(chosen), len(rows)), bool)
-        left = np.arange(len(rows))
+        verdict = self._chosen(chosen, rows, clock, surely=True)
+        table, doubt = verdict == FREE, (verdict == OPEN).any(axis=0)
+        served = table.any(axis=0)
+        lost, open_ = int((~served & ~doubt).sum()), int((~served & doubt).sum())
+        perhaps = lost if few["alone"] == lost else int(len(rows) - (self._chosen(chosen, rows, clock, surely=False) == FREE).any(axis=0).sum())
+        if not open_:
+            # A search may take samples for not served that are by a hair.
+            entry["fewest"]["alone"] = Between(lost, max(lost, perhaps))
+            self._steps(entry, table, self.reckoned.area[rows])
+        late = f"; {open_} were not looked at" if open_ else ""
+        words = (f"The {len(chosen)} chosen candidates serve {int(served.sum())} of the {len(rows)} samples that are reached{late}; "
+                 f"{lost} are left, and the plan says that {few['alone']} need simultaneous motion.")  # fmt: skip
+        yield Finding(lost <= few["alone"], words)
+
+    def _chosen(self, chosen: Rows, rows: Rows, clock: Clock, *, surely: bool) -> NDArray[np.int8]:
+        """How each chosen candidate stands at samples: (chosen, m)."""
+        arrays, verdict = self.question.operations, np.full((len(chosen), len(rows)), MET, np.int8)
         for k, c in enumerate(chosen.tolist()):
             tool, s = self.bench.named(int(arrays["candidate_cutter"][c])), int(arrays["candidate_setup"][c])
-            axis = np.repeat(arrays["candidate_axis"][c][None], len(left), axis=0)
-            held = np.isin(self.question.samples["face"][rows[left]], [*self.question.setups[s].clamped])
-            found = self.bench.serves(s, tool, rows[left], axis, clock, surely=True)
-            table[k] = (found == FREE) & ~held
-            served |= table[k]
-            doubt |= (found == OPEN) & ~held
-        lost = int((~served & ~doubt).sum())
-        open_ = int((~served & doubt).sum())
-        # Samples that no candidate was proved to serve may be served by a hair.
-        entry["fewest"]["alone"] = Between(lost, len(rows) if open_ or few["alone"] > lost else lost)
-        if open_:
-            del entry["fewest"]["alone"]
-        self._steps(entry, table, self.reckoned.area[rows])
-        yield Finding(lost <= few["alone"], f"The {len(chosen)} chosen candidates serve {int(served.sum())} of the {len(rows)} samples that "
-                      f"are reached, not {lost}{f'; {open_} were not looked at' * bool(open_)}; the plan says that {few['alone']} need "
-                      "simultaneous motion.")  # fmt: skip
+            axis = np.repeat(arrays["candidate_axis"][c][None], len(rows), axis=0)
+            verdict[k] = self.bench.serves(s, tool, rows, axis, clock, surely=surely)
+        return verdict
 
     def _steps(self, entry: dict[str, Any], table: NDArray[np.bool_], area: Floats) -> None:
         """Raise what each step of the curve must reach at least: what the chosen candidates do, the largest gain first."""
         written, steps = self.question.document["operations"]["curve"], entry["curve"]
-        if not len(steps) or len(written) != len(steps):
-            return
         left, have = area.copy(), 0.0
         whole = float(area[table.any(axis=0)].sum())
+        if not len(steps) or len(written) != len(steps) or whole <= 0.0:
+            return
         for step in steps:
             gain = table @ left
             have += float(gain.max())
@@ -461,7 +459,6 @@ class _Check:
             axis, there = self._axes(each, rows[mine])
             tool = self.bench.tools[each["cutter"]]
             verdict = self.bench.serves(each["setup"], tool, there, axis, clock, surely=proved)
-            verdict[np.isin(self.question.samples["face"][there], [*self.question.setups[each["setup"]].clamped])] = MET
             found[mine[verdict == FREE]] = True
         return found
 

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Mapping, Sequence
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -17,6 +18,8 @@ Rows = NDArray[np.int64]
 _REACHED, _UNJUDGED, _NO_REASON = (1, 2), 255, 255
 #: Cutters whose operations are compared, at most, unless more are needed to reach all.
 _CUTTERS = 4
+#: Areas that differ by less, as a share, are the same.
+_SAME_AREA = 1e-9
 #: Share of an area that a search may count less than stands free.
 _DOUBT = 0.02
 #: Seconds of an orientation that nothing tells; by how much angles may be off that are rounded for a control, deg.
@@ -68,6 +71,7 @@ class Reckoned:
         names = [*names, *(["largest first"] if many and "fastest" in names else [])]
         if [plan["name"] for plan in written["plans"]] != names:
             plans = [{"name": name} for name in names]
+        timed_ = any(plan["seconds"] is not None for plan in plans if "seconds" in plan)
         given = effective["index_time_s"]
         source = written["assumed"]["index_from"]
         if source == "given" or not question.machine.rates:
@@ -102,7 +106,7 @@ class Reckoned:
                 "at_least_any": Loose(0, few["at_least"]),
             },
             "fastest": fastest,
-            "cutters": self._cutters(written) if many and "fastest" in names and written["cutters"] else [],
+            "cutters": self._cutters(written) if many and "fastest" in names and timed_ else [],
             "curve": self._curve(written["curve"], found),
             "assumed": {
                 "feed_mm_min": self._feeds(written, effective), "scallop_mm": effective["scallop_mm"],
@@ -260,7 +264,7 @@ class Reckoned:
             "strip_mm": None if widths is None else [Loose(w, w, 1e-6 * w) for w in widths],
             "cut_length_mm": float((mine[known] / strip[known]).sum()) if known.all() else None,
             "seconds": float(seconds.sum()) if np.isfinite(seconds).all() else None,
-            "faces": self._faces(rows),
+            "faces": self._faces(rows, each["faces"]),
             "regions": self._regions(k, i, each, rows),
         }
         if each["proved_share"] is not None:
@@ -301,13 +305,17 @@ class Reckoned:
         )
         return entry
 
-    def _faces(self, rows: Rows) -> list[dict[str, Any]]:
+    def _faces(self, rows: Rows, written: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+        """The faces of samples, the one with the most area first; of equal ones, as they are written."""
         face = self.question.samples["face"][rows]
         found = [
             {"face": f"F{f}", "samples": int((face == f).sum()), "area_mm2": float(self.area[rows][face == f].sum())}
             for f in np.unique(face).tolist()
         ]
-        # As plan.json has them: by area, equal ones by number.
+        place = {each["face"]: k for k, each in enumerate(written)}
+        as_written = sorted(found, key=lambda each: place.get(each["face"], len(place)))
+        if all(a["area_mm2"] >= b["area_mm2"] * (1.0 - _SAME_AREA) for a, b in pairwise(as_written)):
+            return as_written
         return sorted(found, key=lambda each: -each["area_mm2"])
 
     def _regions(self, k: int, i: int, each: Mapping[str, Any], rows: Rows) -> Any:
@@ -322,7 +330,7 @@ class Reckoned:
             seen.append(mine)
             point = self.question.samples["point"][mine]
             found.append({
-                "id": number, "samples": len(mine), "area_mm2": float(self.area[mine].sum()), "faces": self._faces(mine),
+                "id": number, "samples": len(mine), "area_mm2": float(self.area[mine].sum()), "faces": self._faces(mine, region["faces"]),
                 "low": point.min(axis=0, initial=np.inf).tolist(), "high": point.max(axis=0, initial=-np.inf).tolist(),
                 "rows": _runs(mine),
             })  # fmt: skip
@@ -331,7 +339,7 @@ class Reckoned:
         sizes = [one["area_mm2"] for one in found]
         return (
             found
-            if all(a >= b * (1 - 1e-9) for a, b in zip(sizes, sizes[1:], strict=False))
+            if all(a >= b * (1.0 - _SAME_AREA) for a, b in pairwise(sizes))
             else "the largest region first"
         )
 
