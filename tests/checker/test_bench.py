@@ -23,7 +23,8 @@ from tests.support.places import ROOT
 PEAKS = str(ROOT / "samples/peaks_and_valleys.step")
 CUTTERS = [
     Cutter.parse("R6L60"), Cutter.parse("R6L60rc6"), Cutter.parse("R4L50rc1F14S3HR16L40"), Cutter.parse("R3L40rc1T5F12S3"),
-    Cutter.lollipop(radius=4, neck_radius=2, length=40), Cutter.barrel(radius=5, flank_radius=40, tip_radius=2, length=40, flutes=12),
+    Cutter.lollipop(radius=4, neck_radius=2, length=40),
+    Cutter.barrel(radius=5, flank_radius=40, tip_radius=2, length=40, flutes=12),
     Cutter.barrel(radius=5, flank_radius=40, height=6, length=40, flutes=12),
     Cutter.lens(radius=5, bottom_radius=20, corner_radius=1, length=40, flutes=10),
     Cutter.form([(0, 0), (2, 0), (4, 1), (4, 8)], length=30),
@@ -89,7 +90,11 @@ def test_a_tool_touches_at_its_contact(cutter):
             assert cutter.shape in ("barrel", "lens", "end", "form")
             continue
         # The lowest point of a circle about the axis, and of them all that of the part that cuts.
-        cutting = border[border[:, 1] <= tool.solids[0].high + 1e-9] if cutter.shape != "form" else border[border[:, 1] <= 8.0]
+        cutting = (
+            border[border[:, 1] <= tool.solids[0].high + 1e-9]
+            if cutter.shape != "form"
+            else border[border[:, 1] <= 8.0]
+        )
         low = tip[0, 2] + cutting[:, 1] * math.cos(tilt) - cutting[:, 0] * math.sin(tilt)
         assert abs(low.min()) < 2e-3, degrees
 
@@ -135,13 +140,22 @@ def test_what_is_met_is_what_points_all_over_the_surface_say(peaks, cutter):
 def test_a_check_that_has_no_time_decides_nothing(peaks):
     _, cells, root = peaks
     tool = tool_of(_sizes(CUTTERS[0]))
-    found = met(cells, root, tool, np.zeros((3, 3)), np.tile([0.0, 0.0, 1.0], (3, 1)), (0.01, 0.0), 5e-4, Clock(time.monotonic() - 1.0))
+    found = met(
+        cells,
+        root,
+        tool,
+        np.zeros((3, 3)),
+        np.tile([0.0, 0.0, 1.0], (3, 1)),
+        (0.01, 0.0),
+        5e-4,
+        Clock(time.monotonic() - 1.0),
+    )
     assert not np.isin(found.verdict, (FREE, MET)).any()
 
 
 @pytest.mark.parametrize("words", [
-    {"part": "samples/pocket_top.step", "cutters": ["R3L40rc1F12S3"], "holder": "er16", "fixtures": ["table", "box:10,10,25@-12,5,0"],
-     "faces": "all", "grid": 5},
+    {"part": "samples/pocket_top.step", "cutters": ["R3L40rc1F12S3"], "holder": "er16",
+     "fixtures": ["table", "box:10,10,25@-12,5,0"], "faces": "all", "grid": 5},
     {"part": "samples/peaks_and_valleys.step", "cutters": ["R6L60"], "grid": 9, "holder_clearance": 0.5},
     {"part": "samples/peaks_and_valleys.step", "cutters": ["R6L40rc2F15S4HR20L30"], "grid": 9, "allowance": 0.2},
 ])  # fmt: skip
@@ -162,10 +176,24 @@ def test_the_search_and_the_checker_agree(words):
         np.array([0.0, 0.0, 1.0]), math.pi, False,
     )  # fmt: skip
     setup = Setup((0.0, 0.0, 1.0), None, None, tuple(map(_body, options.fixtures)), frozenset())
-    arrays = {"point": samples.point, "normal": samples.normal, "direction_max": samples.direction_max, "face": samples.face}
+    arrays = {
+        "point": samples.point,
+        "normal": samples.normal,
+        "direction_max": samples.direction_max,
+        "face": samples.face,
+    }
     document = {"effective": {"tilt_deg": [0.0, 90.0], "rotation_deg": [0.0, 360.0]}}
     question = Question(
-        read_part(part), machine, {cutter.id: _sizes(cutter)}, (setup,), frozenset(), np.zeros(0), 0.01, document, {}, arrays
+        read_part(part),
+        machine,
+        {cutter.id: _sizes(cutter)},
+        (setup,),
+        frozenset(),
+        np.zeros(0),
+        0.01,
+        document,
+        {},
+        arrays,
     )
     bench = Bench(question, lambda doing: None)
     rng = np.random.default_rng(3)

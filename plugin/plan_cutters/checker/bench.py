@@ -55,6 +55,8 @@ class Bench:
             for face in part.faces
             if face.number not in question.ignored and part.trim(face.number) is None
         ]
+        #: Fixtures of which is not known whether a point lies within.
+        self.hollow: list[str] = []
         own = self.cells.add(faces)
         low, high = self.cells.point[own] - self.cells.slack[own], self.cells.point[own] + self.cells.slack[own]
         self.standing: list[list[Standing]] = []
@@ -65,7 +67,8 @@ class Bench:
                 if body.kind == "table" and not body.sizes:
                     frame = np.eye(3) if any(body.placement[3:]) else frame_of(setup)
                     body = replace(body, sizes=(lowest(self.cells, own, rotation_of(body) @ frame[2], self.grain),))
-                standing.append(Standing(body, question, setup, low, high))
+                standing.append(Standing(body, setup, low, high))
+                self.hollow += [] if standing[-1].known else [standing[-1].name]
             self.standing.append(standing)
             groups = [own, *(self.cells.add(each.sources) for each in standing)]
             self.root.append(self.cells.joined(groups) if len(groups) > 1 else own)
@@ -100,7 +103,9 @@ class Bench:
             # What is in the way at no place of its surface may still hold all of the tool.
             able &= ~each.holds(np.where(able[:, None], tip + tool.high * axis, 0.0))
         if len(bad := np.flatnonzero(~able)):
-            words.append(f"sample {rows[bad[0]]}: the tool cannot touch there at that tilt, the face is clamped, or a fixture is there")
+            words.append(
+                f"sample {rows[bad[0]]}: the tool cannot touch there at that tilt, the face is clamped, or a fixture is there"
+            )
         mine = np.flatnonzero(able)
         flutes, rest = (1.0, 0.0) if surely else (_DEEP, -_NEAR)
         limits = flutes * tolerance - tool.allowance, rest * tolerance - tool.clearance
@@ -141,7 +146,7 @@ class Bench:
     def clearance(
         self, setup: int, tool: Tool, rows: Rows, axis: Floats, lean: Floats, beyond: float, clock: Clock
     ) -> tuple[float, str] | None:
-        """The least distance of what does not cut from anything, mm, at samples (m,), and which part of the tool comes nearest."""
+        """The least distance of what does not cut from anything, mm, at samples (m,), and which part comes nearest."""
         tip = tool.tips(self.point[rows], self.normal[rows], axis, lean)
         return nearest(
             self.cells, self.root[setup], tool.above(2.0 * tool.radius), tip, axis, beyond, self.grain, clock

@@ -308,7 +308,7 @@ class Reckoned:
     def _faces(self, rows: Rows, written: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
         """The faces of samples, the one with the most area first; of equal ones, as they are written."""
         face = self.question.samples["face"][rows]
-        found = [
+        found: list[dict[str, Any]] = [
             {"face": f"F{f}", "samples": int((face == f).sum()), "area_mm2": float(self.area[rows][face == f].sum())}
             for f in np.unique(face).tolist()
         ]
@@ -330,24 +330,21 @@ class Reckoned:
             seen.append(mine)
             point = self.question.samples["point"][mine]
             found.append({
-                "id": number, "samples": len(mine), "area_mm2": float(self.area[mine].sum()), "faces": self._faces(mine, region["faces"]),
+                "id": number, "samples": len(mine), "area_mm2": float(self.area[mine].sum()),
+                "faces": self._faces(mine, region["faces"]),
                 "low": point.min(axis=0, initial=np.inf).tolist(), "high": point.max(axis=0, initial=-np.inf).tolist(),
                 "rows": _runs(mine),
             })  # fmt: skip
         if not np.array_equal(np.sort(np.concatenate([*seen, np.zeros(0, np.int64)])), rows):
             return f"regions with the {len(rows)} samples that operations.npz gives it"
         sizes = [one["area_mm2"] for one in found]
-        return (
-            found
-            if all(a >= b * (1.0 - _SAME_AREA) for a, b in pairwise(sizes))
-            else "the largest region first"
-        )
+        return found if all(a >= b * (1.0 - _SAME_AREA) for a, b in pairwise(sizes)) else "the largest region first"
 
 
 def other_angles(question: Question, setup: int, degrees: Floats) -> tuple[float, ...] | None:
     """The other angles, deg, with the same axis within the machine's limits, as a control shows them; None: there are none.
 
-    The second axis turns the tool's direction towards the first axis's and away: mirrored about where it is nearest, it is as far.
+    The second axis turns the tool towards the first axis and away: mirrored about where it is nearest, it is as far off.
     """
     machine = question.machine
     (first, second), tool = machine.direction, machine.tool

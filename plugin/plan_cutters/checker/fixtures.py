@@ -3,11 +3,12 @@
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cad_io import Part, read_part
 from cad_io.arrays import Floats
 from cad_io.read.mesh import Mesh, is_mesh, read_mesh
-from plan_cutters.checker.question import Body, Question, Setup, frame_of
+from plan_cutters.checker.question import Body, Setup, frame_of
 from plan_cutters.checker.surface import Face, Source, Triangles
 
 #: A table reaches so much farther than the part, mm: as far as any tool.
@@ -15,9 +16,11 @@ _TABLE = 2000.0
 #: Sides of a cylinder; each lies within r (1 - cos(pi / sides)) of it.
 _SIDES = 720
 _MESH = (".stl", ".obj", ".ply", ".glb")
-_BOX = np.array(
-    [(0, 2, 3), (0, 3, 1), (4, 5, 7), (4, 7, 6), (0, 1, 5), (0, 5, 4), (2, 6, 7), (2, 7, 3), (0, 4, 6), (0, 6, 2), (1, 3, 7), (1, 7, 5)]
-)  # fmt: skip
+#: Corners of the triangles of a box, counter-clockwise from outside.
+_BOX = np.array([
+    (0, 2, 3), (0, 3, 1), (4, 5, 7), (4, 7, 6), (0, 1, 5), (0, 5, 4), (2, 6, 7), (2, 7, 3), (0, 4, 6), (0, 6, 2), (1, 3, 7),
+    (1, 7, 5),
+])  # fmt: skip
 
 
 def rotation_of(body: Body) -> Floats:
@@ -41,7 +44,7 @@ class Standing:
         Its surfaces.
     """
 
-    def __init__(self, body: Body, question: Question, setup: Setup, low: Floats, high: Floats) -> None:
+    def __init__(self, body: Body, setup: Setup, low: Floats, high: Floats) -> None:
         self.name = f"fixture:{body.name}"
         rotation, shift = rotation_of(body), np.array(body.placement[:3], float)
         self._vertex: Floats | None = None
@@ -61,7 +64,12 @@ class Standing:
             self._vertex = read.vertex @ rotation.T + shift
             self.sources = [Triangles(self._vertex, self.name)]
 
-    def holds(self, points: Floats) -> Floats:
+    @property
+    def known(self) -> bool:
+        """Whether `holds` knows what lies within."""
+        return self._vertex is not None
+
+    def holds(self, points: Floats) -> NDArray[np.bool_]:
         """Which points (n, 3) lie within it, by the solid angle of its triangles; of a CAD file none is known to."""
         if self._vertex is None:
             return np.zeros(len(points), bool)

@@ -1,4 +1,4 @@
-"""What a check is about, in plain numbers: the machine, the tools and the setups that the user states, and the files of the plan."""
+"""What a check is about, in plain numbers: the machine, tools and setups that the user states, and the files of the plan."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -68,7 +68,7 @@ class MachineAxes:
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """A fixture: a word (`box`, `cylinder`, `table`) with its sizes, or a file; `placement` is x, y, z, mm, and rx, ry, rz, deg."""
+    """A fixture: a word (`box`, `cylinder`, `table`) with its sizes, or a file; placed by x, y, z, mm, and rx, ry, rz, deg."""
 
     name: str
     kind: str

@@ -7,6 +7,7 @@ over cells of a surface rests on (`bounds`).
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -22,7 +23,7 @@ FLAT, _UPRIGHT, _SAME = 1e-4, 1e-12, 1e-6
 
 @dataclass(frozen=True, slots=True)
 class Arc:
-    """An arc of a half section: centre (q, h), radius, and the directions of its normals, rad from the radius towards the spindle."""
+    """An arc of a half section: centre (q, h), radius, and from where to where its normals point, rad from the radius upwards."""
 
     q: float
     h: float
@@ -202,7 +203,7 @@ def _solid(
     part: str, points: list[tuple[float, float]], arcs: tuple[Arc, ...] = (), bent: frozenset[int] = frozenset()
 ) -> Solid:
     """A body from the points of its outline, from the axis below to the axis above; `bent`: sides that are arcs."""
-    sides = [(k, a, b) for k, (a, b) in enumerate(zip(points, points[1:], strict=False)) if math.dist(a, b) > 1e-12]
+    sides = [(k, a, b) for k, (a, b) in enumerate(pairwise(points)) if math.dist(a, b) > 1e-12]
     straight = [(a, b) for k, a, b in sides if k not in bent]
     heights = [h for _, h in points]
     wide = max(
@@ -287,7 +288,7 @@ def _hull(outline: tuple[tuple[float, float], ...]) -> tuple[Arc, ...]:
         while len(hull) > 1 and _turns_right(hull[-2], hull[-1], point):
             hull.pop()
         hull.append(point)
-    turns = [math.atan2(b[1] - a[1], b[0] - a[0]) + _DOWN for a, b in zip(hull, hull[1:], strict=False)]
+    turns = [math.atan2(b[1] - a[1], b[0] - a[0]) + _DOWN for a, b in pairwise(hull)]
     ends = [_DOWN, *turns, max(turns[-1], _OUT)]
     return tuple(
         Arc(q, h, 0.0, max(_DOWN, first), last)
