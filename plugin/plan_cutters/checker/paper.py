@@ -129,8 +129,8 @@ class Paper:
                 away = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
                 lost, tried = lost + int((away > near).sum()), tried + len(away)
                 worst = max(worst, float(away.max(initial=0.0)))
-        words = (f"Of {tried} tool axes that face a sample, drawn by seed 0 for each setup and cutter, {lost} are more than {near:g} "
-                 f"deg from a candidate; the farthest is {worst:.3g} deg away.")  # fmt: skip
+        words = (f"Of {tried} tool axes that face a sample, drawn by seed 0 for each setup and cutter, {lost} are more than "
+                 f"{near:g} deg from a candidate; the farthest is {worst:.3g} deg away.")  # fmt: skip
         return Finding(lost == 0, words)
 
     def _labels(self, k: int) -> Iterator[Finding]:
