@@ -75,7 +75,7 @@ class Bench:
 
     @property
     def grain(self) -> float:
-        """What is deeper than allowed by less than this may be missed, mm."""
+        """Give the depth beyond what is allowed that may be missed, mm."""
         return _GRAIN * self.question.tolerance
 
     def stands(

@@ -34,7 +34,7 @@ class Clock:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Met:
-    """What tools met, n of them.
+    """Tools, n of them, met something or nothing.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What plan.json must say of a plan's operations, reckoned anew from the samples and the labels."""
+"""Reckon anew, from samples and labels, what plan.json must say of a plan's operations."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -61,7 +61,7 @@ class Reckoned:
         return self.question.operations[f"{name}{suffix(k, plan)}"]
 
     def entry(self) -> dict[str, Any]:
-        """What `operations` must hold, as far as it follows from samples and labels."""
+        """Reckon what `operations` must hold, as far as it follows from samples and labels."""
         question = self.question
         document, written = question.document, question.document["operations"]
         effective, few = document["effective"], written["fewest"]

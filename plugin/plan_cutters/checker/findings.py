@@ -1,4 +1,4 @@
-"""What a check says: one line for each statement of a plan, and what is unchecked."""
+"""An answer has one line for each statement of a plan, and lists what is unchecked."""
 
 from collections import Counter
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""What can be checked of a plan before a tool is put down: files, samples, candidates, labels and times."""
+"""Check a plan before any tool is put down: files, samples, candidates, labels and times."""
 
 import math
 from collections.abc import Iterator

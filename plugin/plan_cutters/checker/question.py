@@ -1,4 +1,4 @@
-"""What a check is about, in plain numbers: the machine, tools and setups that the user states, and the files of the plan."""
+"""A check is about a machine, tools and setups, as the user states them in plain numbers, and about the files of a plan."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field

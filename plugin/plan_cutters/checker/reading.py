@@ -4,8 +4,6 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-import numpy as np
-
 from plan_cutters.checker.question import Question
 
 #: Arrays of operations.npz that are of each plan, of samples and of candidates: their last axes, and kinds.
@@ -24,12 +22,12 @@ _OF_CUTTERS = {"verdict": ((), "u"), "axis": ((3,), "f"), "lean": ((3,), "f"), "
 
 
 def suffix(index: int, name: str) -> str:
-    """What the names of the arrays of a plan end with: nothing for the first plan."""
+    """Give the end of the names of a plan's arrays: nothing for the first plan."""
     return f"_{name.replace(' ', '_')}" if index else ""
 
 
 def faults(question: Question) -> Iterator[str]:
-    """What is wrong with the form of the files, one line each: nothing more can be checked then."""
+    """List what is wrong with the form of the files, a line each: nothing more can be checked then."""
     entry, samples, arrays = question.document["operations"], question.samples, question.operations
     if not isinstance(entry.get("plans"), list) or not entry["plans"]:
         yield "plan.json has no plans of operations"
@@ -77,8 +75,3 @@ def _not_finite(value: Any, path: str) -> Iterator[str]:
             yield from _not_finite(each, f"{path}[{k}]")
     elif isinstance(value, float) and not math.isfinite(value):
         yield path
-
-
-def finite_where(values: Any, rows: Any) -> bool:
-    """Whether an array is finite at some rows."""
-    return bool(np.isfinite(values[rows]).all())

@@ -131,7 +131,7 @@ class Tool:
     wide: float
 
     def above(self, height: float) -> tuple[Solid, ...]:
-        """What is above a height over the tip: flutes cut off there, and all other sections."""
+        """Give what is above a height over the tip: flutes cut off there, and all other sections."""
         found = []
         for each in self.solids:
             if each.part == "flutes":

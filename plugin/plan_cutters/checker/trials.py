@@ -1,4 +1,4 @@
-"""What can be checked of a plan by putting tools down: labels, weights, the chosen candidates, and clearances."""
+"""Check a plan by putting tools down: labels, weights, the chosen candidates, and clearances."""
 
 from collections.abc import Callable, Iterator
 from typing import Any
