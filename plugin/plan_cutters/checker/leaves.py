@@ -61,7 +61,7 @@ UNCHECKED = {
     "notes[]": "they are sentences",
 }
 #: Numbers that differ by less are one, as a share and in their own unit.
-_SHARE, _NEAR = 1e-6, 1e-6
+_SHARE, _NEAR = 1e-9, 1e-9
 
 
 @dataclass(frozen=True, slots=True)
