@@ -85,7 +85,7 @@ class Trials:
                 words += [f"{each['id']}, {one}" for one in more]
             said = f" {leans} have another lean than their axis has." if leans else ""
             said += f" {'; '.join(words[:3])}." if words else ""
-            late = f" of {tested + open_}, drawn by seed 0," if open_ else ""
+            late = f" of {tested + open_} (drawn by seed 0)" if open_ else ""
             holds = wrong == 0 and leans == 0
             yield Finding(None if holds and not tested and open_ else holds,
                           f"The {plan['name']} plan: its operations were put down at {tested} samples{late}; at {wrong} the tool "
@@ -220,7 +220,7 @@ class Trials:
                     break
                 bad = np.where(alone[some], surely, ~perhaps & ~moving[some])
                 wrong, done = wrong + int(bad.sum()), done + len(some)
-            part = "" if done == len(rows) else f" of {len(rows)}, drawn by seed 0,"
+            part = "" if done == len(rows) else f" of {len(rows)} (drawn by seed 0)"
             yield Finding(None if len(rows) and not done else wrong == 0,
                           f"The {plan['name']} plan: {done} samples{part} go with the only operation that serves them, or with "
                           f"one of several, as operations.npz says; {wrong} do not.")  # fmt: skip

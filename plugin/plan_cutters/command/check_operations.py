@@ -23,6 +23,9 @@ if TYPE_CHECKING:
 #: Files that must stand with plan.json, and what they hold.
 _FILES = {"operations.npz": "operations of a plan", "samples.npz": "samples of a plan"}
 
+#: Share of the tolerance that the chord error of a plan's triangles may take: a looser one makes the plan keep a coarser tolerance.
+_CHORD_SHARE = 0.25
+
 
 def checked(part: str, file: str, options: "Options", given: dict[str, Any]) -> int:
     """Check the operations of a plan.json; 0: all that was checked holds, 1: not all.
@@ -189,10 +192,6 @@ def _fits(part: "Part", options: "Options", document: Mapping[str, Any], cutters
                 f"the plan of operations does not fit: {what}: {_short(was)} in the plan, {_short(now)} here"
             )
     return kept
-
-
-#: Share of the tolerance that the chord error of a plan's triangles may take (`docs/limits.md`).
-_CHORD_SHARE = 0.25
 
 
 def _short(value: Any) -> str:
