@@ -112,6 +112,8 @@ class Question:
         The arrays of operations.npz and samples.npz.
     checksums : mapping
         By file: the SHA-256 that plan.json states, and the file's own.
+    asked : float
+        Gouge tolerance that the user wants, mm; 0: any.
     """
 
     part: Part
@@ -125,6 +127,7 @@ class Question:
     operations: Mapping[str, NDArray[Any]]
     samples: Mapping[str, NDArray[Any]]
     checksums: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    asked: float = 0.0
 
 
 def frame_of(setup: Setup) -> Floats:

@@ -22,8 +22,7 @@ if TYPE_CHECKING:
 
 #: Files that must stand with plan.json, and what they hold.
 _FILES = {"operations.npz": "operations of a plan", "samples.npz": "samples of a plan"}
-
-#: Share of the tolerance that the chord error of a plan's triangles may take: a looser one makes the plan keep a coarser tolerance.
+#: Share of the tolerance that the chord error of a plan's triangles may take: looser ones make the plan keep a coarser tolerance.
 _CHORD_SHARE = 0.25
 
 
@@ -45,7 +44,8 @@ def checked(part: str, file: str, options: "Options", given: dict[str, Any]) -> 
     progress("check", 0, 1)
     try:
         read = read_part(part, unit=options.unit, timeout=given["read_timeout"])
-        question = replace(question_of(read, options, document, arrays), checksums=checksums)
+        question = question_of(read, options, document, arrays)
+        question = replace(question, checksums=checksums, asked=options.tolerance)
         answer = check(question, tell=progress.detail)
     except OptionError as error:
         raise OptionError(error.cause, file=file) from None
