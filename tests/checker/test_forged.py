@@ -125,7 +125,9 @@ def test_a_forged_entry_is_found_or_listed_as_unchecked(written, kind):
         of_kind[pattern(path)].append((path, value))
     every = of_kind.get(kind, [])
     if not every:
-        pytest.skip("the plan has none")
+        # An entry that this plan does not have: nothing else is left unforged.
+        assert kind in UNCHECKED
+        return
     many = 2 if kind in _IN_TIME else _OF_A_KIND
     picked = {*np.linspace(0, len(every) - 1, many).astype(int).tolist()}
     # What is unchecked whatever is put down needs no tool put down.

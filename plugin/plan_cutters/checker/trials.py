@@ -57,8 +57,8 @@ class Trials:
         """All of them; what plan.json must say, as far as it follows from them, is put into `entry`."""
         question = self.question
         if 0.0 < question.asked < question.tolerance:
-            yield Finding(None, f"Whether the part allows no better tolerance than the {question.tolerance:g} mm that the plan keeps, "
-                                f"where {question.asked:g} mm were wanted, is not looked at.")  # fmt: skip
+            words = f"the {question.tolerance:g} mm that the plan keeps, where {question.asked:g} mm were wanted,"
+            yield Finding(None, f"Whether the part allows no better tolerance than {words} is not looked at.")
         if self.bench.unread:
             yield Finding(None, f"Nothing is known of what {', '.join(self.bench.unread)} are in the way of.")
         if self.bench.hollow:
