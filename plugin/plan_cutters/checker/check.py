@@ -21,7 +21,7 @@ from plan_cutters.checker.reading import faults
 from plan_cutters.checker.trials import Trials
 from plan_cutters.errors import OptionError
 
-#: Seconds that a check takes at most unless it is told, and the share of them by which each of its parts must be done.
+#: Seconds that a check takes at most unless another time is set, and the share of them by which each of its parts must be done.
 SECONDS = 60.0
 _PARTS = {"placed": 0.35, "weights": 0.65, "covered": 0.8, "alone": 0.9, "clearance": 1.0}
 
@@ -36,7 +36,7 @@ def check(question: Question, *, seconds: float = SECONDS, tell: Callable[[str],
         What is not done after these is listed as not checked, with how much was; all samples of the labels are looked at in the
         order of a random draw with seed 0.
     tell : callable
-        Told what is being done.
+        Called with what is being done.
 
     Raises
     ------

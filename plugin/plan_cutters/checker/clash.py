@@ -73,7 +73,7 @@ def met(
         What is deeper by less than this may be missed, mm.
     clock : Clock
     tell : callable, optional
-        Told how many are done.
+        Called with how many are done.
     """
     n = len(tip)
     found = Met(np.full(n, OPEN, np.int8), np.full(n, -1, np.int64), np.full(n, np.nan), np.full(n, -1, np.int64))

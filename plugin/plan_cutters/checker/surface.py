@@ -2,7 +2,7 @@
 
 A cell of a face is a box of its parameters: the kernel evaluates point and tangents at its middle, and points around it, whose
 distance from the tangent plane's parallelogram, doubled, is taken for how far the surface leaves that (`slack`). A cell of a mesh
-is a triangle. Cells are kept: each is evaluated once, however many tools come near.
+is a triangle. Cells are stored: each is evaluated once, however many tools come near.
 """
 
 from collections.abc import Sequence

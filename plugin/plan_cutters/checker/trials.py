@@ -19,9 +19,9 @@ Rows = NDArray[np.int64]
 _UNIT = 1_000_000
 #: Pairs of a sample and an axis that are looked at between two looks at the clock.
 _AT_ONCE = 2048
-#: How far clearances are told below the true ones: as a share, and mm; `MOST`: that or more.
+#: How far clearances are reported below the true ones: as a share, and mm; `MOST`: that or more.
 _CLEARANCE_SHARE, _CLEARANCE_STEP, _MOST = 0.05, 0.02, 100.0
-#: The edges of flutes are grown as square ones: there clearances are told by up to this share too low.
+#: The edges of flutes are grown as square ones: there clearances are reported by up to this share too low.
 _EDGE = 0.45
 #: Share of an area that a search may count less than stands free.
 _DOUBT = 0.02
@@ -42,7 +42,7 @@ class Trials:
     clock : callable
         The clock of a check by its name.
     tell : callable
-        Told what is being done.
+        Called with what is being done.
     """
 
     def __init__(
