@@ -1,43 +1,206 @@
 """`--check-operations`: a written plan of operations against the part; nothing is written."""
 
+import hashlib
 import json
+import math
+import time
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from plan_cutters.command import terminal
+from plan_cutters.command.progress import Display, Teller
+from plan_cutters.command.worker import is_child
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from cad_io import Part
+    from plan_cutters.checker.question import Question
     from plan_cutters.options import Options
+
+#: Files that must stand with plan.json, and what they hold.
+_FILES = {"operations.npz": "operations of a plan", "samples.npz": "samples of a plan"}
+#: Share of the tolerance that the chord error of a plan's triangles may take: looser ones make the plan keep a coarser tolerance.
+_CHORD_SHARE = 0.25
 
 
 def checked(part: str, file: str, options: "Options", given: dict[str, Any]) -> int:
-    """Check the operations of a plan.json; 0: all that it says holds, 1: not all.
+    """Check the operations of a plan.json; 0: all that was checked holds, 1: not all.
 
     Raises
     ------
     OptionError
         The file is no plan with operations, or one of another part or of other options.
     """
+    from cad_io import read_part
+    from plan_cutters.checker.check import check
     from plan_cutters.errors import OptionError
-    from plan_cutters.operations.check import check_operations
-    from plan_cutters.pipeline import prepare
 
-    document, arrays = _read(file)
-    ready = prepare(part, options, read_timeout=given["read_timeout"])
+    document, arrays, checksums = _read(file)
+    display = None if is_child() else Display(given["quiet"], 0, time.monotonic(), itself=True)
+    progress = Teller(display)
+    progress("check", 0, 1)
     try:
-        findings = check_operations(ready, document, arrays)
+        read = read_part(part, unit=options.unit, timeout=given["read_timeout"])
+        question = question_of(read, options, document, arrays)
+        question = replace(question, checksums=checksums, asked=options.tolerance)
+        answer = check(question, tell=progress.detail)
     except OptionError as error:
         raise OptionError(error.cause, file=file) from None
-    except (KeyError, TypeError, ValueError, IndexError, OverflowError) as error:
+    except (KeyError, TypeError, ValueError, IndexError, OverflowError, AttributeError) as error:
         raise OptionError(
             f"the plan of operations cannot be understood ({type(error).__name__}: {error})", file=file
         ) from None
+    finally:
+        if display is not None:
+            display.clear()
     if not given["quiet"]:
-        terminal.show(*(f"{'holds' if each.holds else 'FAILS'}: {each.words}" for each in findings))
-    return 0 if all(each.holds for each in findings) else 1
+        terminal.show(*answer.lines)
+    return 0 if answer.holds else 1
 
 
-def _read(file: str) -> tuple[dict[str, Any], dict[str, Any]]:
+def question_of(
+    part: "Part", options: "Options", document: Mapping[str, Any], arrays: Mapping[str, Mapping[str, "NDArray[Any]"]]
+) -> "Question":
+    """Put the part, the options and the files of a plan into the form that the checker takes.
+
+    Raises
+    ------
+    OptionError
+        The plan is of another part or of other options, or has no operations.
+    """
+    import numpy as np
+
+    from cad_io.part.orient import orient
+    from plan_cutters.checker.question import MachineAxes, Question, Setup
+    from plan_cutters.domain.placement import Placement
+    from plan_cutters.errors import OptionError
+    from plan_cutters.scene.faces import clamped_faces, ignored_faces, ignored_words
+
+    if not isinstance(document.get("operations"), dict):
+        raise OptionError("the plan has no operations: make it with --operations")
+    places: list[Placement | None] = [
+        options.placement,
+        *(options.other_placements or (None,) * len(options.other_setups)),
+    ]
+    own = [() if place is None else place.fixtures for place in places]
+    axes = (options.setup, *options.other_setups)
+    setups = tuple(
+        Setup(
+            (float(axis[0]), float(axis[1]), float(axis[2])), None if place is None else place.x,
+            None if place is None else place.origin,
+            tuple(_body(each) for each in (options.fixtures if s == 0 else (*options.shared_fixtures, *own[s]))),
+            clamped_faces(part, place),
+        )
+        for s, (axis, place) in enumerate(zip(axes, places, strict=True))
+    )  # fmt: skip
+    machine, cutters = options.machine, {cutter.id: cutter for cutter in options.judged}
+    kept = _fits(part, options, document, [*cutters], setups)
+    turning, free = machine.rotary, (-math.inf, math.inf)
+    # A machine without rotary axes is set by the azimuth about the setup axis and the tilt from it.
+    moved = MachineAxes(
+        tuple(axis.name for axis in turning) or ("azimuth", "tilt"),
+        np.array([axis.direction for axis in turning] or [(0.0, 0.0, 1.0), (0.0, 1.0, 0.0)], float),
+        np.array([axis.limits or free for axis in turning] or [free, free], float), np.array(machine.tool_axis, float),
+        math.pi if machine.tilt_limit is None else machine.tilt_limit,
+        bool(turning) and all(axis.rate is not None for axis in turning),
+    )  # fmt: skip
+    sign = orient(part, axes[0], options.flip).sign
+    return Question(
+        part, moved, {name: _sizes(cutter) for name, cutter in cutters.items()}, setups,
+        ignored_faces(part, ignored_words(part, options.ignore)), sign, kept, document, arrays["operations.npz"],
+        arrays["samples.npz"],
+    )  # fmt: skip
+
+
+def _body(fixture: Any) -> Any:
+    from plan_cutters.checker.question import Body
+
+    return Body(fixture.name, fixture.kind, fixture.sizes, fixture.source, fixture.unit, fixture.placement)
+
+
+def _sizes(cutter: Any) -> Any:
+    from plan_cutters.checker.question import Section, ToolSizes
+
+    above = tuple(Section(part, low, each.length, each.radius, each.upper_radius) for part, low, each in cutter.stages)
+    flutes = above[0].low if above else cutter.length
+    return ToolSizes(
+        cutter.id, cutter.shape, cutter.radius, cutter.corner_radius, cutter.arc_radius, cutter.arc_height, cutter.outline,
+        cutter.taper, flutes, above, cutter.allowance or 0.0, cutter.clearance or 0.0,
+    )  # fmt: skip
+
+
+def _fits(part: "Part", options: "Options", document: Mapping[str, Any], cutters: list[str], setups: Any) -> float:
+    """Refuse a plan of another part or of other options; the tolerance that it keeps, mm."""
+    from plan_cutters.errors import OptionError
+
+    asked = document["effective"]
+    places = (asked["placement"], *(asked["other_placements"] or [None] * len(asked["other_setups"])))
+    # A plan may keep a tolerance that is coarser than the one asked for, as its triangles allow.
+    kept, wanted = float(asked["tolerance_mm"]), options.tolerance
+    if kept > wanted and abs(kept - asked["chord_error_mm"] / _CHORD_SHARE) <= 1e-9 * kept:
+        wanted = kept
+    pairs = [
+        ("part", document["part"].get("sha256"), part.sha256),
+        (
+            "files that the part refers to",
+            [(each["file"], each["sha256"]) for each in document["part"].get("references", [])],
+            list(part.references),
+        ),
+        ("cutters (--cutter, --holder)", sorted(asked["cutters"]), sorted(cutters)),
+        ("list of cutters", sorted(each["id"] for each in document["cutters"]), sorted(cutters)),
+        ("machine (--machine)", asked["machine"], options.machine.name),
+        (
+            "setups (--setup)",
+            [round(x, 9) for axis in (asked["setup"], *asked["other_setups"]) for x in axis],
+            [round(x, 9) for setup in setups for x in setup.z],
+        ),
+        # Not their places: where a fixture stands shows in what it serves.
+        (
+            "fixtures (--fixture, --setup)",
+            [
+                [each["name"] for each in document["fixtures"] if s in each.get("setups", [0])]
+                for s in range(len(setups))
+            ],
+            [[f"fixture:{each.name}" for each in one.fixtures] for one in setups],
+        ),
+        (
+            "clamped faces (--setup)",
+            [(place or {}).get("clamped", []) for place in places],
+            [
+                [] if place is None else list(place.clamped)
+                for place in (options.placement, *(options.other_placements or (None,) * len(options.other_setups)))
+            ],
+        ),
+        ("tolerance (--tolerance)", kept, wanted),
+        (
+            "tilts (--tilt)",
+            [round(x, 6) for x in asked["tilt_deg"]],
+            [round(math.degrees(x), 6) for x in options.postures.tilt],
+        ),
+        (
+            "rotations (--rotation)",
+            [round(x, 6) for x in asked["rotation_deg"]],
+            [round(math.degrees(x), 6) for x in options.postures.rotation],
+        ),
+    ]
+    for what, was, now in pairs:
+        if was != now:
+            raise OptionError(
+                f"the plan of operations does not fit: {what}: {_short(was)} in the plan, {_short(now)} here"
+            )
+    return kept
+
+
+def _short(value: Any) -> str:
+    text = ", ".join(map(str, value)) if isinstance(value, list) else str(value)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def _read(file: str) -> tuple[dict[str, Any], dict[str, dict[str, Any]], dict[str, tuple[str, str]]]:
+    """plan.json, the arrays beside it, and of each of these files the SHA-256 that is stated and that it has."""
     from plan_cutters.errors import OptionError
     from plan_cutters.files.arrays import Archive
 
@@ -49,7 +212,14 @@ def _read(file: str) -> tuple[dict[str, Any], dict[str, Any]]:
         raise OptionError(f"is no JSON ({error}): give the plan.json of a plan of operations", file=file) from None
     if not isinstance(document, dict) or document.get("format") != "plan-cutters-plan":
         raise OptionError("is no plan.json of plan-cutters", file=file)
-    if not (beside := Path(file).parent / "operations.npz").exists():
-        raise OptionError("operations.npz must stand beside it: copy both files of the plan", file=file)
-    with Archive(beside, "operations of a plan", OptionError) as archive:
-        return document, {name: archive.read(name) for name in archive.headers}
+    stated = {each["name"]: each["sha256"] for each in document.get("files", {}).values() if isinstance(each, dict)}
+    arrays, checksums = {}, {}
+    for name, noun in _FILES.items():
+        path = Path(file).parent / name
+        if not path.exists():
+            raise OptionError(f"{name} must stand beside it: copy all files of the plan", file=file)
+        with Archive(path, noun, OptionError) as archive:
+            arrays[name] = {each: archive.read(each) for each in archive.headers}
+        if name in stated:
+            checksums[name] = stated[name], hashlib.sha256(path.read_bytes()).hexdigest()
+    return document, arrays, checksums

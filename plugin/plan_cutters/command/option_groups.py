@@ -299,8 +299,7 @@ _OPTIONS = (
     _operations(
         "--check-operations",
         type=File("FILE"),
-        help="Check labels, angles and weights of the operations in a plan.json, with the part and the options that it was made "
-        "with; write nothing.",
+        help="Check the operations in a plan.json against the exact part, with the options that it was made with; write nothing.",
     ),
     _run("--jobs", type=int, metavar="N", help="Threads.  [default: all cores]"),
     _run(

@@ -38,6 +38,7 @@ _WORDS = {
     "motion": "joining postures over the surface",
     "files": "writing the plan and the samples",
     "write": "writing the models",
+    "check": "checking the operations",
 }
 #: Where there is no terminal, seconds between two lines about the same work: in the first minute, and later.
 _SOON, _LATER = 5.0, 30.0

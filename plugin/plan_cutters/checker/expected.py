@@ -1,0 +1,399 @@
+"""Reckon anew, from samples and labels, what plan.json must say of a plan's operations."""
+
+import math
+from collections.abc import Mapping, Sequence
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
+from plan_cutters.checker.leaves import Between, Loose
+from plan_cutters.checker.question import Question, axes_of, carried, frame_of
+from plan_cutters.checker.reading import suffix
+
+Rows = NDArray[np.int64]
+#: Verdicts of samples.npz that say that a sample is reached, that it was not judged, and a reason that is none.
+_REACHED, _UNJUDGED, _NO_REASON = (1, 2), 255, 255
+#: Cutters whose operations are compared, at most, unless more are needed to reach all.
+_CUTTERS = 4
+#: Areas that differ by less, as a share, are the same.
+_SAME_AREA = 1e-9
+#: Share of an area that a search may count less than stands free.
+_DOUBT = 0.02
+#: Seconds of an orientation that nothing tells; by how much angles may be off that are rounded for a control, deg.
+_INDEX_TIME, _ROUNDED = 5.0, 0.0015
+
+
+class Reckoned:
+    """Sets of samples, and entries of plan.json that follow from them.
+
+    Attributes
+    ----------
+    area : (n,) float
+        Of the finished samples, mm2, 0 of others.
+    finished, reached : (n,) bool
+        Judged samples of the finished part; those that a cutter that was compared reaches.
+    considered : list of str
+        Ids of the cutters that were compared.
+    """
+
+    def __init__(self, question: Question) -> None:
+        self.question = question
+        document, samples = question.document, question.samples
+        self.ids: list[str] = [each["id"] for each in document["cutters"]]
+        self.verdict = {name: samples[f"verdict_{name}"] for name in self.ids}
+        unjudged = np.logical_and.reduce([each == _UNJUDGED for each in self.verdict.values()])
+        self.finished = ~unjudged & ~samples["inside_bodies"]
+        least = document.get("least_set") or {"runs": []}
+        needed = list(dict.fromkeys(run["cutter"] for run in least["runs"]))
+        wanted = [*needed, *(each for each in self.ids if each not in needed)][: max(_CUTTERS, len(needed))]
+        self.considered = [each for each in self.ids if each in wanted]
+        self.reached_by = {name: self.finished & np.isin(self.verdict[name], _REACHED) for name in self.considered}
+        self.reached = np.logical_or.reduce([*self.reached_by.values()])
+        self.area: Floats = np.where(self.finished, np.nan_to_num(samples["area"]), 0.0)
+        self.whole = float(self.area.sum())
+
+    def array(self, k: int, name: str) -> NDArray[Any]:
+        """An array of operations.npz of plan k."""
+        plan = self.question.document["operations"]["plans"][k]["name"]
+        return self.question.operations[f"{name}{suffix(k, plan)}"]
+
+    def entry(self) -> dict[str, Any]:
+        """Reckon what `operations` must hold, as far as it follows from samples and labels."""
+        question = self.question
+        document, written = question.document, question.document["operations"]
+        effective, few = document["effective"], written["fewest"]
+        plans = [self._plan(k, plan) for k, plan in enumerate(written["plans"])]
+        many = len(self.considered) > 1
+        names = {"fewest": ["fewest"], "fastest": ["fastest"], "both": ["fewest", "fastest"]}[effective["operations"]]
+        names = [*names, *(["largest first"] if many and "fastest" in names else [])]
+        if [plan["name"] for plan in written["plans"]] != names:
+            plans = [{"name": name} for name in names]
+        timed_ = any(plan["seconds"] is not None for plan in plans if "seconds" in plan)
+        given = effective["index_time_s"]
+        source = written["assumed"]["index_from"]
+        if source == "given" or not question.machine.rates:
+            source = source if source in ("given", "assumed") else "assumed"
+        else:
+            source = "rates"
+        total = sum(weight for _, weight in few["weights"])
+        found = len(question.operations["chosen"])
+        fastest: Any = None
+        if "fastest" in names:
+            own = next((plan for plan in written["plans"] if plan["name"] == "fastest"), None)
+            seconds = None if own is None else own["seconds"]
+            timed = written["fastest"] or {}
+            best, bound = timed.get("at_best_seconds"), timed.get("bound_seconds")
+            fastest = {
+                "seconds": seconds, "bound_seconds": Loose(0.0, math.inf), "at_best_seconds": Loose(0.0, math.inf),
+                "samples": Loose(0, len(self.area)), "candidates": Loose(0, len(question.operations["candidate_cutter"])),
+            }  # fmt: skip
+            if seconds is None or not isinstance(bound, float | int):
+                fastest["gap"] = None
+            else:
+                fastest["bound_seconds"] = Loose(best if isinstance(best, float | int) else 0.0, seconds * (1 + 1e-9))
+                fastest["gap"] = max(0.0, seconds / bound - 1.0) if bound > 0.0 else 0.0
+        return {
+            "asked": effective["operations"],
+            "rotary": list(question.machine.names),
+            "plans": plans,
+            "fewest": {
+                "found": found, "proof": self._proof(few), "weights": self._weights(few), "bound": total / 1e6,
+                "lp": Loose(total / 1e6 - 1e-6, found), "samples": int(self.reached.sum()),
+                "candidates": len(question.operations["candidate_cutter"]), "at_least": self._at_least(few, total, found),
+                "at_least_any": Loose(0, few["at_least"]),
+            },
+            "fastest": fastest,
+            "cutters": self._cutters(written) if many and "fastest" in names and timed_ else [],
+            "curve": self._curve(written["curve"], found),
+            "assumed": {
+                "feed_mm_min": self._feeds(written, effective), "scallop_mm": effective["scallop_mm"],
+                "stepover": effective["stepover"], "overlap_mm": effective["overlap_mm"],
+                "index_s": _INDEX_TIME if given is None else given, "index_from": source,
+                "change_s": effective["change_time_s"], "setup_s": effective["setup_time_s"],
+            },
+        }  # fmt: skip
+
+    def _feeds(self, written: Mapping[str, Any], effective: Mapping[str, Any]) -> Any:
+        feed = effective["feed_mm_min"]
+        if feed is not None:
+            return dict.fromkeys(self.considered, feed)
+        known = written["assumed"]["feed_mm_min"]
+        # By library: each of the cutters has one, or none has.
+        return None if known is None else dict.fromkeys(self.considered, Loose(0.0, math.inf))
+
+    def _proof(self, few: Mapping[str, Any]) -> str:
+        total = -(-sum(weight for _, weight in few["weights"]) // 1_000_000)
+        if few["at_least"] < few["found"]:
+            return "not closed"
+        return "weights" if total >= few["at_least"] else "branch and bound"
+
+    def _at_least(self, few: Mapping[str, Any], total: int, found: int) -> Any:
+        proved = -(-total // 1_000_000)
+        if few["proof"] == "weights":
+            return proved
+        # A choice that serves all bounds it from above.
+        return proved if few["at_least"] == proved else Loose(proved, found)
+
+    def _weights(self, few: Mapping[str, Any]) -> Any:
+        """The weights as they are, if they can be any: whole numbers on samples that are reached, once on each."""
+        rows = [row for row, _ in few["weights"]]
+        good = all(type(x) is int for pair in few["weights"] for x in pair) and len({*rows}) == len(rows)
+        good = good and all(0 <= row < len(self.reached) and self.reached[row] for row in rows)
+        good = good and all(0 < weight <= 1_000_000 for _, weight in few["weights"])
+        return [list(pair) for pair in few["weights"]] if good else "whole numbers on reached samples, one for each"
+
+    def _curve(self, written: Sequence[Mapping[str, Any]], found: int) -> list[dict[str, Any]]:
+        # Shares are of what can be machined in some setup: of what stands in a fixture in all of them it is not known.
+        least = float(self.area[self.reached].sum()) / max(self.whole, 1e-300)
+        steps: list[dict[str, Any]] = []
+        before = 0.0
+        for k in range(found if self.reached.any() else 0):
+            share = written[k]["share"] if k < len(written) else 0.0
+            low = max(before, (1.0 - _DOUBT) * least) if k + 1 == found else before
+            steps.append({"orientations": k + 1, "share": Loose(low, 1.0)})
+            if k < len(written) and written[k]["at_most"] is not None:
+                steps[-1]["at_most"] = Loose(share, 1.0)
+            before = share
+        return steps
+
+    def _cutters(self, written: Mapping[str, Any]) -> list[dict[str, Any]]:
+        found = []
+        for use in written["cutters"]:
+            name = use["id"]
+            if name not in self.considered:
+                found.append({"id": "one of the cutters that were compared"})
+                continue
+            takes = {
+                plan["name"]: sum(
+                    float(self.area[self.array(k, "operation") == i].sum())
+                    for i, each in enumerate(plan["operations"]) if each["cutter"] == name
+                )
+                for k, plan in enumerate(written["plans"])
+            }  # fmt: skip
+            others = np.logical_or.reduce([each for other, each in self.reached_by.items() if other != name])
+            only = float(self.area[self.reached_by[name] & ~others].sum())
+            entry = {
+                "id": name,
+                "takes_mm2": takes,
+                "only_mm2": only,
+                "change_seconds": Loose(0.0, written["assumed"]["change_s"]),
+            }
+            if use["saves_seconds"] is not None:
+                entry["saves_seconds"] = Loose(0.0, math.inf)
+            found.append(entry)
+        if len(found) != len(self.considered) or len({use["id"] for use in written["cutters"]}) != len(found):
+            return [{"id": name} for name in self.considered]
+        return found
+
+    def _plan(self, k: int, plan: Mapping[str, Any]) -> dict[str, Any]:
+        question, label, seconds = self.question, self.array(k, "operation"), self.array(k, "seconds")
+        operations = [self._operation(k, i, each) for i, each in enumerate(plan["operations"])]
+        fixed = [each for each in operations if each["mode"] == "fixed"]
+        assumed = question.document["operations"]["assumed"]
+        rest = self.finished & (label < 0)
+        left = float(self.area[rest].sum())
+        first = self.question.samples[f"reason_{self.considered[0]}"][rest]
+        words = question.document["reasons"]
+        counts = {
+            words[c]: int((first == c).sum()) for c in np.unique(first).tolist() if c != _NO_REASON and c < len(words)
+        }
+        cutting = float(seconds[label >= 0].sum())
+        known = math.isfinite(cutting)
+        turns = sum(
+            float(each["index_s"] if one["mode"] == "fixed" else assumed["index_s"])
+            for one, each in zip(operations, plan["operations"], strict=True)
+        )
+        cutters = {each["cutter"] for each in plan["operations"]}
+        setups = {each["setup"] for each in plan["operations"]}
+        other = turns + assumed["change_s"] * max(0, len(cutters) - 1) + assumed["setup_s"] * max(0, len(setups) - 1)
+        held = [each for each in plan["operations"] if each["proved_share"] is not None]
+        size = sum(each["area_mm2"] for each in held)
+        entry: dict[str, Any] = {
+            "name": plan["name"],
+            "orientations": len(fixed),
+            "cut_length_mm": sum(each["cut_length_mm"] or 0.0 for each in operations),
+            "seconds": cutting + other if known else None,
+            "cutting_seconds": cutting if known else None,
+            "other_seconds": other,
+            "changes": max(0, len(cutters) - 1),
+            "pieces": sum(len(each["regions"]) for each in operations),
+            "operations": operations,
+            "rest": {
+                "samples": int(rest.sum()), "area_mm2": left, "share": left / self.whole if self.whole > 0.0 else 0.0,
+                "reason_counts": counts,
+            },
+        }  # fmt: skip
+        shares = sum(each["area_mm2"] * each["proved_share"] for each in held) / size if size > 0.0 else 0.0
+        entry["proved_share"] = Loose(shares, shares, 1e-6) if held and size > 0.0 else None
+        entry["approaches_proved"] = sum(each["approaches_proved"] or 0 for each in held) if held else None
+        if entry["approaches_proved"] is not None:
+            entry["approaches_proved"] = Loose(entry["approaches_proved"], entry["approaches_proved"])
+        ratio = self._ratio(fixed)
+        if plan["ratio_at_most"] is not None:
+            entry["ratio_at_most"] = ratio
+        return entry
+
+    def _ratio(self, fixed: Sequence[Mapping[str, Any]]) -> Any:
+        timed = self.question.document["operations"]["fastest"]
+        if timed is None or not timed["at_best_seconds"] > 0.0 or any(each["seconds"] is None for each in fixed):
+            return None
+        ratio = max(1.0, sum(each["seconds"] for each in fixed) / timed["at_best_seconds"])
+        return Loose(ratio, ratio, 1e-6 * ratio)
+
+    def _operation(self, k: int, i: int, each: Mapping[str, Any]) -> dict[str, Any]:
+        question, strip = self.question, self.array(k, "strip_mm")
+        rows = np.flatnonzero(self.array(k, "operation") == i)
+        strip, seconds, mine = strip[rows], self.array(k, "seconds")[rows], self.area[rows]
+        known = np.isfinite(strip) & (strip > 0.0)
+        alone = self.array(k, "exclusive")[rows]
+        mode = "simultaneous" if each["axis"] is None else "fixed"
+        area = float(mine.sum())
+        widths = np.percentile(strip[known], (10, 50, 90)).tolist() if known.any() else None
+        entry: dict[str, Any] = {
+            "id": f"op{i + 1}",
+            "mode": mode,
+            "cutter": each["cutter"] if each["cutter"] in self.considered else "one of the cutters that were compared",
+            "setup": each["setup"] if each["setup"] in range(len(question.setups)) else "one of the setups",
+            "samples": len(rows),
+            "area_mm2": area,
+            "share": min(1.0, area / self.whole) if self.whole > 0.0 else 0.0,
+            "exclusive_mm2": float(mine[alone].sum()),
+            "strip_mm": None if widths is None else [Loose(w, w, 1e-6 * w) for w in widths],
+            "cut_length_mm": float((mine[known] / strip[known]).sum()) if known.all() else None,
+            "seconds": float(seconds.sum()) if np.isfinite(seconds).all() else None,
+            "faces": self._faces(rows, each["faces"]),
+            "regions": self._regions(k, i, each, rows),
+        }
+        if each["proved_share"] is not None:
+            entry["proved_share"] = Loose(0.0, 1.0)
+            entry["approaches_proved"] = Loose(0, math.inf)
+        if mode == "simultaneous":
+            return entry | dict.fromkeys(("axis", "angles_deg", "other_angles_deg", "frame", "index_s", "index_from"))
+        if entry["setup"] != each["setup"]:
+            return entry
+        return entry | self._orientation(each)
+
+    def _orientation(self, each: Mapping[str, Any]) -> dict[str, Any]:
+        question = self.question
+        setup, machine = question.setups[each["setup"]], question.machine
+        names, written = machine.names, question.document["operations"]
+        degrees = np.array([[float(each["angles_deg"][name]) for name in names]])
+        axis = axes_of(machine, setup, degrees)[0]
+        x = carried(machine, setup, frame_of(setup)[0] @ frame_of(setup).T, degrees)[0]
+        x = x - (x @ axis) * axis
+        entry: dict[str, Any] = {
+            "axis": axis.tolist(),
+            "angles_deg": {name: float(each["angles_deg"][name]) for name in names},
+            "frame": {
+                "origin": list(setup.origin or (0.0, 0.0, 0.0)), "z": axis.tolist(),
+                "x": (x / np.linalg.norm(x)).tolist() if np.linalg.norm(x) > 1e-6 else [Loose(-1.0, 1.0)] * 3,
+            },
+            "index_from": written["assumed"]["index_from"],
+        }  # fmt: skip
+        if written["assumed"]["index_from"] != "rates":
+            entry["index_s"] = written["assumed"]["index_s"]
+        else:
+            entry["index_s"] = Loose(0.0, math.inf)
+        other = other_angles(question, each["setup"], degrees[0])
+        entry["other_angles_deg"] = (
+            None
+            if other is None
+            else {name: Between(angle - _ROUNDED, angle + _ROUNDED) for name, angle in zip(names, other, strict=True)}
+        )
+        return entry
+
+    def _faces(self, rows: Rows, written: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+        """The faces of samples, the one with the most area first; of equal ones, as they are written."""
+        face = self.question.samples["face"][rows]
+        found: list[dict[str, Any]] = [
+            {"face": f"F{f}", "samples": int((face == f).sum()), "area_mm2": float(self.area[rows][face == f].sum())}
+            for f in np.unique(face).tolist()
+        ]
+        place = {each["face"]: k for k, each in enumerate(written)}
+        as_written = sorted(found, key=lambda each: place.get(each["face"], len(place)))
+        if all(a["area_mm2"] >= b["area_mm2"] * (1.0 - _SAME_AREA) for a, b in pairwise(as_written)):
+            return as_written
+        return sorted(found, key=lambda each: -each["area_mm2"])
+
+    def _regions(self, k: int, i: int, each: Mapping[str, Any], rows: Rows) -> Any:
+        """The regions of an operation: their samples are those that are written, if together they are the operation's."""
+        before = sum(len(one["regions"]) for one in self.question.document["operations"]["plans"][k]["operations"][:i])
+        found, seen = [], []
+        for number, region in enumerate(each["regions"], before):
+            runs = [(int(first), int(last)) for first, last in region["rows"]]
+            if not all(0 <= first <= last < len(self.area) for first, last in runs):
+                return "regions of samples that there are"
+            mine = np.concatenate([np.arange(first, last + 1) for first, last in runs] or [np.zeros(0, np.int64)])
+            seen.append(mine)
+            point = self.question.samples["point"][mine]
+            found.append({
+                "id": number, "samples": len(mine), "area_mm2": float(self.area[mine].sum()),
+                "faces": self._faces(mine, region["faces"]),
+                "low": point.min(axis=0, initial=np.inf).tolist(), "high": point.max(axis=0, initial=-np.inf).tolist(),
+                "rows": _runs(mine),
+            })  # fmt: skip
+        if not np.array_equal(np.sort(np.concatenate([*seen, np.zeros(0, np.int64)])), rows):
+            return f"regions with the {len(rows)} samples that operations.npz gives it"
+        sizes = [one["area_mm2"] for one in found]
+        return found if all(a >= b * (1.0 - _SAME_AREA) for a, b in pairwise(sizes)) else "the largest region first"
+
+
+def other_angles(question: Question, setup: int, degrees: Floats) -> tuple[float, ...] | None:
+    """The other angles, deg, with the same axis within the machine's limits, as a control shows them; None: there are none.
+
+    The second axis turns the tool towards the first axis and away: mirrored about where it is nearest, it is as far off.
+    """
+    machine = question.machine
+    (first, second), tool = machine.direction, machine.tool
+    base = tool - (tool @ second) * second
+    nearest = math.degrees(math.atan2(first @ np.cross(second, base), first @ base))
+    mirrored = 2.0 * nearest - degrees[1]
+    wanted = axes_of(machine, question.setups[setup], degrees[None])[0]
+    best: tuple[float, ...] | None = None
+    for b in (mirrored + 360.0 * k for k in (-2, -1, 0, 1, 2)):
+        if not _within(b, machine.limits[1]):
+            continue
+        at_zero = axes_of(machine, question.setups[setup], np.array([[0.0, b]]))[0]
+        turning = carried_first(question, setup)
+        p, q = (v - (v @ turning) * turning for v in (at_zero, wanted))
+        if np.linalg.norm(p) < 1e-9:
+            return None
+        a = math.degrees(math.atan2(np.cross(p, q) @ turning, p @ q))
+        for turn in (a, a - 360.0, a + 360.0):
+            candidate = (turn, b)
+            apart = sum(abs((x - y + 180.0) % 360.0 - 180.0) for x, y in zip(candidate, degrees.tolist(), strict=True))
+            if (
+                _within(turn, machine.limits[0])
+                and apart > 0.01
+                and (best is None or _size(candidate) < _size(best) - 1e-9)
+            ):
+                best = candidate
+    return None if best is None else tuple(round(x, 3) + 0.0 for x in best)
+
+
+def carried_first(question: Question, setup: int) -> Floats:
+    """The direction (3,) of the first rotary axis in the part's coordinates."""
+    return np.asarray(question.machine.direction[0] @ frame_of(question.setups[setup]))
+
+
+def _size(angles: Sequence[float]) -> float:
+    return sum(abs(x) for x in angles)
+
+
+def _within(degrees: float, limits: Floats) -> bool:
+    low, high = np.degrees(limits)
+    return bool(low - 1e-6 <= degrees <= high + 1e-6)
+
+
+def _runs(rows: Rows) -> list[list[int]]:
+    """First and last of runs of consecutive numbers."""
+    runs: list[list[int]] = []
+    for row in rows.tolist():
+        if runs and runs[-1][1] == row - 1:
+            runs[-1][1] = row
+        else:
+            runs.append([row, row])
+    return runs

@@ -1,0 +1,167 @@
+"""A check is about a machine, tools and setups, as the user states them in plain numbers, and about the files of a plan."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io import Part
+from cad_io.arrays import Floats
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A section above the flutes: its part (`neck`, `shank` or `holder`), height over the tip, length and two radii, mm."""
+
+    part: str
+    low: float
+    length: float
+    radius: float
+    upper_radius: float
+
+
+@dataclass(frozen=True, slots=True)
+class ToolSizes:
+    """Dimensions of a cutter with its holder, mm and rad, as its notation has them."""
+
+    id: str
+    shape: str
+    radius: float
+    corner_radius: float
+    arc_radius: float
+    arc_height: float
+    outline: tuple[tuple[float, float], ...]
+    taper: float
+    flutes: float
+    sections: tuple[Section, ...]
+    allowance: float
+    clearance: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class MachineAxes:
+    """The rotary axes of a machine, the one next to the part first, in the machine's frame.
+
+    Attributes
+    ----------
+    names : tuple of str
+    direction : (2, 3) float
+    limits : (2, 2) float
+        rad; infinite: none.
+    tool : (3,) float
+        From the tip to the spindle at zero angles.
+    tilt_limit : float
+        Largest angle of the tool axis from the setup axis, rad; pi: none.
+    rates : bool
+        Whether both axes have a rate.
+    """
+
+    names: tuple[str, ...]
+    direction: Floats
+    limits: Floats
+    tool: Floats
+    tilt_limit: float
+    rates: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Body:
+    """A fixture: a word (`box`, `cylinder`, `table`) with its sizes, or a file; placed by x, y, z, mm, and rx, ry, rz, deg."""
+
+    name: str
+    kind: str
+    sizes: tuple[float, ...]
+    source: Any
+    unit: str | None
+    placement: tuple[float, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Setup:
+    """How the part stands: its directions along the machine's Z and X, its point at the machine's zero, and what holds it."""
+
+    z: tuple[float, float, float]
+    x: tuple[float, float, float] | None
+    origin: tuple[float, float, float] | None
+    fixtures: tuple[Body, ...]
+    clamped: frozenset[int]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Question:
+    """Everything that is read before a check begins.
+
+    Attributes
+    ----------
+    part : Part
+    machine : MachineAxes
+    tools : mapping
+        By id.
+    setups : tuple of Setup
+    ignored : frozenset of int
+        Numbers of faces that are no obstacles.
+    sign : (faces,) float
+        Side of each face, as `cad_io.Orientation` has it.
+    tolerance : float
+        Gouge tolerance that the plan keeps, mm.
+    document : mapping
+        plan.json.
+    operations, samples : mapping
+        The arrays of operations.npz and samples.npz.
+    checksums : mapping
+        By file: the SHA-256 that plan.json states, and the file's own.
+    asked : float
+        Gouge tolerance that the user wants, mm; 0: any.
+    """
+
+    part: Part
+    machine: MachineAxes
+    tools: Mapping[str, ToolSizes]
+    setups: tuple[Setup, ...]
+    ignored: frozenset[int]
+    sign: Floats
+    tolerance: float
+    document: Mapping[str, Any]
+    operations: Mapping[str, NDArray[Any]]
+    samples: Mapping[str, NDArray[Any]]
+    checksums: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    asked: float = 0.0
+
+
+def frame_of(setup: Setup) -> Floats:
+    """The machine's X, Y and Z (3, 3), as rows, in the part's coordinates at zero angles."""
+    z = np.array(setup.z, float)
+    z /= np.linalg.norm(z)
+    # Without an x the machine's X is as near to the part's as can be; where that is the spindle's, its Y is the part's.
+    wanted = np.array([1.0, 0.0, 0.0] if setup.x is None else setup.x, float)
+    x = wanted - (wanted @ z) * z
+    if np.linalg.norm(x) < 1e-6:
+        x = np.cross([0.0, 1.0, 0.0], z)
+    x /= np.linalg.norm(x)
+    return np.array([x, np.cross(z, x), z])
+
+
+def carried(machine: MachineAxes, setup: Setup, vector: Floats, degrees: Floats) -> Floats:
+    """Where vectors that are fixed to the tool point in the part's coordinates, (n, 3), at angles (n, 2) in degrees."""
+    frame = frame_of(setup)
+    found = np.broadcast_to(np.asarray(vector, float), (len(degrees), 3))
+    for direction, angle in reversed([*zip(machine.direction, np.radians(degrees).T, strict=True)]):
+        c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
+        along = (found @ direction)[:, None] * direction
+        found = along + c * (found - along) + s * np.cross(direction, found)
+    return np.asarray(found @ frame)
+
+
+def axes_of(machine: MachineAxes, setup: Setup, degrees: Floats) -> Floats:
+    """Tool axes (n, 3) in the part's coordinates at angles (n, 2) in degrees."""
+    return carried(machine, setup, machine.tool, degrees)
+
+
+def allowed(machine: MachineAxes, setup: Setup, degrees: Floats) -> NDArray[np.bool_]:
+    """Which angles (n, 2), deg, are within the machine's limits."""
+    low, high = np.degrees(machine.limits).T
+    within = ((degrees >= low - 1e-6) & (degrees <= high + 1e-6)).all(axis=1)
+    tilt = np.arccos(np.clip(axes_of(machine, setup, degrees) @ frame_of(setup)[2], -1.0, 1.0))
+    return np.asarray(within & (tilt <= machine.tilt_limit + 1e-9))

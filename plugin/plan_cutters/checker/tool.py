@@ -1,0 +1,318 @@
+"""The tool in the checker's own terms: convex bodies of revolution, how deep a point lies in each, and where the tool touches.
+
+Each body is all that is below some lines and inside some arcs of its half section. How deep a point lies in it, negative
+outside, is a concave function of the point: so a tangent plane of it bounds it everywhere, which the search for deep points
+over cells of a surface rests on (`bounds`).
+"""
+
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from cad_io.arrays import Floats
+from plan_cutters.checker.question import ToolSizes
+
+_DOWN, _OUT = -math.pi / 2, 0.0
+#: Angles within this of the end of an arc are on it, rad.
+_HAIR = 1e-9
+#: Tilts up to which any side of the bottom may touch, rad; sines below which an axis is the normal; directions that are one.
+FLAT, _UPRIGHT, _SAME = 1e-4, 1e-12, 1e-6
+
+
+@dataclass(frozen=True, slots=True)
+class Arc:
+    """An arc of a half section: centre (q, h), radius, and from where to where its normals point, rad from the radius upwards."""
+
+    q: float
+    h: float
+    radius: float
+    first: float
+    last: float
+
+
+@dataclass(frozen=True, slots=True)
+class Solid:
+    """A convex body about the tool axis.
+
+    Attributes
+    ----------
+    part : str
+        `flutes`, `neck`, `shank` or `holder`.
+    lines : (k, 3) float
+        Unit normal (q, h) and offset of each: within, n (q, h) <= offset.
+    arcs : tuple of Arc
+    border : (s, 4) float
+        Straight pieces of its outline, from (q, h) to (q, h).
+    low, high, wide : float
+        Heights and radius, mm.
+    """
+
+    part: str
+    lines: Floats
+    arcs: tuple[Arc, ...]
+    border: Floats
+    low: float
+    high: float
+    wide: float
+
+    def depth(self, q: Floats, h: Floats) -> tuple[Floats, Floats, Floats]:
+        """How deep points (n,) lie in it, mm, negative outside, and a gradient of that in q and in h."""
+        n_q, n_h, offset = self.lines.T
+        each = offset - np.multiply.outer(q, n_q) - np.multiply.outer(h, n_h)
+        line = each.argmin(axis=1)
+        deep, g_q, g_h = each[np.arange(len(q)), line], -n_q[line], -n_h[line]
+        for arc in self.arcs:
+            c, s, away = _nearest(arc, q, h)
+            own = arc.radius - ((q - arc.q) * c + (h - arc.h) * s)
+            less = (own < deep) & (away > 0.0)
+            deep, g_q, g_h = np.where(less, own, deep), np.where(less, -c, g_q), np.where(less, -s, g_h)
+        out = np.flatnonzero(deep < 0.0)
+        if len(out):
+            deep[out], g_q[out], g_h[out] = self._outside(q[out], h[out])
+        return deep, g_q, g_h
+
+    def _outside(self, q: Floats, h: Floats) -> tuple[Floats, Floats, Floats]:
+        """The same outside of it: less the distance from the nearest point of its outline."""
+        best, to_q, to_h = np.full(len(q), np.inf), np.zeros(len(q)), np.zeros(len(q))
+
+        def nearer(a: Floats, b: Floats) -> None:
+            nonlocal best, to_q, to_h
+            away = np.hypot(q - a, h - b)
+            less = away < best
+            best, to_q, to_h = np.where(less, away, best), np.where(less, a, to_q), np.where(less, b, to_h)
+
+        for a, b, c, d in self.border.tolist():
+            length = (c - a) ** 2 + (d - b) ** 2
+            share = np.clip(((q - a) * (c - a) + (h - b) * (d - b)) / max(length, 1e-300), 0.0, 1.0)
+            nearer(a + share * (c - a), b + share * (d - b))
+        for arc in self.arcs:
+            c_, s_, _ = _nearest(arc, q, h)
+            nearer(np.maximum(0.0, arc.q + arc.radius * c_), arc.h + arc.radius * s_)
+        size = np.maximum(best, 1e-300)
+        return -best, (to_q - q) / size, (to_h - h) / size
+
+
+def _nearest(arc: Arc, q: Floats, h: Floats) -> tuple[Floats, Floats, Floats]:
+    """Cosine and sine of the direction of an arc's normals nearest to that of points (n,), and their distance from its centre."""
+    p, w = q - arc.q, h - arc.h
+    turn = np.arctan2(w, p)
+    middle = 0.5 * (arc.first + arc.last)
+    turn = middle + np.remainder(turn - middle + math.pi, 2.0 * math.pi) - math.pi
+    turn = np.clip(turn, arc.first, arc.last)
+    return np.cos(turn), np.sin(turn), np.hypot(p, w)
+
+
+@dataclass(frozen=True, slots=True)
+class Tool:
+    """A cutter with all that is above it.
+
+    Attributes
+    ----------
+    id : str
+    solids : tuple of Solid
+        The flutes first.
+    contacts : tuple of Arc
+        The arcs, and corners as arcs of radius 0, with which it touches, from the tip up.
+    allowance, clearance : float
+        mm.
+    radius, high, wide : float
+        Of the flutes; height and radius of all, mm.
+    """
+
+    id: str
+    solids: tuple[Solid, ...]
+    contacts: tuple[Arc, ...]
+    allowance: float
+    clearance: float
+    radius: float
+    high: float
+    wide: float
+
+    def above(self, height: float) -> tuple[Solid, ...]:
+        """Give what is above a height over the tip: flutes cut off there, and all other sections."""
+        found = []
+        for each in self.solids:
+            if each.part == "flutes":
+                if each.high <= height:
+                    continue
+                each = _cut(each, height)
+            found.append(each)
+        return tuple(found)
+
+    def tips(self, contact: Floats, normal: Floats, axis: Floats, lean: Floats) -> Floats:
+        """Where its tip is, (n, 3), with its contact at points (n, 3); nan where it does not touch at that tilt.
+
+        `lean` (n, 3) says which side of the bottom touches where the axis is the normal.
+        """
+        cosine = np.clip((normal * axis).sum(axis=1), -1.0, 1.0)
+        across = axis - cosine[:, None] * normal
+        sine = np.linalg.norm(across, axis=1)
+        tilt = np.arctan2(sine, cosine)
+        # From the axis to the contact: across the axis, away from the normal.
+        outward = -normal + cosine[:, None] * axis
+        aside = lean - (lean * axis).sum(axis=1)[:, None] * axis
+        with np.errstate(invalid="ignore", divide="ignore"):
+            turned = np.linalg.norm(lean - across / sine[:, None], axis=1) > _SAME
+            upright = (tilt <= FLAT) & ((sine < _UPRIGHT) | turned)
+            outward = np.where(upright[:, None], aside, outward)
+            outward = outward / np.linalg.norm(outward, axis=1)[:, None]
+        normal, tilt = np.where(upright[:, None], axis, normal), np.where(upright, 0.0, tilt)
+        found, left = np.full(contact.shape, np.nan), np.ones(len(contact), bool)
+        for arc in self.contacts:
+            mine = left & (tilt + _DOWN >= arc.first - _HAIR) & (tilt + _DOWN <= arc.last + _HAIR)
+            centre = contact[mine] + (arc.radius + self.allowance) * normal[mine]
+            found[mine] = centre - arc.q * outward[mine] - arc.h * axis[mine]
+            left &= ~mine
+        return found
+
+
+def _cut(solid: Solid, height: float) -> Solid:
+    """What is above a height of a body."""
+    lines = np.vstack([solid.lines, [0.0, -1.0, -height]])
+    border = []
+    for a, b, c, d in solid.border.tolist():
+        if b == d:
+            if b >= height:
+                border.append((a, b, c, d))
+            continue
+        (a, b), (c, d) = sorted([(a, b), (c, d)], key=lambda point: point[1])
+        if d > height:
+            border.append((a + (c - a) * max(0.0, height - b) / (d - b), max(b, height), c, d))
+    arcs = tuple(
+        Arc(arc.q, arc.h, arc.radius, max(arc.first, math.asin(max(-1.0, (height - arc.h) / arc.radius))), arc.last)
+        for arc in solid.arcs
+        if arc.h + arc.radius * math.sin(arc.last) > height
+    )
+    wide = min((q for a, b, c, d in border for q, h in ((a, b), (c, d)) if h == height), default=solid.wide)
+    wide = max([wide, *(arc.q + arc.radius * math.cos(arc.first) for arc in arcs)])
+    return Solid(
+        solid.part, lines, arcs, np.array([*border, (0.0, height, wide, height)]), height, solid.high, solid.wide
+    )
+
+
+def _line(a: tuple[float, float], b: tuple[float, float]) -> tuple[float, float, float]:
+    """The line through two points of an outline that is walked upwards: the body is to its left."""
+    n_q, n_h = b[1] - a[1], a[0] - b[0]
+    size = math.hypot(n_q, n_h)
+    return n_q / size, n_h / size, (n_q * a[0] + n_h * a[1]) / size
+
+
+def _solid(
+    part: str, points: list[tuple[float, float]], arcs: tuple[Arc, ...] = (), bent: frozenset[int] = frozenset()
+) -> Solid:
+    """A body from the points of its outline, from the axis below to the axis above; `bent`: sides that are arcs."""
+    sides = [(k, a, b) for k, (a, b) in enumerate(pairwise(points)) if math.dist(a, b) > 1e-12]
+    straight = [(a, b) for k, a, b in sides if k not in bent]
+    heights = [h for _, h in points]
+    wide = max(
+        [
+            *(q for q, _ in points),
+            *(arc.q + arc.radius * max(0.0, math.cos(max(arc.first, min(arc.last, 0.0)))) for arc in arcs),
+        ]
+    )
+    return Solid(part, np.array([_line(a, b) for a, b in straight]), tuple(arc for arc in arcs if arc.radius > 0.0),
+                 np.array([(*a, *b) for a, b in straight]), min(heights), max(heights), wide)  # fmt: skip
+
+
+def tool_of(sizes: ToolSizes) -> Tool:
+    """Build the solids of a cutter from its dimensions."""
+    r, corner, top = sizes.radius, sizes.corner_radius, sizes.flutes
+    contacts: tuple[Arc, ...]
+    if sizes.shape == "form":
+        cutting = [
+            _solid("flutes", [(0.0, a[1]), a, b, (0.0, b[1])])
+            for a, b in zip(sizes.outline, sizes.outline[1:], strict=False)
+            if b[1] > a[1]
+        ]
+        contacts = _hull(sizes.outline)
+    elif sizes.shape == "lollipop":
+        edge = math.sqrt(max(0.0, r * r - (top - r) ** 2))
+        arc = Arc(0.0, r, r, _DOWN, math.atan2(top - r, edge))
+        cutting, contacts = [_solid("flutes", [(0.0, 0.0), (edge, top), (0.0, top)], (arc,), frozenset({0}))], (arc,)
+    elif sizes.shape == "lens":
+        inner, outer = r - corner, sizes.arc_radius - corner
+        joint = math.asin(min(1.0, inner / outer))
+        high = sizes.arc_radius - math.sqrt(max(0.0, outer**2 - inner**2))
+        bottom = Arc(0.0, sizes.arc_radius, sizes.arc_radius, _DOWN, _DOWN + joint)
+        side = Arc(inner, high, corner, _DOWN + joint, _OUT)
+        foot = (sizes.arc_radius * math.sin(joint), sizes.arc_radius * (1.0 - math.cos(joint)))
+        cutting = [
+            _solid("flutes", [(0.0, 0.0), foot, (r, high), (r, top), (0.0, top)], (bottom, side), frozenset({0, 1}))
+        ]
+        contacts = (bottom, side)
+    elif sizes.shape == "barrel":
+        wide, centre = sizes.arc_radius, sizes.arc_height
+        last = math.asin(max(-1.0, min(1.0, (top - centre) / wide)))
+        end = (r - wide + wide * math.cos(last), top)
+        if corner:
+            joint = math.asin(min(1.0, (wide - r) / (wide - corner)))
+            tip, flank = (
+                Arc(0.0, corner, corner, _DOWN, _DOWN + joint),
+                Arc(r - wide, centre, wide, _DOWN + joint, last),
+            )
+            foot = (corner * math.sin(joint), corner * (1.0 - math.cos(joint)))
+            cutting = [_solid("flutes", [(0.0, 0.0), foot, end, (0.0, top)], (tip, flank), frozenset({0, 1}))]
+            contacts = (tip, flank)
+        else:
+            first = math.asin(max(-1.0, -centre / wide))
+            flank = Arc(r - wide, centre, wide, first, last)
+            foot = (r - wide + wide * math.cos(first), 0.0)
+            cutting, contacts = (
+                [_solid("flutes", [(0.0, 0.0), foot, end, (0.0, top)], (flank,), frozenset({1}))],
+                (flank,),
+            )
+    else:
+        arc = Arc(r - corner, corner, corner, _DOWN, -sizes.taper)
+        foot = (arc.q + corner * math.cos(sizes.taper), corner * (1.0 - math.sin(sizes.taper)))
+        end = (foot[0] + (top - foot[1]) * math.tan(sizes.taper), top)
+        cutting = [_solid("flutes", [(0.0, 0.0), (r - corner, 0.0), foot, end, (0.0, top)], (arc,), frozenset({1}))]
+        if not corner:
+            cutting = [_solid("flutes", [(0.0, 0.0), (r, 0.0), end, (0.0, top)])]
+        contacts = (arc,)
+    above = [
+        _solid(each.part, [(0.0, each.low), (each.radius, each.low), (each.upper_radius, each.low + each.length),
+                           (0.0, each.low + each.length)])
+        for each in sizes.sections
+    ]  # fmt: skip
+    solids = (*cutting, *above)
+    return Tool(sizes.id, solids, contacts, sizes.allowance, sizes.clearance, r, max(each.high for each in solids),
+                max(each.wide for each in solids))  # fmt: skip
+
+
+def _hull(outline: tuple[tuple[float, float], ...]) -> tuple[Arc, ...]:
+    """The corners of an outline's convex hull, with which it can touch a plane."""
+    hull: list[tuple[float, float]] = []
+    for point in outline:
+        while len(hull) > 1 and _turns_right(hull[-2], hull[-1], point):
+            hull.pop()
+        hull.append(point)
+    turns = [math.atan2(b[1] - a[1], b[0] - a[0]) + _DOWN for a, b in pairwise(hull)]
+    ends = [_DOWN, *turns, max(turns[-1], _OUT)]
+    return tuple(
+        Arc(q, h, 0.0, max(_DOWN, first), last)
+        for (q, h), first, last in zip(hull, ends, ends[1:], strict=False)
+        if last > max(first, _DOWN)
+    )
+
+
+def _turns_right(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> bool:
+    return (b[0] - a[0]) * (c[1] - b[1]) - (b[1] - a[1]) * (c[0] - b[0]) <= 0.0
+
+
+def bounds(solid: Solid, tip: Floats, axis: Floats, point: Floats, offset: Floats) -> tuple[Floats, Floats]:
+    """How deep points (n, 3) lie in a body whose tool stands at tips and axes (n, 3), and a bound of that over their cells.
+
+    `offset` (n, k, 3) are the corners of each cell as seen from its point: over the cell's flat hull the depth is at most that of
+    the tangent plane of the depth at the point.
+    """
+    away = point - tip
+    h = (away * axis).sum(axis=1)
+    radial = away - h[:, None] * axis
+    q = np.linalg.norm(radial, axis=1)
+    deep, g_q, g_h = solid.depth(q, h)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        unit = np.where((q > 1e-12)[:, None], radial / q[:, None], 0.0)
+    gradient = g_q[:, None] * unit + g_h[:, None] * axis
+    return deep, deep + np.einsum("nkj,nj->nk", offset, gradient).max(axis=1)

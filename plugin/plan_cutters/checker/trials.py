@@ -1,0 +1,272 @@
+"""Check a plan by putting tools down: labels, weights, the chosen candidates, and clearances."""
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
+from plan_cutters.checker.bench import Bench
+from plan_cutters.checker.clash import FREE, MET, OPEN, Clock
+from plan_cutters.checker.expected import Reckoned
+from plan_cutters.checker.findings import Finding
+from plan_cutters.checker.leaves import Between, Loose
+from plan_cutters.checker.question import Question, allowed, axes_of
+from plan_cutters.checker.tool import FLAT
+
+Rows = NDArray[np.int64]
+_UNIT = 1_000_000
+#: Pairs of a sample and an axis that are looked at between two looks at the clock.
+_AT_ONCE = 2048
+#: How far clearances are reported below the true ones: as a share, and mm; `MOST`: that or more.
+_CLEARANCE_SHARE, _CLEARANCE_STEP, _MOST = 0.05, 0.02, 100.0
+#: The edges of flutes are grown as square ones: there clearances are reported by up to this share too low.
+_EDGE = 0.45
+#: Share of an area that a search may count less than stands free.
+_DOUBT = 0.02
+#: Parts of unit vectors that differ by less are one.
+_SAME = 1e-6
+
+
+class Trials:
+    """The checks with tools.
+
+    Parameters
+    ----------
+    question : Question
+    reckoned : Reckoned
+    bench : Bench
+    rng : Generator
+        Of the order in which pairs are looked at.
+    clock : callable
+        The clock of a check by its name.
+    tell : callable
+        Called with what is being done.
+    """
+
+    def __init__(
+        self, question: Question, reckoned: Reckoned, bench: Bench, rng: np.random.Generator, clock: Callable[[str], Clock],
+        tell: Callable[[str], None],
+    ) -> None:  # fmt: skip
+        self.question, self.reckoned, self.bench, self.rng = question, reckoned, bench, rng
+        self.clock, self.tell = clock, tell
+        self.plans: list[dict[str, Any]] = question.document["operations"]["plans"]
+
+    def findings(self, entry: dict[str, Any]) -> Iterator[Finding]:
+        """All of them; what plan.json must say, as far as it follows from them, is put into `entry`."""
+        question = self.question
+        if 0.0 < question.asked < question.tolerance:
+            words = f"the {question.tolerance:g} mm that the plan keeps, where {question.asked:g} mm were wanted,"
+            yield Finding(None, f"Whether the part allows no better tolerance than {words} is not looked at.")
+        if self.bench.unread:
+            yield Finding(None, f"Nothing is known of what {', '.join(self.bench.unread)} are in the way of.")
+        if self.bench.hollow:
+            yield Finding(None, f"Whether a tool stands wholly within {', '.join(self.bench.hollow)} is not looked at.")
+        yield from self.placed()
+        yield self.weights()
+        yield from self.covered(entry)
+        yield from self.alone()
+        self.clearances(entry)
+
+    def placed(self) -> Iterator[Finding]:
+        """Each operation, put down at each of its samples."""
+        clock = self.clock("placed")
+        for k, plan in enumerate(self.plans):
+            label, lean, words = self.reckoned.array(k, "operation"), self.reckoned.array(k, "lean"), list[str]()
+            tested, wrong, open_, leans = 0, 0, 0, 0
+            for i, each in enumerate(plan["operations"]):
+                self.tell(f"{plan['name']}: putting {each['id']} down ({i + 1} of {len(plan['operations'])})")
+                # In a drawn order, so that what there was no time for is no part of the surface.
+                rows = self.rng.permutation(np.flatnonzero(label == i))
+                setup, tool = each["setup"], self.bench.tools[each["cutter"]]
+                axis, there = self._axes(each, rows)
+                open_ += len(rows) - len(there)
+                leans += self._other_leans(there, axis, lean[there])
+                found, more = self.bench.looked(setup, tool, there, axis, lean[there], clock)
+                wrong, open_ = wrong + int((found == MET).sum()), open_ + int((found == OPEN).sum())
+                tested += int((found != OPEN).sum())
+                words += [f"{each['id']}, {one}" for one in more]
+            said = f" {leans} have another lean than their axis has." if leans else ""
+            said += f" {'; '.join(words[:3])}." if words else ""
+            late = f" of {tested + open_} (drawn by seed 0)" if open_ else ""
+            holds = wrong == 0 and leans == 0
+            yield Finding(None if holds and not tested and open_ else holds,
+                          f"The {plan['name']} plan: its operations were put down at {tested} samples{late}; at {wrong} the tool "
+                          f"is too deep in something, or cannot stand.{said}")  # fmt: skip
+
+    def _axes(self, each: dict[str, Any], rows: Rows) -> tuple[Floats, Rows]:
+        """The axes of an operation at some of its samples, and which these are: all, unless an axis is not written."""
+        if each["mode"] == "fixed":
+            names = self.question.machine.names
+            degrees = np.array([[float(each["angles_deg"][name]) for name in names]])
+            setup = self.question.setups[each["setup"]]
+            if not allowed(self.question.machine, setup, degrees).all():
+                raise ValueError(f"the angles of {each['id']} are beyond the machine's limits")
+            return np.repeat(axes_of(self.question.machine, setup, degrees), len(rows), axis=0), rows
+        samples, name = self.question.samples, each["cutter"]
+        served = samples.get(f"setup_{name}")
+        there = rows if served is None else rows[served[rows] == each["setup"]]
+        return samples[f"axis_{name}"][there], there
+
+    def _other_leans(self, rows: Rows, axis: Floats, lean: Floats) -> int:
+        """How many written leans are not those of their axes; where an axis is the normal any across it is one."""
+        own = self.bench.own_lean(rows, axis)
+        tilt = np.linalg.norm(np.cross(self.bench.normal[rows], axis), axis=1)
+        same = np.abs(own - lean).max(axis=1, initial=0.0) <= _SAME
+        across = (np.abs((lean * axis).sum(axis=1)) <= 1e-3) & (np.abs(np.linalg.norm(lean, axis=1) - 1.0) <= _SAME)
+        return int((~(same | ((tilt <= FLAT) & across))).sum())
+
+    def weights(self) -> Finding:
+        """No candidate serves samples whose weights sum up to more than a million."""
+        few, arrays = self.question.document["operations"]["fewest"], self.question.operations
+        if not few["weights"]:
+            return Finding(True, "There are no weights.")
+        rows, weight = (np.array(column, np.int64) for column in zip(*few["weights"], strict=True))
+        cutter, setup, axis = (arrays[f"candidate_{name}"] for name in ("cutter", "setup", "axis"))
+        clock, order = self.clock("weights"), self.rng.permutation(len(cutter))
+        size, done, most = max(1, _AT_ONCE // len(rows)), 0, 0
+        for start in range(0, len(order), size):
+            if clock.over:
+                break
+            some = order[start : start + size]
+            carried = np.zeros(len(some), np.int64)
+            late = False
+            for c, s in sorted({*zip(cutter[some].tolist(), setup[some].tolist(), strict=True)}):
+                mine = np.flatnonzero((cutter[some] == c) & (setup[some] == s))
+                pairs, which = np.tile(rows, len(mine)), np.repeat(mine, len(rows))
+                found = self.bench.serves(s, self.bench.named(c), pairs, axis[some[which]], clock, surely=False)
+                late |= bool((found == OPEN).any())
+                np.add.at(carried, which[found == FREE], np.tile(weight, len(mine))[found == FREE])
+            if late:
+                break
+            done, most = done + len(some), max(most, int(carried.max()))
+            self.tell(f"weights: {done} of {len(order)} candidates")
+        total = int(weight.sum())
+        part = "" if done == len(order) else f" (checked {done} of {len(order)}, drawn by seed 0)"
+        proof = "" if few["proof"] == "weights" else f" ({few['proof']}, which is not checked)"
+        words = (f"The weights of {len(rows)} samples sum up to {total / _UNIT:.6f}; no candidate{part} carries more than "
+                 f"{most / _UNIT:.6f}: at least {-(-total // _UNIT)} orientations are needed, the plan says {few['at_least']}"
+                 f"{proof}.")  # fmt: skip
+        return Finding(None if done == 0 else most <= _UNIT, words)
+
+    def covered(self, entry: dict[str, Any]) -> Iterator[Finding]:
+        """The chosen candidates serve all samples that are reached, but for those that none does."""
+        few, arrays = self.question.document["operations"]["fewest"], self.question.operations
+        chosen, many = arrays["chosen"], len(arrays["candidate_cutter"])
+        if len({*chosen.tolist()}) != len(chosen) or not all(0 <= c < many for c in chosen.tolist()):
+            yield Finding(False, "The chosen candidates are none, or are chosen twice.")
+            return
+        fewest = next((plan for plan in self.plans if plan["name"] == "fewest"), None)
+        used = [] if fewest is None else [each for each in fewest["operations"] if each["mode"] == "fixed"]
+        if len(used) > few["found"]:
+            yield Finding(False, f"The fewest operations are {few['found']} by the plan, and there are {len(used)}.")
+        if fewest is not None and len(used) == len(fewest["operations"]) and len(used) < few["at_least"]:
+            words = (
+                f"At least {few['at_least']} orientations are needed by the plan, and it finishes all with {len(used)}."
+            )
+            yield Finding(False, words)
+        clock, rows = self.clock("covered"), np.flatnonzero(self.reckoned.reached)
+        self.tell(f"the {len(chosen)} chosen candidates at all samples")
+        verdict = self._chosen(chosen, rows, clock, surely=True)
+        table, doubt = verdict == FREE, (verdict == OPEN).any(axis=0)
+        served = table.any(axis=0)
+        lost, open_ = int((~served & ~doubt).sum()), int((~served & doubt).sum())
+        if not open_:
+            # A search may take samples for not served that are by a hair.
+            strictly = verdict if few["alone"] == lost else self._chosen(chosen, rows, clock, surely=False)
+            entry["fewest"]["alone"] = Between(lost, int((strictly != FREE).all(axis=0).sum()))
+            self._steps(entry, table, self.reckoned.area[rows])
+        late = f"; {open_} were not looked at" if open_ else ""
+        words = (f"The {len(chosen)} chosen candidates serve {int(served.sum())} of the {len(rows)} samples that are reached"
+                 f"{late}; {lost} are left, and the plan says that {few['alone']} need simultaneous motion.")  # fmt: skip
+        yield Finding(lost <= few["alone"], words)
+
+    def _chosen(self, chosen: Rows, rows: Rows, clock: Clock, *, surely: bool) -> NDArray[np.int8]:
+        """How each chosen candidate stands at samples: (chosen, m)."""
+        arrays, verdict = self.question.operations, np.full((len(chosen), len(rows)), MET, np.int8)
+        for k, c in enumerate(chosen.tolist()):
+            tool, s = self.bench.named(int(arrays["candidate_cutter"][c])), int(arrays["candidate_setup"][c])
+            axis = np.repeat(arrays["candidate_axis"][c][None], len(rows), axis=0)
+            verdict[k] = self.bench.serves(s, tool, rows, axis, clock, surely=surely)
+        return verdict
+
+    def _steps(self, entry: dict[str, Any], table: NDArray[np.bool_], area: Floats) -> None:
+        """Raise what each step of the curve must reach at least: what the chosen candidates do, the largest gain first."""
+        written, steps = self.question.document["operations"]["curve"], entry["curve"]
+        left, have = area.copy(), 0.0
+        whole = float(area[table.any(axis=0)].sum())
+        if not len(steps) or len(written) != len(steps) or whole <= 0.0:
+            return
+        for step in steps:
+            gain = table @ left
+            have += float(gain.max())
+            left = left * ~table[int(gain.argmax())]
+            # A search may count a little less than stands free.
+            least = written[-1]["share"] * have / whole * (1.0 - _DOUBT)
+            step["share"] = Loose(max(step["share"].low, least), step["share"].high)
+
+    def alone(self) -> Iterator[Finding]:
+        """Samples that an operation alone serves: no other one of the plan stands free there; at others some other one does."""
+        clock = self.clock("alone")
+        for k, plan in enumerate(self.plans):
+            label, alone = self.reckoned.array(k, "operation"), self.reckoned.array(k, "exclusive")
+            rows = self.rng.permutation(np.flatnonzero(label >= 0))
+            fixed = [i for i, each in enumerate(plan["operations"]) if each["mode"] == "fixed"]
+            moving = ~np.isin(label, fixed)
+            self.tell(f"{plan['name']}: what each operation alone serves")
+            wrong, done = 0, 0
+            for start in range(0, len(rows), _AT_ONCE // max(1, len(fixed))):
+                some = rows[start : start + _AT_ONCE // max(1, len(fixed))]
+                # What a fixed operation serves alone, another one surely does not; what it does not, another one may.
+                surely, perhaps = (self._others(plan, fixed, label, some, proved, clock) for proved in (False, True))
+                if clock.over:
+                    break
+                bad = np.where(alone[some], surely, ~perhaps & ~moving[some])
+                wrong, done = wrong + int(bad.sum()), done + len(some)
+            part = "" if done == len(rows) else f" of {len(rows)} (drawn by seed 0)"
+            yield Finding(None if len(rows) and not done else wrong == 0,
+                          f"The {plan['name']} plan: {done} samples{part} go with the only operation that serves them, or with "
+                          f"one of several, as operations.npz says; {wrong} do not.")  # fmt: skip
+
+    def _others(
+        self, plan: dict[str, Any], fixed: list[int], label: NDArray[Any], rows: Rows, surely: bool, clock: Clock
+    ) -> NDArray[np.bool_]:
+        """At which samples (m,) another fixed operation than theirs stands free; `surely` as for `Bench.stands`."""
+        found = np.zeros(len(rows), bool)
+        for i in fixed:
+            each = plan["operations"][i]
+            mine = np.flatnonzero((label[rows] != i) & ~found)
+            axis, there = self._axes(each, rows[mine])
+            verdict = self.bench.serves(
+                each["setup"], self.bench.tools[each["cutter"]], there, axis, clock, surely=surely
+            )
+            found[mine[verdict == FREE]] = True
+        return found
+
+    def clearances(self, entry: dict[str, Any]) -> None:
+        """Put into the entry between what the least clearance of each operation must lie."""
+        clock = self.clock("clearance")
+        for k, plan in enumerate(self.plans):
+            label, lean = self.reckoned.array(k, "operation"), self.reckoned.array(k, "lean")
+            for i, each in enumerate(plan["operations"]):
+                claimed, tool = each["clearance_mm"], self.bench.tools[each["cutter"]]
+                self.tell(f"{plan['name']}: the clearance of {each['id']}")
+                rows = np.flatnonzero(label == i)
+                axis, there = self._axes(each, rows)
+                if not tool.above(2.0 * tool.radius):
+                    entry["plans"][k]["operations"][i]["clearance_mm"] = None
+                    continue
+                doubtful = bool(self.question.document["missing"]) or bool(self.bench.unread)
+                if len(there) < len(rows) or clock.over or (claimed is None and doubtful):
+                    continue
+                beyond = (claimed or 0.0) * (1.0 + _EDGE) + _CLEARANCE_STEP + self.question.tolerance
+                found = self.bench.clearance(each["setup"], tool, there, axis, lean[there], beyond, clock)
+                if found is None:
+                    continue
+                true, part = found
+                share = _EDGE if part == "flutes" else _CLEARANCE_SHARE
+                least = (true - _CLEARANCE_STEP - self.question.tolerance) / (1.0 + share) if part else true
+                entry["plans"][k]["operations"][i]["clearance_mm"] = Between(
+                    max(0.0, min(_MOST, least)), max(0.0, min(_MOST, true)), 2.0 * self.bench.grain
+                )

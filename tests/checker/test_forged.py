@@ -1,0 +1,340 @@
+"""Every entry of a plan of operations, forged: the checker finds it, or lists that entry as unchecked."""
+
+import copy
+import json
+from collections import defaultdict
+
+import numpy as np
+import pytest
+
+from plan_cutters.checker.check import check
+from plan_cutters.checker.leaves import UNCHECKED, leaves, pattern
+from plan_cutters.document.operations import OperationsEntry
+
+#: Entries of one kind that are forged, each in turn.
+_OF_A_KIND = 4
+
+
+def schema_patterns(schema, part, path=""):
+    """The leaves that plan.json may have by its schema, with null and empty ones."""
+    if "$ref" in part:
+        return schema_patterns(schema, schema["$defs"][part["$ref"].rpartition("/")[2]], path)
+    if "anyOf" in part:
+        return {leaf for each in part["anyOf"] for leaf in schema_patterns(schema, each, path)}
+    if "properties" in part:
+        return {
+            leaf
+            for name, each in part["properties"].items()
+            for leaf in schema_patterns(schema, each, f"{path}.{name}" if path else name)
+        }
+    if isinstance(part.get("additionalProperties"), dict):
+        return schema_patterns(schema, part["additionalProperties"], f"{path}.*")
+    if part.get("type") == "array":
+        below = part.get("items") or part["prefixItems"][0]
+        return schema_patterns(schema, below, f"{path}[]")
+    return set() if part.get("type") == "null" else {path}
+
+
+def nulls(schema, part, path=""):
+    """The entries that may be null."""
+    if "$ref" in part:
+        return nulls(schema, schema["$defs"][part["$ref"].rpartition("/")[2]], path)
+    found = {path} if any(each.get("type") == "null" for each in part.get("anyOf", [])) else set()
+    for each in part.get("anyOf", []):
+        found |= nulls(schema, each, path)
+    for name, each in part.get("properties", {}).items():
+        found |= nulls(schema, each, f"{path}.{name}" if path else name)
+    if isinstance(part.get("additionalProperties"), dict):
+        found |= nulls(schema, part["additionalProperties"], f"{path}.*")
+    if part.get("type") == "array" and isinstance(part.get("items"), dict):
+        found |= nulls(schema, part["items"], f"{path}[]")
+    return found
+
+
+def forged(value):
+    """Other values of the same kind, and null."""
+    if isinstance(value, bool):
+        return [not value]
+    if isinstance(value, int):
+        return [value + 1, value - 1, 10 * value + 50]
+    if isinstance(value, float):
+        return [1.07 * value + 0.5, 0.0 if abs(value) > 1e-6 else 1.0, float("nan")]
+    if isinstance(value, str):
+        return [f"{value} ", "other"]
+    if isinstance(value, list):
+        return [["more"]]
+    if isinstance(value, dict):
+        return [{"more": 1}]
+    return [1, "more"]
+
+
+def put(tree, path, value):
+    """Set a leaf of a tree."""
+    steps = path.replace("[", ".[").split(".")
+    for step in steps[:-1]:
+        tree = tree[int(step[1:-1]) if step.startswith("[") else step]
+    last = steps[-1]
+    tree[int(last[1:-1]) if last.startswith("[") else last] = value
+
+
+def found(written, document=None, arrays=None, seconds=1e6):
+    return check(written.question(document, arrays), seconds=seconds)
+
+
+#: Unchecked for want of time alone.
+_IN_TIME = {"plans[].operations[].clearance_mm", "fewest.alone"}
+
+
+def test_what_is_written_holds(written):
+    answer = found(written)
+    assert answer.holds, "\n".join(answer.lines)
+    assert not answer.entries.differ
+    assert all(each.holds for each in answer.findings)
+    assert any("clearance_mm" in path for path in answer.entries.agree)
+
+
+def test_no_entry_of_the_schema_is_forgotten(written):
+    """What is neither checked in this plan nor listed as unchecked would be an entry that the checker does not know."""
+    schema = OperationsEntry.model_json_schema()
+    checked = {pattern(path) for path in found(written).entries.agree}
+    every = schema_patterns(schema, schema)
+    unknown = sorted(each for each in every if each not in checked | {*UNCHECKED})
+    assert unknown == ["plans[].split.*"] or not unknown
+    # Nor does the list name entries that there are not.
+    assert {*UNCHECKED} <= every | nulls(schema, schema)
+
+
+def test_a_new_entry_fails(written):
+    document, _ = written.copies()
+    document["operations"]["plans"][0]["operations"][0]["novel"] = 3.0
+    answer = found(written, document)
+    assert not answer.holds
+    assert any("novel is an entry that this checker does not know" in line for line in answer.lines)
+
+
+def _kinds():
+    """Filled by the first test that asks, from the plan itself."""
+    schema = OperationsEntry.model_json_schema()
+    return sorted(schema_patterns(schema, schema))
+
+
+@pytest.mark.parametrize("kind", _kinds())
+def test_a_forged_entry_is_found_or_listed_as_unchecked(written, kind):
+    of_kind = defaultdict(list)
+    for path, value in leaves(written.document["operations"]):
+        of_kind[pattern(path)].append((path, value))
+    every = of_kind.get(kind, [])
+    if not every:
+        # An entry that this plan does not have: nothing else is left unforged.
+        assert kind in UNCHECKED
+        return
+    many = 2 if kind in _IN_TIME else _OF_A_KIND
+    picked = {*np.linspace(0, len(every) - 1, many).astype(int).tolist()}
+    # What is unchecked whatever is put down needs no tool put down.
+    seconds = 0.0 if kind in {*UNCHECKED} - _IN_TIME else 1e6
+    for path, value in (every[k] for k in sorted(picked)):
+        for other in forged(value) + ([None] if value is not None else []):
+            if kind == "fewest.weights[][]" and path.endswith("[0]") and abs((other or 0) - value) <= 1:
+                # The same weight on a neighbour may prove as much.
+                continue
+            document, _ = written.copies()
+            put(document["operations"], path, other)
+            answer = found(written, document, seconds=seconds)
+            assert not answer.holds or path in answer.entries.unchecked, (path, value, other)
+
+
+@pytest.mark.parametrize("name", ["plans", "curve", "cutters", "operations", "regions", "weights", "rows", "faces"])
+def test_a_list_that_is_cut_is_found(written, name):
+    document, _ = written.copies()
+    entry = document["operations"]
+    plan, one = entry["plans"][0], entry["plans"][0]["operations"][0]
+    where = {"operations": plan, "regions": one, "faces": one, "rows": one["regions"][0], "weights": entry["fewest"]}
+    where.get(name, entry)[name].pop()
+    assert not found(written, document).holds
+
+
+def test_each_array_that_is_altered_is_found(written):
+    for name, array in written.arrays["operations.npz"].items():
+        for how in ("cut", "nan", "kind", "gone", "one"):
+            document, arrays = written.copies()
+            forged_ = arrays["operations.npz"]
+            if how == "cut":
+                forged_[name] = array[:-1]
+            elif how == "nan":
+                if array.dtype.kind != "f":
+                    continue
+                forged_[name][np.flatnonzero(np.isfinite(array).reshape(len(array), -1).all(axis=1))[0]] = np.nan
+            elif how == "kind":
+                forged_[name] = array.astype(complex)
+            elif how == "gone":
+                del forged_[name]
+            else:
+                row = int(np.flatnonzero(np.isfinite(array.astype(float)).reshape(len(array), -1).all(axis=1))[0])
+                forged_[name][row] = ~array[row] if array.dtype.kind == "b" else array[row] + 7
+            answer = found(written, document, arrays)
+            assert not answer.holds, (name, how)
+
+
+def test_samples_that_are_moved_are_found(written):
+    for name in ("point", "normal", "direction_max", "uv", "face", "area"):
+        document, arrays = written.copies()
+        arrays["samples.npz"][name][3] = arrays["samples.npz"][name][3] * 1.5 + 1
+        assert not found(written, document, arrays).holds, name
+
+
+class TestTheForgeriesOfTheTrial:
+    def test_candidates_that_are_cut(self, written):
+        document, arrays = written.copies()
+        forged_ = arrays["operations.npz"]
+        few, left = document["operations"]["fewest"], forged_["chosen"]
+        for name in ("cutter", "setup", "angle", "axis"):
+            forged_[f"candidate_{name}"] = forged_[f"candidate_{name}"][left]
+        forged_["chosen"] = np.arange(len(left))
+        assert not found(written, document, arrays).holds
+        few["candidates"] = len(left)
+        answer = found(written, document, arrays)
+        assert not answer.holds
+        assert any("deg from a candidate" in each.words and each.holds is False for each in answer.findings)
+
+    def test_found_and_at_least_of_50(self, written):
+        document, _ = written.copies()
+        few = document["operations"]["fewest"]
+        few["found"] = few["at_least"] = 50
+        few["proof"] = "branch and bound"
+        assert not found(written, document).holds
+
+    def test_more_chosen_than_the_plan_needs(self, written):
+        """At least 50 by branch and bound, with 50 chosen: the plan itself does with fewer."""
+        document, arrays = written.copies()
+        few = document["operations"]["fewest"]
+        chosen = arrays["operations.npz"]["chosen"]
+        more = np.setdiff1d(np.arange(50 + len(chosen)), chosen)[: 50 - len(chosen)]
+        arrays["operations.npz"]["chosen"] = np.concatenate([chosen, more])
+        few["found"] = few["at_least"] = 50
+        few["proof"] = "branch and bound"
+        curve = document["operations"]["curve"]
+        curve += [{**curve[-1], "orientations": k} for k in range(len(curve) + 1, 51)]
+        answer = found(written, document, arrays)
+        assert any("it finishes all with" in each.words and each.holds is False for each in answer.findings)
+
+    @pytest.mark.parametrize(
+        ("word", "value"),
+        [("frame", {"origin": [0.0, 0.0, 0.0], "x": [1.0, 0.0, 0.0], "z": [0.0, 0.0, 1.0]}), ("clearance_mm", 50.0),
+         ("axis", [0.0, 0.6, 0.8]), ("axis", [float("nan")] * 3), ("setup", -1), ("setup", 1), ("samples", 1),
+         ("other_angles_deg", {"C": 1.0, "A": 1.0}), ("cutter", "R2L40rc2F10S3HR16L60"), ("mode", "simultaneous")],
+    )  # fmt: skip
+    def test_an_operation(self, written, word, value):
+        document, _ = written.copies()
+        one = document["operations"]["plans"][0]["operations"][0]
+        assert one[word] != value
+        one[word] = value
+        assert not found(written, document).holds
+
+    @pytest.mark.parametrize("word", ["proved_share", "approaches_proved"])
+    def test_what_is_proved_between_samples_is_listed_as_unchecked(self, written, word):
+        """Forged alone it contradicts the plan's own sum; forged in both places it is not found, and the answer says so."""
+        document, _ = written.copies()
+        plan = document["operations"]["plans"][0]
+        plan["operations"][0][word] = 1
+        assert not found(written, document).holds
+        for each in plan["operations"]:
+            each[word] = 1
+        plan[word] = 1 if word == "proved_share" else len(plan["operations"])
+        answer = found(written, document, seconds=0.0)
+        assert f"plans[0].operations[0].{word}" in answer.entries.unchecked
+        assert any(line.startswith("not checked:") and word in line for line in answer.lines)
+
+    def test_at_least_any_and_candidates(self, written):
+        document, _ = written.copies()
+        document["operations"]["fewest"]["at_least_any"] = 50
+        assert not found(written, document).holds
+        document, _ = written.copies()
+        document["operations"]["fewest"]["candidates"] = 10**6
+        assert not found(written, document).holds
+
+    @pytest.mark.parametrize("shares", [[0.1], [1.2], [0.9, 0.8]])
+    def test_a_curve(self, written, shares):
+        document, _ = written.copies()
+        for step, share in zip(document["operations"]["curve"], shares, strict=False):
+            step["share"] = share
+        assert not found(written, document).holds
+
+    def test_a_lean(self, written):
+        document, arrays = written.copies()
+        lean, label = arrays["operations.npz"]["lean"], arrays["operations.npz"]["operation"]
+        lean[np.flatnonzero(label == 0)] *= -1.0
+        assert not found(written, document, arrays).holds
+
+    def test_no_plans(self, written):
+        document, _ = written.copies()
+        document["operations"]["plans"] = []
+        assert not found(written, document).holds
+
+    def test_plans_that_are_renamed(self, written):
+        document, _ = written.copies()
+        for plan, name in zip(document["operations"]["plans"], ["fastest", "fewest"], strict=False):
+            plan["name"] = name
+        assert not found(written, document).holds
+
+    @pytest.mark.parametrize("kind", ["doubled", "more", "negative", "beyond", "huge"])
+    def test_weights(self, written, kind):
+        document, _ = written.copies()
+        few = document["operations"]["fewest"]
+        row = few["weights"][0][0]
+        if kind == "doubled":
+            few["weights"] *= 2
+        if kind == "more":
+            reached = np.flatnonzero(written.arrays["operations.npz"]["operation"] >= 0)
+            few["weights"] = [[each, 1_000_000] for each in reached[::3].tolist()]
+        few["weights"] += {"negative": [[row, -5]], "beyond": [[10**7, 5]], "huge": [[row, 2**62]] * 3}.get(kind, [])
+        total = sum(weight for _, weight in few["weights"])
+        few["bound"] = few["lp"] = total / 1e6
+        few["at_least"] = -(-total // 1_000_000)
+        assert not found(written, document).holds
+
+
+def test_too_many_weights_are_found_by_putting_tools_down(written):
+    """Weights of 1 on two samples that one candidate serves, with all sums made to fit."""
+    document, arrays = written.copies()
+    few = document["operations"]["fewest"]
+    rows = np.flatnonzero(arrays["operations.npz"]["operation"] == 0)
+    few["weights"] = [[int(row), 1_000_000] for row in sorted(rows[: few["found"]].tolist())]
+    few["bound"] = few["lp"] = float(few["found"])
+    few["at_least"], few["proof"] = few["found"], "weights"
+    answer = found(written, document)
+    assert any("no candidate" in each.words and each.holds is False for each in answer.findings)
+
+
+def test_a_sample_given_to_an_operation_that_does_not_serve_it_is_found(written):
+    document, arrays = written.copies()
+    question = written.question(document, arrays)
+    plan = document["operations"]["plans"][0]
+    label, normal = arrays["operations.npz"]["operation"], arrays["samples.npz"]["normal"]
+    axes = np.array([each["axis"] for each in plan["operations"]])
+    away = np.flatnonzero((label >= 0) & ((normal @ axes.T).min(axis=1) < -0.1))
+    assert len(away)
+    label[away] = (normal[away] @ axes.T).argmin(axis=1)
+    assert not check(question).holds
+
+
+def test_a_check_without_time_says_what_it_did_not_look_at(written):
+    answer = check(written.question(), seconds=0.0)
+    assert answer.holds
+    assert any("were not looked at" in line for line in answer.lines)
+    assert not any("clearance_mm" in path for path in answer.entries.agree)
+
+
+def test_forged_files_are_told_by_their_checksums(written):
+    from dataclasses import replace
+
+    question = replace(written.question(), checksums={"operations.npz": ("0" * 64, "1" * 64)})
+    assert not check(question).holds
+
+
+def test_json_can_say_nothing_that_ends_the_checker(written):
+    """Entries exchanged for others of any kind end in an answer that fails, never in an exception."""
+    for path in ("plans", "fewest", "fewest.weights", "curve", "assumed", "plans[0].operations", "rotary", "cutters"):
+        for value in (None, 3, "x", [], {}, [3], [None], {"a": 1}):
+            document, _ = written.copies()
+            put(document["operations"], path, value)
+            assert not found(written, json.loads(json.dumps(copy.deepcopy(document)))).holds, (path, value)
