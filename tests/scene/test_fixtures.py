@@ -324,5 +324,5 @@ def test_a_vise_of_many_triangles_adds_little_to_the_search(pocket):
     alone, held = calls
     assert alone["alive"] > 300
     assert held["alive"] <= 1.4 * alone["alive"]
-    assert held["triangle_hit"] <= 1.1 * alone["triangle_hit"]
+    assert held["triangle_hit"] <= 1.25 * alone["triangle_hit"]
     assert held["_solid_angle"] == 0
