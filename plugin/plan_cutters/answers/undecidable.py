@@ -1,4 +1,4 @@
-"""Why nothing is asked about a cutter: all that it leaves is undecided, by a cause that lies in the part's model and not in the cutter."""
+"""Why no change of a cutter is sought: all that it leaves is undecided, and the cause lies in the model of the part."""
 
 import numpy as np
 

@@ -11,7 +11,8 @@ from plan_cutters.report.story.numbers import capital, count, mm
 
 #: Faces that are named one by one.
 _FACES = 3
-_HALVES = 2.0
+#: A tolerance that is finer by this is the next to try.
+_FINER = 2.0
 
 
 def undecided(plan: Plan, names: Mapping[str, str]) -> list[str]:
@@ -45,9 +46,9 @@ def _causes(plan: Plan, entry: CutterEntry) -> Iterator[str]:
     kept, raised = plan.effective.tolerance_mm, "tolerance_raised" in plan.note_codes
     coarse = entry.undecided_by_reason.get("tolerance", 0)
     if coarse:
-        help_ = ("No smaller --tolerance can be kept: rebuild the faces that triangles cannot follow in CAD, or judge a larger cutter"
-                 if raised else "A smaller --tolerance decides it")  # fmt: skip
-        yield f"The tolerance, {mm(kept)}, is too coarse for this cutter. {help_}."
+        way = ("No smaller --tolerance can be kept: rebuild in CAD what triangles cannot follow, or judge a larger cutter"
+               if raised else "A smaller --tolerance decides it")  # fmt: skip
+        yield f"The tolerance, {mm(kept)}, is too coarse for this cutter. {way}."
     if coarse == entry.undecided:
         return
     loose, missing = plan.effective.local_tolerance, plan.missing
@@ -59,8 +60,9 @@ def _causes(plan: Plan, entry: CutterEntry) -> Iterator[str]:
                "undecided until the model is rebuilt there in CAD.")  # fmt: skip
     if missing:
         lost = list(dict.fromkeys(each.face or each.name or "a face" for each in missing))
-        yield f"Obstacles are missing or only guessed ({listed(lost, _FACES)}): what they may forbid stays undecided until the file is repaired."
-    finer = f"--tolerance {kept / _HALVES:.3g}"
+        yield (f"Obstacles are missing or only guessed ({listed(lost, _FACES)}): what they may forbid stays undecided until "
+               "the file is repaired.")  # fmt: skip
+    finer = f"--tolerance {kept / _FINER:.3g}"
     if raised:
         yield f"The tolerance had to be raised to {mm(kept)}: what is this narrow stays undecided."
     elif loose or missing:
