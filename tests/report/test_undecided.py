@@ -7,6 +7,7 @@ from plan_cutters import plan
 from plan_cutters.answers import ask as asking
 from plan_cutters.document.model import LocalTolerance, MissingEntry
 from plan_cutters.domain.percent import percent
+from plan_cutters.report.story.names import short_names
 from plan_cutters.report.story.story import story_of
 from plan_cutters.report.story.undecided import undecided
 from tests.support.places import ROOT
@@ -16,7 +17,7 @@ SAMPLES = ROOT / "samples"
 
 
 def said(found):
-    return undecided(found, story_of(found).names)
+    return undecided(found, short_names(found))
 
 
 @pytest.fixture
@@ -72,7 +73,7 @@ def test_worst_faces_first_and_the_rest_counted():
 def test_a_loose_face_is_named_with_its_error():
     loose = LocalTolerance(face="F2", chord_error_mm=0.3, tolerance_mm=1.2, area_mm2=100.0, share=0.5)
     _, cause = of_counts([0, 400], effective={"local_tolerance": [loose]})
-    assert "follow F2 only within 0.3 mm, 50 % of the area" in cause
+    assert "follow F2 only within 0.3 mm, 50 % of the area to be machined" in cause
     assert of_counts([0, 0], effective={"local_tolerance": [loose]}) == []
 
 

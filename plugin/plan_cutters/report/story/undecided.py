@@ -7,6 +7,7 @@ from plan_cutters.document.listed import listed
 from plan_cutters.document.model import CutterEntry, Plan
 from plan_cutters.document.shares import part_of
 from plan_cutters.domain.nearest import nearest
+from plan_cutters.domain.percent import percent
 from plan_cutters.report.story.numbers import capital, count, mm
 
 #: Faces that are named one by one.
@@ -55,7 +56,7 @@ def _causes(plan: Plan, entry: CutterEntry) -> Iterator[str]:
     if loose:
         names, it = listed([each.face for each in loose], _FACES), "it" if len(loose) == 1 else "they"
         share = sum(each.share for each in loose)
-        of = f", {100.0 * share:.2g} % of the area to be machined" if share > 0.0 else ""
+        of = f", {percent(share)} of the area to be machined" if share > 0.0 else ""
         yield (f"Triangles follow {names} only within {mm(loose[0].chord_error_mm)}{of}: what only {it} may forbid stays "
                "undecided until the model is rebuilt there in CAD.")  # fmt: skip
     if missing:
