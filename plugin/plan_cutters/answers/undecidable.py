@@ -27,8 +27,8 @@ def undecidable(ready: Prepared, cutter: Cutter, verdicts: Verdicts) -> str:
     raised = conditions.tolerance > _RAISED * ready.scene.asked
     if raised and not conditions.judges(cutter):
         cause = f"the tolerance that can be kept, {conditions.tolerance:.3g} mm, is too coarse for the cutter"
-    elif loose := sorted(conditions.around.loose, key=lambda face: -conditions.around.loose[face]):
-        cause = f"triangles follow {', '.join(f'F{face}' for face in loose)} too loosely"
+    elif set(faces := np.unique(ready.samples.face[left]).tolist()) <= set(conditions.around.loose):
+        cause = f"they lie on {', '.join(f'F{face}' for face in faces)}, which triangles follow too loosely"
     else:
         return ""
     what = "the only sample that it leaves is" if number == 1 else f"all {number:,} samples that it leaves are"
