@@ -1,12 +1,18 @@
 """What is undecided is said first, with its share and cause, and only then; nothing is sought where no change can decide it."""
 
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
 
 import plan_cutters.scene.surroundings as surroundings
 from plan_cutters import plan
 from plan_cutters.answers import ask as asking
+from plan_cutters.answers.undecidable import undecidable
 from plan_cutters.document.model import LocalTolerance, MissingEntry
+from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.percent import percent
+from plan_cutters.domain.verdicts import INACCESSIBLE, UNDECIDED, blank
 from plan_cutters.report.story.names import short_names
 from plan_cutters.report.story.story import story_of
 from plan_cutters.report.story.undecided import undecided
@@ -87,3 +93,18 @@ def test_a_finer_tolerance_is_not_promised_where_none_can_be_kept():
     _, cause = of_counts([1], note_codes=["tolerance_raised"])
     assert "--tolerance 0.005" not in cause
     assert "had to be raised" in cause
+
+
+@pytest.mark.parametrize(
+    ("faces", "verdict", "asked"), [((2, 2), UNDECIDED, False), ((2, 3), UNDECIDED, True), ((2, 2), INACCESSIBLE, True)]
+)
+def test_only_what_lies_on_loose_faces_alone_is_not_asked(faces, verdict, asked):
+    around = SimpleNamespace(loose={2: 0.3})
+    conditions = SimpleNamespace(tolerance=0.01, around=around, judges=lambda cutter: True)
+    ready = SimpleNamespace(finished=np.ones(2, bool), conditions=conditions, scene=SimpleNamespace(asked=0.01),
+                            samples=SimpleNamespace(face=np.array(faces)))  # fmt: skip
+    found = blank(2)
+    found.verdict[:] = (UNDECIDED, verdict)
+    why = undecidable(ready, Cutter.parse("R6L80"), found.freeze())
+    assert ("F2" in why) != asked
+    assert bool(why) != asked
