@@ -12,6 +12,7 @@ from plan_cutters.answers.least_set import least_set
 from plan_cutters.answers.mend import mend
 from plan_cutters.answers.steps import steps
 from plan_cutters.answers.stick_out import least_stick_out
+from plan_cutters.answers.undecidable import undecidable
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.change import Mend
 from plan_cutters.domain.cutter import Cutter
@@ -76,6 +77,12 @@ def ask(
 def _mended(
     ready: Prepared, cutter: Cutter, reaches: Mapping[Cutter, Verdicts], elsewhere: Elsewhere, tell: Progress
 ) -> Mend:  # fmt: skip
+    why = "" if elsewhere else undecidable(ready, cutter, reaches[cutter])
+    if why:
+        left = reaches[cutter].not_reached
+        within = int((ready.inside_bodies & left).sum())
+        lost = left & ready.finished
+        return Mend(cutter.id, int(lost.sum()) + within, within, (), why, Finished.of(ready).of_rows(np.flatnonzero(lost)))
     alone = mend(ready, cutter, reaches[cutter], progress=part_of(tell, 0, 2))
     return steps(ready, alone, cutter, reaches, elsewhere, progress=part_of(tell, 1, 2))
 

@@ -17,6 +17,7 @@ from plan_cutters.report.story.numbers import sentence
 from plan_cutters.report.story.operations import in_short, operations
 from plan_cutters.report.story.proposal import proposal
 from plan_cutters.report.story.scope import not_judged, not_seen
+from plan_cutters.report.story.undecided import undecided
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,8 +31,8 @@ class Story:
     taken, shown : str
         Ids of the cutter that the headline says to take, if any, and of the one that the models show.
     inside, scope, between : tuple of str
-        Surface that does not belong to the finished part, which comes first; faces that were not judged or not seen, and how
-        much the cutters reach together; how much is known between the samples.
+        Surface that does not belong to the finished part, which comes first; what is undecided, which faces were not judged or
+        not seen, and how much the cutters reach together; how much is known between the samples.
     proposal, in_short : tuple of str
         Setups that were proposed; what the plan of operations leaves, and how many orientations it needs.
     setups, operations, answers, notes : tuple of Line
@@ -74,7 +75,12 @@ def story_of(plan: Plan) -> Story:
         headline=headline(plan, names),
         proposal=proposal(plan),
         in_short=tuple(in_short(plan)),
-        scope=(*not_judged(plan), *not_seen(plan, names), *([sentence(named(plan, pair))] if pair else [])),
+        scope=(
+            *undecided(plan, names),
+            *not_judged(plan),
+            *not_seen(plan, names),
+            *([sentence(named(plan, pair))] if pair else []),
+        ),
         between=tuple(each.between for each in cutters if each.between),
         cutters=cutters,
         setups=(*notes.setups(plan, best), *notes.travel(plan, best)),

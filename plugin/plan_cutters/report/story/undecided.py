@@ -1,0 +1,72 @@
+"""How much is undecided for the cutter of the headline, on which faces, why, and what would decide it."""
+
+import math
+from collections.abc import Iterator, Mapping
+
+from plan_cutters.document.listed import listed
+from plan_cutters.document.model import CutterEntry, Plan
+from plan_cutters.document.shares import part_of
+from plan_cutters.domain.nearest import nearest
+from plan_cutters.domain.percent import percent
+from plan_cutters.report.story.numbers import capital, count, mm
+
+#: Faces that are named one by one.
+_FACES = 3
+#: A tolerance that is finer by this is the next to try.
+_FINER = 2.0
+
+
+def undecided(plan: Plan, names: Mapping[str, str]) -> list[str]:
+    """Two sentences, how much and where, and why with what would decide it; none where no sample is undecided."""
+    taken = plan.selected or plan.selected_over_setups or plan.selected_for_setup
+    entry = next((c for c in plan.cutters if c.id == taken), None) or nearest(plan.cutters)
+    if not entry.undecided:
+        return []
+    share = part_of(entry, entry.area_share, ["undecided"])
+    where = (f"{capital(names[entry.id])} leaves {share} of the area undecided ({count(entry.undecided, 'sample')}): "
+             f"{_where(plan, entry)}.")  # fmt: skip
+    return [where, " ".join(_causes(plan, entry))]
+
+
+def _where(plan: Plan, entry: CutterEntry) -> str:
+    """Faces with their own undecided shares, the largest undecided area first."""
+
+    def area(name: str) -> float:
+        found = entry.faces[name]
+        mm2 = found.area_share.undecided * (1.0 - found.inside_share) * sizes[name]
+        return mm2 if math.isfinite(mm2) else 0.0
+
+    sizes = {face.id: face.area_mm2 for face in plan.faces}
+    faces = sorted((name for name, found in entry.faces.items() if found.undecided), key=lambda name: -area(name))
+    each = [f"{part_of(entry.faces[f], entry.faces[f].area_share, ['undecided'])} of {f}" for f in faces]
+    return listed(each, _FACES)
+
+
+def _causes(plan: Plan, entry: CutterEntry) -> Iterator[str]:
+    """Say each cause that there may be. Which of several left a sample undecided is known only for the tolerance."""
+    kept, raised = plan.effective.tolerance_mm, "tolerance_raised" in plan.note_codes
+    coarse = entry.undecided_by_reason.get("tolerance", 0)
+    if coarse:
+        way = ("No smaller --tolerance can be kept: rebuild in CAD what triangles cannot follow, or judge a larger cutter"
+               if raised else "A smaller --tolerance decides it")  # fmt: skip
+        yield f"The tolerance, {mm(kept)}, is too coarse for this cutter. {way}."
+    if coarse == entry.undecided:
+        return
+    loose, missing = plan.effective.local_tolerance, plan.missing
+    if loose:
+        names, it = listed([each.face for each in loose], _FACES), "it" if len(loose) == 1 else "they"
+        share = sum(each.share for each in loose)
+        of = f", {percent(share)} of the area to be machined" if share > 0.0 else ""
+        yield (f"Triangles follow {names} only within {mm(loose[0].chord_error_mm)}{of}: what only {it} may forbid stays "
+               "undecided until the model is rebuilt there in CAD.")  # fmt: skip
+    if missing:
+        lost = list(dict.fromkeys(each.face or each.name or "a face" for each in missing))
+        yield (f"Obstacles are missing or only guessed ({listed(lost, _FACES)}): what they may forbid stays undecided until "
+               "the file is repaired.")  # fmt: skip
+    finer = f"--tolerance {kept / _FINER:.3g}"
+    if raised:
+        yield f"The tolerance had to be raised to {mm(kept)}: what is this narrow stays undecided."
+    elif loose or missing:
+        yield f"What is left is too narrow for the tolerance; {finer} looks more closely."
+    else:
+        yield f"The cutter there is within the tolerance, {mm(kept)}, of what is free; {finer} looks more closely."
