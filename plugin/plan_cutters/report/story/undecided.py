@@ -45,12 +45,12 @@ def _where(plan: Plan, entry: CutterEntry) -> str:
 def _causes(plan: Plan, entry: CutterEntry) -> Iterator[str]:
     """Say each cause that there may be. Which of several left a sample undecided is known only for the tolerance."""
     kept, raised = plan.effective.tolerance_mm, "tolerance_raised" in plan.note_codes
+    # Of a cutter that is too small, all samples; else those on faces that triangles do not follow.
     coarse = entry.undecided_by_reason.get("tolerance", 0)
-    if coarse:
+    if coarse and coarse >= plan.samples.judged:
         way = ("No smaller --tolerance can be kept: rebuild in CAD what triangles cannot follow, or judge a larger cutter"
                if raised else "A smaller --tolerance decides it")  # fmt: skip
         yield f"The tolerance, {mm(kept)}, is too coarse for this cutter. {way}."
-    if coarse == entry.undecided:
         return
     loose, missing = plan.effective.local_tolerance, plan.missing
     if loose:
@@ -63,6 +63,8 @@ def _causes(plan: Plan, entry: CutterEntry) -> Iterator[str]:
         lost = list(dict.fromkeys(each.face or each.name or "a face" for each in missing))
         yield (f"Obstacles are missing or only guessed ({listed(lost, _FACES)}): what they may forbid stays undecided until "
                "the file is repaired.")  # fmt: skip
+    if coarse == entry.undecided:
+        return
     finer = f"--tolerance {kept / _FINER:.3g}"
     if raised:
         yield f"The tolerance had to be raised to {mm(kept)}: what is this narrow stays undecided."
