@@ -1,7 +1,12 @@
 """A face that triangles do not follow closely costs its neighbourhood, and never makes a verdict safer."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder
+from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 
 import plan_cutters.scene.surroundings as surroundings
 from cad_io import read_part
@@ -119,3 +124,23 @@ def test_a_part_without_its_loose_face_decides_no_less_elsewhere(planned):
     ]
     assert len(pairs) == (~own).sum()
     assert not [pair for pair in pairs if pair[0] != UNDECIDED and pair[1] == UNDECIDED]
+
+
+def test_a_hole_whose_wall_is_loose_counts_as_no_material(monkeypatch):
+    """Without its wall a deep hole in a large block looks like the block's inside: its mouth is smaller than a cell."""
+    block = BRepPrimAPI_MakeBox(gp_Pnt(0.0, 0.0, 0.0), 1600.0, 1600.0, 100.0).Shape()
+    hole = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(800.0, 800.0, 40.0), gp_Dir(0.0, 0.0, 1.0)), 5.0, 61.0).Shape()
+    part = read_part(BRepAlgoAPI_Cut(block, hole).Shape())
+    [wall] = [face.number for face in part.faces if face.shape == "cylinder"]
+    [floor] = [face.number for face in part.faces if face.shape == "plane" and face.area < 100.0]
+    error = 0.02
+
+    def with_loose_wall(*given, **words):
+        found = tessellate(*given, **words)
+        errors = {**dict(found.errors), wall: error}
+        return replace(found, loose=((wall, error),), errors=tuple(sorted(errors.items())))
+
+    monkeypatch.setattr(surroundings, "tessellate", with_loose_wall)
+    result = plan(part, cutters="R1L20", faces=f"F{floor}", spacing=2, area_budget=0)
+    assert (verdicts(result) != INACCESSIBLE).all()
+    assert np.isin(verdicts(result), (ACCESSIBLE, INTERFERENCE_FREE)).any()

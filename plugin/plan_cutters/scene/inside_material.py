@@ -68,8 +68,10 @@ def inside_material(
     result, hollow = np.full(len(samples), -1, np.int32), voids(bodies, orientation)
     # Every void lies in one more body than there is material.
     layers, void = np.zeros(len(samples), np.int32), np.full(len(samples), -1, np.int32)
+    loose = dict(certain.triangles.loose).keys()
     for index, body in enumerate(bodies):
-        mine = np.isin(certain.triangles.face, body.faces) if body.closed else np.zeros(0, bool)
+        sure = body.closed and loose.isdisjoint(body.faces)
+        mine = np.isin(certain.triangles.face, body.faces) if sure else np.zeros(0, bool)
         if not mine.any():
             continue
         vertex = certain.triangles.vertex[mine]

@@ -176,7 +176,9 @@ def surroundings(
     found = bodies(part, without=ignored)
     loose = dict(triangles.loose)
     close = triangles.without(loose)
-    certain = Obstacles(close, weights(close, [b for b in found if b.closed]), gap=part.looseness)
+    # A skin without its loose faces has holes: what it encloses is then a guess.
+    sure = [b for b in found if b.closed and loose.keys().isdisjoint(b.faces)]
+    certain = Obstacles(close, weights(close, sure), gap=part.looseness)
     stand = stand_ins(part, triangles.missing, chord)
     missing = tuple((n, why, stand.how[n]) for n, why in triangles.missing if stand.how[n] != "edges")
     lost = tuple(each for each in part.lost if each.face is None)
