@@ -37,13 +37,14 @@ NO_ROOM = workspace(0)
 
 
 class Laid(NamedTuple):
-    """Finished triangles of a face: nodes (n, 3) in mm, corners (t, 3), the bound of their distance from it, mm, and their area
-    in the parameter plane."""
+    """Finished triangles of a face: nodes (n, 3) in mm, corners (t, 3), the bound of their distance from it, mm, their area in the
+    parameter plane, and whether they are all that it takes."""
 
     point: Floats
     corner: Indices
     off: float
     area: float
+    whole: bool = True
 
 
 class Patch(NamedTuple):
@@ -93,7 +94,7 @@ class Patch(NamedTuple):
         own = None
         if count <= min(most, len(workspace.corner)) and number <= len(workspace.uv):
             own = Found(workspace.uv[:number].copy(), workspace.corner[:count].copy())
-        return Tried(chord, count, number, own, off, strayed, area)
+        return Tried(chord, count, number, own, off, strayed, area, count <= most)
 
     def _asked(self, chord: float) -> float:
         return chord if self.proved else chord / MARGIN
@@ -109,7 +110,7 @@ class Patch(NamedTuple):
             point = self.surface.values(found.uv[:, 0], found.uv[:, 1])
             if not self.proved:
                 off = MARGIN * _measured(self.surface, found, point) + tried.strayed
-            laid = Laid(point, found.corner, off, tried.area)
+            laid = Laid(point, found.corner, off, tried.area, tried.whole)
             if self.proved or off <= chord or not np.isfinite(off) or tried.triangles >= most or guess + 1 == _GUESSES:
                 break
             self = self._replace(table=self.table._replace(node=_LARGER * off / chord * self.table.node))
@@ -118,7 +119,7 @@ class Patch(NamedTuple):
 
 
 class Tried(NamedTuple):
-    """Triangles counted for a chord error, mm, kept or not, with what `refined` tells of them."""
+    """Triangles counted for a chord error, mm, kept or not, with what `refined` tells of them; whole: whether all were counted."""
 
     chord: float
     triangles: int
@@ -127,6 +128,7 @@ class Tried(NamedTuple):
     off: float
     strayed: float
     area: float
+    whole: bool
 
 
 def _measured(surface: Surface, found: Found, point: Floats) -> float:

@@ -101,6 +101,9 @@ def tessellate(
             whole[rows] = np.isfinite(vertex[rows]).all(axis=(1, 2))
             missing[patch.number] = "its surface cannot be evaluated everywhere"
             continue
+        if not each.whole:
+            missing[patch.number] = "it takes more triangles than there is room for"
+            continue
         off[patch.number] = each.off
         if left := _uncovered(part, patch.number, each.area, chord):
             missing[patch.number] = f"its triangles leave up to {math.ceil(100.0 * left)} % of it uncovered"

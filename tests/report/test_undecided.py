@@ -9,7 +9,8 @@ import plan_cutters.scene.surroundings as surroundings
 from plan_cutters import plan
 from plan_cutters.answers import ask as asking
 from plan_cutters.answers.undecidable import undecidable
-from plan_cutters.document.model import LocalTolerance, MissingEntry
+from plan_cutters.document.effective_entry import LocalTolerance
+from plan_cutters.document.model import MissingEntry
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.percent import percent
 from plan_cutters.domain.verdicts import INACCESSIBLE, UNDECIDED, blank

@@ -82,7 +82,9 @@ def _mended(
         left = reaches[cutter].not_reached
         within = int((ready.inside_bodies & left).sum())
         lost = left & ready.finished
-        return Mend(cutter.id, int(lost.sum()) + within, within, (), why, Finished.of(ready).of_rows(np.flatnonzero(lost)))
+        return Mend(
+            cutter.id, int(lost.sum()) + within, within, (), why, Finished.of(ready).of_rows(np.flatnonzero(lost))
+        )
     alone = mend(ready, cutter, reaches[cutter], progress=part_of(tell, 0, 2))
     return steps(ready, alone, cutter, reaches, elsewhere, progress=part_of(tell, 1, 2))
 
