@@ -37,8 +37,8 @@ NO_ROOM = workspace(0)
 
 
 class Laid(NamedTuple):
-    """Finished triangles of a face: nodes (n, 3) in mm, corners (t, 3), the bound of their distance from it, mm, their area in the
-    parameter plane, and whether they are all that it takes."""
+    """Finished triangles of a face: nodes (n, 3) in mm, corners (t, 3), the bound of their distance from it, mm, their area in
+    the parameter plane, and whether they are all that it takes."""
 
     point: Floats
     corner: Indices
@@ -119,7 +119,7 @@ class Patch(NamedTuple):
 
 
 class Tried(NamedTuple):
-    """Triangles counted for a chord error, mm, kept or not, with what `refined` tells of them; whole: whether all were counted."""
+    """Triangles counted for a chord error, mm, kept or not, with what `refined` tells of them; whole: all were counted."""
 
     chord: float
     triangles: int
