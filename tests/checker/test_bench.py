@@ -30,6 +30,8 @@ CUTTERS = [
     Cutter.form([(0, 0), (2, 0), (4, 1), (4, 8)], length=30),
 ]  # fmt: skip
 NAMES = ["flat", "ball", "bull_holder", "tapered", "lollipop", "barrel_tip", "barrel", "lens", "form"]
+#: Those of which every run of the tests takes points all over a surface.
+_QUICK = ("flat", "bull_holder")
 NEVER = Clock(math.inf)
 
 
@@ -106,7 +108,13 @@ def peaks():
     return part, cells, cells.add([Face(part, 1, "F1")])
 
 
-@pytest.mark.parametrize("cutter", CUTTERS, ids=NAMES)
+@pytest.mark.parametrize(
+    "cutter",
+    [
+        pytest.param(each, marks=[pytest.mark.slow] * (name not in _QUICK), id=name)
+        for each, name in zip(CUTTERS, NAMES, strict=True)
+    ],
+)
 def test_what_is_met_is_what_points_all_over_the_surface_say(peaks, cutter):
     """Tools in random places, against 250,000 points of the surface: deepest, and nearest."""
     part, cells, root = peaks

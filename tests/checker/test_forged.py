@@ -11,6 +11,8 @@ from plan_cutters.checker.check import check
 from plan_cutters.checker.leaves import UNCHECKED, leaves, pattern
 from plan_cutters.document.operations import OperationsEntry
 
+#: Entries for which the checker puts many tools down.
+_SLOW = ("plans[].operations[].clearance_mm", "fewest.alone")
 #: Entries of one kind that are forged, each in turn.
 _OF_A_KIND = 4
 
@@ -113,9 +115,12 @@ def test_a_new_entry_fails(written):
 
 
 def _kinds():
-    """Filled by the first test that asks, from the plan itself."""
+    """Each entry that a plan may have; those for which many tools are put down are slow."""
     schema = OperationsEntry.model_json_schema()
-    return sorted(schema_patterns(schema, schema))
+    return [
+        pytest.param(kind, marks=pytest.mark.slow) if kind in _SLOW else kind
+        for kind in sorted(schema_patterns(schema, schema))
+    ]
 
 
 @pytest.mark.parametrize("kind", _kinds())
@@ -153,6 +158,7 @@ def test_a_list_that_is_cut_is_found(written, name):
     assert not found(written, document).holds
 
 
+@pytest.mark.slow
 def test_each_array_that_is_altered_is_found(written):
     for name, array in written.arrays["operations.npz"].items():
         for how in ("cut", "nan", "kind", "gone", "one"):
