@@ -107,7 +107,8 @@ def test_a_longer_stick_out_is_a_step_also_where_it_does_not_cure_everything():
     assert (step.gained, step.left) == (25, 25)
     assert step.lost_before == pytest.approx(1.0)
     assert step.lost_after == pytest.approx(160 / 720)
-    assert step.option == "--cutter R3L40F10S3HR15L200"
+    # Its holder stays with --holder, which is typed already.
+    assert step.option == "--cutter R3L40F10S3"
     again = followed(pocket(), step, *POCKET)
     assert left(again, step) == pytest.approx(step.lost_after, abs=1e-12)
     (there,) = [c for c in again.cutters if [c.id] == step.cutters]
@@ -459,5 +460,5 @@ def test_what_is_to_be_typed_is_typed_out():
     result = asked(pocket(), *POCKET)
     lines = [line for line in answered(result.plan) if "[add --cutter" in line]
     assert lines
-    assert all("HR" in line.partition("[")[2] for line in lines)
+    assert all("--cutter R" in line.partition("[")[2] for line in lines)
     assert all("HR15L200" not in step_told(step) for step in steps_of(result))

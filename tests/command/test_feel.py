@@ -17,7 +17,8 @@ import pytest
 
 from cad_io.errors import CacheWarning
 from plan_cutters import plan
-from plan_cutters.command import entry, map, one_part
+from plan_cutters.command import entry, one_part
+from plan_cutters.command import map as of_a_point
 from plan_cutters.command import summary as summaries
 from plan_cutters.command.progress import Display
 from plan_cutters.command.rows import _distinct
@@ -578,7 +579,7 @@ def ended_from_outside(*_):
 @pytest.mark.parametrize("work", [interrupted_import, ended_from_outside])
 @pytest.mark.parametrize(("command", "module", "name", "words"), [
     ("plan-cutters", one_part, "one_part", (*QUICK, "--quiet")),
-    ("plan-cutters-map", map, "_options", ("--at", "0,0,0", "--cutter", "R6L80")),
+    ("plan-cutters-map", of_a_point, "_options", ("--at", "0,0,0", "--cutter", "R6L80")),
 ], ids=["plan", "map"])  # fmt: skip
 def test_an_interrupt_that_becomes_another_error_is_still_one(
     tmp_path, monkeypatch, command, module, name, words, work
