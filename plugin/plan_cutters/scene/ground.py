@@ -19,7 +19,7 @@ class Ground(Record):
     Attributes
     ----------
     samples : SurfaceSamples
-        Points, normals, directions, curvatures and whether they are judged; nothing else is filled.
+        Points, normals, directions, curvatures, faces and whether they are judged; nothing else is filled.
     surface_class : (n,) uint8
     inside, shut : (n,) int32
         As `Prepared` has them.
@@ -48,10 +48,9 @@ class Ground(Record):
     @classmethod
     def of(cls, ready: Prepared) -> "Ground":
         """The ground of a part that is ready, in its first setup."""
-        none = np.zeros(0, np.int32)
         samples = replace(
-            ready.samples, uv=np.zeros((0, 2)), face=none, area=np.zeros(0), neighbours=np.zeros((0, 2), np.int32), reasons=(),
-            grids=(), empty=(), face_gaps=(),
+            ready.samples, uv=np.zeros((0, 2)), area=np.zeros(0), neighbours=np.zeros((0, 2), np.int32), reasons=(), grids=(), empty=(),
+            face_gaps=(),
         )  # fmt: skip
         conditions = replace(ready.conditions, jobs=1, around=_bare(ready.conditions.around))
         return cls(samples, ready.surface_class, ready.inside, ready.shut, ready.clamped, conditions)
@@ -59,7 +58,7 @@ class Ground(Record):
     def block(self, first: int, last: int) -> "Ground":
         """The samples from `first`, which begins a piece (`threads.CHUNK`), to `last`, which ends one or all: views."""
         rows = slice(first, last)
-        arrays = ("point", "normal", "direction_max", "curvature", "unjudged")
+        arrays = ("point", "normal", "direction_max", "curvature", "face", "unjudged")
         samples = replace(self.samples, **{name: getattr(self.samples, name)[rows] for name in arrays})
         return Ground(samples, self.surface_class[rows], self.inside[rows], self.shut[rows], self.clamped[rows],
                       self.conditions)  # fmt: skip

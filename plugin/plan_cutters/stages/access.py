@@ -73,9 +73,10 @@ def access(
     verdicts.verdict[within], verdicts.reason[within] = INACCESSIBLE, INSIDE
     # On a face that may be anywhere within so many tolerances each posture is in doubt, and a search tries them all.
     loose = [number for number, error in conditions.around.loose.items() if error > _HOPELESS * conditions.tolerance]
-    doubtful = judged & ~within & np.isin(samples.face, loose)
-    verdicts.verdict[doubtful], verdicts.reason[doubtful] = UNDECIDED, TOLERANCE
-    judged &= ~doubtful
+    if loose:
+        doubtful = judged & ~within & np.isin(samples.face, loose)
+        verdicts.verdict[doubtful], verdicts.reason[doubtful] = UNDECIDED, TOLERANCE
+        judged &= ~doubtful
     upright = judged & interference_free
     verdicts.stand_upright(upright, samples.normal, samples.direction_max)
     contacts = contacts_of(samples)
