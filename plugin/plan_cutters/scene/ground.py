@@ -49,8 +49,8 @@ class Ground(Record):
     def of(cls, ready: Prepared) -> "Ground":
         """The ground of a part that is ready, in its first setup."""
         samples = replace(
-            ready.samples, uv=np.zeros((0, 2)), area=np.zeros(0), neighbours=np.zeros((0, 2), np.int32), reasons=(), grids=(), empty=(),
-            face_gaps=(),
+            ready.samples, uv=np.zeros((0, 2)), area=np.zeros(0), neighbours=np.zeros((0, 2), np.int32), reasons=(),
+            grids=(), empty=(), face_gaps=(),
         )  # fmt: skip
         conditions = replace(ready.conditions, jobs=1, around=_bare(ready.conditions.around))
         return cls(samples, ready.surface_class, ready.inside, ready.shut, ready.clamped, conditions)
