@@ -33,6 +33,8 @@ _FILLED, _AIMED, _TURNS = 0.95, 0.98, 5
 #: or where faces with no more than such a share of the area are the cause, these have one of their own, and such a share of the
 #: budget: few enough that each may stand as a body.
 _ALIKE, _FEW, _OWN = 100.0, 0.05, 0.01
+#: So many faces in a row that are too dear end the search for ones that are not.
+_PATIENCE = 8
 #: A face is loose if its bound is so many times the chord error of the others.
 _LOOSE = 1.25
 #: Triangles of a face that are kept as they are counted; more are counted first and laid then.
@@ -153,12 +155,14 @@ def _affordable(
     cost = np.array([each.triangles for each in tried]) / np.maximum(area, np.finfo(float).tiny)
     close: dict[int, Tried] = {}
     own_budget = int(_OWN * budget)
-    left = budget - own_budget
+    left, dear = budget - own_budget, 0
     for i in np.argsort(cost, kind="stable").tolist():
         each = finer[i].tried(least, left, NO_ROOM)
-        if each.triangles > left:
+        dear = dear + 1 if each.triangles > left else 0
+        if dear > _PATIENCE:
             break
-        close[i], left = each, left - each.triangles
+        if not dear:
+            close[i], left = each, left - each.triangles
     loose = [i for i in range(len(finer)) if i not in close]
     if not close or not loose or (area[loose].sum() > _FEW * area.sum() and chord <= _ALIKE * least):
         return finer, tried
