@@ -488,11 +488,10 @@ def test_tapered_balls_of_a_maker_are_balls(tmp_path, ball, half, DC):
 
 def test_a_tapered_mill_that_is_no_ball_says_so(tmp_path):
     tool = fusion("tapered mill", DC=2, RE=1, TA=5, shoulder_length=None, shoulder_diameter=None, shaft=None)
-    (entry,) = read_library(write_json(tmp_path / "a.json", [tool])).entries
-    assert entry.cutter.radius > entry.cutter.corner_radius == 1.0
-    (said,) = (note for note in entry.notes if "keeps a flat" in note)
-    # With the diameter that the note gives it is a ball.
-    tool["geometry"]["DC"] = float(said.rpartition(" ")[2])
+    (entry,) = listing(write_json(tmp_path / "a.json", [tool])).entries
+    assert "keeps a flat 0.1673 wide" in entry.unused
+    # With the diameter that the line gives it is a ball.
+    tool["geometry"]["DC"] = float(entry.unused.partition("deg is ")[2].partition(";")[0])
     (ball,) = read_library(write_json(tmp_path / "b.json", [tool]))
     assert ball.radius == ball.corner_radius == pytest.approx(1.0, abs=1e-4)
 

@@ -1,5 +1,6 @@
 """Where a field is missing or has two meanings, the judged tool encloses each, or there is none (docs/tool_fields.md)."""
 
+import json
 import math
 import re
 import sys
@@ -211,6 +212,96 @@ def test_a_flat_at_the_tip_of_a_cone_is_its_tip_diameter_alone(tmp_path):
     cone = {"Diameter": "6 mm", "TipDiameter": "1 mm", "CuttingEdgeAngle": "90 °"}
     assert bit(tmp_path, "Vbit", **cone).cutter
     assert "give TipDiameter alone" in bit(tmp_path, "Vbit", FlatRadius="0.5 mm", **cone).unused
+
+
+@pytest.mark.parametrize("suffix", WRITERS)
+@pytest.mark.parametrize("kind", ["flat end mill", "bull nose end mill", "ball end mill", "slot mill"])
+def test_a_rounded_mill_with_a_half_angle_is_not_chosen(tmp_path, suffix, kind):
+    """The axis of a tapered mill with the same corner stands farther from the contact, and the shank with it."""
+    path = tmp_path / f"a.{suffix}"
+    found = entry(WRITERS[suffix](path, [fusion(kind, RE=1, TA=10, holder=None, **PLAIN)]))
+    assert (found.cutter, found.broken) == (None, False)
+    assert "straight or tapered" in found.unused
+
+
+@pytest.mark.parametrize("suffix", WRITERS)
+@pytest.mark.parametrize(("tapered", "read"), [("tapered_ball", False), (None, False), ("tapered_bull_nose", True)])
+def test_a_tapered_tip_that_may_be_a_ball_is_not_chosen(tmp_path, suffix, tapered, read):
+    """By its half diameter it is a ball, by its diameter at the tip it keeps a flat."""
+    tool = fusion("tapered mill", DC=2, RE=1, TA=5, tapered=tapered, holder=None, **PLAIN)
+    found = entry(WRITERS[suffix](tmp_path / f"a.{suffix}", [tool]))
+    assert (found.cutter is not None) == read
+    if not read:
+        assert not found.broken
+        assert "is 1.8326" in found.unused
+
+
+@pytest.mark.parametrize("suffix", WRITERS)
+@pytest.mark.parametrize("tapered", ["tapered_ball", "tapered_bull_nose", None])
+def test_a_tapered_ball_with_its_own_diameter_is_one(tmp_path, suffix, tapered):
+    diameter = 2 * (1 - math.sin(math.radians(5))) / math.cos(math.radians(5))
+    tool = fusion("tapered mill", DC=round(diameter, 5), RE=1, TA=5, tapered=tapered, holder=None, **PLAIN)
+    found = entry(WRITERS[suffix](tmp_path / f"a.{suffix}", [tool])).cutter
+    assert found.corner_radius == found.radius
+
+
+@pytest.mark.parametrize("suffix", WRITERS)
+@pytest.mark.parametrize(("RE", "tapered"), [(0.5, "tapered_ball"), (0, "tapered_ball"), (0.5, "tapered_nose")])
+def test_a_tapered_type_that_the_corner_contradicts_is_not_ignored(tmp_path, suffix, RE, tapered):
+    tool = fusion("tapered mill", DC=2, RE=RE, TA=5, tapered=tapered, holder=None, **PLAIN)
+    found = entry(WRITERS[suffix](tmp_path / f"a.{suffix}", [tool]))
+    assert found.cutter is None
+    assert tapered in found.unused
+
+
+@pytest.mark.parametrize("suffix", WRITERS)
+@pytest.mark.parametrize("change", [{"TA": 10}, {"tip_diameter": 2}])
+def test_a_lollipop_with_a_cone_or_a_flat_is_not_read_without(tmp_path, suffix, change):
+    plain = PLAIN | {"shoulder_diameter": 4, "shoulder_length": 20, "LCF": 5}
+    found = entry(WRITERS[suffix](tmp_path / f"a.{suffix}", [fusion("lollipop mill", holder=None, **plain | change)]))
+    assert (found.cutter, found.broken) == (None, False)
+    assert "lollipop" in found.unused
+
+
+def test_the_largest_diameter_of_a_table_counts(tmp_path):
+    path = write_csv(tmp_path / "a.csv", [fusion("face mill", RE=0, TA=0, DCX=9, holder=None, **PLAIN)])
+    assert "tool_maximumCuttingDiameter 9" in entry(path).unused
+
+
+@pytest.mark.parametrize(
+    ("shape", "drawing", "read"),
+    [
+        ("Endmill", "endmill.fcstd", True),
+        ("Endmill", "shapes/Endmill.FCStd", True),
+        ("Bullnose", "torus.fcstd", True),
+        ("VBit", "v-bit.fcstd", True),
+        ("Endmill", "ballend.fcstd", False),
+        ("Endmill", "taperedballnose.fcstd", False),
+        ("Endmill", "of_the_shop.fcstd", False),
+        ("VBit", "chamfer.fcstd", False),
+    ],
+)
+def test_a_bit_is_drawn_as_it_is_called(tmp_path, shape, drawing, read):
+    """FreeCAD takes the drawing first, and the type only where it has no such drawing."""
+    more = {"CornerRadius": "1 mm"} if shape == "Bullnose" else {}
+    cone = {"CuttingEdgeAngle": "45 °", "TipDiameter": "1 mm"} if shape == "VBit" else {}
+    path = write_bit(tmp_path / "bit.fctb", shape, **more, **cone)
+    path.write_text(json.dumps(json.loads(path.read_text(encoding="utf-8")) | {"shape": drawing}), encoding="utf-8")
+    found = entry(path, assume_stickout=40.0)
+    assert (found.cutter is not None) == read
+    assert not found.broken
+    if not read:
+        assert f"shape-type {shape}" in found.unused.replace("'", "")
+
+
+@pytest.mark.parametrize("field", ["Radius", "TaperAngle"])
+@pytest.mark.parametrize("shape", ["Endmill", "Chamfer"])
+def test_a_field_of_another_shape_is_not_ignored(tmp_path, field, shape):
+    cone = {"CuttingEdgeAngle": "90 °", "TipDiameter": "1 mm"} if shape == "Chamfer" else {}
+    assert bit(tmp_path, shape, **cone, **{field: "0"}).cutter
+    found = bit(tmp_path, shape, **cone, **{field: "5"})
+    assert (found.cutter, found.broken) == (None, False)
+    assert field in found.unused
 
 
 def test_a_first_section_has_a_lower_end(tmp_path):

@@ -27,13 +27,22 @@ ID = "R3L40F12N2.8x4N2.8:4x4S4HR12:15L20+R20L10"
 
 
 def fusion(
-    kind="flat end mill", *, number=1, holder=HOLDER, shaft=SHAFT, unit="millimeters", name="a tool", **geometry
+    kind="flat end mill",
+    *,
+    number=1,
+    holder=HOLDER,
+    shaft=SHAFT,
+    unit="millimeters",
+    name="a tool",
+    tapered=None,
+    **geometry,
 ):
-    """A Fusion tool; a dimension of None is left out."""
+    """A Fusion tool; a dimension of None is left out. `tapered`: which tip a tapered mill has."""
     numbers = {key.replace("_", "-"): value for key, value in geometry.items()}
     table = {key: value for key, value in {**GEOMETRY, **numbers}.items() if value is not None}
     found = {"type": kind, "unit": unit, "description": name, "geometry": table, "post-process": {"number": number}}
-    return found | ({"holder": holder} if holder else {}) | ({"shaft": shaft} if shaft else {})
+    more = {"holder": holder, "shaft": shaft, "tapered-type": tapered}
+    return found | {key: value for key, value in more.items() if value}
 
 
 def in_inches(tool):
@@ -66,7 +75,7 @@ def write_tools(path, tools):
 _COLUMNS = {"tool_diameter": "DC", "tool_cornerRadius": "RE", "tool_fluteLength": "LCF", "tool_bodyLength": "LB",
             "tool_overallLength": "OAL", "tool_shaftDiameter": "SFDM", "tool_shoulderLength": "shoulder-length",
             "tool_shoulderDiameter": "shoulder-diameter", "tool_taperAngle": "TA",
-            "tool_tipDiameter": "tip-diameter"}  # fmt: skip
+            "tool_tipDiameter": "tip-diameter", "tool_maximumCuttingDiameter": "DCX"}  # fmt: skip
 
 
 def write_csv(path, tools, *, delimiter=",", comma=False):
@@ -87,6 +96,7 @@ def write_csv(path, tools, *, delimiter=",", comma=False):
         "tool_number",
         "tool_unit",
         *_COLUMNS,
+        "tool_taperedType",
         "shaft_segments",
         "holder_segments",
     ]
@@ -94,6 +104,7 @@ def write_csv(path, tools, *, delimiter=",", comma=False):
     for tool in tools:
         head = [tool["type"], tool["description"], tool["post-process"]["number"], tool["unit"]]
         sizes = [said(tool["geometry"].get(key)) for key in _COLUMNS.values()]
+        sizes.append(tool.get("tapered-type", ""))
         writer.writerow([*head, *sizes, segments(tool.get("shaft")), segments(tool.get("holder"))])
     path.write_text(out.getvalue(), encoding="utf-8-sig")
     return path
@@ -101,7 +112,7 @@ def write_csv(path, tools, *, delimiter=",", comma=False):
 
 _BODY = {"diameter": "DC", "corner-radius": "RE", "flute-length": "LCF", "body-length": "LB", "overall-length": "OAL",
          "shaft-diameter": "SFDM", "shoulder-length": "shoulder-length", "shoulder-diameter": "shoulder-diameter",
-         "taper-angle": "TA", "tip-diameter": "tip-diameter"}  # fmt: skip
+         "taper-angle": "TA", "tip-diameter": "tip-diameter", "tapered-type": "tapered-type"}  # fmt: skip
 
 
 def hsmlib(tools, before=""):
@@ -111,7 +122,7 @@ def hsmlib(tools, before=""):
             f'<tool type="{tool["type"]}" unit="{tool["unit"]}"><description>{tool["description"]}</description>'
         )
         lines.append(f'<nc number="{tool["post-process"]["number"]}"/>')
-        given = tool["geometry"]
+        given = tool["geometry"] | {"tapered-type": tool.get("tapered-type", "")}
         lines.append(
             "<body " + " ".join(f'{word}="{given[key]}"' for word, key in _BODY.items() if key in given) + "/>"
         )

@@ -1,6 +1,7 @@
 """The cutting part of a listed tool, by its kind: what its name promises, and what its dimensions say."""
 
 import math
+import re
 from collections.abc import Callable
 
 from plan_cutters.domain.cutter import Cutter
@@ -64,6 +65,12 @@ def _end(tool: Listed, promise: str) -> Cutter:
     if "TA" in tool.values:
         if promise != "flat":
             must_state(tool, "RE", _CORNER)
+        if "RE" in tool.values:
+            # With a corner, the axis of the tapered one stands farther from the contact: its shank does not enclose the other's.
+            raise UnfitError(
+                f'called "{tool.kind}", but {tool.said("TA")}: is it straight or tapered? '
+                f"Leave {tool.word('TA')} out, or call it tapered mill"
+            )
         note_tapered(tool)
         return _leaning(tool, math.radians(tool.values["TA"]))
     if tool.values.get("TIP", 0.0) and abs(tool.values["TIP"] - tool.values["DC"]) > slack(radius):
@@ -90,18 +97,28 @@ def _leaning(tool: Listed, taper: float) -> Cutter:
         )
     if abs(corner - radius) <= slack(radius):
         radius = corner = max(radius, corner)
-    elif abs(corner - 0.5 * tool.values["DC"]) <= slack(corner):
-        # A half diameter is meant as a ball more often than not: as one it would be given with a smaller diameter.
-        ball = 2.0 * corner * (1.0 - math.sin(taper)) / math.cos(taper)
-        flat = 2.0 * (radius - corner) / tool.scale
-        tool.notes.append(
-            f"{tool.said('RE')} is half of {tool.said('DC')}, but its tip keeps a flat {flat:.4g} wide: "
-            f"a ball under {tool.said('TA')} deg has {tool.word('DC')} {ball / tool.scale:.6g}"
-        )
+    else:
+        _no_ball(tool, radius, corner, taper)
     return Cutter(radius, flutes, corner, tool.name, flutes=flutes, taper=taper)
 
 
+def _no_ball(tool: Listed, radius: float, corner: float, taper: float) -> None:
+    """Refuse a tip that keeps a flat where a ball may be meant: its axis stands nearer to the contact, and its shank with it."""
+    tip = re.sub(r"[\W_]", "", tool.tapered.lower())
+    called = tip == "taperedball"
+    if not called and (tip or not corner or abs(corner - 0.5 * tool.values["DC"]) > slack(corner)):
+        return
+    why = f'called "{tool.tapered}"' if called else f"{tool.said('RE')} is half of {tool.said('DC')}, as of a ball"
+    ball = 2.0 * corner * (1.0 - math.sin(taper)) / math.cos(taper)
+    raise UnfitError(
+        f"{why}, but its tip keeps a flat {2.0 * (radius - corner) / tool.scale:.4g} wide: {tool.word('DC')} of a ball of "
+        f"{tool.said('RE')} under {tool.said('TA')} deg is {ball / tool.scale:.6g}; correct it, or say tapered_bull_nose"
+    )
+
+
 def _taper(tool: Listed) -> Cutter:
+    if re.sub(r"[\W_]", "", tool.tapered.lower()) not in ("", "taperedball", "taperedbullnose"):
+        raise UnfitError(f'called "{tool.tapered}": tapered_ball and tapered_bull_nose are read')
     must_state(tool, "RE", _CORNER)
     must_state(tool, "TA", "the angle of its flank from the axis")
     if "TA" not in tool.values:
@@ -162,6 +179,9 @@ def _lollipop(tool: Listed) -> Cutter:
     v = tool.values
     radius, flutes = 0.5 * v["DC"], v["LCF"]
     agree_ball(tool)
+    for key in ("TA", "TIP"):
+        if key in v:
+            raise UnfitError(f"{tool.said(key)}: a lollipop has neither a cone nor a flat; write its outline as TOML")
     neck = 0.5 * v["DN"]
     if neck >= radius - SAME:
         raise UnfitError(

@@ -51,6 +51,8 @@ _PARAMETERS = (
 #: Fields that one release means as the radius of the flat at the tip, and another as that of the corner.
 _FLATS = ("FlatRadius", "TorusRadius")
 _ANGLE = "CuttingEdgeAngle"
+#: Fields of other shapes: which tip they make of this one, nothing says.
+_STRANGE = ("Radius", "TaperAngle")
 #: Its drawing does not say from where it counts.
 _NECK = "NeckLength"
 #: What shapes are among mills; the others stay what they are called.
@@ -170,9 +172,8 @@ def _holder(given: dict[str, Any], name: str) -> Holder:
 
 
 def _tool(given: dict[str, Any], place: str, number: int | None) -> Listed:
-    shape = given.get("shape-type") or given.get("shape")
-    kind = re.sub(r"\.fcstd$", "", name_of(shape), flags=re.IGNORECASE)
-    kind = kind.replace("\\", "/").rpartition("/")[2]
+    called, drawn = (_stem(given.get(word)) for word in ("shape-type", "shape"))
+    kind = called or drawn
     tool = Listed(place, number, name_of(given.get("name")), kind, _SORTS.get(kind.lower(), ""), "mm")
     parameters = given["parameter"]
     imperial = isinstance(parameters.get("Units"), str) and parameters["Units"].lower() == "imperial"
@@ -193,6 +194,14 @@ def _tool(given: dict[str, Any], place: str, number: int | None) -> Listed:
                 both = f"{present[0]} is {shown(parameters[present[0]])}, {other} is {shown(parameters[other])}"
                 tool.faults.append(f"{both}: they mean the same")
     if tool.sort:
+        if drawn and _plain(drawn) != _plain(kind):
+            # FreeCAD takes the drawing, and the type only where it has no such drawing.
+            tool.doubts.append(f"shape-type {shown(kind)}, but shape {shown(drawn)}: another drawing can be another tool; "
+                               f"correct one, or write it as TOML (docs/tool_libraries.md)")  # fmt: skip
+        for word in _STRANGE:
+            if re.search("[1-9]", str(parameters.get(word) or "")):
+                tool.doubts.append(f"{word} {shown(parameters[word])}: a {kind} has none; leave it out, or write it as TOML "
+                                   f"(docs/tool_libraries.md)")  # fmt: skip
         for word in _FLATS:
             _corner(tool, parameters.get(word), word, length)
         neck = str(parameters.get(_NECK) or "")
@@ -214,6 +223,17 @@ def _tool(given: dict[str, Any], place: str, number: int | None) -> Listed:
     if isinstance(attribute, dict):
         take_feed(tool, [Preset("", attribute.get("cutting_feedrate"))], "cutting_feedrate", _feed)
     return tool
+
+
+def _stem(shape: Any) -> str:
+    """The name of a shape, of its file without folder and suffix."""
+    return re.sub(r"\.fcstd$", "", name_of(shape), flags=re.IGNORECASE).replace("\\", "/").rpartition("/")[2]
+
+
+def _plain(shape: str) -> str:
+    """One name for each shape that has had two."""
+    name = shape.lower().replace("-", "")
+    return "bullnose" if name == "torus" else name
 
 
 def _corner(tool: Listed, value: Any, field: str, length: Callable[[Any, str], float]) -> None:

@@ -27,6 +27,7 @@ _COLUMNS = (
     ("TIP", "tool_tipDiameter"),
     ("LF", "tool_assemblyGaugeLength"),
     ("LH", "tool_holderGaugeLength"),
+    ("DCX", "tool_maximumCuttingDiameter"),
 )
 _NAME = re.compile(r"\((\w+)\)\s*$")
 _SECTION = re.compile(r"H\s*(\S+)\s+U\s*(\S+)\s+L\s*(\S+)")
@@ -83,7 +84,7 @@ def read_csv(content: Content) -> Found:
 
 def _tool(row: dict[str | None, str], place: str) -> Listed:
     name = name_of(row.get("tool_description")) or name_of(row.get("tool_productId"))
-    tool = Listed(place, name=name, kind=name_of(row.get("tool_type")))
+    tool = Listed(place, name=name, kind=name_of(row.get("tool_type")), tapered=name_of(row.get("tool_taperedType")))
     try:
         tool.unit, tool.scale = unit_of(row.get("tool_unit"), "tool_unit")
         tool.number = whole_of(row.get("tool_number"), "tool_number")

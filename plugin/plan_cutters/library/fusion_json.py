@@ -78,7 +78,7 @@ def read_json(content: Content) -> Found:
 
 def _tool(item: dict[str, Any], place: str) -> Listed:
     name = name_of(item.get("description")) or name_of(item.get("product-id"))
-    tool = Listed(place, name=name, kind=name_of(item.get("type")))
+    tool = Listed(place, name=name, kind=name_of(item.get("type")), tapered=name_of(item.get("tapered-type")))
 
     tool.unit, tool.scale = tool.tried(lambda: unit_of(item.get("unit"), "unit"), ("", 1.0))
     post = tool.tried(lambda: _table(item, "post-process"), {})

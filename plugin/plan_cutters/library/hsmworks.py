@@ -65,6 +65,7 @@ def _tool(element: Element, place: str) -> Listed:
     nc, body, holder, shaft = (element.first(tag) for tag in ("nc", "body", "holder", "shaft"))
     if nc is not None:
         tool.number = tool.tried(lambda: whole_of(nc.given.get("number"), "nc number"), None)
+    tool.tapered = name_of(body.given.get("tapered-type")) if body else ""
     for key, word in _BODY:
         tool.take(key, body.given.get(word) if body else None, word, _number)
     if shaft is not None:

@@ -116,6 +116,8 @@ class Listed:
         What the file calls each.
     kind : str
         As the file words it; `sort`, if given, is what that is among `milling.MILLS`.
+    tapered : str
+        Which tip a tapered mill has, as the file words it: its dimensions can mean a ball and a bull nose.
     shaft : list of Segment
         Sections that the file gives above LN (or LCF), from there up.
     holder : Holder, str, optional
@@ -138,6 +140,7 @@ class Listed:
     name: str = ""
     kind: str = ""
     sort: str = ""
+    tapered: str = ""
     unit: str = ""
     scale: float = 1.0
     values: dict[str, float] = field(default_factory=dict)
