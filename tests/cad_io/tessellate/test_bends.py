@@ -160,6 +160,26 @@ def test_no_triangle_is_farther_than_its_bound(seed, degrees, rational):
     assume(tried)
 
 
+@given(seed=st.integers(0, 10**6), degrees=st.tuples(st.integers(1, 6), st.integers(1, 6)), rational=st.booleans())
+@settings(max_examples=30, deadline=None)
+def test_no_two_points_are_farther_apart_than_lines_between_them_are_long(seed, degrees, rational):
+    """Kinks are no gaps: lines run through them."""
+    rng = np.random.default_rng(seed)
+    face, (knots_u, knots_v) = bspline(rng, degrees, (3, 2), rational)
+    surface = Surface(face)
+    low, high = np.array([knots_u[0], knots_v[0]]), np.array([knots_u[-1], knots_v[-1]])
+    for chord in (np.inf, 1e-3):
+        table, proved = table_of(Ground.of(surface, (low[0], high[0], low[1], high[1]), chord))
+        assert proved
+        for size in (1.0, 0.2, 0.02):
+            ends = np.sort(rng.uniform(low, high - (high - low) * (1.0 - size), (2, 2)), axis=0)
+            row = table.node[window(table, ends[0, 0], ends[1, 0], ends[0, 1], ends[1, 1])]
+            at = rng.uniform(ends[0], ends[1], (60, 2))
+            point = surface.values(at[:, 0].copy(), at[:, 1].copy())
+            apart = np.linalg.norm(point[:, None] - point[None], axis=2).max()
+            assert apart <= (row[14] + row[15]) * (1 + 1e-9) + 1e-12
+
+
 def test_bounds_of_small_triangles_are_near_what_is_measured():
     """Within a factor of two: else triangles would be laid where none is needed."""
     for shape in (ring(), as_nurbs(ring()), patch(), turned(), as_nurbs(ball())):
