@@ -10,9 +10,16 @@ from collections.abc import Callable, Iterator
 from cad_io import files
 from cad_io.errors import ReadError
 
-#: The entities that name one, each by its first text (ISO 10303-21; AP214 and AP242 call them external documents).
-_WORDS = b"APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT", b"DOCUMENT_FILE"
+#: The entities that name one, each by its first text, and their short names (ISO 10303-21; AP214 and AP242 call them
+#: external documents).
+_WORDS = b"APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT", b"DOCUMENT_FILE", b"APEXIA", b"DCMFL"
 _NAMED = re.compile(rb"(?:" + b"|".join(_WORDS) + rb")\s*\(\s*'((?:[^']|'')*)'")
+#: A comment, or a text, in which none begins.
+_COMMENT = re.compile(rb"/\*.*?\*/|'[^']*'", re.DOTALL)
+#: Letters beyond ASCII, and a backslash, as a text has them (ISO 10303-21, 6.4.3).
+_LETTERS = re.compile(
+    rb"\\X2\\((?:[0-9A-Fa-f]{4})*)\\X0\\|\\X4\\((?:[0-9A-Fa-f]{8})*)\\X0\\|\\X\\([0-9A-Fa-f]{2})|\\S\\(.)|\\\\"
+)
 #: Documents beside the shape: that one is not there costs no geometry.
 DOCUMENTS = (".pdf", ".txt", ".doc", ".docx", ".xls", ".xlsx", ".csv", ".htm", ".html", ".jpg", ".jpeg", ".png", ".tif",
               ".tiff", ".svg")  # fmt: skip
@@ -21,12 +28,32 @@ _MOST = 10_000
 
 
 def names(data: bytes) -> tuple[str, ...]:
-    """Names of the files that a STEP file's text refers to, as they stand there, each once."""
+    """Names of the files that a STEP file's text refers to, as the CAD kernel reads them there, each once."""
     if not any(word in data for word in _WORDS):
         return ()
+    if b"/*" in data:
+        data = _COMMENT.sub(lambda found: b" " if found[0].startswith(b"/") else found[0], data)
+    return tuple(name for name in dict.fromkeys(map(_name, _NAMED.findall(data))) if name.strip())
+
+
+def _name(text: bytes) -> str:
+    """The name of a file that a text in STEP stands for: a long one may be broken into lines."""
+    whole = text.replace(b"\r", b"").replace(b"\n", b"").replace(b"''", b"'")
     # As the kernel takes them: a folder of Windows is one on every system.
-    found = dict.fromkeys(os.fsdecode(each.replace(b"''", b"'").replace(b"\\", b"/")) for each in _NAMED.findall(data))
-    return tuple(name for name in found if name.strip())
+    return os.fsdecode(_LETTERS.sub(_letters, whole)).replace("\\", "/")
+
+
+def _letters(found: re.Match[bytes]) -> bytes:
+    two, four, one, upper = found.groups()
+    if two is not None:
+        text = bytes.fromhex(two.decode()).decode("utf-16-be", "replace")
+    elif four is not None:
+        text = bytes.fromhex(four.decode()).decode("utf-32-be", "replace")
+    elif one is not None:
+        text = bytes.fromhex(one.decode()).decode("latin-1")
+    else:
+        text = "\\" if upper is None else chr(upper[0] | 0x80)
+    return text.encode()
 
 
 def followed(data: bytes, read: Callable[[str], bytes | None]) -> Iterator[tuple[str, bytes | None]]:

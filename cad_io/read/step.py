@@ -15,7 +15,7 @@ from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
 from OCP.StepBasic import StepBasic_NamedUnit
 from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Reader
-from OCP.STEPConstruct import STEPConstruct_UnitContext
+from OCP.STEPConstruct import STEPConstruct_ExternRefs, STEPConstruct_UnitContext
 from OCP.StepData import StepData_Factors
 from OCP.StepGeom import StepGeom_CartesianPoint, StepGeom_Direction
 from OCP.StepRepr import StepRepr_ItemDefinedTransformation, StepRepr_RepresentationMap
@@ -28,6 +28,7 @@ from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
+from cad_io import files
 from cad_io.arrays import LostFace
 from cad_io.errors import ReadError
 from cad_io.kernel import explore, faces
@@ -35,6 +36,7 @@ from cad_io.kernel.components import as_one, unwrapped
 from cad_io.read.document import Read, add_attributes, each, roots
 from cad_io.read.face_comparison import open_border
 from cad_io.read.faults import Model, type_of
+from cad_io.read.references import names as referred_names
 from cad_io.read.unread_faces import Lost, is_face, is_whole, mend, name_of
 from cad_io.units import in_mm
 
@@ -128,6 +130,7 @@ class Loaded:
             raise ReadError("is not valid STEP (syntax): export it again", file=file)
         self.risky = bool(self.faults) or _has_huge(data)
         self._refuse()
+        self._refuse_unnoticed()
 
     def transfer(self, *, traced: bool = False) -> Read:
         """Make the shape.
@@ -194,6 +197,24 @@ class Loaded:
                     f"has a faulty length unit ({fault.short}): give the right one with --unit (unit= in Python)",
                     file=self.file,
                 )
+
+    def _refuse_unnoticed(self) -> None:
+        """Files that the kernel would open, and `references.names` does not see: in no key, and behind no wall."""
+        found = STEPConstruct_ExternRefs(self.reader.ChangeReader().WS())
+        found.LoadExternRefs()
+        seen = set(map(os.path.normpath, referred_names(self.data)))
+        for number in range(1, found.NbExternRefs() + 1):
+            name = (found.FileName(number) or "").replace("\\", "/")
+            if not name.strip() or os.path.normpath(name) in seen:
+                continue
+            path = os.path.join(os.path.dirname(self.file), name)
+            try:
+                there = files.is_there(files.permitted(path))
+            except files.OutsideError:
+                there = True
+            if there:
+                raise ReadError(f"refers to {name} in a form that is not known here: save the assembly as one file",
+                                file=self.file)  # fmt: skip
 
     def _shape(self) -> Read:
         nothing = "holds no shape that can be read"

@@ -159,3 +159,41 @@ def test_references_are_followed_from_folder_to_folder_once():
     many = b"".join(b"DOCUMENT_FILE('%d'," % k for k in range(10_001))
     with pytest.raises(ReadError, match="more than 10000 files"):
         list(followed(many, files.get))
+
+
+@pytest.mark.parametrize("written, name", [
+    (f"/* the ball */ '{BALL}'", BALL),
+    ("'of_\nball.stp'", BALL),
+    (r"'\X2\00DC\X0\ball.stp'", "Üball.stp"),
+    (r"'\X4\0001D6FC\X0\ball.stp'", "\U0001d6fcball.stp"),
+    (r"'\X\DCball.stp'", "Üball.stp"),
+    (r"'\S\\ball.stp'", "Üball.stp"),
+])  # fmt: skip
+def test_a_file_that_the_kernel_opens_is_noted_however_it_is_written(whole, written, name):
+    whole.write_text(whole.read_text().replace(f"'{BALL}'", written))
+    shutil.move(whole.with_name(BALL), whole.with_name(name))
+    with noted() as files:
+        part = read_part(whole)
+    assert (len(part.faces), part.lost) == (7, ())
+    assert {os.path.basename(path) for path, there in files.items() if there} == {whole.name, BOX, name}
+    assert {path for path, _ in part.references} == {BOX, name}
+
+
+def test_short_names_of_entities_are_known(whole):
+    text = whole.read_text().replace("DOCUMENT_FILE(", "DCMFL(")
+    whole.write_text(text.replace("APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT(", "APEXIA("))
+    part = read_part(whole)
+    assert ({path for path, _ in part.references}, len(part.faces)) == ({BOX, BALL}, 7)
+
+
+def test_what_only_the_kernel_would_open_is_refused(whole, monkeypatch, tmp_path):
+    """Whatever form of a reference the text is not searched for: the kernel opens no file that nobody noted or permitted."""
+    monkeypatch.setattr("cad_io.read.references._WORDS", (b"NONE",))
+    with pytest.raises(ReadError, match=f"refers to {BOX} in a form that is not known here"):
+        read_part(whole)
+    for name in (BOX, BALL):
+        shutil.move(whole.with_name(name), tmp_path / name)
+    renamed(whole, BALL, str(tmp_path / BALL))
+    monkeypatch.setenv(WITHIN, json.dumps([str(whole.parent)]))
+    with pytest.raises(ReadError, match="in a form that is not known here"):
+        read_part(whole)
