@@ -105,6 +105,8 @@ def beside(file: str | os.PathLike[str]) -> Callable[[str], bytes | None]:
     ------
     cad_io.files.OutsideError
         One may not be read.
+    ReadError
+        One is a pipe or a device, which the kernel would wait for.
     """
     folder = os.path.dirname(os.fspath(file))
 
@@ -113,6 +115,10 @@ def beside(file: str | os.PathLike[str]) -> Callable[[str], bytes | None]:
             return files.content(os.path.join(folder, name))
         except files.OutsideError:
             raise
+        except files.IrregularError as error:
+            if os.path.isdir(os.path.join(folder, name)):
+                return None
+            raise ReadError(f"refers to {name}, which {error}: save the part that it was in its place") from None
         except (OSError, ValueError):
             return None
 

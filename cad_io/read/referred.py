@@ -72,6 +72,8 @@ def referred(file: str, data: bytes, timeout: float, above: tuple[str, ...] = ()
             content = beside(file)(name)
         except OutsideError as error:
             raise ReadError(f"refers to {name}: {error.strerror}", file=file) from None
+        except ReadError as error:
+            raise ReadError(error.cause, file=file) from None
         if path in found.faces:
             continue
         if content is None:

@@ -1,6 +1,7 @@
 """Keys: what changes a result changes the key, and nothing else does."""
 
 import os
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -11,7 +12,7 @@ from plan_cutters import Options
 from plan_cutters.batch import keys
 from plan_cutters.batch.content import content
 from plan_cutters.batch.job import Settings, handed
-from plan_cutters.errors import OptionError
+from plan_cutters.errors import OptionError, PlanError
 from tests.support.places import ROOT
 from tests.support.step_references import BALL, BOX, write_assembly
 
@@ -115,3 +116,34 @@ def test_files_that_a_part_or_a_fixture_refers_to_count_and_travel(tmp_path):
     assert dict(up.references)[f"../{BALL}"] is not None
     (tmp_path / BALL).unlink()
     assert content(str(whole)).key != up.key
+
+
+@pytest.mark.parametrize("name", [f"../{BALL}", f"{{}}/{BALL}"])
+def test_files_that_do_not_travel_count(tmp_path, name):
+    """One whose whole path is given is read where it lies, and whoever plans a commit finds it there, too."""
+    whole, there = write_assembly(tmp_path / "part"), tmp_path / BALL
+    shutil.move(whole.with_name(BALL), there)
+    whole.write_text(whole.read_text().replace(BALL, name.format(tmp_path)))
+    committed = {str(whole): whole.read_bytes(), str(whole.with_name(BOX)): b""}
+
+    def states():
+        yield key(fixtures=str(whole))
+        yield content(str(whole)).key
+        if os.path.isabs(name.format(tmp_path)):
+            yield content(str(whole), lambda file: committed[file]).key
+
+    first = list(states())
+    assert list(states()) == first
+    there.write_bytes(there.read_bytes() + b" ")
+    second = list(states())
+    there.unlink()
+    for seen in zip(first, second, states(), strict=True):
+        assert len(set(seen)) == 3
+
+
+def test_a_pipe_is_no_part(tmp_path):
+    os.mkfifo(tmp_path / "a.step")
+    with pytest.raises(PlanError, match="a pipe or a device"):
+        content(str(tmp_path / "a.step"))
+    with pytest.raises(PlanError, match="is a folder, not a file"):
+        content(str(tmp_path))

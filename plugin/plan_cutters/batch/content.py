@@ -32,7 +32,10 @@ class Content:
         return fingerprint(checksum(self.data), checksums(self.references))
 
     def write(self, file: Path) -> None:
-        """Write the file, and those that it refers to where they lie in or below its folder: what lies elsewhere is missing."""
+        """Write the file, and those that it refers to where they lie in or below its folder.
+
+        What lies elsewhere is missing there, or read where it lies if its whole path is given.
+        """
         file.write_bytes(self.data)
         for name, data in self.within():
             there = file.parent / name
@@ -41,9 +44,15 @@ class Content:
 
     def within(self) -> Iterator[tuple[str, bytes]]:
         """The files in or below its folder that it refers to, and that are there."""
-        for name, data in self.references:
-            if data is not None and not os.path.isabs(name) and name.split(os.sep)[0] != "..":
-                yield name, data
+        return ((name, data) for name, data in self.references if data is not None and _is_within(name))
+
+    def outside(self) -> tuple[tuple[str, str | None], ...]:
+        """Checksums of the other files that it refers to, by their paths; None: not there."""
+        return checksums((name, data) for name, data in self.references if not _is_within(name))
+
+
+def _is_within(name: str) -> bool:
+    return not os.path.isabs(name) and name.split(os.sep)[0] != ".."
 
 
 def content(file: str, read: Callable[[str], bytes] = store.read) -> Content:
@@ -54,7 +63,7 @@ def content(file: str, read: Callable[[str], bytes] = store.read) -> Content:
     file : str
         Path or URL.
     read : callable
-        Content of a file; a PlanError where it cannot be read.
+        Content of a file; a PlanError where it cannot be read. One whose whole path is given lies on this machine.
 
     Raises
     ------
@@ -65,7 +74,7 @@ def content(file: str, read: Callable[[str], bytes] = store.read) -> Content:
 
     def other(name: str) -> bytes | None:
         try:
-            return read(name if os.path.isabs(name) else f"{folder}{slash}{name}")
+            return store.read(name) if os.path.isabs(name) else read(f"{folder}{slash}{name}")
         except PlanError:
             return None
 

@@ -81,10 +81,21 @@ class Fault:
 
 @dataclass(frozen=True)
 class Handed:
-    """The settings of a part, ready to travel: pickled options, and the files of fixtures by the names that these have there."""
+    """The settings of a part, ready to travel.
+
+    Attributes
+    ----------
+    options : bytes
+        Pickled.
+    files : tuple of (str, bytes)
+        Of fixtures, by the names that these have there.
+    outside : tuple of (str, str or None)
+        Paths of files that these refer to and that do not travel, and their SHA-256; None: not there.
+    """
 
     options: bytes
     files: tuple[tuple[str, bytes], ...]
+    outside: tuple[tuple[str, str | None], ...] = ()
 
 
 def handed(options: Options) -> Handed:
@@ -97,6 +108,7 @@ def handed(options: Options) -> Handed:
     """
     files: dict[str, bytes] = {}
     names: dict[str, str] = {}
+    outside: list[tuple[str, str | None]] = []
 
     def moved(fixture: Fixture) -> Fixture:
         if fixture.kind or not isinstance(fixture.source, str):
@@ -110,6 +122,7 @@ def handed(options: Options) -> Handed:
                 name = f"_{name}"
             files[name] = found.data
             files.update((f"{os.path.dirname(name)}/{other}", data) for other, data in found.within())
+            outside.extend(found.outside())
             names[fixture.source] = name
         # A copy past the checks: they looked at the same words.
         return _with(fixture, source=names[fixture.source])
@@ -126,7 +139,7 @@ def handed(options: Options) -> Handed:
             f"faces and fixtures that are objects of another program cannot travel to a worker ({type(error).__name__}): "
             "give numbers, words or files"
         ) from None
-    return Handed(packed, tuple(sorted(files.items())))
+    return Handed(packed, tuple(sorted(files.items())), tuple(outside))
 
 
 def _read(file: str) -> bytes:

@@ -54,7 +54,7 @@ def settings_key(settings: Settings, there: Handed) -> str:
         version(),
         [_installed(name) for name in _COUNTED],
     ]
-    return digest([asked, *there.files]).hex()
+    return digest([asked, there.outside, *there.files]).hex()
 
 
 def key(content: str, settings: str) -> str:

@@ -14,6 +14,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+from cad_io import files as user_files
 from cad_io.files import checksum, open_regular
 from plan_cutters.batch.row import PartRow
 from plan_cutters.errors import PlanError
@@ -65,7 +66,9 @@ def read(url: str) -> bytes:
     """
     fs, path = file_system(url)
     try:
-        return bytes(fs.cat_file(path))
+        return user_files.content(path) if _is_local(fs) else bytes(fs.cat_file(path))
+    except user_files.IrregularError as error:
+        raise PlanError("is a folder, not a file" if os.path.isdir(path) else str(error), file=url) from None
     except Exception as error:
         raise PlanError(cause(error, "read"), file=url) from None
 
@@ -89,6 +92,10 @@ def cause(error: BaseException, doing: str = "reached") -> str:
     return f"cannot be {doing}: {text or name}"
 
 
+def _is_local(fs: Any) -> bool:
+    return type(fs).__name__ == "LocalFileSystem"
+
+
 class Store:
     """The output of a batch.
 
@@ -108,7 +115,7 @@ class Store:
     def __init__(self, url: str, key: bytes | None = None) -> None:
         self.url, self._key = url, key
         self._fs, root = file_system(url)
-        self.local = type(self._fs).__name__ == "LocalFileSystem"
+        self.local = _is_local(self._fs)
         self.root = os.path.abspath(root) if self.local else root.rstrip("/")
         self._token = ""
         self._lock: Lock | None = None

@@ -197,3 +197,13 @@ def test_what_only_the_kernel_would_open_is_refused(whole, monkeypatch, tmp_path
     monkeypatch.setenv(WITHIN, json.dumps([str(whole.parent)]))
     with pytest.raises(ReadError, match="in a form that is not known here"):
         read_part(whole)
+
+
+def test_a_pipe_is_not_waited_for(whole):
+    whole.with_name(BALL).unlink()
+    os.mkfifo(whole.with_name(BALL))
+    with pytest.raises(ReadError, match=f"refers to {BALL}, which is no regular file, but a pipe or a device"):
+        read_part(whole)
+    whole.with_name(BALL).unlink()
+    whole.with_name(BALL).mkdir()
+    assert len(read_part(whole).lost) == 1
