@@ -562,6 +562,22 @@ def test_an_interrupt_while_it_is_imported_is_one_line(tmp_path):
     assert (done.returncode, done.stderr) == (130, "plan-cutters: interrupted; no file is half-written\n")
 
 
+@pytest.mark.parametrize("asked", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize(("module", "error"), [
+    ("click", ""), ("plan_cutters.library.read", ""), ("plan_cutters.library.read", "ImportError('initialization failed')"),
+])  # fmt: skip
+def test_a_request_to_end_is_an_interrupt_in_commands_without_a_child(tmp_path, asked, module, error):
+    """Within imports, too, which make of it what they like once the command is there."""
+    trap = "import builtins, os, signal, time\nreal = builtins.__import__\ndef ends(name, *rest):\n"
+    trap += f"    if name != {module!r}: return real(name, *rest)\n"
+    trap += f"    try:\n        os.kill(os.getpid(), {int(asked)})\n        time.sleep(20)\n"
+    trap += f"    except KeyboardInterrupt: raise {error}\nbuiltins.__import__ = ends\n"
+    call = f"{trap}from plan_cutters.command.entry import plan_cutters; plan_cutters()"
+    done = subprocess.run([sys.executable, "-c", call, "tools", str(SAMPLES / "shop.toml")], cwd=tmp_path, env=ENV,
+                          capture_output=True, text=True, check=False)  # fmt: skip
+    assert (done.returncode, done.stderr) == (130, "plan-cutters tools: interrupted; no file is half-written\n")
+
+
 def interrupted_import(*_):
     """What a compiled module does whose import is interrupted: it raises an error of its own."""
     try:

@@ -107,6 +107,10 @@ def invoked(command: click.Command, name: str, words: Sequence[str]) -> int:
 def run(command: click.Command, name: str, args: Sequence[str] | None) -> NoReturn:
     """Run a command to its end with some words, by default those of the process."""
     words = list(sys.argv[1:] if args is None else args)
+    with contextlib.suppress(ValueError):  # only the main thread may
+        for number in (signal.SIGINT, signal.SIGTERM):
+            if signal.getsignal(number) is not signal.SIG_IGN:
+                signal.signal(number, interrupt)
     ended(name, words, lambda: invoked(command, name, words))
 
 
@@ -132,7 +136,8 @@ def ended(name: str, words: Sequence[str], work: Callable[[], int]) -> NoReturn:
         terminal.error(line.replace("plan-cutters:", f"{name}:", 1))
     # All is said: an interrupt has nothing left to end.
     with contextlib.suppress(ValueError):
-        signal.signal(signal.SIGINT, signal.SIG_IGN)
+        for number in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(number, signal.SIG_IGN)
     if code == INTERRUPTED:
         # The interpreter would end itself by the signal where it has seen the interrupt in code that was made from text.
         os._exit(code)

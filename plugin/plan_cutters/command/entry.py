@@ -1,6 +1,7 @@
 """Where the commands begin: nothing heavy is imported before an interrupt is one line and not a traceback."""
 
 import os
+import signal
 import sys
 from collections.abc import Sequence
 from importlib import import_module
@@ -62,6 +63,11 @@ def begin(name: str, words: Sequence[str] | None = None) -> None:
     """Run a subcommand under the name that it was called by, `plan-cutters map` or `plan-cutters-map`."""
     words = sys.argv[1:] if words is None else words
     try:
+        from plan_cutters.command.worker import is_child
+
+        # A child has nothing to say when it is ended.
+        if not is_child() and signal.getsignal(signal.SIGTERM) is not signal.SIG_IGN:
+            signal.signal(signal.SIGTERM, signal.default_int_handler)
         if f"_{name.replace('-', '_').upper()}_COMPLETE" in os.environ:
             import_module("plan_cutters.command.completion").main(name)
         if subcommand(name) == "plan":
