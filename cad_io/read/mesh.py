@@ -2,6 +2,7 @@
 
 import hashlib
 import io
+import json
 import os
 import warnings
 from collections.abc import Iterator
@@ -116,6 +117,8 @@ def _triangles(data: bytes, kind: str, file: str) -> Floats:
         raise ReadError("is empty", file=file)
     if kind == "stl" and len(data) != 84 + 50 * int.from_bytes(data[80:84], "little") and b"endsolid" not in data:
         raise ReadError("is not a whole STL file: its end is missing; export it again", file=file)
+    if kind == "glb" and (other := _buffer_elsewhere(data)):
+        raise ReadError(f"has its numbers in another file ({other}): export it as one file", file=file)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -128,6 +131,16 @@ def _triangles(data: bytes, kind: str, file: str) -> Floats:
         raise ReadError(f"is not a whole {kind.upper()} file ({cause or type(error).__name__}): export it again",
                         file=file) from None  # fmt: skip
     return np.concatenate([np.zeros((0, 3, 3)), *parts])
+
+
+def _buffer_elsewhere(data: bytes) -> str:
+    """Name of a file that a GLB takes numbers from; empty where it holds them all, or is none."""
+    try:
+        head = json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")])
+        names = [str(each.get("uri", "data:")) for each in head.get("buffers", ())]
+    except (ValueError, AttributeError, TypeError, RecursionError):
+        return ""
+    return next((ascii(name)[1:-1][:80] for name in names if not name.startswith("data:")), "")
 
 
 def _placed(found: Any) -> Iterator[NDArray[np.float64]]:

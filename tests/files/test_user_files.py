@@ -3,6 +3,7 @@
 import json
 import os
 
+import numpy as np
 import pytest
 
 from cad_io.errors import ReadError
@@ -10,6 +11,7 @@ from cad_io.files import WITHIN, IrregularError, OutsideError, content, fingerpr
 from cad_io.read.mesh import read_mesh
 from cad_io.read.sniff import load
 from plan_cutters.errors import LibraryError, MachineError, PlanError
+from plan_cutters.files.arrays import Archive
 from plan_cutters.files.seal import key_of, seal, stamp
 from plan_cutters.library import read_library
 from plan_cutters.machines import read_machine
@@ -114,6 +116,16 @@ def test_no_reader_leaves_the_folders(shop, monkeypatch, read):
     monkeypatch.setenv(WITHIN, "[]")
     with pytest.raises((ReadError, PlanError, OutsideError), match="outside the folders"):
         read(str(shop / "root/s.toml" if read is not read_mesh else link))
+
+
+def test_archives_of_arrays_are_files_of_users(shop, monkeypatch):
+    np.savez(shop / "outside/a.npz", a=np.zeros(3))
+    (shop / "root/a.npz").symlink_to(shop / "outside/a.npz")
+    with Archive(shop / "root/a.npz", "archive", PlanError) as archive:
+        assert list(archive.headers) == ["a"]
+    monkeypatch.setenv(WITHIN, json.dumps([str(shop / "root")]))
+    with pytest.raises(PlanError, match="outside the folders"):
+        Archive(shop / "root/a.npz", "archive", PlanError)
 
 
 def test_a_pipe_is_not_waited_for(tmp_path):

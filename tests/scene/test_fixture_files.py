@@ -7,6 +7,7 @@ import pytest
 import trimesh
 
 from cad_io import ReadError, read_part
+from cad_io.files import noted
 from cad_io.read.mesh import read_mesh
 from cad_io.read.skins import skins
 from plan_cutters import Fixture, plan
@@ -231,3 +232,29 @@ def test_models_with_fixtures_pass_the_khronos_validator(tmp_path):
         )  # fmt: skip
         issues = json.loads(done.stdout)
         assert (issues["numErrors"], issues["numWarnings"]) == (0, 0), issues
+
+
+def test_a_glb_whose_numbers_lie_in_another_file_is_refused_by_the_name_of_that_file(tmp_path):
+    """Nothing but the file itself is opened: what lies beside it cannot change unseen."""
+    data = trimesh.creation.box((1.0, 1.0, 1.0)).export(file_type="glb")
+    size = int.from_bytes(data[12:16], "little")
+    head = json.loads(data[20 : 20 + size])
+    head["buffers"][0]["uri"] = "box.bin"
+    (tmp_path / "box.bin").write_bytes(data[28 + size :])
+    text = json.dumps(head).encode()
+    text += b" " * (-len(text) % 4)
+    parts = (
+        b"glTF",
+        (2).to_bytes(4, "little"),
+        (20 + len(text)).to_bytes(4, "little"),
+        len(text).to_bytes(4, "little"),
+        b"JSON",
+        text,
+    )
+    (tmp_path / "box.glb").write_bytes(b"".join(parts))
+    with (
+        noted() as files,
+        pytest.raises(ReadError, match=r"has its numbers in another file \(box\.bin\): export it as one file"),
+    ):
+        read_mesh(tmp_path / "box.glb")
+    assert list(files) == [str(tmp_path / "box.glb")]

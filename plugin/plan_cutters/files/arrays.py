@@ -2,7 +2,6 @@
 
 import ast
 import os
-import stat
 import zipfile
 import zlib
 from dataclasses import dataclass
@@ -12,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from cad_io import files
 from plan_cutters.errors import PlanError
 
 #: Members that are looked at, and bytes of an array's header.
@@ -62,16 +62,14 @@ class Archive:
     def __init__(self, path: str | os.PathLike[str], noun: str, error: type[PlanError]) -> None:
         self.name, self.noun, self.error = Path(path).name, noun, error
         try:
-            # A pipe must not be waited for.
-            flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
-            self._file = os.fdopen(os.open(path, flags), "rb")
+            self._file = files.open_regular(files.permitted(path))
+        except files.IrregularError as fault:
+            raise error(str(fault), file=self.name) from None
         except OSError as fault:
             raise error(f"cannot be read: {fault.strerror or fault}", file=self.name) from None
         except ValueError as fault:
             raise error(f"is no name of a file: {fault}", file=ascii(self.name)) from None
         try:
-            if not stat.S_ISREG(os.fstat(self._file.fileno()).st_mode):
-                raise self.fault("is no regular file")
             self._archive = self._opened()
             self.headers = self._headers()
         except BaseException:

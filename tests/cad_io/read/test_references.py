@@ -161,7 +161,7 @@ def test_references_are_followed_from_folder_to_folder_once():
         list(followed(many, files.get))
 
 
-@pytest.mark.parametrize("written, name", [
+@pytest.mark.parametrize(("written", "name"), [
     (f"/* the ball */ '{BALL}'", BALL),
     ("'of_\nball.stp'", BALL),
     (r"'\X2\00DC\X0\ball.stp'", "Üball.stp"),
