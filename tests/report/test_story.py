@@ -12,7 +12,7 @@ from OCP.TopoDS import TopoDS_Face
 from plan_cutters import plan
 from plan_cutters.command.codes import NOT_ALL_JUDGED, code_of
 from plan_cutters.command.summary import summary
-from plan_cutters.document.answers import ChangeEntry, MendEntry, StepEntry
+from plan_cutters.document.answers import ChangeEntry, MendEntry, RadiusEntry, StepEntry
 from plan_cutters.document.model import WitnessEntry
 from plan_cutters.document.palette import MEANING, PALETTE, label
 from plan_cutters.document.scope import Scope
@@ -228,3 +228,21 @@ def test_no_bound_is_rounded_down():
     ]
     said = " ".join(_fewest(SimpleNamespace(fewest=few, curve=steps)))
     assert "no choice of 2 serves more than 98.4 %" in said
+
+
+@pytest.mark.parametrize(("names", "across", "larger", "half", "least"), [
+    (("R6L80", "R3L40"), "radius", "2.95 mm", "12.2 mm", "0.1 mm"),
+    (("D12L80", "Finisher"), "diameter", "5.91 mm", "24.4 mm", "0.2 mm"),
+    (("D12L80", "R3L40"), "radius", "2.95 mm", "12.2 mm", "0.1 mm"),
+])  # fmt: skip
+def test_the_largest_tool_is_measured_as_the_cutters_were_given(names, across, larger, half, least):
+    cutters = [cutter(f"R{n}L80", {"F1": verdicts()}).model_copy(update={"name": name}) for n, name in enumerate(names, 3)]
+    found = RadiusEntry(shape="flat", length_over_radius=10.0, step=0.02, least_mm=0.1, most_mm=80.0, percentiles_mm={"50": 12.2},
+                        below=0, no_less=0, bottleneck_mm=2.958, bottleneck_face="F1", bottleneck_point=(1.0, 2.0, 3.0),
+                        beyond="inaccessible", reason="rear_gouge")  # fmt: skip
+    none = found.model_copy(update={"shape": "ball", "below": 7, "bottleneck_mm": 0.0, "percentiles_mm": {"50": 0.0}})
+    first, second = (line.text for line in answers(made([face(1)], cutters, largest_radius=[found, none])))
+    assert first.startswith(f"A flat end of {across} {larger} (10 radii long) reaches")
+    assert f"half of the area takes {half} or more" in first
+    assert second.startswith(f"Not even a ball end of {across} {least} (10 radii long) reaches")
+    assert f"misses 7; half of the area takes less than {least}" in second

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 from plan_cutters.document.answers import ChangeEntry, MendEntry, RadiusEntry, StickOutEntry
 from plan_cutters.document.model import CutterEntry, Plan
 from plan_cutters.domain.change import UNDECIDED
+from plan_cutters.domain.spec import notation
 from plan_cutters.report.story.cutters import reason
 from plan_cutters.report.story.headline import every
 from plan_cutters.report.story.line import Line
@@ -76,15 +77,17 @@ def narrowest(found: RadiusEntry) -> str:
 
 
 def _radii(plan: Plan) -> Iterator[Line]:
+    # As the cutters were given: by diameter, unless one was given by radius.
+    across, times = ("radius", 1.0) if any(notation(c.name).by == "R" for c in plan.cutters) else ("diameter", 2.0)
     for each in plan.largest_radius:
         if not each.percentiles_mm or each.bottleneck_mm is None:
             continue
-        end, rest = f"{each.shape} end of radius", f"({each.length_over_radius:g} radii long) reaches {every(plan)}"
-        whole = f"A {end} {down(each.bottleneck_mm)} {rest}"
+        end, rest = f"{each.shape} end of {across}", f"({each.length_over_radius:g} radii long) reaches {every(plan)}"
+        whole = f"A {end} {down(times * each.bottleneck_mm)} {rest}"
         if not each.bottleneck_mm:
-            whole = f"Not even a {end} {each.least_mm:.3g} mm {rest}: it misses {each.below}"
+            whole = f"Not even a {end} {times * each.least_mm:.3g} mm {rest}: it misses {each.below}"
         middle = each.percentiles_mm["50"]
-        half = f"{down(middle)} or more" if middle else f"less than {each.least_mm:.3g} mm"
+        half = f"{down(times * middle)} or more" if middle else f"less than {times * each.least_mm:.3g} mm"
         yield Line(f"{whole}; half of the area takes {half}. The narrowest place is {narrowest(each)}.")
     if plan.missing and (plan.largest_radius or any(c.least_stick_out for c in plan.cutters)):
         yield Line("Stick-outs and largest radii hold unless a face is in the way that is missing from the obstacles.")
