@@ -236,7 +236,9 @@ def test_no_bound_is_rounded_down():
     (("D12L80", "R3L40"), "radius", "2.95 mm", "12.2 mm", "0.1 mm"),
 ])  # fmt: skip
 def test_the_largest_tool_is_measured_as_the_cutters_were_given(names, across, larger, half, least):
-    cutters = [cutter(f"R{n}L80", {"F1": verdicts()}).model_copy(update={"name": name}) for n, name in enumerate(names, 3)]
+    cutters = [
+        cutter(f"R{n}L80", {"F1": verdicts()}).model_copy(update={"name": name}) for n, name in enumerate(names, 3)
+    ]
     found = RadiusEntry(shape="flat", length_over_radius=10.0, step=0.02, least_mm=0.1, most_mm=80.0, percentiles_mm={"50": 12.2},
                         below=0, no_less=0, bottleneck_mm=2.958, bottleneck_face="F1", bottleneck_point=(1.0, 2.0, 3.0),
                         beyond="inaccessible", reason="rear_gouge")  # fmt: skip
