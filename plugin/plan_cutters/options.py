@@ -224,10 +224,10 @@ class Options:
             raise OptionError(f"area budget {self.area_budget} must not be negative")
         if self.map_budget is not None and self.map_budget < 1:
             raise OptionError(f"map budget {self.map_budget} must be at least 1 sample")
-        if self.operations is not None and self.machine.turns and len(self.machine.rotary) < 2:
-            axes = "one rotary axis" if self.machine.rotary else "no rotary axis"
-            raise OptionError(f"machine {self.machine.name} has {axes}: a plan of operations chooses the angles of two; leave "
-                              "out --operations, or name a machine that has them")  # fmt: skip
+        if self.operations is not None and self.machine.turns and self.machine.turning < 2:
+            axes = "one rotary axis turns" if self.machine.turning else "no rotary axis turns"
+            raise OptionError(f"on machine {self.machine.name} {axes} the tool: a plan of operations chooses the angles of two; "
+                              "leave out --operations, or name a machine that has them")  # fmt: skip
         if not self.held_alike and (self.posture_maps or {"mend", "mend-all"} & set(self.answers)):
             asked = "posture maps are" if self.posture_maps else "the answer mend is"
             raise OptionError(

@@ -151,6 +151,39 @@ def test_a_tilting_table_in_closed_form(turn, most, tilt_direction):
     assert (inside == (angle <= most))[sure].all()
 
 
+@pytest.mark.parametrize(
+    ("first", "second", "like"),
+    [
+        ((0, 0), (0, 0), ()),
+        ((-180, 180), (0, 0), ()),
+        ((90, 90), (0, 0), ()),
+        ((0, 0), (-90, 90), (Axis.rotary("B", "tool", (0, 1, 0), limits_deg=(-90, 90)),)),
+        ((90, 90), (-90, 0), (Axis.rotary("B", "tool", (-1, 0, 0), limits_deg=(-90, 0)),)),
+    ],
+)
+def test_an_axis_whose_limits_leave_one_angle_is_none(first, second, like):
+    """The machine turns its tool as one without that axis does: kernels and positions know the same axes."""
+    axes = (
+        Axis.rotary("C", "part", (0, 0, 1), limits_deg=first),
+        Axis.rotary("B", "tool", (0, 1, 0), limits_deg=second),
+    )
+    machine, other = Machine("still", axes=axes), Machine("like", axes=like, fixed=True)
+    assert machine.turning == len(like)
+    frame = frame_of(np.array([0.3, -0.2, 0.9]) / math.sqrt(0.94), np.array([5.0, 7.0, -3.0]))
+    mine, others = (each.kinematics(frame) for each in (machine, other))
+    for one, two in zip(rotary_of(mine), rotary_of(others), strict=True):
+        assert np.allclose(one, two, atol=1e-12)
+    axis = np.concatenate([rotary_of(others).aim, directions(np.random.default_rng(3), 200)])
+    assert (mine.allows(axis) == others.allows(axis)).all()
+    angles, taken, _ = mine.positions(axis)
+    held = np.flatnonzero(taken >= 0)
+    assert len(held) == len(rotary_of(others).aim)
+    angles = angles[held, taken[held]]
+    assert (np.degrees(angles) >= np.array([first[0], second[0]]) - 1e-6).all()
+    assert (np.degrees(angles) <= np.array([first[1], second[1]]) + 1e-6).all()
+    assert np.allclose(mine.axis(angles), axis[held], atol=1e-6)
+
+
 @pytest.mark.parametrize("seed", range(20))
 def test_the_ends_of_the_limits_are_held(seed):
     """An axis that needs just the last angle of a limit is held, also where the limit leaves one angle; the angles turn there."""

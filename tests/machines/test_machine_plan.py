@@ -62,6 +62,17 @@ def test_a_machine_holds_no_more_than_none_and_no_less_than_its_cone():
     assert free.reached.sum() > table.reached.sum() > 0
 
 
+def test_a_machine_whose_axes_stand_still_reaches_what_one_of_three_axes_does():
+    still = tuple(replace(axis, limits=(0.0, 0.0)) for axis in builtin_machines()["head-table-bc"].axes)
+    first = builtin_machines()["head-table-bc"].axes[0]
+    asked = {"cutters": CUTTER, "grid": 8, "area_budget": 0, "setup": (0.3, -0.2, 0.9), "other_setups": [(0, 0, -1)]}
+    alone = plan("samples/blade.step", machine="3-axis", **asked).reaches[CUTTER.id]
+    assert 0 < alone.reached.sum() < len(alone.reached)
+    for axes in (still, (first, still[1])):
+        found = plan("samples/blade.step", machine=Machine("still", axes=axes), **asked).reaches[CUTTER.id]
+        assert (found.verdict == alone.verdict).all()
+
+
 def test_the_map_of_one_point_knows_the_machine():
     """The same free tilts as under the plain limit that it amounts to; and none that it cannot hold."""
     tilting = Axis("A", "rotary", "part", (1, 0, 0), (-math.radians(8), math.radians(8)))

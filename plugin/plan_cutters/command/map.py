@@ -100,7 +100,7 @@ def command(part: str, **given: Any) -> int:
     kind(part)
     options = _options(given)
     (cutter,), machine, placement = options.judged, options.machine, options.placement
-    if machine.turns and len(machine.rotary) < 2:
+    if machine.turns and machine.turning < 2:
         raise OptionError(
             f"machine {machine.name} has fewer than two rotary axes: it holds no tilt at most rotations, and the map would be "
             "empty; leave --machine out, or plan the part with it"

@@ -172,7 +172,7 @@ def _of_setups(ready: Prepared, name: str, over: OverSetups) -> dict[str, Any]:
 def _singular(ready: Prepared, name: str, over: OverSetups) -> int | None:
     """How many of the postures found lie near the rotary axis next to the part."""
     kinematics = ready.conditions.kinematics
-    if kinematics is None or len(kinematics.direction) < 2:
+    if kinematics is None or len(kinematics.turning()[1]) < 2:
         return None
     _, _, singular = positions(
         [each.kinematics for each in ready.setups], over.reaches[name].axis, over.served_in[name]

@@ -67,6 +67,26 @@ class Kinematics(Record):
         """The same in another frame, whose coordinates a rotation (3, 3) makes of these."""
         return Kinematics(self.direction @ turn.T, self.limit, self.tool @ turn.T)
 
+    def turning(self) -> tuple["Kinematics", list[int]]:
+        """The same machine with the axes alone that turn its tool, and their numbers here.
+
+        An axis whose limits leave one angle stands still, and so does one that lies along the tool, with nothing between.
+        """
+        kept: list[int] = []
+        direction, tool = np.array(self.direction), self.tool
+        for k in range(len(direction) - 1, -1, -1):
+            low, high = self.limit[k]
+            if high - low <= PARALLEL:
+                still = np.array(0.5 * (low + high))
+                tool = turned(direction[k], still, tool)
+                for other in kept:
+                    direction[other] = turned(direction[k], still, direction[other])
+            elif kept or np.linalg.norm(np.cross(direction[k], tool)) > PARALLEL:
+                kept.insert(0, k)
+        if len(kept) == len(direction):
+            return self, kept
+        return Kinematics(direction[kept], self.limit[kept], tool), kept
+
     def axis(self, angle: Floats) -> Floats:
         """Tool axes (n, 3) at angles (n, k), rad."""
         return self.carried(self.tool, angle)
@@ -107,6 +127,14 @@ class Kinematics(Record):
         They are: both solutions (n, 2, k), rad, nan where beyond a limit; the one to take (n,), that with the smaller angles, -1
         for none; and where (n,) the axis next to the part is near to the tool axis, so that the position is singular.
         """
+        machine, kept = self.turning()
+        if machine is not self:
+            mine, taken, singular = machine.positions(axis)
+            # Held by one solution; axes that stand still are where their limits have them, next to 0.
+            found = np.full((len(axis), 2, len(self.direction)), np.nan)
+            found[taken >= 0, 0] = np.clip(0.0, *self.limit.T)
+            found[:, :, kept] = mine
+            return found, taken, singular
         found = self.angles(axis)
         for k, (low, high) in enumerate(self.limit):
             found[:, :, k] = within(found[:, :, k], low, high)

@@ -121,6 +121,12 @@ class Machine:
         """Whether rotary axes, or that there are none, say which tool axes it holds."""
         return self.fixed or bool(self.rotary)
 
+    @property
+    def turning(self) -> int:
+        """How many of its rotary axes turn the tool: one whose limits leave one angle does not."""
+        found = self.kinematics(np.eye(3))
+        return 0 if found is None else len(found.turning()[1])
+
     def kinematics(self, setup: Floats) -> Kinematics | None:
         """Its rotary axes in the part's frame; None where any tool axis is possible.
 

@@ -56,7 +56,7 @@ def share(machine: Machine) -> Share:
 
 def singular(machine: Machine) -> float | None:
     """Half angle of the singular cone about the axis next to the part, rad; None where there is none."""
-    return SINGULAR if len(machine.rotary) == 2 else None
+    return SINGULAR if machine.turning == 2 else None
 
 
 class Solution(NamedTuple):
@@ -111,8 +111,8 @@ def tool_axis(machine: Machine, angles: dict[str, float]) -> tuple[Floats, list[
 
 def share_text(machine: Machine, held: float) -> str:
     """The share of directions as people read it: a circle or a single one is none of the sphere."""
-    if machine.turns and len(machine.rotary) < 2:
-        return "a circle" if machine.rotary else "one"
+    if machine.turns and machine.turning < 2:
+        return "a circle" if machine.turning else "one"
     return percent(held)
 
 
@@ -137,15 +137,17 @@ def summary(machine: Machine) -> list[str]:
         pass
     elif not rotary:
         said.append("Nothing turns the tool: it holds the setup axis alone.")
-    elif len(rotary) == 1:
-        said.append(f"Only {rotary[0].name} turns the tool against the part: the tool axes lie on one circle.")
+    elif machine.turning == 0:
+        said.append("Nothing turns the tool, for the limits leave its axes no room: it holds one tool axis.")
+    elif machine.turning == 1:
+        said.append(f"Only {_turning(machine)} turns the tool against the part: the tool axes lie on one circle.")
     else:
         first, second = rotary
         said.append(
             f"{first.name} is next to the part, {second.name} next to the tool; both solutions of a tool axis are tried."
         )
     found = share(machine)
-    if len(rotary) != 1 and (rotary or machine.tilt_limit is not None):
+    if machine.turning == 2 or not machine.turns:
         said.append(f"It holds {percent(found.held)} of all directions (counted on {DIRECTIONS} of them).")
     cone = singular(machine)
     if cone is not None:
@@ -154,6 +156,12 @@ def summary(machine: Machine) -> list[str]:
             f"turns fast; {percent(found.singular)} of all directions are held there."
         )
     return said
+
+
+def _turning(machine: Machine) -> str:
+    """Name the rotary axes that turn the tool."""
+    kinematics = machine.kinematics(_IDENTITY)
+    return ", ".join(machine.rotary[k].name for k in kinematics.turning()[1]) if kinematics is not None else ""
 
 
 def vector_text(direction: tuple[float, float, float]) -> str:

@@ -59,7 +59,7 @@ def motion(maps: PostureMaps, ready: Prepared) -> Motion | str:
     found, at_least = _needed(touched, size)
     whole = float(area.sum())
     ways = ready.conditions.kinematics
-    turning = ways is not None and len(ways.direction) == 2
+    turning = ways is not None and len(ways.turning()[1]) == 2
     return Motion(
         maps.cutter, len(np.unique(touched[:, 0])), len(np.unique(strict[kept])),
         min(1.0, float(size[largest]) / whole) if largest >= 0 and whole > 0.0 else 0.0, found, at_least,

@@ -111,6 +111,7 @@ def rotary_of(found: Kinematics | None) -> Rotary:
     """Rotary axes as kernels take them."""
     if found is None:
         return Rotary(np.zeros((0, 4)), np.zeros((0, 3)), np.zeros((0, 2)), np.zeros(3), np.zeros(3), np.zeros((0, 3)))
+    found, _ = found.turning()
     swing = found.swing if len(found.direction) == 2 else (0.0, 1.0, 0.0)
     circle, direction, limit, tool, aim = map(
         np.ascontiguousarray, (found.circles(), found.direction, found.limit, found.tool, found.aims())

@@ -40,7 +40,7 @@ def in_setup(
     # Among other fixtures, nothing is known of a posture.
     rows = np.flatnonzero(verdicts.reached & (conditions.around is ready.conditions.around))
     # Where fewer than two axes turn the tool, rotations are numbered by the axes that there are in a setup.
-    few = machine.turns and len(machine.rotary) < 2
+    few = machine.turns and machine.turning < 2
     rows = rows[:0] if few else rows[machine.allows(verdicts.axis[rows], frame_of(conditions.setup, conditions.x))]
     known.verdict[rows] = ACCESSIBLE
     known.take_posture(rows, verdicts)

@@ -217,7 +217,7 @@ class PostureMaps(Record):
         from plan_cutters.kernels.limits import any_axis
         from plan_cutters.kernels.maps.mask import mask
 
-        if machine.turns and len(machine.rotary) < 2:
+        if machine.turns and machine.turning < 2:
             raise OptionError(f"posture maps say nothing of {machine.name}: with fewer than two rotary axes each sample needs "
                               "rotations of its own; plan the part with it")  # fmt: skip
         require_side(self.about, place.z)
