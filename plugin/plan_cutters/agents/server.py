@@ -18,6 +18,7 @@ from plan_cutters.agents.roots import Roots
 from plan_cutters.agents.tools import TOOLS, Call, Reply, Tool
 from plan_cutters.agents.words import Room
 from plan_cutters.errors import PlanError
+from plan_cutters.files.temporary import require_temporary
 
 if TYPE_CHECKING:
     import mcp.types as types
@@ -106,6 +107,7 @@ class Service:
 
         with anyio.fail_after(self.limits.seconds):
             async with self._turns:
+                require_temporary()
                 with tempfile.TemporaryDirectory(prefix="plan-cutters-mcp-") as folder:
                     return await tool.work(asked, Call(Room(roots, self.limits), Path(folder).resolve(), tell))
 

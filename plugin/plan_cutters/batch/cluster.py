@@ -9,6 +9,7 @@ from typing import Any
 
 from plan_cutters.batch import keys
 from plan_cutters.errors import PlanError
+from plan_cutters.files.temporary import require_temporary
 
 #: Bytes of memory for a part where nothing else is said, at least, and the share of a machine's memory that all parts may take.
 LEAST_MEMORY, _SHARE = 4_000_000_000, 0.75
@@ -53,6 +54,7 @@ def opened(address: str | None, workers: int = 1) -> Iterator[Any]:
     with contextlib.ExitStack() as stack:
         stack.enter_context(_quiet())
         if address is None:
+            require_temporary()
             client = stack.enter_context(_local(distributed, workers))
         else:
             client = stack.enter_context(_reached(distributed, address))

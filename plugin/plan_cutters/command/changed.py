@@ -21,6 +21,7 @@ from plan_cutters.command.repository import Changed, changed, content, publish
 from plan_cutters.command.terminal import error, hand_out, say
 from plan_cutters.command.values import Folder
 from plan_cutters.errors import OptionError, PlanError
+from plan_cutters.files.temporary import require_temporary
 from plan_cutters.files.whole import whole
 
 if TYPE_CHECKING:
@@ -177,6 +178,7 @@ def command(asked: tuple[str, ...], **given: Any) -> int:
     base = given["base"] or (f"origin/{ref}" if (ref := os.environ.get("GITHUB_BASE_REF")) else "")
     if not base:
         raise OptionError("compare with which commit? give --base, as --base origin/main")
+    require_temporary()
     began, head, parts = changed(base, None if given["staged"] else given["head"])
     out = Path(given["out"])
     with tempfile.TemporaryDirectory() as aside:

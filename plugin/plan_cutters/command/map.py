@@ -1,5 +1,6 @@
 """`plan-cutters map`: every free tilt of one cutter at one point of a part, as a table and as a picture."""
 
+import contextlib
 import json
 import math
 import os
@@ -261,10 +262,12 @@ def _draw(found: "PostureMap", tilt: tuple[float, float], about: list[str], outs
         for aside, out in zip(asides, outs, strict=True):
             os.replace(aside, out)
     except OSError as error:
-        raise PlanError(f"cannot be written: {error.strerror}", file=str(error.filename or outs[0])) from None
+        out = next((out for aside, out in zip(asides, outs, strict=True) if error.filename == str(aside)), outs[0])
+        raise PlanError(f"cannot be written: {error.strerror or error}", file=str(out)) from None
     finally:
         for aside in asides:
-            aside.unlink(missing_ok=True)
+            with contextlib.suppress(OSError):
+                aside.unlink(missing_ok=True)
 
 
 def _table(found: "PostureMap", about: list[str], outs: Sequence[Path], console: "Console") -> None:

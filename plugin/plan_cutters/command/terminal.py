@@ -5,6 +5,7 @@ They are wrapped, coloured where that helps, and free of terminal control codes.
 
 import contextlib
 import errno
+import logging
 import os
 import re
 import sys
@@ -149,7 +150,11 @@ def emit(text: str) -> None:
 
 
 def warn_in_lines() -> None:
-    """Write what is warned of the compiler's cache as lines for people, and all other warnings as Python does."""
+    """Write what is warned of the compiler's cache as lines for people, and all other warnings as Python does.
+
+    That pictures' fonts are not cached, as in a home that cannot be written, is told to no one.
+    """
+    logging.getLogger("matplotlib").setLevel(logging.ERROR)
     warnings.simplefilter("always", CacheWarning)
     before = warnings.showwarning
 

@@ -18,7 +18,7 @@ def whole(path: Path) -> Iterator[Path]:
     except OSError as error:
         with contextlib.suppress(OSError):
             aside.unlink(missing_ok=True)
-        raise PlanError(f"cannot be written: {error.strerror}", file=str(path)) from None
+        raise PlanError(f"cannot be written: {error.strerror or error}", file=str(path)) from None
 
 
 def write(path: Path, text: str) -> None:
