@@ -23,7 +23,7 @@ _HOME = {
     "posture_map": "point",
     "PostureMap": "stages.posture_map",
     "PostureMaps": "stages.posture_maps",
-    "Plan": "document.model",
+    "Plan": "plan_file.model",
     "PlanError": "errors",
     "CutterError": "errors",
     "MachineError": "errors",

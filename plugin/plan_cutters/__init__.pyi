@@ -2,7 +2,6 @@
 
 from plan_cutters.batch.many import plan_many
 from plan_cutters.batch.one import plan
-from plan_cutters.document.model import Plan
 from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fixture import Fixture
@@ -12,6 +11,7 @@ from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.errors import CutterError, FixtureError, LibraryError, MachineError, OptionError, PlanError
 from plan_cutters.options import Options
+from plan_cutters.plan_file.model import Plan
 from plan_cutters.point import posture_map
 from plan_cutters.result import Result
 from plan_cutters.scene.scene import Scene

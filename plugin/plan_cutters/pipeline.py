@@ -17,7 +17,6 @@ from cad_io.tessellate.triangles import At
 from plan_cutters.answers.ask import ask
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock, Progress
-from plan_cutters.document.model import AreaEntry, CutterEntry
 from plan_cutters.document.operations_entry import with_motion
 from plan_cutters.document.plan import Elsewhere, OverSetups, completed, plan_of, selection
 from plan_cutters.document.setup_table import setup_table
@@ -32,6 +31,7 @@ from plan_cutters.domain.verdicts import CONVEX, UNJUDGED, Verdicts
 from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.option_types import PlanOptions
 from plan_cutters.options import Options
+from plan_cutters.plan_file.model import AreaEntry, CutterEntry
 from plan_cutters.proposal import plan_proposed
 from plan_cutters.result import Result
 from plan_cutters.scene.conditions import contacts_of, warm

@@ -8,12 +8,12 @@ from scipy.spatial import cKDTree
 
 from plan_cutters.answers.setup_ranking import MOST, Ranking, ranked
 from plan_cutters.document.clock import Clock
-from plan_cutters.document.setups import ProposedSetup, SetupProposal
 from plan_cutters.domain.fixture import Fixture
-from plan_cutters.domain.percent import exact, percent
 from plan_cutters.domain.placement import Placement, axis_words
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.options import Options
+from plan_cutters.plan_file.numbers import exact, percent
+from plan_cutters.plan_file.setups import ProposedSetup, SetupProposal
 from plan_cutters.result import Result
 from plan_cutters.scene.preparation import Prepared
 

@@ -18,7 +18,7 @@ from plan_cutters.agents.server import made, service_of
 from plan_cutters.agents.telling import compared, explained, planned
 from plan_cutters.agents.tools import fitting
 from plan_cutters.command import mcp as command
-from plan_cutters.domain.percent import percent
+from plan_cutters.plan_file.numbers import percent
 
 
 def made_plan(cutters=3, faces=4, **more):

@@ -20,8 +20,8 @@ from plan_cutters.document.clock import Clock
 from plan_cutters.domain.area import Patch
 from plan_cutters.domain.change import MEANS
 from plan_cutters.pipeline import prepare, run
-from plan_cutters.report.story.answers import answers
-from plan_cutters.report.story.next_steps import is_left_out, step_told, together
+from plan_cutters.plan_file.words.answers import answers
+from plan_cutters.plan_file.words.next_steps import is_left_out, step_told, together
 from tests.support import shapes
 from tests.support.cad_parts import box, cut, real
 from tests.support.places import SAMPLES

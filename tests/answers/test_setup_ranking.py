@@ -13,8 +13,8 @@ from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
 from plan_cutters.errors import OptionError
 from plan_cutters.pipeline import prepare
+from plan_cutters.plan_file.words.story import story_of
 from plan_cutters.proposal import plan_proposed
-from plan_cutters.report.story.story import story_of
 from tests.support.cad_parts import ball, box
 from tests.support.commands import assert_one_line
 from tests.support.forked import run

@@ -20,8 +20,8 @@ from plan_cutters.batch.index import write_index
 from plan_cutters.batch.row import PartRow
 from plan_cutters.batch.rows_of_plans import row_of
 from plan_cutters.batch.summary import NAMED, OUTCOMES, Summary, code_of, outcome, schema_text
-from plan_cutters.document.model import CutterEntry
-from plan_cutters.document.shares import reached_share
+from plan_cutters.plan_file.model import CutterEntry
+from plan_cutters.plan_file.shares import reached_share
 from tests.support.browser import opened
 from tests.support.places import ROOT
 

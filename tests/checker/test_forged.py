@@ -9,7 +9,7 @@ import pytest
 
 from plan_cutters.checker.check import check
 from plan_cutters.checker.leaves import UNCHECKED, leaves, pattern
-from plan_cutters.document.operations import OperationsEntry
+from plan_cutters.plan_file.operations import OperationsEntry
 
 #: Entries for which the checker puts many tools down.
 _SLOW = ("plans[].operations[].clearance_mm", "fewest.alone")

@@ -24,10 +24,10 @@ from plan_cutters.command.progress import Display
 from plan_cutters.command.rows import _distinct
 from plan_cutters.command.supervise import _Watch
 from plan_cutters.command.terminal import clean, show
-from plan_cutters.document.model import Plan
 from plan_cutters.domain.default_tools import builtin
-from plan_cutters.domain.percent import percent
-from plan_cutters.report.story.story import story_of
+from plan_cutters.plan_file.model import Plan
+from plan_cutters.plan_file.numbers import percent
+from plan_cutters.plan_file.words.story import story_of
 from tests.support.commands import assert_one_line, in_lines, leftovers, said_until
 from tests.support.forked import ENV, run
 from tests.support.places import SAMPLES

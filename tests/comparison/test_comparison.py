@@ -12,7 +12,7 @@ from plan_cutters.comparison.markdown import escaped, markdown
 from plan_cutters.comparison.matching import match_faces
 from plan_cutters.comparison.model import ASKED, Comparison, schema_text
 from plan_cutters.comparison.plans import SLACK, compare
-from plan_cutters.document.model import FaceEntry
+from plan_cutters.plan_file.model import FaceEntry
 from tests.support.places import ROOT
 from tests.support.plan_files import cutter, face, made, verdicts
 

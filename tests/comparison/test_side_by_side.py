@@ -16,8 +16,8 @@ from plan_cutters import Cutter, Holder, plan
 from plan_cutters.comparison.pictures import picture_of
 from plan_cutters.comparison.plans import compare
 from plan_cutters.comparison.review import MARKS, Side, page
-from plan_cutters.document.model import FileEntry
-from plan_cutters.document.shares import FaceVerdicts
+from plan_cutters.plan_file.model import FileEntry
+from plan_cutters.plan_file.shares import FaceVerdicts
 from plan_cutters.report.page.write import write_html
 from plan_cutters.report.to_json import dumps
 from tests.support.browser import opened

@@ -10,7 +10,7 @@ import pytest
 
 from plan_cutters.document import clock as module
 from plan_cutters.document.clock import Clock
-from plan_cutters.document.model import Run
+from plan_cutters.plan_file.model import Run
 from tests.support.places import ROOT
 
 BLADE = ROOT / "samples" / "blade.step"

@@ -6,12 +6,12 @@ from typing import get_args
 
 import pytest
 
-from plan_cutters.document.outputs import OUTPUTS
 from plan_cutters.domain.change import MEANS
-from plan_cutters.domain.notes import NoteCode
-from plan_cutters.domain.reasons import REASONS
 from plan_cutters.domain.verdicts import WORDS
 from plan_cutters.kernels import codes
+from plan_cutters.plan_file.note_codes import NoteCode
+from plan_cutters.plan_file.outputs import OUTPUTS
+from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters.report.to_json import schemas
 from tests.support.forked import run
 from tests.support.places import ROOT, SAMPLES

@@ -15,7 +15,7 @@ from plan_cutters.domain.lengths import Notation, across, length
 from plan_cutters.domain.spec import is_spec, spelled, typed
 from plan_cutters.errors import CutterError, PlanError
 from plan_cutters.options import Options
-from plan_cutters.report.story.names import called, described, short_names
+from plan_cutters.plan_file.words.names import called, described, short_names
 from tests.support.plan_files import cutter, face, made, verdicts
 
 WORDS = ("R6L80", "D12L80", "D12L80rc1F20N11x40S12", "D12L80T3", "D0.5inL3inrc1/16in", "D3L25rc1.5F10S6", "r6l80rc6",

@@ -23,7 +23,7 @@ from plan_cutters.library.read import holder_of
 from plan_cutters.library.records import Entry, Library
 from plan_cutters.machines.setups import read_setup
 from plan_cutters.options import Options
-from plan_cutters.report.story.names import called, described, kind, short_names
+from plan_cutters.plan_file.words.names import called, described, kind, short_names
 from plan_cutters.scene.scene import Scene
 from tests.support import shapes
 from tests.support.cad_parts import box

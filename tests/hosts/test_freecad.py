@@ -6,7 +6,7 @@ import xml.etree.ElementTree as ET
 
 import pytest
 
-from plan_cutters.document.palette import PALETTE
+from plan_cutters.plan_file.palette import PALETTE
 from tests.support.freecad_host import CONSOLE, run
 from tests.support.places import ROOT
 

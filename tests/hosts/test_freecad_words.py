@@ -9,8 +9,8 @@ import pytest
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from plan_cutters.domain.percent import percent
-from plan_cutters.domain.reasons import REASONS
+from plan_cutters.plan_file.numbers import percent
+from plan_cutters.plan_file.reasons import REASONS
 from tests.support.places import ROOT
 from tests.support.plan_files import cutter, face, made, verdicts
 

@@ -12,10 +12,10 @@ from ocp_tessellate.convert import tessellate_group, to_ocpgroup
 
 from plan_cutters import Fixture, OptionError, plan
 from plan_cutters.answers.stick_out import EXACT
-from plan_cutters.document.palette import PALETTE, rgb
 from plan_cutters.domain.verdicts import ACCESSIBLE, INTERFERENCE_FREE, REASONS
 from plan_cutters.hosts.build123d import compound
 from plan_cutters.hosts.cadquery import assembly, register
+from plan_cutters.plan_file.palette import PALETTE, rgb
 from plan_cutters.stages.judge import judge
 
 FLOOR = cq.selectors.NearestToPointSelector((0, 0, 0))

@@ -20,8 +20,8 @@ from plan_cutters import Options, PostureMaps, Scene, plan, plan_many, posture_m
 from plan_cutters.command import cli, entry, stored_maps
 from plan_cutters.command import map as of_a_point
 from plan_cutters.command.validation import NAMED, words_of
-from plan_cutters.document.effective_entry import Effective
 from plan_cutters.option_types import ANGLES, PlanOptions, PointOptions, SceneOptions
+from plan_cutters.plan_file.effective import Effective
 from tests.support.places import ROOT
 
 WORDS = {each.name for each in fields(Options)}

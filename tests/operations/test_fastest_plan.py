@@ -5,7 +5,7 @@ import pytest
 
 from plan_cutters import plan
 from plan_cutters.operations import planning
-from plan_cutters.report.story.operations import operations
+from plan_cutters.plan_file.words.operations import operations
 from tests.support.shapes import trough
 
 OPTIONS = {"faces": "all", "area_budget": 0, "feed": 1000.0, "operations": "both"}

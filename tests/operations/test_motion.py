@@ -10,7 +10,6 @@ from hypothesis import strategies as st
 
 from cad_io.arrays import FaceGrid
 from plan_cutters import plan
-from plan_cutters.document.operations import ForcedStepEntry, MotionEntry
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.operations import RESOLUTION
 from plan_cutters.domain.posture import tilt_direction
@@ -18,8 +17,9 @@ from plan_cutters.domain.verdicts import ACCESSIBLE
 from plan_cutters.operations.forced_steps import Positions, forced_steps
 from plan_cutters.operations.free_tilts import cells_of, holding, postures_of
 from plan_cutters.operations.motion import components, motion
-from plan_cutters.report.story.motion import motion as sentences
-from plan_cutters.report.story.motion import whatever_the_axes
+from plan_cutters.plan_file.operations import ForcedStepEntry, MotionEntry
+from plan_cutters.plan_file.words.motion import motion as sentences
+from plan_cutters.plan_file.words.motion import whatever_the_axes
 from plan_cutters.stages.posture_maps import PostureMaps, posture_maps
 from tests.support.places import SAMPLES
 from tests.support.shapes import ridge

@@ -18,11 +18,11 @@ from scipy.spatial import cKDTree
 
 from cad_io import read_part
 from plan_cutters import plan
-from plan_cutters.document.palette import operation_colour, parts, rgb
 from plan_cutters.domain.columns import columns_of
 from plan_cutters.domain.machine import Machine
 from plan_cutters.operations.candidates import Orientations
 from plan_cutters.operations.indexing import MOST, Indexing, index_times
+from plan_cutters.plan_file.palette import operation_colour, parts, rgb
 from plan_cutters.report import DEFAULT_FORMATS, operation_models
 from plan_cutters.report.regions import axis_regions
 from plan_cutters.scene.clearance import clearances

@@ -442,7 +442,7 @@ def test_the_page_says_first_which_cutter_to_take(valley):
 
 
 def test_only_all_is_told_as_all():
-    from plan_cutters.document.shares import AreaShare, VerdictCounts, reached, unreached
+    from plan_cutters.plan_file.shares import AreaShare, VerdictCounts, reached, unreached
 
     nearly = AreaShare(accessible=1.0 - 1e-9, inaccessible=1e-9)
     assert (

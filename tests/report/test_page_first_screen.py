@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from plan_cutters import plan
+from plan_cutters.plan_file.words.chip import CHIPS, chip
+from plan_cutters.plan_file.words.story import story_of
 from plan_cutters.report.page.write import write_html
-from plan_cutters.report.story.chip import CHIPS, chip
-from plan_cutters.report.story.story import story_of
 from tests.support.browser import chromium, opened, place_of, seen
 from tests.support.places import ROOT
 from tests.support.review_page import Page

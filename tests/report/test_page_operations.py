@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 
 from plan_cutters import plan
-from plan_cutters.document.operations import StepEntry
-from plan_cutters.document.palette import operation_colour
-from plan_cutters.domain.percent import bound
+from plan_cutters.plan_file.numbers import bound
+from plan_cutters.plan_file.operations import StepEntry
+from plan_cutters.plan_file.palette import operation_colour
+from plan_cutters.plan_file.words.operations import in_short, of_the_whole, share_text
+from plan_cutters.plan_file.words.story import story_of
 from plan_cutters.report.page import operations, write
-from plan_cutters.report.story.operations import in_short, of_the_whole, share_text
-from plan_cutters.report.story.story import story_of
 from tests.support.browser import opened, place_of, seen
 from tests.support.places import ROOT
 from tests.support.review_page import Page, picture

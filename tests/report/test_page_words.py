@@ -6,14 +6,14 @@ from html.parser import HTMLParser
 import pytest
 
 from plan_cutters import plan
-from plan_cutters.document.answers import ChangeEntry
-from plan_cutters.document.frozen import Posture
-from plan_cutters.document.model import WitnessEntry
 from plan_cutters.library import read_library
+from plan_cutters.plan_file.answers import ChangeEntry
+from plan_cutters.plan_file.frozen import Posture
+from plan_cutters.plan_file.model import WitnessEntry
+from plan_cutters.plan_file.numbers import up
+from plan_cutters.plan_file.words.answers import change
+from plan_cutters.plan_file.words.cutters import spot
 from plan_cutters.report.page import write
-from plan_cutters.report.story.answers import change
-from plan_cutters.report.story.cutters import spot
-from plan_cutters.report.story.numbers import up
 from tests.support.places import ROOT
 
 

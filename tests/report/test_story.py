@@ -12,22 +12,22 @@ from OCP.TopoDS import TopoDS_Face
 from plan_cutters import plan
 from plan_cutters.command.codes import NOT_ALL_JUDGED, code_of
 from plan_cutters.command.summary import summary
-from plan_cutters.document.answers import ChangeEntry, MendEntry, RadiusEntry, StepEntry
-from plan_cutters.document.model import WitnessEntry
-from plan_cutters.document.palette import MEANING, PALETTE, label
-from plan_cutters.document.scope import Scope
-from plan_cutters.domain.notes import NoteCode
-from plan_cutters.domain.reasons import NO_CONTACT, REASONS
 from plan_cutters.domain.verdicts import REASONS as CODES
 from plan_cutters.errors import OptionError
 from plan_cutters.hosts.viewer import _posture
+from plan_cutters.plan_file.answers import ChangeEntry, MendEntry, RadiusEntry, StepEntry
+from plan_cutters.plan_file.model import WitnessEntry
+from plan_cutters.plan_file.note_codes import NoteCode
+from plan_cutters.plan_file.palette import MEANING, PALETTE, label
+from plan_cutters.plan_file.reasons import NO_CONTACT, REASONS
+from plan_cutters.plan_file.scope import Scope
+from plan_cutters.plan_file.words import notes
+from plan_cutters.plan_file.words.answers import answers
+from plan_cutters.plan_file.words.next_steps import effect
+from plan_cutters.plan_file.words.operations import _fewest
+from plan_cutters.plan_file.words.scope import not_judged
+from plan_cutters.plan_file.words.story import story_of
 from plan_cutters.report.page.write import page
-from plan_cutters.report.story import notes
-from plan_cutters.report.story.answers import answers
-from plan_cutters.report.story.next_steps import effect
-from plan_cutters.report.story.operations import _fewest
-from plan_cutters.report.story.scope import not_judged
-from plan_cutters.report.story.story import story_of
 from plan_cutters.report.witness import row_of
 from tests.support.cad_parts import box, compound
 from tests.support.places import ROOT

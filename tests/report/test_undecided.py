@@ -9,14 +9,14 @@ import plan_cutters.scene.surroundings as surroundings
 from plan_cutters import plan
 from plan_cutters.answers import ask as asking
 from plan_cutters.answers.undecidable import undecidable
-from plan_cutters.document.effective_entry import LocalTolerance
-from plan_cutters.document.model import MissingEntry
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.percent import percent
 from plan_cutters.domain.verdicts import INACCESSIBLE, UNDECIDED, blank
-from plan_cutters.report.story.names import short_names
-from plan_cutters.report.story.story import story_of
-from plan_cutters.report.story.undecided import undecided
+from plan_cutters.plan_file.effective import LocalTolerance
+from plan_cutters.plan_file.model import MissingEntry
+from plan_cutters.plan_file.numbers import percent
+from plan_cutters.plan_file.words.names import short_names
+from plan_cutters.plan_file.words.story import story_of
+from plan_cutters.plan_file.words.undecided import undecided
 from tests.support.places import ROOT
 from tests.support.plan_files import cutter, face, made, verdicts
 

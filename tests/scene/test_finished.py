@@ -11,11 +11,11 @@ from cad_io import read_part
 from plan_cutters import plan
 from plan_cutters.command.codes import code_of
 from plan_cutters.command.summary import summary
-from plan_cutters.document.palette import LABELS
 from plan_cutters.errors import UnjudgeableError
+from plan_cutters.plan_file.palette import LABELS
+from plan_cutters.plan_file.words.inside import inside
 from plan_cutters.report.models import split_result
 from plan_cutters.report.page.write import page
-from plan_cutters.report.story.inside import inside
 from tests.support import shapes
 from tests.support.cad_parts import box, compound, cut, rod
 

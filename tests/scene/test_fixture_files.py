@@ -11,7 +11,7 @@ from cad_io.files import noted
 from cad_io.read.mesh import read_mesh
 from cad_io.read.skins import skins
 from plan_cutters import Fixture, plan
-from plan_cutters.document.palette import PALETTE
+from plan_cutters.plan_file.palette import PALETTE
 from plan_cutters.report.to_json import schema
 from tests.support import vises
 from tests.support.cad_parts import box, compound

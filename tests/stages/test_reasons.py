@@ -15,8 +15,8 @@ from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.verdicts import AXIS_LIMIT, REASONS, UNDECIDED
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
-from plan_cutters.report.story.headline import headline
-from plan_cutters.report.story.names import short_names
+from plan_cutters.plan_file.words.headline import headline
+from plan_cutters.plan_file.words.names import short_names
 from plan_cutters.stages import reasons as finding
 from plan_cutters.stages.judge import judge
 from tests.support.cad_parts import box, cut, rod

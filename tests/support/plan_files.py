@@ -1,6 +1,6 @@
 """Plans without a part: made of faces and of the shares that cutters reach of them."""
 
-from plan_cutters.document.model import (
+from plan_cutters.plan_file.model import (
     CutterEntry,
     Effective,
     FaceEntry,
@@ -10,8 +10,8 @@ from plan_cutters.document.model import (
     SampleCounts,
     Selection,
 )
-from plan_cutters.document.part_info import OrientationInfo, PartInfo
-from plan_cutters.document.shares import AreaShare, FaceVerdicts
+from plan_cutters.plan_file.part_info import OrientationInfo, PartInfo
+from plan_cutters.plan_file.shares import AreaShare, FaceVerdicts
 
 #: Samples of each face.
 SAMPLES = 1000

@@ -25,9 +25,9 @@ from plan_cutters import (
     plan_many,
     posture_map,
 )
-from plan_cutters.document.model import CutterEntry
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.library import read_library
+from plan_cutters.plan_file.model import CutterEntry
 
 
 def right(part: Scene, axis: Floats) -> Result:

@@ -10,10 +10,10 @@ from plan_cutters.agents.plan_file import plan_of
 from plan_cutters.agents.telling import planned, ranked
 from plan_cutters.batch.rows_of_plans import row_of
 from plan_cutters.command.summary import summary
-from plan_cutters.domain.nearest import leaves, nearest
+from plan_cutters.plan_file.nearest import leaves, nearest
+from plan_cutters.plan_file.words.cutters import left
+from plan_cutters.plan_file.words.story import story_of
 from plan_cutters.report.page.tables import Drawing, of
-from plan_cutters.report.story.cutters import left
-from plan_cutters.report.story.story import story_of
 from tests.support import shapes
 from tests.support.plan_files import cutter, face, made, verdicts
 

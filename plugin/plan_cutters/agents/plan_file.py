@@ -6,8 +6,8 @@ from pydantic import Field, ValidationError
 
 from plan_cutters.agents.answers import Entry, LeastSet, Missing, Samples, Value, Witness
 from plan_cutters.agents.limits import CallError
-from plan_cutters.domain.nearest import nearest
 from plan_cutters.domain.spec import renamed, typed
+from plan_cutters.plan_file.nearest import nearest
 
 #: A cutter by its radius or diameter, and its length.
 _PLAIN = re.compile(r"[rd][\d.]+(l[\d.]+)?")

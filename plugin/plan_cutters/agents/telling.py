@@ -26,9 +26,9 @@ from plan_cutters.agents.answers import (
 )
 from plan_cutters.agents.limits import CallError
 from plan_cutters.agents.plan_file import Counts, Cutter, Mend, PlanFile
-from plan_cutters.domain.nearest import leaves
-from plan_cutters.domain.percent import percent
-from plan_cutters.domain.reasons import REASONS
+from plan_cutters.plan_file.nearest import leaves
+from plan_cutters.plan_file.numbers import percent
+from plan_cutters.plan_file.reasons import REASONS
 
 #: Shares that differ by less are said as one.
 _SAME = 1e-9

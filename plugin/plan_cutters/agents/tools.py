@@ -36,8 +36,8 @@ from plan_cutters.agents.requests import (
 )
 from plan_cutters.agents.telling import compared, explained, pictured, planned
 from plan_cutters.agents.words import Room
-from plan_cutters.domain.percent import percent
 from plan_cutters.errors import CutterError
+from plan_cutters.plan_file.numbers import percent
 
 #: How long lists may be, until the answer is short enough.
 _LENGTHS = (60, 30, 12, 5, 2, 0)

@@ -9,11 +9,11 @@ from numpy.typing import NDArray
 from plan_cutters.domain.area import Patch, size
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Holder
-from plan_cutters.domain.percent import percent
 from plan_cutters.domain.placement import axis_words
-from plan_cutters.domain.reasons import REASONS as WORDS
 from plan_cutters.domain.spec import notation, spelled
 from plan_cutters.domain.verdicts import REASONS
+from plan_cutters.plan_file.numbers import percent
+from plan_cutters.plan_file.reasons import REASONS as WORDS
 
 Range = tuple[float, float]
 

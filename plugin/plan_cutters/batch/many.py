@@ -18,7 +18,7 @@ from plan_cutters.options import Options
 
 if TYPE_CHECKING:
     from plan_cutters.batch.run import Terms
-    from plan_cutters.document.model import Plan
+    from plan_cutters.plan_file.model import Plan
 
 
 @dataclass(frozen=True)
@@ -41,12 +41,12 @@ class Planned:
     def plan(self) -> "Plan | None":
         """The plan document; None where the part failed: then `row.error` says why."""
         from plan_cutters.batch.store import read
-        from plan_cutters.document.model import Plan
+        from plan_cutters.plan_file.load import plan_of
 
         if self.row.folder is None or self.row.status == "failed":
             return None
         content = self.files.get("plan.json") or read(f"{self._out}/{self.row.folder}/plan.json")
-        return Plan.model_validate_json(content)
+        return plan_of(content, "plan.json")
 
 
 @spelled_out(PlanOptions, Options)

@@ -1,13 +1,13 @@
 """The line of a part in the table of all, made of its plan."""
 
 from plan_cutters.batch.row import PartRow, Status
-from plan_cutters.document.model import CutterEntry, Plan
-from plan_cutters.document.shares import reached_share
-from plan_cutters.domain.nearest import nearest
+from plan_cutters.plan_file.model import CutterEntry, Plan
+from plan_cutters.plan_file.nearest import nearest
+from plan_cutters.plan_file.shares import reached_share
+from plan_cutters.plan_file.words.cutters import main_reason
+from plan_cutters.plan_file.words.headline import headline
+from plan_cutters.plan_file.words.names import short_names
 from plan_cutters.report.folder import file_name
-from plan_cutters.report.story.cutters import main_reason
-from plan_cutters.report.story.headline import headline
-from plan_cutters.report.story.names import short_names
 
 
 def row_of(

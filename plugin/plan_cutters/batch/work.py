@@ -336,9 +336,9 @@ def files_of(folder: Path) -> dict[str, Path]:
 def _row(task: Task, content: bytes, key: str, code: int, seconds: float) -> PartRow:
     """The line of the table that a plan makes; what could not be written beside it is said there."""
     from plan_cutters.batch.rows_of_plans import row_of
-    from plan_cutters.document.model import Plan
+    from plan_cutters.plan_file.load import plan_of
 
-    plan = Plan.model_validate_json(content)
+    plan = plan_of(content, PLAN)
     row = row_of(plan, name=task.name, file=task.file, code=code, key=key, folder=task.folder, seconds=seconds)
     missing = "; ".join(f"{name}: {why}" for name, why in plan.not_written.items())
     return row.model_copy(update={"error": f"not written: {missing}"}) if missing else row

@@ -123,7 +123,7 @@ def _all(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", given: di
     from plan_cutters.batch.progress import Board
     from plan_cutters.batch.run import run_batch
     from plan_cutters.batch.summary import OUTCOMES, outcome
-    from plan_cutters.report.story.numbers import count as counted
+    from plan_cutters.plan_file.numbers import count as counted
 
     out.begin()  # what is wrong with it is said before any worker is started
     board = Board(given["quiet"], len(parts))

@@ -206,11 +206,12 @@ def _compared(part: Changed, began: str, head: str, request: Request | None, cac
         return Row(part)
     from plan_cutters.batch.content import content as all_of
     from plan_cutters.batch.store import MARKER
-    from plan_cutters.comparison.folders import PLAN, read_plan
+    from plan_cutters.comparison.folders import PLAN
     from plan_cutters.comparison.pictures import picture_of
     from plan_cutters.comparison.plans import compare
     from plan_cutters.comparison.review import PAGE, Side, page
     from plan_cutters.comparison.states import unreachable
+    from plan_cutters.plan_file.load import load_plan
 
     found: dict[str, Path] = {}
     why: dict[str, str] = {}
@@ -228,7 +229,7 @@ def _compared(part: Changed, began: str, head: str, request: Request | None, cac
             shutil.copytree(kept, found[side], ignore=shutil.ignore_patterns(MARKER))
         except PlanError as fault:
             why[side] = str(fault) if fault.file == path else f"{path}: {fault}"
-    plans = {side: read_plan(folder / PLAN) for side, folder in found.items()}
+    plans = {side: load_plan(folder / PLAN) for side, folder in found.items()}
     difference = compare(plans["before"], plans["after"], name=part.name) if len(plans) == 2 else None
     beside = Path("compare", part.name, PAGE)
     shutil.rmtree((out / beside).parent, ignore_errors=True)
@@ -257,7 +258,7 @@ def _planned(found: "Content", path: str, request: Request, cache: Path) -> Path
     from plan_cutters.batch import keys, work
     from plan_cutters.batch.rows_of_plans import row_of
     from plan_cutters.batch.store import Store
-    from plan_cutters.document.model import Plan
+    from plan_cutters.plan_file.load import load_plan
 
     name = Path(path).name
     key = keys.key(found.key, keys.settings_key(request.settings, request.handed))
@@ -273,7 +274,7 @@ def _planned(found: "Content", path: str, request: Request, cache: Path) -> Path
         made = work.files_of(Path(place) / "out")
         if code not in _PLANNED or work.PLAN not in made:
             raise PlanError(line or f"ended with exit code {code} and no plan")
-        plan = Plan.model_validate_json(made[work.PLAN].read_bytes())
+        plan = load_plan(made[work.PLAN])
         store.publish(folder, made, row_of(plan, name=name, file=path, code=code, key=key, folder=folder, seconds=0.0))
     return cache / folder
 
@@ -302,7 +303,7 @@ def _summary(
     if not rows:
         return f"## plan-cutters\n\nNo part changed since {began[:12]}.\n"
     from plan_cutters.comparison.markdown import beside, escaped, section, table
-    from plan_cutters.report.story.numbers import count
+    from plan_cutters.plan_file.numbers import count
 
     lines = ["## plan-cutters", ""]
     many = count(len(rows), "part")
@@ -351,13 +352,14 @@ def _line(row: Row, fails: bool) -> tuple[str, ...]:
 
 def _bar(folder: Path | None) -> str:
     """What the best cutter reaches of a part, drawn with letters: it needs no picture."""
-    from plan_cutters.comparison.folders import PLAN, read_plan
+    from plan_cutters.comparison.folders import PLAN
     from plan_cutters.comparison.states import reached
-    from plan_cutters.domain.percent import percent
+    from plan_cutters.plan_file.load import load_plan
+    from plan_cutters.plan_file.numbers import percent
 
     if folder is None:
         return "-"
-    share = max((reached(cutter) for cutter in read_plan(folder / PLAN).cutters), default=0.0)
+    share = max((reached(cutter) for cutter in load_plan(folder / PLAN).cutters), default=0.0)
     # Full only where all is reached.
     full = 10 if share == 1.0 else min(9, int(10 * share))
     return f"{'█' * full}{'░' * (10 - full)} {percent(share)}"

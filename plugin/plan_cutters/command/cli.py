@@ -133,7 +133,7 @@ def _watched(words: list[str], name: str) -> int:
     from plan_cutters.command.retry import supervised
     from plan_cutters.command.validation import check
     from plan_cutters.errors import OptionError
-    from plan_cutters.report.story.names import called
+    from plan_cutters.plan_file.words.names import called
 
     try:
         with command.make_context(name, list(words)) as context:

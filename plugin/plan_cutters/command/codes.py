@@ -16,7 +16,7 @@ from plan_cutters.command.worker import INTERRUPTED
 from plan_cutters.command.worker_errors import Supervised
 
 if TYPE_CHECKING:
-    from plan_cutters.document.model import Plan
+    from plan_cutters.plan_file.model import Plan
 
 FEASIBLE, NONE_FEASIBLE, USAGE, UNREADABLE, NOT_ALL_JUDGED = 0, 1, 2, 3, 4
 #: Standard output was closed by its reader: as a shell counts the signal that ends other programs then.

@@ -181,9 +181,9 @@ def _text(values: Any) -> str:
 def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: dict[str, Any]) -> list[str]:
     """Describe the map line by line: its contact, cutter and search; the first line is its title."""
     from plan_cutters.domain.spec import notation, parted
+    from plan_cutters.plan_file.numbers import capital
+    from plan_cutters.plan_file.words.names import called
     from plan_cutters.report.drawing.sheet import printable
-    from plan_cutters.report.story.names import called
-    from plan_cutters.report.story.numbers import capital
 
     curvature = ", ".join(f"{x + 0.0:.4g}" for x in found.curvature)
     apart = "one rotation: nothing is said of others"

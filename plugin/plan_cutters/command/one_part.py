@@ -14,11 +14,11 @@ from plan_cutters.command.codes import code_of
 from plan_cutters.command.progress import Display, Teller
 from plan_cutters.command.summary import not_reached, summary, written
 from plan_cutters.command.worker import INTERRUPTED, is_child, report, report_work
-from plan_cutters.report.story.names import called
+from plan_cutters.plan_file.words.names import called
 
 if TYPE_CHECKING:
-    from plan_cutters.document.model import Plan
     from plan_cutters.options import Options
+    from plan_cutters.plan_file.model import Plan
     from plan_cutters.stages.judge import Judge
 
 

@@ -10,15 +10,15 @@ from rich.table import Table
 from rich.text import Text
 
 from plan_cutters.command.terminal import clean, wrapped
-from plan_cutters.domain.nearest import leaves
-from plan_cutters.report.story.cutters import FEASIBLE
+from plan_cutters.plan_file.nearest import leaves
+from plan_cutters.plan_file.words.cutters import FEASIBLE
 
 if TYPE_CHECKING:
     from rich.console import Console, ConsoleOptions
 
-    from plan_cutters.document.model import Plan
-    from plan_cutters.report.story.cutters import CutterStory, WorstFace
-    from plan_cutters.report.story.story import Story
+    from plan_cutters.plan_file.model import Plan
+    from plan_cutters.plan_file.words.cutters import CutterStory, WorstFace
+    from plan_cutters.plan_file.words.story import Story
 
 #: Verdicts, what a column calls them.
 WORDS = {

@@ -8,19 +8,18 @@ from rich.text import Text
 
 from plan_cutters.command.rows import cell, cutter_rows, worst_faces
 from plan_cutters.command.terminal import show
-from plan_cutters.document.shares import unreached
-from plan_cutters.domain.nearest import leaves
-from plan_cutters.domain.percent import percent
-from plan_cutters.report.story.cutters import left
-from plan_cutters.report.story.headline import area
-from plan_cutters.report.story.names import named
-from plan_cutters.report.story.notes import machine
-from plan_cutters.report.story.numbers import capital, count
-from plan_cutters.report.story.story import Story, story_of
+from plan_cutters.plan_file.nearest import leaves
+from plan_cutters.plan_file.numbers import capital, count, percent
+from plan_cutters.plan_file.shares import unreached
+from plan_cutters.plan_file.words.cutters import left
+from plan_cutters.plan_file.words.headline import area
+from plan_cutters.plan_file.words.names import named
+from plan_cutters.plan_file.words.notes import machine
+from plan_cutters.plan_file.words.story import Story, story_of
 
 if TYPE_CHECKING:
-    from plan_cutters.document.model import CutterEntry, Plan
-    from plan_cutters.report.story.line import Line
+    from plan_cutters.plan_file.model import CutterEntry, Plan
+    from plan_cutters.plan_file.words.line import Line
 
 #: Lines of one kind that are said unless all are asked for: doubts, cutters that do not reach.
 _LINES, _OTHERS = 5, 3

@@ -242,7 +242,7 @@ def _to_toml(found: "Sequence[Library]", path: Path) -> None:
 def _draw(found: "Sequence[Library]", folder: Path) -> None:
     from plan_cutters.domain.spec import is_spec
     from plan_cutters.errors import PlanError
-    from plan_cutters.report.story.names import called
+    from plan_cutters.plan_file.words.names import called
 
     draw = import_module("plan_cutters.report.drawing.tool").draw
     drawn: dict[str, str] = {}

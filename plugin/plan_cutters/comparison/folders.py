@@ -1,59 +1,14 @@
 """Two plan files, two plan folders, or two folders of many of them, paired by name."""
 
-import json
-import math
 from collections.abc import Collection
-from json import JSONDecodeError
 from pathlib import Path
-
-from pydantic import ValidationError
 
 from plan_cutters.comparison.model import Comparison
 from plan_cutters.comparison.plans import SLACK, compare
-from plan_cutters.document.model import FORMAT_VERSION, Plan
 from plan_cutters.errors import PlanError
+from plan_cutters.plan_file.load import load_plan
 
 PLAN = "plan.json"
-
-
-def read_plan(path: Path) -> Plan:
-    """The plan of a file.
-
-    Raises
-    ------
-    PlanError
-        It is missing, half-written, no plan, or one of another version of the format.
-    """
-    try:
-        found = json.loads(path.read_bytes())
-    except OSError as error:
-        raise PlanError(f"cannot be read ({error.strerror or error})", file=str(path)) from None
-    except JSONDecodeError as error:
-        empty = "is empty" if error.pos == 0 and not error.doc.strip() else "is no JSON or is half-written"
-        raise PlanError(f"{empty} (line {error.lineno}): plan the part again", file=str(path)) from None
-    except (ValueError, RecursionError):
-        raise PlanError("is no text that JSON can be: give the plan.json of a plan", file=str(path)) from None
-    if not isinstance(found, dict) or found.get("format") != "plan-cutters-plan":
-        raise PlanError("is JSON, but no plan of plan-cutters: give a plan.json, or the folder of one", file=str(path))
-    version = found.get("format_version")
-    if version != FORMAT_VERSION:
-        raise PlanError(
-            f"has format version {version}, and this program reads {FORMAT_VERSION}: plan the part again with it",
-            file=str(path),
-        )
-    for face in found["faces"] if isinstance(found.get("faces"), list) else ():
-        # JSON has no number for an area that is not known.
-        if isinstance(face, dict) and face.get("area_mm2", 0.0) is None:
-            face["area_mm2"] = math.nan
-    try:
-        return Plan.model_validate(found)
-    except ValidationError as error:
-        first = error.errors()[0]
-        place = ".".join(str(word) for word in first["loc"]) or "the plan"
-        raise PlanError(
-            f"{place}: {first['msg'].lower()}; it was damaged, or made by a newer version: plan the part again",
-            file=str(path),
-        ) from None
 
 
 def plans_in(given: Path) -> dict[str, Path]:
@@ -93,7 +48,7 @@ def compare_folders(old: Path, new: Path, *, slack: float = SLACK, despite: Coll
     found, unread = [], []
     for name in sorted(set(mine) & set(theirs)):
         try:
-            was, now = read_plan(mine[name]), read_plan(theirs[name])
+            was, now = load_plan(mine[name]), load_plan(theirs[name])
         except PlanError as fault:
             if not name:
                 raise

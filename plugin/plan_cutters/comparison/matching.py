@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters.comparison.model import CutterMatch, FaceMatch
-from plan_cutters.document.model import CutterEntry, FaceEntry, Plan
+from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
 
 #: Areas that differ by less than this share, and places by less than this share of the part's diagonal, are the same.
 SAME = 1e-5

@@ -6,7 +6,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from plan_cutters.document.frozen import Frozen, Vector
+from plan_cutters.plan_file.frozen import Frozen, Vector
 
 FORMAT_VERSION = 1
 

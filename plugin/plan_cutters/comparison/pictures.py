@@ -8,7 +8,7 @@ import zlib
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from plan_cutters.document.model import Plan
+from plan_cutters.plan_file.model import Plan
 
 #: Data that a comparison shows nothing of: postures and their maps, operations, other colours, and the frames of samples.
 _LEFT = re.compile(

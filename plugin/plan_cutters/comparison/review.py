@@ -6,19 +6,20 @@ from typing import NamedTuple
 
 from markupsafe import Markup
 
-from plan_cutters.comparison.folders import plans_in, read_plan
+from plan_cutters.comparison.folders import plans_in
 from plan_cutters.comparison.matching import match_cutters, match_faces
 from plan_cutters.comparison.model import Comparison, PlanDifference
 from plan_cutters.comparison.pictures import Picture, picture_of
 from plan_cutters.comparison.plans import taken
 from plan_cutters.comparison.states import face_state
 from plan_cutters.comparison.told import change, choice, cutter_rows, face_rows, headline, known, mark
-from plan_cutters.document.model import Plan
-from plan_cutters.document.palette import PALETTE
+from plan_cutters.plan_file import numbers
+from plan_cutters.plan_file.load import load_plan
+from plan_cutters.plan_file.model import Plan
+from plan_cutters.plan_file.palette import PALETTE
+from plan_cutters.plan_file.words.chip import Chip
+from plan_cutters.plan_file.words.names import short_names
 from plan_cutters.report.markup import embedded, policy, template
-from plan_cutters.report.story import numbers
-from plan_cutters.report.story.chip import Chip
-from plan_cutters.report.story.names import short_names
 
 PAGE = "review.html"
 #: What became of a face: in words, its colour and its pattern in both pictures.
@@ -73,7 +74,7 @@ def pages(old: Path, new: Path, found: Comparison) -> Iterator[tuple[str, bytes 
             continue
         sides = []
         for given, path in ((old, mine[name]), (new, theirs[name])):
-            plan = read_plan(path)
+            plan = load_plan(path)
             sides.append(Side(str(given / name) if name else str(given), plan, picture_of(path, plan)))
         yield name, page(each, *sides)
 

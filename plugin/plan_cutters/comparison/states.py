@@ -3,8 +3,8 @@
 from collections.abc import Iterable, Mapping
 
 from plan_cutters.comparison.model import CutterState, FaceState, Reach
-from plan_cutters.document.model import CutterEntry, FaceEntry, Plan
-from plan_cutters.document.shares import AreaShare, FaceVerdicts, VerdictCounts, reached_share
+from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
+from plan_cutters.plan_file.shares import AreaShare, FaceVerdicts, VerdictCounts, reached_share
 
 #: Rank of what is reached: to fall is a loss. What is inside other bodies is no surface: neither loss nor gain.
 _RANK: dict[Reach, int] = {"reached": 2, "undecided": 1}

@@ -11,9 +11,8 @@ from plan_cutters.comparison.model import (
     FaceState,
     PlanDifference,
 )
-from plan_cutters.domain.percent import percent
-from plan_cutters.domain.reasons import REASONS
-from plan_cutters.report.story.numbers import area, count
+from plan_cutters.plan_file.numbers import area, count, percent
+from plan_cutters.plan_file.reasons import REASONS
 
 FACES = ("", "face", "kind", "area", "was", "now")
 CUTTERS = ("", "cutter", "was", "now", "faces lost", "faces won", "changed")

@@ -1,174 +1,31 @@
-"""The answers after the plan, as the plan file has them."""
-
-from typing import Literal
+"""The answers after the plan become entries of the plan file here."""
 
 import numpy as np
-from pydantic import Field
 
 from cad_io.arrays import SurfaceSamples
-from plan_cutters.document.frozen import Frozen, Posture, Vector, filled, posture, vector
 from plan_cutters.domain.area import Patch
-from plan_cutters.domain.change import MEANS, Change, Mend, Step, Value
+from plan_cutters.domain.change import Change, Mend, Step, Value
 from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.radius_map import RadiusMap
 from plan_cutters.domain.stick_out import StickOut
 from plan_cutters.domain.verdicts import INACCESSIBLE, NO_REASON, REASONS, UNDECIDED
+from plan_cutters.plan_file.answers import (
+    Beyond,
+    ChangeEntry,
+    LeastSetEntry,
+    LostAreaEntry,
+    MendEntry,
+    MoveEntry,
+    RadiusEntry,
+    RunEntry,
+    StepEntry,
+    StickOutEntry,
+)
+from plan_cutters.plan_file.frozen import filled, posture, vector
 from plan_cutters.scene.surroundings import Surroundings
 
 #: Of a verdict on what lies just beyond an answer.
-_WORDS: dict[int, Literal["inaccessible", "undecided"]] = {INACCESSIBLE: "inaccessible", UNDECIDED: "undecided"}
-Beyond = Literal["inaccessible", "undecided"] | None
-
-
-class StickOutEntry(Frozen):
-    """The least stick-out with which the cutter in its holder reaches every sample that it reaches now."""
-
-    least_mm: float | None = Field(description="to 0.01 mm, for the rotations searched; null: `limited_by` says why")
-    floor_mm: float | None = Field(description="the shortest that was looked at: flutes and neck stand out")
-    longest_mm: float = Field(description="the longest that was looked at: what the cutter was judged with")
-    limited_by: str = Field(description="obstacle, floor, or why nothing was looked for: no holder, reaches nothing")
-    served: int = Field(description="samples that are reached now, and were found to be reached with it")
-    beyond_mm: float | None = Field(description="just below it, where the limiting sample was judged again")
-    beyond: Beyond = Field(description="the verdict on it there")
-    face: str | None = Field(description="of the sample that limits it")
-    point: Vector | None
-    posture: Posture | None = Field(description="with the least stick-out, at that sample")
-    obstacle_face: str | None = Field(description="in the way of a holder that comes lower at that posture")
-    obstacle_point: Vector | None
-    doubtful: bool = Field(default=False, description="obstacles are missing, which might ask for more")
-    step_mm: float | None = Field(default=None, description="of the least stick-outs of all samples, in samples.npz")
-
-
-class RadiusEntry(Frozen):
-    """The largest radius that reaches each sample, for one shape of bare end mill."""
-
-    shape: Literal["flat", "ball"]
-    length_over_radius: float
-    step: float = Field(description="by which share each radius that was tried is larger than the one before")
-    least_mm: float = Field(description="radii that were tried, from")
-    most_mm: float = Field(description="and to")
-    percentiles_mm: dict[str, float] = Field(
-        description="q -> at least q % of the samples' area has this one or a smaller one"
-    )
-    below: int = Field(description="samples that not even the least one reaches")
-    no_less: int = Field(description="samples that the largest one reaches: theirs is no less")
-    doubtful: bool = Field(default=False, description="obstacles are missing, which might leave less")
-    bottleneck_mm: float | None = Field(description="the smallest of all samples; 0: not even the least one reaches it")
-    bottleneck_face: str | None
-    bottleneck_point: Vector | None
-    beyond: Beyond = Field(description="the verdict there on the radius one step larger")
-    reason: str | None = Field(description="and why it does not reach that sample")
-
-
-class ChangeEntry(Frozen):
-    """One thing changed, all else as it is."""
-
-    thing: str
-    helps: bool | None = Field(
-        description="true: all target samples were judged with it and are reached; null: not decided"
-    )
-    now: float | tuple[float, ...] | tuple[str, ...] | None = Field(description="mm, deg, a direction, or faces")
-    asked: float | tuple[float, ...] | tuple[str, ...] | None = Field(
-        description="the least change with which it finishes"
-    )
-    beyond: float | tuple[float, ...] | tuple[str, ...] | None = Field(
-        description="a step less, which was tried and fails"
-    )
-    left: int = Field(description="samples that stay lost with the best value tried, of those looked at")
-    looked: int = Field(description="samples that are lost now on which values were tried")
-    verified: int = Field(description="target samples that were judged with `asked`")
-    cutter: str | None = Field(description="id of the cutter with it, where that is another one")
-    why: str
-    lost_before: float | None = Field(default=None, description="share of the finished area that is lost now, 0 to 1")
-    lost_after: float | None = Field(default=None, description="and with `asked`; null where nothing is asked or known")
-    option: str | None = Field(
-        default=None, description="what to say on the command line; null where nothing is asked, or no option says it"
-    )
-    doubted: bool = Field(
-        default=False, description="it would help, unless a face that is missing from the obstacles is in the way"
-    )
-
-
-class MoveEntry(Frozen):
-    """One change of a step."""
-
-    thing: str = Field(description=", ".join(MEANS))
-    now: float | tuple[float, ...] | str | None = Field(description="mm, deg, a direction, or the id of a cutter")
-    asked: float | tuple[float, ...] | str | None
-    why: str = Field(description="the change in words")
-
-
-class LostAreaEntry(Frozen):
-    """Connected samples that are not reached."""
-
-    area_mm2: float
-    share: float = Field(description="of the finished area, 0 to 1")
-    samples: int
-    faces: list[str] = Field(description="the one with the most of it first")
-    point: Vector = Field(description="the sample nearest to its middle")
-    across_mm: float = Field(description="largest extent, from sample to sample")
-    why: str = Field(description="all of it in words")
-
-
-class StepEntry(Frozen):
-    """A step is a thing to do next; its gain is judged on every sample, not estimated."""
-
-    changes: list[MoveEntry] = Field(description="one, or two")
-    lost_before: float = Field(description="share of the finished area that is lost now, 0 to 1")
-    lost_after: float = Field(description="and that stays lost; of an area that is left to other means, 0")
-    gained: int = Field(description="samples that it frees")
-    left: int = Field(description="samples that stay lost")
-    cutters: list[str] = Field(description="ids of those that do it together, what becomes of the mended one first")
-    setups: list[Vector] = Field(description="setup axes in which they do")
-    option: str | None = Field(
-        description="what to say on the command line, --cutter beside what is said there, all else in place of its like; null "
-        "where no option says it"
-    )
-    why: str
-    remains: list[LostAreaEntry] = Field(description="the largest areas that stay lost")
-
-
-class MendEntry(Frozen):
-    """A what-if answer gives the changes that would make a cutter finish the part, those that help first, and the next steps."""
-
-    lost: int = Field(description="samples that are inaccessible or undecided now")
-    buried: int = Field(description="those of them that lie within another body: nothing is asked about them")
-    why: str
-    changes: list[ChangeEntry]
-    lost_share: float = Field(default=0.0, description="of the finished area that is lost now in all setups, 0 to 1")
-    steps: list[StepEntry] = Field(
-        default=[],
-        description="by what stays lost, the least first; of those alike what asks least; an area to leave out last",
-    )
-    lost_areas: list[LostAreaEntry] = Field(default=[], description="the largest first")
-    more_lost_areas: int = Field(default=0, description="that are not listed")
-    unsure: bool = Field(default=False, description="obstacles are missing, which may take away what a step gains")
-
-
-class RunEntry(Frozen):
-    """A cutter in a setup, and what it takes: what no run before it reaches."""
-
-    cutter: str
-    setup: Vector
-    samples: int
-    area_mm2: float
-    share: float = Field(description="of the finished area, 0 to 1")
-    faces: list[str] = Field(description="on which it takes samples")
-    alone: int = Field(description="samples that no other run of the set reaches")
-
-
-class LeastSetEntry(Frozen):
-    """The fewest runs, a given cutter in a setup of the plan each, that reach all that any of them reaches."""
-
-    runs: list[RunEntry] = Field(
-        description="by setup, then by rank; of sets of as many that in the fewest setups was taken"
-    )
-    reached: int = Field(description="samples of the finished surface")
-    left: int = Field(description="samples that nothing given reaches for sure")
-    share: float = Field(description="of the finished area that they reach, 0 to 1")
-    left_share: float
-    proven: bool = Field(description="no fewer do")
-    doubtful: bool = Field(default=False, description="obstacles are missing, which might take away some of it")
+_WORDS: dict[int, Beyond] = {INACCESSIBLE: "inaccessible", UNDECIDED: "undecided"}
 
 
 def stick_out_entry(found: StickOut, samples: SurfaceSamples, around: Surroundings) -> StickOutEntry:

@@ -12,17 +12,6 @@ from cad_io import Part, SurfaceSamples
 from cad_io.kernel.assembly import component_of
 from plan_cutters import __version__
 from plan_cutters.document.fixtures import references
-from plan_cutters.document.frozen import filled, posture, vector
-from plan_cutters.document.listed import listed
-from plan_cutters.document.model import (
-    CutterEntry,
-    FaceEntry,
-    MissingEntry,
-    SegmentEntry,
-    WitnessEntry,
-)
-from plan_cutters.document.part_info import OrientationInfo, PartInfo, SewingInfo
-from plan_cutters.document.scope import Scope
 from plan_cutters.document.shares import counts, face_verdicts, whole_share
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.shapes import flute_length, modes
@@ -33,6 +22,17 @@ from plan_cutters.domain.verdicts import (
     Verdicts,
     Witness,
 )
+from plan_cutters.plan_file.frozen import filled, posture, vector
+from plan_cutters.plan_file.model import (
+    CutterEntry,
+    FaceEntry,
+    MissingEntry,
+    SegmentEntry,
+    WitnessEntry,
+)
+from plan_cutters.plan_file.numbers import listed
+from plan_cutters.plan_file.part_info import OrientationInfo, PartInfo, SewingInfo
+from plan_cutters.plan_file.scope import Scope
 from plan_cutters.scene.faces import Chosen
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.surroundings import Surroundings

@@ -4,7 +4,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from plan_cutters.document.model import Plan, Run
+from plan_cutters.plan_file.model import Plan, Run
 
 #: Told the stage, how much of it is done, of how much.
 Progress = Callable[[str, int, int], None]

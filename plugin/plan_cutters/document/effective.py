@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 
 from plan_cutters.document.build import degrees
-from plan_cutters.document.effective_entry import Effective, LocalTolerance
 from plan_cutters.document.travel import placement_entry
 from plan_cutters.domain.operations import INDEX_TIME
 from plan_cutters.options import Options
+from plan_cutters.plan_file.effective import Effective, LocalTolerance
 from plan_cutters.scene.obstacles import CHORD_SHARE
 from plan_cutters.scene.preparation import Prepared
 

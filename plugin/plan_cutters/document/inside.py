@@ -4,55 +4,19 @@ import shlex
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
 
 from cad_io.kernel.assembly import component_of, faces_of
 from cad_io.part import Part
 from cad_io.part.bodies import Body
-from plan_cutters.document.frozen import Frozen
-from plan_cutters.document.shares import FaceVerdicts, covered
+from plan_cutters.document.shares import covered
+from plan_cutters.plan_file.inside import CoveringBody, InsideEntry, SheetsEntry
+from plan_cutters.plan_file.shares import FaceVerdicts
 from plan_cutters.scene.covering import Covering, coverings, sheets
 from plan_cutters.scene.obstacles import weights
 from plan_cutters.scene.preparation import Prepared
-
-
-class CoveringBody(Frozen):
-    """A body of the part, and what of the target faces lies inside it."""
-
-    number: int = Field(description="from 1")
-    name: str = Field(description="of its component; empty where it has none of its own")
-    own_faces: list[str] = Field(description="runs of them, as `F7-12`")
-    faces: list[str] = Field(description="target faces that it covers, some of each at least")
-    samples: int
-    area_mm2: float
-    how: Literal["overlaps", "stands_on", "touches_or_overlaps"] = Field(
-        description="stands_on: the skins touch and the volumes do not intersect, as a clamp drawn as a solid"
-    )
-    largest: bool = Field(default=False, description="no other body is larger")
-    option: str = Field(description="of the command, which leaves the body out")
-
-
-class SheetsEntry(Frozen):
-    """Construction sheets on the skin of a body: what of them faces into it."""
-
-    faces: list[str]
-    samples: int
-    area_mm2: float
-    option: str = Field(description="of the command, which leaves them out")
-
-
-class InsideEntry(Frozen):
-    """This much of the target faces lies inside other bodies of the part: it is no surface of the finished part."""
-
-    samples: int = 0
-    area_mm2: float = 0.0
-    share: float = Field(default=0.0, description="of the target faces' area, 0 to 1")
-    bodies: list[CoveringBody] = Field(default=[], description="those that cover the largest area first")
-    sheets: SheetsEntry | None = None
 
 
 def inside_entry(ready: Prepared, faces: Mapping[str, FaceVerdicts]) -> InsideEntry:

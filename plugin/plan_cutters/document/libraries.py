@@ -1,8 +1,8 @@
 """Tool libraries, as the plan file has them."""
 
-from plan_cutters.document.frozen import filled
-from plan_cutters.document.model import LibraryEntry, SourceEntry, UnusedEntry
 from plan_cutters.library.records import Entry, Library
+from plan_cutters.plan_file.frozen import filled
+from plan_cutters.plan_file.model import LibraryEntry, SourceEntry, UnusedEntry
 
 
 def library_entry(library: Library) -> LibraryEntry:

@@ -5,15 +5,15 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from cad_io import Part
-from plan_cutters.document.listed import listed
-from plan_cutters.document.model import CutterEntry
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fixture import Fixture
-from plan_cutters.domain.notes import Note
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.travel import unjudged
 from plan_cutters.options import Options
+from plan_cutters.plan_file.model import CutterEntry
+from plan_cutters.plan_file.note_codes import Note
+from plan_cutters.plan_file.numbers import listed
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.setups import notes_of_setups

@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import SurfaceSamples
-from plan_cutters.document.model import CutterEntry, FaceEntry, WitnessEntry
-from plan_cutters.document.shares import VerdictCounts, counts
+from plan_cutters.document.shares import counts
 from plan_cutters.domain.stick_out import StickOut
 from plan_cutters.domain.verdicts import NO_REASON, REASONS, WORDS, Verdicts
+from plan_cutters.plan_file.model import CutterEntry, FaceEntry, WitnessEntry
+from plan_cutters.plan_file.shares import VerdictCounts
 
 
 @dataclass(frozen=True, slots=True)

@@ -4,25 +4,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, SurfaceSamples
-from plan_cutters.document.frozen import vector
-from plan_cutters.document.operations import (
-    AssumedEntry,
-    CutterUse,
-    FastestEntry,
-    FewestEntry,
-    ForcedStepEntry,
-    MotionEntry,
-    OperationEntry,
-    OperationFace,
-    OperationPlanEntry,
-    OperationRegion,
-    OperationsEntry,
-    RestEntry,
-    StepEntry,
-    WorkplaneEntry,
-)
-from plan_cutters.document.palette import operation_colour
-from plan_cutters.document.runs import runs
 from plan_cutters.domain.operations import (
     INDEX_TIME,
     RESOLUTION,
@@ -38,6 +19,25 @@ from plan_cutters.domain.operations import (
 )
 from plan_cutters.domain.verdicts import NO_REASON, REASONS
 from plan_cutters.options import Options
+from plan_cutters.plan_file.frozen import vector
+from plan_cutters.plan_file.operations import (
+    AssumedEntry,
+    CutterUse,
+    FastestEntry,
+    FewestEntry,
+    ForcedStepEntry,
+    MotionEntry,
+    OperationEntry,
+    OperationFace,
+    OperationPlanEntry,
+    OperationRegion,
+    OperationsEntry,
+    RestEntry,
+    StepEntry,
+    WorkplaneEntry,
+)
+from plan_cutters.plan_file.palette import operation_colour
+from plan_cutters.plan_file.runs import runs
 
 #: Areas differ by less, as a share, where they are of the same samples.
 _SAME_AREA = 1e-3

@@ -20,10 +20,20 @@ from plan_cutters.document.build import (
 )
 from plan_cutters.document.effective import effective
 from plan_cutters.document.fixtures import fixture_entries
-from plan_cutters.document.frozen import Vector, vector
 from plan_cutters.document.inside import inside_entry
 from plan_cutters.document.libraries import library_entry, source_entry
-from plan_cutters.document.model import (
+from plan_cutters.document.notes import notes_of
+from plan_cutters.document.operations_entry import operations_entry
+from plan_cutters.document.shares import counts
+from plan_cutters.document.travel import travel_entry
+from plan_cutters.domain.answers import Answers
+from plan_cutters.domain.kinematics import Kinematics
+from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.over_setups import positions
+from plan_cutters.domain.travel import Travel
+from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE, Verdicts
+from plan_cutters.plan_file.frozen import Vector, vector
+from plan_cutters.plan_file.model import (
     CutterEntry,
     MachineEntry,
     Plan,
@@ -32,21 +42,12 @@ from plan_cutters.document.model import (
     SampleCounts,
     Selection,
 )
-from plan_cutters.document.notes import notes_of
-from plan_cutters.document.operations import OperationsEntry
-from plan_cutters.document.operations_entry import operations_entry
-from plan_cutters.document.palette import MEANING, PALETTE
-from plan_cutters.document.setups import SetupEntry, SetupReach
-from plan_cutters.document.shares import counts, unreached
-from plan_cutters.document.travel import travel_entry
-from plan_cutters.domain.answers import Answers
-from plan_cutters.domain.kinematics import Kinematics
-from plan_cutters.domain.machine import Machine
-from plan_cutters.domain.nearest import nearest
-from plan_cutters.domain.over_setups import positions
-from plan_cutters.domain.reasons import REASONS as WORDS
-from plan_cutters.domain.travel import Travel
-from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE, Verdicts
+from plan_cutters.plan_file.nearest import nearest
+from plan_cutters.plan_file.operations import OperationsEntry
+from plan_cutters.plan_file.palette import MEANING, PALETTE
+from plan_cutters.plan_file.reasons import REASONS as WORDS
+from plan_cutters.plan_file.setups import SetupEntry, SetupReach
+from plan_cutters.plan_file.shares import unreached
 from plan_cutters.scene.preparation import Prepared
 
 RULE = "largest radius, then smaller corner radius, then shorter length, then library order, among the feasible"

@@ -5,9 +5,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from plan_cutters.document.frozen import Vector
 from plan_cutters.document.plan import OverSetups
-from plan_cutters.document.setups import SetupEntry
+from plan_cutters.plan_file.frozen import Vector
+from plan_cutters.plan_file.setups import SetupEntry
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.stages.setups import AXES, within_limits
 

@@ -1,113 +1,15 @@
-"""How much of a surface has each verdict: by samples, and by the area that they stand for."""
+"""Verdicts of samples are summed up here into counts and shares of area."""
 
-import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import Field
 
 from cad_io import Part, SurfaceSamples
-from plan_cutters.document.frozen import Frozen
 from plan_cutters.domain.area import weights
-from plan_cutters.domain.percent import exact, percent
 from plan_cutters.domain.verdicts import INACCESSIBLE, REASONS, UNDECIDED, WORDS, Verdicts
-
-_REACHED, _NOT_REACHED = ("interference_free", "accessible"), ("inaccessible", "undecided")
-
-
-class VerdictCounts(Frozen):
-    """How many samples have each verdict."""
-
-    interference_free: int = 0
-    accessible: int = 0
-    inaccessible: int = 0
-    undecided: int = 0
-    unjudged: int = 0
-    inside_bodies: int = Field(
-        default=0,
-        description="of the inaccessible: samples inside other bodies of the part, which are no surface of the finished part; "
-        "shares and choices are about the others",
-    )
-
-    @property
-    def blocked(self) -> int:
-        """Inaccessible samples of the finished part's surface."""
-        return self.inaccessible - self.inside_bodies
-
-    @property
-    def not_reached(self) -> int:
-        """Samples of the finished part's surface that are not reached."""
-        return self.blocked + self.undecided
-
-    @property
-    def lost(self) -> int:
-        """The former name of `not_reached`."""
-        return self.not_reached
-
-    def of(self, verdict: str) -> int:
-        """Samples of the finished part's surface with a verdict."""
-        return self.blocked if verdict == "inaccessible" else int(getattr(self, verdict))
-
-
-class AreaShare(Frozen):
-    """Shares of an area, 0 to 1, by the verdicts of the samples that stand for it; together they are 1."""
-
-    interference_free: float = 0.0
-    accessible: float = 0.0
-    inaccessible: float = 0.0
-    undecided: float = 0.0
-    unjudged: float = 0.0
-    lost_by: dict[str, float] = Field(
-        default={}, description="of inaccessible and undecided together, by reason; reasons that there are"
-    )
-
-    @property
-    def not_reached(self) -> float:
-        """Share that is not reached."""
-        return self.inaccessible + self.undecided
-
-
-class FaceVerdicts(VerdictCounts):
-    """The verdicts of a cutter on a face are counted in samples and in shares of its area."""
-
-    area_share: AreaShare = Field(
-        default=AreaShare(),
-        description="of the face's area, without what of it lies inside other bodies; 0 where all does",
-    )
-    inside_share: float = Field(default=0.0, description="of the face's area that lies inside other bodies of the part")
-
-
-def part_of(counts: VerdictCounts, share: AreaShare, words: Iterable[str]) -> str:
-    """How much of an area has one of some verdicts, in percent."""
-    mine, there = set(words), _there(counts, share)
-    return percent(
-        sum(getattr(share, word) for word in mine), some=bool(there & mine), whole=bool(there) and there <= mine
-    )
-
-
-def reached(counts: VerdictCounts, share: AreaShare) -> str:
-    """How much of an area is interference-free or accessible, in percent."""
-    return part_of(counts, share, _REACHED)
-
-
-def unreached(counts: VerdictCounts, share: AreaShare) -> str:
-    """How much of an area is inaccessible or undecided, in percent."""
-    return part_of(counts, share, _NOT_REACHED)
-
-
-def reached_share(counts: VerdictCounts, share: AreaShare) -> float | None:
-    """Share of an area that is reached: 1 only where all is, 0 only where nothing is; None where it is not known."""
-    there, found = _there(counts, share), sum(getattr(share, word) for word in _REACHED)
-    if not there or not math.isfinite(found):
-        return None
-    return exact(found, some=bool(there & set(_REACHED)), whole=there <= set(_REACHED))
-
-
-def _there(counts: VerdictCounts, share: AreaShare) -> set[str]:
-    """Verdicts that there are."""
-    return {word for word in WORDS.values() if counts.of(word) or getattr(share, word) > 0.0}
+from plan_cutters.plan_file.shares import AreaShare, FaceVerdicts
 
 
 def counts(verdict: NDArray[np.uint8], inside: NDArray[np.bool_] | None = None) -> dict[str, Any]:

@@ -3,7 +3,7 @@
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from plan_cutters.document.model import WitnessEntry
+    from plan_cutters.plan_file.model import WitnessEntry
     from plan_cutters.result import Result
 
 

@@ -9,14 +9,14 @@ import numpy as np
 from cad_io import Part
 from cad_io.arrays import Floats
 from cad_io.kernel.bodies import Side, of_triangles, placed, revolved
-from plan_cutters.document.model import WitnessEntry
-from plan_cutters.document.palette import rgb
 from plan_cutters.domain.checks import shown as written
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.outline import outline
 from plan_cutters.domain.travel import tips
 from plan_cutters.domain.verdicts import UNDECIDED, blank
 from plan_cutters.errors import OptionError
+from plan_cutters.plan_file.model import WitnessEntry
+from plan_cutters.plan_file.palette import rgb
 from plan_cutters.report.models import product, split_result, styles, verdict_of
 from plan_cutters.report.witness import row_of
 from plan_cutters.result import Result

@@ -12,7 +12,6 @@ from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.operations import Fastest, OperationPlan, Operations, Worth
-from plan_cutters.domain.percent import percent
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.errors import OptionError
 from plan_cutters.library.presets import feed_of
@@ -37,6 +36,7 @@ from plan_cutters.operations.proof import proved
 from plan_cutters.operations.rest_areas import allowed, by_size, largest_first, with_and_without, worths
 from plan_cutters.operations.timing import Paths, Problems, shared_area
 from plan_cutters.options import Options
+from plan_cutters.plan_file.numbers import percent
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress
 

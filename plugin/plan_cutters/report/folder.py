@@ -17,7 +17,7 @@ from plan_cutters.report.protocol import Judged
 if TYPE_CHECKING:
     # What formats there are is asked before anything heavy is loaded.
     from plan_cutters.document.clock import Clock
-    from plan_cutters.document.model import FileEntry, Plan
+    from plan_cutters.plan_file.model import FileEntry, Plan
 
 PLAN = "plan.json"
 #: Written where posture maps or operations were asked for.

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     # What formats there are is asked before anything heavy is loaded.
     from cad_io.kernel.side_process import SideProcess
     from plan_cutters.document.clock import Clock
-    from plan_cutters.document.model import FileEntry
+    from plan_cutters.plan_file.model import FileEntry
 
 #: Format -> (file name, module, function).
 WRITERS = {
@@ -80,7 +80,7 @@ class Making:
 
     def file(self, name: str, split: Any = None) -> "FileEntry":
         """Make the file of a format."""
-        from plan_cutters.document.model import FileEntry
+        from plan_cutters.plan_file.model import FileEntry
 
         file, module, function = WRITERS[name]
         write = getattr(import_module(f"plan_cutters.report.{module}"), function)

@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from plan_cutters.document.model import CutterEntry, FaceEntry, Plan
-from plan_cutters.document.shares import AreaShare, VerdictCounts
 from plan_cutters.domain.verdicts import WORDS
 from plan_cutters.errors import OptionError, PlanError
+from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
+from plan_cutters.plan_file.shares import AreaShare, VerdictCounts
 from plan_cutters.report.axes import Column, columns
 from plan_cutters.report.protocol import Judged
 

@@ -18,9 +18,9 @@ from cad_io.write import write_gltf
 from cad_io.write.gltf import Other as Drawn
 from cad_io.write.step import Other as Product
 from cad_io.write.step import write_step as write_cad
-from plan_cutters.document.model import FaceEntry, Plan, SplitEntry
-from plan_cutters.document.palette import LABELS, MEANING, rgb
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED
+from plan_cutters.plan_file.model import FaceEntry, Plan, SplitEntry
+from plan_cutters.plan_file.palette import LABELS, MEANING, rgb
 from plan_cutters.report.protocol import Judged
 
 _LABEL = {

@@ -8,14 +8,14 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from plan_cutters.document.model import Plan
 from plan_cutters.errors import PlanError
+from plan_cutters.plan_file.model import Plan
+from plan_cutters.plan_file.numbers import VERDICTS
+from plan_cutters.plan_file.words.cutters import FEASIBLE
+from plan_cutters.plan_file.words.story import Story, story_of
 from plan_cutters.report.markup import plain, template
 from plan_cutters.report.page.write import LARGEST_WITHOUT, page
 from plan_cutters.report.protocol import Judged
-from plan_cutters.report.story.cutters import FEASIBLE
-from plan_cutters.report.story.numbers import VERDICTS
-from plan_cutters.report.story.story import Story, story_of
 
 #: Height of the page in a notebook, pixels.
 HEIGHT = 640

@@ -15,8 +15,8 @@ from cad_io.split import split_by_turns
 from cad_io.write import write_gltf
 from cad_io.write.gltf import Other as Drawn
 from plan_cutters.document.fixtures import fixture_entry
-from plan_cutters.document.operations import OperationEntry, OperationPlanEntry
-from plan_cutters.document.palette import LABELS, MEANING, parts, rgb
+from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry
+from plan_cutters.plan_file.palette import LABELS, MEANING, parts, rgb
 from plan_cutters.report.models import (
     drawn_fixtures,
     face_facts,

@@ -8,7 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.document.axis_regions import (
+from plan_cutters.operations.fixed_axes import fixed_axes
+from plan_cutters.operations.labels import pieces
+from plan_cutters.plan_file.axis_regions import (
     AxisFound,
     AxisRegions,
     FixedAxis,
@@ -18,10 +20,8 @@ from plan_cutters.document.axis_regions import (
     Rest,
     Span,
 )
-from plan_cutters.document.frozen import vector
-from plan_cutters.document.runs import runs
-from plan_cutters.operations.fixed_axes import fixed_axes
-from plan_cutters.operations.labels import pieces
+from plan_cutters.plan_file.frozen import vector
+from plan_cutters.plan_file.runs import runs
 from plan_cutters.report.protocol import Judged
 from plan_cutters.scene.clearance import clearances
 from plan_cutters.scene.fixed_axis import held_at, standing

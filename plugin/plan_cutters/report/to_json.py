@@ -9,7 +9,7 @@ from plan_cutters.errors import PlanError
 
 if TYPE_CHECKING:
     # The model takes a second to load: who says why a run was ended has not got that.
-    from plan_cutters.document.model import Plan
+    from plan_cutters.plan_file.model import Plan
 
 #: Why a file is missing while it is being made: what stays in the plan if the run is ended then.
 PENDING = "the run ended before it was written"
@@ -22,7 +22,7 @@ def dumps(plan: "Plan") -> str:
 
 def schema() -> dict[str, Any]:
     """JSON Schema of the plan file (draft 2020-12), made from the model."""
-    from plan_cutters.document.model import Plan
+    from plan_cutters.plan_file.model import Plan
 
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -36,7 +36,7 @@ def schema_text() -> str:
 
 def schemas() -> dict[str, str]:
     """Texts of all schemas that are made from models, by the names of their files in the package."""
-    from plan_cutters.document.outputs import OUTPUTS
+    from plan_cutters.plan_file.outputs import OUTPUTS
 
     draft = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
     others = {name: {**draft, **kind.model_json_schema(mode="serialization")} for name, kind in OUTPUTS.items()}

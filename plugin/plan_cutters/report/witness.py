@@ -3,7 +3,7 @@
 import numpy as np
 
 from cad_io import SurfaceSamples
-from plan_cutters.document.model import WitnessEntry
+from plan_cutters.plan_file.model import WitnessEntry
 
 
 def row_of(samples: SurfaceSamples, witness: WitnessEntry) -> int:

@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 
 from cad_io.arrays import FaceInfo
 from plan_cutters.domain.checks import choice
-from plan_cutters.domain.notes import Note
 from plan_cutters.domain.placement import Placement
 from plan_cutters.errors import OptionError
+from plan_cutters.plan_file.note_codes import Note
 
 if TYPE_CHECKING:
     from cad_io import Part

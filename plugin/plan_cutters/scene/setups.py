@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.domain.notes import Note
 from plan_cutters.domain.placement import Placement, axis_words
 from plan_cutters.errors import FixtureError
 from plan_cutters.options import Options
+from plan_cutters.plan_file.note_codes import Note
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.faces import clamped_faces
 from plan_cutters.scene.inside_material import inside_material

@@ -14,14 +14,14 @@ from cad_io.arrays import Floats, Ints
 from cad_io.errors import WriteError
 from cad_io.kernel import translated
 from cad_io.write import meshes_of
-from plan_cutters.document.palette import LABELS, label, rgb
-from plan_cutters.document.shares import part_of
 from plan_cutters.domain.posture import unit
+from plan_cutters.plan_file.numbers import VERDICTS
+from plan_cutters.plan_file.palette import LABELS, label, rgb
+from plan_cutters.plan_file.shares import part_of
+from plan_cutters.plan_file.words.names import short_names
 from plan_cutters.report.drawing.sheet import DPI, Look, figure, fitting, legend, printable, save, standard, write
 from plan_cutters.report.drawing.view import Body, View, averaged, borders, fitted, frame_towards, view
 from plan_cutters.report.protocol import Judged
-from plan_cutters.report.story.names import short_names
-from plan_cutters.report.story.numbers import VERDICTS
 
 #: Inches: the sheet, and each view.
 _SHEET, _VIEW = (12.0, 9.6), (5.72, 3.72)

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from cad_io.arrays import Floats
-from plan_cutters.document.palette import PALETTE
 from plan_cutters.domain.intervals import complement, without
-from plan_cutters.domain.reasons import NO_CONTACT, REASONS
+from plan_cutters.plan_file.palette import PALETTE
+from plan_cutters.plan_file.reasons import NO_CONTACT, REASONS
 from plan_cutters.report.drawing.sheet import Look, figure, fitting, legend, save, write
 
 #: Inches: the sheet's width, the room left at its sides, and the plot, from its left and with its size.

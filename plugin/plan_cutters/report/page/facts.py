@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from plan_cutters.document.model import WitnessEntry
 from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.plan_file.model import WitnessEntry
+from plan_cutters.plan_file.words.cutters import ranked_spots
 from plan_cutters.report.protocol import Judged
-from plan_cutters.report.story.cutters import ranked_spots
 from plan_cutters.report.witness import row_of
 
 #: Spots of the cutter that is shown, and of each other one.

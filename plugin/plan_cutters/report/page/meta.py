@@ -7,23 +7,23 @@ import numpy as np
 
 from cad_io.arrays import Floats
 from plan_cutters.document.build import degrees
-from plan_cutters.document.model import CutterEntry
-from plan_cutters.document.palette import MEANING, PALETTE, label
 from plan_cutters.document.shares import counts
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.outline import Outline, outline, points
-from plan_cutters.domain.reasons import NO_CONTACT, REASONS
 from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.verdicts import WORDS
+from plan_cutters.plan_file.model import CutterEntry
+from plan_cutters.plan_file.numbers import VERDICTS
+from plan_cutters.plan_file.palette import MEANING, PALETTE, label
+from plan_cutters.plan_file.reasons import NO_CONTACT, REASONS
+from plan_cutters.plan_file.words.cutters import spot as sentence
+from plan_cutters.plan_file.words.names import short_names
 from plan_cutters.report.page.atlas import Atlas
 from plan_cutters.report.page.facts import Spot
 from plan_cutters.report.page.operations import operations_of
 from plan_cutters.report.page.surface import Surface, fixtures_of
 from plan_cutters.report.protocol import Judged
-from plan_cutters.report.story.cutters import spot as sentence
-from plan_cutters.report.story.names import short_names
-from plan_cutters.report.story.numbers import VERDICTS
 
 FORMAT = 1
 #: Chord of the outlines of tools, mm.

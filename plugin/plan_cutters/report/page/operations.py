@@ -8,18 +8,18 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from cad_io.arrays import SurfaceSamples
-from plan_cutters.document.model import Plan
-from plan_cutters.document.operations import OperationEntry, OperationPlanEntry, StepEntry
-from plan_cutters.document.palette import OPERATIONS, operation_colour
 from plan_cutters.domain.operations import OperationPlan
-from plan_cutters.domain.percent import bound
+from plan_cutters.plan_file.model import Plan
+from plan_cutters.plan_file.numbers import bound
+from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry, StepEntry
+from plan_cutters.plan_file.palette import OPERATIONS, operation_colour
+from plan_cutters.plan_file.words.line import Line
+from plan_cutters.plan_file.words.operations import Told, of_the_whole, share_text, told
+from plan_cutters.plan_file.words.story import Story
 from plan_cutters.report.page.arrays import Arrays
 from plan_cutters.report.page.encode import Stored
 from plan_cutters.report.page.facts import turned_by
 from plan_cutters.report.protocol import Judged
-from plan_cutters.report.story.line import Line
-from plan_cutters.report.story.operations import Told, of_the_whole, share_text, told
-from plan_cutters.report.story.story import Story
 
 #: The drawing of the curve: its size, and the edges of what is plotted in it.
 _WIDE, _HIGH = 360, 170

@@ -3,19 +3,20 @@
 import math
 from typing import Any, NamedTuple
 
-from plan_cutters.document.model import CutterEntry, FaceEntry, Plan
-from plan_cutters.document.palette import label
-from plan_cutters.document.shares import reached
-from plan_cutters.domain.reasons import REASONS
+from plan_cutters.plan_file import numbers
+from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
+from plan_cutters.plan_file.numbers import VERDICTS
+from plan_cutters.plan_file.palette import label
+from plan_cutters.plan_file.reasons import REASONS
+from plan_cutters.plan_file.shares import reached
+from plan_cutters.plan_file.words import answers, cutters, headline
+from plan_cutters.plan_file.words.chip import CHIPS, chip
+from plan_cutters.plan_file.words.names import named
+from plan_cutters.plan_file.words.next_steps import step_told
+from plan_cutters.plan_file.words.story import Story, story_of
 from plan_cutters.report.page import operations
 from plan_cutters.report.page.facts import Spot
 from plan_cutters.report.protocol import Judged
-from plan_cutters.report.story import answers, cutters, headline, numbers
-from plan_cutters.report.story.chip import CHIPS, chip
-from plan_cutters.report.story.names import named
-from plan_cutters.report.story.next_steps import step_told
-from plan_cutters.report.story.numbers import VERDICTS
-from plan_cutters.report.story.story import Story, story_of
 
 #: Faces that are listed, the worst first; cutters whose worst faces and spots are.
 _FACES, _CUTTERS = 1000, 40

@@ -10,7 +10,7 @@ from markupsafe import Markup
 from numpy.typing import NDArray
 
 from cad_io.write.render_mesh import drawn
-from plan_cutters.document.model import Plan
+from plan_cutters.plan_file.model import Plan
 from plan_cutters.report.markup import embedded, policy, template
 from plan_cutters.report.page import arrays, tables
 from plan_cutters.report.page.arrays import Arrays

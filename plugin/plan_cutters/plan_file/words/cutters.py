@@ -4,22 +4,22 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from plan_cutters.document.listed import listed
-from plan_cutters.document.model import CutterEntry, FaceEntry, Plan, WitnessEntry
-from plan_cutters.document.shares import AreaShare, part_of, reached, unreached
-from plan_cutters.domain.percent import percent
-from plan_cutters.domain.reasons import REASONS
-from plan_cutters.report.story.headline import area, between
-from plan_cutters.report.story.names import described, named
-from plan_cutters.report.story.next_steps import cures, first_step, step_told
-from plan_cutters.report.story.numbers import (
+from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan, WitnessEntry
+from plan_cutters.plan_file.numbers import (
     VERDICTS,
     angle,
     capital,
     figure,
+    listed,
     mm,
+    percent,
     place,
 )
+from plan_cutters.plan_file.reasons import REASONS
+from plan_cutters.plan_file.shares import AreaShare, part_of, reached, unreached
+from plan_cutters.plan_file.words.headline import area, between
+from plan_cutters.plan_file.words.names import described, named
+from plan_cutters.plan_file.words.next_steps import cures, first_step, step_told
 
 #: Faces that are named on which a cutter leaves something.
 _FACES = 3

@@ -3,21 +3,21 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from plan_cutters.document.model import CutterEntry, Plan
-from plan_cutters.domain.nearest import nearest
-from plan_cutters.report.story import notes
-from plan_cutters.report.story.answers import answers
-from plan_cutters.report.story.cutters import CutterStory, cutter_story
-from plan_cutters.report.story.headline import Headline, headline
-from plan_cutters.report.story.inside import inside
-from plan_cutters.report.story.line import Line
-from plan_cutters.report.story.names import named, short_names
-from plan_cutters.report.story.next_steps import together
-from plan_cutters.report.story.numbers import sentence
-from plan_cutters.report.story.operations import in_short, operations
-from plan_cutters.report.story.proposal import proposal
-from plan_cutters.report.story.scope import not_judged, not_seen
-from plan_cutters.report.story.undecided import undecided
+from plan_cutters.plan_file.model import CutterEntry, Plan
+from plan_cutters.plan_file.nearest import nearest
+from plan_cutters.plan_file.numbers import sentence
+from plan_cutters.plan_file.words import notes
+from plan_cutters.plan_file.words.answers import answers
+from plan_cutters.plan_file.words.cutters import CutterStory, cutter_story
+from plan_cutters.plan_file.words.headline import Headline, headline
+from plan_cutters.plan_file.words.inside import inside
+from plan_cutters.plan_file.words.line import Line
+from plan_cutters.plan_file.words.names import named, short_names
+from plan_cutters.plan_file.words.next_steps import together
+from plan_cutters.plan_file.words.operations import in_short, operations
+from plan_cutters.plan_file.words.proposal import proposal
+from plan_cutters.plan_file.words.scope import not_judged, not_seen
+from plan_cutters.plan_file.words.undecided import undecided
 
 
 @dataclass(frozen=True, slots=True)

@@ -3,14 +3,13 @@
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from plan_cutters.document.listed import listed
-from plan_cutters.document.model import AreaEntry, CutterEntry, Plan
-from plan_cutters.document.shares import unreached
-from plan_cutters.domain.nearest import nearest
 from plan_cutters.domain.placement import axis_words
-from plan_cutters.report.story.names import described
-from plan_cutters.report.story.numbers import capital, count, some
-from plan_cutters.report.story.scope import judged
+from plan_cutters.plan_file.model import AreaEntry, CutterEntry, Plan
+from plan_cutters.plan_file.nearest import nearest
+from plan_cutters.plan_file.numbers import capital, count, listed, some
+from plan_cutters.plan_file.shares import unreached
+from plan_cutters.plan_file.words.names import described
+from plan_cutters.plan_file.words.scope import judged
 
 
 class Headline(NamedTuple):

@@ -4,13 +4,18 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
-from plan_cutters.document.model import Plan
-from plan_cutters.document.operations import CutterUse, FewestEntry, OperationEntry, OperationPlanEntry, OperationsEntry
-from plan_cutters.domain.percent import bound, percent
-from plan_cutters.report.story.line import Line
-from plan_cutters.report.story.motion import motion, whatever_the_axes
-from plan_cutters.report.story.names import named
-from plan_cutters.report.story.numbers import ROUNDING, figure, some
+from plan_cutters.plan_file.model import Plan
+from plan_cutters.plan_file.numbers import ROUNDING, bound, figure, percent, some
+from plan_cutters.plan_file.operations import (
+    CutterUse,
+    FewestEntry,
+    OperationEntry,
+    OperationPlanEntry,
+    OperationsEntry,
+)
+from plan_cutters.plan_file.words.line import Line
+from plan_cutters.plan_file.words.motion import motion, whatever_the_axes
+from plan_cutters.plan_file.words.names import named
 
 #: Operations that are listed, and faces that are named of one.
 _LISTED, _FACES = 12, 4

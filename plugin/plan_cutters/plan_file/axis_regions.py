@@ -7,7 +7,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from plan_cutters.document.frozen import Frozen, Vector
+from plan_cutters.plan_file.frozen import Frozen, Vector
 
 AXIS_REGIONS_VERSION = 1
 Span = tuple[float, float]

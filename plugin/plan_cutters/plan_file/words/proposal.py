@@ -1,10 +1,9 @@
 """Put proposed setups into words: they stand among the first, for all that follows is about them."""
 
-from plan_cutters.document.model import Plan
-from plan_cutters.document.setups import ProposedSetup
-from plan_cutters.domain.percent import percent
 from plan_cutters.domain.placement import axis_words
-from plan_cutters.report.story.numbers import some
+from plan_cutters.plan_file.model import Plan
+from plan_cutters.plan_file.numbers import percent, some
+from plan_cutters.plan_file.setups import ProposedSetup
 
 
 def proposal(plan: Plan) -> tuple[str, ...]:

@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from plan_cutters.document.frozen import Frozen
+from plan_cutters.plan_file.frozen import Frozen
 
 
 class SplitEntry(Frozen):

@@ -7,18 +7,18 @@ from typing import Literal
 
 from pydantic import Field
 
-from plan_cutters.document.answers import LeastSetEntry, MendEntry, RadiusEntry, StickOutEntry
-from plan_cutters.document.effective_entry import Effective
-from plan_cutters.document.fixture_entry import FixtureEntry
-from plan_cutters.document.frozen import Frozen, Posture, Vector
-from plan_cutters.document.inside import InsideEntry
-from plan_cutters.document.operations import OperationsEntry
-from plan_cutters.document.part_info import PartInfo
-from plan_cutters.document.scope import Scope
-from plan_cutters.document.setups import SetupEntry, SetupProposal, SetupReach
-from plan_cutters.document.shares import AreaShare, FaceVerdicts, VerdictCounts
-from plan_cutters.document.split import SplitEntry
-from plan_cutters.document.travel import TravelEntry
+from plan_cutters.plan_file.answers import LeastSetEntry, MendEntry, RadiusEntry, StickOutEntry
+from plan_cutters.plan_file.effective import Effective
+from plan_cutters.plan_file.fixtures import FixtureEntry
+from plan_cutters.plan_file.frozen import Frozen, Posture, Vector
+from plan_cutters.plan_file.inside import InsideEntry
+from plan_cutters.plan_file.operations import OperationsEntry
+from plan_cutters.plan_file.part_info import PartInfo
+from plan_cutters.plan_file.scope import Scope
+from plan_cutters.plan_file.setups import SetupEntry, SetupProposal, SetupReach
+from plan_cutters.plan_file.shares import AreaShare, FaceVerdicts, VerdictCounts
+from plan_cutters.plan_file.split import SplitEntry
+from plan_cutters.plan_file.travel import TravelEntry
 
 FORMAT_VERSION = 1
 

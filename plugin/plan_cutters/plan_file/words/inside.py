@@ -2,11 +2,9 @@
 
 from collections.abc import Sequence
 
-from plan_cutters.document.inside import CoveringBody
-from plan_cutters.document.listed import listed
-from plan_cutters.document.model import Plan
-from plan_cutters.domain.percent import percent
-from plan_cutters.report.story.numbers import figure
+from plan_cutters.plan_file.inside import CoveringBody
+from plan_cutters.plan_file.model import Plan
+from plan_cutters.plan_file.numbers import figure, listed, percent
 
 
 def inside(plan: Plan, most: int = 5) -> list[str]:

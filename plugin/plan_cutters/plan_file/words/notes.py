@@ -3,13 +3,12 @@
 from collections.abc import Iterator
 from itertools import zip_longest
 
-from plan_cutters.document.model import CutterEntry, LibraryEntry, Plan
-from plan_cutters.domain.notes import NoteCode
-from plan_cutters.domain.percent import percent
 from plan_cutters.domain.placement import axis_words
-from plan_cutters.report.story.line import Line
-from plan_cutters.report.story.names import named
-from plan_cutters.report.story.numbers import count, place
+from plan_cutters.plan_file.model import CutterEntry, LibraryEntry, Plan
+from plan_cutters.plan_file.note_codes import NoteCode
+from plan_cutters.plan_file.numbers import count, percent, place
+from plan_cutters.plan_file.words.line import Line
+from plan_cutters.plan_file.words.names import named
 
 #: Notes that say what the first lines say in other words; those of the area between samples, where it was looked at.
 _SAID_ABOVE: frozenset[NoteCode | None] = frozenset({"samples_apart", "area_proved", "area_left", "setup_proposed"})

@@ -2,8 +2,8 @@
 
 from pydantic import Field
 
-from plan_cutters.document.frozen import Frozen, Vector
-from plan_cutters.document.shares import VerdictCounts
+from plan_cutters.plan_file.frozen import Frozen, Vector
+from plan_cutters.plan_file.shares import VerdictCounts
 
 
 class SetupEntry(Frozen):

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator
 
-from plan_cutters.document.operations import FewestEntry, ForcedStepEntry, MotionEntry
-from plan_cutters.report.story.numbers import some
+from plan_cutters.plan_file.numbers import some
+from plan_cutters.plan_file.operations import FewestEntry, ForcedStepEntry, MotionEntry
 
 #: Steps of a rotary axis between two samples that a planner should know of, deg.
 _LARGE = 15.0

@@ -6,8 +6,8 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from plan_cutters.document.model import CutterEntry, Plan
     from plan_cutters.domain.cutter import Cutter
+    from plan_cutters.plan_file.model import CutterEntry, Plan
 
 #: Numbers in the tool changer that are named of one cutter.
 _PLACES = 3

@@ -2,8 +2,8 @@
 
 from pydantic import Field
 
-from plan_cutters.document.fixture_entry import ReferenceEntry
-from plan_cutters.document.frozen import Frozen, Vector
+from plan_cutters.plan_file.fixtures import ReferenceEntry
+from plan_cutters.plan_file.frozen import Frozen, Vector
 
 
 class OrientationInfo(Frozen):

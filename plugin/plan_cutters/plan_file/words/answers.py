@@ -2,16 +2,16 @@
 
 from collections.abc import Iterator, Sequence
 
-from plan_cutters.document.answers import ChangeEntry, MendEntry, RadiusEntry, StickOutEntry
-from plan_cutters.document.model import CutterEntry, Plan
 from plan_cutters.domain.change import UNDECIDED
 from plan_cutters.domain.spec import notation
-from plan_cutters.report.story.cutters import reason
-from plan_cutters.report.story.headline import every
-from plan_cutters.report.story.line import Line
-from plan_cutters.report.story.names import named
-from plan_cutters.report.story.next_steps import cures, is_left_out, remaining, step_told
-from plan_cutters.report.story.numbers import capital, down, place, some, up
+from plan_cutters.plan_file.answers import ChangeEntry, MendEntry, RadiusEntry, StickOutEntry
+from plan_cutters.plan_file.model import CutterEntry, Plan
+from plan_cutters.plan_file.numbers import capital, down, place, some, up
+from plan_cutters.plan_file.words.cutters import reason
+from plan_cutters.plan_file.words.headline import every
+from plan_cutters.plan_file.words.line import Line
+from plan_cutters.plan_file.words.names import named
+from plan_cutters.plan_file.words.next_steps import cures, is_left_out, remaining, step_told
 
 #: Steps that are said of a cutter.
 _STEPS = 5

@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping
 
-from plan_cutters.document.model import Plan
-from plan_cutters.document.scope import Scope
-from plan_cutters.domain.nearest import nearest
-from plan_cutters.domain.percent import percent
+from plan_cutters.plan_file.model import Plan
+from plan_cutters.plan_file.nearest import nearest
+from plan_cutters.plan_file.numbers import percent
+from plan_cutters.plan_file.scope import Scope
 
 #: Choices that name kinds of faces, not faces.
 _BY_KIND = frozenset({"sculptured", "blends", "all"})

@@ -2,10 +2,10 @@
 
 from typing import NamedTuple
 
-from plan_cutters.document.model import Plan
-from plan_cutters.report.story.headline import could_not
-from plan_cutters.report.story.scope import not_seen
-from plan_cutters.report.story.story import Story
+from plan_cutters.plan_file.model import Plan
+from plan_cutters.plan_file.words.headline import could_not
+from plan_cutters.plan_file.words.scope import not_seen
+from plan_cutters.plan_file.words.story import Story
 
 
 class Chip(NamedTuple):

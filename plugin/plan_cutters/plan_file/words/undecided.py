@@ -3,12 +3,10 @@
 import math
 from collections.abc import Iterator, Mapping
 
-from plan_cutters.document.listed import listed
-from plan_cutters.document.model import CutterEntry, Plan
-from plan_cutters.document.shares import part_of
-from plan_cutters.domain.nearest import nearest
-from plan_cutters.domain.percent import percent
-from plan_cutters.report.story.numbers import capital, count, mm
+from plan_cutters.plan_file.model import CutterEntry, Plan
+from plan_cutters.plan_file.nearest import nearest
+from plan_cutters.plan_file.numbers import capital, count, listed, mm, percent
+from plan_cutters.plan_file.shares import part_of
 
 #: Faces that are named one by one.
 _FACES = 3

@@ -4,9 +4,9 @@ from typing import Literal
 
 from pydantic import Field
 
-from plan_cutters.document.frozen import Frozen, Vector
-from plan_cutters.document.runs import Runs
-from plan_cutters.document.split import SplitEntry
+from plan_cutters.plan_file.frozen import Frozen, Vector
+from plan_cutters.plan_file.runs import Runs
+from plan_cutters.plan_file.split import SplitEntry
 
 
 class OperationFace(Frozen):

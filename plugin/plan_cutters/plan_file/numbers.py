@@ -3,7 +3,6 @@
 import math
 from collections.abc import Iterable, Sequence
 
-from plan_cutters.domain.percent import percent
 from plan_cutters.domain.verdicts import WORDS
 
 #: Verdicts, from best to worst.
@@ -36,6 +35,55 @@ def plainly(number: float, digits: int) -> str:
     behind = max(0, digits - 1 - math.floor(math.log10(abs(float(f"{number:.{digits}g}")))))
     text = f"{number:.{behind}f}"
     return text.rstrip("0").rstrip(".") if "." in text else text
+
+
+def percent(share: float, *, some: bool | None = None, whole: bool | None = None) -> str:
+    """Write a share, 0 to 1, in percent: 100 only where it is the whole, and 0 only where there is nothing of it.
+
+    Parameters
+    ----------
+    share : float
+        Of an area or a number; sums of areas may be off by rounding.
+    some, whole : bool, optional
+        Whether there is anything of it, and whether it is all, where samples were counted; default by the share itself.
+
+    Examples
+    --------
+    >>> percent(0.00001), percent(0.9996), percent(1.0, whole=False)
+    ('<0.1 %', '>99.9 %', '>99.9 %')
+    >>> percent(0.5), percent(0.0), percent(1.0), percent(0.0, some=True), percent(float("nan"))
+    ('50 %', '0 %', '100 %', '<0.1 %', 'not known')
+    """
+    if share >= 1.0 if whole is None else whole:
+        return "100 %"
+    if not math.isfinite(share):
+        return "not known"
+    if share < ROUNDING and not (share > 0.0 if some is None else some):
+        return "0 %"
+    text = f"{100.0 * min(1.0, max(0.0, share)):.1f}"
+    return {"0.0": "<0.1 %", "100.0": ">99.9 %"}.get(text, f"{text.removesuffix('.0')} %")
+
+
+def exact(share: float, *, some: bool, whole: bool) -> float:
+    """Give a share that is 1 only where it is the whole, and 0 only where there is nothing of it, as samples were counted.
+
+    Sums of areas are rounded, and samples may stand for no area.
+
+    >>> exact(1.0, some=True, whole=False) < 1.0, exact(0.0, some=True, whole=False) > 0.0, exact(0.999, some=True, whole=True)
+    (True, True, 1.0)
+    """
+    if whole or not some:
+        return 1.0 if whole else 0.0
+    return min(max(share, math.ulp(0.0)), math.nextafter(1.0, 0.0))
+
+
+def bound(share: float) -> str:
+    """Write a share that is not to be less, in percent: rounded up to a tenth; of a ratio it may be more than all.
+
+    >>> bound(0.98301), bound(0.75), bound(1.246), bound(0.0)
+    ('98.4 %', '75 %', '124.6 %', '0 %')
+    """
+    return f"{math.ceil(1000.0 * share - ROUNDING) / 10.0:g} %"
 
 
 def some(share: float) -> str:
@@ -134,3 +182,12 @@ def sentence(text: str) -> str:
     'Nothing helps.'
     """
     return f"{capital(text)}."
+
+
+def listed(names: Sequence[str], most: int = 8) -> str:
+    """Names in a line, the first ones where there are many.
+
+    >>> listed(["F1", "F2", "F3"], 2), listed(["F1"])
+    ('F1, F2 and 1 more', 'F1')
+    """
+    return ", ".join(names[:most]) + (f" and {len(names) - most} more" if len(names) > most else "")

@@ -2,7 +2,7 @@
 
 from pydantic import Field
 
-from plan_cutters.document.frozen import Frozen
+from plan_cutters.plan_file.frozen import Frozen
 
 
 class Scope(Frozen):

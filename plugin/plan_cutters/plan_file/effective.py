@@ -4,8 +4,8 @@ from typing import Literal
 
 from pydantic import Field
 
-from plan_cutters.document.frozen import Frozen, Vector
-from plan_cutters.document.travel import PlacementEntry
+from plan_cutters.plan_file.frozen import Frozen, Vector
+from plan_cutters.plan_file.travel import PlacementEntry
 
 
 class LocalTolerance(Frozen):

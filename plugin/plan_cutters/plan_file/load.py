@@ -1,0 +1,70 @@
+"""A plan file is read."""
+
+import json
+import math
+import os
+from json import JSONDecodeError
+from pathlib import Path
+from typing import Any
+
+from pydantic import ValidationError
+
+from plan_cutters.errors import PlanError
+from plan_cutters.plan_file.model import FORMAT_VERSION, Plan
+
+
+def load_plan(path: str | os.PathLike[str]) -> Plan:
+    """Read a plan.
+
+    Parameters
+    ----------
+    path : path
+        A plan.json.
+
+    Returns
+    -------
+    Plan
+        Lengths in mm, angles in degrees, part coordinates.
+
+    Raises
+    ------
+    PlanError
+        It is missing, half-written, no plan, or one of another version of the format.
+    """
+    try:
+        content = Path(path).read_bytes()
+    except OSError as error:
+        raise PlanError(f"cannot be read ({error.strerror or error})", file=os.fspath(path)) from None
+    return plan_of(content, os.fspath(path))
+
+
+def plan_of(content: bytes | str, file: str, error: type[PlanError] = PlanError) -> Plan:
+    """Make a plan of a plan file's text; `file` names it in an `error`."""
+    try:
+        data = json.loads(content)
+    except JSONDecodeError as fault:
+        empty = "is empty" if fault.pos == 0 and not fault.doc.strip() else "is no JSON or is half-written"
+        raise error(f"{empty} (line {fault.lineno}): plan the part again", file=file) from None
+    except (ValueError, RecursionError):
+        raise error("is no text that JSON can be: give the plan.json of a plan", file=file) from None
+    if not isinstance(data, dict) or data.get("format") != "plan-cutters-plan":
+        raise error("is JSON, but no plan of plan-cutters: give a plan.json, or the folder of one", file=file)
+    version = data.get("format_version")
+    if version != FORMAT_VERSION:
+        raise error(f"has format version {version}, and this program reads {FORMAT_VERSION}: plan the part again with it",
+                    file=file)  # fmt: skip
+    _mark_unknown_areas(data)
+    try:
+        return Plan.model_validate(data)
+    except ValidationError as fault:
+        first = fault.errors()[0]
+        place = ".".join(str(word) for word in first["loc"]) or "the plan"
+        raise error(f"{place}: {first['msg'].lower()}; it was damaged, or made by a newer version: plan the part again",
+                    file=file) from None  # fmt: skip
+
+
+def _mark_unknown_areas(data: dict[str, Any]) -> None:
+    """JSON has no number for an area that is not known."""
+    for face in data["faces"] if isinstance(data.get("faces"), list) else ():
+        if isinstance(face, dict) and face.get("area_mm2", 0.0) is None:
+            face["area_mm2"] = math.nan
