@@ -32,6 +32,7 @@ from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.option_types import PlanOptions
 from plan_cutters.options import Options
 from plan_cutters.plan_file.model import AreaEntry, CutterEntry
+from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.proposal import plan_proposed
 from plan_cutters.result import Result
 from plan_cutters.scene.conditions import contacts_of, warm
@@ -175,7 +176,7 @@ def run(
             moved = motion(maps, ready)
         answers = replace(answers, operations=answers.operations.moving(moved))
         document = document.model_copy(update={"operations": with_motion(document.operations, moved)})
-    return replace(result, plan=clock.stamp(document), maps=maps, answers=answers)
+    return replace(result, plan=clock.stamp(with_text(document)), maps=maps, answers=answers)
 
 
 def _elsewhere(
@@ -373,7 +374,7 @@ def assemble(
         began = started or datetime.datetime.now(datetime.UTC)
         document = plan_of(ready, entries, selected, chosen, began, answers, setup_table(ready, within, over))
     return Result(
-        clock.stamp(document),
+        clock.stamp(with_text(document)),
         ready.scene,
         ready.samples,
         ready.surface_class,

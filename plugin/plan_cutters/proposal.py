@@ -14,6 +14,7 @@ from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.options import Options
 from plan_cutters.plan_file.numbers import exact, percent
 from plan_cutters.plan_file.setups import ProposedSetup, SetupProposal
+from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.result import Result
 from plan_cutters.scene.preparation import Prepared
 
@@ -146,4 +147,4 @@ def _told(
     document = result.plan
     notes = [*document.notes, f"Proposed {'setup' if len(setups) == 1 else 'setups'}: {where}. {why}"]
     more = {"setup_proposal": entry, "notes": notes, "note_codes": [*document.note_codes, "setup_proposed"]}
-    return replace(result, plan=clock.stamp(document.model_copy(update=more)))
+    return replace(result, plan=clock.stamp(with_text(document.model_copy(update=more))))

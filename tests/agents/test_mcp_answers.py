@@ -11,14 +11,17 @@ from hypothesis import strategies as st
 from mcp import Client, types
 
 from plan_cutters.agents import child
+from plan_cutters.agents.cutter_names import chosen
 from plan_cutters.agents.limits import CallError, Limits
-from plan_cutters.agents.plan_file import PlanFile, chosen, plan_of
+from plan_cutters.agents.plan_answers import compared, explained, planned
 from plan_cutters.agents.roots import Roots
 from plan_cutters.agents.server import made, service_of
-from plan_cutters.agents.telling import compared, explained, planned
 from plan_cutters.agents.tools import fitting
 from plan_cutters.command import mcp as command
+from plan_cutters.plan_file.load import plan_of
+from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.numbers import percent
+from tests.support import plan_files
 
 
 def made_plan(cutters=3, faces=4, **more):
@@ -29,28 +32,32 @@ def made_plan(cutters=3, faces=4, **more):
         share = {"accessible": 1.0 if i == 0 else 0.5, "inaccessible": 0.0 if i == 0 else 0.5,
                  "lost_by": {} if i == 0 else {"rear_gouge": 0.5}}  # fmt: skip
         lost = {**counts, "area_share": share}
-        known = {"reason": "rear_gouge", "obstacle_face": "F1"}
-        witnesses = [
-            {**known, "point": [0, 0, k], "face": f"F{k + 1}", "depth_mm": k} for k in range(faces if i else 0)
-        ]
+        witnesses = [witness([0, 0, k], f"F{k + 1}", k) for k in range(faces if i else 0)]
         names = [f"F{k + 1}" for k in range(faces)]
-        return {
-            "id": f"R{i + 1}L80",
-            "feasible": i == 0,
-            "faces": dict.fromkeys(names, lost),
-            "witnesses": witnesses,
-            **lost,
-        }
+        entry = plan_files.cutter(f"R{i + 1}L80", {}, radius=i + 1.0).model_dump(mode="json")
+        return entry | {"feasible": i == 0, "faces": dict.fromkeys(names, lost), "witnesses": witnesses, **lost}
 
-    return {
-        "format": "plan-cutters-plan", "format_version": 1, "part": {"file": "part.step"}, "samples": {"count": 4 * faces},
-        "faces": [{"id": f"F{k + 1}", "target": True, "samples": 4, "area_mm2": 1.0} for k in range(faces)],
-        "cutters": [of(i) for i in range(cutters)], "notes": ["a"], "note_codes": ["no_holder"], **more,
-    }  # fmt: skip
+    plan = plan_files.made([plan_files.face(k + 1, area=1.0) for k in range(faces)], [plan_files.cutter("R1L80", {})])
+    data = plan.model_dump(mode="json") | {"cutters": [of(i) for i in range(cutters)]}
+    data["samples"] |= {"count": 4 * faces}
+    for each in data["faces"]:
+        each["samples"] = 4
+    return data | {"selected": None, "notes": ["a"], "note_codes": ["no_holder"], **more}
+
+
+def witness(point, face, depth_mm, reason="rear_gouge", obstacle_face="F1"):
+    return {"point": point, "face": face, "reason": reason, "obstacle_face": obstacle_face, "obstacle_point": None,
+            "best_posture": None, "depth_mm": depth_mm}  # fmt: skip
+
+
+def change(thing, why, **more):
+    """A change of one thing, or a move of a step."""
+    return {"thing": thing, "helps": None, "now": None, "asked": None, "beyond": None, "left": 0, "looked": 0, "verified": 0, "cutter": None,
+            "why": why, **more}  # fmt: skip
 
 
 def read(**more):
-    return plan_of(json.dumps(made_plan(**more)), "plan.json")
+    return plan_of(json.dumps(made_plan(**more)), "plan.json", CallError)
 
 
 @settings(max_examples=12, deadline=None)
@@ -78,16 +85,16 @@ def test_silence_is_not_an_answer():
     first, second = plan.cutters[:2]
     assert explained(plan, first, "F1", 9).reached is True
     assert explained(plan, second, "F1", 9).reached is False
-    missing = read(missing=[{"face": "F9", "why": "not meshed"}])
+    missing = read(missing=[{"face": "F9", "entity": None, "name": "", "why": "not meshed", "stand_in": "none"}])
     assert explained(missing, missing.cutters[0], "F1", 9).reached is None
     bare = made_plan()
     bare["faces"][0] |= {"unjudged": "no normal"}
     del bare["cutters"][0]["faces"]["F1"]
-    plan = PlanFile.model_validate(bare)
+    plan = Plan.model_validate(bare)
     found = explained(plan, plan.cutters[0], "F1", 9)
     assert (found.reached, found.told) == (None, "F1 could not be judged: no normal.")
     bare["faces"][0] |= {"target": False}
-    plan = PlanFile.model_validate(bare)
+    plan = Plan.model_validate(bare)
     with pytest.raises(CallError, match="obstacle only"):
         explained(plan, plan.cutters[0], "F1", 9)
 
@@ -95,10 +102,10 @@ def test_silence_is_not_an_answer():
 def test_the_deepest_witness_comes_first_and_with_a_point_the_nearest():
     data = made_plan(faces=1)
     data["cutters"][1]["witnesses"] = [
-        {"point": [x, 0, 0], "face": "F1", "reason": "collision", "depth_mm": depth}
+        witness([x, 0, 0], "F1", depth, reason="collision", obstacle_face=None)
         for x, depth in ((0, 1), (5, 3), (9, None))
     ]
-    plan = PlanFile.model_validate(data)
+    plan = Plan.model_validate(data)
     assert [w.point[0] for w in explained(plan, plan.cutters[1], "F1", 9).witnesses] == [5, 0, 9]
     found = explained(plan, plan.cutters[1], "F1", 2, point=(8.0, 0.0, 0.0))
     assert ([w.point[0] for w in found.witnesses], found.more_witnesses) == ([9, 5], 1)
@@ -107,15 +114,15 @@ def test_the_deepest_witness_comes_first_and_with_a_point_the_nearest():
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"format_version": 2}, "of version 2"),
-        ({"format": "x"}, "is x"),
+        ({"format_version": 2}, "has format version 2"),
+        ({"format": "x"}, "no plan of plan-cutters"),
         ({"cutters": []}, "cutters: "),
         ({"faces": 3}, "faces: "),
     ],
 )
 def test_what_is_no_plan_is_refused(change, words):
     with pytest.raises(CallError, match=words):
-        plan_of(json.dumps(made_plan() | change), "plan.json")
+        plan_of(json.dumps(made_plan() | change), "plan.json", CallError)
 
 
 def test_a_cutter_is_meant_by_the_beginning_of_its_name():
@@ -140,30 +147,26 @@ def test_cutters_are_named_by_the_words_that_were_given():
     for entry in data["cutters"]:
         entry["name"] = f"D{2 * int(entry['id'][1])}L80"
     lost = data["cutters"][1]
-    step = {"changes": [{"thing": "cutter"}], "lost_before": 0.5, "lost_after": 0.0, "gained": 8, "left": 0,
-            "option": "--cutter D3L80", "why": "R1L80 for the rest"}  # fmt: skip
-    undecided = {
-        "thing": "radius",
-        "helps": None,
-        "asked": 1.0,
-        "why": "is not decided: with 1 mm, 3 samples are undecided",
-    }
-    lost["mend"] = {"steps": [step], "changes": [undecided]}
-    data["selected"], data["selection"] = "R1L80", {"why": "R2L80 is larger but not feasible"}
-    plan = PlanFile.model_validate(data)
+    step = {"changes": [{"thing": "cutter", "now": None, "asked": "R1L80", "why": "R1L80"}], "lost_before": 0.5,
+            "lost_after": 0.0, "gained": 8, "left": 0, "cutters": [], "setups": [], "option": "--cutter D3L80",
+            "why": "R1L80 for the rest", "remains": []}  # fmt: skip
+    undecided = change("radius", "is not decided: with 1 mm, 3 samples are undecided", asked=1.0)
+    lost["mend"] = {"lost": 8, "buried": 0, "why": "", "steps": [step], "changes": [undecided]}
+    data["selected"] = "R1L80"
+    plan = Plan.model_validate(data)
     found = planned(plan, 0, 9, {})
     assert found.told.startswith(
-        "Take D2L80: it reaches every sample that could be judged (D4L80 is larger but not feasible)."
+        "Take flat end D2 x 80 for part.step: D2L80, judged without a holder, 80 mm up from its tip."
     )
     assert [c.id for c in found.cutters] == ["R1L80", "R2L80"]
     # A change that could not be decided is no help.
     said = explained(plan, plan.cutters[1], "F1", 9)
-    assert [each.what for each in said.would_help] == ["D2L80 for the rest"]
-    assert said.told.startswith("D4L80 does not reach 50 % of F1 (2 samples): rear gouge 50 %.")
+    assert [each.what for each in said.would_help] == ["flat end D2 x 80 for the rest"]
+    assert said.told.startswith("flat end D4 x 80 does not reach 50 % of F1 (2 samples): rear gouge 50 %.")
     assert "R2L80" not in said.told
     doubted = undecided | {"doubted": True, "why": "a radius of 1 mm instead of 2 mm, unless a face is in the way"}
-    lost["mend"] = {"steps": [], "changes": [doubted]}
-    plan = PlanFile.model_validate(data)
+    lost["mend"] = {"lost": 8, "buried": 0, "why": "", "steps": [], "changes": [doubted]}
+    plan = Plan.model_validate(data)
     assert [(each.finishes, each.what) for each in explained(plan, plan.cutters[1], "F1", 9).would_help] == [
         (None, doubted["why"])
     ]
@@ -178,7 +181,7 @@ def test_a_cutter_that_reaches_nothing_leaves_all_and_one_that_reaches_something
     ):
         data["cutters"][1] |= {**counts, "area_share": share}
         data["cutters"] = data["cutters"][1:]
-        assert f"leaves {told} of the area" in planned(PlanFile.model_validate(data), 1, 9, {}).told
+        assert f"leaves {told} of the area" in planned(Plan.model_validate(data), 1, 9, {}).told
         data = made_plan(cutters=2)
 
 

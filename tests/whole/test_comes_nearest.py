@@ -6,12 +6,13 @@ import math
 import pytest
 
 from plan_cutters import plan
-from plan_cutters.agents.plan_file import plan_of
-from plan_cutters.agents.telling import planned, ranked
+from plan_cutters.agents.plan_answers import planned, ranked
 from plan_cutters.batch.rows_of_plans import row_of
 from plan_cutters.command.summary import summary
+from plan_cutters.plan_file.load import plan_of
 from plan_cutters.plan_file.nearest import leaves, nearest
 from plan_cutters.plan_file.words.cutters import left
+from plan_cutters.plan_file.words.story import shown as shown_of
 from plan_cutters.plan_file.words.story import story_of
 from plan_cutters.report.page.tables import Drawing, of
 from tests.support import shapes
@@ -54,8 +55,8 @@ def test_all_name_the_one_that_leaves_the_least_area(uneven, capsys):
     for read in (document.model_dump(mode="json"), document.model_dump(mode="json", exclude={"shown"})):
         read["part"]["file"] = "part.step"
         found = plan_of(json.dumps(read), "plan.json")
-        assert (found.shown, [c.id for c in ranked(found)]) == (wide.id, [wide.id, short.id])
-        assert "D10L60 comes nearest and leaves 1.1 % of the area" in planned(found, 1, 9, {}).told
+        assert (shown_of(found).id, [c.id for c in ranked(found)]) == (wide.id, [wide.id, short.id])
+        assert "comes nearest: it leaves 1.1 % of the area (15 of 50 samples)" in planned(found, 1, 9, {}).told
     summary(document)
     said = " ".join(capsys.readouterr().out.split())
     assert "Where flat end D10 x 60 fails" in said

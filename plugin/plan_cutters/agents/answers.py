@@ -17,7 +17,7 @@ Value = float | tuple[float, ...] | tuple[str, ...] | str | None
 class Entry(BaseModel):
     """An entry takes its fields from a plan file, and leaves the others."""
 
-    model_config = ConfigDict(frozen=True, extra="ignore")
+    model_config = ConfigDict(frozen=True, extra="ignore", from_attributes=True)
 
 
 class Posture(Entry):
@@ -76,6 +76,7 @@ class Lost(Entry):
 class CutterAnswer(Entry):
     id: str
     name: str
+    text: str = Field(description="how much it reaches, or does not reach and why")
     feasible: bool | None = Field(description="whether it reaches every judged sample; null: not decided")
     seen: bool = Field(description="false: samples are too far apart for this cutter, so `feasible` says little")
     reached: float

@@ -21,8 +21,9 @@ from plan_cutters.agents.answers import (
     Vector,
 )
 from plan_cutters.agents.child import Ended, Onlooker, run
+from plan_cutters.agents.cutter_names import chosen, cutter_of
 from plan_cutters.agents.limits import CallError
-from plan_cutters.agents.plan_file import PlanFile, chosen, cutter_of, plan_of
+from plan_cutters.agents.plan_answers import compared, explained, pictured, planned
 from plan_cutters.agents.postures import postures_of
 from plan_cutters.agents.requests import (
     CompareQuestion,
@@ -34,9 +35,10 @@ from plan_cutters.agents.requests import (
     Question,
     RenderQuestion,
 )
-from plan_cutters.agents.telling import compared, explained, pictured, planned
 from plan_cutters.agents.words import Room
 from plan_cutters.errors import CutterError
+from plan_cutters.plan_file.load import plan_of
+from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.numbers import percent
 
 #: How long lists may be, until the answer is short enough.
@@ -64,10 +66,10 @@ class Call:
     async def _run(self, words: Sequence[str], **more: Any) -> Ended:
         return await run(words, self.cwd, self.room.limits, self.tell, within=self.room.roots.folders, **more)
 
-    async def plan(self, words: Sequence[str]) -> tuple[PlanFile, int]:
+    async def plan(self, words: Sequence[str]) -> tuple[Plan, int]:
         """Plan a part; the plan and the exit code."""
         ended = await self._run(["plan", *words, "--json=-"])
-        return plan_of(ended.output, "the plan"), ended.code
+        return plan_of(ended.output, "the plan", CallError), ended.code
 
     async def map(self, asked: MapQuestion, most: int, spec: str | None = None) -> tuple[bytes, int]:
         """Map the postures at a point; the map as JSON and the exit code."""
@@ -190,7 +192,7 @@ async def explain_sample(asked: ExplainQuestion, call: Call) -> Reply:
     sample = None
     if asked.plan is not None:
         path = Path(call.room.file(asked.plan))
-        plan = plan_of(await anyio.to_thread.run_sync(path.read_bytes), asked.plan)
+        plan = plan_of(await anyio.to_thread.run_sync(path.read_bytes), asked.plan, CallError)
         cutter, face = cutter_of(plan, asked.cutter), asked.face
         if asked.point is not None:
             sample = await anyio.to_thread.run_sync(_nearest, asked.plan, plan, cutter.id, asked, call.room)
@@ -208,7 +210,7 @@ async def explain_sample(asked: ExplainQuestion, call: Call) -> Reply:
     return fitting(make, call.room.limits.characters)
 
 
-async def _judged(asked: ExplainQuestion, call: Call) -> tuple[PlanFile, str, str, bytes | None]:
+async def _judged(asked: ExplainQuestion, call: Call) -> tuple[Plan, str, str, bytes | None]:
     """Judge the face in question with the cutter in question: the plan, the cutter, the face, and the map at the point."""
     if asked.part is None:
         raise CallError("give either `part` or `plan`")
@@ -264,7 +266,7 @@ async def _spec(name: str, asked: Conditions, call: Call) -> str:
                     "`plan`", file=asked.library)  # fmt: skip
 
 
-def _nearest(file: str, plan: PlanFile, cutter: str, asked: ExplainQuestion, room: Room) -> Sample:
+def _nearest(file: str, plan: Plan, cutter: str, asked: ExplainQuestion, room: Room) -> Sample:
     """The sample of a plan that is nearest to the point in question."""
     import numpy as np
 

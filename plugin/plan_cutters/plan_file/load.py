@@ -1,4 +1,4 @@
-"""A plan file is read."""
+"""A plan file is read; one of an older program is put into words here."""
 
 import json
 import math
@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from plan_cutters.errors import PlanError
 from plan_cutters.plan_file.model import FORMAT_VERSION, Plan
+from plan_cutters.plan_file.words.text import with_text
 
 
 def load_plan(path: str | os.PathLike[str]) -> Plan:
@@ -55,12 +56,15 @@ def plan_of(content: bytes | str, file: str, error: type[PlanError] = PlanError)
                     file=file)  # fmt: skip
     _mark_unknown_areas(data)
     try:
-        return Plan.model_validate(data)
+        plan = Plan.model_validate(data)
     except ValidationError as fault:
         first = fault.errors()[0]
         place = ".".join(str(word) for word in first["loc"]) or "the plan"
         raise error(f"{place}: {first['msg'].lower()}; it was damaged, or made by a newer version: plan the part again",
                     file=file) from None  # fmt: skip
+    if not plan.cutters:
+        raise error("cutters: none was judged; plan the part again", file=file)
+    return plan if plan.text else with_text(plan)
 
 
 def _mark_unknown_areas(data: dict[str, Any]) -> None:

@@ -267,6 +267,17 @@ class Selection(Frozen):
     why: str
 
 
+class TextEntry(Frozen):
+    """The plan in words, made once: every reader shows these."""
+
+    headline: str = Field(description="which cutter to take for what, or that none does")
+    tone: Literal["good", "partly", "bad", "unsure"]
+    lines: list[str] = Field(
+        description="why, what is not judged, what is left: at most 25 lines of at most 80 columns"
+    )
+    cutters: dict[str, str] = Field(description="id of a cutter -> how much it reaches, or does not reach and why")
+
+
 class FileEntry(Frozen):
     name: str
     sha256: str
@@ -290,6 +301,7 @@ class Plan(Frozen):
     format: Literal["plan-cutters-plan"] = "plan-cutters-plan"
     format_version: int = FORMAT_VERSION
     units: Units = Units()
+    text: TextEntry | None = Field(default=None, description="null in older files")
     part: PartInfo
     effective: Effective
     versions: dict[str, str]

@@ -32,6 +32,11 @@ class VerdictCounts(Frozen):
         return self.inaccessible - self.inside_bodies
 
     @property
+    def reached(self) -> int:
+        """Samples that are interference-free or accessible."""
+        return self.interference_free + self.accessible
+
+    @property
     def not_reached(self) -> int:
         """Samples of the finished part's surface that are not reached."""
         return self.blocked + self.undecided
@@ -57,6 +62,11 @@ class AreaShare(Frozen):
     lost_by: dict[str, float] = Field(
         default={}, description="of inaccessible and undecided together, by reason; reasons that there are"
     )
+
+    @property
+    def reached(self) -> float:
+        """Share that is interference-free or accessible."""
+        return min(1.0, self.interference_free + self.accessible)
 
     @property
     def not_reached(self) -> float:

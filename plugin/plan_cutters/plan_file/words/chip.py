@@ -1,6 +1,6 @@
 """The verdict on a part or a cutter in a word with a sign: what a reader sees first, by colour, sign and word."""
 
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.words.headline import could_not
@@ -22,6 +22,13 @@ CHIPS = {
     False: Chip("bad", "✕", "Not feasible"),
     None: Chip("unsure", "?", "Undecided"),
 }
+#: Where it says more than that.
+_WHERE_JUDGED = Chip("unsure", "!", "Feasible where judged")
+_IN_PART = Chip("unsure", "◐", "Feasible in part")
+#: The tone of a plan's text, by its chip.
+TONES: dict[Chip, Literal["good", "partly", "bad", "unsure"]] = {
+    CHIPS[True]: "good", CHIPS[False]: "bad", CHIPS[None]: "unsure", _WHERE_JUDGED: "unsure", _IN_PART: "partly",
+}  # fmt: skip
 
 
 def chip(plan: Plan, story: Story) -> Chip:
@@ -29,7 +36,7 @@ def chip(plan: Plan, story: Story) -> Chip:
     good = story.headline.good
     if good:
         unseen = plan.effective.sampled_by == "default" and not_seen(plan, story.names)
-        return Chip("unsure", "!", "Feasible where judged") if could_not(plan) or unseen else CHIPS[True]
+        return _WHERE_JUDGED if could_not(plan) or unseen else CHIPS[True]
     if good is None and story.taken:
-        return Chip("unsure", "◐", "Feasible in part")
+        return _IN_PART
     return CHIPS[good]

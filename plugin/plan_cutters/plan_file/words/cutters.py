@@ -17,7 +17,7 @@ from plan_cutters.plan_file.numbers import (
 )
 from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters.plan_file.shares import AreaShare, part_of, reached, unreached
-from plan_cutters.plan_file.words.headline import area, between
+from plan_cutters.plan_file.words.headline import area, between, every
 from plan_cutters.plan_file.words.names import described, named
 from plan_cutters.plan_file.words.next_steps import cures, first_step, step_told
 
@@ -53,9 +53,9 @@ class CutterStory:
     reason, hint, besides : str
         The reason of most of the area that is not reached, the thing to try first against it, and other reasons within the axis
         limit.
-    next, left, between : str
-        Sentences: the next step, or a change that would help; how much is not reached, why and where; how much is known between
-        its samples.
+    sentence, next, left, between : str
+        Sentences: how much it reaches, or what it leaves; the next step, or a change that would help; how much is not reached,
+        why and where; how much is known between its samples.
     faces, failing : tuple of WorstFace, int
         The worst faces, and how many there are in all.
     """
@@ -69,6 +69,7 @@ class CutterStory:
     reason: str
     hint: str
     besides: str
+    sentence: str
     next: str
     left: str
     between: str
@@ -80,6 +81,7 @@ def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:
     """All that is told of a cutter."""
     main = REASONS.get(main_reason(c.area_share))
     faces, failing = worst_faces(plan, c)
+    loss = capital(named(plan, left(plan, c))) if c.not_reached else ""
     return CutterStory(
         id=c.id,
         name=name,
@@ -90,8 +92,9 @@ def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:
         reason=main.name if main else "",
         hint=main.hint if main else "",
         besides=_besides(c),
+        sentence=loss or _reaches(plan, c, name),
         next=_next(plan, c),
-        left=capital(named(plan, left(plan, c))) if c.not_reached else "",
+        left=loss,
         between=between(plan, c),
         faces=tuple(faces),
         failing=failing,
@@ -106,6 +109,12 @@ def main_reason(share: AreaShare) -> str:
 def reason(code: str) -> str:
     """Give the name of a reason: it is empty where there is none, and the code where a newer plan has an unknown reason."""
     return REASONS[code].name if code in REASONS else code.replace("_", " ")
+
+
+def _reaches(plan: Plan, c: CutterEntry, name: str) -> str:
+    """Say that a cutter reaches all that could be judged, and what makes that unsure."""
+    unsure = "" if c.feasible else ", but obstacles are missing that may be in its way"
+    return f"{capital(name)} reaches {every(plan)}{unsure}."
 
 
 def _besides(c: CutterEntry) -> str:

@@ -1,4 +1,4 @@
-"""A plan told once: the terminal and the review page lay it out."""
+"""A plan put into words, once: whoever shows it lays these out."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

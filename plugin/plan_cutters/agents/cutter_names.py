@@ -1,0 +1,54 @@
+"""Which cutter a question means: by its id, its name, or the beginning of one of them."""
+
+import re
+
+from plan_cutters.agents.limits import CallError
+from plan_cutters.plan_file.model import CutterEntry, Plan
+
+#: A cutter by its radius or diameter, and its length.
+_PLAIN = re.compile(r"[rd][\d.]+(l[\d.]+)?")
+
+
+def cutter_of(plan: Plan, name: str) -> CutterEntry:
+    """The cutter of a plan by its id, its name, or the beginning of one of them.
+
+    Raises
+    ------
+    CallError
+        None is meant, or several are.
+    """
+    mine = chosen(name, [(c.id, c.name) for c in plan.cutters])
+    return next(c for c in plan.cutters if c.id == mine)
+
+
+def chosen(name: str, known: list[tuple[str, str]]) -> str:
+    """The one id that is meant, of (id, name); a beginning ends where no number goes on.
+
+    >>> chosen("R6", [("R6L80", ""), ("R60L80", ""), ("R2L40", "finisher")]), chosen("finisher", [("R2L40", "finisher")])
+    ('R6L80', 'R2L40')
+    >>> chosen("R3", [("R6L80", "")])
+    Traceback (most recent call last):
+    plan_cutters.agents.limits.CallError: no cutter is called 'R3'; there is R6L80
+    """
+    text = name.strip().lower()
+
+    def begins(word: str) -> bool:
+        rest = word.lower()[len(text) :]
+        return word.lower().startswith(text) and not (rest[:1].isdigit() or rest[:1] == ".")
+
+    for test in (
+        lambda id, label: id == name,
+        lambda id, label: text in (id.lower(), label.lower()),
+        lambda id, label: begins(id) or begins(label),
+    ):
+        found = [id for id, label in known if test(id, label)]
+        if len(found) > 1 and _PLAIN.fullmatch(text):
+            # R6 says no corner radius, as R6L80 does.
+            found = [id for id in found if "rc" not in id] or found
+        if len(found) == 1:
+            return found[0]
+        if found:
+            raise CallError(f"{len(found)} cutters may be meant by {name!r}: {', '.join(found[:8])}; give the whole id")
+    there = ", ".join(id for id, _ in known[:8])
+    more = f" and {len(known) - 8} more" if len(known) > 8 else ""
+    raise CallError(f"no cutter is called {name!r}; there is {there}{more}")

@@ -1,0 +1,50 @@
+"""The text that stands in a plan file: made once, when the plan is made, and shown by every reader."""
+
+import textwrap
+from collections.abc import Iterator
+
+from plan_cutters.plan_file.model import Plan, TextEntry
+from plan_cutters.plan_file.numbers import count
+from plan_cutters.plan_file.words.chip import TONES, chip
+from plan_cutters.plan_file.words.story import Story, story_of
+
+#: Columns of a line, and the most lines.
+WIDTH, MOST = 80, 25
+
+
+def with_text(plan: Plan) -> Plan:
+    """The plan with its text, made anew of all that it says by now."""
+    return plan.model_copy(update={"text": text_of(plan)})
+
+
+def text_of(plan: Plan) -> TextEntry:
+    """Put a plan into a few lines."""
+    story = story_of(plan)
+    return TextEntry(
+        headline=f"{story.headline.title}{story.headline.about}.",
+        tone=TONES[chip(plan, story)],
+        lines=_lines([each.strip() for each in sentences(story) if each.strip()]),
+        cutters={each.id: each.sentence for each in story.cutters},
+    )
+
+
+def sentences(story: Story) -> Iterator[str]:
+    """All that people read of a plan unless they ask for more, below the headline; what makes it unsure comes first."""
+    yield story.headline.why
+    yield from (*story.inside, *story.proposal, *story.in_short, *story.scope, *story.between)
+    yield from (f"{line.mark} {line.text}" for lines in story.doubts.values() for line in lines)
+    yield from (each.sentence for each in story.cutters)
+    more = (*story.setups, *story.operations, *story.answers, *story.notes)
+    yield from (f"{line.mark} {line.text}{line.typed}" for line in more if not line.minor)
+
+
+def _lines(texts: list[str]) -> list[str]:
+    """As many whole texts as there is room for; the last line says how many more there are."""
+    found: list[str] = []
+    for place, text in enumerate(texts):
+        mine = textwrap.wrap(text, WIDTH, break_on_hyphens=False)
+        last = place == len(texts) - 1
+        if len(found) + len(mine) > MOST - (not last):
+            return [*found, f"{count(len(texts) - place, 'more sentence')}: -v or the review page."]
+        found += mine
+    return found
