@@ -52,8 +52,8 @@ def witness(point, face, depth_mm, reason="rear_gouge", obstacle_face="F1"):
 
 def change(thing, why, **more):
     """A change of one thing, or a move of a step."""
-    return {"thing": thing, "helps": None, "now": None, "asked": None, "beyond": None, "left": 0, "looked": 0, "verified": 0, "cutter": None,
-            "why": why, **more}  # fmt: skip
+    unknown = dict.fromkeys(("helps", "now", "asked", "beyond", "cutter"))
+    return {"thing": thing, **unknown, "left": 0, "looked": 0, "verified": 0, "why": why, **more}
 
 
 def read(**more):

@@ -9,7 +9,7 @@ import pytest
 
 from plan_cutters import plan
 from plan_cutters.plan_file.numbers import bound
-from plan_cutters.plan_file.operations import StepEntry
+from plan_cutters.plan_file.operations import CurveStepEntry
 from plan_cutters.plan_file.palette import operation_colour
 from plan_cutters.plan_file.words.operations import in_short, of_the_whole, share_text
 from plan_cutters.plan_file.words.story import story_of
@@ -123,7 +123,7 @@ def test_the_curve_is_drawn_and_told(planned, read):
 
 
 def steps_of(*pairs):
-    return [StepEntry(orientations=k, share=share, at_most=most) for k, (share, most) in enumerate(pairs, 1)]
+    return [CurveStepEntry(orientations=k, share=share, at_most=most) for k, (share, most) in enumerate(pairs, 1)]
 
 
 def test_the_curve_stands_at_its_shares():

@@ -206,12 +206,11 @@ def _compared(part: Changed, began: str, head: str, request: Request | None, cac
         return Row(part)
     from plan_cutters.batch.content import content as all_of
     from plan_cutters.batch.store import MARKER
-    from plan_cutters.comparison.folders import PLAN
     from plan_cutters.comparison.pictures import picture_of
     from plan_cutters.comparison.plans import compare
     from plan_cutters.comparison.review import PAGE, Side, page
     from plan_cutters.comparison.states import unreachable
-    from plan_cutters.plan_file.load import load_plan
+    from plan_cutters.plan_file.load import PLAN, load_plan
 
     found: dict[str, Path] = {}
     why: dict[str, str] = {}
@@ -352,9 +351,8 @@ def _line(row: Row, fails: bool) -> tuple[str, ...]:
 
 def _bar(folder: Path | None) -> str:
     """What the best cutter reaches of a part, drawn with letters: it needs no picture."""
-    from plan_cutters.comparison.folders import PLAN
     from plan_cutters.comparison.states import reached
-    from plan_cutters.plan_file.load import load_plan
+    from plan_cutters.plan_file.load import PLAN, load_plan
     from plan_cutters.plan_file.numbers import percent
 
     if folder is None:

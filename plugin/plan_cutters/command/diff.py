@@ -116,10 +116,10 @@ def _pages(old: Path, new: Path, found: "Comparison", out: Path) -> dict[str, Pa
     PlanError
         A page would take the place of a plan's own, or cannot be written.
     """
-    from plan_cutters.comparison.folders import PLAN
     from plan_cutters.comparison.review import PAGE, pages
     from plan_cutters.errors import PlanError
     from plan_cutters.files.whole import whole
+    from plan_cutters.plan_file.load import PLAN
 
     made = {}
     for name, page in pages(old, new, found):

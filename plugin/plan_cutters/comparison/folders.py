@@ -6,9 +6,7 @@ from pathlib import Path
 from plan_cutters.comparison.model import Comparison
 from plan_cutters.comparison.plans import SLACK, compare
 from plan_cutters.errors import PlanError
-from plan_cutters.plan_file.load import load_plan
-
-PLAN = "plan.json"
+from plan_cutters.plan_file.load import PLAN, load_plan
 
 
 def plans_in(given: Path) -> dict[str, Path]:

@@ -22,6 +22,7 @@ from plan_cutters.options import Options
 from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.operations import (
     AssumedEntry,
+    CurveStepEntry,
     CutterUse,
     FastestEntry,
     FewestEntry,
@@ -33,7 +34,6 @@ from plan_cutters.plan_file.operations import (
     OperationRegion,
     OperationsEntry,
     RestEntry,
-    StepEntry,
     WorkplaneEntry,
 )
 from plan_cutters.plan_file.palette import operation_colour
@@ -65,7 +65,7 @@ def operations_entry(
     )  # fmt: skip
     plans = [_plan(each, found, samples, area, wanted) for each in found.plans]
     uses = [_use(each, plans, area) for each in found.worth]
-    steps = [StepEntry(orientations=s.orientations, share=s.share, at_most=s.at_most) for s in found.curve]
+    steps = [CurveStepEntry(orientations=s.orientations, share=s.share, at_most=s.at_most) for s in found.curve]
     return OperationsEntry(
         asked=found.which,  # type: ignore[arg-type]
         rotary=found.names, plans=plans, fewest=_fewest(found.fewest), cutters=uses, curve=steps, fastest=_fastest(found),

@@ -13,6 +13,9 @@ from plan_cutters.errors import PlanError
 from plan_cutters.plan_file.model import FORMAT_VERSION, Plan
 from plan_cutters.plan_file.words.text import with_text
 
+#: Name of the file in the folder of a plan.
+PLAN = "plan.json"
+
 
 def load_plan(path: str | os.PathLike[str]) -> Plan:
     """Read a plan.

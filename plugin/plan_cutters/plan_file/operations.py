@@ -187,7 +187,7 @@ class CutterUse(Frozen):
     change_seconds: float = Field(description="that its change costs; 0 where it is the only one")
 
 
-class StepEntry(Frozen):
+class CurveStepEntry(Frozen):
     """So many orientations serve this share of the judged area."""
 
     orientations: int
@@ -236,7 +236,7 @@ class OperationsEntry(Frozen):
     cutters: list[CutterUse] = Field(
         description="the largest first; empty unless the fastest were asked for and several cutters were compared"
     )
-    curve: list[StepEntry]
+    curve: list[CurveStepEntry]
     assumed: AssumedEntry
     motion: MotionEntry | None = Field(description="null unless posture maps were asked for, too")
     probes: int = Field(description="how many times a tool was put down")

@@ -11,7 +11,7 @@ from cad_io.arrays import SurfaceSamples
 from plan_cutters.domain.operations import OperationPlan
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.numbers import bound
-from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry, StepEntry
+from plan_cutters.plan_file.operations import CurveStepEntry, OperationEntry, OperationPlanEntry
 from plan_cutters.plan_file.palette import OPERATIONS, operation_colour
 from plan_cutters.plan_file.words.line import Line
 from plan_cutters.plan_file.words.operations import Told, of_the_whole, share_text, told
@@ -137,7 +137,7 @@ def tables(plan: Plan, story: Story) -> OperationTables | None:
     return OperationTables(of_the_whole(story.operations, story.in_short), plans, steps, curve(found.curve))
 
 
-def curve(steps: Sequence[StepEntry]) -> Curve | None:
+def curve(steps: Sequence[CurveStepEntry]) -> Curve | None:
     """The step plot of the share by number of orientations; None where there is nothing to plot."""
     if not steps:
         return None
