@@ -17,6 +17,7 @@ from cad_io.tessellate.triangles import At
 from plan_cutters.answers.ask import ask
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock, Progress
+from plan_cutters.document.notes import noted
 from plan_cutters.document.operations_entry import with_motion
 from plan_cutters.document.plan import Elsewhere, OverSetups, completed, plan_of, selection
 from plan_cutters.document.setup_table import setup_table
@@ -32,6 +33,7 @@ from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.option_types import PlanOptions
 from plan_cutters.options import Options
 from plan_cutters.plan_file.model import AreaEntry, CutterEntry
+from plan_cutters.plan_file.notes import maps_partial
 from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.proposal import plan_proposed
 from plan_cutters.result import Result
@@ -163,12 +165,7 @@ def run(
         )  # fmt: skip
     document = result.plan
     if maps.unmapped:
-        said = (f"Postures of {maps.unmapped} of {int((maps.verdict != UNJUDGED).sum())} samples were not mapped, for it would "
-                "take too long: there every tilt is undecided in postures.npz; sample more coarsely (--spacing), or give "
-                "--map-budget.")  # fmt: skip
-        document = document.model_copy(
-            update={"notes": [*document.notes, said], "note_codes": [*document.note_codes, "maps_partial"]}
-        )
+        document = noted(document, maps_partial(maps.unmapped, int((maps.verdict != UNJUDGED).sum())))
     if answers.operations is not None and document.operations is not None:
         from plan_cutters.operations.motion import motion
 

@@ -8,10 +8,12 @@ from scipy.spatial import cKDTree
 
 from plan_cutters.answers.setup_ranking import MOST, Ranking, ranked
 from plan_cutters.document.clock import Clock
+from plan_cutters.document.notes import noted
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement, axis_words
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.options import Options
+from plan_cutters.plan_file.notes import setup_proposed
 from plan_cutters.plan_file.numbers import exact, percent
 from plan_cutters.plan_file.setups import ProposedSetup, SetupProposal
 from plan_cutters.plan_file.words.text import with_text
@@ -133,10 +135,8 @@ def _told(
         for k, each in zip(chosen, alone, strict=True)
     ]  # fmt: skip
     held = kept >= _KEPT
-    where = " and ".join(
-        axis_words(each.axis) + (f" (on {', '.join(each.stands_on)})" if each.stands_on else " (on no plane)")
-        for each in setups
-    )
+    where = [axis_words(each.axis) + (f" (on {', '.join(each.stands_on)})" if each.stands_on else " (on no plane)")
+             for each in setups]  # fmt: skip
     of = f"{len(ranking.served)} of {len(ranking.candidates.axis)} directions searched at {len(ranking.rows)} samples"
     why = (f"With {of} over a table, {'this one serves' if len(setups) == 1 else 'these serve'} {percent(together)} of the "
            f"samples' area. The plan reaches {percent(share)} of the target area"
@@ -144,7 +144,5 @@ def _told(
     entry = SetupProposal(setups=setups, directions=len(ranking.candidates.axis), searched=len(ranking.served),
                           samples=len(ranking.rows), promised=together, found=share, kept=kept, held=held, tried=tried,
                           why=why)  # fmt: skip
-    document = result.plan
-    notes = [*document.notes, f"Proposed {'setup' if len(setups) == 1 else 'setups'}: {where}. {why}"]
-    more = {"setup_proposal": entry, "notes": notes, "note_codes": [*document.note_codes, "setup_proposed"]}
-    return replace(result, plan=clock.stamp(with_text(document.model_copy(update=more))))
+    document = noted(result.plan, setup_proposed(where, why)).model_copy(update={"setup_proposal": entry})
+    return replace(result, plan=clock.stamp(with_text(document)))

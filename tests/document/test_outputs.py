@@ -9,7 +9,7 @@ import pytest
 from plan_cutters.domain.change import MEANS
 from plan_cutters.domain.verdicts import WORDS
 from plan_cutters.kernels import codes
-from plan_cutters.plan_file.note_codes import NoteCode
+from plan_cutters.plan_file.notes import NoteCode
 from plan_cutters.plan_file.outputs import OUTPUTS
 from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters.report.to_json import schemas

@@ -17,7 +17,7 @@ from plan_cutters.errors import OptionError
 from plan_cutters.hosts.viewer import _posture
 from plan_cutters.plan_file.answers import ChangeEntry, MendEntry, RadiusEntry, StepEntry
 from plan_cutters.plan_file.model import WitnessEntry
-from plan_cutters.plan_file.note_codes import NoteCode
+from plan_cutters.plan_file.notes import NoteCode
 from plan_cutters.plan_file.palette import MEANING, PALETTE, label
 from plan_cutters.plan_file.reasons import NO_CONTACT, REASONS
 from plan_cutters.plan_file.scope import Scope

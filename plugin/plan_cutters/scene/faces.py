@@ -10,7 +10,8 @@ from cad_io.arrays import FaceInfo
 from plan_cutters.domain.checks import choice
 from plan_cutters.domain.placement import Placement
 from plan_cutters.errors import OptionError
-from plan_cutters.plan_file.note_codes import Note
+from plan_cutters.plan_file import notes
+from plan_cutters.plan_file.notes import Note
 
 if TYPE_CHECKING:
     from cad_io import Part
@@ -87,30 +88,20 @@ def choose(
     """
     asked = _word(part, part.picked or DEFAULT if faces is None else faces, "--faces")
     targets = select_faces(part.faces, asked, tree=part.tree, ignored=ignored, blends=part.blends)
-    notes = []
+    remarks = []
     if _finished(asked) and _none_sculptured(part.faces[n - 1] for n in targets):
-        said = (
-            f"No face that can be judged is sculptured: all are targets ({len(targets)}); --faces chooses among them."
-        )
-        notes.append(Note("faces_none_sculptured", said))
+        remarks.append(notes.faces_none_sculptured(len(targets)))
     if ignored:
-        said = (f"{len(ignored)} {'face is' if len(ignored) == 1 else 'faces are'} ignored, neither targets nor obstacles "
-                f"(nothing is checked against them): {_some(f'F{n}' for n in sorted(ignored))}.")  # fmt: skip
-        notes.append(Note("faces_ignored", said))
+        remarks.append(notes.faces_ignored([f"F{n}" for n in sorted(ignored)]))
     held = clamped_faces(part, placed).intersection(*[clamped_faces(part, each) for each in others])
     if placed is not None and held:
         left = tuple(n for n in targets if n not in held)
         if not left:
             raise OptionError(f"{placed.where} {_brief(', '.join(placed.clamped))} leaves no target face")
-        if lost := [f"F{n}" for n in targets if n in held]:
-            what = (
-                "1 face is clamped and therefore no target"
-                if len(lost) == 1
-                else f"{len(lost)} faces are clamped and therefore no targets"
-            )
-            notes.append(Note("faces_clamped", f"{what}: {_some(lost)}."))
+        if clamped := [f"F{n}" for n in targets if n in held]:
+            remarks.append(notes.faces_clamped(clamped))
         targets = left
-    return Chosen(targets, tuple(sorted(ignored)), asked, ignore, tuple(notes), part.blends)
+    return Chosen(targets, tuple(sorted(ignored)), asked, ignore, tuple(remarks), part.blends)
 
 
 def clamped_faces(part: "Part", placed: Placement | None) -> frozenset[int]:

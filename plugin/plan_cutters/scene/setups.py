@@ -10,7 +10,8 @@ from cad_io.arrays import Floats
 from plan_cutters.domain.placement import Placement, axis_words
 from plan_cutters.errors import FixtureError
 from plan_cutters.options import Options
-from plan_cutters.plan_file.note_codes import Note
+from plan_cutters.plan_file import notes
+from plan_cutters.plan_file.notes import Note
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.faces import clamped_faces
 from plan_cutters.scene.inside_material import inside_material
@@ -79,9 +80,6 @@ def notes_of_setups(ready: Prepared) -> Iterator[Note]:
     for axis, place, conditions in zip(axes, places(ready.options), ready.setups, strict=True):
         held = sorted(clamped_faces(ready.scene.part, place) & set(ready.chosen.targets))
         if held:
-            names = ", ".join(f"F{number}" for number in held)
-            yield Note("faces_clamped_there", f"{names}: clamped in the setup {axis_words(axis)}, and to be machined in another "
-                       "one.")  # fmt: skip
+            yield notes.faces_clamped_there([f"F{number}" for number in held], axis_words(axis))
         if not conditions.around.fixtures:
-            yield Note("setup_without_fixtures", f"No fixture stands in the setup {axis_words(axis)}: nothing that holds the "
-                       "part there was in the way.")  # fmt: skip
+            yield notes.setup_without_fixtures(axis_words(axis))
