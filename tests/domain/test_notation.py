@@ -6,7 +6,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from plan_cutters.answers import sentences
 from plan_cutters.answers.option import spoken
 from plan_cutters.answers.what_if_cutter import longer, thinner
 from plan_cutters.domain.cutter import Cutter
@@ -15,6 +14,7 @@ from plan_cutters.domain.lengths import Notation, across, length
 from plan_cutters.domain.spec import is_spec, spelled, typed
 from plan_cutters.errors import CutterError, PlanError
 from plan_cutters.options import Options
+from plan_cutters.plan_file.words import change_text
 from plan_cutters.plan_file.words.names import called, described, short_names
 from tests.support.plan_files import cutter, face, made, verdicts
 
@@ -50,10 +50,10 @@ def test_a_number_reads_as_itself(by, inches, value):
 def test_what_is_made_of_a_cutter_is_written_as_the_cutter_was(word, thin, stick_out, size):
     now = Cutter.parse(word)
     slim = thinner(now, 2.0)
-    assert sentences.head(slim) == thin
+    assert change_text.head(slim) == thin
     assert Cutter.parse(thin).id == slim.id
-    assert sentences.stick_out(45.0, now) == stick_out
-    assert sentences.radius(2.0, now) == size
+    assert change_text.stick_out(45.0, now) == stick_out
+    assert change_text.radius(2.0, now) == size
 
 
 def test_a_holder_of_the_options_is_not_written_again():
@@ -67,7 +67,7 @@ def test_a_holder_of_the_options_is_not_written_again():
     slim = replace(other, holder=Holder.parse("D20L60"))
     assert spoken(slim, options) == "D6L55rc1F20S6HD20L60"
     assert spoken(other, Options(cutters="D6L40")) == "D6L55rc1F20S6HD32L60"
-    assert sentences.holder(slim.holder, held) == "a slimmer holder, D20L60 instead of ER16"
+    assert change_text.holder(slim.holder, held) == "a slimmer holder, D20L60 instead of ER16"
 
 
 def test_a_word_with_its_holder_is_a_word():

@@ -7,7 +7,6 @@ from dataclasses import replace
 import numpy as np
 
 from cad_io.arrays import Floats
-from plan_cutters.answers import sentences
 from plan_cutters.answers.option import Axis
 from plan_cutters.answers.scan import Candidate, Rows, Scan, spread, under
 from plan_cutters.answers.state import State
@@ -18,6 +17,7 @@ from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.verdicts import UNDECIDED
 from plan_cutters.options import LEAST_TOLERANCE
+from plan_cutters.plan_file.words import change_text
 
 #: A direction along the part's own axes is taken where another one gains no more than this share more.
 _OWN = 0.1
@@ -42,7 +42,7 @@ def tolerance(scan: Scan) -> Iterator[Candidate]:
     state = replace(scan.state, ready=closer(Case(ready, cutter), asked).ready)
     missed = scan.known.glance(state, scan.few)
     if len(missed) < len(scan.few):
-        yield scan.found(Move("tolerance", now, asked, sentences.tolerance(asked, now)), state, missed, nested=False)
+        yield scan.found(Move("tolerance", now, asked, change_text.tolerance(asked, now)), state, missed, nested=False)
 
 
 def tilt_range(scan: Scan) -> Iterator[Candidate]:
@@ -59,7 +59,7 @@ def tilt_range(scan: Scan) -> Iterator[Candidate]:
     state = under(scan.state, replace(ready.conditions, postures=postures))
     missed = scan.known.glance(state, scan.few)
     if len(missed) < len(scan.few):
-        move = Move("tilt_range", (low, high), asked, sentences.tilt_range(asked, (low, high)))
+        move = Move("tilt_range", (low, high), asked, change_text.tilt_range(asked, (low, high)))
         yield scan.found(move, state, missed, nested=True)
 
 
@@ -86,7 +86,7 @@ def axis(scan: Scan, *, plain: bool = False) -> Iterator[Candidate]:
 
     for at, made, missed in scan.least(limit, most):
         asked = (first + at) * _TURN
-        move = Move("tilt_limit", now, asked, sentences.tilt_limit(asked, now, machine.name))
+        move = Move("tilt_limit", now, asked, change_text.tilt_limit(asked, now, machine.name))
         yield scan.found(move, made, missed, nested=now is not None)
     yield from _setups(scan, gained, plain=plain)
 
@@ -110,7 +110,7 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
     best = _plain(second, scan.estimate(gained))
     if best is not None:
         _, _, axis, made, missed = best
-        move = Move("second_setup", now, axis, sentences.more_setup(axis, angle(now, axis), len(made.setups)))
+        move = Move("second_setup", now, axis, change_text.more_setup(axis, angle(now, axis), len(made.setups)))
         yield scan.found(move, made, np.union1d(blocked, missed), nested=True)
     if plain or len(state.setups) > 1:
         return
@@ -125,7 +125,7 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
     if other:
         estimate, _, axis, made = min(other, key=lambda each: (round(each[0], 3), each[1]))
         if estimate < scan.finished.of_rows(scan.left):
-            move = Move("setup", now, axis, f"{sentences.clamped(axis, angle(now, axis))} instead")
+            move = Move("setup", now, axis, f"{change_text.clamped(axis, angle(now, axis))} instead")
             yield Candidate((move,), made, estimate, nested=False)
 
 

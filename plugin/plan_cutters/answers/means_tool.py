@@ -4,13 +4,13 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
-from plan_cutters.answers import sentences
 from plan_cutters.answers.scan import HALF, NEARLY, Candidate, Scan
 from plan_cutters.answers.state import State
 from plan_cutters.answers.what_if_cutter import CORNERS, THINNEST, highest, longer, made_of, thinner
 from plan_cutters.domain.change import Move
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Holder, Segment
+from plan_cutters.plan_file.words import change_text
 
 #: Radii that are tried for the rest: those sold, mm, and down to this share of the present one.
 _RADII = (
@@ -42,7 +42,7 @@ def stick_out(scan: Scan) -> Iterator[Candidate]:
         return _with_first(scan.state, longer(cutter, value(at)))
 
     for at, state, missed in scan.least(make, most, (NEARLY, HALF)):
-        words = sentences.stick_out(value(at), cutter)
+        words = change_text.stick_out(value(at), cutter)
         yield scan.found(Move("stick_out", cutter.length, value(at), words), state, missed, nested=False)
 
 
@@ -68,7 +68,7 @@ def holder(scan: Scan) -> Iterator[Candidate]:
     for at, state, missed in scan.least(make, len(_SLIM) - 1):
         asked = max(max(s.radius, s.upper_radius) for s in slimmed(at).stages)
         if asked < now:
-            words = sentences.holder(slimmed(at), cutter)
+            words = change_text.holder(slimmed(at), cutter)
             yield scan.found(Move("holder", cutter.holder.id, slimmed(at).id, words), state, missed, nested=True)
 
 
@@ -96,7 +96,7 @@ def given(scan: Scan) -> Iterator[Candidate]:
     best = next(each for each in tried if each[0] == least)
     nearly = next(each for each in tried if each[0] <= content)
     for _, cutter, state, missed in {id(each): each for each in (nearly, best)}.values():
-        move = Move("cutter", None, cutter.id, sentences.rest(cutter.id))
+        move = Move("cutter", None, cutter.id, change_text.rest(cutter.id))
         yield scan.found(move, state, missed, nested=True)
 
 
@@ -116,7 +116,7 @@ def radius(scan: Scan) -> Iterator[Candidate]:
     for _, state, missed in scan.least(make, len(radii) - 1):
         made = state.cutters[-1]
         if made not in scan.given:
-            move = Move("radius", cutter.radius, made.radius, sentences.rest(sentences.head(made)))
+            move = Move("radius", cutter.radius, made.radius, change_text.rest(change_text.head(made)))
             yield scan.found(move, state, missed, nested=True)
 
 
@@ -138,7 +138,7 @@ def corner(scan: Scan) -> Iterator[Candidate]:
     if tried:
         _, _, state = min(tried, key=lambda each: each[:2])
         made = state.cutters[-1]
-        move = Move("corner_radius", cutter.corner_radius, made.corner_radius, sentences.rest(sentences.head(made)))
+        move = Move("corner_radius", cutter.corner_radius, made.corner_radius, change_text.rest(change_text.head(made)))
         yield scan.found(move, state, scan.known.glance(state, scan.few), nested=True)
 
 

@@ -5,7 +5,6 @@ from dataclasses import replace
 
 from plan_cutters.answers.areas import Finished
 from plan_cutters.answers.option import option
-from plan_cutters.answers.sentences import samples
 from plan_cutters.answers.trial import Case, Trials
 from plan_cutters.answers.what_if import WhatIf, search
 from plan_cutters.answers.what_if_cutter import corner_radius, radius, stick_out
@@ -14,6 +13,7 @@ from plan_cutters.answers.what_if_tilt import tilt_limit, tilt_range
 from plan_cutters.domain.change import THINGS, Change, Mend, Thing
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.plan_file.words.change_text import samples
 from plan_cutters.scene.preparation import Prepared
 
 #: What if one thing were another, in the order of work: what one finds spares another.

@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from plan_cutters.answers import sentences
 from plan_cutters.answers.areas import Finished, Rows, patches
 from plan_cutters.answers.means import candidates, joined
 from plan_cutters.answers.option import Axis, option
@@ -18,6 +17,7 @@ from plan_cutters.domain.area import Patch
 from plan_cutters.domain.change import MEANS, Mend, Move, Step
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.plan_file.words import change_text
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress
 
@@ -186,7 +186,7 @@ def _left_out(base: tuple[Prepared, Cutter, State], finished: Finished, left: Ro
     whole = len(rest) and len(left) == int((finished.wanted & np.isin(face, bad)).sum())
     said = option(ready, cutter, cutters=(cutter,), faces=rest.tolist()) if whole else None
     area, share = float(finished.area[left].sum()), finished.of_rows(left)
-    move = Move("area", None, round(area, 6), sentences.left_out(areas, area))
+    move = Move("area", None, round(area, 6), change_text.left_out(areas, area))
     return Step(
         (move,), share, 0.0, 0, len(left), (cutter,), state.axes, said,
         tuple(areas[:_REMAINS]),

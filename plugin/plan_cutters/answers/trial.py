@@ -10,7 +10,6 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from plan_cutters.answers.sentences import reasons, samples
 from plan_cutters.domain.change import Change, Thing
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import (
@@ -24,6 +23,7 @@ from plan_cutters.domain.verdicts import (
     blank,
 )
 from plan_cutters.kernels.rows import Contacts
+from plan_cutters.plan_file.words.change_text import reasons, samples
 from plan_cutters.scene.conditions import contacts_of, search_postures, tool_of
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.stages.judge import judge

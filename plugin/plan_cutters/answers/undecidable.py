@@ -4,6 +4,7 @@ import numpy as np
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import UNDECIDED, Verdicts
+from plan_cutters.plan_file.numbers import mm
 from plan_cutters.scene.preparation import Prepared
 
 #: A tolerance that is larger than asked by more than rounding was raised.
@@ -26,7 +27,7 @@ def undecidable(ready: Prepared, cutter: Cutter, verdicts: Verdicts) -> str:
     conditions, number = ready.conditions, int(np.count_nonzero(left))
     raised = conditions.tolerance > _RAISED * ready.scene.asked
     if raised and not conditions.judges(cutter):
-        cause = f"the tolerance that can be kept, {conditions.tolerance:.3g} mm, is too coarse for the cutter"
+        cause = f"the tolerance that can be kept, {mm(conditions.tolerance)}, is too coarse for the cutter"
     elif set(faces := np.unique(ready.samples.face[left]).tolist()) <= set(conditions.around.loose):
         cause = f"they lie on {', '.join(f'F{face}' for face in faces)}, which triangles follow too loosely"
     else:

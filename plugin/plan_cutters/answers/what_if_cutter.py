@@ -8,7 +8,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from plan_cutters.answers import sentences
 from plan_cutters.answers.trial import Case, Trials
 from plan_cutters.answers.what_if import Way, WhatIf, none
 from plan_cutters.domain.change import Change
@@ -17,6 +16,7 @@ from plan_cutters.domain.holder import Segment
 from plan_cutters.domain.shapes import SAME, flute_length
 from plan_cutters.domain.spec import notation
 from plan_cutters.errors import CutterError
+from plan_cutters.plan_file.words import change_text
 from plan_cutters.scene.preparation import Prepared
 
 #: Steps of the stick-out, mm.
@@ -52,7 +52,7 @@ def stick_out(case: Case, trials: Trials) -> WhatIf | Change:
         now=now, ways=[way], make=make, ends=[end], nested=True, reads=lambda end: end.cutter.length,
         fails=lambda end, left: f"{left.words} at every stick-out" if left.count else
         "where the holder is out of the way, something else is",
-        serves=lambda asked, made: (sentences.stick_out(asked, cutter), {"cutters": (made.cutter,)}),
+        serves=lambda asked, made: (change_text.stick_out(asked, cutter), {"cutters": (made.cutter,)}),
     )  # fmt: skip
 
 
@@ -88,7 +88,7 @@ def radius(case: Case, trials: Trials) -> WhatIf | Change:
         now=now, ways=[Way(most, value)], make=make, ends=[end], reads=lambda end: end.cutter.radius,
         fails=lambda end, left: f"with {how.size(end.cutter.radius)}, the least tried, {left.words}" if left.count else
         f"none of {most} sizes down to {how.size(end.cutter.radius)} serves all samples",
-        serves=lambda asked, made: (sentences.radius(asked, cutter), {"cutters": (made.cutter,)}),
+        serves=lambda asked, made: (change_text.radius(asked, cutter), {"cutters": (made.cutter,)}),
     )  # fmt: skip
 
 
@@ -112,7 +112,7 @@ def corner_radius(case: Case, trials: Trials) -> WhatIf | Change:
         now=now, ways=[Way(len(ends), values.__getitem__)], make=make, ends=ends, reads=lambda end: end.cutter.corner_radius,
         fails=lambda end, left: f"with {how.mm(end.cutter.corner_radius)}, the best of {len(ends)} tried, {left.words}"
         if left.count else f"each of {len(ends)} corner radii tried loses some samples",
-        serves=lambda asked, made: (sentences.corner_radius(asked, cutter), {"cutters": (made.cutter,)}),
+        serves=lambda asked, made: (change_text.corner_radius(asked, cutter), {"cutters": (made.cutter,)}),
     )  # fmt: skip
 
 

@@ -10,13 +10,14 @@ import numpy as np
 
 from cad_io.arrays import Floats
 from cad_io.part.orient import orient
-from plan_cutters.answers import sentences
-from plan_cutters.answers.sentences import samples
 from plan_cutters.answers.trial import Case, Left, Trials
 from plan_cutters.answers.what_if import Way, WhatIf, none
 from plan_cutters.domain.change import UNDECIDED, Change
 from plan_cutters.domain.posture import unit
 from plan_cutters.options import LEAST_TOLERANCE
+from plan_cutters.plan_file.numbers import mm
+from plan_cutters.plan_file.words import change_text
+from plan_cutters.plan_file.words.change_text import samples
 from plan_cutters.scene.inside_material import inside_bodies, inside_material
 from plan_cutters.scene.preparation import Prepared
 
@@ -69,7 +70,7 @@ def setup(case: Case, trials: Trials) -> WhatIf | Change:
     def serves(asked: Axis, _: Case) -> tuple[str, dict[str, Any]]:
         flip = flip_of(ready, asked)
         changes = {} if flip == ready.options.flip else {"flip": flip}
-        return sentences.setup(asked, angle(now, asked), changes.get("flip")), {"setup": asked, **changes}
+        return change_text.setup(asked, angle(now, asked), changes.get("flip")), {"setup": asked, **changes}
 
     return WhatIf(
         now=now, ways=ways, make=lambda axis: _turned(case, axis), ends=[*tried.values()],
@@ -156,10 +157,10 @@ def tolerance(case: Case, trials: Trials) -> Change:
         finely = closer(case, finer)
         if not trials.stopped(finely, everywhere=True) and not len(finely.judged()):
             return Change("tolerance", now, finer, True, 0, len(trials.not_reached), trials.count, before, None,
-                          sentences.tolerance(finer, now), {"tolerance": finer})  # fmt: skip
+                          change_text.tolerance(finer, now), {"tolerance": finer})  # fmt: skip
         still = Left.by(finely, trials.not_reached)
         if still.blocked:
-            why = f"with {finer:g} mm {samples(still.blocked)} blocked for certain"
+            why = f"with {mm(finer)} {samples(still.blocked)} blocked for certain"
             return none("tolerance", now, still.count, why, still.looked)
         before = finer
         if still.count >= left:
@@ -167,7 +168,7 @@ def tolerance(case: Case, trials: Trials) -> Change:
             break
         left, best = still.count, finer
     return Change("tolerance", now, None if best == now else best, None, left, len(trials.not_reached), 0, None, None,
-                  f"{UNDECIDED}with {before:g} mm, the finest tried, {samples(left)} undecided")  # fmt: skip
+                  f"{UNDECIDED}with {mm(before)}, the finest tried, {samples(left)} undecided")  # fmt: skip
 
 
 def closer(case: Case, asked: float) -> Case:
@@ -195,4 +196,4 @@ def faces(case: Case, trials: Trials) -> Change:
     whole = sum(infos[n - 1].area for n in ready.chosen.targets)
     out = np.isin(np.concatenate([trials.not_reached, trials.kept]), np.flatnonzero(np.isin(face, bad)))
     return Change("faces", ids, ids, True, 0, len(trials.not_reached), int((~out).sum()), None, None,
-                  sentences.faces(ids, area, area / whole), {"faces": ",".join(f"F{n}" for n in rest)})  # fmt: skip
+                  change_text.faces(ids, area, area / whole), {"faces": ",".join(f"F{n}" for n in rest)})  # fmt: skip

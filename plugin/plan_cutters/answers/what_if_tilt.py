@@ -5,12 +5,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 from typing import Any
 
-from plan_cutters.answers import sentences
 from plan_cutters.answers.trial import Case, Trials
 from plan_cutters.answers.what_if import Way, WhatIf, none
 from plan_cutters.domain.change import Change
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.shapes import modes
+from plan_cutters.plan_file.numbers import angle
+from plan_cutters.plan_file.words import change_text
 
 #: Steps of tilts, deg.
 GRAIN = 0.1
@@ -33,7 +34,7 @@ def tilt_limit(case: Case, trials: Trials) -> WhatIf | Change:
         fails=lambda _, left: f"without any limit {left.words}" if left.count else
         "no limit was found that serves all samples",
         serves=lambda asked, made: (
-            sentences.tilt_limit(asked, now, machine.name), {"machine": made.ready.conditions.machine}),
+            change_text.tilt_limit(asked, now, machine.name), {"machine": made.ready.conditions.machine}),
     )  # fmt: skip
 
 
@@ -65,10 +66,10 @@ def tilt_range(case: Case, trials: Trials) -> WhatIf | Change:
     return WhatIf(
         now=(low, high), ways=ways(), make=make, ends=[make((lowest, highest))], nested=True,
         reads=lambda _: (lowest, highest),
-        fails=lambda _, left: f"at all tilts from {lowest:g} to {highest:g} deg {left.words}" if left.count else
+        fails=lambda _, left: f"at all tilts from {angle(lowest)} to {angle(highest)} {left.words}" if left.count else
         "no range was found that serves all samples",
         serves=lambda asked, made: (
-            sentences.tilt_range(asked, (low, high)), {"tilt": made.ready.conditions.postures.tilt}),
+            change_text.tilt_range(asked, (low, high)), {"tilt": made.ready.conditions.postures.tilt}),
     )  # fmt: skip
 
 

@@ -181,7 +181,7 @@ def _text(values: Any) -> str:
 def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: dict[str, Any]) -> list[str]:
     """Describe the map line by line: its contact, cutter and search; the first line is its title."""
     from plan_cutters.domain.spec import notation, parted
-    from plan_cutters.plan_file.numbers import capital
+    from plan_cutters.plan_file.numbers import angle, capital, mm
     from plan_cutters.plan_file.words.names import called
     from plan_cutters.report.drawing.sheet import printable
 
@@ -189,11 +189,11 @@ def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: 
     apart = "one rotation: nothing is said of others"
     if len(found.rotations) > 1:
         step = math.degrees(found.rotations[1] - found.rotations[0])
-        apart = f"rotations {step:.4g} deg apart: nothing is said between them"
-    proved = f"gouge tolerance {found.tolerance:g} mm" if found.tolerance else "nominal, not certified"
+        apart = f"rotations {angle(step)} apart: nothing is said between them"
+    proved = f"gouge tolerance {mm(found.tolerance)}" if found.tolerance else "nominal, not certified"
     held = f", {cutter.holder.called(notation(cutter.name))}" if cutter.holder else ""
     title = f"{capital(called(cutter))}{held} ({parted(cutter.typed)[0]})"
-    moved = f"; the point asked for is {off:.3g} mm off" if off > 1e-3 else ""
+    moved = f"; the point asked for is {mm(off)} off" if off > 1e-3 else ""
     lines = [
         f"{title} at ({_text(_round(found.point))}) on {face} of {printable(Path(given['part']).name, 80)}",
         f"Normal ({_text(_round(found.normal))}), rotation 0 towards ({_text(_round(found.direction_max))}); curvatures "

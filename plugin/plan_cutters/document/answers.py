@@ -22,6 +22,7 @@ from plan_cutters.plan_file.answers import (
     StickOutEntry,
 )
 from plan_cutters.plan_file.frozen import filled, posture, vector
+from plan_cutters.plan_file.words.change_text import patch
 from plan_cutters.scene.surroundings import Surroundings
 
 #: Of a verdict on what lies just beyond an answer.
@@ -90,7 +91,7 @@ def least_set_entry(found: LeastSet, *, doubtful: bool = False) -> LeastSetEntry
 
 def _area_entry(found: Patch) -> LostAreaEntry:
     return filled(LostAreaEntry, found, area_mm2=found.area, faces=list(found.faces), point=found.place, across_mm=found.across,
-                  why=found.words)  # fmt: skip
+                  why=patch(found))  # fmt: skip
 
 
 def _joined(words: list[str]) -> str:

@@ -6,9 +6,6 @@ import numpy as np
 
 from cad_io.arrays import Floats
 
-#: Faces that are named of an area.
-_FACES = 5
-
 
 @dataclass(frozen=True, slots=True)
 class Patch:
@@ -35,28 +32,6 @@ class Patch:
     faces: tuple[str, ...]
     place: tuple[float, float, float]
     across: float
-
-    @property
-    def words(self) -> str:
-        """It with its place.
-
-        >>> Patch(57.2, 0.01, 9, ("F31",), (12.0, 3.0, -8.04), 4.13).words
-        '57 mm2 of F31, about (12, 3, -8.04), 4.1 mm across'
-        """
-        more = len(self.faces) - _FACES
-        on = ", ".join(self.faces[:_FACES]) + (f" and {more} more" if more > 0 else "")
-        where = ", ".join(f"{round(x, 4) + 0.0:.3g}" for x in self.place)
-        wide = f", {float(f'{self.across:.2g}'):g} mm across" if self.across else ""
-        return f"{size(self.area)} of {on}, about ({where}){wide}"
-
-
-def size(area: float) -> str:
-    """An area in words.
-
-    >>> size(12345.6), size(5.76)
-    ('12,346 mm2', '5.8 mm2')
-    """
-    return f"{area:,.0f} mm2" if area >= 20.0 else f"{area:.2g} mm2"
 
 
 def weights(area: Floats) -> Floats:

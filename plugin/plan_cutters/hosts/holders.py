@@ -8,6 +8,7 @@ from plan_cutters.domain.checks import flag, number, numbers, shown
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.revolution import stages_around
 from plan_cutters.errors import CutterError
+from plan_cutters.plan_file.numbers import mm
 
 #: Axes by their letters.
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -71,7 +72,7 @@ def holder(
     stages, kept = stages_around(around.line, around.exact, around.foot, tolerance=0.5 * wanted, most=_MOST)
     notes = ["what it sweeps when it turns"] if around.loose else []
     if kept > wanted:
-        notes.append(f"in {len(stages)} stages, about {kept + around.off:.2g} mm larger than drawn")
+        notes.append(f"in {len(stages)} stages, about {mm(kept + around.off)} larger than drawn")
     words = " ".join(filter(None, (name, f"({', '.join(notes)})" if notes else "")))
     return Holder(stages, words)
 

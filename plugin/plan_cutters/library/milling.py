@@ -14,6 +14,7 @@ from plan_cutters.library.cutting import CUTTING, UnfitError, agree_ball, corner
 from plan_cutters.library.outlines import fewer, joined, up_to
 from plan_cutters.library.raw_tool import Listed, Stated
 from plan_cutters.library.records import Entry
+from plan_cutters.plan_file.numbers import mm
 
 #: Kinds of end mills that are read, by their usual names: what their names promise.
 MILLS = {
@@ -165,7 +166,7 @@ def _stickout(tool: Listed, ask: Ask) -> float:
     longest = tool.values.get("OAL")
     if longest is not None and ask.stickout > longest + slack(longest):
         raise UnfitError(f"the assumed stick-out of {ask.stickout:g} mm is longer than the tool, {tool.said('OAL')}")
-    tool.notes.append(f"no {tool.word('LPR')}: the assumed stick-out of {ask.stickout:g} mm is taken")
+    tool.notes.append(f"no {tool.word('LPR')}: the assumed stick-out of {mm(ask.stickout)} is taken")
     return ask.stickout
 
 
@@ -217,7 +218,7 @@ def _above(tool: Listed, bare: Cutter, length: float) -> tuple[Segment, ...]:
         return straight
     around, wider = fewer(found, _MOST_ABOVE)
     tool.notes.append(
-        f"the {len(straight)} sections of its shaft are taken as {len(around)} around them, up to {wider:.3g} mm wider"
+        f"the {len(straight)} sections of its shaft are taken as {len(around)} around them, up to {mm(wider)} wider"
     )
     return around
 
@@ -295,7 +296,7 @@ def _held(tool: Listed, cutter: Cutter, holder: Holder | Literal["none"]) -> Cut
         plain, most = Holder(stages, holder.name), most - 1
         if fits(plain):
             tool.notes.append(
-                f"its holder's {len(holder.stages)} sections are taken as {len(stages)} around them, up to {wider:.3g} mm wider"
+                f"its holder's {len(holder.stages)} sections are taken as {len(stages)} around them, up to {mm(wider)} wider"
             )
     try:
         return replace(cutter, holder=plain)

@@ -11,7 +11,7 @@ from plan_cutters.domain.checks import shown
 from plan_cutters.domain.kinematics import ON_LIMIT, SINGULAR
 from plan_cutters.domain.machine import Machine
 from plan_cutters.errors import MachineError
-from plan_cutters.plan_file.numbers import exact, percent
+from plan_cutters.plan_file.numbers import angle, exact, percent
 
 #: Directions on which shares are counted; a share is known to about 1 / sqrt(this) or better.
 DIRECTIONS = 40_000
@@ -132,7 +132,7 @@ def summary(machine: Machine) -> list[str]:
     if not machine.limited:
         return ["It holds any tool axis: no limit is counted."]
     if machine.tilt_limit is not None:
-        said.append(f"The tool axis stays within {math.degrees(machine.tilt_limit):g} deg of the setup axis.")
+        said.append(f"The tool axis stays within {angle(math.degrees(machine.tilt_limit))} of the setup axis.")
     if not machine.turns:
         pass
     elif not rotary:
@@ -152,7 +152,7 @@ def summary(machine: Machine) -> list[str]:
     cone = singular(machine)
     if cone is not None:
         said.append(
-            f"Singular: within {math.degrees(cone):g} deg of {vector_text(rotary[0].direction)}, either way, {rotary[0].name} "
+            f"Singular: within {angle(math.degrees(cone))} of {vector_text(rotary[0].direction)}, either way, {rotary[0].name} "
             f"turns fast; {percent(found.singular)} of all directions are held there."
         )
     return said

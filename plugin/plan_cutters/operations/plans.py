@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, SurfaceSamples
-from plan_cutters.domain.area import size
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import Operation, OperationPlan, Workplane
@@ -20,6 +19,7 @@ from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.strips import strips
 from plan_cutters.operations.timing import Paths, Problems, costs_of, widths
 from plan_cutters.operations.workplanes import workplanes
+from plan_cutters.plan_file.numbers import area as size
 from plan_cutters.scene.clearance import least_clearance
 from plan_cutters.scene.fixed_axis import held_at, standing
 from plan_cutters.scene.preparation import Prepared
@@ -190,7 +190,7 @@ def small_pieces(plan: OperationPlan, samples: SurfaceSamples, overlap: float) -
     if not small.any():
         return ()
     many, them = ("one piece", "it") if small.sum() == 1 else (f"{small.sum()} pieces", "all of one of them")
-    return (f"The {plan.name} plan has {many} of less than {_SMALL * overlap**2:g} mm2, {size(areas[small].sum())} in all: no "
+    return (f"The {plan.name} plan has {many} of less than {size(_SMALL * overlap**2)}, {size(areas[small].sum())} in all: no "
             f"neighbouring operation serves {them}.",)  # fmt: skip
 
 

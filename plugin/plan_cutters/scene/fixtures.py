@@ -22,6 +22,7 @@ from cad_io.tessellate.stand_ins import StandIn
 from plan_cutters.domain.fixture import CAD, MESH, Fixture
 from plan_cutters.domain.placement import axis_words, frame_of
 from plan_cutters.errors import UnjudgeableError
+from plan_cutters.plan_file.numbers import mm
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import PlacedFixture, Surroundings, surroundings
 
@@ -147,7 +148,7 @@ def _standing(
     shown = whole.triangles.vertex if drawn is None else fixture.placed(drawn)
     if fixture.follows_setup and (not fixture.sizes or tuple(setup) != (0.0, 0.0, 1.0)):
         high = float((vertex @ np.asarray(setup, float)).max())
-        notes.append(f"its top is {high + 0.0:.6g} mm from the part's origin along the setup axis {axis_words(setup)}")
+        notes.append(f"its top is {mm(high)} from the part's origin along the setup axis {axis_words(setup)}")
     return PlacedFixture(number, fixture, source, whole, enclosing if body.certain.weight.any() else None, body.missing,
                     tuple(notes), shown)  # fmt: skip
 

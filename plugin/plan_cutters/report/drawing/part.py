@@ -15,7 +15,7 @@ from cad_io.errors import WriteError
 from cad_io.kernel import translated
 from cad_io.write import meshes_of
 from plan_cutters.domain.posture import unit
-from plan_cutters.plan_file.numbers import VERDICTS
+from plan_cutters.plan_file.numbers import VERDICTS, mm
 from plan_cutters.plan_file.palette import LABELS, label, rgb
 from plan_cutters.plan_file.shares import part_of
 from plan_cutters.plan_file.words.names import short_names
@@ -198,7 +198,7 @@ def _window(sheet: Any, place: tuple[float, float], frame: Floats, scale: float,
     length = standard(0.22 * width / scale)
     end = width - 12
     axes.plot([end - length * scale, end], [14, 14], color="black", linewidth=1.6, solid_capstyle="butt")
-    axes.text(end, 20, f"{length:g} mm", ha="right", va="bottom", fontsize=7)
+    axes.text(end, 20, mm(length), ha="right", va="bottom", fontsize=7)
     origin, long = np.array([34.0, 34.0]), 24.0
     for direction, name, colour in zip(np.eye(3), "XYZ", ("#B00000", "#007000", "#0000B0"), strict=True):
         flat = frame[:2] @ direction
@@ -231,7 +231,7 @@ def _words(sheet: Any, result: Judged, there: set[int], fixtures: bool) -> None:
     machine = printable(plan.effective.machine, 40)
     under = (
         f"This cutter {taken}. Part {size} mm. Machine {machine}, setup axis ({setup}), gouge tolerance "
-        f"{plan.effective.tolerance_mm:.3g} mm, {plan.samples.count} samples."
+        f"{mm(plan.effective.tolerance_mm)}, {plan.samples.count} samples."
     )
     write(sheet, fitting(under, 8.5, room), (0.18, _SHEET[1] - 0.48), 8.5)
     looks = []

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
+from plan_cutters.plan_file.numbers import mm
 from plan_cutters.report.page.atlas import Atlas
 from plan_cutters.report.page.encode import COARSE, FINE, Stored, halves, octahedral, placed, turned, unfolded
 from plan_cutters.report.page.facts import tilt_and_lean
@@ -68,9 +69,7 @@ def scalar_arrays(result: Judged) -> tuple[Arrays, list[dict[str, Any]]]:
         key = f"largest_{each.shape}"
         # What is told must not be more than what reaches.
         found[f"scalar.{key}"] = Stored.of(halves(each.radius, "down"))
-        told.append(
-            _scalar(key, f"largest {each.shape} end (radius, up to {each.most:.3g} mm tried)", "mm", each.radius)
-        )
+        told.append(_scalar(key, f"largest {each.shape} end (radius, up to {mm(each.most)} tried)", "mm", each.radius))
     for name, stick_out in result.answers.stick_outs.items():
         if stick_out.each is not None:
             key = f"stick_out.{name}"

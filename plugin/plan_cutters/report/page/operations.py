@@ -10,7 +10,7 @@ from scipy.sparse.csgraph import connected_components
 from cad_io.arrays import SurfaceSamples
 from plan_cutters.domain.operations import OperationPlan
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import bound
+from plan_cutters.plan_file.numbers import bound, percent
 from plan_cutters.plan_file.operations import CurveStepEntry, OperationEntry, OperationPlanEntry
 from plan_cutters.plan_file.palette import OPERATIONS, operation_colour
 from plan_cutters.plan_file.words.line import Line
@@ -157,5 +157,5 @@ def curve(steps: Sequence[CurveStepEntry]) -> Curve | None:
     bounds = [(x(s.orientations - 0.5), x(s.orientations + 0.5), y(s.at_most)) for s in steps if s.at_most is not None]
     stride = -(-(last - first + 1) // _TICKS)
     across = [(x(n), str(n)) for n in range(first, last + 1, stride)]
-    up = [(y(share / 100.0), f"{share} %") for share in (0, 25, 50, 75, 100)]
+    up = [(y(share / 100.0), percent(share / 100.0)) for share in (0, 25, 50, 75, 100)]
     return Curve((_WIDE, _HIGH), (_LEFT, _RIGHT, _TOP, _BOTTOM), line, bounds, across, up)

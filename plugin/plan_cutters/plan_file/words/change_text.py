@@ -6,13 +6,14 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from plan_cutters.domain.area import Patch, size
+from plan_cutters.domain.area import Patch
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.domain.spec import notation, spelled
 from plan_cutters.domain.verdicts import REASONS
-from plan_cutters.plan_file.numbers import percent
+from plan_cutters.plan_file.numbers import angle, listed, mm, percent
+from plan_cutters.plan_file.numbers import area as size
 from plan_cutters.plan_file.reasons import REASONS as WORDS
 
 Range = tuple[float, float]
@@ -23,17 +24,19 @@ _ORDER = {2: "second", 3: "third", 4: "fourth"}
 
 
 def tolerance(asked: float, now: float) -> str:
-    return f"a tolerance of {asked:g} mm instead of {now:g} mm"
+    return f"a tolerance of {mm(asked)} instead of {mm(now)}"
 
 
 def tilt_range(asked: Range, now: Range) -> str:
-    return f"tilts from {asked[0]:g} to {asked[1]:g} deg in the search instead of {now[0]:g} to {now[1]:g} deg"
+    return (
+        f"tilts from {angle(asked[0])} to {angle(asked[1])} in the search instead of {angle(now[0])} to {angle(now[1])}"
+    )
 
 
 def tilt_limit(asked: float, now: float | None, machine: str) -> str:
     """Name a machine that tilts further; `now` is None where rotary axes limit it, not an angle."""
-    instead = f"every way instead of {machine}" if now is None else f"instead of {now:g} deg"
-    return f"a machine that tilts by {asked:g} deg {instead}"
+    instead = f"every way instead of {machine}" if now is None else f"instead of {angle(now)}"
+    return f"a machine that tilts by {angle(asked)} {instead}"
 
 
 def stick_out(asked: float, now: Cutter) -> str:
@@ -76,7 +79,7 @@ def clamped(axis: Sequence[float], degrees: float) -> str:
 
 def setup(axis: Sequence[float], degrees: float, flip: bool | None) -> str:
     """Name another setup axis; `flip` is None where that option stays."""
-    words = f"the part clamped with {axis_words(axis)} along the spindle, {degrees:.4g} deg from now"
+    words = f"the part clamped with {axis_words(axis)} along the spindle, {angle(degrees)} from now"
     return words if flip is None else f"{words}, {'with' if flip else 'without'} --flip"
 
 
@@ -86,17 +89,27 @@ def more_setup(axis: Sequence[float], degrees: float, number: int) -> str:
 
 def faces(ids: Sequence[str], area: float, share: float) -> str:
     """Name faces to leave out, with their area, mm2, and its share of the target area."""
-    much = f"{area:,.0f}" if area >= 100.0 else f"{area:.3g}"
     some = ", ".join(ids[:_FACES]) + " and others" * (len(ids) > _FACES)
     which = ids[0] if len(ids) == 1 else f"{len(ids)} faces ({some})"
-    return f"{which} left out of what is to be finished: {much} mm2, {percent(share)} of the target area"
+    return f"{which} left out of what is to be finished: {size(area)}, {percent(share)} of the target area"
+
+
+def patch(found: Patch) -> str:
+    """An area that is lost, with its place.
+
+    >>> patch(Patch(57.2, 0.01, 9, ("F31",), (12.0, 3.0, -8.04), 4.13))
+    '57.2 mm² of F31, about (12, 3, -8.04), 4.1 mm across'
+    """
+    wide = f", {mm(float(f'{found.across:.2g}'))} across" if found.across else ""
+    where = ", ".join(f"{round(x, 4) + 0.0:.3g}" for x in found.place)
+    return f"{size(found.area)} of {listed(found.faces, _FACES)}, about ({where}){wide}"
 
 
 def left_out(areas: Sequence[Patch], area: float) -> str:
     """Say which connected areas are left to other means, and how much they are in all, mm2."""
     if len(areas) == 1:
-        return f"{areas[0].words} left to other means"
-    return f"{size(area)} in {len(areas):,} places left to other means, the largest {areas[0].words}"
+        return f"{patch(areas[0])} left to other means"
+    return f"{size(area)} in {len(areas):,} places left to other means, the largest {patch(areas[0])}"
 
 
 def reasons(codes: NDArray[np.uint8], of: int | None = None) -> str:
