@@ -23,8 +23,9 @@ from plan_cutters.command import summary as summaries
 from plan_cutters.command.progress import Display
 from plan_cutters.command.rows import _distinct
 from plan_cutters.command.supervise import _Watch
-from plan_cutters.command.terminal import clean, show
+from plan_cutters.command.terminal import show
 from plan_cutters.domain.default_tools import builtin
+from plan_cutters.files.terminal_text import clean
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.numbers import percent
 from plan_cutters.plan_file.words.story import story_of

@@ -4,6 +4,7 @@ import re
 
 from plan_cutters.agents.limits import CallError
 from plan_cutters.plan_file.model import CutterEntry, Plan
+from plan_cutters.plan_file.numbers import listed
 
 #: A cutter by its radius or diameter, and its length.
 _PLAIN = re.compile(r"[rd][\d.]+(l[\d.]+)?")
@@ -49,6 +50,4 @@ def chosen(name: str, known: list[tuple[str, str]]) -> str:
             return found[0]
         if found:
             raise CallError(f"{len(found)} cutters may be meant by {name!r}: {', '.join(found[:8])}; give the whole id")
-    there = ", ".join(id for id, _ in known[:8])
-    more = f" and {len(known) - 8} more" if len(known) > 8 else ""
-    raise CallError(f"no cutter is called {name!r}; there is {there}{more}")
+    raise CallError(f"no cutter is called {name!r}; there is {listed([id for id, _ in known])}")

@@ -8,14 +8,13 @@ from numpy.typing import NDArray
 from plan_cutters.answers.areas import Finished
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.least_set import LeastSet, Run
+from plan_cutters.domain.set_cover import essential_rows
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.scene.preparation import Prepared
 
 Axis = tuple[float, float, float]
 #: Seconds that the proof may take; then the best set found so far is told as such.
 _SECONDS = 10.0
-#: Rows that are compared with each other, at most.
-_COMPARED = 3000
 
 
 def least_set(
@@ -92,12 +91,7 @@ def cover(reached: NDArray[np.bool_], setup: Sequence[int], rank: Sequence[int])
     alone = np.flatnonzero(rows.all(axis=0))
     if len(alone):
         return [min(alone.tolist(), key=lambda k: (rank[k], setup[k]))], True
-    if len(rows) <= _COMPARED:
-        # A row that holds another one is covered with it.
-        both = rows.astype(np.float32) @ rows.T.astype(np.float32)
-        holds = both == rows.sum(axis=1)[None, :]
-        np.fill_diagonal(holds, False)
-        rows = rows[~holds.any(axis=1)]
+    rows = rows[essential_rows(rows)]
     return _cover([np.flatnonzero(row).tolist() for row in rows], setup, rank)
 
 

@@ -101,7 +101,7 @@ def page(rows: Sequence[PartRow], summary: Summary) -> bytes:
         outcomes=OUTCOMES,
         of=summary.parts.model_dump(),
         reason=reason,
-        time=_time,
+        time=numbers.duration,
         w=numbers,
     ).encode()
 
@@ -116,7 +116,7 @@ def _shown(row: PartRow) -> _Shown:
         made=_made(row),
         share="" if row.share is None else percent(row.share),
         reason=reason(row.reason) if row.reason else "",
-        time=_time(row.seconds),
+        time=numbers.duration(row.seconds),
         seconds=row.seconds if math.isfinite(row.seconds) else -1.0,
         page=_link(row.page),
         picture=_link(row.picture),
@@ -126,21 +126,6 @@ def _shown(row: PartRow) -> _Shown:
 def _made(row: PartRow) -> str:
     """Whether the answer is an earlier one."""
     return "kept from an earlier run" if row.status == "kept" else ""
-
-
-def _time(seconds: float | None) -> str:
-    """Seconds for people.
-
-    >>> _time(0.04), _time(59.96), _time(3661.0), _time(None)
-    ('<0.1 s', '1:00 min', '1:01:01 h', '')
-    """
-    if seconds is None or not math.isfinite(seconds) or seconds < 0.0:
-        return ""
-    if seconds < 59.95:
-        return f"{seconds:.1f} s" if seconds >= 0.05 or seconds == 0.0 else "<0.1 s"
-    minutes, rest = divmod(round(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours}:{minutes:02d}:{rest:02d} h" if hours else f"{minutes}:{rest:02d} min"
 
 
 def _link(path: str | None) -> str:

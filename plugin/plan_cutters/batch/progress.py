@@ -3,7 +3,6 @@
 import contextlib
 import threading
 import time
-import unicodedata
 from typing import Any, Self
 
 from rich.console import Console
@@ -12,6 +11,7 @@ from rich.text import Text
 
 from plan_cutters.batch.row import PartRow
 from plan_cutters.batch.summary import OUTCOMES, cause, outcome
+from plan_cutters.files.terminal_text import clean
 
 #: Where there is no terminal, up to so many parts have a line each; of more, counts are told now and then.
 EACH = 200
@@ -134,7 +134,7 @@ class Board:
     def _print(self, line: str) -> None:
         """One line, never wrapped: scripts look for it."""
         with contextlib.suppress(OSError, ValueError, AttributeError):
-            self.console.print(Text(_clean(line)), soft_wrap=True)
+            self.console.print(Text(clean(line)), soft_wrap=True)
 
     def _draw(self) -> None:
         words = TextColumn("{task.description}", markup=False)
@@ -143,15 +143,3 @@ class Board:
         with contextlib.suppress(OSError, ValueError):
             self._bar.start()
         self._task = self._bar.add_task(self._counts, total=self.total)
-
-
-def _clean(text: str) -> str:
-    r"""A text in one line, with what a terminal would obey written out; names of files may hold anything.
-
-    >>> _clean("rim\n\x1b[2Jgone")
-    'rim\\n\\x1b[2Jgone'
-    """
-    return "".join(
-        c.encode("unicode_escape").decode() if unicodedata.category(c) in ("Cc", "Cf", "Cs", "Zl", "Zp") else c
-        for c in text
-    )

@@ -13,6 +13,7 @@ from plan_cutters.command.codes import FEASIBLE, run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import CODES, options
 from plan_cutters.command.values import File, Words
+from plan_cutters.files.terminal_text import clean
 from plan_cutters.report.folder import DEFAULT_FORMATS
 
 if TYPE_CHECKING:
@@ -156,9 +157,7 @@ def _foreseen(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms") -> i
     code = FEASIBLE
     for row in foreseen(parts, out, terms):
         word = {"planned": "would be planned", "kept": "is done", "failed": "cannot be planned"}[row.status]
-        terminal.hand_out(
-            f"{terminal.clean(row.name)}: {word}{f': {terminal.clean(row.error)}' if row.error else ''}\n"
-        )
+        terminal.hand_out(f"{clean(row.name)}: {word}{f': {clean(row.error)}' if row.error else ''}\n")
         code = max(code, row.code if row.status == "failed" else FEASIBLE)
     return code
 

@@ -302,7 +302,7 @@ def _summary(
     if not rows:
         return f"## plan-cutters\n\nNo part changed since {began[:12]}.\n"
     from plan_cutters.comparison.markdown import beside, escaped, section, table
-    from plan_cutters.plan_file.numbers import count
+    from plan_cutters.plan_file.numbers import count, listed
 
     lines = ["## plan-cutters", ""]
     many = count(len(rows), "part")
@@ -319,10 +319,9 @@ def _summary(
         if row.beside is not None:
             lines += ["", beside(row.beside.as_posix(), artifacts)]
         if row.unreachable:
-            many = f" and {len(row.unreachable) - 20} more" if len(row.unreachable) > 20 else ""
             lines += [
                 "",
-                f"No cutter reaches all of {', '.join(row.unreachable[:20])}{many} of {escaped(row.part.name)}.",
+                f"No cutter reaches all of {listed(row.unreachable, 20)} of {escaped(row.part.name)}.",
             ]
         shown = [
             (side, links[folder]) for side, folder in (("before", row.before), ("now", row.after)) if folder in links

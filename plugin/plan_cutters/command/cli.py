@@ -34,6 +34,7 @@ from plan_cutters.command.worker import (
     wait_to_begin,
 )
 from plan_cutters.command.worker_errors import Unfinished
+from plan_cutters.files.terminal_text import clean
 
 _SELF = "plan-cutters"
 
@@ -83,7 +84,7 @@ def command(parts: tuple[str, ...], **given: Any) -> int:
         if line:
             terminal.error(f"{part}: {line}" if len(parts) > 1 and not given["quiet"] else line)
         elif len(parts) > 1 and not given["quiet"]:
-            terminal.give(terminal.clean(f"{part}: {dict(CODES).get(str(code), '')}") + "\n")
+            terminal.give(clean(f"{part}: {dict(CODES).get(str(code), '')}") + "\n")
         if code == INTERRUPTED:
             break
     if not is_child():

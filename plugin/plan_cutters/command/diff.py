@@ -10,8 +10,9 @@ import click
 from plan_cutters.command.codes import USAGE, run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
-from plan_cutters.command.terminal import clean, error, hand_out, paper
+from plan_cutters.command.terminal import error, hand_out, paper
 from plan_cutters.command.values import File, Folder, Words
+from plan_cutters.files.terminal_text import clean
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -16,9 +16,10 @@ from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
 from plan_cutters.command.progress import Display
 from plan_cutters.command.supervise import supervise
-from plan_cutters.command.terminal import clean, hand_out, paper
+from plan_cutters.command.terminal import hand_out, paper
 from plan_cutters.command.values import File, Setup, Words, cutter_ids
 from plan_cutters.command.worker import began, can_supervise, follow_parent, is_child, report
+from plan_cutters.files.terminal_text import clean
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -11,6 +11,7 @@ from typing import Any
 
 from plan_cutters.command import terminal
 from plan_cutters.command.worker import report
+from plan_cutters.files.terminal_text import clean
 
 #: What stages are called; several may be one to the user. A stage that is none of these is the judging of a cutter.
 _WORDS = {
@@ -122,7 +123,7 @@ class Display:
         """Name the work that goes on."""
         if self.name in _WORDS:
             return self.doing or self.words
-        name = terminal.clean(self.names.get(self.name) or self.name.partition("H")[0])
+        name = clean(self.names.get(self.name) or self.name.partition("H")[0])
         many = max(self.cutters, len(self.judged))
         return f"judging {name} ({len(self.judged)} of {many})" if many > 1 else f"judging {name}"
 

@@ -9,7 +9,8 @@ from rich.measure import Measurement
 from rich.table import Table
 from rich.text import Text
 
-from plan_cutters.command.terminal import clean, wrapped
+from plan_cutters.command.terminal import wrapped
+from plan_cutters.files.terminal_text import clean
 from plan_cutters.plan_file.nearest import leaves
 from plan_cutters.plan_file.words.cutters import FEASIBLE
 

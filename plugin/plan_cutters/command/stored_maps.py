@@ -14,6 +14,7 @@ from plan_cutters.command.help_groups import Command, named
 from plan_cutters.command.option_groups import ENDED, options
 from plan_cutters.command.validation import NAMED
 from plan_cutters.command.values import File
+from plan_cutters.files.terminal_text import clean
 
 if TYPE_CHECKING:
     from plan_cutters.options import Options
@@ -101,6 +102,7 @@ def stored(part: str | None, postures: str, options: "Options", given: dict[str,
     from plan_cutters.domain.placement import axis_words
     from plan_cutters.domain.verdicts import WORDS
     from plan_cutters.errors import OptionError
+    from plan_cutters.plan_file.numbers import listed
     from plan_cutters.scene.question import setup_of, words_of
     from plan_cutters.stages.posture_maps import PostureMaps
 
@@ -139,11 +141,11 @@ def stored(part: str | None, postures: str, options: "Options", given: dict[str,
         if maps.unmapped:
             lines.append(f"{maps.unmapped} samples were not mapped (--map-budget): they are undecided.")
         if missing:
-            lines.append(f"Obstacles are missing or guessed, so nothing is beyond doubt: {_some(missing)}.")
+            lines.append(f"Obstacles are missing or guessed, so nothing is beyond doubt: {listed(missing, _LISTED)}.")
         if unjudged:
-            lines.append(f"Not judged: {_some(unjudged)}.")
+            lines.append(f"Not judged: {listed(unjudged, _LISTED)}.")
         tells = terminal.say if given["json_out"] == "-" else terminal.show
-        tells(*(terminal.clean(line) for line in lines))
+        tells(*(clean(line) for line in lines))
     if counts["inaccessible"]:
         return NONE_FEASIBLE
     return NOT_ALL_JUDGED if counts["undecided"] or counts["unjudged"] or missing or unjudged else FEASIBLE
@@ -160,9 +162,3 @@ def _asked(options: "Options", given: dict[str, Any], named: Collection[str]) ->
     if options.fixtures:  # a setup file brings some, too
         words |= {"fixtures"}
     return {word: getattr(options, word) for word in sorted(words - {"jobs"})}
-
-
-def _some(words: Collection[str]) -> str:
-    """The first few of a list."""
-    more = f" and {len(words) - _LISTED} more" if len(words) > _LISTED else ""
-    return ", ".join(list(words)[:_LISTED]) + more

@@ -9,7 +9,6 @@ import logging
 import os
 import re
 import sys
-import unicodedata
 import warnings
 from collections.abc import Callable, Iterator
 from io import StringIO, TextIOWrapper
@@ -18,6 +17,7 @@ from typing import IO, TYPE_CHECKING, Any, Literal
 from cad_io.errors import CacheWarning
 from plan_cutters.command.worker import is_child, report
 from plan_cutters.errors import PlanError
+from plan_cutters.files.terminal_text import clean
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -27,12 +27,6 @@ if TYPE_CHECKING:
 Where = Literal["stdout", "stderr"]
 #: Columns that nothing for people is wider than, and that are there where the output is no terminal.
 COLUMNS = 80
-#: Categories of characters that a terminal may obey, or that have no form of their own: controls, lone surrogates, breaks.
-_OBEYED = frozenset({"Cc", "Cs", "Zl", "Zp"})
-#: Those that turn the direction of what follows.
-_TURNING = frozenset("\u061c\u200e\u200f\u202a\u202b\u202c\u202d\u202e\u2066\u2067\u2068\u2069")
-
-
 #: What goes wrong with a stream that is written to.
 _OF_STREAMS = frozenset({errno.EPIPE, errno.ENOSPC, errno.EIO, errno.EBADF, errno.EFBIG})
 
@@ -47,19 +41,6 @@ class ReaderGone(Exception):
 
 #: Why nothing more can be shown; the work goes on, for its files hold all.
 _unshown: list[Exception] = []
-
-
-def clean(text: str) -> str:
-    r"""A text with what a terminal would obey written out; names in files may hold anything.
-
-    Examples
-    --------
-    >>> clean("rim\n\x1b[2Jgone")
-    'rim\\n\\x1b[2Jgone'
-    """
-    return "".join(
-        c.encode("unicode_escape").decode() if unicodedata.category(c) in _OBEYED or c in _TURNING else c for c in text
-    )
 
 
 def is_terminal(where: Where = "stderr") -> bool:

@@ -12,8 +12,9 @@ import click
 from plan_cutters.command.codes import USAGE, faults, run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
-from plan_cutters.command.terminal import clean, error, hand_out, paper
+from plan_cutters.command.terminal import error, hand_out, paper
 from plan_cutters.command.values import File, Folder
+from plan_cutters.files.terminal_text import clean
 from plan_cutters.files.whole import write
 
 if TYPE_CHECKING:

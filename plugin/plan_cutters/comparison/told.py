@@ -11,7 +11,7 @@ from plan_cutters.comparison.model import (
     FaceState,
     PlanDifference,
 )
-from plan_cutters.plan_file.numbers import area, count, percent
+from plan_cutters.plan_file.numbers import area, count, listed, percent
 from plan_cutters.plan_file.reasons import REASONS
 
 FACES = ("", "face", "kind", "area", "was", "now")
@@ -138,6 +138,4 @@ def _why(reason: str | None) -> str:
 
 
 def _faces(pairs: list[tuple[str, str]]) -> str:
-    names = [called(*pair) for pair in pairs]
-    more = f" and {len(names) - _MOST} more" if len(names) > _MOST else ""
-    return ", ".join(names[:_MOST]) + more
+    return listed([called(*pair) for pair in pairs], _MOST)

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
+from plan_cutters.domain.set_cover import essential_rows
 
 Table = NDArray[np.bool_]
 Which = NDArray[np.int64]
@@ -24,8 +25,6 @@ _TRIES, _MORE_TRIES, _SPREAD = 12, 150, 0.5
 _NODES = 20_000
 #: Seconds that a proof may take unless another number is asked for, whatever its nodes.
 SECONDS = 30.0
-#: Rows that are compared with each other, at most: those that hold another one follow from it.
-_COMPARED = 3000
 _ROUNDING = 1e-6
 
 
@@ -97,7 +96,7 @@ def relax(table: Table) -> Relaxed:
     weight = np.zeros(len(table), np.int64)
     if not len(table):
         return Relaxed(np.zeros(0, np.int64), np.zeros(table.shape[1]), np.zeros(0), weight, 0.0)
-    rows = _essential(table)
+    rows = essential_rows(table)
     small = table[rows]
     # The weights' own problem: most weight of which no column carries more than 1.
     found = linprog(-np.ones(len(small)), A_ub=csr_array(small.T.astype(float)), b_ub=np.ones(table.shape[1]), bounds=(0.0, None),
@@ -150,21 +149,6 @@ def fewest(
         if proven is not None:
             at_least = max(at_least, min(proven, len(best)))
     return Cover(np.sort(best), at_least, relaxed.weight, bound, relaxed.value)
-
-
-def _essential(table: Table) -> Which:
-    """Rows (k,) of which no other one is covered with another row."""
-    packed = np.packbits(table, axis=1)
-    first = np.unique(packed, axis=0, return_index=True)[1]
-    if len(first) <= _COMPARED:
-        some = table[first].astype(np.float32)
-        size = some.sum(axis=1)
-        both = some @ some.T
-        # A row that holds all columns of another one is covered with it.
-        holds = both >= size[None, :] - 0.5
-        np.fill_diagonal(holds, False)
-        first = first[~holds.any(axis=1)]
-    return np.sort(first)
 
 
 def whole_weights(table: Table, weight: Floats) -> Which:

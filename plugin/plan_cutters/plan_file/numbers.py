@@ -9,6 +9,8 @@ from plan_cutters.domain.verdicts import WORDS
 VERDICTS = tuple(WORDS.values())
 #: Numbers of less than this are what rounding leaves of nothing.
 ROUNDING = 1e-9
+#: From so many seconds on a time is written in minutes, and in hours.
+_MINUTES, _HOURS = 120.0, 7200.0
 
 
 def figure(number: float) -> str:
@@ -143,6 +145,19 @@ def down(length: float | None) -> str:
         return "0 mm"
     digit = 10.0 ** (math.floor(math.log10(length)) - 2)
     return f"{math.floor(length / digit + 1e-9) * digit:.4g} mm"
+
+
+def duration(seconds: float | None) -> str:
+    """A time: whole seconds up to two minutes, then minutes, then hours; empty where it is not known.
+
+    >>> duration(0.04), duration(59.6), duration(738.0), duration(9000.0), duration(0.0), duration(None)
+    ('less than 1 s', '60 s', '12.3 min', '2.5 h', '0 s', '')
+    """
+    if seconds is None or not math.isfinite(seconds) or seconds < 0.0:
+        return ""
+    if seconds < _MINUTES:
+        return f"{seconds:.0f} s" if seconds >= 1.0 or seconds == 0.0 else "less than 1 s"
+    return f"{seconds / 60.0:.1f} min" if seconds < _HOURS else f"{seconds / 3600.0:.1f} h"
 
 
 def count(number: int, word: str) -> str:

@@ -12,6 +12,7 @@ from plan_cutters.domain.placement import Placement
 from plan_cutters.errors import OptionError
 from plan_cutters.plan_file import notes
 from plan_cutters.plan_file.notes import Note
+from plan_cutters.plan_file.numbers import listed
 
 if TYPE_CHECKING:
     from cad_io import Part
@@ -31,8 +32,8 @@ _LIST = re.compile(rf"{_ITEM}(?:\s*,\s*{_ITEM})*")
 _COLOUR = re.compile(r"colou?r:#([0-9a-fA-F]{6})")
 #: Digits of a number that are looked at: more than any part has faces.
 _DIGITS = 12
-#: Components that an error lists, and characters of a selection that it repeats.
-_LISTED, _LONGEST = 5, 60
+#: Characters of a selection that an error repeats.
+_LONGEST = 60
 
 
 @dataclass(frozen=True, slots=True)
@@ -279,7 +280,7 @@ def _of_component(tree: "Sequence[Node]", name: str, where: str) -> set[int]:
     known = sorted({path for path in component_of(tree).values() if path})
     found = faces_of(tree, name.strip("/")) if name.strip("/") else set()
     if not found and known:
-        raise OptionError(f"{where}: no component is called so; the part has {_some(known)}")
+        raise OptionError(f"{where}: no component is called so; the part has {listed(list(known))}")
     if not found:
         raise OptionError(f"{where}: the components of this part have no names")
     return found
@@ -289,13 +290,6 @@ def _brief(text: str) -> str:
     """A text as errors show it: one line, not too long."""
     line = " ".join(text.split())
     return line if len(line) <= _LONGEST else f"{line[:_LONGEST]}..."
-
-
-def _some(words: Iterable[str]) -> str:
-    """The first few of a list."""
-    found = list(words)
-    more = f" and {len(found) - _LISTED} more" if len(found) > _LISTED else ""
-    return ", ".join(found[:_LISTED]) + more
 
 
 def _words(part: "Part", given: Any, option: str) -> list[str]:

@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import ROUNDING, bound, figure, percent, some
+from plan_cutters.plan_file.numbers import ROUNDING, bound, duration, figure, listed, percent, some
 from plan_cutters.plan_file.operations import (
     CutterUse,
     FewestEntry,
@@ -23,8 +23,6 @@ _LISTED, _FACES = 12, 4
 _SMALL, _NO_GAP = 3, 1e-6
 #: A share of the curve that is worth stopping at, and a share of the area for which an orientation is hardly worth its turn.
 _KNEE, _LITTLE = 0.97, 0.005
-#: So many seconds are told in minutes.
-_MINUTES = 120.0
 
 
 def operations(plan: Plan) -> list[Line]:
@@ -131,11 +129,11 @@ def _work(plan: OperationPlanEntry) -> str:
     if plan.cutting_seconds is None:
         return f"{plan.cut_length_mm / 1000.0:.3g} m of cutting"
     if plan.other_seconds <= 0.0:
-        return f"{_duration(plan.cutting_seconds)} of cutting"
+        return f"{duration(plan.cutting_seconds)} of cutting"
     cutters = len({each.cutter for each in plan.operations})
     setups = len({each.setup for each in plan.operations})
     what = [word for word, there in (("orientations", True), ("cutters", cutters > 1), ("setups", setups > 1)) if there]
-    return f"{_duration(plan.cutting_seconds)} of cutting and {_duration(plan.other_seconds)} for {_joined(what)}"
+    return f"{duration(plan.cutting_seconds)} of cutting and {duration(plan.other_seconds)} for {_joined(what)}"
 
 
 def share_text(share: float) -> str:
@@ -144,7 +142,7 @@ def share_text(share: float) -> str:
 
 
 def _little(each: OperationEntry) -> str:
-    took = "" if each.seconds is None else f", {_short(each.seconds)} of cutting"
+    took = "" if each.seconds is None else f", {duration(each.seconds)} of cutting"
     return f"{some(each.share)} of the area{took}"
 
 
@@ -158,7 +156,7 @@ def _fastest(found: OperationsEntry) -> Iterator[str]:
         if plan.ratio_at_most is not None and plan.name != "largest first" and not again:
             cutting = sum(each.seconds or 0.0 for each in plan.operations if each.mode == "fixed")
             times = f"at most {_factor(plan.ratio_at_most)} times as long as five axes at once"
-            yield f"3+2 ({plan.name}) takes {_duration(cutting)} of cutting, {times}."
+            yield f"3+2 ({plan.name}) takes {duration(cutting)} of cutting, {times}."
     some_of = f" of {found.fewest.samples}" if timed.samples < found.fewest.samples - found.fewest.alone else ""
     near = f"the best of {timed.candidates} candidates, by {timed.samples}{some_of} samples"
     if timed.gap is None:
@@ -183,7 +181,7 @@ def _habit(found: OperationsEntry) -> Iterator[str]:
     if habit is None or fastest is None:
         return
     if habit - fastest >= 1.0:
-        yield f"Largest cutter first costs {_duration(habit - fastest)} more than the fastest plan."
+        yield f"Largest cutter first costs {duration(habit - fastest)} more than the fastest plan."
     else:
         yield "Largest cutter first is as fast as the fastest plan."
     for name in ("largest first", "fastest"):
@@ -205,10 +203,10 @@ def _worth(found: OperationsEntry, use: CutterUse) -> Iterator[str]:
     elif use.saves_seconds < 1.0:
         yield f"{use.id} would save nothing."
     elif use.change_seconds <= 0.0:
-        yield f"{use.id} saves {_duration(use.saves_seconds)} against the best without it."
+        yield f"{use.id} saves {duration(use.saves_seconds)} against the best without it."
     else:
         verb, cost = ("saves", "costs") if used else ("would save", "cost")
-        yield f"{use.id} {verb} {_duration(use.saves_seconds)} and {cost} a change of {_duration(use.change_seconds)}."
+        yield f"{use.id} {verb} {duration(use.saves_seconds)} and {cost} a change of {duration(use.change_seconds)}."
 
 
 def _setups(found: OperationsEntry) -> bool:
@@ -217,7 +215,7 @@ def _setups(found: OperationsEntry) -> bool:
 
 
 def _listed(each: OperationEntry, setups: bool) -> str:
-    took = "" if each.seconds is None else f", {_duration(each.seconds)}"
+    took = "" if each.seconds is None else f", {duration(each.seconds)}"
     where = f" in setup {each.setup + 1}" if setups else ""
     return (
         f"{each.id}: {each.cutter}{where}, {_turned(each)}: {share_text(each.share)} of the area{took}, {_faces(each)}."
@@ -238,7 +236,7 @@ class Told(NamedTuple):
 def told(plan: Plan, each: OperationEntry) -> Told:
     """Put one operation into words; `took` is its cutting time or, without a feed, its cut length."""
     length = "" if each.cut_length_mm is None else f"{each.cut_length_mm / 1000.0:.3g} m"
-    took = length if each.seconds is None else _duration(each.seconds)
+    took = length if each.seconds is None else duration(each.seconds)
     setups = plan.operations is not None and _setups(plan.operations)
     where = f"setup {each.setup + 1}" if setups else ""
     return Told(each, where, _turned(each).removesuffix(" deg"), took, _faces(each), named(plan, _listed(each, setups)))
@@ -257,22 +255,11 @@ def _turned(each: OperationEntry) -> str:
 
 
 def _faces(each: OperationEntry) -> str:
-    names = [face.face for face in each.faces]
-    more = len(names) - _FACES
-    return ", ".join(names[:_FACES]) + (f" and {more} more face{'s' * (more > 1)}" if more > 0 else "")
+    return listed([face.face for face in each.faces], _FACES)
 
 
 def _joined(words: list[str]) -> str:
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
-
-
-def _duration(seconds: float) -> str:
-    return _short(seconds) if seconds < _MINUTES else f"{seconds / 60.0:.1f} min"
-
-
-def _short(seconds: float) -> str:
-    """Whole seconds; what is less than one is said so."""
-    return f"{seconds:.0f} s" if seconds >= 1.0 or seconds == 0.0 else "less than 1 s"
 
 
 def _factor(ratio: float) -> str:
