@@ -23,7 +23,8 @@ VERDICTS = {0: "inaccessible", 1: "accessible", 2: "interference_free", 3: "unde
 class CutterText(NamedTuple):
     """A cutter in the words of the plan.
 
-    Its verdict (`good`, `bad` or `unsure`, and in a word), what it reaches, or not and why, and its shares of the area by verdict.
+    The tone of its verdict is `good`, `bad` or `unsure`; the sentence says what it reaches, or what not and why; `shares` are of
+    the area, by verdict.
     """
 
     tone: str

@@ -18,12 +18,12 @@ def with_text(plan: Plan) -> Plan:
 
 
 def text_of(plan: Plan) -> TextEntry:
-    """Put a plan into a few lines."""
+    """Put a plan into a few lines; what stands in short above is not said again below."""
     story = story_of(plan)
     return TextEntry(
         headline=f"{story.headline.title}{story.headline.about}.",
         tone=TONES[chip(plan, story)],
-        lines=_lines([each.strip() for each in sentences(story) if each.strip()]),
+        lines=_lines([*filter(None, dict.fromkeys(each.strip() for each in sentences(story)))]),
         cutters={each.id: each.sentence for each in story.cutters},
         verdicts={each.id: _verdict(plan, each) for each in plan.cutters},
         shares={each.id: each.shares for each in story.cutters},
