@@ -8,15 +8,11 @@ from typing import Any
 import FreeCAD as App
 import FreeCADGui as Gui
 
-from . import camera, model, objects, remembered, results, runner, windows
+from . import camera, model, objects, remembered, runner, windows
 from .windows import QtCore, QtGui
 
-#: Sign and word of a verdict about a cutter, and its colour.
-VERDICTS = {
-    True: ("✔", "finishes", "#007a58"),
-    False: ("✘", "does not finish", "#b34700"),
-    None: ("?", "not decided", "#6b6400"),
-}
+#: Sign and colour of a verdict on a cutter, by its tone.
+SIGNS = {"good": ("✔", "#007a58"), "bad": ("✘", "#b34700"), "unsure": ("?", "#6b6400")}
 #: Verdicts that the legend has even where nothing has them.
 ALWAYS = ("accessible", "undecided", "inaccessible")
 #: The panel that is open.
@@ -75,11 +71,13 @@ class Findings(windows.Panel):
         layout.addRow(self._stale)
         entries = []
         for each in self.result.plan["cutters"]:
-            sign = VERDICTS[each["feasible"]][0]
+            sign = SIGNS[self.result.cutter_text(each["id"]).tone][0]
             entries.append((f"{sign} {each['name'] or each['id']}", each["id"]))
         self._cutters = windows.combo(entries, self.result.shown()["id"])
         self._cutters.setObjectName("cutters")
         layout.addRow("Cutter", self._cutters)
+        self._sentence = windows.words("", "sentence")
+        layout.addRow(self._sentence)
         return box
 
     def _legend_box(self):
@@ -120,17 +118,19 @@ class Findings(windows.Panel):
 
     def _fill(self, cutter: str) -> None:
         entry = self.result.shown(cutter)
-        sign, word, colour = VERDICTS[entry["feasible"]]
-        selected = " · selected" if cutter == self.result.plan["selected"] else ""
-        self._chip.setText(f"{sign} {word}{selected}")
+        text = self.result.cutter_text(entry["id"])
+        sign, colour = SIGNS[text.tone]
+        selected = "· selected" if entry["id"] == self.result.plan["selected"] else ""
+        self._chip.setText(" ".join(filter(None, (sign, text.verdict, selected))))
         self._chip.setStyleSheet(
             f"background: {colour}; color: white; font-weight: bold; padding: 4px; border-radius: 4px"
         )
-        line = self.result.headline()
-        if cutter != self.result.shown()["id"]:
-            verdict, shown = line.partition("; the colours show ")[0], self.result.called(cutter)
-            line = f"{verdict}; the colours show {shown}, each face by its worst verdict"
-        self._headline.setText(line[:1].upper() + line[1:])
+        self._headline.setText(self.result.headline())
+        self._headline.setToolTip("\n".join(self.result.summary()))
+        whole = (
+            "" if entry is self.result.shown() else "Each face has the colour of its worst verdict with this cutter."
+        )
+        self._sentence.setText(" ".join(filter(None, (text.sentence, whole))))
         while self._legend.rowCount():
             self._legend.removeRow(0)
         coloured = {getattr(each, "Verdict", "") for each in self.group.Group}
@@ -138,8 +138,8 @@ class Findings(windows.Panel):
             share = entry["area_share"].get(code)
             if code not in coloured and not share and code not in ALWAYS:
                 continue
-            text = words if share is None else f"{words}: {results.percent(share)}"
-            self._legend.addRow(windows.swatch(rgb), windows.words(text, f"legend_{code}"))
+            line = f"{words}: {text.shares[code]}" if code in text.shares else words
+            self._legend.addRow(windows.swatch(rgb), windows.words(line, f"legend_{code}"))
         self._spots = self.result.spots(cutter)
         self._list.blockSignals(True)
         self._list.clear()

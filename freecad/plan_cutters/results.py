@@ -7,7 +7,7 @@ import json
 import os
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 from . import arrays, model, tool
 
@@ -20,12 +20,17 @@ WORST_FIRST = ("inaccessible", "undecided", "unjudged", "accessible", "interfere
 VERDICTS = {0: "inaccessible", 1: "accessible", 2: "interference_free", 3: "undecided", 255: "unjudged"}
 
 
-def percent(share: float) -> str:
-    """Write a share in percent as the program does: 100 only where it is the whole, and 0 only where there is nothing of it."""
-    if not 0.0 < share < 1.0:
-        return "100 %" if share >= 1.0 else "0 %" if share <= 0.0 else "not known"
-    text = f"{100.0 * share:.1f}"
-    return {"0.0": "<0.1 %", "100.0": ">99.9 %"}.get(text, f"{text.removesuffix('.0')} %")
+class CutterText(NamedTuple):
+    """A cutter in the words of the plan.
+
+    The tone of its verdict is `good`, `bad` or `unsure`; the sentence says what it reaches, or what not and why; `shares` are of
+    the area, by verdict.
+    """
+
+    tone: str
+    verdict: str
+    sentence: str
+    shares: dict[str, str]
 
 
 @dataclass(frozen=True)
@@ -136,40 +141,31 @@ class Result:
         """Ids of the cutters, in the order of the plan."""
         return [each["id"] for each in self.plan["cutters"]]
 
-    def called(self, cutter: str) -> str:
-        """The name of a cutter for people: as its tool is called, its id where another one has that name."""
-        names = {each["id"]: each["name"] for each in self.plan["cutters"]}
-        name = names.get(cutter)
-        return name if name and list(names.values()).count(name) == 1 else cutter
-
     def headline(self) -> str:
-        """The verdict in one line."""
-        return self.summary()[0]
+        """The verdict in one line: that of the plan."""
+        if self._text:
+            return self._text["headline"]
+        verdict = f"take {self.plan['selected']}" if self.plan["selected"] else "no cutter is selected"
+        shown = self.shown()["id"]
+        return f"An older program made this plan, without text ({verdict}; the colours show {shown}): plan again."
 
     def summary(self) -> list[str]:
-        """What the plan says, line by line: the verdict, the cutters, warnings and notes."""
-        plan, best = self.plan, self.called(self.shown()["id"])
-        why = plan["selection"]["why"]
-        for cutter in sorted(self.cutters(), key=len, reverse=True):
-            why = why.replace(cutter, self.called(cutter))
-        if plan["selected"]:
-            lines = [f"take {best} ({why})"]
-        else:
-            lines = [f"no cutter finishes all that is judged ({why}); the colours show {best}"]
-        for each in plan["cutters"]:
-            judged = sum(each[word] for word in WORST_FIRST if word != "unjudged")
-            reached = each["interference_free"] + each["accessible"]
-            worst = sorted(each["area_share"]["lost_by"].items(), key=lambda item: -item[1])
-            lost = ", ".join(f"{self.reason(code)} {percent(share)}" for code, share in worst)
-            finishes = {True: "yes", False: "no", None: "not decided"}[each["feasible"]]
-            line = f"{'*' if each['id'] == plan['selected'] else ' '} {self.called(each['id'])}: finishes {finishes}"
-            line += f", reaches {reached} of {judged} samples"
-            line += f"; lost: {lost} of the area" if lost else ""
-            line += "".join(f"; {word}: {each[word]}" for word in ("undecided", "unjudged") if each[word])
-            lines.append(line)
-        lines += [f"Warning: {text}" for text in plan["part"]["warnings"]]
-        lines += [f"Note: {text}" for text in plan["notes"]]
-        return lines
+        """What the plan says, line by line: the headline, then the rest of its text."""
+        return [self.headline(), *self._text.get("lines", ())]
+
+    def cutter_text(self, cutter: str) -> CutterText:
+        """What the plan says of a cutter; a plan of an older program has no words for it."""
+        text = self._text
+        if not text:
+            tones = {True: "good", False: "bad", None: "unsure"}
+            return CutterText(tones[self.shown(cutter)["feasible"]], "", "", {})
+        verdict = text["verdicts"][cutter]
+        return CutterText(verdict["tone"], verdict["word"], text["cutters"][cutter], text["shares"][cutter])
+
+    @property
+    def _text(self) -> dict[str, Any]:
+        """The plan in words; empty where an older program made it."""
+        return self.plan.get("text") or {}
 
     def reason(self, code: str) -> str:
         """A reason in the words of the plan; a plan of an older program has none."""

@@ -116,7 +116,8 @@ def session():
     pump(lambda: findings.LAST is not None or one._run is None, 120)
     pump()
     two = findings.LAST
-    found["result"] = [two._chip.text(), two._headline.text(), two.result.called(two.group.Cutter)]
+    found["result"] = [two._chip.text(), two._headline.text(), two._sentence.text()]
+    found["text"], found["cutter"] = two.result.plan["text"], two.group.Cutter
     found["only ours"] = [left(), objects.stale(two.group)]
     found["legend"] = [label.text() for label in two.form[1].findChildren(QtGui.QLabel) if label.text()]
     found["spots"] = [two._list.topLevelItem(place).text(0) for place in range(two._list.topLevelItemCount())]
@@ -215,9 +216,10 @@ def test_a_missing_program_says_how_to_install_it(window):
 
 def test_the_result_is_shown(window):
     found, _ = window
-    chip, headline, cutter = found["result"]
-    assert chip.startswith("✘ does not finish")  # the corners of the slot are sharp
-    assert cutter in headline
+    (chip, headline, sentence), text = found["result"], found["text"]
+    assert chip == "✘ Not feasible"  # the corners of the slot are sharp
+    assert headline == text["headline"]
+    assert sentence == text["cutters"][found["cutter"]]
     assert found["only ours"] == [0, ""]
     assert any(words.startswith("inaccessible: ") and not words.endswith(": 0 %") for words in found["legend"])
 

@@ -231,7 +231,9 @@ def test_verdicts_lie_on_the_faces_that_they_name(work):
     assert judged == seen | unseen
     assert not seen & unseen
     assert {"inaccessible", "accessible"} <= {word for _, word in judged}
-    assert work["shown"]["summary"][0] == work["shown"]["headline"]
+    text = work["plan"]["text"]
+    assert work["shown"]["headline"] == text["headline"]
+    assert work["shown"]["summary"] == [text["headline"], *text["lines"]]
 
 
 def test_the_tool_stands_where_the_plan_says(work):

@@ -4,8 +4,8 @@ import re
 
 from tests.support.places import ROOT
 
-#: Where a share becomes a text. The workbench runs in FreeCAD's own Python: `tests/hosts/test_freecad_words.py` compares it.
-PLACES = {"plugin/plan_cutters/plan_file/numbers.py", "freecad/plan_cutters/results.py"}
+#: Where a share becomes a text.
+PLACES = {"plugin/plan_cutters/plan_file/numbers.py"}
 #: A number with a form of its own before the sign, in braces or as `%` writes it, and Python's own form of a percentage.
 FORMATTED = re.compile(r":[^{}\"']*%\}|:[^{}\"']*[defg]\} ?%|%\.?\d*[defg] ?%%")
 

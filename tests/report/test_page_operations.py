@@ -63,6 +63,12 @@ def test_operations_are_told_as_they_are_in_the_plan(planned, read):
             assert found.serves[one["sample"], k]
 
 
+def test_the_text_of_the_plan_says_each_thing_once(planned):
+    text = " ".join(planned.plan.text.lines)
+    assert in_short(planned.plan)
+    assert all(text.count(each) == 1 for each in in_short(planned.plan))
+
+
 def test_each_operation_is_listed(planned, read):
     rows = [text for tag, a, text in read.elements if tag == "tr" and "data-operation" in a]
     more = [text for tag, a, text in read.elements if tag == "td" and a.get("colspan") == "4"]

@@ -267,15 +267,29 @@ class Selection(Frozen):
     why: str
 
 
+Tone = Literal["good", "partly", "bad", "unsure"]
+
+
+class VerdictText(Frozen):
+    """A verdict in a word, and how good it is."""
+
+    tone: Tone
+    word: str
+
+
 class TextEntry(Frozen):
     """The plan in words, made once: every reader shows these."""
 
     headline: str = Field(description="which cutter to take for what, or that none does")
-    tone: Literal["good", "partly", "bad", "unsure"]
+    tone: Tone
     lines: list[str] = Field(
         description="why, what is not judged, what is left: at most 25 lines of at most 80 columns"
     )
     cutters: dict[str, str] = Field(description="id of a cutter -> how much it reaches, or does not reach and why")
+    verdicts: dict[str, VerdictText] = Field(description="id of a cutter -> whether it is feasible")
+    shares: dict[str, dict[str, str]] = Field(
+        description="id of a cutter -> verdict -> share of the area with it, in percent as people read it"
+    )
 
 
 class FileEntry(Frozen):

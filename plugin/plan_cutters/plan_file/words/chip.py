@@ -1,8 +1,8 @@
 """The verdict on a part or a cutter in a word with a sign: what a reader sees first, by colour, sign and word."""
 
-from typing import Literal, NamedTuple
+from typing import NamedTuple
 
-from plan_cutters.plan_file.model import Plan
+from plan_cutters.plan_file.model import CutterEntry, Plan, Tone
 from plan_cutters.plan_file.words.headline import could_not
 from plan_cutters.plan_file.words.scope import not_seen
 from plan_cutters.plan_file.words.story import Story
@@ -25,8 +25,8 @@ CHIPS = {
 #: Where it says more than that.
 _WHERE_JUDGED = Chip("unsure", "!", "Feasible where judged")
 _IN_PART = Chip("unsure", "◐", "Feasible in part")
-#: The tone of a plan's text, by its chip.
-TONES: dict[Chip, Literal["good", "partly", "bad", "unsure"]] = {
+#: The tone of a text, by its chip.
+TONES: dict[Chip, Tone] = {
     CHIPS[True]: "good", CHIPS[False]: "bad", CHIPS[None]: "unsure", _WHERE_JUDGED: "unsure", _IN_PART: "partly",
 }  # fmt: skip
 
@@ -40,3 +40,9 @@ def chip(plan: Plan, story: Story) -> Chip:
     if good is None and story.taken:
         return _IN_PART
     return CHIPS[good]
+
+
+def cutter_chip(plan: Plan, cutter: CutterEntry) -> Chip:
+    """The verdict on a cutter. As of the part: feasible without more words only where all was judged and seen."""
+    unseen = plan.effective.sampled_by == "default" and not cutter.seen
+    return _WHERE_JUDGED if cutter.feasible and (unseen or could_not(plan)) else CHIPS[cutter.feasible]

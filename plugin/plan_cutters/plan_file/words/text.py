@@ -3,9 +3,9 @@
 import textwrap
 from collections.abc import Iterator
 
-from plan_cutters.plan_file.model import Plan, TextEntry
+from plan_cutters.plan_file.model import CutterEntry, Plan, TextEntry, VerdictText
 from plan_cutters.plan_file.numbers import count
-from plan_cutters.plan_file.words.chip import TONES, chip
+from plan_cutters.plan_file.words.chip import TONES, chip, cutter_chip
 from plan_cutters.plan_file.words.story import Story, story_of
 
 #: Columns of a line, and the most lines.
@@ -18,13 +18,15 @@ def with_text(plan: Plan) -> Plan:
 
 
 def text_of(plan: Plan) -> TextEntry:
-    """Put a plan into a few lines."""
+    """Put a plan into a few lines; what stands in short above is not said again below."""
     story = story_of(plan)
     return TextEntry(
         headline=f"{story.headline.title}{story.headline.about}.",
         tone=TONES[chip(plan, story)],
-        lines=_lines([each.strip() for each in sentences(story) if each.strip()]),
+        lines=_lines([*filter(None, dict.fromkeys(each.strip() for each in sentences(story)))]),
         cutters={each.id: each.sentence for each in story.cutters},
+        verdicts={each.id: _verdict(plan, each) for each in plan.cutters},
+        shares={each.id: each.shares for each in story.cutters},
     )
 
 
@@ -36,6 +38,11 @@ def sentences(story: Story) -> Iterator[str]:
     yield from (each.sentence for each in story.cutters)
     more = (*story.setups, *story.operations, *story.answers, *story.notes)
     yield from (f"{line.mark} {line.text}{line.typed}" for line in more if not line.minor)
+
+
+def _verdict(plan: Plan, cutter: CutterEntry) -> VerdictText:
+    found = cutter_chip(plan, cutter)
+    return VerdictText(tone=TONES[found], word=found.word)
 
 
 def _lines(texts: list[str]) -> list[str]:
