@@ -16,6 +16,7 @@ from plan_cutters.command.terminal import error, hand_out, paper
 from plan_cutters.command.values import File, Words, machine_names
 from plan_cutters.files.terminal_text import clean
 from plan_cutters.files.whole import write
+from plan_cutters.plan_file.numbers import exact_angle
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -211,7 +212,7 @@ def _explain(facts: dict[str, Any], machine: "Machine", console: "Console") -> N
         _solutions(facts["angles"], say)
     if "axis" in facts:
         told = facts["axis"]
-        at = ", ".join(f"{name} {angle:.6g} deg" for name, angle in told["deg"].items())
+        at = ", ".join(f"{name} {exact_angle(angle)}" for name, angle in told["deg"].items())
         beyond = f"; beyond the limits: {', '.join(told['beyond_limits'])}" if told["beyond_limits"] else ""
         say(f"  At {at} the tool axis is ({', '.join(f'{value:.9g}' for value in told['tool_axis'])}){beyond}.")
 
@@ -221,7 +222,7 @@ def _solutions(told: dict[str, Any], say: Any) -> None:
     if not told["solutions"]:
         say(f"  No position within the limits holds the tool axis {axis}.")
     for each in told["solutions"]:
-        angles = ", ".join(f"{name} {angle + 0.0:.6f} deg" for name, angle in each["deg"].items())
+        angles = ", ".join(f"{name} {exact_angle(angle)}" for name, angle in each["deg"].items())
         taken = " (taken: the smaller turns)" if each["taken"] and len(told["solutions"]) > 1 else ""
         say(f"  The tool axis {axis} is held{f' at {angles}' if angles else ''}{taken}.")
 

@@ -12,8 +12,9 @@ from plan_cutters.batch import handing
 from plan_cutters.command import terminal
 from plan_cutters.command.codes import code_of
 from plan_cutters.command.progress import Display, Teller
-from plan_cutters.command.summary import not_reached, summary, written
+from plan_cutters.command.summary import summary, written
 from plan_cutters.command.worker import INTERRUPTED, is_child, report, report_work
+from plan_cutters.plan_file.words.details import others
 from plan_cutters.plan_file.words.names import called
 
 if TYPE_CHECKING:
@@ -71,7 +72,7 @@ def one_part(
     if given["json_out"] == "-":
         terminal.hand_out(dumps(document))
     if not given["quiet"]:
-        _tells(given)(*written(document, out, formats), *not_reached(document, verbose=given["verbose"]))
+        _tells(given)(*written(document, out, formats), *others(document, every=given["verbose"]))
     for name, why in document.not_written.items():
         terminal.error(f"plan-cutters: {file_name(name)} was not written: {why}")
     return code_of(document), ""

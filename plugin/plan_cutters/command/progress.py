@@ -4,7 +4,6 @@ The process that waits draws it: the clock runs on while the CAD kernel holds th
 """
 
 import contextlib
-import math
 import time
 from collections.abc import Mapping
 from typing import Any
@@ -12,6 +11,7 @@ from typing import Any
 from plan_cutters.command import terminal
 from plan_cutters.command.worker import report
 from plan_cutters.files.terminal_text import clean
+from plan_cutters.plan_file.numbers import part_done
 
 #: What stages are called; several may be one to the user. A stage that is none of these is the judging of a cutter.
 _WORDS = {
@@ -137,7 +137,7 @@ class Display:
         now = time.monotonic()
         wait = _SOON if now - self.began < 60.0 else _LATER
         if news or (now - self.spoke > wait):
-            share = "" if self.share is None or news else f", {math.floor(100.0 * self.share)} %"
+            share = "" if self.share is None or news else f", {part_done(self.share)}"
             terminal.emit(f"{now - self.began:7.1f} s  {self.words if news else self.line}{share}\n")
             self.spoke = now
 
@@ -162,7 +162,7 @@ class Display:
                                 transient=True, auto_refresh=self.itself)  # fmt: skip
             self.bar.start()
             self.task = self.bar.add_task(self.line, total=None, percent="")
-        percent = "" if self.share is None else f"{math.floor(100.0 * self.share)} %".rjust(5)
+        percent = "" if self.share is None else part_done(self.share).rjust(5)
         total = None if self.share is None else 1.0
         self.bar.update(self.task, description=self.line, total=total, completed=self.share or 0.0, percent=percent)
         self.bar.refresh()

@@ -12,13 +12,13 @@ from rich.text import Text
 from plan_cutters.command.terminal import wrapped
 from plan_cutters.files.terminal_text import clean
 from plan_cutters.plan_file.nearest import leaves
-from plan_cutters.plan_file.words.cutters import FEASIBLE
+from plan_cutters.plan_file.words.cutters import FEASIBLE, worst_face_text
 
 if TYPE_CHECKING:
     from rich.console import Console, ConsoleOptions
 
     from plan_cutters.plan_file.model import Plan
-    from plan_cutters.plan_file.words.cutters import CutterStory, WorstFace
+    from plan_cutters.plan_file.words.cutters import CutterStory
     from plan_cutters.plan_file.words.story import Story
 
 #: Verdicts, what a column calls them.
@@ -84,7 +84,7 @@ def worst_faces(story: "Story") -> list[Any]:
         table.add_row(
             f"  {f.id}", f.reason, cell(_distinct([f.obstacle or "-"], _OBSTACLE)[0]), f.area, f.share, f.depth or "-"
         )
-    return [*lines, _Fitting(table, [cell(_said(f)) for f in c.faces])]
+    return [*lines, _Fitting(table, [cell(f"  {worst_face_text(f)}") for f in c.faces])]
 
 
 @dataclass(frozen=True)
@@ -113,13 +113,6 @@ def _table(words: Sequence[str], numbers: Sequence[str], *, apart: int = 2) -> T
 def _in_lines(name: str) -> str:
     """A name in lines that its column has room for, all but the first indented."""
     return "\n".join(textwrap.wrap(name, _NAME, subsequent_indent="    ", break_on_hyphens=False)) or name
-
-
-def _said(f: "WorstFace") -> str:
-    """A face in a line."""
-    deep = f", {f.depth} mm too deep" if f.depth else ""
-    way = f", {f.obstacle} in the way" if f.obstacle else ""
-    return f"  {f.id}: {f.area} mm2 lost, {f.share} of the face, mainly {f.reason}{deep}{way}"
 
 
 def _distinct(names: Sequence[str], most: int) -> list[str]:

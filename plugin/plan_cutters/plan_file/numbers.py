@@ -112,6 +112,24 @@ def angle(degrees: float) -> str:
     return f"{0.0 if abs(tenths) == 360.0 else tenths:g}°"
 
 
+def exact_angle(degrees: float) -> str:
+    """An angle to a millionth of a degree, as a machine's axis is set to it.
+
+    >>> exact_angle(30.0), exact_angle(-12.3456789), exact_angle(-0.0)
+    ('30°', '-12.345679°', '0°')
+    """
+    return f"{plainly(round(degrees, 6), 9)}°"
+
+
+def part_done(share: float) -> str:
+    """How much of a work is done, in whole percent: 100 only at its end.
+
+    >>> part_done(0.0), part_done(0.999), part_done(1.0)
+    ('0 %', '99 %', '100 %')
+    """
+    return f"{math.floor(100.0 * share)} %"
+
+
 def area(mm2: float) -> str:
     """An area, three digits of it.
 

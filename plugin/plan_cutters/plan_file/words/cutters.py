@@ -210,6 +210,13 @@ def worst_faces(plan: Plan, c: CutterEntry, most: int = 5) -> tuple[list[WorstFa
     return [_worst(faces[name], c, _area_left(faces[name], c)) for name in ranked[:most]], len(ranked)
 
 
+def worst_face_text(face: WorstFace) -> str:
+    """A face on which a cutter fails, in a line."""
+    deep = f", {face.depth} mm too deep" if face.depth else ""
+    way = f", {called(face.obstacle)} in the way" if face.obstacle else ""
+    return f"{face.id}: {face.area} mm² lost, {face.share} of the face, mainly {face.reason}{deep}{way}"
+
+
 def _by_area_left(plan: Plan, c: CutterEntry) -> list[str]:
     """Ids of the faces on which a cutter leaves something, the one with the largest area of it first."""
 

@@ -52,6 +52,6 @@ def _lines(texts: list[str]) -> list[str]:
         mine = textwrap.wrap(text, WIDTH, break_on_hyphens=False)
         last = place == len(texts) - 1
         if len(found) + len(mine) > MOST - (not last):
-            return [*found, f"{count(len(texts) - place, 'more sentence')}: -v or the review page."]
+            return [*found, f"{count(len(texts) - place, 'more sentence')} in the review page."]
         found += mine
     return found

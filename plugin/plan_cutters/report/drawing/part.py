@@ -18,6 +18,7 @@ from plan_cutters.domain.posture import unit
 from plan_cutters.plan_file.numbers import VERDICTS, mm
 from plan_cutters.plan_file.palette import LABELS, label, rgb
 from plan_cutters.plan_file.shares import part_of
+from plan_cutters.plan_file.words.details import drawn
 from plan_cutters.plan_file.words.names import short_names
 from plan_cutters.report.drawing.sheet import DPI, Look, figure, fitting, legend, printable, save, standard, write
 from plan_cutters.report.drawing.view import Body, View, averaged, borders, fitted, frame_towards, view
@@ -218,21 +219,10 @@ def _words(sheet: Any, result: Judged, there: set[int], fixtures: bool) -> None:
     shares = entry.area_share.model_dump()
     part = Path(plan.part.file).name if plan.part.file else "part"
     name = short_names(plan)[entry.id]
-    taken = (
-        "is selected"
-        if result.selected == result.shown
-        else "is shown because it leaves the least area; none is selected"
-    )
-    size = " x ".join(f"{x:.4g}" for x in plan.part.size_mm)
     room = _SHEET[0] - 2.0 * 0.18
     head = fitting(f"{printable(part, 60)}: {printable(name, 60)}", 12, room)
     write(sheet, head[:1], (0.18, _SHEET[1] - 0.16), 12)
-    setup = ", ".join(f"{x:.4g}" for x in plan.effective.setup)
-    machine = printable(plan.effective.machine, 40)
-    under = (
-        f"This cutter {taken}. Part {size} mm. Machine {machine}, setup axis ({setup}), gouge tolerance "
-        f"{mm(plan.effective.tolerance_mm)}, {plan.samples.count} samples."
-    )
+    under = printable(drawn(plan), 400)
     write(sheet, fitting(under, 8.5, room), (0.18, _SHEET[1] - 0.48), 8.5)
     looks = []
     for word in _LEGEND:
