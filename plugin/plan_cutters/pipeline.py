@@ -21,7 +21,6 @@ from plan_cutters.document.notes import noted
 from plan_cutters.document.operations_entry import with_motion
 from plan_cutters.document.plan import Elsewhere, OverSetups, completed, plan_of, selection
 from plan_cutters.document.setup_table import setup_table
-from plan_cutters.document.travel import travels
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
@@ -56,6 +55,7 @@ from plan_cutters.stages.posture_maps import posture_maps
 from plan_cutters.stages.reasons import Reasons
 from plan_cutters.stages.select_cutters import ranked
 from plan_cutters.stages.setups import within_limits
+from plan_cutters.stages.travel import travels
 from plan_cutters.stages.witness import witnesses
 
 #: The work between samples, as a share of that of the searches, and so much of it in any case and for each sample: boxes.

@@ -1,96 +1,51 @@
-"""The plan file states here how much of the target faces lies inside other bodies of the part."""
+"""How much of the target faces lies inside other bodies of the part becomes an entry of the plan file here."""
 
 import shlex
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
-from itertools import groupby
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.kernel.assembly import component_of, faces_of
-from cad_io.part import Part
-from cad_io.part.bodies import Body
 from plan_cutters.document.shares import covered
 from plan_cutters.plan_file.inside import CoveringBody, InsideEntry, SheetsEntry
 from plan_cutters.plan_file.shares import FaceVerdicts
-from plan_cutters.scene.covering import Covering, coverings, sheets
-from plan_cutters.scene.obstacles import weights
+from plan_cutters.scene.covering import coverings, numbers, sheets
 from plan_cutters.scene.preparation import Prepared
 
 
 def inside_entry(ready: Prepared, faces: Mapping[str, FaceVerdicts]) -> InsideEntry:
     """Sum up the surface that lies inside other bodies, body by body; `faces`: the verdicts of any one cutter."""
-    inside, samples, part = ready.inside_bodies, ready.samples, ready.scene.part
+    inside, samples = ready.inside_bodies, ready.samples
     if not inside.any():
         return InsideEntry()
-    area, share = covered(faces, samples, part)
+    area, share = covered(faces, samples, ready.scene.part)
     within, lying = float(samples.area[inside].sum()), sheets(ready)
 
     def of(rows: NDArray[np.int64]) -> float:
         """Area that some samples stand for, so that all of it comes to that of the faces."""
         return area * float(samples.area[rows].sum()) / within if within > 0.0 else 0.0
 
-    sizes = [_volume(ready, body) for body in ready.conditions.around.bodies]
-    bodies = [_body(ready, each, of(each.rows), sizes[each.index] >= max(sizes)) for each in coverings(ready)]
+    def on(rows: NDArray[np.int64]) -> list[str]:
+        return [f"F{n}" for n in np.unique(samples.face[rows]).tolist()]
+
+    bodies = [
+        CoveringBody(
+            number=1 + each.index,
+            name=each.name,
+            own_faces=numbers(each.faces).split(","),
+            faces=on(each.rows),
+            samples=len(each.rows),
+            area_mm2=of(each.rows),
+            how=each.how,
+            largest=each.largest,
+            option=f"--ignore {shlex.quote(each.selection)}",
+        )
+        for each in coverings(ready)
+    ]
     names = ready.conditions.around.on_bodies
-    told = None
+    on_bodies = None
     if len(lying):
-        told = SheetsEntry(faces=[f"F{n}" for n in np.unique(samples.face[lying]).tolist()], samples=len(lying),
-                           area_mm2=of(lying), option=f"--ignore {numbers(names)}")  # fmt: skip
-    return InsideEntry(samples=int(inside.sum()), area_mm2=area, share=share, bodies=bodies, sheets=told)
-
-
-def _body(ready: Prepared, found: Covering, area: float, largest: bool) -> CoveringBody:
-    bodies, part = ready.conditions.around.bodies, ready.scene.part
-    own = sorted(number for number in bodies[found.index].faces if number > 0)
-    others = {n for i, body in enumerate(bodies) if i != found.index for n in body.faces}
-    name, option = _named(part, own, others)
-    return CoveringBody(
-        number=1 + found.index,
-        name=name,
-        own_faces=numbers(own).split(","),
-        faces=[f"F{n}" for n in np.unique(ready.samples.face[found.rows]).tolist()],
-        samples=len(found.rows),
-        area_mm2=area,
-        how=found.how,
-        largest=largest,
-        option=option,
-    )
-
-
-def _volume(ready: Prepared, body: Body) -> float:
-    """Volume that a body's triangles enclose, mm3."""
-    triangles = ready.conditions.around.certain.triangles
-    mine = np.isin(triangles.face, body.faces)
-    sign = weights(replace(triangles, vertex=triangles.vertex[mine], face=triangles.face[mine]), [body])
-    a, b, c = np.moveaxis(triangles.vertex[mine], 1, 0)
-    return abs(float((sign * (np.cross(a, b) * c).sum(axis=1)).sum())) / 6.0
-
-
-def _named(part: Part, own: Sequence[int], others: set[int]) -> tuple[str, str]:
-    """The name of a body's component, and the option that leaves this body out and no other one."""
-    components = component_of(part.tree)
-    paths = {components.get(number, "") for number in own}
-    path = next(iter(paths)).split("/") if len(paths) == 1 else []
-    # The shortest end of its path that means no other one.
-    for name in ("/".join(path[i:]) for i in reversed(range(len(path)))):
-        if name and faces_of(part.tree, name) == set(own) and not others & set(own):
-            return name, f"--ignore {shlex.quote(f'component:{name}')}"
-    # What two bodies have in common closes the other one.
-    return "", f"--ignore {numbers([n for n in own if n not in others] or own)}"
-
-
-def numbers(faces: Sequence[int]) -> str:
-    """Face numbers as the command takes them.
-
-    >>> numbers([7, 8, 9, 12])
-    'F7-9,F12'
-    """
-    return ",".join(_runs(sorted(faces)))
-
-
-def _runs(faces: Sequence[int]) -> Iterator[str]:
-    for _, run in groupby(enumerate(faces), lambda each: each[1] - each[0]):
-        mine = [number for _, number in run]
-        yield f"F{mine[0]}" if len(mine) == 1 else f"F{mine[0]}-{mine[-1]}"
+        on_bodies = SheetsEntry(
+            faces=on(lying), samples=len(lying), area_mm2=of(lying), option=f"--ignore {numbers(names)}"
+        )
+    return InsideEntry(samples=int(inside.sum()), area_mm2=area, share=share, bodies=bodies, sheets=on_bodies)

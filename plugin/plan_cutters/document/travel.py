@@ -1,16 +1,12 @@
 """Where the part stands, and the linear travel that a cutter needs there, as the plan file has them."""
 
-from collections.abc import Mapping
-
 import numpy as np
 
 from cad_io import SurfaceSamples
-from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement
-from plan_cutters.domain.travel import Travel, tips, travel, unjudged
+from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.options import Options
 from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.travel import AxisTravel, BeyondTravel, PlacementEntry, TravelEntry
 
@@ -22,19 +18,6 @@ def placement_entry(placement: Placement | None) -> PlacementEntry | None:
     return PlacementEntry(
         file=placement.file or None, x=placement.x, origin_mm=placement.origin, clamped=list(placement.clamped)
     )
-
-
-def travels(options: Options, samples: SurfaceSamples, reaches: Mapping[Cutter, Verdicts]) -> dict[str, Travel]:
-    """By the id of a cutter where the linear axes stand; empty where that is not judged."""
-    placement = options.placement
-    if placement is None or unjudged(options.machine, placement) is not None:
-        return {}
-    return {
-        cutter.id: travel(
-            options.machine, placement, tips(cutter, samples.point, samples.normal, reach), reach.axis, cutter.length
-        )
-        for cutter, reach in reaches.items()
-    }
 
 
 def travel_entry(machine: Machine, found: Travel, reach: Verdicts, samples: SurfaceSamples) -> TravelEntry:

@@ -1,14 +1,19 @@
 """Find the covers of the part's surface: bodies that overlap others or stand on them, and open shells that lie on a body."""
 
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import groupby
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Record
+from cad_io.kernel.assembly import component_of, faces_of
+from cad_io.part import Part
 from cad_io.part.bodies import Body
 from plan_cutters.scene.inside_material import balls_inside
+from plan_cutters.scene.obstacles import weights
 from plan_cutters.scene.preparation import Prepared
 
 How = Literal["overlaps", "stands_on", "touches_or_overlaps"]
@@ -32,11 +37,23 @@ class Covering(Record):
     how : str
         `overlaps`: volumes intersect, for some of these contacts lie deep in the body. `stands_on`: all of them lie on its skin.
         Otherwise neither is sure.
+    faces : tuple of int
+        Of the body, ascending.
+    largest : bool
+        No other body is larger.
+    name : str
+        Of its component; empty where it has none of its own.
+    selection : str
+        Words for faces that choose this body and no other one.
     """
 
     index: int
     rows: NDArray[np.int64]
     how: How
+    faces: tuple[int, ...]
+    largest: bool
+    name: str
+    selection: str
 
 
 def coverings(ready: Prepared) -> tuple[Covering, ...]:
@@ -44,9 +61,13 @@ def coverings(ready: Prepared) -> tuple[Covering, ...]:
     inside, around, samples = ready.inside_bodies, ready.conditions.around, ready.samples
     rows = np.flatnonzero(inside & ~np.isin(samples.face, around.on_bodies))
     found = []
+    sizes = [_volume(ready, body) for body in around.bodies]
     for index in np.unique(ready.inside[rows]).tolist():
         mine = rows[ready.inside[rows] == index]
-        found.append(Covering(index, mine, _how(ready, around.bodies[index], mine)))
+        own = sorted(number for number in around.bodies[index].faces if number > 0)
+        others = {n for i, body in enumerate(around.bodies) if i != index for n in body.faces}
+        how, largest = _how(ready, around.bodies[index], mine), sizes[index] >= max(sizes)
+        found.append(Covering(index, mine, how, tuple(own), largest, *_named(ready.scene.part, own, others)))
     return tuple(sorted(found, key=lambda each: (-float(samples.area[each.rows].sum()), each.index)))
 
 
@@ -70,3 +91,40 @@ def _how(ready: Prepared, body: Body, rows: NDArray[np.int64]) -> How:
             return "overlaps"
     near_skin(point, _ON * deep, skin.solids, on)
     return "stands_on" if on.all() else "touches_or_overlaps"
+
+
+def _volume(ready: Prepared, body: Body) -> float:
+    """Volume that a body's triangles enclose, mm3."""
+    triangles = ready.conditions.around.certain.triangles
+    mine = np.isin(triangles.face, body.faces)
+    sign = weights(replace(triangles, vertex=triangles.vertex[mine], face=triangles.face[mine]), [body])
+    a, b, c = np.moveaxis(triangles.vertex[mine], 1, 0)
+    return abs(float((sign * (np.cross(a, b) * c).sum(axis=1)).sum())) / 6.0
+
+
+def _named(part: Part, own: Sequence[int], others: set[int]) -> tuple[str, str]:
+    """The name of a body's component, and the words for faces that choose this body and no other one."""
+    components = component_of(part.tree)
+    paths = {components.get(number, "") for number in own}
+    path = next(iter(paths)).split("/") if len(paths) == 1 else []
+    # The shortest end of its path that means no other one.
+    for name in ("/".join(path[i:]) for i in reversed(range(len(path)))):
+        if name and faces_of(part.tree, name) == set(own) and not others & set(own):
+            return name, f"component:{name}"
+    # What two bodies have in common closes the other one.
+    return "", numbers([n for n in own if n not in others] or own)
+
+
+def numbers(faces: Sequence[int]) -> str:
+    """Face numbers as the command takes them.
+
+    >>> numbers([7, 8, 9, 12])
+    'F7-9,F12'
+    """
+    return ",".join(_runs(sorted(faces)))
+
+
+def _runs(faces: Sequence[int]) -> Iterator[str]:
+    for _, run in groupby(enumerate(faces), lambda each: each[1] - each[0]):
+        mine = [number for _, number in run]
+        yield f"F{mine[0]}" if len(mine) == 1 else f"F{mine[0]}-{mine[-1]}"

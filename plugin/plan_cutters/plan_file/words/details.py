@@ -27,7 +27,8 @@ def drawn(plan: Plan) -> str:
     """What a drawing of the part shows: whose verdicts, and what it was judged with."""
     taken = "is selected" if plan.selected else "is shown because it leaves the least area; none is selected"
     return (f"This cutter {taken}. Part {_size(plan)}. Machine {plan.effective.machine}, setup axis "
-            f"({place(plan.effective.setup)}), gouge tolerance {mm(plan.effective.tolerance_mm)}, {count(plan.samples.count, 'sample')}.")  # fmt: skip
+            f"({place(plan.effective.setup)}), gouge tolerance {mm(plan.effective.tolerance_mm)}, "
+            f"{count(plan.samples.count, 'sample')}.")  # fmt: skip
 
 
 def unjudged_share(plan: Plan) -> str:
