@@ -333,7 +333,7 @@ def test_what_counts_in_operations_alone_is_not_ignored(word):
 
 @pytest.mark.parametrize(("machine", "axes"), [("3-axis", "no rotary axis"), ("4-axis-a", "one rotary axis")])
 def test_operations_need_two_rotary_axes(machine, axes):
-    with pytest.raises(OptionError, match=f"machine {machine} has {axes}: ") as caught:
+    with pytest.raises(OptionError, match=f"on machine {machine} {axes} turns the tool: ") as caught:
         Options(machine=machine, operations="fewest")
     assert "\n" not in str(caught.value)
 
