@@ -26,7 +26,7 @@ _FILES = {"operations.npz": "operations of a plan", "samples.npz": "samples of a
 _CHORD_SHARE = 0.25
 
 
-def checked(part: str, file: str, options: "Options", given: dict[str, Any]) -> int:
+def checked(part: str, file: str, options: "Options", *, quiet: bool, read_timeout: float) -> int:
     """Check the operations of a plan.json; 0: all that was checked holds, 1: not all.
 
     Raises
@@ -39,11 +39,11 @@ def checked(part: str, file: str, options: "Options", given: dict[str, Any]) -> 
     from plan_cutters.errors import OptionError
 
     document, arrays, checksums = _read(file)
-    display = None if is_child() else Display(given["quiet"], 0, time.monotonic(), itself=True)
+    display = None if is_child() else Display(quiet, 0, time.monotonic(), itself=True)
     progress = Teller(display)
     progress("check", 0, 1)
     try:
-        read = read_part(part, unit=options.unit, timeout=given["read_timeout"])
+        read = read_part(part, unit=options.unit, timeout=read_timeout)
         question = question_of(read, options, document, arrays)
         question = replace(question, checksums=checksums, asked=options.tolerance)
         answer = check(question, tell=progress.detail)
@@ -56,7 +56,7 @@ def checked(part: str, file: str, options: "Options", given: dict[str, Any]) -> 
     finally:
         if display is not None:
             display.clear()
-    if not given["quiet"]:
+    if not quiet:
         terminal.show(*answer.lines)
     return 0 if answer.holds else 1
 
