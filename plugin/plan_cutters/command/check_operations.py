@@ -17,7 +17,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from cad_io import Part
-    from plan_cutters.checker.question import Question
+    from plan_cutters.checker.question import Body, Question, Setup, ToolSizes
+    from plan_cutters.domain.cutter import Cutter
+    from plan_cutters.domain.fixture import Fixture
     from plan_cutters.options import Options
 
 #: Files that must stand with plan.json, and what they hold.
@@ -115,13 +117,13 @@ def question_of(
     )  # fmt: skip
 
 
-def _body(fixture: Any) -> Any:
+def _body(fixture: "Fixture") -> "Body":
     from plan_cutters.checker.question import Body
 
     return Body(fixture.name, fixture.kind, fixture.sizes, fixture.source, fixture.unit, fixture.placement)
 
 
-def _sizes(cutter: Any) -> Any:
+def _sizes(cutter: "Cutter") -> "ToolSizes":
     from plan_cutters.checker.question import Section, ToolSizes
 
     above = tuple(Section(part, low, each.length, each.radius, each.upper_radius) for part, low, each in cutter.stages)
@@ -132,7 +134,9 @@ def _sizes(cutter: Any) -> Any:
     )  # fmt: skip
 
 
-def _fits(part: "Part", options: "Options", document: Mapping[str, Any], cutters: list[str], setups: Any) -> float:
+def _fits(
+    part: "Part", options: "Options", document: Mapping[str, Any], cutters: list[str], setups: "tuple[Setup, ...]"
+) -> float:
     """Refuse a plan of another part or of other options; the tolerance that it keeps, mm."""
     from plan_cutters.errors import OptionError
 

@@ -5,7 +5,7 @@ import json
 import math
 import os
 import signal
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -24,6 +24,7 @@ from plan_cutters.command.worker import began, can_supervise, follow_parent, is_
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from cad_io.arrays import Floats
     from plan_cutters.domain.cutter import Cutter
     from plan_cutters.options import Options
     from plan_cutters.stages.posture_map import PostureMap
@@ -176,7 +177,7 @@ def _options(request: MapRequest) -> "Options":
     return Options(**options | {"cutters": cutters, "holder": tools.holder, "setup": setup, "tolerance": tolerance})
 
 
-def _text(values: Any) -> str:
+def _text(values: Iterable[float]) -> str:
     return ", ".join(f"{x + 0.0:.6g}" for x in values)
 
 
@@ -213,12 +214,12 @@ def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", request
     return lines
 
 
-def _round(vector: Any) -> list[float]:
+def _round(vector: Iterable[float]) -> list[float]:
     """Coordinates without the noise of rounding."""
     return [round(float(x), 9) for x in vector]
 
 
-def _degrees(intervals: Any) -> list[list[float]]:
+def _degrees(intervals: "Floats") -> list[list[float]]:
     return [[math.degrees(low), math.degrees(high)] for low, high in intervals.tolist()]
 
 
@@ -295,7 +296,7 @@ def _table(found: "PostureMap", about: list[str], outs: Sequence[Path], console:
     console.print(f"Drawn in {names}.", soft_wrap=True)
 
 
-def _spans(intervals: Any, inward: bool = True) -> str:
+def _spans(intervals: "Floats", inward: bool = True) -> str:
     """Intervals of degrees, two digits behind the point: of free ones none is told wider than it is."""
     found = []
     for low, high in _degrees(intervals):
