@@ -344,7 +344,8 @@ def assemble(
     within = [within_limits(ready.samples, ready.cutters, conditions) & ready.finished for conditions in ready.setups]
     beyond = ready.somewhere & ~np.logical_or.reduce(within)
     moved = travels(ready.options, ready.samples, {cutter: each.here for cutter, each in judged.items()})
-    over = OverSetups(reaches, here, served_in, ready.scene.setup, tuple(elsewhere))
+    over = OverSetups(reaches, here, served_in, ready.scene.setup,
+                      tuple((axis, dict(found)) for axis, found in elsewhere))  # fmt: skip
     entries = completed([judged[c].entry for c in ready.cutters], ready, answers, over, beyond, moved)
     selected, chosen = selection(entries)
     # Where obstacles are missing, none is selected, but one may reach all that could be judged.
@@ -372,16 +373,8 @@ def assemble(
         document = plan_of(ready, entries, selected, chosen, began, answers, setup_table(ready, within, over))
     return Result(
         clock.stamp(with_text(document)),
-        ready.scene,
-        ready.samples,
-        ready.surface_class,
-        reaches,
-        ready.options.postures,
-        ready.conditions.kinematics,
-        tuple((axis, dict(found)) for axis, found in elsewhere),
+        ready,
+        over,
+        moved,
         answers,
-        travels=moved,
-        ready=ready,
-        here=here,
-        served_in=served_in if elsewhere else {},
     )

@@ -100,7 +100,6 @@ def _options(asked: Options, ranking: Ranking, chosen: tuple[int, ...]) -> Optio
 
 def _compared(result: Result, ranking: Ranking, chosen: tuple[int, ...]) -> tuple[float, float, int]:
     """Find the share of area that a plan reaches, the part of what was promised that it holds, and the setup that lost most."""
-    assert result.ready is not None, "a plan of the pipeline has what it was judged on"
     samples, ready = result.samples, ranking.ready
     reached = np.logical_or.reduce([each.reached for each in result.reaches.values()]) & result.ready.finished
     whole = float(np.nansum(ready.samples.area[ready.finished]))

@@ -1,7 +1,7 @@
 """A plan with the arrays behind it."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from cad_io import Part, SurfaceSamples
 from cad_io.arrays import Floats, Ints
 from plan_cutters.document.on_face import OnFace, on_face
+from plan_cutters.document.plan import OverSetups
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.kinematics import Kinematics
@@ -42,55 +43,30 @@ class Result:
     ----------
     plan : Plan
         What is written as `plan.json`.
-    scene : Scene
-        The part, its sides and its fixtures: `posture_map` takes it, and so does another `plan`.
-    samples : SurfaceSamples
-        Of the target faces.
-    surface_class : (n,) uint8
-    reaches : dict
-        Cutter id -> Verdicts: over all setups, what one or another of them reaches, with the posture of the first that does.
-    postures : PostureRange
-    kinematics : Kinematics, optional
-        The machine's rotary axes in the part's frame; None where any tool axis within a plain limit is possible.
-    elsewhere : tuple
-        Of each other setup its axis, and what each cutter reaches there: cutter id -> Verdicts.
-    answers : Answers
-        What was asked for after the plan: `stick_outs`, `radius_maps`, `mends`.
-    maps : PostureMaps, optional
-        Every free tilt, for the cutter `shown`, where that was asked for.
+    ready : Prepared
+        The scene and the samples that the cutters were judged on: for further questions.
+    over_setups : OverSetups
+        The verdicts of all cutters.
     travels : dict
         Cutter id -> Travel: where the linear axes stand; empty where that is not judged.
-    ready : Prepared, optional
-        What the cutters were judged on: for further questions.
-    here : dict
-        Cutter id -> Verdicts in the first setup alone: that of `reaches` where there is no other one.
-    served_in : dict
-        Cutter id -> (n,) int32, the setup whose posture a sample has, counted from 0 as in `plan.cutters[].setups`, -1 for none;
-        empty where one setup was asked for.
+    answers : Answers
+        The answers that were requested after the plan: `stick_outs`, `radius_maps`, `mends`.
+    maps : PostureMaps, optional
+        Every free tilt, for the cutter `shown`, where that was requested.
     """
 
     plan: Plan
-    scene: Scene
-    samples: SurfaceSamples
-    surface_class: NDArray[np.uint8]
-    reaches: dict[str, Verdicts]
-    postures: PostureRange
-    kinematics: Kinematics | None = None
-    elsewhere: tuple[tuple[tuple[float, float, float], dict[str, Verdicts]], ...] = ()
-    answers: Answers = field(default_factory=Answers)
+    ready: Prepared
+    over_setups: OverSetups
+    travels: dict[str, Travel]
+    answers: Answers
     maps: PostureMaps | None = None
-    travels: dict[str, Travel] = field(default_factory=dict)
-    ready: Prepared | None = None
-    here: dict[str, Verdicts] = field(default_factory=dict)
-    served_in: dict[str, Ints] = field(default_factory=dict)
 
     def __getstate__(self) -> dict[str, Any]:
-        # Options may hold objects of a CAD host: what they stand for is kept in words.
-        kept = self.ready
-        if kept is not None:
-            chosen = kept.chosen
-            kept = replace(kept, options=replace(kept.options, faces=chosen.asked, ignore=chosen.ignore, fixtures=()))
-        return self.__dict__ | {"ready": kept}
+        # Options may hold objects of a CAD host: words and numbers stand for them.
+        options, chosen = self.ready.options, self.ready.chosen
+        plain = replace(options, faces=chosen.asked, ignore=chosen.ignore, fixtures=())
+        return self.__dict__ | {"ready": replace(self.ready, options=plain)}
 
     def __repr__(self) -> str:
         return (
@@ -98,8 +74,61 @@ class Result:
         )
 
     @property
+    def scene(self) -> Scene:
+        """The part, its sides and its fixtures: `posture_map` takes it, and so does another `plan`."""
+        return self.ready.scene
+
+    @property
     def part(self) -> Part:
         return self.scene.part
+
+    @property
+    def samples(self) -> SurfaceSamples:
+        """Samples of the target faces."""
+        return self.ready.samples
+
+    @property
+    def surface_class(self) -> NDArray[np.uint8]:
+        """Class (n,) of the surface at each sample."""
+        return self.ready.surface_class
+
+    @property
+    def postures(self) -> PostureRange:
+        """Tilts and rotations that were searched."""
+        return self.ready.options.postures
+
+    @cached_property
+    def kinematics(self) -> Kinematics | None:
+        """The machine's rotary axes in the part's frame; None where any tool axis within a plain limit is possible."""
+        return self.conditions.kinematics
+
+    @property
+    def conditions(self) -> Conditions:
+        """All cutters were judged under these conditions."""
+        return self.ready.conditions
+
+    @property
+    def reaches(self) -> dict[str, Verdicts]:
+        """Verdicts by cutter id: over all setups, with the posture of the first one that reaches a sample."""
+        return self.over_setups.reaches
+
+    @property
+    def here(self) -> dict[str, Verdicts]:
+        """Verdicts by cutter id, in the first setup alone."""
+        return self.over_setups.here
+
+    @property
+    def elsewhere(self) -> tuple[tuple[tuple[float, float, float], dict[str, Verdicts]], ...]:
+        """The axis of each other setup, and the verdicts there by cutter id."""
+        return self.over_setups.elsewhere
+
+    @property
+    def served_in(self) -> dict[str, Ints]:
+        """The setup (n,) whose posture a sample has, by cutter id: counted from 0 as in `plan.cutters[].setups`, -1 for none.
+
+        It is empty where there is one setup.
+        """
+        return self.over_setups.served_in if self.elsewhere else {}
 
     @property
     def cutters(self) -> list[CutterEntry]:
@@ -123,24 +152,28 @@ class Result:
 
     def clearances_of(self, cutter: str) -> Clearances:
         """The same for a cutter, by its id."""
-        setups = (self.conditions,) if self.ready is None else self.ready.setups
         return clearances_over(
-            self.samples, self.judged(cutter), self.reaches[cutter], setups, self.served_in.get(cutter)
+            self.samples, self.judged(cutter), self.reaches[cutter], self.ready.setups, self.served_in.get(cutter)
         )
 
     @property
     def inside_bodies(self) -> NDArray[np.bool_]:
         """Samples (n,) inside other bodies of the part: no surface of the finished part."""
-        return np.zeros(len(self.samples), bool) if self.ready is None else self.ready.inside_bodies
+        return self.ready.inside_bodies
 
     def rotary(self, cutter: str) -> tuple[Floats, NDArray[np.int8]]:
         """Positions of the rotary axes at the postures of a cutter, rad, both solutions, and which of them is to be taken.
 
         Each in the setup that serves its sample; arrays as `Kinematics.positions` gives them, (n, 2, axes) and (n,), and where
         linear travel is judged as that takes them.
+
+        Raises
+        ------
+        ValueError
+            The machine has no rotary axes (`kinematics` is None).
         """
-        if self.ready is None or self.kinematics is None:
-            raise ValueError("rotary positions need a machine of rotary axes, and what cutters were judged on")
+        if self.kinematics is None:
+            raise ValueError("rotary positions need a machine of rotary axes")
         axis = self.reaches[cutter].axis
         which = self.served_in.get(cutter, np.zeros(len(axis), np.int32))
         angles, taken, _ = positions([each.kinematics for each in self.ready.setups], axis, which)
@@ -153,13 +186,6 @@ class Result:
         """The plan of operations; None where none was asked for."""
         return self.answers.operations
 
-    @property
-    def conditions(self) -> Conditions:
-        """All cutters were judged under these conditions."""
-        if self.ready is None:
-            raise ValueError("this result was made without what its cutters were judged on")
-        return self.ready.conditions
-
     def judged(self, cutter: str | None = None) -> Cutter:
         """The cutter of an id as it was judged, holder and all; default the one `shown`.
 
@@ -169,7 +195,7 @@ class Result:
             No cutter of the plan is called so.
         """
         wanted = self.shown if cutter is None else cutter
-        found = next((each for each in (self.ready.cutters if self.ready else ()) if each.id == wanted), None)
+        found = next((each for each in self.ready.cutters if each.id == wanted), None)
         if found is None:
             raise OptionError(f"cutter {wanted!r} is none of this plan's: {', '.join(c.id for c in self.cutters)}")
         return found
@@ -222,7 +248,7 @@ class Result:
         if known is not None and known.each is None and known.why != "no holder":
             known = None  # it is about all faces together
         mine = self.samples.face == number
-        if known is None and stick_out and self.ready is not None and (verdicts.reached & mine).any():
+        if known is None and stick_out and (verdicts.reached & mine).any():
             from plan_cutters.answers.stick_out import least_stick_out
 
             known = least_stick_out(

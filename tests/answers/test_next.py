@@ -15,6 +15,7 @@ from plan_cutters import Cutter, Options, plan
 from plan_cutters.answers.areas import Finished, patches
 from plan_cutters.answers.least_set import cover
 from plan_cutters.command.cli import command
+from plan_cutters.command.request import PlanRequest
 from plan_cutters.command.validation import options_of
 from plan_cutters.document.clock import Clock
 from plan_cutters.domain.area import Patch
@@ -31,7 +32,7 @@ LONG = (-60, 60)
 
 def options(*words):
     """Options of a plan, from the words of a command line."""
-    return options_of(command.make_context("plan-cutters", ["part", *words]).params)
+    return options_of(PlanRequest(**command.make_context("plan-cutters", ["part", *words]).params))
 
 
 def asked(part, *words):

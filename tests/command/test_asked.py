@@ -3,7 +3,7 @@
 import json
 import math
 import time
-from dataclasses import fields
+from dataclasses import fields, replace
 
 import jsonschema
 import numpy as np
@@ -15,7 +15,8 @@ from cad_io import CadIoError, read_part
 from cad_io.arrays import FaceInfo
 from cad_io.kernel.assembly import Node
 from plan_cutters import Cutter, Machine, Options, PlanError, PostureRange, plan, posture_map
-from plan_cutters.command import validation
+from plan_cutters.command import cli, validation
+from plan_cutters.command.request import PlanRequest
 from plan_cutters.command.validation import OF_OPERATIONS
 from plan_cutters.errors import CutterError, MachineError, OptionError
 from plan_cutters.scene.faces import select_faces
@@ -324,11 +325,12 @@ def test_a_setup_axis_of_any_length():
 def test_what_counts_in_operations_alone_is_not_ignored(word):
     """Without a plan of operations an option of it is refused, unless it has its default, which is that of `Options`."""
     default = next(each.default for each in fields(Options) if each.name == word)
-    given = {"operations": None, "check_operations": None, "setup": (), "postures": None}
+    request = PlanRequest(**cli.command.make_context("plan-cutters", ["part.step"]).params)
     with pytest.raises(OptionError, match=f"--{word.replace('_', '-')} is about a plan of operations"):
-        validation.refuse_unasked(given | {word: 7})
-    validation.refuse_unasked(given | {word: default})
-    validation.refuse_unasked(given | {word: 7, "operations": "both"})
+        validation.refuse_unplanned_operations(replace(request, **{word: 7}))
+    assert getattr(request, word) == default
+    validation.refuse_unplanned_operations(request)
+    validation.refuse_unplanned_operations(replace(request, **{word: 7}, operations="both"))
 
 
 @pytest.mark.parametrize(("machine", "axes"), [("3-axis", "no rotary axis"), ("4-axis-a", "one rotary axis")])

@@ -12,7 +12,7 @@ import pytest
 import yaml
 
 from plan_cutters.batch import keys
-from plan_cutters.command.changed import RULES, Request, Row
+from plan_cutters.command.changed import RULES, PartRequest, Row
 from plan_cutters.command.repository import Changed, changed, content
 from plan_cutters.errors import PlanError
 from tests.support.forked import ENV
@@ -233,7 +233,7 @@ def test_a_file_that_an_option_leads_to_makes_another_key(tmp_path, monkeypatch)
     words = shop(tmp_path)
 
     def key():
-        request = Request.of(words)
+        request = PartRequest.of(words)
         return keys.settings_key(request.settings, request.handed)
 
     first = key()

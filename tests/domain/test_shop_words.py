@@ -221,10 +221,11 @@ class TestSetups:
 
     def test_on_the_command_line_a_word_with_a_sign_is_no_option(self):
         from plan_cutters.command.cli import command
+        from plan_cutters.command.request import PlanRequest
         from plan_cutters.command.validation import options_of
 
-        given = command.make_context("plan-cutters", ["p.step", "--setup", "-y", "--setup", "Z"]).params
-        options = options_of(given)
+        words = ["p.step", "--setup", "-y", "--setup", "Z"]
+        options = options_of(PlanRequest(**command.make_context("plan-cutters", words).params))
         assert options.setup == (0, -1, 0)
         assert options.other_setups == ((0, 0, 1),)
 

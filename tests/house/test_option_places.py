@@ -19,7 +19,8 @@ import plan_cutters
 from plan_cutters import Options, PostureMaps, Scene, plan, plan_many, posture_map
 from plan_cutters.command import cli, entry, stored_maps
 from plan_cutters.command import map as of_a_point
-from plan_cutters.command.validation import NAMED, words_of
+from plan_cutters.command.request import PlanRequest, planning_options
+from plan_cutters.command.validation import NAMED
 from plan_cutters.option_types import ANGLES, PlanOptions, PointOptions, SceneOptions
 from plan_cutters.plan_file.effective import Effective
 from tests.support.places import ROOT
@@ -81,7 +82,7 @@ def test_completion_offers_names_that_nobody_has_asked_for_yet():
 def test_every_option_can_be_given_on_the_command_line():
     given = cli.command.make_context("plan-cutters", ["part.step", "--setup", "+z", "--setup", "-y"]).params
     # Two come with setup files, the last one with the setup `auto`.
-    assert set(words_of(given)) == WORDS - {"placement", "other_placements", "propose"}
+    assert set(planning_options(PlanRequest(**given))) == WORDS - {"placement", "other_placements", "propose"}
     assert set(NAMED) <= set(given)
 
 

@@ -259,7 +259,7 @@ def test_a_face_without_a_grid_has_one_sample_a_triangle(rounded):
     from dataclasses import replace
 
     result, _ = rounded
-    gridless = replace(result, samples=replace(result.samples, grids=()))
+    gridless = replace(result, ready=replace(result.ready, samples=replace(result.samples, grids=())))
     read = Page(page(gridless))
     width, height = read.meta["atlas"]
     atlas = read.array("atlas.index").reshape(height, width)

@@ -4,6 +4,7 @@ import functools
 import os
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
@@ -12,6 +13,7 @@ from plan_cutters.command import terminal
 from plan_cutters.command.codes import FEASIBLE, run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import CODES, options
+from plan_cutters.command.request import BatchRequest, takes
 from plan_cutters.command.values import File, Words
 from plan_cutters.files.terminal_text import clean
 from plan_cutters.report.folder import DEFAULT_FORMATS
@@ -79,7 +81,8 @@ _many = heading("Many parts")
 @_many("--force", is_flag=True, help="Plan again what is done already.")
 @_many("--dry-run", is_flag=True, help="Say what would be planned, and do nothing.")
 @options("verdicts_key", "read_timeout", "debug", jobs={"help": "Threads of each part.  [default: 1]"})
-def command(sources: tuple[str, ...], **given: Any) -> int:
+@takes(BatchRequest)
+def command(request: BatchRequest) -> int:
     """Plan many parts: files, folders, globs, lists, and manifests (TOML, CSV) with options of each part; here or at URLs.
 
     Each part is planned in a process of its own on a Dask cluster. What is done is not done again: not after an interrupt, nor
@@ -91,25 +94,26 @@ def command(sources: tuple[str, ...], **given: Any) -> int:
     from plan_cutters.errors import OptionError
     from plan_cutters.files.seal import key_of
 
-    parts = _parts(sources, given)
+    parts = _parts(request)
     if all(isinstance(part, Fault) for part in parts):
         for part in parts:
             _told(part.row.error or "")  # type: ignore[union-attr]
         return max(part.row.code for part in parts)  # type: ignore[union-attr]
-    memory = None if given["limit_memory"] is None else given["limit_memory"] * 1e9
+    memory = None if request.limit_memory is None else request.limit_memory * 1e9
     for word in ("timeout_part", "limit_memory", "read_timeout"):
-        if given[word] is not None and not 0.0 < given[word] < 1e9:
+        value = getattr(request, word)
+        if value is not None and not 0.0 < value < 1e9:
             raise OptionError(f"--{word.replace('_', '-')} must be a positive number")
     if memory is not None and memory < 2e9:
         raise OptionError("--limit-memory must be at least 2 GB")
-    if given["cluster"] is not None and given["workers"] is not None:
+    if request.cluster is not None and request.workers is not None:
         raise OptionError("--workers is about this machine: leave it out with --cluster")
-    secret = None if given["verdicts_key"] is None else key_of(given["verdicts_key"])
-    out = Store(given["out"], secret)
-    terms = Terms(given["force"], given["timeout_part"], memory, secret)
-    if given["dry_run"]:
+    secret = None if request.verdicts_key is None else key_of(request.verdicts_key)
+    out = Store(request.out, secret)
+    terms = Terms(request.force, request.timeout_part, memory, secret)
+    if request.dry_run:
         return _foreseen(parts, out, terms)
-    return _all(parts, out, terms, given)
+    return _all(parts, out, terms, request)
 
 
 def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
@@ -117,7 +121,7 @@ def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
     run(command, name, args)
 
 
-def _all(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", given: dict[str, Any]) -> int:
+def _all(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", request: BatchRequest) -> int:
     """Plan them under the eyes of a board; the largest exit code."""
     from plan_cutters.batch import cluster
     from plan_cutters.batch.index import PAGE
@@ -127,24 +131,24 @@ def _all(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", given: di
     from plan_cutters.plan_file.numbers import count as counted
 
     out.begin()  # what is wrong with it is said before any worker is started
-    board = Board(given["quiet"], len(parts))
+    board = Board(request.quiet, len(parts))
     code, found = FEASIBLE, Counter[str]()
     try:
-        count, share = cluster.workers_of(given["workers"], terms.memory, given["jobs"] or 1)
-        if given["cluster"] is None:
+        count, share = cluster.workers_of(request.workers, terms.memory, request.jobs or 1)
+        if request.cluster is None:
             terms.memory = share
-        with cluster.opened(given["cluster"], count) as client:
+        with cluster.opened(request.cluster, count) as client:
             facts = cluster.facts(client)
             board.say(f"{len(parts)} parts on {facts['workers']} workers of {facts['address']}"
                       + (f"; dashboard {facts['dashboard']}" if facts["dashboard"] else ""))  # fmt: skip
-            for row in run_batch(parts, client, out, terms, board=board, title=" ".join(given["title"])):
+            for row in run_batch(parts, client, out, terms, board=board, title=" ".join(request.sources)):
                 code = max(code, row.code)
                 found[outcome(row)] += 1
                 board.row(row)
     finally:
         board.close()
         out.end()
-    if not given["quiet"]:
+    if not request.quiet:
         many = ", ".join(f"{found[each]} {word}" for each, word in reversed(OUTCOMES.items()) if found[each])
         terminal.show(f"{counted(found.total(), 'part')}: {many}.", f"Look at them in a browser: {out.root_url}/{PAGE}")
         terminal.all_shown()
@@ -166,19 +170,18 @@ def _told(line: str) -> None:
     terminal.error(f"{_SELF}: {line}")
 
 
-def _parts(words: Sequence[str], given: dict[str, Any]) -> "list[Job | Fault]":
+def _parts(request: BatchRequest) -> "list[Job | Fault]":
     """Jobs of all that is meant, with the settings of each."""
     from plan_cutters.batch.job import Fault, Job
     from plan_cutters.batch.manifest import manifest
     from plan_cutters.batch.sources import sources
     from plan_cutters.errors import PlanError
 
-    given["title"] = words
     own = {p.opts[0][2:]: p for p in command.params if getattr(p, "group", "") in _OF_A_PART and p.expose_value}
-    settled = functools.cache(lambda key: _settings({**given, **dict(key)}))
+    settled = functools.cache(lambda key: _settings(replace(request, **dict(key))))
     settled(())
     found: list[Job | Fault] = []
-    for each in sources(words, given["out"], lambda file: manifest(file, sorted(own))):
+    for each in sources(request.sources, request.out, lambda file: manifest(file, sorted(own))):
         if isinstance(each, Fault):
             found.append(each)
             continue
@@ -220,17 +223,17 @@ def _beside(word: str, folder: str) -> str:
     return f"{there}{at}{rest}" if folder and file and not os.path.isabs(file) and os.path.exists(there) else word
 
 
-def _settings(given: dict[str, Any]) -> "Settings":
+def _settings(request: BatchRequest) -> "Settings":
     """The settings of parts, from the words of the command line: what is wrong with them is said before anything is begun."""
     from cad_io.files import noted
     from plan_cutters.batch.job import Settings
-    from plan_cutters.command.validation import look_at, options_of, refuse_unasked
+    from plan_cutters.command.validation import look_at, options_of, refuse_unplanned_operations
     from plan_cutters.report.folder import read_formats
 
-    refuse_unasked({**given, "check_operations": None})
+    refuse_unplanned_operations(request)
     with noted() as files:
-        asked = options_of({**given, "jobs": given["jobs"] or 1})
-    look_at(asked)
-    formats = _FORMATS if given["formats"] is None else read_formats(given["formats"])
-    return Settings(asked, tuple(dict.fromkeys(("json", *formats))), given["step_schema"], given["read_timeout"],
+        requested = options_of(replace(request, jobs=request.jobs or 1))
+    look_at(requested)
+    formats = _FORMATS if request.formats is None else read_formats(request.formats)
+    return Settings(requested, tuple(dict.fromkeys(("json", *formats))), request.step_schema, request.read_timeout,
                     tuple(filter(None, files.values())))  # fmt: skip

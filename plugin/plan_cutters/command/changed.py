@@ -18,6 +18,7 @@ from plan_cutters.command.codes import run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
 from plan_cutters.command.repository import Changed, changed, content, publish
+from plan_cutters.command.request import ChangedRequest, PlanRequest, takes
 from plan_cutters.command.terminal import error, hand_out, say
 from plan_cutters.command.values import Folder
 from plan_cutters.errors import OptionError, PlanError
@@ -33,18 +34,8 @@ _SELF = "plan-cutters changed"
 #: Rules by which the command fails, each one stricter than the one before it.
 RULES = ("none", "lost", "unreachable", "not-comparable")
 #: Options of a plan that this command gives itself.
-_OURS = (
-    "-o",
-    "--out",
-    "--formats",
-    "--json",
-    "--quiet",
-    "--postures",
-    "--check-operations",
-    "--help",
-    "-h",
-    "--version",
-)
+_OURS = ("-o", "--out", "--formats", "--json", "--quiet", "--postures", "--check-operations", "--help", "-h",
+         "--version")  # fmt: skip
 _FORMATS = ("json", "html", "png")
 _PLANNED = (0, 1, 4)
 
@@ -78,7 +69,7 @@ class Row:
 
 
 @dataclass(frozen=True)
-class Request:
+class PartRequest:
     """How the parts are planned: the options after `--`, read once, so that all parts have the same tools.
 
     Attributes
@@ -94,7 +85,7 @@ class Request:
     words: tuple[str, ...]
 
     @classmethod
-    def of(cls, asked: Sequence[str]) -> "Request":
+    def of(cls, words: Sequence[str]) -> "PartRequest":
         """Read the options, and every file that they name.
 
         Raises
@@ -105,23 +96,23 @@ class Request:
         from cad_io.files import noted
         from plan_cutters.batch.job import Settings, handed
         from plan_cutters.command.cli import command as plan
-        from plan_cutters.command.validation import look_at, options_of, refuse_unasked
+        from plan_cutters.command.validation import look_at, options_of, refuse_unplanned_operations
 
-        with plan.make_context(_SELF, ["part", *asked]) as context:
-            given = dict(context.params)
-        if len(given["parts"]) > 1:
-            raise OptionError(f"{given['parts'][1]} cannot stand after --: only options can")
-        refuse_unasked(given)
+        with plan.make_context(_SELF, ["part", *words]) as context:
+            requested = PlanRequest(**context.params)
+        if len(requested.parts) > 1:
+            raise OptionError(f"{requested.parts[1]} cannot stand after --: only options can")
+        refuse_unplanned_operations(requested)
         with noted() as files:
-            options = options_of(given)
+            options = options_of(requested)
         look_at(options)
-        settings = Settings(options, _FORMATS, given["step_schema"], read=tuple(filter(None, files.values())))
-        words = ["--formats", ",".join(_FORMATS), *(["--debug"] if given["debug"] else [])]
+        settings = Settings(options, _FORMATS, requested.step_schema, read=tuple(filter(None, files.values())))
+        handed_on = ["--formats", ",".join(_FORMATS), *(["--debug"] if requested.debug else [])]
         for name in ("step_schema", "read_timeout", "timeout", "memory", "cluster", "verdicts", "verdicts_key"):
-            if given[name] is not None:
-                here = name in ("cluster", "verdicts", "verdicts_key") and "://" not in given[name]
-                words += [f"--{name.replace('_', '-')}", os.path.abspath(given[name]) if here else str(given[name])]
-        return cls(settings, handed(options), tuple(words))
+            if (value := getattr(requested, name)) is not None:
+                here = name in ("cluster", "verdicts", "verdicts_key") and "://" not in value
+                handed_on += [f"--{name.replace('_', '-')}", os.path.abspath(value) if here else str(value)]
+        return cls(settings, handed(options), tuple(handed_on))
 
 
 @click.command(
@@ -137,7 +128,7 @@ class Request:
         ENDED,
     ),
 )
-@click.argument("asked", nargs=-1, metavar="[-- OPTION...]")
+@click.argument("plan_options", nargs=-1, metavar="[-- OPTION...]")
 @_commits(
     "--base",
     metavar="COMMIT",
@@ -166,33 +157,34 @@ class Request:
     "--pictures-branch", metavar="NAME", help="Push pictures to this branch of origin and show them in the summary."
 )
 @options("debug")
-def command(asked: tuple[str, ...], **given: Any) -> int:
+@takes(ChangedRequest)
+def command(request: ChangedRequest) -> int:
     """Find the parts (STEP, IGES, BREP) that changed since COMMIT, and show which faces and cutters were lost.
 
     Each part is planned as it was and as it is, with the same options: those after --. The summary is Markdown, on standard
     output and in the file that GITHUB_STEP_SUMMARY names.
     """  # fmt: skip
-    for word in asked:
+    for word in request.plan_options:
         if word.partition("=")[0] in _OURS or re.match("-o.", word):
             raise OptionError(f"{word} cannot stand after --: this command gives it itself")
-    base = given["base"] or (f"origin/{ref}" if (ref := os.environ.get("GITHUB_BASE_REF")) else "")
+    base = request.base or (f"origin/{ref}" if (ref := os.environ.get("GITHUB_BASE_REF")) else "")
     if not base:
         raise OptionError("compare with which commit? give --base, as --base origin/main")
     require_temporary()
-    began, head, parts = changed(base, None if given["staged"] else given["head"])
-    out = Path(given["out"])
+    began, head, parts = changed(base, None if request.staged else request.head)
+    out = Path(request.out)
     with tempfile.TemporaryDirectory() as aside:
-        cache = Path(given["cache"] or aside).absolute()
-        request = Request.of(asked) if parts else None
-        rows = [_compared(part, began, head, request, cache, out) for part in parts]
+        cache = Path(request.cache or aside).absolute()
+        of_part = PartRequest.of(request.plan_options) if parts else None
+        rows = [_compared(part, began, head, of_part, cache, out) for part in parts]
     links: dict[Path, str] = {}
-    if given["pictures_branch"] and rows:
+    if request.pictures_branch and rows:
         try:
-            links = _links(rows, given["pictures_branch"])
+            links = _links(rows, request.pictures_branch)
         except PlanError as fault:
             error(f"{_SELF}: pictures are in {out} alone: {fault}")
-    failing = [row for row in rows if row.breaks(given["fail_on"])]
-    told, job = (_summary(rows, given["fail_on"], failing, links, began, at) for at in ("", _artifacts()))
+    failing = [row for row in rows if row.breaks(request.fail_on)]
+    told, job = (_summary(rows, request.fail_on, failing, links, began, at) for at in ("", _artifacts()))
     _hand_on(rows, out, told, job, failing)
     for row in rows:
         for line in filter(None, (row.failed, row.unread)):
@@ -200,7 +192,7 @@ def command(asked: tuple[str, ...], **given: Any) -> int:
     return 1 if failing else 0
 
 
-def _compared(part: Changed, began: str, head: str, request: Request | None, cache: Path, out: Path) -> Row:
+def _compared(part: Changed, began: str, head: str, request: PartRequest | None, cache: Path, out: Path) -> Row:
     """Plan a part as it was and as it is; what cannot be planned is told in the row. A part that is gone is not planned."""
     if part.new is None or request is None:
         return Row(part)
@@ -246,7 +238,7 @@ def _compared(part: Changed, began: str, head: str, request: Request | None, cac
     )  # fmt: skip
 
 
-def _planned(found: "Content", path: str, request: Request, cache: Path) -> Path:
+def _planned(found: "Content", path: str, request: PartRequest, cache: Path) -> Path:
     """The folder of a plan of a part in the cache, planned unless it is there.
 
     Raises

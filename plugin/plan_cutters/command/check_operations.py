@@ -17,7 +17,9 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from cad_io import Part
-    from plan_cutters.checker.question import Question
+    from plan_cutters.checker.question import Body, Question, Setup, ToolSizes
+    from plan_cutters.domain.cutter import Cutter
+    from plan_cutters.domain.fixture import Fixture
     from plan_cutters.options import Options
 
 #: Files that must stand with plan.json, and what they hold.
@@ -26,7 +28,7 @@ _FILES = {"operations.npz": "operations of a plan", "samples.npz": "samples of a
 _CHORD_SHARE = 0.25
 
 
-def checked(part: str, file: str, options: "Options", given: dict[str, Any]) -> int:
+def checked(part: str, file: str, options: "Options", *, quiet: bool, read_timeout: float) -> int:
     """Check the operations of a plan.json; 0: all that was checked holds, 1: not all.
 
     Raises
@@ -39,11 +41,11 @@ def checked(part: str, file: str, options: "Options", given: dict[str, Any]) -> 
     from plan_cutters.errors import OptionError
 
     document, arrays, checksums = _read(file)
-    display = None if is_child() else Display(given["quiet"], 0, time.monotonic(), itself=True)
+    display = None if is_child() else Display(quiet, 0, time.monotonic(), itself=True)
     progress = Teller(display)
     progress("check", 0, 1)
     try:
-        read = read_part(part, unit=options.unit, timeout=given["read_timeout"])
+        read = read_part(part, unit=options.unit, timeout=read_timeout)
         question = question_of(read, options, document, arrays)
         question = replace(question, checksums=checksums, asked=options.tolerance)
         answer = check(question, tell=progress.detail)
@@ -56,7 +58,7 @@ def checked(part: str, file: str, options: "Options", given: dict[str, Any]) -> 
     finally:
         if display is not None:
             display.clear()
-    if not given["quiet"]:
+    if not quiet:
         terminal.show(*answer.lines)
     return 0 if answer.holds else 1
 
@@ -115,13 +117,13 @@ def question_of(
     )  # fmt: skip
 
 
-def _body(fixture: Any) -> Any:
+def _body(fixture: "Fixture") -> "Body":
     from plan_cutters.checker.question import Body
 
     return Body(fixture.name, fixture.kind, fixture.sizes, fixture.source, fixture.unit, fixture.placement)
 
 
-def _sizes(cutter: Any) -> Any:
+def _sizes(cutter: "Cutter") -> "ToolSizes":
     from plan_cutters.checker.question import Section, ToolSizes
 
     above = tuple(Section(part, low, each.length, each.radius, each.upper_radius) for part, low, each in cutter.stages)
@@ -132,7 +134,9 @@ def _sizes(cutter: Any) -> Any:
     )  # fmt: skip
 
 
-def _fits(part: "Part", options: "Options", document: Mapping[str, Any], cutters: list[str], setups: Any) -> float:
+def _fits(
+    part: "Part", options: "Options", document: Mapping[str, Any], cutters: list[str], setups: "tuple[Setup, ...]"
+) -> float:
     """Refuse a plan of another part or of other options; the tolerance that it keeps, mm."""
     from plan_cutters.errors import OptionError
 

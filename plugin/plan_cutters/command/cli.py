@@ -7,8 +7,9 @@ import os
 import signal
 import sys
 from collections.abc import Sequence
+from functools import partial
 from importlib import import_module
-from typing import Any, NoReturn
+from typing import NoReturn
 
 import click
 
@@ -16,6 +17,7 @@ from plan_cutters.command import help_groups, terminal
 from plan_cutters.command.codes import ended, guarded, interrupt, invoked
 from plan_cutters.command.entry import SUBCOMMANDS
 from plan_cutters.command.option_groups import CODES, EXAMPLES, options
+from plan_cutters.command.request import PlanRequest, takes
 from plan_cutters.command.supervise import (
     default_memory,
     keep_interrupts,
@@ -47,7 +49,8 @@ _SELF = "plan-cutters"
 )
 @click.argument("parts", nargs=-1, required=True, metavar="PART...", type=File("PART"))
 @options()
-def command(parts: tuple[str, ...], **given: Any) -> int:
+@takes(PlanRequest)
+def command(request: PlanRequest) -> int:
     """Find the cutters that can finish the sculptured faces of PART (STEP, IGES, BREP) without gouging or collision.
 
     Each cutter is judged at samples of the surface: a sample is interference-free, accessible, undecided or inaccessible, for a
@@ -57,33 +60,33 @@ def command(parts: tuple[str, ...], **given: Any) -> int:
     from plan_cutters.command.retry import set_aside
     from plan_cutters.command.validation import check, folders
 
-    asked, _ = check(parts, given)
-    if given["postures"] is not None:
+    parts = request.parts
+    requested, _ = check(request)
+    if request.postures is not None:
         from plan_cutters.command.stored_maps import stored
 
-        return stored(parts[0], given["postures"], asked, given, help_groups.named())
-    if given["check_operations"] is not None:
+        return stored(parts[0], request.postures, requested, request, help_groups.named())
+    if request.check_operations is not None:
         from plan_cutters.command.check_operations import checked
 
-        return checked(parts[0], given["check_operations"], asked, given)
+        return checked(
+            parts[0], request.check_operations, requested, quiet=request.quiet, read_timeout=request.read_timeout
+        )
     codes = []
-    outs = folders(parts, given)
+    outs = folders(request)
     since: float | None = began()
     done, aside = set_aside()
     for i, part in enumerate(parts):
         if i < done:
             continue
         out = outs[i] if outs else None
-        code, line = guarded(
-            lambda part=part, out=out, since=since, aside=aside: one_part(part, out, asked, given, since, aside),
-            given["debug"],
-        )
+        code, line = guarded(partial(one_part, part, out, requested, request, since, aside), request.debug)
         since, aside = None, {}
         codes.append(code)
         report("done", str(code))
         if line:
-            terminal.error(f"{part}: {line}" if len(parts) > 1 and not given["quiet"] else line)
-        elif len(parts) > 1 and not given["quiet"]:
+            terminal.error(f"{part}: {line}" if len(parts) > 1 and not request.quiet else line)
+        elif len(parts) > 1 and not request.quiet:
             terminal.give(clean(f"{part}: {dict(CODES).get(str(code), '')}") + "\n")
         if code == INTERRUPTED:
             break
@@ -138,31 +141,31 @@ def _watched(words: list[str], name: str) -> int:
 
     try:
         with command.make_context(name, list(words)) as context:
-            given = dict(context.params)
+            request = PlanRequest(**context.params)
     except click.exceptions.Exit as done:
         return done.exit_code
-    asked, faults = check(given["parts"], given)
+    requested, faults = check(request)
     if not can_supervise():
-        if given["timeout"] is not None:
+        if request.timeout is not None:
             raise OptionError("--timeout: this system has no process that could be ended; leave it out")
         keep_output()
         return invoked(command, _SELF, words)
-    names = {cutter.id: called(cutter) for cutter in asked.judged}
-    display = Display(given["quiet"] or given["postures"] is not None, len(names), began(), names=names)
+    names = {cutter.id: called(cutter) for cutter in requested.judged}
+    display = Display(request.quiet or request.postures is not None, len(names), began(), names=names)
     for fault in faults:
         terminal.error(f"plan-cutters: {fault}; the other parts are planned")
-    memory = default_memory() if given["memory"] is None else int(given["memory"] * 1e9)
+    memory = default_memory() if request.memory is None else int(request.memory * 1e9)
     display.stage("start")
     try:
         found = supervised(
-            words, parts=given["parts"], read_timeout=given["read_timeout"], memory=memory, display=display,
-            timeout=math.inf if given["timeout"] is None else given["timeout"], since=began(),
+            words, parts=request.parts, read_timeout=request.read_timeout, memory=memory, display=display,
+            timeout=math.inf if request.timeout is None else request.timeout, since=began(),
         )  # fmt: skip
     except Unfinished as stopped:
         from plan_cutters.command.partial_plan import without_models
 
         display.clear()
-        found = without_models(stopped, given)
+        found = without_models(stopped, request)
     finally:
         display.clear()
     terminal.all_shown()

@@ -7,7 +7,7 @@ import sys
 import traceback
 from collections.abc import Callable, Sequence
 from functools import partial
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 import click
 
@@ -46,14 +46,13 @@ def interrupt(number: int, _: object) -> NoReturn:
     raise KeyboardInterrupt
 
 
-def guarded(work: Any, debug: bool) -> tuple[int, str]:
+def guarded(work: Callable[[], tuple[int, str]], debug: bool) -> tuple[int, str]:
     """Run; errors that have a cause become an exit code and a line."""
     from cad_io.errors import CadIoError, WriteError
     from plan_cutters.errors import PlanError, UnjudgeableError
 
     try:
-        code, line = work()
-        return int(code), str(line)
+        return work()
     except (Exception, KeyboardInterrupt) as error:
         if debug:
             terminal.emit(traceback.format_exc())

@@ -3,13 +3,14 @@
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, NoReturn
 
 import click
 
 from plan_cutters.command.codes import USAGE, run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
+from plan_cutters.command.request import DiffRequest, takes
 from plan_cutters.command.terminal import error, hand_out, paper
 from plan_cutters.command.values import File, Folder, Words
 from plan_cutters.files.terminal_text import clean
@@ -72,7 +73,8 @@ def asked_words() -> Sequence[str]:
     help="Compare although these differ: unit, faces, sampling, postures, tolerance, clearance, machine, setup, fixtures.",
 )
 @options("debug")
-def command(old: str, new: str, **given: Any) -> int:
+@takes(DiffRequest)
+def command(request: DiffRequest) -> int:
     """Show which faces and cutters were lost or won from plan OLD to plan NEW.
 
     OLD and NEW are plan.json files, the folders of two plans, or two folders of many plans, which are paired by name.
@@ -81,17 +83,18 @@ def command(old: str, new: str, **given: Any) -> int:
     from plan_cutters.comparison.folders import compare_folders
     from plan_cutters.errors import OptionError
 
-    if given["as_json"] and given["as_markdown"]:
+    if request.as_json and request.as_markdown:
         raise OptionError("--json and --markdown both write standard output: give one of them")
-    despite = [word.strip() for word in given["despite"].split(",") if word.strip()]
+    despite = [word.strip() for word in request.despite.split(",") if word.strip()]
     for word in despite:
         if word not in asked_words():
             raise OptionError(f"--despite {word!r} is not known; give some of {','.join(asked_words())}")
-    found = compare_folders(Path(old), Path(new), slack=given["slack"] / 100.0, despite=despite)
-    made = _pages(Path(old), Path(new), found, Path(given["out"])) if given["out"] else {}
-    if given["as_json"]:
+    old, new = Path(request.old), Path(request.new)
+    found = compare_folders(old, new, slack=request.slack / 100.0, despite=despite)
+    made = _pages(old, new, found, Path(request.out)) if request.out else {}
+    if request.as_json:
         hand_out(found.model_dump_json(indent=2) + "\n")
-    elif given["as_markdown"]:
+    elif request.as_markdown:
         from plan_cutters.comparison.markdown import markdown
 
         hand_out(markdown(found, {name: path.as_posix() for name, path in made.items()}))
@@ -104,7 +107,7 @@ def command(old: str, new: str, **given: Any) -> int:
             beside = [f"Side by side: {path}" for path in made.values()]
             for line in (*apart(found), *beside, verdict(found)):
                 console.print(clean(line), soft_wrap=True)
-    for line in found.unread if given["as_json"] or given["as_markdown"] else ():
+    for line in found.unread if request.as_json or request.as_markdown else ():
         error(f"{_SELF}: {line}")
     return NOT_COMPARABLE if not found.comparable else LOST if found.lost else 0
 

@@ -12,6 +12,7 @@ import click
 from plan_cutters.command.codes import USAGE, faults, run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
+from plan_cutters.command.request import MachinesRequest, takes
 from plan_cutters.command.terminal import error, hand_out, paper
 from plan_cutters.command.values import File, Words, machine_names
 from plan_cutters.files.terminal_text import clean
@@ -48,7 +49,8 @@ _questions, _output = heading("Questions"), heading("Output")
 @_output("--json", "as_json", is_flag=True, help="All that was understood, as JSON on standard output.")
 @_output("--to-toml", type=File("FILE"), help="Write the machine in our own format.")
 @options("debug")
-def command(machines: tuple[str, ...], **given: Any) -> int:
+@takes(MachinesRequest)
+def command(request: MachinesRequest) -> int:
     """Show how each machine is understood: a built-in one by its name, or a file.
 
     It reads our own TOML and JSON, FreeCAD .fcm, LinuxCNC .ini, Fusion .mch, and MTConnect probes. Where a file does not say how
@@ -59,12 +61,13 @@ def command(machines: tuple[str, ...], **given: Any) -> int:
     from plan_cutters.errors import OptionError
     from plan_cutters.machines.read import source_of
 
-    if not machines and (given["to_toml"] or given["angles"] or given["axis"]):
+    machines = request.machines
+    if not machines and (request.to_toml or request.angles or request.axis):
         raise OptionError("which machine? give a name or a file")
-    if given["to_toml"] is not None and len(machines) != 1:
+    if request.to_toml is not None and len(machines) != 1:
         raise OptionError("--to-toml writes one machine: give one")
-    axis = None if given["angles"] is None else _vector(given["angles"])
-    turned = None if given["axis"] is None else _angles(given["axis"])
+    axis = None if request.angles is None else _vector(request.angles)
+    turned = None if request.axis is None else _angles(request.axis)
     found: list[dict[str, Any]] = []
     read: list[Machine] = []
 
@@ -73,10 +76,10 @@ def command(machines: tuple[str, ...], **given: Any) -> int:
         found.append(_facts(name, form, machine, axis, turned))
         read.append(machine)
 
-    lines = faults(machines or tuple(builtin_machines()), one, given["debug"])
-    if read and not lines and given["to_toml"] is not None:
-        write(Path(given["to_toml"]), import_module("plan_cutters.machines").to_toml(read[0]))
-    if given["as_json"]:
+    lines = faults(machines or tuple(builtin_machines()), one, request.debug)
+    if read and not lines and request.to_toml is not None:
+        write(Path(request.to_toml), import_module("plan_cutters.machines").to_toml(read[0]))
+    if request.as_json:
         said = {"format": "plan-cutters-machines", "format_version": 1, "machines": found}
         hand_out(json.dumps(said, indent=2, ensure_ascii=False) + "\n")
     else:
@@ -119,7 +122,9 @@ def _angles(text: str) -> dict[str, float]:
     return found
 
 
-def _facts(name: str, form: str, machine: "Machine", axis: Any, turned: Any) -> dict[str, Any]:
+def _facts(
+    name: str, form: str, machine: "Machine", axis: tuple[float, float, float] | None, turned: dict[str, float] | None
+) -> dict[str, Any]:
     """Gather the facts of one machine, in the form that JSON has."""
     import numpy as np
 

@@ -5,7 +5,7 @@ import json
 import math
 import os
 import signal
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -15,6 +15,7 @@ from plan_cutters.command.codes import ended, interrupt, invoked
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
 from plan_cutters.command.progress import Display
+from plan_cutters.command.request import MapRequest, posture_options, read_tools, takes
 from plan_cutters.command.supervise import supervise
 from plan_cutters.command.terminal import hand_out, paper
 from plan_cutters.command.values import File, Setup, Words, cutter_ids
@@ -24,6 +25,7 @@ from plan_cutters.files.terminal_text import clean
 if TYPE_CHECKING:
     from rich.console import Console
 
+    from cad_io.arrays import Floats
     from plan_cutters.domain.cutter import Cutter
     from plan_cutters.options import Options
     from plan_cutters.stages.posture_map import PostureMap
@@ -77,7 +79,8 @@ _point = heading("Point")
     json={"help": "The map on standard output, and no table."},
     quiet={"help": "No table."},
 )  # fmt: skip
-def command(part: str, **given: Any) -> int:
+@takes(MapRequest)
+def command(request: MapRequest) -> int:
     """Find the free tilts of one cutter at one point of PART, rotation by rotation, and the causes that forbid the others.
 
     The free intervals are printed, and the map is drawn: tilt against rotation, forbidden tilts coloured by cause, undecided
@@ -86,21 +89,21 @@ def command(part: str, **given: Any) -> int:
     from cad_io.read.sniff import kind
     from plan_cutters.errors import OptionError
 
-    given["part"] = part
+    part = request.part
     report("part", part)
-    place = _point_of(given["at"])
-    if not given["within"] >= 0:
+    place = _point_of(request.at)
+    if not request.within >= 0:
         raise OptionError("--within must be a distance in mm that is not negative")
-    if given["json_out"] not in (None, "-"):
+    if request.json_out not in (None, "-"):
         raise OptionError("--json takes -, for standard output")
-    outs = [Path(out) for out in given["out"]] or [Path(f"{Path(part).stem}-map.{kind}") for kind in ("png", "svg")]
+    outs = [Path(out) for out in request.out] or [Path(f"{Path(part).stem}-map.{kind}") for kind in ("png", "svg")]
     for out in outs:
         if out.suffix.lower() not in (".png", ".svg"):
             raise OptionError(f"-o {out}: pictures are written as .png or .svg")
         if not out.absolute().parent.is_dir():
             raise OptionError("cannot be written: there is no such folder", file=str(out))
     kind(part)
-    options = _options(given)
+    options = _options(request)
     (cutter,), machine, placement = options.judged, options.machine, options.placement
     if machine.turns and machine.turning < 2:
         raise OptionError(
@@ -112,13 +115,13 @@ def command(part: str, **given: Any) -> int:
     from plan_cutters.point import posture_map
     from plan_cutters.scene.scene import Scene
 
-    tolerance = {"tolerance": given["tolerance"]} if given["tolerance"] > 0 else {}
+    tolerance = {"tolerance": request.tolerance} if request.tolerance > 0 else {}
     scene = Scene.of(
         read_part(part, unit=options.unit, guarded=hasattr(os, "fork")), setup=options.setup, flip=options.flip,
         ignore=options.ignore, fixtures=options.fixtures, **tolerance,
     )  # fmt: skip
     foot, off = nearest(scene.part, place, ignore=scene.ignored)
-    if off > given["within"]:
+    if off > request.within:
         raise OptionError(
             f"the point ({_text(place)}) is {off:.4g} mm from the part: the nearest point of a face is ({_text(foot)}); give "
             f"that, or --within {math.ceil(off)}",
@@ -126,14 +129,14 @@ def command(part: str, **given: Any) -> int:
         )
     found = posture_map(
         scene, point=foot.tolist(), cutter=cutter, rotations=options.postures.rotations, tilt=options.tilt, machine=machine,
-        tolerance=given["tolerance"], x=None if placement is None else placement.x,
+        tolerance=request.tolerance, x=None if placement is None else placement.x,
     )  # fmt: skip
     face = int(locate(scene.part, scene.orientation, foot.tolist(), ignore=scene.ignored).face[0])
-    about = _about(found, f"F{face}", off, cutter, given)
+    about = _about(found, f"F{face}", off, cutter, request)
     _draw(found, options.tilt, about, outs)
-    if given["json_out"] == "-":
-        hand_out(json.dumps(_facts(found, f"F{face}", off, cutter, given), indent=2) + "\n")
-    elif not given["quiet"]:
+    if request.json_out == "-":
+        hand_out(json.dumps(_facts(found, f"F{face}", off, cutter, request), indent=2) + "\n")
+    elif not request.quiet:
         with paper(80) as console:
             _table(found, about, outs, console)
     if any(len(each) for each in found.free) and not found.missing:
@@ -153,33 +156,33 @@ def _point_of(text: str) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _options(given: dict[str, Any]) -> "Options":
+def _options(request: MapRequest) -> "Options":
     """The options of a plan of one cutter, which is inline or of a library."""
-    from plan_cutters.command.validation import words_of
     from plan_cutters.errors import OptionError
     from plan_cutters.options import LEAST_TOLERANCE, Options
 
-    library = given["cutters"]
-    one = {"cutter": () if library else (given["cutter"],), "cutters": (library,) if library else (), "skip_bad": bool(library),
-           "setup": (Setup().convert(given["setup"], None, None),)}  # fmt: skip
-    words = words_of({**given, **one})
+    library = request.cutters
+    setup = Setup().convert(request.setup, None, None)
+    options = posture_options(request)
     if library:
-        ((tools,), words["libraries"]) = words["libraries"], ()
-        mine = [each for each in tools if given["cutter"] in (each.id, each.name)]
-        if len(mine) != 1:
-            many = "several tools are" if mine else "no tool is"
-            raise OptionError(f"{many} called {given['cutter']!r}: plan-cutters tools lists them", file=library)
-        words["cutters"] = mine
+        tools = read_tools((), (library,), request.holder, skip_bad=True)
+        cutters = tuple(each for each in tools.libraries[0] if request.cutter in (each.id, each.name))
+        if len(cutters) != 1:
+            many = "several tools are" if cutters else "no tool is"
+            raise OptionError(f"{many} called {request.cutter!r}: plan-cutters tools lists them", file=library)
+    else:
+        tools = read_tools((request.cutter,), (), request.holder)
+        cutters = tools.cutters
     # A map may be asked for with a smaller one, and with none.
-    words["tolerance"] = max(given["tolerance"], LEAST_TOLERANCE)
-    return Options(**words)
+    tolerance = max(request.tolerance, LEAST_TOLERANCE)
+    return Options(**options | {"cutters": cutters, "holder": tools.holder, "setup": setup, "tolerance": tolerance})
 
 
-def _text(values: Any) -> str:
+def _text(values: Iterable[float]) -> str:
     return ", ".join(f"{x + 0.0:.6g}" for x in values)
 
 
-def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: dict[str, Any]) -> list[str]:
+def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", request: MapRequest) -> list[str]:
     """Describe the map line by line: its contact, cutter and search; the first line is its title."""
     from plan_cutters.domain.spec import notation, parted
     from plan_cutters.plan_file.numbers import angle, capital, mm
@@ -196,10 +199,10 @@ def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: 
     title = f"{capital(called(cutter))}{held} ({parted(cutter.typed)[0]})"
     moved = f"; the point asked for is {mm(off)} off" if off > 1e-3 else ""
     lines = [
-        f"{title} at ({_text(_round(found.point))}) on {face} of {printable(Path(given['part']).name, 80)}",
+        f"{title} at ({_text(_round(found.point))}) on {face} of {printable(Path(request.part).name, 80)}",
         f"Normal ({_text(_round(found.normal))}), rotation 0 towards ({_text(_round(found.direction_max))}); curvatures "
         f"{curvature} 1/mm, concave positive{moved}.",
-        f"Machine {printable(Path(given['machine']).name, 40)}, setup {printable(Path(given['setup']).name, 40)}; {proved}; "
+        f"Machine {printable(Path(request.machine).name, 40)}, setup {printable(Path(request.setup).name, 40)}; {proved}; "
         f"{apart}.",
     ]
     if found.missing:
@@ -212,16 +215,16 @@ def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: 
     return lines
 
 
-def _round(vector: Any) -> list[float]:
+def _round(vector: Iterable[float]) -> list[float]:
     """Coordinates without the noise of rounding."""
     return [round(float(x), 9) for x in vector]
 
 
-def _degrees(intervals: Any) -> list[list[float]]:
+def _degrees(intervals: "Floats") -> list[list[float]]:
     return [[math.degrees(low), math.degrees(high)] for low, high in intervals.tolist()]
 
 
-def _facts(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: dict[str, Any]) -> dict[str, Any]:
+def _facts(found: "PostureMap", face: str, off: float, cutter: "Cutter", request: MapRequest) -> dict[str, Any]:
     """The map as JSON has it; degrees and mm."""
     words = (
         "free",
@@ -238,10 +241,10 @@ def _facts(found: "PostureMap", face: str, off: float, cutter: "Cutter", given: 
     none = [None if math.isnan(x) else math.degrees(x) for x in found.local_gouge.tolist()]
     return {
         "format": "plan-cutters-map", "format_version": 1,
-        "part": Path(given["part"]).name, "face": face, "point": found.point.tolist(),
+        "part": Path(request.part).name, "face": face, "point": found.point.tolist(),
         "off_mm": off, "normal": found.normal.tolist(), "direction_max": found.direction_max.tolist(),
-        "curvature": found.curvature.tolist(), "cutter": cutter.id, "machine": given["machine"],
-        "setup": given["setup"],
+        "curvature": found.curvature.tolist(), "cutter": cutter.id, "machine": request.machine,
+        "setup": request.setup,
         "tolerance_mm": found.tolerance, "certified": found.certified, "missing": list(found.missing),
         "rotations": [
             {"deg": math.degrees(turn), "local_gouge": none[i], **{w: _degrees(getattr(found, w)[i]) for w in words}}
@@ -294,7 +297,7 @@ def _table(found: "PostureMap", about: list[str], outs: Sequence[Path], console:
     console.print(f"Drawn in {names}.", soft_wrap=True)
 
 
-def _spans(intervals: Any, inward: bool = True) -> str:
+def _spans(intervals: "Floats", inward: bool = True) -> str:
     """Intervals of degrees, two digits behind the point: of free ones none is told wider than it is."""
     found = []
     for low, high in _degrees(intervals):

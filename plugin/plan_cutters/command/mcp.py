@@ -4,13 +4,14 @@ import os
 import sys
 from collections.abc import Sequence
 from importlib.util import find_spec
-from typing import Any, NoReturn
+from typing import NoReturn
 
 import click
 
 from plan_cutters.command.codes import run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
+from plan_cutters.command.request import McpRequest, takes
 from plan_cutters.command.values import Folder
 from plan_cutters.command.worker import INTERRUPTED
 
@@ -74,7 +75,8 @@ _access, _limits = heading("Access"), heading("Limits of a call")
     help="Calls that work at the same time.  [default: 2]",
 )
 @options("debug")
-def command(roots: tuple[str, ...], **given: Any) -> int:
+@takes(McpRequest)
+def command(request: McpRequest) -> int:
     """Serve plan-cutters to agents over standard input and output, by the Model Context Protocol.
 
     The tools are plan_part, posture_map, explain_sample, compare_cutters and render. Each call works in a process of its own.
@@ -88,14 +90,14 @@ def command(roots: tuple[str, ...], **given: Any) -> int:
     from plan_cutters.agents.limits import Limits
     from plan_cutters.agents.server import serve, service_of
 
-    limits = Limits(file_mb=given["most_mb"], samples=given["most_samples"], cutters=given["most_cutters"],
-                    seconds=given["timeout"], characters=given["most_characters"], calls=given["calls"],
-                    memory_gb=given["memory"])  # fmt: skip
-    if given["debug"]:
+    limits = Limits(file_mb=request.most_mb, samples=request.most_samples, cutters=request.most_cutters,
+                    seconds=request.timeout, characters=request.most_characters, calls=request.calls,
+                    memory_gb=request.memory)  # fmt: skip
+    if request.debug:
         import logging
 
         logging.basicConfig(level=logging.DEBUG)
-    serve(service_of(roots, limits, client_roots=given["client_roots"]), lambda: os._exit(INTERRUPTED))
+    serve(service_of(request.roots, limits, client_roots=request.client_roots), lambda: os._exit(INTERRUPTED))
     # A thread may still wait for standard input.
     sys.stdout.flush()
     os._exit(0)

@@ -6,7 +6,7 @@ import traceback
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from plan_cutters.batch import handing
 from plan_cutters.command import terminal
@@ -18,13 +18,14 @@ from plan_cutters.plan_file.words.details import others
 from plan_cutters.plan_file.words.names import called
 
 if TYPE_CHECKING:
+    from plan_cutters.command.request import PlanRequest
     from plan_cutters.options import Options
     from plan_cutters.plan_file.model import Plan
     from plan_cutters.stages.judge import Judge
 
 
 def one_part(
-    part: str, out: Path | None, options: "Options", given: dict[str, Any], began: float | None = None,
+    part: str, out: Path | None, options: "Options", request: "PlanRequest", began: float | None = None,
     aside: Mapping[int, str] | None = None,
 ) -> tuple[int, str]:  # fmt: skip
     """Plan one part into a folder, None for none; exit code and a line about it.
@@ -34,14 +35,14 @@ def one_part(
     from plan_cutters.report.folder import DEFAULT_FORMATS, Staging, ended, file_name, read_formats, write_all
     from plan_cutters.report.to_json import dumps
 
-    formats = DEFAULT_FORMATS if given["formats"] is None else read_formats(given["formats"])
+    formats = DEFAULT_FORMATS if request.formats is None else read_formats(request.formats)
     formats = formats if out else ()
     report("part", part)
     staging = Staging(out, lambda folder: report("staging", str(folder))) if out else None
-    watch = Onlooker(out, options, given, began)
+    watch = Onlooker(out, options, request, began)
     try:
         watch.tell("start", 0, 1)
-        ahead = _compiling(options, given["quiet"])
+        ahead = _compiling(options, request.quiet)
         import plan_cutters.report.models  # noqa: F401  all that takes time to load is loaded in the stage `start`
         from plan_cutters.document.clock import Clock
         from plan_cutters.pipeline import run
@@ -50,15 +51,15 @@ def one_part(
         gc.enable()
         clock = Clock(watch.tell, began=began)
         source = handing.part() if handing.holds_part() else part
-        with _judging(given) as judged:
-            result = run(source, options, clock, read_timeout=given["read_timeout"], at=report_work, ahead=ahead,
+        with _judging(request) as judged:
+            result = run(source, options, clock, read_timeout=request.read_timeout, at=report_work, ahead=ahead,
                          aside=aside, judged=judged)  # fmt: skip
         document = result.plan
         if out is None:
             watch.summarise(document)
         else:
             watch.tell("files", 0, 1)
-            document = write_all(result, out, formats, staging, step_schema=given["step_schema"], onlooker=watch,
+            document = write_all(result, out, formats, staging, step_schema=request.step_schema, onlooker=watch,
                                  clock=clock)  # fmt: skip
     except KeyboardInterrupt:
         if watch.plan is None or out is None:
@@ -69,18 +70,18 @@ def one_part(
         watch.end()
         if staging:
             staging.discard()
-    if given["json_out"] == "-":
+    if request.json_out == "-":
         terminal.hand_out(dumps(document))
-    if not given["quiet"]:
-        _tells(given)(*written(document, out, formats), *others(document, every=given["verbose"]))
+    if not request.quiet:
+        _tells(request)(*written(document, out, formats), *others(document, every=request.verbose))
     for name, why in document.not_written.items():
         terminal.error(f"plan-cutters: {file_name(name)} was not written: {why}")
     return code_of(document), ""
 
 
-def _tells(given: dict[str, Any]) -> Callable[..., None]:
+def _tells(request: "PlanRequest") -> Callable[..., None]:
     """What tells results: where a program reads the plan on standard output, nothing else is written there."""
-    return terminal.say if given["json_out"] == "-" else terminal.show
+    return terminal.say if request.json_out == "-" else terminal.show
 
 
 def _compiling(options: "Options", quiet: bool) -> Callable[[str], None]:
@@ -94,51 +95,51 @@ def _compiling(options: "Options", quiet: bool) -> Callable[[str], None]:
 
 
 @contextmanager
-def _judging(given: dict[str, Any]) -> "Iterator[Judge]":
+def _judging(request: "PlanRequest") -> "Iterator[Judge]":
     """What judges the cutters, with the cluster and the kept verdicts that were asked for; it says what came of these."""
     from plan_cutters.batch.one import judging
     from plan_cutters.files.seal import key_of
 
     with ExitStack() as stack:
         client = None
-        if given["cluster"] is not None:
+        if request.cluster is not None:
             from plan_cutters.batch import cluster
 
-            client = stack.enter_context(cluster.opened(given["cluster"]))
+            client = stack.enter_context(cluster.opened(request.cluster))
         lent = None
         if (offer := handing.offer()) is not None:
             from plan_cutters.batch.lending import Lent
 
             lent = stack.enter_context(closing(Lent(offer)))
-        key = handing.key() if given["verdicts_key"] is None else key_of(given["verdicts_key"])
-        judged = judging(client, given["verdicts"], lent, key)
+        key = handing.key() if request.verdicts_key is None else key_of(request.verdicts_key)
+        judged = judging(client, request.verdicts, lent, key)
         yield judged
-    if given["verdicts"] is not None:
+    if request.verdicts is not None:
         from plan_cutters.batch.verdicts import Kept
 
         assert isinstance(judged, Kept)
         for fault in judged.faults:
             terminal.error(f"plan-cutters: {fault}")
-        if not given["quiet"]:
+        if not request.quiet:
             terminal.say(f"Verdicts: {judged.found} kept from before, {judged.judged} judged now.")
 
 
 class Onlooker:
     """Shows what is found as soon as it is safe on disk, and tells how far the work is."""
 
-    def __init__(self, out: Path | None, options: "Options", given: dict[str, Any], began: float | None) -> None:
-        self.out, self.given = out, given
+    def __init__(self, out: Path | None, options: "Options", request: "PlanRequest", began: float | None) -> None:
+        self.out, self.request = out, request
         self.plan: Plan | None = None
         self.display = None
         if not is_child():
             names = {cutter.id: called(cutter) for cutter in options.judged}
-            self.display = Display(given["quiet"], len(names), began or time.monotonic(), itself=True, names=names)
+            self.display = Display(request.quiet, len(names), began or time.monotonic(), itself=True, names=names)
         self.tell = Teller(self.display)
 
     def summarise(self, plan: "Plan") -> None:
         self.end()
-        if not self.given["quiet"]:
-            summary(plan, verbose=self.given["verbose"], tells=_tells(self.given))
+        if not self.request.quiet:
+            summary(plan, verbose=self.request.verbose, tells=_tells(self.request))
 
     def safe(self, plan: "Plan") -> None:
         self.plan = plan
@@ -154,7 +155,7 @@ class Onlooker:
         self.tell.detail("splitting the faces" if what == "split" else f"writing {file_name(what)}")
 
     def failed(self, what: str, error: Exception) -> None:
-        if self.given["debug"]:
+        if self.request.debug:
             terminal.emit("".join(traceback.format_exception(error)))
 
     def end(self) -> None:

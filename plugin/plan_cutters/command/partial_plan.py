@@ -1,14 +1,17 @@
 """Tell the user that models could not be finished. This module loads almost nothing: an interrupted command must end at once."""
 
-from typing import Any
+from typing import TYPE_CHECKING
 
 from plan_cutters.command import terminal
 from plan_cutters.command.codes import UNREADABLE
 from plan_cutters.command.worker import INTERRUPTED
 from plan_cutters.command.worker_errors import Unfinished
 
+if TYPE_CHECKING:
+    from plan_cutters.command.request import PlanRequest
 
-def without_models(stopped: Unfinished, given: dict[str, Any]) -> int:
+
+def without_models(stopped: Unfinished, request: "PlanRequest") -> int:
     """The plan was safe when the process that made it was ended: say what is missing; its exit code stands."""
     from plan_cutters.report import PLAN, file_name
     from plan_cutters.report.folder import ended
@@ -16,9 +19,9 @@ def without_models(stopped: Unfinished, given: dict[str, Any]) -> int:
     path = stopped.out / PLAN
     missing = ", ".join(map(file_name, ended(stopped.out, str(stopped)))) or "a model"
     terminal.error(f"plan-cutters: {missing} in {stopped.out}: not written: {stopped}")
-    if given["json_out"] == "-" and path.is_file():
+    if request.json_out == "-" and path.is_file():
         terminal.hand_out(path.read_text(encoding="utf-8"))
-    left = given["parts"][stopped.parts :]
+    left = request.parts[stopped.parts :]
     if left and stopped.code != INTERRUPTED:
         terminal.error(f"plan-cutters: not planned: {', '.join(left)}")
         return max(stopped.code, UNREADABLE)

@@ -12,11 +12,13 @@ from plan_cutters.command import terminal
 from plan_cutters.command.codes import FEASIBLE, NONE_FEASIBLE, NOT_ALL_JUDGED, run
 from plan_cutters.command.help_groups import Command, named
 from plan_cutters.command.option_groups import ENDED, options
+from plan_cutters.command.request import StoredRequest, judging_options, takes
 from plan_cutters.command.validation import NAMED
 from plan_cutters.command.values import File
 from plan_cutters.files.terminal_text import clean
 
 if TYPE_CHECKING:
+    from plan_cutters.command.request import PlanRequest
     from plan_cutters.options import Options
 
 _SELF = "plan-cutters stored"
@@ -51,25 +53,27 @@ _LISTED = 3
     "unit", "spacing", "grid", "tolerance", "allowance", "holder_clearance", "tilt", "rotation", "rotation_step", "quiet", "jobs",
     "debug", json={"help": "The answer on standard output."}, defaults=False,
 )  # fmt: skip
-def command(file: str, part: str | None, **given: Any) -> int:
+@takes(StoredRequest)
+def command(request: StoredRequest) -> int:
     """Judge the cutter of FILE on another machine, in another setup, or within fewer tilts and rotations.
 
     FILE is the postures.npz that a plan writes with --posture-maps; with PART, it must be of this part. Options that are not
     given stay as the maps were made; a question that the maps cannot answer is refused.
     """
     from cad_io.read.sniff import kind
-    from plan_cutters.command.validation import look_at, options_of
+    from plan_cutters.command.validation import look_at
     from plan_cutters.errors import OptionError
+    from plan_cutters.options import Options
 
-    if given["json_out"] not in (None, "-"):
+    if request.json_out not in (None, "-"):
         raise OptionError("--json takes -, for standard output")
-    if not os.path.isfile(file):
-        raise OptionError("no such file, or it is no file", file=file)
-    if part is not None:
-        kind(part)
-    asked = options_of(given)
-    look_at(asked)
-    return stored(part, file, asked, given, named())
+    if not os.path.isfile(request.file):
+        raise OptionError("no such file, or it is no file", file=request.file)
+    if request.part is not None:
+        kind(request.part)
+    requested = Options(**judging_options(request))
+    look_at(requested)
+    return stored(request.part, request.file, requested, request, named())
 
 
 def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
@@ -77,7 +81,9 @@ def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
     run(command, name, args)
 
 
-def stored(part: str | None, postures: str, options: "Options", given: dict[str, Any], named: Collection[str]) -> int:
+def stored(
+    part: str | None, postures: str, options: "Options", request: "StoredRequest | PlanRequest", named: Collection[str]
+) -> int:
     """Say what a cutter reaches on the machine that is asked for, by its posture maps of the part; the exit code.
 
     Parameters
@@ -87,10 +93,9 @@ def stored(part: str | None, postures: str, options: "Options", given: dict[str,
     postures : str
         The file of the maps.
     options : Options
-    given : dict
-        The parameters of the command.
+    request : StoredRequest or PlanRequest
     named : collection of str
-        Those that were given: the others mean what the maps were made with.
+        Its fields that stand on the command line: the others mean what the maps were made with.
 
     Raises
     ------
@@ -111,7 +116,7 @@ def stored(part: str | None, postures: str, options: "Options", given: dict[str,
             raise OptionError(f"{option}: nothing is written with --postures; leave it out")
     maps, name = PostureMaps.load(postures), Path(postures).name
     try:
-        reach = maps.asked(part, **_asked(options, given, named), jobs=options.jobs)
+        reach = maps.asked(part, **_asked(options, request, named), jobs=options.jobs)
         setup = options.setup if "setup" in named else setup_of(maps.about).z
         missing, unjudged = maps.missing, words_of(maps.about, "unjudged_faces")
     except OptionError as error:
@@ -122,13 +127,13 @@ def stored(part: str | None, postures: str, options: "Options", given: dict[str,
     verdict = reach.verdict[~maps.inside]
     counts = {word: int((verdict == code).sum()) for code, word in WORDS.items()}
     inside = int(np.count_nonzero(maps.inside))
-    if given["json_out"] == "-":
+    if request.json_out == "-":
         answer = {"format": "plan-cutters-stored", "format_version": 1, "part": part and Path(part).name,
                   "cutter": maps.cutter,
                   "machine": options.machine.name, "setup": setup, "samples": counts, "inside_bodies": inside,
                   "missing": list(missing), "unjudged_faces": list(unjudged), "asked": dict(maps.about)}  # fmt: skip
         terminal.hand_out(json.dumps(answer, indent=2) + "\n")
-    if not given["quiet"]:
+    if not request.quiet:
         said = ", ".join(f"{count} {word.replace('_', ' ')}" for word, count in counts.items() if count)
         on = f"{maps.cutter} on {options.machine.name}, setup {axis_words(setup)}"
         lines = [f"{Path(part).name if part else name}: {on}, by {name}: {said}"]
@@ -144,21 +149,21 @@ def stored(part: str | None, postures: str, options: "Options", given: dict[str,
             lines.append(f"Obstacles are missing or guessed, so nothing is beyond doubt: {listed(missing, _LISTED)}.")
         if unjudged:
             lines.append(f"Not judged: {listed(unjudged, _LISTED)}.")
-        tells = terminal.say if given["json_out"] == "-" else terminal.show
+        tells = terminal.say if request.json_out == "-" else terminal.show
         tells(*(clean(line) for line in lines))
     if counts["inaccessible"]:
         return NONE_FEASIBLE
     return NOT_ALL_JUDGED if counts["undecided"] or counts["unjudged"] or missing or unjudged else FEASIBLE
 
 
-def _asked(options: "Options", given: dict[str, Any], named: Collection[str]) -> dict[str, Any]:
+def _asked(options: "Options", request: "StoredRequest | PlanRequest", named: Collection[str]) -> dict[str, Any]:
     """Gather the options that the user gave, by the names of `Options`."""
     from dataclasses import fields
 
     known = {each.name for each in fields(options)}
     words = {NAMED.get(name, name) for name in named} & known
     if "setup" in named:
-        words |= {"placement"} | ({"other_setups"} if len(given["setup"]) > 1 else set())
+        words |= {"placement"} | ({"other_setups"} if len(request.setup) > 1 else set())
     if options.fixtures:  # a setup file brings some, too
         words |= {"fixtures"}
     return {word: getattr(options, word) for word in sorted(words - {"jobs"})}

@@ -12,7 +12,7 @@ import sys
 import warnings
 from collections.abc import Callable, Iterator
 from io import StringIO, TextIOWrapper
-from typing import IO, TYPE_CHECKING, Any, Literal
+from typing import IO, TYPE_CHECKING, Any, Literal, TypeVar
 
 from cad_io.errors import CacheWarning
 from plan_cutters.command.worker import is_child, report
@@ -22,6 +22,8 @@ from plan_cutters.files.terminal_text import clean
 if TYPE_CHECKING:
     from rich.console import Console
     from rich.text import Text
+
+T = TypeVar("T")
 
 #: The name of a standard stream, in `sys`.
 Where = Literal["stdout", "stderr"]
@@ -205,7 +207,7 @@ def paper(width: int) -> Iterator["Console"]:
     hand_out(text.getvalue())
 
 
-def handing_out(work: Callable[[], Any]) -> Any:
+def handing_out(work: Callable[[], T]) -> T:
     """Do what writes on standard output.
 
     Raises

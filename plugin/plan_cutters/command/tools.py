@@ -12,6 +12,7 @@ import click
 from plan_cutters.command.codes import USAGE, faults, run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
+from plan_cutters.command.request import ToolsRequest, takes
 from plan_cutters.command.terminal import error, hand_out, paper
 from plan_cutters.command.values import File, Folder
 from plan_cutters.files.terminal_text import clean
@@ -63,7 +64,8 @@ _cutters, _output = heading("Cutters"), heading("Output")
 @_output("--to-toml", type=File("FILE"), help="Write the tools that can be judged in our own format.")
 @_output("--draw", type=Folder("DIR"), help="Draw each assembly to scale (SVG) into a folder.")
 @options("debug")
-def command(files: tuple[str, ...], **given: Any) -> int:
+@takes(ToolsRequest)
+def command(request: ToolsRequest) -> int:
     """List the tools in FILE as they are understood, and say why some cannot be judged.
 
     It reads Fusion .tools, .json and CSV, HSMWorks .hsmlib, FreeCAD .fctl, .fctb and .fcholder, LinuxCNC .tbl, and TOML.
@@ -71,29 +73,29 @@ def command(files: tuple[str, ...], **given: Any) -> int:
     from plan_cutters.library.read import holder_of, listing, nothing
     from plan_cutters.library.words import of_words
 
-    if given["list_holders"]:
-        return _holders(files, given)
-    if not files and not given["cutter"]:
+    if request.list_holders:
+        return _holders(request)
+    if not request.files and not request.cutter:
         raise click.UsageError("Missing argument 'FILE...'.")
-    holder = None if given["holder"] is None else holder_of(given["holder"])
+    holder = None if request.holder is None else holder_of(request.holder)
     found: list[Library] = []
-    if given["cutter"]:
-        found.append(of_words(given["cutter"], None if isinstance(holder, str) else holder))
+    if request.cutter:
+        found.append(of_words(request.cutter, None if isinstance(holder, str) else holder))
 
     def one(file: str) -> None:
-        library = listing(file, assume_stickout=given["assume_stickout"], holder=holder, skip_bad=given["skip_bad"])
+        library = listing(file, assume_stickout=request.assume_stickout, holder=holder, skip_bad=request.skip_bad)
         found.append(library)
         if not library and not (library.holders and not library.entries):
             raise nothing(library)
 
-    lines = faults(files, one, given["debug"])
+    lines = faults(request.files, one, request.debug)
     if not lines:
         # Nothing is written if anything was wrong.
-        if given["to_toml"] is not None:
-            _to_toml(found, Path(given["to_toml"]))
-        if given["draw"] is not None:
-            _draw(found, Path(given["draw"]))
-    if given["as_json"]:
+        if request.to_toml is not None:
+            _to_toml(found, Path(request.to_toml))
+        if request.draw is not None:
+            _draw(found, Path(request.draw))
+    if request.as_json:
         said = {
             "format": "plan-cutters-tools",
             "format_version": 1,
@@ -109,18 +111,17 @@ def command(files: tuple[str, ...], **given: Any) -> int:
     return USAGE if lines else 0
 
 
-def _holders(files: tuple[str, ...], given: dict[str, Any]) -> int:
+def _holders(request: ToolsRequest) -> int:
     """The built-in holders: listed, and drawn where that is asked for."""
     from plan_cutters.library.words import pinned, standard
 
-    others = [
-        f"--{word.replace('_', '-')}" for word in ("cutter", "holder", "assume_stickout", "to_toml") if given[word]
-    ]
-    if files or others:
-        raise click.UsageError(f"--list-holders lists the built-in holders alone: leave out {(files or others)[0]}")
-    if given["draw"] is not None:
-        _draw(pinned(), Path(given["draw"]))
-    if given["as_json"]:
+    words = ("cutter", "holder", "assume_stickout", "to_toml")
+    others = [*request.files, *(f"--{word.replace('_', '-')}" for word in words if getattr(request, word))]
+    if others:
+        raise click.UsageError(f"--list-holders lists the built-in holders alone: leave out {others[0]}")
+    if request.draw is not None:
+        _draw(pinned(), Path(request.draw))
+    if request.as_json:
         plain = [
             {"word": word, "name": each.name, "id": each.id, "bore": each.bore} for word, each in standard().items()
         ]

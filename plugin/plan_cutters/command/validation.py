@@ -10,10 +10,11 @@ from collections.abc import Sequence
 from dataclasses import fields
 from difflib import get_close_matches
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from cad_io.errors import CadIoError, ReadError
 from plan_cutters.command.entry import SUBCOMMANDS
+from plan_cutters.command.request import PlanningRequest, PlanRequest, planning_options
 
 if TYPE_CHECKING:
     from plan_cutters.options import Options
@@ -27,7 +28,7 @@ OF_OPERATIONS = ("feed", "scallop", "stepover", "index_step", "index_time", "cha
 LEAST_MEMORY = 2e9
 
 
-def check(parts: Sequence[str], given: dict[str, Any]) -> "tuple[Options, list[CadIoError]]":
+def check(request: PlanRequest) -> "tuple[Options, list[CadIoError]]":
     """Options, and why some of several parts cannot be read.
 
     Raises
@@ -37,28 +38,28 @@ def check(parts: Sequence[str], given: dict[str, Any]) -> "tuple[Options, list[C
     PlanError
         An option has no meaning, or a library or machine file cannot be used.
     """
-    _words(parts, given)
-    faults = _faults(parts)
-    if len(faults) == len(parts):
+    _words(request)
+    faults = _faults(request.parts)
+    if len(faults) == len(request.parts):
         raise faults[0]
-    if given["postures"] is None:
-        for out in folders(parts, given):
+    if request.postures is None:
+        for out in folders(request):
             _writable(out)
-    options = options_of(given)
+    options = options_of(request)
     look_at(options)
     return options, faults
 
 
-def folders(parts: Sequence[str], given: dict[str, Any]) -> list[Path]:
+def folders(request: PlanRequest) -> list[Path]:
     """The output folder of each part; none where only standard output is written."""
     from plan_cutters.errors import OptionError
 
-    if given["json_out"] == "-" and given["out"] is None and given["formats"] is None:
+    if request.json_out == "-" and request.out is None and request.formats is None:
         return []
-    if given["out"] is not None and len(parts) > 1:
-        outs = [Path(given["out"]) / f"{Path(p).stem}-plan" for p in parts]
+    if request.out is not None and len(request.parts) > 1:
+        outs = [Path(request.out) / f"{Path(p).stem}-plan" for p in request.parts]
     else:
-        outs = [Path(given["out"] or f"{Path(p).stem}-plan") for p in parts]
+        outs = [Path(request.out or f"{Path(p).stem}-plan") for p in request.parts]
     if len(set(outs)) < len(outs):
         twice = next(str(out) for out in outs if outs.count(out) > 1)
         raise OptionError(
@@ -67,55 +68,58 @@ def folders(parts: Sequence[str], given: dict[str, Any]) -> list[Path]:
     return outs
 
 
-def _words(parts: Sequence[str], given: dict[str, Any]) -> None:
+def _words(request: PlanRequest) -> None:
     """Options that need no file and no number to be read."""
     from plan_cutters.errors import OptionError
     from plan_cutters.report.folder import read_formats
 
-    if given["formats"] is not None:
-        read_formats(given["formats"])
-    if given["json_out"] not in (None, "-"):
+    if request.formats is not None:
+        read_formats(request.formats)
+    if request.json_out not in (None, "-"):
         raise OptionError("--json takes -, for standard output; --formats json writes plan.json into the folder")
-    if given["json_out"] and len(parts) > 1:
+    if request.json_out and len(request.parts) > 1:
         raise OptionError("--json - writes one plan: give one part, or -o DIR --formats json for a file of each")
-    if given["json_out"] and sys.stdout is None:
+    if request.json_out and sys.stdout is None:
         raise OptionError("--json -: standard output is closed")
-    if given["out"] == "":
+    if request.out == "":
         raise OptionError("-o: the folder has no name")
-    if "" in parts:
+    if "" in request.parts:
         raise OptionError("PART: a file has no name")
     for name in ("postures", "check_operations"):
-        if given[name] is not None and any(str(each).lower() == "auto" for each in given["setup"]):
+        if getattr(request, name) is None:
+            continue
+        if any(str(each).lower() == "auto" for each in request.setup):
             raise OptionError(
                 f"--setup auto plans what it proposes, and --{name.replace('_', '-')} plans nothing: name the setup"
             )
-        planning = [word for word in ("cluster", "verdicts", "verdicts_key") if given[word] is not None]
-        if given[name] is not None and planning:
+        planning = [word for word in ("cluster", "verdicts", "verdicts_key") if getattr(request, word) is not None]
+        if planning:
             one, other = (word.replace("_", "-") for word in (planning[0], name))
             raise OptionError(f"--{one} is about planning, and --{other} plans nothing: leave one of them out")
-    refuse_unasked(given)
-    if given["check_operations"] is not None and len(parts) > 1:
+    if request.check_operations is None:
+        refuse_unplanned_operations(request)
+    elif len(request.parts) > 1:
         raise OptionError("--check-operations is about one part")
-    if given["postures"] is not None and len(parts) > 1:
+    if request.postures is not None and len(request.parts) > 1:
         raise OptionError("--postures is about one part")
-    if given["postures"] is not None and not os.path.isfile(given["postures"]):
-        raise OptionError("no such file, or it is no file", file=given["postures"])
-    if not 0.0 < given["read_timeout"] < math.inf:
+    if request.postures is not None and not os.path.isfile(request.postures):
+        raise OptionError("no such file, or it is no file", file=request.postures)
+    if not 0.0 < request.read_timeout < math.inf:
         raise OptionError("--read-timeout must be a positive number of seconds")
-    if given["verdicts_key"] is not None:
+    if request.verdicts_key is not None:
         from plan_cutters.files.seal import key_of
 
-        if given["verdicts"] is None:
+        if request.verdicts is None:
             raise OptionError("--verdicts-key seals kept verdicts: give it with --verdicts, or leave it out")
-        key_of(given["verdicts_key"])
-    if given["timeout"] is not None and not 0.0 < given["timeout"] < math.inf:
+        key_of(request.verdicts_key)
+    if request.timeout is not None and not 0.0 < request.timeout < math.inf:
         raise OptionError("--timeout must be a positive number of seconds")
-    if given["memory"] is not None and not LEAST_MEMORY <= given["memory"] * 1e9 < 1e18:
+    if request.memory is not None and not LEAST_MEMORY <= request.memory * 1e9 < 1e18:
         raise OptionError("--memory must be at least 2 GB")
 
 
-def refuse_unasked(given: dict[str, Any]) -> None:
-    """Refuse options of a plan of operations where none is asked for.
+def refuse_unplanned_operations(request: PlanningRequest) -> None:
+    """Refuse options of a plan of operations where none is requested.
 
     Raises
     ------
@@ -123,14 +127,13 @@ def refuse_unasked(given: dict[str, Any]) -> None:
     """
     from plan_cutters.errors import OptionError
 
-    if given["operations"] is not None or given["check_operations"] is not None:
+    if request.operations is not None:
         return
     from plan_cutters.options import Options
 
     defaults = {each.name: each.default for each in fields(Options)}
     for name in OF_OPERATIONS:
-        default = defaults[name]
-        if given.get(name, default) != default:
+        if getattr(request, name) != defaults[name]:
             word = f"--{name.replace('_', '-')}"
             raise OptionError(f"{word} is about a plan of operations: give it with --operations, or leave it out")
 
@@ -193,50 +196,10 @@ def _fixture(file: str) -> None:
             raise ReadError("is not a file", file=file)
 
 
-def options_of(given: dict[str, Any]) -> "Options":
+def options_of(request: PlanningRequest) -> "Options":
     """The options of a plan, from the words of the command line; a PlanError for what has no meaning."""
     from plan_cutters.batch import handing
     from plan_cutters.options import Options
 
     # A batch has looked at its words already, perhaps on another machine.
-    return handing.options() or Options(**words_of(given))
-
-
-def words_of(given: dict[str, Any]) -> dict[str, Any]:
-    """Give the values of a command line by the names that `Options` has for them, without values that `Options` does not have."""
-    from dataclasses import fields
-
-    from plan_cutters.domain.posture import PostureRange
-    from plan_cutters.options import Options
-
-    known = {each.name for each in fields(Options)}
-    words = {NAMED.get(name, name): value for name, value in given.items() if NAMED.get(name, name) in known}
-    postures = PostureRange.degrees(given["tilt"], given["rotation"], given["rotation_step"])
-    words |= {"tilt": postures.tilt, "rotation": postures.rotation, "rotation_step": postures.step}
-    if words.get("index_step") is not None:
-        words["index_step"] = math.radians(words["index_step"])
-    words |= {"setup": given["setup"][0], "other_setups": given["setup"][1:]}
-    return words | _tools(given)
-
-
-def _tools(given: dict[str, Any]) -> dict[str, Any]:
-    """Cutters, libraries and the holder."""
-    from plan_cutters.domain.cutter import Cutter
-    from plan_cutters.domain.holder import Holder
-    from plan_cutters.errors import OptionError
-    from plan_cutters.library.records import Library
-
-    holder: Holder | str | None = None
-    libraries: list[Library] = []
-    words = {"assume_stickout": given.get("assume_stickout"), "skip_bad": given.get("skip_bad", False)}
-    if given["holder"] is not None or given["cutters"]:
-        # Who names neither need not load the readers.
-        from plan_cutters.library.read import holder_of, read_library
-
-        holder = None if given["holder"] is None else holder_of(given["holder"])
-        libraries = [read_library(file, holder=holder, **words) for file in given["cutters"]]
-    if not given["cutters"] and (words["assume_stickout"] is not None or words["skip_bad"]):
-        word = "--skip-bad" if words["skip_bad"] else "--assume-stickout"
-        raise OptionError(f"{word} is about the tools of a library: give it with --cutters")
-    return {"cutters": tuple(Cutter.parse(spec) for spec in given["cutter"]), "libraries": tuple(libraries),
-            "holder": None if isinstance(holder, str) else holder}  # fmt: skip
+    return handing.options() or Options(**planning_options(request))

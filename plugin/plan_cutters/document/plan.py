@@ -143,15 +143,15 @@ class OverSetups:
     """The verdicts of each cutter over all setups and in each of them, by its id."""
 
     #: In one setup or another.
-    reaches: Mapping[str, Verdicts]
+    reaches: dict[str, Verdicts]
     #: In the first one.
-    here: Mapping[str, Verdicts]
+    here: dict[str, Verdicts]
     #: The setup that serves each sample, (n,) int32.
-    served_in: Mapping[str, Ints]
+    served_in: dict[str, Ints]
     #: (float, float, float); its axis.
     first: Vector
     #: In each other setup.
-    elsewhere: tuple[Elsewhere, ...] = ()
+    elsewhere: tuple[tuple[Vector, dict[str, Verdicts]], ...] = ()
 
     def each(self) -> tuple[Elsewhere, ...]:
         """Every setup with what is reached there, the first one first."""

@@ -6,18 +6,18 @@ from typing import Any, Generic, TypeVar
 
 from plan_cutters.files.content import Content
 
-Asked = TypeVar("Asked")
-Read = TypeVar("Read")
+#: A function of a content, and of what a room adds to it.
+Reader = TypeVar("Reader", bound=Callable[..., Any])
 
 
 @dataclass(frozen=True, slots=True)
-class Format(Generic[Asked, Read]):
-    """A format that is read: its name, its usual suffixes, how its content is recognised, and read with what is asked for."""
+class Format(Generic[Reader]):
+    """A format that is read: its name, its usual suffixes, and the functions that recognise and read its content."""
 
     name: str
     suffixes: tuple[str, ...]
     recognises: Callable[[Any], bool]
-    read: Callable[[Any, Asked], Read]
+    read: Reader
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,9 +30,9 @@ class Foreign:
 
 
 def recognised(
-    content: Content, formats: Sequence[Format[Asked, Read]], foreign: Iterable[Foreign], *, xml: str, json: str,
+    content: Content, formats: Sequence[Format[Reader]], foreign: Iterable[Foreign], *, xml: str, json: str,
     archive: str = "", first: Iterable[Foreign] = (),
-) -> Format[Asked, Read]:  # fmt: skip
+) -> Format[Reader]:  # fmt: skip
     """The format of a file; what is known and not read is refused by name, some of it `first`.
 
     `xml`, `json`, `archive`: what to say of a file of these that is of no format.

@@ -3,6 +3,7 @@
 import math
 import re
 from collections.abc import Callable
+from functools import partial
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.shapes import SAME
@@ -199,10 +200,10 @@ def _lollipop(tool: Listed) -> Cutter:
 
 
 CUTTING: dict[str, Callable[[Listed], Cutter]] = {
-    "flat": lambda tool: _end(tool, "flat"),
-    "bull": lambda tool: _end(tool, "bull"),
-    "ball": lambda tool: _end(tool, "ball"),
-    "slot": lambda tool: _end(tool, "slot"),
+    "flat": partial(_end, promise="flat"),
+    "bull": partial(_end, promise="bull"),
+    "ball": partial(_end, promise="ball"),
+    "slot": partial(_end, promise="slot"),
     "face": _face,
     "taper": _taper,
     "chamfer": _chamfer,

@@ -12,24 +12,19 @@ from plan_cutters.files import formats
 from plan_cutters.files.formats import Foreign, Format
 from plan_cutters.library import freecad, fusion_csv, fusion_json, hsmworks, linuxcnc, toml_in
 from plan_cutters.library.files import Content
-from plan_cutters.library.milling import Ask
 from plan_cutters.library.raw_tool import Found
 
-
-def _plain(read: Callable[[Content], Found]) -> Callable[[Content, Ask], Found]:
-    return lambda content, _: read(content)
-
-
-FORMATS: tuple[Format[Ask, Found], ...] = (
-    Format("Fusion tools (zip)", (".tools",), fusion_json.is_zip, _plain(fusion_json.read_zip)),
-    Format("Fusion JSON", (".json",), fusion_json.is_json, _plain(fusion_json.read_json)),
-    Format("Fusion CSV", (".csv",), fusion_csv.is_csv, _plain(fusion_csv.read_csv)),
-    Format("HSMWorks", (".hsmlib",), hsmworks.is_hsmlib, _plain(hsmworks.read_hsmlib)),
-    Format("FreeCAD library", (".fctl",), freecad.is_library, _plain(freecad.read_library)),
-    Format("FreeCAD bit", (".fctb",), freecad.is_bit, _plain(freecad.read_bit)),
-    Format("FreeCAD holder", (".fcholder",), freecad.is_holder, _plain(freecad.read_holder)),
-    Format("plan-cutters TOML", (".toml",), toml_in.is_toml, _plain(toml_in.read_toml)),
-    Format("LinuxCNC tool table", (".tbl",), linuxcnc.is_table, _plain(linuxcnc.read_table)),
+Reader = Callable[[Content], Found]
+FORMATS: tuple[Format[Reader], ...] = (
+    Format("Fusion tools (zip)", (".tools",), fusion_json.is_zip, fusion_json.read_zip),
+    Format("Fusion JSON", (".json",), fusion_json.is_json, fusion_json.read_json),
+    Format("Fusion CSV", (".csv",), fusion_csv.is_csv, fusion_csv.read_csv),
+    Format("HSMWorks", (".hsmlib",), hsmworks.is_hsmlib, hsmworks.read_hsmlib),
+    Format("FreeCAD library", (".fctl",), freecad.is_library, freecad.read_library),
+    Format("FreeCAD bit", (".fctb",), freecad.is_bit, freecad.read_bit),
+    Format("FreeCAD holder", (".fcholder",), freecad.is_holder, freecad.read_holder),
+    Format("plan-cutters TOML", (".toml",), toml_in.is_toml, toml_in.read_toml),
+    Format("LinuxCNC tool table", (".tbl",), linuxcnc.is_table, linuxcnc.read_table),
 )
 
 _SQLITE = b"SQLite format 3\0"
@@ -92,7 +87,7 @@ FOREIGN = (
 )  # fmt: skip
 
 
-def recognised(content: Content) -> Format[Ask, Found]:
+def recognised(content: Content) -> Format[Reader]:
     """The format of a file.
 
     Raises

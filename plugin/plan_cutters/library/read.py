@@ -63,7 +63,7 @@ def listing(path: str | os.PathLike[str], *, assume_stickout: float | None = Non
         raise LibraryError(f"a tool library is a file's name, not a value of type {type(path).__name__}") from None
     content = Content(file, data_of(file))
     form = recognised(content)
-    raw = form.read(content, ask)
+    raw = form.read(content)
     entries = tuple(each if isinstance(each, Entry) else entry_of(each, ask) for each in raw.tools)
     notes = list(raw.notes)
     if content.members is None and content.encoded[1] == "cp1252":

@@ -12,7 +12,8 @@ from plan_cutters.files.formats import Foreign, Format
 from plan_cutters.machines import freecad, fusion, linuxcnc, mtconnect, toml_in
 from plan_cutters.machines.files import Added, Content
 
-FORMATS: tuple[Format[Added, Machine], ...] = (
+Reader = Callable[[Content, Added], Machine]
+FORMATS: tuple[Format[Reader], ...] = (
     Format("plan-cutters TOML", (".toml",), toml_in.is_toml, toml_in.read_toml),
     Format("plan-cutters JSON", (".json",), toml_in.is_json, toml_in.read_json),
     Format("FreeCAD machine", (".fcm",), freecad.is_fcm, freecad.read_fcm),
@@ -57,7 +58,7 @@ FOREIGN = (
 )  # fmt: skip
 
 
-def recognised(content: Content) -> Format[Added, Machine]:
+def recognised(content: Content) -> Format[Reader]:
     """The format of a file.
 
     Raises

@@ -76,7 +76,7 @@ class Making:
         self.splits: dict[int | None, Any] = {}
         self._result, self._folder, self._schema, self._clock, self._begins = result, folder, schema, clock, begins
         self._errors: dict[int | None, Exception] = {}
-        self._several = result.ready is not None and result.ready.options.jobs > 1
+        self._several = result.ready.options.jobs > 1
 
     def file(self, name: str, split: Any = None) -> "FileEntry":
         """Make the file of a format."""

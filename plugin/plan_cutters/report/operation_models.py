@@ -107,7 +107,7 @@ def _place(result: Judged, name: str) -> int:
 def _fixtures(result: Judged) -> list[Drawn]:
     """The fixtures, those of each setup below a node of their own where setups differ in them."""
     ready = result.ready
-    if ready is None or ready.alike:
+    if ready.alike:
         return drawn_fixtures(result)
     found = []
     for k, conditions in enumerate(ready.setups):

@@ -57,7 +57,7 @@ def meta_of(
         "axes": [axis.name for axis in result.conditions.machine.rotary or ()],
         "kinematics": None if result.kinematics is None else _kinematics(result.kinematics),
         "setups": []
-        if result.ready is None or not result.elsewhere
+        if not result.elsewhere
         else [
             {"z": each.setup.tolist(), "kinematics": each.kinematics and _kinematics(each.kinematics)}
             for each in result.ready.setups

@@ -65,8 +65,7 @@ def surface_of(result: Judged, drawn: Drawn, atlas: Atlas) -> Surface:
 
 def fixtures_of(result: Judged) -> list[tuple[PlacedFixture, list[int]]]:
     """The fixtures of all setups, those of the first one first, each with the setups in which it stands."""
-    setups = (result.conditions,) if result.ready is None else result.ready.setups
-    return standing_in([each.around for each in setups])
+    return standing_in([each.around for each in result.ready.setups])
 
 
 def _facets(corner: Floats) -> Mesh:

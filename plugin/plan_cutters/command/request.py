@@ -1,0 +1,316 @@
+"""The requests of the commands: frozen records, which `takes` alone makes of the values that click has parsed.
+
+Names and values are those of the command line, angles in degrees; the functions at the end say which options of a plan they are.
+"""
+
+import functools
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+
+if TYPE_CHECKING:
+    from plan_cutters.domain.cutter import Cutter
+    from plan_cutters.domain.holder import Holder
+    from plan_cutters.library.records import Library
+    from plan_cutters.option_types import PlanOptions
+
+#: A setup: a direction of the part, a setup file, or `auto`.
+Setup = tuple[float, ...] | str
+#: Two angles, degrees.
+Range = tuple[float, float]
+
+R = TypeVar("R")
+
+
+def takes(record: type[R]) -> Callable[[Callable[[R], int]], Callable[..., int]]:
+    """Make a function of a record one that click can call with a value for each of its fields."""
+
+    def decorated(work: Callable[[R], int]) -> Callable[..., int]:
+        @functools.wraps(work)
+        def called(**values: Any) -> int:
+            return work(record(**values))
+
+        return called
+
+    return decorated
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PostureRequest:
+    """The common fields of all commands that judge postures: the machine, the obstacles and the search."""
+
+    holder: str | None
+    machine: str
+    fixture: tuple[str, ...]
+    ignore: tuple[str, ...]
+    flip: bool
+    unit: str | None
+    tolerance: float
+    allowance: float
+    holder_clearance: float
+    tilt: Range
+    rotation: Range
+    rotation_step: float
+    quiet: bool
+    debug: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class JudgingRequest(PostureRequest):
+    """The common fields of all commands that judge the samples of a part."""
+
+    cutter: tuple[str, ...]
+    cutters: tuple[str, ...]
+    assume_stickout: float | None
+    skip_bad: bool
+    setup: tuple[Setup, ...]
+    faces: str
+    spacing: float | None
+    grid: int | None
+    jobs: int | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class StoredRequest(JudgingRequest):
+    """Another machine or setup on stored posture maps: `plan-cutters stored`."""
+
+    file: str
+    part: str | None
+    json_out: str | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanningRequest(JudgingRequest):
+    """The common fields of all commands that plan parts."""
+
+    area_budget: int | None
+    posture_maps: bool
+    map_budget: int | None
+    answers: str
+    length_over_radius: float
+    operations: str | None
+    feed: float | None
+    scallop: float
+    stepover: float
+    index_step: float | None
+    index_time: float | None
+    change_time: float
+    setup_time: float
+    overlap: float
+    most_operations: int | None
+    formats: str | None
+    step_schema: str
+    cluster: str | None
+    verdicts_key: str | None
+    read_timeout: float
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanRequest(PlanningRequest):
+    """Plans of some parts: `plan-cutters`."""
+
+    parts: tuple[str, ...]
+    postures: str | None
+    check_operations: str | None
+    out: str | None
+    json_out: str | None
+    verbose: bool
+    verdicts: str | None
+    timeout: float | None
+    memory: float | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class BatchRequest(PlanningRequest):
+    """Plans of many parts on workers: `plan-cutters batch`."""
+
+    sources: tuple[str, ...]
+    out: str
+    workers: int | None
+    timeout_part: float | None
+    limit_memory: float | None
+    force: bool
+    dry_run: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MapRequest(PostureRequest):
+    """All postures of one cutter at one point: `plan-cutters map`."""
+
+    part: str
+    at: str
+    within: float
+    cutter: str
+    #: The library that the cutter is of.
+    cutters: str | None
+    setup: str
+    out: tuple[str, ...]
+    json_out: str | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ToolsRequest:
+    """Tool libraries as they are understood: `plan-cutters tools`."""
+
+    files: tuple[str, ...]
+    cutter: tuple[str, ...]
+    holder: str | None
+    assume_stickout: float | None
+    skip_bad: bool
+    list_holders: bool
+    as_json: bool
+    to_toml: str | None
+    draw: str | None
+    debug: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class MachinesRequest:
+    """Machines as they are understood: `plan-cutters machines`."""
+
+    machines: tuple[str, ...]
+    angles: str | None
+    axis: str | None
+    as_json: bool
+    to_toml: str | None
+    debug: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class DiffRequest:
+    """The difference of two plans: `plan-cutters diff`."""
+
+    old: str
+    new: str
+    as_json: bool
+    as_markdown: bool
+    out: str | None
+    slack: float
+    despite: str
+    debug: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChangedRequest:
+    """Parts that changed in a repository: `plan-cutters changed`."""
+
+    #: Those of a plan, as words of its command line.
+    plan_options: tuple[str, ...]
+    base: str | None
+    head: str
+    staged: bool
+    fail_on: str
+    out: str
+    cache: str | None
+    pictures_branch: str | None
+    debug: bool
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class McpRequest:
+    """Tools of agents: `plan-cutters mcp`."""
+
+    roots: tuple[str, ...]
+    client_roots: bool
+    most_mb: float
+    most_samples: int
+    most_cutters: int
+    most_characters: int
+    timeout: float
+    memory: float | None
+    calls: int
+    debug: bool
+
+
+def planning_options(request: PlanningRequest) -> "PlanOptions":
+    """The options of a plan that a command line requests, as `Options` takes them."""
+    return judging_options(request) | {
+        "area_budget": request.area_budget,
+        "posture_maps": request.posture_maps,
+        "map_budget": request.map_budget,
+        "answers": request.answers,
+        "length_over_radius": request.length_over_radius,
+        "operations": request.operations,
+        "feed": request.feed,
+        "scallop": request.scallop,
+        "stepover": request.stepover,
+        "index_step": None if request.index_step is None else math.radians(request.index_step),
+        "index_time": request.index_time,
+        "change_time": request.change_time,
+        "setup_time": request.setup_time,
+        "overlap": request.overlap,
+        "most_operations": request.most_operations,
+    }
+
+
+def judging_options(request: JudgingRequest) -> "PlanOptions":
+    """The options among them that judge the samples of a part."""
+    options = posture_options(request)
+    tools = read_tools(
+        request.cutter, request.cutters, request.holder, request.assume_stickout, skip_bad=request.skip_bad
+    )
+    return options | {
+        "cutters": tools.cutters,
+        "libraries": tools.libraries,
+        "holder": tools.holder,
+        "setup": request.setup[0],
+        "other_setups": request.setup[1:],
+        "faces": request.faces,
+        "spacing": request.spacing,
+        "grid": request.grid,
+        "jobs": request.jobs,
+    }
+
+
+def posture_options(request: PostureRequest) -> "PlanOptions":
+    """The options among them that judge a posture, without the tools."""
+    from plan_cutters.domain.posture import PostureRange
+
+    postures = PostureRange.degrees(request.tilt, request.rotation, request.rotation_step)
+    return {
+        "machine": request.machine,
+        "fixtures": request.fixture,
+        "ignore": request.ignore,
+        "flip": request.flip,
+        "unit": request.unit,
+        "tolerance": request.tolerance,
+        "allowance": request.allowance,
+        "holder_clearance": request.holder_clearance,
+        "tilt": postures.tilt,
+        "rotation": postures.rotation,
+        "rotation_step": postures.step,
+    }
+
+
+class Tools(NamedTuple):
+    """Cutters of texts, libraries of files, and the holder of the cutters that have none."""
+
+    cutters: "tuple[Cutter, ...]"
+    libraries: "tuple[Library, ...]"
+    holder: "Holder | None"
+
+
+def read_tools(
+    cutters: Sequence[str], libraries: Sequence[str], holder: str | None, assume_stickout: float | None = None, *,
+    skip_bad: bool = False,
+) -> Tools:  # fmt: skip
+    """Read what the command line says of tools; a PlanError for what has no meaning."""
+    from plan_cutters.domain.cutter import Cutter
+    from plan_cutters.errors import OptionError
+
+    read: list[Library] = []
+    of_all: Holder | str | None = None
+    if holder is not None or libraries:
+        # Who names neither need not load the readers.
+        from plan_cutters.library.read import holder_of, read_library
+
+        of_all = None if holder is None else holder_of(holder)
+        read = [
+            read_library(file, assume_stickout=assume_stickout, holder=of_all, skip_bad=skip_bad) for file in libraries
+        ]
+    if not libraries and (assume_stickout is not None or skip_bad):
+        word = "--skip-bad" if skip_bad else "--assume-stickout"
+        raise OptionError(f"{word} is about the tools of a library: give it with --cutters")
+    parsed = tuple(Cutter.parse(spec) for spec in cutters)
+    return Tools(parsed, tuple(read), None if isinstance(of_all, str) else of_all)

@@ -1,0 +1,51 @@
+"""What a command line requests: every value that click makes has its field and its type in a frozen record."""
+
+from dataclasses import FrozenInstanceError
+from typing import get_type_hints
+
+import pytest
+from pydantic import ConfigDict, TypeAdapter
+
+from plan_cutters.command import entry, request
+
+#: Of each command its record, the words without which it is refused, and words that give every option a value of its own kind.
+COMMANDS = {
+    "plan": (request.PlanRequest, ["p.step"], ["--cutter", "R6L80", "--cutters", "a.toml", "--holder", "er32",
+             "--assume-stickout", "30", "--skip-bad", "--setup", "+z", "--setup", "auto", "--fixture", "table", "--ignore", "F3",
+             "--unit", "mm", "--spacing", "1", "--grid", "5", "--area-budget", "9", "--map-budget", "9", "--postures", "m.npz",
+             "-o", "out", "--formats", "json", "--json", "-", "--operations", "both", "--feed", "900", "--index-step", "15",
+             "--index-time", "3", "--most-operations", "2", "--check-operations", "plan.json", "--jobs", "2", "--cluster", "tcp://h:1",
+             "--verdicts", "kept", "--verdicts-key", "key", "--timeout", "9", "--memory", "3"]),
+    "map": (request.MapRequest, ["p.step", "--at", "0,0,0", "--cutter", "R6L80"],
+            ["--cutters", "a.toml", "--holder", "er32", "--setup", "-y", "--fixture", "table", "--ignore", "F3", "--unit", "mm",
+             "-o", "a.png", "-o", "a.svg", "--json", "-"]),
+    "stored": (request.StoredRequest, ["m.npz"], ["p.step", "--cutter", "R6L80", "--setup", "s.toml", "--grid", "5",
+               "--spacing", "2", "--jobs", "3", "--json", "-"]),
+    "diff": (request.DiffRequest, ["a", "b"], ["--slack", "1", "--despite", "unit", "-o", "out", "--json"]),
+    "changed": (request.ChangedRequest, [], ["--base", "main", "--staged", "--cache", "c", "--pictures-branch", "p", "--",
+                "--grid", "5"]),
+    "tools": (request.ToolsRequest, [], ["a.toml", "--cutter", "D12L80", "--holder", "er32", "--assume-stickout", "30",
+              "--to-toml", "b.toml", "--draw", "out", "--json"]),
+    "machines": (request.MachinesRequest, [], ["trunnion-ac", "--angles", "0,0,1", "--axis", "A=3", "--to-toml", "m.toml"]),
+    "batch": (request.BatchRequest, ["parts", "--out", "plans"], ["--cutter", "R6L80", "--setup", "+x", "--workers", "2",
+              "--timeout-part", "9", "--limit-memory", "4", "--cluster", "tcp://h:1", "--force", "--dry-run", "--jobs", "1"]),
+    "mcp": (request.McpRequest, [], ["--root", "parts", "--client-roots", "--most-mb", "3", "--memory", "4", "--timeout", "9"]),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("every", [False, True], ids=["least words", "many words"])
+@pytest.mark.parametrize("name", entry.SUBCOMMANDS)
+def test_a_record_has_what_its_command_parses(name, every):
+    record, least, more = COMMANDS[name]
+    command = entry.module_of(f"plan-cutters {name}").command
+    values = command.make_context(name, [*least, *more] if every else list(least)).params
+    made = record(**values)
+    for field, kind in get_type_hints(record).items():
+        TypeAdapter(kind, config=ConfigDict(strict=True)).validate_python(getattr(made, field))
+    with pytest.raises(FrozenInstanceError):
+        made.debug = True
+
+
+def test_a_value_without_a_field_is_refused():
+    with pytest.raises(TypeError):
+        request.DiffRequest(**dict.fromkeys(get_type_hints(request.DiffRequest)), more=1)
