@@ -156,7 +156,7 @@ def test_cutters_are_named_by_the_words_that_were_given():
     plan = Plan.model_validate(data)
     found = planned(plan, 0, 9, {})
     assert found.told.startswith(
-        "Take flat end D2 x 80 for part.step: D2L80, judged without a holder, 80 mm up from its tip."
+        "Take flat end D2 x 80. For part.step: D2L80, judged without a holder, 80 mm up from its tip."
     )
     assert [c.id for c in found.cutters] == ["R1L80", "R2L80"]
     # A change that could not be decided is no help.

@@ -1,6 +1,5 @@
 """What the workbench and the macro of operations say of a plan, without FreeCAD: they show its text, and make none up."""
 
-import importlib
 import json
 import sys
 from types import ModuleType, SimpleNamespace
@@ -14,21 +13,14 @@ from plan_cutters.plan_file.words.story import story_of
 from plan_cutters.plan_file.words.text import text_of, with_text
 from tests.support.places import ROOT
 from tests.support.plan_files import SAMPLES, cutter, face, made, verdicts
-
-#: What the modules of the workbench that are read here import of FreeCAD.
-HOST = ("FreeCAD", "Part", "Import", "FreeCADGui", "MeshPart", "Mesh")
+from tests.support.workbench import HOST, imported
 
 
 @pytest.fixture(scope="module")
 def results():
-    """The module that reads a plan, under modules of FreeCAD that have nothing."""
-    with pytest.MonkeyPatch.context() as patch:
-        for name in HOST:
-            patch.setitem(sys.modules, name, ModuleType(name))
-        before = {*sys.modules}
-        yield importlib.import_module("freecad.plan_cutters.results")
-        for name in {*sys.modules} - before:
-            del sys.modules[name]
+    """The module that reads a plan."""
+    with imported("freecad.plan_cutters.results") as module:
+        yield module
 
 
 @pytest.fixture(scope="module")

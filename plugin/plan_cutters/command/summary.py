@@ -27,7 +27,7 @@ def summary(plan: "Plan", *, verbose: bool = False, tells: Callable[..., None] =
     tells(
         "",
         *([_marked("Inside other bodies:", story.inside[0]), *map(cell, story.inside[1:]), ""] if story.inside else []),
-        Text.assemble(cell(title, _MARKS[good]), cell(f"{about}. {why}")),
+        Text.assemble(cell(title, _MARKS[good]), cell(". " + " ".join(filter(None, (about, why))))),
         *map(cell, (*story.proposal, *story.scope, *story.between)),
         cell(scene(plan)),
         "",

@@ -45,7 +45,13 @@ def text_of(plan: Plan) -> str:
     """The plan in words: what to take and why, what makes it unsure, a line for each cutter, what is not reached."""
     story = story_of(plan)
     headline = story.headline
-    lines = [f"{headline.title}{headline.about}. {headline.why}", *_told(story), "", *_table(story), ""]
+    lines = [
+        f"{headline.title}. {headline.about} {headline.why}".replace("  ", " "),
+        *_told(story),
+        "",
+        *_table(story),
+        "",
+    ]
     lines += [each.left for each in story.cutters if each.left]
     more = (*story.setups, *story.operations, *story.answers, *story.notes)
     lines += [f"{line.mark} {line.text}{line.typed}".lstrip() for line in more if not line.minor]

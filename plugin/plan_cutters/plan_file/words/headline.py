@@ -13,7 +13,10 @@ from plan_cutters.plan_file.words.scope import judged
 
 
 class Headline(NamedTuple):
-    """Which cutter to take, or that none does (`good`; None: not for sure, or not all), for what and how it is held, and why."""
+    """Which cutter to take, or that none does (`good`; None: not for sure, or not all); for what and how it is held; and why.
+
+    `title` is a sentence without its stop, the others are whole ones; `about` may be empty.
+    """
 
     title: str
     good: bool | None
@@ -28,7 +31,7 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
     here = "this setup" if setups == 1 else "these setups"
 
     def take(name: str, good: bool | None, why: str, *, to: str = "", where: str = "") -> Headline:
-        about = f" for {part}{where}: {described(entries[name], names[name])}"
+        about = f"For {part}{where}: {described(entries[name], names[name])}."
         return Headline(f"Take {names[name]}{to}", good, about, why + could_not(plan))
 
     if plan.selected:

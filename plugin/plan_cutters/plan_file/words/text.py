@@ -21,7 +21,7 @@ def text_of(plan: Plan) -> TextEntry:
     """Put a plan into a few lines; what stands in short above is not said again below."""
     story = story_of(plan)
     return TextEntry(
-        headline=f"{story.headline.title}{story.headline.about}.",
+        headline=f"{story.headline.title}.",
         tone=TONES[chip(plan, story)],
         lines=_lines([*filter(None, dict.fromkeys(each.strip() for each in sentences(story)))]),
         cutters={each.id: each.sentence for each in story.cutters},
@@ -32,7 +32,7 @@ def text_of(plan: Plan) -> TextEntry:
 
 def sentences(story: Story) -> Iterator[str]:
     """All that people read of a plan unless they ask for more, below the headline; what makes it unsure comes first."""
-    yield story.headline.why
+    yield from (story.headline.about, story.headline.why)
     yield from (*story.inside, *story.proposal, *story.in_short, *story.scope, *story.between)
     yield from (f"{line.mark} {line.text}" for lines in story.doubts.values() for line in lines)
     yield from (each.sentence for each in story.cutters)

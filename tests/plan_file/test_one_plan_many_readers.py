@@ -1,0 +1,111 @@
+"""One plan in all that show one: the same sentences, which none of them has made."""
+
+import json
+from html.parser import HTMLParser
+from types import SimpleNamespace
+
+import pytest
+
+from plan_cutters import plan
+from plan_cutters.agents.plan_answers import planned
+from plan_cutters.batch.rows_of_plans import row_of
+from plan_cutters.command.summary import summary
+from plan_cutters.plan_file.load import plan_of
+from plan_cutters.plan_file.words.details import others
+from plan_cutters.plan_file.words.text import text_of
+from plan_cutters.report.notebook import card
+from plan_cutters.report.notebook import text_of as notebook_text
+from plan_cutters.report.page.write import page
+from tests.support.places import SAMPLES
+from tests.support.workbench import imported
+
+
+class Text(HTMLParser):
+    """The words of a page, without its scripts and styles."""
+
+    def __init__(self, html):
+        super().__init__()
+        self.words, self.skipped = [], 0
+        self.feed(html)
+
+    def handle_starttag(self, tag, attributes):
+        self.skipped += tag in ("script", "style")
+
+    def handle_endtag(self, tag):
+        self.skipped -= tag in ("script", "style")
+
+    def handle_data(self, data):
+        if not self.skipped:
+            self.words.append(data)
+
+
+def flat(text):
+    return " ".join(text.split())
+
+
+def words_of(html):
+    return flat("".join(Text(html).words))
+
+
+@pytest.fixture(scope="module")
+def result():
+    """A groove that is narrower than one of two cutters, which comes first."""
+    return plan(SAMPLES / "v_groove.step", cutters=["R8L20rc8", "R3L40"], grid=9, area_budget=0)
+
+
+@pytest.fixture(scope="module")
+def first(result):
+    """The sentences that come first: which cutter to take, for what and how it is held, and why."""
+    text = flat(" ".join([result.plan.text.headline, *result.plan.text.lines]))
+    found = [f"{each}." for each in text.split(". ")[:3]]
+    assert found[0] == "Take flat end D6 x 40."
+    return found
+
+
+@pytest.fixture(scope="module")
+def lost(result):
+    """Sentences on the cutter that fails."""
+    found = others(result.plan)
+    assert len(found) == 1
+    return found[0]
+
+
+def test_the_plan_has_its_own_text(result):
+    assert result.plan.text == text_of(result.plan)
+    assert plan_of(result.plan.model_dump_json(), "plan.json").text == result.plan.text
+
+
+def test_the_terminal_shows_it(result, first, lost, capsys):
+    summary(result.plan)
+    shown = flat(capsys.readouterr().out)
+    assert all(each in shown for each in first)
+    assert flat(result.summary()).count(lost) == 1
+
+
+def test_the_page_shows_it(result, first, lost):
+    shown = words_of(page(result).decode())
+    assert all(each in shown for each in (*first, lost))
+
+
+def test_the_notebook_shows_it(result, first, lost):
+    assert all(each in words_of(card(result)) for each in first)
+    assert all(each in flat(notebook_text(result.plan)) for each in (*first, lost))
+
+
+def test_agents_read_it(result, lost):
+    answer = planned(result.plan, 0, 9, {})
+    assert answer.told == " ".join([result.plan.text.headline, *result.plan.text.lines])
+    assert lost in answer.told
+    assert {c.id: c.text for c in answer.cutters} == result.plan.text.cutters
+
+
+def test_a_row_of_many_parts_begins_it(result):
+    row = row_of(result.plan, name="part", file="part.step", code=0)
+    assert result.plan.text.headline.startswith(row.verdict)
+
+
+def test_freecad_shows_it(result, lost):
+    with imported("freecad.plan_cutters.results") as results:
+        found = results.Result(json.loads(result.plan.model_dump_json()), SimpleNamespace(document="D", body="B"), {})
+        assert found.headline() == result.plan.text.headline
+        assert lost in flat(" ".join(found.summary()))
