@@ -2,7 +2,9 @@
 
 from typing import Annotated, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field, model_validator
+from pydantic import AfterValidator, BaseModel, ConfigDict, Field, WithJsonSchema, model_validator
+
+from plan_cutters.domain.answer_kinds import ANSWERS, KINDS
 
 #: Words of the command line are short.
 Word = Annotated[str, Field(min_length=1, max_length=300)]
@@ -13,6 +15,16 @@ Axis = Annotated[str, Field(pattern=rf"^([+-]?[xyzXYZ]|auto|{_NUMBER},{_NUMBER},
 Face = Annotated[
     str, Field(pattern=r"^F[1-9]\d{0,6}$", description="as `F12`: faces are numbered as the CAD kernel lists them")
 ]
+
+
+def _answer(word: str) -> str:
+    if word not in ANSWERS:
+        raise ValueError(f"is none of {', '.join(ANSWERS)}")
+    return word
+
+
+#: A question that a plan may answer beside its verdicts.
+Answer = Annotated[str, AfterValidator(_answer), WithJsonSchema({"type": "string", "enum": [*ANSWERS]})]
 #: Files that a plan may write.
 Format = Literal["json", "step", "glb", "merged", "npz", "html", "png", "csv", "vtk", "regions"]
 
@@ -86,10 +98,7 @@ class PartQuestion(Conditions, Sampling):
 class PlanQuestion(PartQuestion):
     """Which cutters finish a part?"""
 
-    answers: list[Literal["stick-out", "radius", "mend", "mend-all"]] = Field(
-        default=[],
-        description="more questions: how short each cutter can be held, the largest ends, and what would help",
-    )
+    answers: list[Answer] = Field(default=[], description="; ".join(f"{kind.word}: {kind.meaning}" for kind in KINDS))
     out: Path | None = Field(default=None, description="folder in a root for files; without it, none is written")
     formats: list[Format] = Field(default=["json"], min_length=1, description="of these files")
 

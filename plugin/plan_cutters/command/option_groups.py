@@ -9,6 +9,7 @@ from cad_io.units import UNITS
 from plan_cutters.command import values
 from plan_cutters.command.help_groups import heading
 from plan_cutters.command.values import Faces, File, Folder, Range, Setup, Words
+from plan_cutters.domain.answer_kinds import KINDS
 from plan_cutters.report.folder import DEFAULT_FORMATS, FORMATS
 
 EXAMPLES = (
@@ -230,10 +231,8 @@ _OPTIONS = (
         "--answers",
         default="",
         type=Words("LIST", values.answers, listed=True),
-        help="More questions to answer: stick-out (how short each cutter can be held), stick-out-map (that for every sample, "
-        "too), radius (the largest flat and ball end that reaches each sample), mend (the next steps where no cutter finishes, "
-        "and their gain, for the three that come nearest), mend-all (that for every cutter), or all (without the map and "
-        "mend-all).",
+        help=f"More questions to answer: {', '.join(f'{kind.word} ({kind.meaning})' for kind in KINDS)}, or all (all but "
+        f"{' and '.join(kind.word for kind in KINDS if kind.long)}).",
     ),
     _answers(
         "--length-over-radius",

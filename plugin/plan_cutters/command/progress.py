@@ -10,6 +10,7 @@ from typing import Any
 
 from plan_cutters.command import terminal
 from plan_cutters.command.worker import report
+from plan_cutters.domain.answer_kinds import KINDS
 from plan_cutters.files.terminal_text import clean
 from plan_cutters.plan_file.numbers import part_done
 
@@ -30,10 +31,7 @@ _WORDS = {
     "setups": "judging in the other setups",
     "proposal": "comparing setups",
     "reasons": "finding the reasons",
-    "stick-out": "asking for the least stick-out",
-    "stick-out-map": "asking for the least stick-out",
-    "radius": "asking for the largest radius",
-    "mend": "asking what to do next",
+    **{kind.word: kind.work for kind in KINDS},
     "area": "looking between the samples",
     "maps": "mapping all postures",
     "motion": "joining postures over the surface",

@@ -127,7 +127,7 @@ def holder_words() -> Sequence[str]:
 
 
 def answers() -> Sequence[str]:
-    from plan_cutters.domain.answers import ANSWERS
+    from plan_cutters.domain.answer_kinds import ANSWERS
 
     return [*ANSWERS, "all"]
 

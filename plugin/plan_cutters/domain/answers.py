@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from plan_cutters.domain.answer_kinds import ANSWERS, LONG
 from plan_cutters.domain.change import Mend
 from plan_cutters.domain.checks import items, shown
 from plan_cutters.domain.least_set import LeastSet
@@ -11,12 +12,6 @@ from plan_cutters.domain.operations import Operations
 from plan_cutters.domain.radius_map import RadiusMap
 from plan_cutters.domain.stick_out import StickOut
 from plan_cutters.errors import OptionError
-
-#: What may be asked for: how short each cutter can be held; the same for every sample; how large a cutter can be where, whatever
-#: cutters there are; what to do next where no cutter finishes, for the cutters that come nearest or for all.
-ANSWERS = ("stick-out", "stick-out-map", "radius", "mend", "mend-all")
-#: What `all` leaves out: it takes long.
-LONG = frozenset({"stick-out-map", "mend-all"})
 
 
 def answers_of(given: Any) -> tuple[str, ...]:

@@ -1,0 +1,29 @@
+"""The questions that a plan may answer beside its verdicts: the only table of their words.
+
+To add one, add its row here, its work to `answers.ask`, and its sentence to `plan_file.words.answers`; a new kind of record needs
+its entry in `plan_file.answers` and `document.answers`, too.
+"""
+
+from typing import NamedTuple
+
+
+class AnswerKind(NamedTuple):
+    """A question: its word, its meaning for the help, the name of the work, and whether `all` leaves it out, for it takes long."""
+
+    word: str
+    meaning: str
+    work: str
+    long: bool = False
+
+
+KINDS = (
+    AnswerKind("stick-out", "how short each cutter can be held", "asking for the least stick-out"),
+    AnswerKind("stick-out-map", "that for every sample, too", "asking for the least stick-out", long=True),
+    AnswerKind("radius", "the largest flat and ball end that reaches each sample", "asking for the largest radius"),
+    AnswerKind("mend", "the next steps where no cutter finishes, and their gain, for the three that come nearest",
+               "asking what to do next"),
+    AnswerKind("mend-all", "that for every cutter", "asking what to do next", long=True),
+)  # fmt: skip
+ANSWERS = tuple(each.word for each in KINDS)
+#: What `all` leaves out.
+LONG = frozenset(each.word for each in KINDS if each.long)
