@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 
 class AnswerKind(NamedTuple):
-    """A question: its word, its meaning for the help, the name of the work, and whether `all` leaves it out, for it takes long."""
+    """A question: its word, its meaning for the help, the name of its work, and whether `all` leaves it out as too long."""
 
     word: str
     meaning: str
