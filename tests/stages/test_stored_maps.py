@@ -245,16 +245,19 @@ def test_missing_obstacles_leave_stored_answers_in_doubt(tmp_path, capsys, which
     """A face that was not meshed, far from all that the cutter sweeps, or one that reading lost: nobody knows where it is."""
     from cad_io import Part
     from cad_io.arrays import LostFace
+    from tests.support.array_files import written
     from tests.support.bodies import lidded
     from tests.support.cad_parts import box
 
-    part = Part(lidded(gap=500.0)) if which == "face" else Part(box(40, 40, 10), lost=(LostFace("#7", "lid", "is gone"),))
+    part = (
+        Part(lidded(gap=500.0)) if which == "face" else Part(box(40, 40, 10), lost=(LostFace("#7", "lid", "is gone"),))
+    )
     result = plan(part, cutters="R4L40", faces="6", grid=3, area_budget=0, rotation_step=1.0, posture_maps=True)
     assert result.plan.missing
-    file = tmp_path / "postures.npz"
-    result.maps.save(file)
+    file = written(tmp_path / "postures.npz", result.maps)
     capsys.readouterr()
-    code, _ = told("stored", "--postures", file, "--machine", "tilt:60")
+    words = ["--machine", "tilt:60", str(file)]
+    code, _ = guarded(lambda: (invoked(stored_maps.command, "plan-cutters stored", words), ""), False)
     said = " ".join(capsys.readouterr().out.split())
     assert code == 4
     assert "9 interference free" in said

@@ -100,7 +100,9 @@ def _referring(at: str, files: Collection[str]) -> set[str]:
     if not files:
         return set()
     words = [part for word in references.WORDS for part in ("-e", word.decode())]
-    found = git("grep", "-lzaF", "--full-name", *words, at, "--", ":(top,icase)*.step", ":(top,icase)*.stp", codes=(0, 1))
+    found = git(
+        "grep", "-lzaF", "--full-name", *words, at, "--", ":(top,icase)*.step", ":(top,icase)*.stp", codes=(0, 1)
+    )
     paths = [each.partition(":")[2] for each in found.decode("utf-8", "surrogateescape").split("\0") if each]
     refers = {
         path: {posixpath.normpath(posixpath.join(posixpath.dirname(path), name))

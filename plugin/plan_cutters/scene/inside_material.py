@@ -70,7 +70,7 @@ def inside_material(
     # Every void lies in one more body than there is material.
     layers, void = np.zeros(len(samples), np.int32), np.full(len(samples), -1, np.int32)
     loose = dict(certain.triangles.loose).keys()
-    boxed = _Sorted.of(point, np.flatnonzero(open_rows))
+    boxed = SortedPoints.of(point, np.flatnonzero(open_rows))
     for index, body in enumerate(bodies):
         sure = body.closed and loose.isdisjoint(body.faces)
         vertex = certain.triangles.vertex[certain.rows_of(body.faces)] if sure else np.zeros((0, 3, 3))
@@ -96,7 +96,7 @@ def inside_material(
     return result
 
 
-class _Sorted(NamedTuple):
+class SortedPoints(NamedTuple):
     """Points along the axis on which they spread most, so that each of many boxes looks at few of them."""
 
     point: Floats
@@ -105,7 +105,7 @@ class _Sorted(NamedTuple):
     at: Floats
 
     @classmethod
-    def of(cls, point: Floats, rows: NDArray[np.int64]) -> "_Sorted":
+    def of(cls, point: Floats, rows: NDArray[np.int64]) -> "SortedPoints":
         """Some rows (k,) of finite points (n, 3)."""
         axis = int(np.ptp(point[rows], axis=0).argmax()) if len(rows) else 0
         row = rows[np.argsort(point[rows, axis], kind="stable")]
