@@ -110,8 +110,8 @@ def _of_cutters(options: Options, cutters: Sequence[Cutter]) -> Iterator[Note]:
 def _of_obstacles(part: Part, around: Surroundings) -> Iterator[Note]:
     """Name the obstacles that enclose no material: only their surface is in the way."""
     skins = {number for body in around.bodies if body.closed for number in body.faces}
-    present = set(np.unique((around.alone or around).possible.triangles.face).tolist())
-    sheets = [f.id for f in part.faces if f.number in present - skins]
+    bare = set(np.unique((around.alone or around).possible.triangles.face).tolist()) - skins
+    sheets = [f.id for f in part.faces if f.number in bare]
     if sheets and skins:
         yield Note("open_faces", f"{listed(sheets)} enclose{'s' if len(sheets) == 1 else ''} no material: only the surface is "
                    "in the way, not what may lie behind it.")  # fmt: skip
