@@ -38,6 +38,19 @@ class Record:
         return f"{type(self).__name__}({', '.join(f'{name}={_brief(getattr(self, name))}' for name in _names(self))})"
 
 
+def rows_by_face(face: Ints) -> dict[int, NDArray[np.int64]]:
+    """Rows (k,) of each face number that occurs in `face` (n,), ascending.
+
+    >>> rows_by_face(np.array([7, 2, 7], np.int32))
+    {2: array([1]), 7: array([0, 2])}
+    >>> rows_by_face(np.zeros(0, np.int32))
+    {}
+    """
+    numbers, count = np.unique(face, return_counts=True)
+    groups = np.split(np.argsort(face, kind="stable"), np.cumsum(count)[:-1])
+    return dict(zip(numbers.tolist(), groups, strict=False))
+
+
 def _names(record: Any) -> list[str]:
     return [field.name for field in fields(record) if field.compare]
 
@@ -227,9 +240,7 @@ class SurfaceSamples(Record):
 
     def by_face(self) -> dict[int, NDArray[np.int64]]:
         """Rows of the samples of each face that has some, ascending, by its number."""
-        numbers, count = np.unique(self.face, return_counts=True)
-        groups = np.split(np.argsort(self.face, kind="stable"), np.cumsum(count)[:-1])
-        return dict(zip(numbers.tolist(), groups, strict=False))
+        return rows_by_face(self.face)
 
     def __len__(self) -> int:
         return len(self.point)

@@ -144,6 +144,9 @@ class _Files(caching.IndexDataCacheFile):
     @contextlib.contextmanager
     def _open_for_write(self, filepath: str) -> Iterator[io.BytesIO]:
         yield (content := io.BytesIO())
+        if os.path.isdir(filepath):
+            # No file takes its place: left there, it would have this function compiled in each process for ever.
+            os.rename(filepath, f"{filepath}.no-file-{os.urandom(4).hex()}")
         with super()._open_for_write(filepath) as file:
             # Whoever reads looks no farther than its pickles.
             file.write(content.getvalue() + hashlib.sha256(content.getvalue()).digest())

@@ -10,10 +10,10 @@ from collections.abc import Callable, Iterator
 from cad_io import files
 from cad_io.errors import ReadError
 
-#: The entities that name one, each by its first text, and their short names (ISO 10303-21; AP214 and AP242 call them
+#: The entities that name a file, each by its first text, and their short names (ISO 10303-21; AP214 and AP242 call them
 #: external documents).
-_WORDS = b"APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT", b"DOCUMENT_FILE", b"APEXIA", b"DCMFL"
-_NAMED = re.compile(rb"(?:" + b"|".join(_WORDS) + rb")\s*\(\s*'((?:[^']|'')*)'")
+WORDS = b"APPLIED_EXTERNAL_IDENTIFICATION_ASSIGNMENT", b"DOCUMENT_FILE", b"APEXIA", b"DCMFL"
+_NAMED = re.compile(rb"(?:" + b"|".join(WORDS) + rb")\s*\(\s*'((?:[^']|'')*)'")
 #: A comment, or a text, in which none begins.
 _COMMENT = re.compile(rb"/\*.*?\*/|'[^']*'", re.DOTALL)
 #: Letters beyond ASCII, and a backslash, as a text has them (ISO 10303-21, 6.4.3).
@@ -29,7 +29,7 @@ _MOST = 10_000
 
 def names(data: bytes) -> tuple[str, ...]:
     """Names of the files that a STEP file's text refers to, as the CAD kernel reads them there, each once."""
-    if not any(word in data for word in _WORDS):
+    if not any(word in data for word in WORDS):
         return ()
     if b"/*" in data:
         data = _COMMENT.sub(lambda found: b" " if found[0].startswith(b"/") else found[0], data)

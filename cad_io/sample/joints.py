@@ -12,7 +12,7 @@ from OCP.TopoDS import TopoDS_Edge, TopoDS_Face
 from OCP.TopTools import TopTools_IndexedMapOfShape
 from scipy.spatial import cKDTree
 
-from cad_io.arrays import Floats, Ints, Orientation
+from cad_io.arrays import Floats, Ints, Orientation, rows_by_face
 from cad_io.kernel import edges_of
 from cad_io.part import Part
 from cad_io.surface import Surface
@@ -46,6 +46,8 @@ def smooth_joints(
         for edge in edges_of(_joined(part, number)):
             uses[edges.Add(edge)].append((number, edge))
     trees: dict[int, tuple[cKDTree, NDArray[np.intp]]] = {}
+    finite = np.flatnonzero(np.isfinite(point).all(axis=1))
+    rows_of = {number: finite[rows] for number, rows in rows_by_face(face[finite]).items()}
     pairs = [np.zeros((0, 2), np.intp)]
     for users in uses.values():
         if len(users) != 2 or users[0][0] == users[1][0] or BRep_Tool.Degenerated_s(users[0][1]):
@@ -64,7 +66,7 @@ def smooth_joints(
         nearest = []
         for number, _ in users:
             if number not in trees:
-                rows = np.nonzero((face == number) & np.isfinite(point).all(axis=1))[0]
+                rows = rows_of.get(number, finite[:0])
                 trees[number] = (cKDTree(point[rows]), rows)
             tree, rows = trees[number]
             nearest.append(rows[tree.query(at[smooth])[1]])

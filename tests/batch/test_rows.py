@@ -4,6 +4,8 @@ import itertools
 import os
 import pickle
 import signal
+import subprocess
+import sys
 import threading
 import time
 from dataclasses import fields
@@ -207,6 +209,63 @@ def test_a_worker_that_is_killed_costs_nothing(ready, single):
             killer.join()
             client.wait_for_workers(2, timeout=60)
             time.sleep(0.1)
+
+
+@pytest.mark.slow
+def test_a_scheduler_that_is_killed_while_blocks_are_on_it_is_one_line(ready, tmp_path):
+    """A process of its own, killed once its tasks show that a worker judges; nothing waits for it for ever."""
+    file = tmp_path / "scheduler.json"
+    begun = [
+        sys.executable,
+        "-m",
+        "distributed.cli.dask_scheduler",
+        "--port",
+        "0",
+        "--no-dashboard",
+        "--scheduler-file",
+        file,
+    ]
+    scheduler = subprocess.Popen(begun, stderr=subprocess.DEVNULL)
+    ends, caught = time.monotonic() + 60, []
+    try:
+        while not file.exists():
+            assert time.monotonic() < ends
+            time.sleep(0.1)
+        begun = [sys.executable, "-m", "distributed.cli.dask_worker", "--scheduler-file", file, "--no-dashboard",
+                 "--nthreads", "1", "--local-directory", tmp_path, "--death-timeout", "10"]  # fmt: skip
+        worker = subprocess.Popen(begun, stderr=subprocess.DEVNULL)
+        try:
+            with (
+                Client(scheduler_file=file, set_as_default=False) as client,
+                Client(scheduler_file=file, set_as_default=False) as eye,
+            ):
+                client.wait_for_workers(1, timeout=60)
+
+                def with_workers(dask_scheduler):
+                    tasks = dask_scheduler.tasks.items()
+                    return any(str(key).startswith("judge ") and task.state == "processing" for key, task in tasks)
+
+                def judging():
+                    try:
+                        Rows(client, large=0, block=CHUNK)(ready, ready.cutters[0])
+                    except PlanError as error:
+                        caught.append(str(error))
+
+                thread = threading.Thread(target=judging, daemon=True)
+                thread.start()
+                while not eye.run_on_scheduler(with_workers):
+                    assert thread.is_alive()
+                    time.sleep(0.01)
+                scheduler.kill()
+                thread.join(60)
+                assert not thread.is_alive()
+        finally:
+            worker.kill()
+            worker.wait()
+    finally:
+        scheduler.kill()
+        scheduler.wait()
+    assert caught == ["the scheduler went away: start it, or leave --cluster out"]
 
 
 def test_the_columns_of_verdicts_are_all_handed_back():

@@ -279,6 +279,23 @@ def test_workers_by_cores_and_memory():
     assert cluster.workers_of(None, 1e15, 1)[0] == 1
 
 
+def test_what_another_version_planned_is_not_taken(tmp_path, monkeypatch):
+    """Neither by a batch nor, whose keys are the same, by `changed`."""
+    from plan_cutters.batch import work as works
+
+    out = Store(str(tmp_path / "out"))
+    (job,) = parts = jobs(tmp_path, "a")
+    there, key = Terms().of(job.settings)
+    task = works.Task(job.name, job.file, None, None, there, (), key, out.root_url, out.begin(), False, None, {})
+    monkeypatch.setattr(works, "_ready", lambda: "")
+    assert works.work(task).row.status == "planned"
+    assert [row.status for row in foreseen(parts, out, Terms())] == ["kept"]
+    now = keys.version()
+    for other in (f"0.0.1+{now.partition('+')[2]}", f"{now.partition('+')[0]}+{'0' * 12}"):
+        monkeypatch.setattr(keys, "version", lambda other=other: other)
+        assert [row.status for row in foreseen(parts, out, Terms())] == ["planned"]
+
+
 def test_a_full_disk_on_a_worker_is_one_line(tmp_path, monkeypatch):
     from pathlib import Path
 

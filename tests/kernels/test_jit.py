@@ -211,6 +211,21 @@ def test_a_pipe_in_place_of_machine_code_is_not_opened(loaded, tmp_path):
     assert loaded() == (14.0, 1, [])
 
 
+@pytest.mark.parametrize("kind", ["nbi", "nbc"])
+def test_a_folder_in_place_of_machine_code_is_one_line_and_moved_away_once(loaded, tmp_path, kind):
+    loaded()
+    file = cached(tmp_path, f"*.total-*.{kind}")
+    file.unlink()
+    file.mkdir()
+    (file / "note").write_text("not ours")
+    value, hits, (said,) = loaded()
+    assert (value, hits) == (14.0, 0)
+    assert str(file) in said
+    assert "no regular file" in said
+    assert loaded() == (14.0, 1, [])
+    assert [note.read_text() for note in file.parent.glob(f"{file.name}.*/note")] == ["not ours"]
+
+
 def test_a_full_disk_costs_time_alone(loaded, tmp_path, monkeypatch):
     def full(*_):
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))

@@ -240,6 +240,31 @@ def test_exit_codes_are_those_of_a_plan(file, tmp_path, capsys):
     assert code(by_word["interference_free"], about={**maps.about, "unjudged_faces": ["F3"]}) == 4
 
 
+@pytest.mark.parametrize("which", ["face", "file"])
+def test_missing_obstacles_leave_stored_answers_in_doubt(tmp_path, capsys, which):
+    """A face that was not meshed, far from all that the cutter sweeps, or one that reading lost: nobody knows where it is."""
+    from cad_io import Part
+    from cad_io.arrays import LostFace
+    from tests.support.array_files import written
+    from tests.support.bodies import lidded
+    from tests.support.cad_parts import box
+
+    part = (
+        Part(lidded(gap=500.0)) if which == "face" else Part(box(40, 40, 10), lost=(LostFace("#7", "lid", "is gone"),))
+    )
+    result = plan(part, cutters="R4L40", faces="6", grid=3, area_budget=0, rotation_step=1.0, posture_maps=True)
+    assert result.plan.missing
+    file = written(tmp_path / "postures.npz", result.maps)
+    capsys.readouterr()
+    words = ["--machine", "tilt:60", str(file)]
+    code, _ = guarded(lambda: (invoked(stored_maps.command, "plan-cutters stored", words), ""), False)
+    said = " ".join(capsys.readouterr().out.split())
+    assert code == 4
+    assert "9 interference free" in said
+    assert "Obstacles are missing or guessed, so nothing is beyond doubt: " in said
+    assert ("F7: " if which == "face" else "is gone") in said
+
+
 def test_the_side_of_open_faces_is_part_of_the_question(tmp_path):
     from cad_io import Part
     from tests.support import shapes

@@ -1,11 +1,14 @@
 """Ask git about a repository: which parts changed, their bytes, and a branch for pictures."""
 
 import os
+import posixpath
 import re
 import subprocess
+from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
+from cad_io.read import references
 from plan_cutters.errors import PlanError
 
 #: Suffixes of parts, in lower case.
@@ -31,8 +34,8 @@ class Changed:
         return "changed" if self.old == self.new else f"renamed from {self.old}"
 
 
-def git(*words: str, stdin: bytes | None = None) -> bytes:
-    """Standard output of git in the working directory.
+def git(*words: str, stdin: bytes | None = None, codes: Collection[int] = (0,)) -> bytes:
+    """Standard output of git in the working directory; `codes`: exit codes that are no refusal.
 
     Raises
     ------
@@ -43,7 +46,7 @@ def git(*words: str, stdin: bytes | None = None) -> bytes:
         done = subprocess.run(["git", *words], input=stdin, capture_output=True, check=False)
     except OSError as error:
         raise PlanError(f"cannot be run ({error.strerror}): install it", file="git") from None
-    if done.returncode:
+    if done.returncode not in codes:
         said = done.stderr.decode(errors="replace").strip().splitlines() or [f"exit code {done.returncode}"]
         word = next(each for each in words if each[0] not in "-u")
         raise PlanError(f"git {word}: {said[0]}")
@@ -87,7 +90,29 @@ def changed(base: str, head: str | None) -> tuple[str, str, list[Changed]]:
         pair = Changed(None if status[0] in "AC" else old, None if status[0] == "D" else new)
         if Path(pair.name).suffix.lower() in PARTS:
             found.append(pair)
+    files = {path for part in found for path in (part.old, part.new) if path is not None}
+    found += [Changed(path, path) for path in _referring(until, files) - files]
     return began, until, sorted(found, key=lambda part: part.name)
+
+
+def _referring(at: str, files: Collection[str]) -> set[str]:
+    """STEP files of a commit that refer to some files, or to others that do: assemblies."""
+    if not files:
+        return set()
+    words = [part for word in references.WORDS for part in ("-e", word.decode())]
+    found = git(
+        "grep", "-lzaF", "--full-name", *words, at, "--", ":(top,icase)*.step", ":(top,icase)*.stp", codes=(0, 1)
+    )
+    paths = [each.partition(":")[2] for each in found.decode("utf-8", "surrogateescape").split("\0") if each]
+    refers = {
+        path: {posixpath.normpath(posixpath.join(posixpath.dirname(path), name))
+               for name in references.names(git("cat-file", "--filters", f"{at}:{path}"))}
+        for path in paths
+    }  # fmt: skip
+    reached = set(files)
+    while new := {path for path, names in refers.items() if path not in reached and names & reached}:
+        reached |= new
+    return {path for path in reached if path in refers}
 
 
 def content(at: str, path: str) -> bytes:

@@ -99,8 +99,8 @@ def _of_cutters(options: Options, cutters: Sequence[Cutter]) -> Iterator[Note]:
 def _of_obstacles(part: Part, around: Surroundings) -> Iterator[Note]:
     """Name the obstacles that enclose no material: only their surface is in the way."""
     closed = {number for body in around.bodies if body.closed for number in body.faces}
-    present = set(np.unique((around.alone or around).possible.triangles.face).tolist())
-    if sheets := [f.id for f in part.faces if f.number in present - closed]:
+    bare = set(np.unique((around.alone or around).possible.triangles.face).tolist()) - closed
+    if sheets := [f.id for f in part.faces if f.number in bare]:
         yield notes.open_faces(sheets) if closed else notes.all_faces_open()
 
 

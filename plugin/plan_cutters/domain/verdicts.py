@@ -26,7 +26,7 @@ from plan_cutters.kernels.codes import (
 __all__ = [
     "ACCESSIBLE", "AXIS_LIMIT", "CONCAVE", "CONVEX", "FIXTURE", "INACCESSIBLE", "INSIDE", "INTERFERENCE_FREE", "LOCAL_GOUGE",
     "NO_REASON", "REASONS", "SADDLE", "TOLERANCE", "UNDECIDED", "UNJUDGED", "WORDS", "Bytes", "VerdictBuffer", "Verdicts",
-    "Witness", "blank",
+    "Witness", "blank", "not_reached",
 ]  # fmt: skip
 
 #: Words of verdicts, from best to worst.
@@ -38,6 +38,11 @@ CONVEX, CONCAVE, SADDLE = 0, 1, 2
 Bytes = NDArray[np.uint8]
 _POSTURE = ("axis", "tilt_direction", "tilt", "rotation")
 _COLUMNS = ("verdict", *_POSTURE, "reason")
+
+
+def not_reached(verdict: Bytes) -> NDArray[np.bool_]:
+    """Which verdicts (n,) are inaccessible or undecided."""
+    return np.asarray((verdict == INACCESSIBLE) | (verdict == UNDECIDED))
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -64,7 +69,7 @@ class _Columns(Record):
     @property
     def not_reached(self) -> NDArray[np.bool_]:
         """Samples (n,) that are inaccessible or undecided."""
-        return np.asarray((self.verdict == INACCESSIBLE) | (self.verdict == UNDECIDED))
+        return not_reached(self.verdict)
 
     @property
     def lost(self) -> NDArray[np.bool_]:

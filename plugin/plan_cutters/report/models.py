@@ -3,7 +3,7 @@
 They show one cutter: the selected one or, where none is feasible, the one that leaves the least area.
 """
 
-from collections import Counter
+from collections import Counter, defaultdict
 from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import Any
@@ -51,10 +51,10 @@ def split_result(result: Judged, cutter: str | None = None) -> Any:
     label = verdict_labels(result, cutter)
     covered = LABELS.index("inside_bodies")
 
-    def worst(rows: NDArray[np.bool_]) -> int:
+    def worst(rows: NDArray[np.int64]) -> int:
         """Its worst verdict stands for a face, as far as it is one of the finished part."""
-        seen = rows & (label != covered)
-        return int(label[seen].max()) if seen.any() else covered
+        seen = label[rows][label[rows] != covered]
+        return int(seen.max()) if len(seen) else covered
 
     # Slivers may join what is worse, but not what is not judged.
     return split(result.part, face_labels(result, label, worst, 0), worst=LABELS.index("inaccessible"))
@@ -71,7 +71,7 @@ def verdict_labels(result: Judged, cutter: str | None = None) -> NDArray[np.int3
 
 
 def face_labels(
-    result: Judged, label: NDArray[np.int32], of_face: Callable[[NDArray[np.bool_]], int], first: int
+    result: Judged, label: NDArray[np.int32], of_face: Callable[[NDArray[np.int64]], int], first: int
 ) -> list[FaceLabels]:
     """Labels on the grids of all faces.
 
@@ -81,11 +81,12 @@ def face_labels(
     label : (n,) int32
         Of the samples, from 0; those of LABELS begin at `first`.
     of_face : callable
-        Gives the label of a face that was sampled without a grid, by its samples (n,).
+        Gives the label of a face that was sampled without a grid, by the rows (k,) of its samples.
     first : int
     """
     samples = result.samples
     grids = {g.face: g for g in samples.grids}
+    sampled = samples.by_face()
     check, ignored, unjudged = (first + LABELS.index(word) for word in ("check", "ignored", "unjudged"))
     labels = []
     for face in result.plan.faces:
@@ -94,8 +95,8 @@ def face_labels(
             labels.append(_whole(number, ignored if face.ignored else check))
         elif number in grids:
             labels.append(_grid_labels(grids[number], label))
-        elif (mine := samples.face == number).any():
-            labels.append(_whole(number, of_face(mine)))
+        elif number in sampled:
+            labels.append(_whole(number, of_face(sampled[number])))
         else:
             labels.append(_whole(number, unjudged))
     return labels
@@ -195,16 +196,19 @@ def write_glb(result: Judged, split: Any, path: Path, *, merged: bool = False) -
     """Write `annotated.glb`: face numbers, verdicts and reasons in `extras`."""
     shown = next(c for c in result.plan.cutters if c.id == result.shown)
     entries = {int(f.id[1:]): f for f in result.plan.faces}
+    reasons = defaultdict[str, set[str]](set)
+    for witness in shown.witnesses:
+        if not witness.inside_bodies:
+            reasons[witness.face].add(witness.reason)
 
     def extras(face: int) -> dict[str, Any]:
         entry = entries[face]
         counts = shown.faces.get(entry.id)
-        reasons = sorted({w.reason for w in shown.witnesses if w.face == entry.id and not w.inside_bodies})
         return {
             **face_facts(result, entry),
             "cutter": shown.id,
             "verdicts": counts.model_dump() if counts else {},
-            "reasons": reasons,
+            "reasons": sorted(reasons[entry.id]),
             "unjudged": entry.unjudged,
         }
 

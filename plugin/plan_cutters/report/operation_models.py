@@ -39,7 +39,7 @@ def split_operations(result: Judged, number: int) -> Any:
     first = len(plan.operations)
     label = np.where(plan.label >= 0, plan.label, first + verdict_labels(result)).astype(np.int32)
 
-    def of_face(rows: NDArray[np.bool_]) -> int:
+    def of_face(rows: NDArray[np.int64]) -> int:
         """The one label of a face, or that it is of several."""
         found = np.unique(label[rows])
         return int(found[0]) if len(found) == 1 else first + LABELS.index("mixed")

@@ -1,6 +1,7 @@
 """Every stage judges a cutter under these conditions; several of them use the search for a posture that is here, too."""
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -124,6 +125,7 @@ def contacts_of(samples: SurfaceSamples) -> Contacts:
     return Contacts(samples.point, samples.normal, samples.direction_max, samples.curvature)
 
 
+@lru_cache(maxsize=64)
 def tools(cutter: Cutter, tolerance: float, error: float) -> tuple[Assembly, Assembly]:
     """Make the outer and the inner tool of a cutter, for obstacles with a chord error, mm.
 

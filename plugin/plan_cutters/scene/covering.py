@@ -95,8 +95,8 @@ def _how(ready: Prepared, body: Body, rows: NDArray[np.int64]) -> How:
 
 def _volume(ready: Prepared, body: Body) -> float:
     """Volume that a body's triangles enclose, mm3."""
-    triangles = ready.conditions.around.certain.triangles
-    mine = np.isin(triangles.face, body.faces)
+    certain = ready.conditions.around.certain
+    triangles, mine = certain.triangles, certain.rows_of(body.faces)
     sign = weights(replace(triangles, vertex=triangles.vertex[mine], face=triangles.face[mine]), [body])
     a, b, c = np.moveaxis(triangles.vertex[mine], 1, 0)
     return abs(float((sign * (np.cross(a, b) * c).sum(axis=1)).sum())) / 6.0

@@ -8,6 +8,7 @@ of that ball which are deeper in it than r / sqrt(2). So one test a contact sett
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -69,19 +70,18 @@ def inside_material(
     # Every void lies in one more body than there is material.
     layers, void = np.zeros(len(samples), np.int32), np.full(len(samples), -1, np.int32)
     loose = dict(certain.triangles.loose).keys()
+    boxed = SortedPoints.of(point, np.flatnonzero(open_rows))
     for index, body in enumerate(bodies):
         sure = body.closed and loose.isdisjoint(body.faces)
-        mine = np.isin(certain.triangles.face, body.faces) if sure else np.zeros(0, bool)
-        if not mine.any():
+        vertex = certain.triangles.vertex[certain.rows_of(body.faces)] if sure else np.zeros((0, 3, 3))
+        if not len(vertex):
             continue
-        vertex = certain.triangles.vertex[mine]
-        within = ((point >= vertex.min(axis=(0, 1))) & (point <= vertex.max(axis=(0, 1)))).all(axis=1)
+        rows = boxed.within(vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1)))
         # A contact on the outer side of a skin is not within that.
         outer = [n for n, side in zip(body.faces, body.sign, strict=True) if n > 0 and orientation.sign[n - 1] == side]
-        asked = open_rows & within & ~np.isin(samples.face, outer)
+        rows = rows[~np.isin(samples.face[rows], outer)]
         if not hollow.any():
-            asked &= result < 0
-        rows = np.flatnonzero(asked)
+            rows = rows[result[rows] < 0]
         if len(rows):
             found = balls_inside(point[rows], _BALL * deep, certain.skin_of(body), jobs)
             if hollow[index]:
@@ -94,6 +94,28 @@ def inside_material(
     empty = (result >= 0) & (layers <= 0) & (void >= 0)
     result[empty] = void[empty]
     return result
+
+
+class SortedPoints(NamedTuple):
+    """Points along the axis on which they spread most, so that each of many boxes looks at few of them."""
+
+    point: Floats
+    axis: int
+    row: NDArray[np.int64]
+    at: Floats
+
+    @classmethod
+    def of(cls, point: Floats, rows: NDArray[np.int64]) -> "SortedPoints":
+        """Some rows (k,) of finite points (n, 3)."""
+        axis = int(np.ptp(point[rows], axis=0).argmax()) if len(rows) else 0
+        row = rows[np.argsort(point[rows, axis], kind="stable")]
+        return cls(point, axis, row, point[row, axis])
+
+    def within(self, low: Floats, high: Floats) -> NDArray[np.int64]:
+        """Rows, ascending, of the points in a box with its border."""
+        first, last = self.at.searchsorted(low[self.axis], "left"), self.at.searchsorted(high[self.axis], "right")
+        rows = self.row[first:last]
+        return np.sort(rows[((self.point[rows] >= low) & (self.point[rows] <= high)).all(axis=1)])
 
 
 def balls_inside(points: Floats, radius: float, obstacles: Obstacles, jobs: int) -> NDArray[np.bool_]:
@@ -155,7 +177,8 @@ def cover(point: Floats, normal: Floats, certain: Obstacles, body: Body | None =
         rows, face, weight = rows[mine], face[mine], weight[mine]
         if min(body.faces) > 0:
             # A fixture is one body whatever it consists of, and its triangles know what they count.
-            weight = np.array([dict(zip(body.faces, body.sign, strict=True))[n] for n in face.tolist()], np.int8)
+            sign = dict(zip(body.faces, body.sign, strict=True))
+            weight = np.array([sign[n] for n in face.tolist()], np.int8)
     vertex = certain.tree.vertex[rows]
     a, b, c = vertex[:, 0] - point, vertex[:, 1] - point, vertex[:, 2] - point
     # Signed volumes tell on which side of each edge the ray passes; the corners' sense does not matter.

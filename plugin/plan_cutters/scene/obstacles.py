@@ -1,6 +1,6 @@
 """Obstacles: triangles in tree order, what they enclose, and how deep one may reach into a cutter."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import ndimage
 
-from cad_io.arrays import Floats, Ints, Record, Triangles
+from cad_io.arrays import Floats, Ints, Record, Triangles, rows_by_face
 from cad_io.part.bodies import Body
 from plan_cutters.domain.assembly import Assembly
 from plan_cutters.errors import UnjudgeableError
@@ -221,12 +221,22 @@ class Obstacles(Record):
     def _skins(self) -> "dict[tuple[tuple[int, ...], tuple[int, ...]], Obstacles]":
         return {}
 
+    @cached_property
+    def _rows(self) -> dict[int, NDArray[np.int64]]:
+        """Rows of `triangles` of each face."""
+        return rows_by_face(self.triangles.face)
+
+    def rows_of(self, faces: Iterable[int]) -> NDArray[np.int64]:
+        """Rows (k,) of the triangles of some faces, ascending."""
+        none = np.zeros(0, np.int64)
+        return np.sort(np.concatenate([none, *(self._rows.get(number, none) for number in set(faces))]))
+
     def _skin_of(self, body: Body) -> "Obstacles":
-        mine = np.isin(self.triangles.face, body.faces)
+        mine = self.rows_of(body.faces)
         triangles = replace(self.triangles, vertex=self.triangles.vertex[mine], face=self.triangles.face[mine])
         # A fixture is one body whatever it consists of, and its triangles know what they count.
         weight = self.weight[mine] if min(body.faces) < 0 else weights(triangles, [body])
-        if mine.all() and (weight == self.weight).all():
+        if len(mine) == len(self.triangles) and (weight == self.weight).all():
             return self
         return Obstacles(triangles, weight)
 

@@ -39,8 +39,9 @@ def default_spacing(
     scout = sample(part, orientation, grid=9, spacing=None, faces=faces)
     bend = np.nan_to_num(np.abs(scout.curvature).max(axis=1, initial=0.0))
     spacing: dict[int, float] = {}
+    rows = scout.by_face()
     for number in faces:
-        here = bend[scout.face == number]
+        here = bend[rows.get(number, [])]
         # A median: a point at an apex or a crease says nothing about the face.
         typical = float(np.median(here)) if len(here) else 0.0
         spacing[number] = min(base, max(base / _FINEST, _TURN / typical if typical else base))

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from cad_io import Part
-from cad_io.arrays import Floats, LostFace, Record, Triangles
+from cad_io.arrays import Floats, LostFace, Record, Triangles, rows_by_face
 from cad_io.part.bodies import Body, bodies
 from cad_io.part.boxes import face_box
 from cad_io.read.mesh import Mesh
@@ -188,7 +188,8 @@ def surroundings(
     if not len(stand.vertex) and not len(caps) and not loose and (everything == certain.weight).all():
         return Surroundings(certain, certain, found, missing, lying, lost)
     # A surface that triangles do not follow closely may be anywhere within their error, and is for certain nowhere.
-    shells = [(n, _shell(part, n, triangles.vertex[triangles.face == n], error)) for n, error in loose.items()]
+    rows = rows_by_face(triangles.face)
+    shells = [(n, _shell(part, n, triangles.vertex[rows.get(n, [])], error)) for n, error in loose.items()]
     shell = np.concatenate([np.zeros((0, 3, 3)), *(made for _, made in shells)])
     of_shell = np.repeat(np.array([n for n, _ in shells], np.int32), [len(made) for _, made in shells])
     all_triangles = replace(
@@ -222,10 +223,10 @@ def _on_bodies(certain: Obstacles, found: Sequence[Body]) -> tuple[int, ...]:
         return ()
     close = 2.0 * triangles.chord_error + 1e-9 * float(np.abs(triangles.vertex).max())
     lying = []
-    for number in np.unique(triangles.face).tolist():
+    for number, rows in rows_by_face(triangles.face).items():
         if number in own:
             continue
-        middle = triangles.vertex[triangles.face == number].mean(axis=1)
+        middle = triangles.vertex[rows].mean(axis=1)
         middle = np.ascontiguousarray(middle[:: 1 + len(middle) // _LOOKED_AT])
         near = np.zeros(len(middle), bool)
         near_skin(middle, close, certain.solids, near)

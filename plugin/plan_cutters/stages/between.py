@@ -157,7 +157,7 @@ def between(
     counted, short = own[:-1] & ~beside, 0
     looked, left = int((counted & (samples.unjudged < 0)).sum()), int(counted.sum())
     work = Work() if work is None else work
-    upto, around = work.looked + most, np.zeros(len(samples))
+    upto = work.looked + most
     sites, nodes, strips = list[Site](), list[CellContacts](), list[CellContacts]()
     for grid in samples.grids:
         trim = part.trim(grid.face)
@@ -176,9 +176,7 @@ def between(
         sites.append(Site(field, cutter, conditions, work, fixed))
         nodes.append(mine)
         strips.append(bare)
-        for cells in (mine, bare):
-            known = cells.sample >= 0
-            around += np.bincount(cells.sample[known], cells.area[known], len(samples))
+    around = _about(nodes, len(samples)) + _about(strips, len(samples))
     # The strips come first, the largest ones where the budget is short.
     chosen = best(np.concatenate([np.zeros(0), *(each.area for each in strips)]), budget)
     short += int((~chosen).sum())
@@ -248,6 +246,14 @@ def _joined(each: Sequence[Between]) -> Between:
         sum(one.short for one in each), sum(one.dropped for one in each), each[0].unknown,
         Cells(*map(np.concatenate, columns)), np.sum([one.around for one in each], axis=0),
     )  # fmt: skip
+
+
+def _about(cells: Sequence[CellContacts], count: int) -> Floats:
+    """Area of cells about each of so many samples, mm2."""
+    sample = np.concatenate([np.zeros(0, np.int64), *(each.sample for each in cells)])
+    area = np.concatenate([np.zeros(0), *(each.area for each in cells)])
+    known = sample >= 0
+    return np.asarray(np.bincount(sample[known], area[known], count), float)
 
 
 def _covered(field: Field, grid: FaceGrid, beside: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -15,7 +15,7 @@ from cad_io.face.clip import Clipped, clipped
 from cad_io.face.evaluate import density, evaluate
 from cad_io.face.trim import Trim
 from cad_io.part import Part
-from plan_cutters.domain.verdicts import INTERFERENCE_FREE, Verdicts
+from plan_cutters.domain.verdicts import INTERFERENCE_FREE, Verdicts, not_reached
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.stages.nodes import WIDER, WILDER, from_neighbours, steepest, tensors
 
@@ -175,7 +175,7 @@ def laid(
     contacts = CellContacts(
         samples.point[mine], samples.normal[mine], samples.direction_max[mine], samples.curvature[mine],
         reach.axis[mine], reach.verdict[mine] == INTERFERENCE_FREE, size[judged], tile[judged].astype(np.int32), tile[judged],
-        middle[judged], span[judged], clip.whole[judged], size[judged], area[judged], reach.not_reached[mine],
+        middle[judged], span[judged], clip.whole[judged], size[judged], area[judged], not_reached(reach.verdict[mine]),
         reach.tilt_direction[mine], mine,
     )  # fmt: skip
     bare = node < 0
@@ -184,7 +184,7 @@ def laid(
     axis, side = (
         np.where((beside < 0)[:, None], np.nan, column[beside]) for column in (reach.axis, reach.tilt_direction)
     )
-    flat = reach.interference_free[beside] & (beside >= 0)
+    flat = (reach.verdict[beside] == INTERFERENCE_FREE) & (beside >= 0)
     strips = CellContacts(
         *geometry, _started(axis, flat, geometry[1], conditions), flat, np.zeros(len(flat)),
         tile[bare].astype(np.int32), tile[bare], middle[bare], span[bare], clip.whole[bare], np.full(len(flat), np.nan),
