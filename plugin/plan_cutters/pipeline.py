@@ -166,14 +166,13 @@ def run(
     document = result.plan
     if maps.unmapped:
         document = noted(document, maps_partial(maps.unmapped, int((maps.verdict != UNJUDGED).sum())))
-    if answers.operations is not None and document.operations is not None:
+    if document.operations is not None:
         from plan_cutters.operations.motion import motion
 
         with clock.stage("motion"):
             moved = motion(maps, ready)
-        answers = replace(answers, operations=answers.operations.moving(moved))
         document = document.model_copy(update={"operations": with_motion(document.operations, moved)})
-    return replace(result, plan=clock.stamp(with_text(document)), maps=maps, answers=answers)
+    return replace(result, plan=clock.stamp(with_text(document)), maps=maps)
 
 
 def _elsewhere(

@@ -11,10 +11,9 @@ from hypothesis import strategies as st
 from cad_io.arrays import FaceGrid
 from plan_cutters import plan
 from plan_cutters.domain.kinematics import Kinematics
-from plan_cutters.domain.operations import RESOLUTION
 from plan_cutters.domain.posture import tilt_direction
 from plan_cutters.domain.verdicts import ACCESSIBLE
-from plan_cutters.operations.forced_steps import Positions, forced_steps
+from plan_cutters.operations.forced_steps import RESOLUTION, Positions, forced_steps
 from plan_cutters.operations.free_tilts import cells_of, holding, postures_of
 from plan_cutters.operations.motion import components, motion
 from plan_cutters.plan_file.operations import ForcedStepEntry, MotionEntry
@@ -179,8 +178,8 @@ def test_around_a_rod_the_table_turns_by_its_share_of_a_turn(n):
     maps, samples = rod(n, 60.0)
     (found,) = forced_steps(maps, samples, machine(), np.ones(n, bool))
     assert found.along == "u"
-    assert found.step == pytest.approx(360.0 / n, abs=RESOLUTION)
-    assert found.turning == found.step
+    assert found.deg == pytest.approx(360.0 / n, abs=RESOLUTION)
+    assert found.turning_deg == found.deg
 
 
 def test_where_the_table_has_one_turn_alone_it_must_flip_over_or_turn_back():
@@ -194,32 +193,32 @@ def test_where_the_table_has_one_turn_alone_it_must_flip_over_or_turn_back():
     (turns,) = forced_steps(maps, samples, machine(wide), np.ones(n, bool))
     flip = np.array([limit[0], [math.radians(-120.0), math.radians(120.0)]])
     (both,) = forced_steps(maps, samples, machine(flip), np.ones(n, bool))
-    assert held.step > 300.0
-    assert turns.step == free.step
+    assert held.deg > 300.0
+    assert turns.deg == free.deg
     # The other solution is half a turn of the table and twice the lean away.
-    assert free.step < both.step <= 180.0 + RESOLUTION
+    assert free.deg < both.deg <= 180.0 + RESOLUTION
 
 
 def test_near_the_direction_of_the_table_its_turns_are_told_apart():
     """Axes that lean by 1 deg only: the table turns by 15 deg from sample to sample, but the tool hardly does."""
     maps, samples = rod(24, 1.0)
     (found,) = forced_steps(maps, samples, machine(), np.ones(24, bool))
-    assert found.step <= RESOLUTION
-    assert found.turning == pytest.approx(15.0, abs=RESOLUTION)
+    assert found.deg <= RESOLUTION
+    assert found.turning_deg == pytest.approx(15.0, abs=RESOLUTION)
 
 
 def test_a_window_that_all_samples_share_forces_nothing():
     maps, samples = rod(24, 60.0)
     shared = maps_of(maps.normal, maps.direction_max, lambda i, at: [(5.0, 90.0)])
     (found,) = forced_steps(shared, samples, machine(), np.ones(24, bool))
-    assert found.turning == 0.0
+    assert found.turning_deg == 0.0
 
 
 def test_a_line_ends_where_a_sample_has_no_posture():
     n = 24
     maps, samples = rod(n, 60.0)
     reached = np.arange(n) % 2 == 0
-    assert forced_steps(maps, samples, machine(), reached) == ()
+    assert forced_steps(maps, samples, machine(), reached) == []
 
 
 @given(st.integers(0, 2**31))

@@ -1,6 +1,7 @@
 """The requests of the commands: frozen records, which `takes` alone makes of the values that click has parsed.
 
 Names and values are those of the command line, angles in degrees; the functions at the end say which options of a plan they are.
+Records are neither compared nor printed: to make what that takes would cost time at each start.
 """
 
 import functools
@@ -36,7 +37,7 @@ def takes(record: type[R]) -> Callable[[Callable[[R], int]], Callable[..., int]]
     return decorated
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class PostureRequest:
     """The common fields of all commands that judge postures: the machine, the obstacles and the search."""
 
@@ -56,7 +57,7 @@ class PostureRequest:
     debug: bool
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class JudgingRequest(PostureRequest):
     """The common fields of all commands that judge the samples of a part."""
 
@@ -71,7 +72,7 @@ class JudgingRequest(PostureRequest):
     jobs: int | None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class StoredRequest(JudgingRequest):
     """Another machine or setup on stored posture maps: `plan-cutters stored`."""
 
@@ -80,7 +81,7 @@ class StoredRequest(JudgingRequest):
     json_out: str | None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class PlanningRequest(JudgingRequest):
     """The common fields of all commands that plan parts."""
 
@@ -106,7 +107,7 @@ class PlanningRequest(JudgingRequest):
     read_timeout: float
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class PlanRequest(PlanningRequest):
     """Plans of some parts: `plan-cutters`."""
 
@@ -121,7 +122,7 @@ class PlanRequest(PlanningRequest):
     memory: float | None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class BatchRequest(PlanningRequest):
     """Plans of many parts on workers: `plan-cutters batch`."""
 
@@ -134,7 +135,7 @@ class BatchRequest(PlanningRequest):
     dry_run: bool
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class MapRequest(PostureRequest):
     """All postures of one cutter at one point: `plan-cutters map`."""
 
@@ -149,7 +150,7 @@ class MapRequest(PostureRequest):
     json_out: str | None
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class ToolsRequest:
     """Tool libraries as they are understood: `plan-cutters tools`."""
 
@@ -165,7 +166,7 @@ class ToolsRequest:
     debug: bool
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class MachinesRequest:
     """Machines as they are understood: `plan-cutters machines`."""
 
@@ -177,7 +178,7 @@ class MachinesRequest:
     debug: bool
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class DiffRequest:
     """The difference of two plans: `plan-cutters diff`."""
 
@@ -191,7 +192,7 @@ class DiffRequest:
     debug: bool
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class ChangedRequest:
     """Parts that changed in a repository: `plan-cutters changed`."""
 
@@ -207,7 +208,7 @@ class ChangedRequest:
     debug: bool
 
 
-@dataclass(frozen=True, slots=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class McpRequest:
     """Tools of agents: `plan-cutters mcp`."""
 

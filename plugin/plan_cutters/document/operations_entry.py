@@ -6,11 +6,9 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.operations import (
     INDEX_TIME,
-    RESOLUTION,
     Fastest,
     Fewest,
     IndexFrom,
-    Motion,
     Operation,
     OperationPlan,
     Operations,
@@ -26,7 +24,6 @@ from plan_cutters.plan_file.operations import (
     CutterUse,
     FastestEntry,
     FewestEntry,
-    ForcedStepEntry,
     MotionEntry,
     OperationEntry,
     OperationFace,
@@ -69,7 +66,7 @@ def operations_entry(
     return OperationsEntry(
         asked=found.which,  # type: ignore[arg-type]
         rotary=found.names, plans=plans, fewest=_fewest(found.fewest), cutters=uses, curve=steps, fastest=_fastest(found),
-        assumed=assumed, probes=found.probes, motion=_motion(found.motion), notes=list(found.notes),
+        assumed=assumed, probes=found.probes, motion=None, notes=list(found.notes),
     )  # fmt: skip
 
 
@@ -83,26 +80,11 @@ def _fewest(found: Fewest) -> FewestEntry:
     )  # fmt: skip
 
 
-def with_motion(plan: OperationsEntry, found: Motion | str) -> OperationsEntry:
-    """The entry with what was found of motion, or with the words why there is nothing."""
-    if isinstance(found, str):
-        return plan.model_copy(update={"notes": [*plan.notes, found]})
-    return plan.model_copy(update={"motion": _motion(found)})
-
-
-def _motion(found: Motion | None) -> MotionEntry | None:
-    if found is None:
-        return None
-    steps = [
-        ForcedStepEntry(along=each.along, deg=each.step, turning_deg=each.turning, face=f"F{each.face}",
-                        looked_at=each.looked_at, lines=each.lines)
-        for each in found.steps
-    ]  # fmt: skip
-    return MotionEntry(
-        cutter=found.cutter, components=found.components, components_strict=found.strictly, largest_share=found.largest_share,
-        needed=found.needed, needed_at_least=found.needed_at_least, outside=found.outside, without=found.without,
-        forced_steps=steps, resolution_deg=RESOLUTION,
-    )  # fmt: skip
+def with_motion(plan: OperationsEntry, motion: MotionEntry | str) -> OperationsEntry:
+    """The entry with its motion, or with the words why there is none."""
+    if isinstance(motion, str):
+        return plan.model_copy(update={"notes": [*plan.notes, motion]})
+    return plan.model_copy(update={"motion": motion})
 
 
 def _fastest(found: Operations) -> FastestEntry | None:

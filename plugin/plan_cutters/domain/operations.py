@@ -4,7 +4,7 @@ what proves that there are no fewer.
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, Literal
 
 import numpy as np
@@ -19,8 +19,6 @@ from plan_cutters.errors import OptionError
 #: Plans that may be asked for.
 WHICH = ("fewest", "fastest", "both")
 Mode = Literal["fixed", "simultaneous"]
-#: Forced steps of rotary axes are known to this, deg.
-RESOLUTION = 3.0
 #: Another orientation takes this, s, where no time was given and the machine does not say how fast its rotary axes turn.
 INDEX_TIME = 5.0
 IndexFrom = Literal["rates", "given", "assumed"]
@@ -153,61 +151,6 @@ class Worth:
     only: NDArray[np.int64]
     saves: float | None
     change: float
-
-
-@dataclass(frozen=True, slots=True)
-class ForcedStep:
-    """Along the grid lines of one direction, some step of the rotary axes is at least so large, whatever postures are taken.
-
-    Attributes
-    ----------
-    along : str
-        `u` or `v`.
-    step, turning : float
-        Largest of the least steps, deg: without turns of the first axis where the tool axis is within 2 deg of it; and with them.
-    face : int
-        Where that line is.
-    looked_at, lines : int
-        Lines, and how many there are.
-    """
-
-    along: Literal["u", "v"]
-    step: float
-    turning: float
-    face: int
-    looked_at: int
-    lines: int
-
-
-@dataclass(frozen=True, slots=True)
-class Motion:
-    """How the free postures of one cutter in the first setup hang together over the surface: an estimate, proved nowhere.
-
-    Attributes
-    ----------
-    cutter : str
-        Its id.
-    components, strictly : int
-        Sets of postures between which no way was found, by loose joins and by strict ones.
-    largest_share : float
-        Of the judged area: what the largest component touches.
-    needed, needed_at_least : int
-        Fewest components that touch all that has a posture, and how few there can be.
-    outside, without : int
-        Samples that the largest component does not touch; samples without a posture in the maps.
-    steps : tuple of ForcedStep
-        Empty without rotary axes, or where no sample has a neighbour on a grid line.
-    """
-
-    cutter: str
-    components: int
-    strictly: int
-    largest_share: float
-    needed: int
-    needed_at_least: int
-    outside: int
-    without: int
-    steps: tuple[ForcedStep, ...]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -353,8 +296,6 @@ class Operations:
         Why the most wanted cutter does not reach a sample in the first setup, an index into REASONS, or NO_REASON.
     fastest : Fastest, optional
         Where the fastest were asked for.
-    motion : Motion, optional
-        Where posture maps were asked for, too.
     worth : tuple of Worth
         Of each cutter, the largest first, where the fastest were asked for and several were compared.
     index_from : str
@@ -371,7 +312,6 @@ class Operations:
     feed: Mapping[Cutter, float] | None
     reason: NDArray[np.uint8]
     fastest: Fastest | None = None
-    motion: Motion | None = None
     worth: tuple[Worth, ...] = ()
     notes: tuple[str, ...] = field(default_factory=tuple)
     index_from: IndexFrom = "assumed"
@@ -379,7 +319,3 @@ class Operations:
     def plan(self, name: str) -> OperationPlan | None:
         """The plan of a name."""
         return next((each for each in self.plans if each.name == name), None)
-
-    def moving(self, found: Motion | str) -> "Operations":
-        """The same with what was found of motion, or with the words why there is nothing."""
-        return replace(self, notes=(*self.notes, found)) if isinstance(found, str) else replace(self, motion=found)

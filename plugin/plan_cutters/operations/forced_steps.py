@@ -16,13 +16,15 @@ from scipy.ndimage import maximum_filter1d
 
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.kinematics import SINGULAR, Kinematics
-from plan_cutters.domain.operations import RESOLUTION, ForcedStep
 from plan_cutters.domain.posture import tilt_direction
 from plan_cutters.operations.free_tilts import holding, postures_of
+from plan_cutters.plan_file.operations import ForcedStepEntry
 from plan_cutters.stages.posture_maps import PostureMaps
 
 Line = NDArray[np.int64]
 Bits = NDArray[np.uint8]
+#: Forced steps of rotary axes are known to this, deg.
+RESOLUTION = 3.0
 #: Directions of grid lines.
 DIRECTIONS: tuple[Literal["u", "v"], ...] = ("u", "v")
 #: Samples of lines that are looked at in each direction, about.
@@ -141,7 +143,7 @@ def _turns_of(maps: PostureMaps, row: int) -> Line:
 
 def forced_steps(
     maps: PostureMaps, samples: SurfaceSamples, kinematics: Kinematics, reached: NDArray[np.bool_]
-) -> tuple[ForcedStep, ...]:
+) -> list[ForcedStepEntry]:
     """Find the largest step that a line of samples forces, along u and along v.
 
     Parameters
@@ -168,9 +170,9 @@ def forced_steps(
         bits = [[known[row] for row in line.tolist()] for line in some]
         least, line = _largest(grid, bits, cone=False)
         turning, _ = _largest(grid, bits, cone=True)
-        face = int(samples.face[some[line][0]])
-        found.append(ForcedStep(along, least * RESOLUTION, turning * RESOLUTION, face, len(some), len(lines)))
-    return tuple(found)
+        found.append(ForcedStepEntry(along=along, deg=least * RESOLUTION, turning_deg=turning * RESOLUTION,
+                                     face=f"F{samples.face[some[line][0]]}", looked_at=len(some), lines=len(lines)))  # fmt: skip
+    return found
 
 
 def _lines(samples: SurfaceSamples, reached: NDArray[np.bool_], along: Literal["u", "v"]) -> list[Line]:

@@ -12,11 +12,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints
-from plan_cutters.domain.operations import Motion
 from plan_cutters.domain.posture import tilt_direction
 from plan_cutters.operations.cover import fewest
-from plan_cutters.operations.forced_steps import forced_steps
+from plan_cutters.operations.forced_steps import RESOLUTION, forced_steps
 from plan_cutters.operations.free_tilts import cells_of, full_turn, holding, postures_of
+from plan_cutters.plan_file.operations import MotionEntry
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.stages.posture_maps import PostureMaps
 
@@ -27,7 +27,7 @@ _AT_ONCE = 400_000
 _COMPARED, _TABLE = 32, 50_000_000
 
 
-def motion(maps: PostureMaps, ready: Prepared) -> Motion | str:
+def motion(maps: PostureMaps, ready: Prepared) -> MotionEntry | str:
     """Estimate how the postures of one cutter in the first setup hang together.
 
     Parameters
@@ -38,7 +38,7 @@ def motion(maps: PostureMaps, ready: Prepared) -> Motion | str:
 
     Returns
     -------
-    Motion or str
+    MotionEntry or str
         In words why nothing can be said, where the maps leave samples out.
     """
     if maps.unmapped:
@@ -56,16 +56,22 @@ def motion(maps: PostureMaps, ready: Prepared) -> Motion | str:
     reached[touched[:, 1]] = True
     size = np.asarray(np.bincount(touched[:, 0], area[touched[:, 1]], int(loose.max(initial=-1)) + 1), float)
     largest = int(size.argmax()) if len(size) else -1
-    found, at_least = _needed(touched, size)
+    needed, at_least = _needed(touched, size)
     whole = float(area.sum())
     ways = ready.conditions.kinematics
     turning = ways is not None and len(ways.turning()[1]) == 2
-    return Motion(
-        maps.cutter, len(np.unique(touched[:, 0])), len(np.unique(strict[kept])),
-        min(1.0, float(size[largest]) / whole) if largest >= 0 and whole > 0.0 else 0.0, found, at_least,
-        int(reached.sum() - (touched[:, 0] == largest).sum()), int((ready.finished & ~reached).sum()),
-        forced_steps(mine, samples, ways, reached) if ways is not None and turning else (),
-    )  # fmt: skip
+    return MotionEntry(
+        cutter=maps.cutter,
+        components=len(np.unique(touched[:, 0])),
+        components_strict=len(np.unique(strict[kept])),
+        largest_share=min(1.0, float(size[largest]) / whole) if largest >= 0 and whole > 0.0 else 0.0,
+        needed=needed,
+        needed_at_least=at_least,
+        outside=int(reached.sum() - (touched[:, 0] == largest).sum()),
+        without=int((ready.finished & ~reached).sum()),
+        forced_steps=forced_steps(mine, samples, ways, reached) if ways is not None and turning else [],
+        resolution_deg=RESOLUTION,
+    )
 
 
 def components(maps: PostureMaps, edge: Rows) -> tuple[Ints, Ints]:
