@@ -28,7 +28,9 @@ from plan_cutters.domain.default_tools import builtin
 from plan_cutters.files.terminal_text import clean
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.numbers import percent
+from plan_cutters.plan_file.words.details import others
 from plan_cutters.plan_file.words.story import story_of
+from plan_cutters.plan_file.words.text import with_text
 from tests.support.commands import assert_one_line, in_lines, leftovers, said_until
 from tests.support.forked import ENV, run
 from tests.support.places import SAMPLES
@@ -56,7 +58,7 @@ def shown(capsys, document, *, verbose=False):
     """What the summary says."""
     capsys.readouterr()
     summaries.summary(document, verbose=verbose)
-    show(*summaries.written(document, Path("out"), ("json",)), *summaries.not_reached(document, verbose=verbose))
+    show(*summaries.written(document, Path("out"), ("json",)), *others(document, every=verbose))
     return capsys.readouterr().out
 
 
@@ -167,7 +169,7 @@ def test_completion_knows_names_and_loads_no_kernel(tmp_path, words, offered):
 def test_the_first_line_says_which_cutter_to_take(capsys, planned):
     said = shown(capsys, planned)
     first = said.split("\n")[1]
-    assert first.startswith("Take flat end D12 x 80 for peaks_and_valleys.step: R6L80, ")
+    assert first.startswith("Take flat end D12 x 80. For peaks_and_valleys.step: R6L80, ")
     assert "without a holder" in in_lines(said)
     assert re.search(r"^> flat end D12 x 80 +yes ", said, re.MULTILINE)
     assert re.search(r"^  flat end D24 x 120 +no ", said, re.MULTILINE)
@@ -240,7 +242,7 @@ def everywhere(value, text):
 
 def nasty(document):
     found = json.loads(document.model_dump_json())
-    return Plan.model_validate(everywhere(found, NASTY) | {"units": found["units"]})
+    return with_text(Plan.model_validate(everywhere(found, NASTY) | {"units": found["units"], "text": None}))
 
 
 @pytest.mark.parametrize("verbose", [False, True])
@@ -435,13 +437,13 @@ def test_it_speaks_soon_and_shows_a_clock_on_a_terminal(tmp_path):
 
 def test_what_is_found_goes_to_standard_output_and_all_else_to_standard_error(tmp_path):
     done = run(GROOVE, *QUICK, *FILES, cwd=tmp_path)
-    assert done.stdout.startswith("\nTake flat end D12 x 80 for v_groove.step")
+    assert done.stdout.startswith("\nTake flat end D12 x 80. For v_groove.step")
     assert "\nWritten to out: plan.json" in done.stdout
     assert done.stderr
     assert all(re.fullmatch(r" +\d+\.\d s  .+", line) for line in done.stderr.splitlines())
     done = run(GROOVE, *QUICK, "--json", "-", cwd=tmp_path)
     assert json.loads(done.stdout)["selected"] == "R6L80"
-    assert "\nTake flat end D12 x 80 for v_groove.step" in done.stderr
+    assert "\nTake flat end D12 x 80. For v_groove.step" in done.stderr
 
 
 @pytest.mark.parametrize(("close", "code", "said"), [
@@ -511,7 +513,7 @@ def test_files_with_odd_names(tmp_path):
     done = run(odd, *QUICK, "--formats", "json", "-o", "out", cwd=tmp_path)
     assert done.returncode == 0
     assert "\x1b" not in done.stdout + done.stderr
-    assert r"Take flat end D12 x 80 for a\n\x1b[31mß.step" in done.stdout
+    assert r"Take flat end D12 x 80. For a\n\x1b[31mß.step" in done.stdout
     (tmp_path / "-x.step").write_bytes(GROOVE.read_bytes())
     assert run("--quiet", "--formats", "json", "-o", "out", *QUICK, "--", "-x.step", cwd=tmp_path).returncode == 0
 
@@ -621,6 +623,8 @@ def test_an_interrupt_where_none_can_be_raised_is_taken_again():
     code = """
 import os, signal, sys, time
 from plan_cutters.command.supervise import keep_interrupts
+from plan_cutters.plan_file.words.details import others
+from plan_cutters.plan_file.words.text import with_text
 keep_interrupts()
 class Deaf:
     def __del__(self):

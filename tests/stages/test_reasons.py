@@ -193,15 +193,15 @@ def test_the_headline_is_that_of_the_union(capsys):
     assert (both.selected, code_of(both.plan)) == ("R3L30", 0)
     summary(both.plan)
     said = " ".join("".join(capsys.readouterr()).split())
-    assert said.startswith("Take flat end D6 x 30 for the part, in 2 setups")
+    assert said.startswith("Take flat end D6 x 30. For the part, in 2 setups")
     assert "over 2 setups" in said
     below = plan(top, setup=(0, 0, 1), other_setups=[(0, 0, -1)], **how | {"faces": "5"})
     assert not below.here["R3L30"].reached.any()
     summary(below.plan)
     said = " ".join("".join(capsys.readouterr()).split())
     assert said.startswith(
-        "Take flat end D6 x 30 for the face asked for of the part (31.2 % of the area), in setup 0,0,-1:"
+        "Take flat end D6 x 30. For the face asked for of the part (31.2 % of the area), in setup 0,0,-1:"
     )
     names = short_names(both.plan)
-    assert headline(both.plan, names).about.startswith(" for the part, in 2 setups: ")
+    assert headline(both.plan, names).about.startswith("For the part, in 2 setups: ")
     assert headline(below.plan, names).why == "It reaches every sample there, and needs no other setup."

@@ -3,10 +3,6 @@
 import math
 from collections.abc import Iterable, Sequence
 
-from plan_cutters.domain.verdicts import WORDS
-
-#: Verdicts, from best to worst.
-VERDICTS = tuple(WORDS.values())
 #: Numbers of less than this are what rounding leaves of nothing.
 ROUNDING = 1e-9
 #: From so many seconds on a time is written in minutes, and in hours.

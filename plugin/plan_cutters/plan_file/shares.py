@@ -9,6 +9,8 @@ from plan_cutters.domain.verdicts import WORDS
 from plan_cutters.plan_file.frozen import Frozen
 from plan_cutters.plan_file.numbers import exact, percent
 
+#: Verdicts, from best to worst.
+VERDICTS = tuple(WORDS.values())
 _REACHED, _NOT_REACHED = ("interference_free", "accessible"), ("inaccessible", "undecided")
 
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 
 from plan_cutters.errors import PlanError
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import VERDICTS
+from plan_cutters.plan_file.shares import VERDICTS
 from plan_cutters.plan_file.words.cutters import FEASIBLE
 from plan_cutters.plan_file.words.story import Story, story_of
 from plan_cutters.report.markup import plain, template

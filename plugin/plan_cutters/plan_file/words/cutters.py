@@ -5,18 +5,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan, WitnessEntry
-from plan_cutters.plan_file.numbers import (
-    VERDICTS,
-    angle,
-    capital,
-    figure,
-    listed,
-    mm,
-    percent,
-    place,
-)
+from plan_cutters.plan_file.numbers import angle, capital, figure, listed, mm, percent, place
 from plan_cutters.plan_file.reasons import REASONS
-from plan_cutters.plan_file.shares import AreaShare, part_of, reached, unreached
+from plan_cutters.plan_file.shares import VERDICTS, AreaShare, part_of, reached, unreached
 from plan_cutters.plan_file.words.headline import area, between, every
 from plan_cutters.plan_file.words.names import described, named
 from plan_cutters.plan_file.words.next_steps import cures, first_step, step_told

@@ -1,4 +1,4 @@
-"""What a plan was made of: its part, samples, search and seconds; and what the cutters that are not taken leave."""
+"""Details of a plan: its part, samples, search and seconds, and how much the cutters that are not taken leave."""
 
 from collections.abc import Iterator
 
@@ -24,7 +24,7 @@ def scene(plan: Plan) -> str:
 
 
 def drawn(plan: Plan) -> str:
-    """What a drawing of the part shows: whose verdicts, and what it was judged with."""
+    """Say whose verdicts a drawing of the part shows, and under which conditions they were found."""
     taken = "is selected" if plan.selected else "is shown because it leaves the least area; none is selected"
     return (f"This cutter {taken}. Part {_size(plan)}. Machine {plan.effective.machine}, setup axis "
             f"({place(plan.effective.setup)}), gouge tolerance {mm(plan.effective.tolerance_mm)}, "

@@ -15,9 +15,9 @@ from cad_io.errors import WriteError
 from cad_io.kernel import translated
 from cad_io.write import meshes_of
 from plan_cutters.domain.posture import unit
-from plan_cutters.plan_file.numbers import VERDICTS, mm
+from plan_cutters.plan_file.numbers import mm
 from plan_cutters.plan_file.palette import LABELS, label, rgb
-from plan_cutters.plan_file.shares import part_of
+from plan_cutters.plan_file.shares import VERDICTS, part_of
 from plan_cutters.plan_file.words.details import drawn
 from plan_cutters.plan_file.words.names import short_names
 from plan_cutters.report.drawing.sheet import DPI, Look, figure, fitting, legend, printable, save, standard, write

@@ -14,9 +14,9 @@ from plan_cutters.domain.outline import Outline, outline, points
 from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.verdicts import WORDS
 from plan_cutters.plan_file.model import CutterEntry
-from plan_cutters.plan_file.numbers import VERDICTS
 from plan_cutters.plan_file.palette import MEANING, PALETTE, label
 from plan_cutters.plan_file.reasons import NO_CONTACT, REASONS
+from plan_cutters.plan_file.shares import VERDICTS
 from plan_cutters.plan_file.words.cutters import spot as sentence
 from plan_cutters.plan_file.words.names import short_names
 from plan_cutters.report.page.atlas import Atlas

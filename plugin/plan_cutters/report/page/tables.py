@@ -5,10 +5,9 @@ from typing import Any, NamedTuple
 
 from plan_cutters.plan_file import numbers
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
-from plan_cutters.plan_file.numbers import VERDICTS
 from plan_cutters.plan_file.palette import label
 from plan_cutters.plan_file.reasons import REASONS
-from plan_cutters.plan_file.shares import reached
+from plan_cutters.plan_file.shares import VERDICTS, reached
 from plan_cutters.plan_file.words import answers, cutters, headline
 from plan_cutters.plan_file.words.chip import CHIPS, chip
 from plan_cutters.plan_file.words.names import named
