@@ -634,7 +634,7 @@ def test_the_command_lists_and_explains(capsys, tmp_path):
     told = capsys.readouterr().out
     assert "LinuxCNC configuration" in told
     assert "beyond the limits: B" in told
-    assert "A 45.000000 deg (taken" in told
+    assert "A 45° (taken" in told
     assert "note: its angles are taken" in told
     assert run("trunnion-ac", "--angles", "0,0,-1") == 0
     assert "No position within the limits" in capsys.readouterr().out
