@@ -163,7 +163,7 @@ def test_why_not_and_what_would_help_is_one_call(server):
     best = found["would_help"][0]
     assert best["lost_after"] < best["lost_before"] == pytest.approx(found["lost_share"])
     assert best["option"].startswith("--cutter R")
-    for word in ("R8L90 does not reach", "F1", "rear gouge", "What would help: ", best["option"]):
+    for word in ("flat end D16 x 90 does not reach", "F1", "rear gouge", "What would help: ", best["option"]):
         assert word in found["told"]
 
 
@@ -218,7 +218,7 @@ def test_what_is_wrong_or_too_large_is_one_line(server):
     assert "is no name of a file" in server.refused("plan_part", part="a\0b")
     assert "at most 2 in a call" in server.refused("plan_part", part=GROOVE, cutters=["R1L20"] * 4)
     assert "is a root itself" in server.refused("plan_part", part=GROOVE, out=".")
-    assert "is no plan of plan-cutters" in server.refused("explain_sample", plan="none.json", cutter="R6", face="F1")
+    assert "no plan of plan-cutters" in server.refused("explain_sample", plan="none.json", cutter="R6", face="F1")
     assert "either `face` or `point`" in server.refused("explain_sample", part=GROOVE, cutter="R6L80")
     assert "cuters: Extra inputs" in server.refused("plan_part", part=GROOVE, cuters=["R6L80"])
     assert "there is no tool 'plan'" in server.refused("plan", part=GROOVE)

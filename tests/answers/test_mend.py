@@ -207,7 +207,7 @@ def test_only_leaving_out_the_bottom_of_a_slit_helps():
     assert found.least is by["faces"]
     assert by["faces"].asked == (f"F{bottom}",)
     assert by["faces"].verified == 50
-    assert by["faces"].why.startswith(f"F{bottom} left out of what is to be finished: 0.8 mm2, ")
+    assert by["faces"].why.startswith(f"F{bottom} left out of what is to be finished: 0.8 mm², ")
     holds(by["faces"], planned)
     assert all(each.why.startswith("does not help: ") for each in found.changes if not each.helps)
     assert all(each.asked is None for each in found.changes if not each.helps)

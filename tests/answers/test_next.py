@@ -22,6 +22,7 @@ from plan_cutters.domain.area import Patch
 from plan_cutters.domain.change import MEANS
 from plan_cutters.pipeline import prepare, run
 from plan_cutters.plan_file.words.answers import answers
+from plan_cutters.plan_file.words.change_text import patch
 from plan_cutters.plan_file.words.next_steps import is_left_out, step_told, together
 from tests.support import shapes
 from tests.support.cad_parts import box, cut, real
@@ -435,8 +436,8 @@ def test_samples_not_reached_are_areas_with_place_and_extent():
 
 
 def test_an_area_in_words():
-    assert Patch(1234.5, 0.2, 9, ("F1", "F2"), (-7e-15, 3.0, -8.123456), 41.26).words == (
-        "1,234 mm2 of F1, F2, about (0, 3, -8.12), 41 mm across"
+    assert patch(Patch(1234.5, 0.2, 9, ("F1", "F2"), (-7e-15, 3.0, -8.123456), 41.26)) == (
+        "1,230 mm² of F1, F2, about (0, 3, -8.12), 41 mm across"
     )
 
 

@@ -1,5 +1,6 @@
 """A plan can be read and put into words without the CAD kernel, the compiler, scipy or a picture, and at once."""
 
+import json
 import subprocess
 import sys
 
@@ -83,3 +84,14 @@ def test_what_is_no_plan_is_refused_in_one_line(tmp_path, content, why):
     assert str(path) in str(caught.value)
     with pytest.raises(PlanError, match="cannot be read"):
         load_plan(tmp_path / "none.json")
+
+
+def test_a_plan_that_contradicts_itself_is_refused(written):
+    data = json.loads(written.read_text())
+    data["faces"] = []
+    for each in data["cutters"]:
+        each["undecided"] = 1
+        each["faces"]["F1"]["undecided"] = 1
+    written.write_text(json.dumps(data))
+    with pytest.raises(PlanError, match="contradicts itself"):
+        load_plan(written)

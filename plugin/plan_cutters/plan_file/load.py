@@ -51,9 +51,9 @@ def plan_of(content: bytes | str, file: str, error: type[PlanError] = PlanError)
         raise error(f"{empty} (line {fault.lineno}): plan the part again", file=file) from None
     except (ValueError, RecursionError):
         raise error("is no text that JSON can be: give the plan.json of a plan", file=file) from None
-    if not isinstance(data, dict) or data.get("format") != "plan-cutters-plan":
+    version = data.get("format_version") if isinstance(data, dict) else None
+    if version is None or data.get("format") != "plan-cutters-plan":
         raise error("is JSON, but no plan of plan-cutters: give a plan.json, or the folder of one", file=file)
-    version = data.get("format_version")
     if version != FORMAT_VERSION:
         raise error(f"has format version {version}, and this program reads {FORMAT_VERSION}: plan the part again with it",
                     file=file)  # fmt: skip
@@ -67,7 +67,10 @@ def plan_of(content: bytes | str, file: str, error: type[PlanError] = PlanError)
                     file=file) from None  # fmt: skip
     if not plan.cutters:
         raise error("cutters: none was judged; plan the part again", file=file)
-    return plan if plan.text else with_text(plan)
+    try:
+        return plan if plan.text else with_text(plan)
+    except (LookupError, ArithmeticError, ValueError):
+        raise error("contradicts itself: it was damaged; plan the part again", file=file) from None
 
 
 def _mark_unknown_areas(data: dict[str, Any]) -> None:

@@ -92,10 +92,10 @@ def _loss(cutter: CutterEntry, face: FaceEntry, verdicts: FaceVerdicts) -> str:
 def _gain(change: StepEntry | ChangeEntry) -> str:
     option = f" [{change.option}]" if change.option else ""
     if isinstance(change, StepEntry):
-        return f"{change.why} ({effect(change)}){option}"
+        return f"{change.why}: {effect(change)}{option}"
     if change.lost_before is None or change.lost_after is None:
         return f"{change.why}{option}"
-    return f"{change.why} (lost {percent(change.lost_before)} to {percent(change.lost_after)} of the area){option}"
+    return f"{change.why}: lost {percent(change.lost_before)} to {percent(change.lost_after)} of the area{option}"
 
 
 def posture_text(
