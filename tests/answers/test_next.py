@@ -426,12 +426,12 @@ def test_samples_not_reached_are_areas_with_place_and_extent():
     large, small = (np.hypot(point[:, 0] - x, point[:, 1] - y) <= r for x, y, r in ((8, 4, 5), (-10, -8, 2)))
     found = patches(ready.samples, Finished.of(ready), np.flatnonzero(large | small))
     assert len(found) == 2
-    for patch, (x, y, r) in zip(found, ((8, 4, 5), (-10, -8, 2)), strict=True):
-        assert patch.area == pytest.approx(math.pi * r**2, rel=0.05)
-        assert patch.share == pytest.approx(math.pi * r**2 / 1600.0, rel=0.05)
-        assert patch.place == pytest.approx((x, y, 0), abs=0.3)
-        assert patch.across == pytest.approx(2 * r, abs=0.3)
-        assert patch.faces == ("F1",)
+    for each, (x, y, r) in zip(found, ((8, 4, 5), (-10, -8, 2)), strict=True):
+        assert each.area == pytest.approx(math.pi * r**2, rel=0.05)
+        assert each.share == pytest.approx(math.pi * r**2 / 1600.0, rel=0.05)
+        assert each.place == pytest.approx((x, y, 0), abs=0.3)
+        assert each.across == pytest.approx(2 * r, abs=0.3)
+        assert each.faces == ("F1",)
     assert patches(ready.samples, Finished.of(ready), np.zeros(0, np.int64)) == []
 
 
