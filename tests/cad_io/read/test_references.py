@@ -188,7 +188,7 @@ def test_short_names_of_entities_are_known(whole):
 
 def test_what_only_the_kernel_would_open_is_refused(whole, monkeypatch, tmp_path):
     """Whatever form of a reference the text is not searched for: the kernel opens no file that nobody noted or permitted."""
-    monkeypatch.setattr("cad_io.read.references._WORDS", (b"NONE",))
+    monkeypatch.setattr("cad_io.read.references.WORDS", (b"NONE",))
     with pytest.raises(ReadError, match=f"refers to {BOX} in a form that is not known here"):
         read_part(whole)
     for name in (BOX, BALL):
