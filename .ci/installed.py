@@ -121,7 +121,7 @@ def small(environment: Path) -> int:
     """Size of an environment, MB; end where it is too large, or has what nobody needs."""
     (packages,) = environment.glob("lib/python3*/site-packages")
     if there := [name for name in NOT_THERE if (packages / name).exists()]:
-        sys.exit(f"{there}: what was not asked for was installed")
+        sys.exit(f"{there}: what was not requested was installed")
     size = sum(path.stat().st_size for path in environment.rglob("*") if path.is_file() and not path.is_symlink())
     megabytes = round(size / 1e6)
     if megabytes > MOST_MB:

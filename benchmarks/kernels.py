@@ -25,7 +25,7 @@ from plan_cutters.kernels.area import cover
 from plan_cutters.kernels.jit import kernel
 from plan_cutters.kernels.linear import lanes, tree
 from plan_cutters.kernels.maps import free_map, free_tilts, passes
-from plan_cutters.kernels.rows import Contacts, Found, Frame
+from plan_cutters.kernels.rows import Contacts, Frame, VerdictArrays
 from plan_cutters.kernels.search import place, search
 from plan_cutters.kernels.tool import arcs, hit
 
@@ -168,7 +168,7 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
         near[i] = rng.choice(np.argsort(np.linalg.norm(centre - point[i], axis=1))[:200])
     rotations = 2 * np.pi * np.arange(TURNS) / TURNS
     scratch, cc_points = hit.scratch(), Contacts(point, normal, first, curvature)
-    out = Found(
+    out = VerdictArrays(
         np.empty(n, np.uint8),
         axis.copy(),
         tilt_direction.copy(),

@@ -45,7 +45,7 @@ def local(workers: int) -> Iterator[Client]:
 
 def ready() -> None:
     """Load all that a plan needs, so that it is not counted."""
-    import plan_cutters.batch.rows  # noqa: F401
+    import plan_cutters.batch.distributed_judge  # noqa: F401
     from plan_cutters.pipeline import prepare
 
     prepare(ROOT / "samples/v_groove.step", options())
@@ -91,7 +91,7 @@ def parts(folder: Path, count: int, grid: int, workers: list[int]) -> None:
 
 def rows(grid: int, workers: list[int]) -> None:
     """(b) One part: this process against workers."""
-    from plan_cutters.batch.rows import Rows
+    from plan_cutters.batch.distributed_judge import DistributedJudge
     from plan_cutters.domain.nesting import handed, order
     from plan_cutters.pipeline import prepare
     from plan_cutters.scene.ground import Ground
@@ -107,7 +107,7 @@ def rows(grid: int, workers: list[int]) -> None:
     packed = pickle.dumps(Ground.of(part), protocol=5)
     packing = time.perf_counter() - began
     began = time.perf_counter()
-    pickle.loads(packed).conditions.around.build(1)
+    pickle.loads(packed).conditions.surroundings.build(1)
     print(f"{len(part.samples)} samples x {len(part.cutters)} cutters; prepared in {prepared:.2f} s; "
           f"ground {len(packed) / 1e6:.1f} MB, packed in {packing:.2f} s, "
           f"unpacked with its tree in {time.perf_counter() - began:.2f} s")  # fmt: skip
@@ -126,7 +126,7 @@ def rows(grid: int, workers: list[int]) -> None:
     for each in workers:
         with local(each) as client:
             before, mine, began = sum(client.run(spent).values()), time.process_time(), time.perf_counter()
-            found = judged(Rows(client, large=0))
+            found = judged(DistributedJudge(client, large=0))
             clock, here = time.perf_counter() - began, time.process_time() - mine
             used = sum(client.run(spent).values()) - before
             peak = max(client.run(peak_of).values())

@@ -274,8 +274,8 @@ class Triangles(Record):
         """The same without the triangles of some faces."""
         if not faces:
             return self
-        left = ~np.isin(self.face, list(faces))
-        return replace(self, vertex=self.vertex[left], face=self.face[left])
+        retained = ~np.isin(self.face, list(faces))
+        return replace(self, vertex=self.vertex[retained], face=self.face[retained])
 
     @property
     def measured_share(self) -> float:

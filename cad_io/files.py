@@ -92,18 +92,18 @@ def content(path: str | os.PathLike[str], most: int = -1) -> bytes:
 def is_there(path: str | os.PathLike[str]) -> bool:
     """Whether there is a regular file that may be read; that there is none is noted."""
     try:
-        found = os.path.isfile(permitted(path))
+        exists = os.path.isfile(permitted(path))
     except (OSError, ValueError):
         return False
-    if not found:
+    if not exists:
         note(path, None)
-    return found
+    return exists
 
 
 def note(path: str | os.PathLike[str], data: bytes | None) -> None:
     """Say that a file was read, or, without data, that it was looked for and is not there."""
-    for found in _noted.get():
-        found[os.fspath(path)] = None if data is None else checksum(data)
+    for references in _noted.get():
+        references[os.fspath(path)] = None if data is None else checksum(data)
 
 
 @contextmanager
@@ -123,10 +123,10 @@ def noted() -> Iterator[dict[str, str | None]]:
     >>> files
     {'nowhere.fctb': None}
     """
-    found: dict[str, str | None] = {}
-    before = _noted.set((*_noted.get(), found))
+    references: dict[str, str | None] = {}
+    before = _noted.set((*_noted.get(), references))
     try:
-        yield found
+        yield references
     finally:
         _noted.reset(before)
 
@@ -136,14 +136,14 @@ def checksum(data: bytes) -> str:
     return hashlib.sha256(data).hexdigest()
 
 
-def checksums(found: Iterable[tuple[str, bytes | None]]) -> tuple[tuple[str, str | None], ...]:
+def checksums(files: Iterable[tuple[str, bytes | None]]) -> tuple[tuple[str, str | None], ...]:
     """SHA-256 of files by their paths; None: not there."""
-    return tuple((name, None if data is None else checksum(data)) for name, data in found)
+    return tuple((name, None if data is None else checksum(data)) for name, data in files)
 
 
 def fingerprint(sha256: str, references: Sequence[tuple[str, str | None]]) -> str:
     """Checksum of a CAD file with all that it refers to, from theirs: its own SHA-256 where it refers to nothing."""
-    stated = sorted(f"{len(name)} {name} {found}" for name, found in references)
+    stated = sorted(f"{len(name)} {name} {result}" for name, result in references)
     return (
         hashlib.sha256("\n".join([sha256, *stated]).encode(errors="surrogateescape")).hexdigest() if stated else sha256
     )

@@ -46,9 +46,9 @@ Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
 
 def _roots() -> Iterator[Path]:
     """Folders that may hold ours: as the environment says, or in the user's cache; in the folder for temporary files."""
-    asked = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME")
+    configured = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME")
     with contextlib.suppress(RuntimeError):  # this user has no home
-        yield Path(asked or Path.home() / ".cache", "plan-cutters")
+        yield Path(configured or Path.home() / ".cache", "plan-cutters")
     # Windows has a folder for temporary files for each user. Elsewhere all share one: what another user put there is not run.
     user = os.getuid() if hasattr(os, "getuid") else None
     with contextlib.suppress(OSError):
@@ -95,10 +95,10 @@ def _warn(place: str, fault: str, cause: str) -> None:
 
 #: In newer versions of the compiler they have names without a line in front.
 _Impl: Any = getattr(caching, "CacheImpl", None) or caching._CacheImpl
-_Asked: Any = getattr(caching, "UserProvidedCacheLocator", None) or caching._UserProvidedCacheLocator
+_Locator: Any = getattr(caching, "UserProvidedCacheLocator", None) or caching._UserProvidedCacheLocator
 
 
-class _BesideContent(_Asked):
+class _ByContent(_Locator):
     """Machine code lies by what it was made of, which its folder's name says, and not by where the sources are or how old.
 
     So another environment with the same sources, or another checkout, takes what is there.
@@ -179,7 +179,7 @@ def _checked(compiled: Any) -> Any:
 def _our_cache(sources: Path, *beneath: str) -> Iterator[None]:
     before = numba.config.CACHE_DIR, _Impl._locator_classes
     numba.config.CACHE_DIR = str(Path(cache_folder(sources), *beneath))
-    _Impl._locator_classes = [_BesideContent]
+    _Impl._locator_classes = [_ByContent]
     try:
         yield
     finally:
@@ -223,10 +223,10 @@ def _once(compiled: Any) -> Any:
     The compiler takes a number that stands in a call, or that a variable begins with, for a type of its own, and compiles the
     function for it and all that it calls, then again for any number.
     """
-    asked = compiled.get_call_template
+    get_template = compiled.get_call_template
 
     def plainly(args: Any, kws: Any) -> Any:
-        return asked(tuple(map(unliteral, args)), {name: unliteral(kind) for name, kind in kws.items()})
+        return get_template(tuple(map(unliteral, args)), {name: unliteral(kind) for name, kind in kws.items()})
 
     compiled.get_call_template = plainly
     return compiled

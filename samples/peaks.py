@@ -108,7 +108,7 @@ def figures(shape: Shape, n: int = 81, mesh: int = 141) -> dict:
     from plan_cutters.kernels.material import sheet
     from plan_cutters.kernels.rows import Contacts, Ranges, Tree
     from plan_cutters.kernels.search import search
-    from plan_cutters.scene.conditions import found_of
+    from plan_cutters.scene.conditions import verdict_arrays_of
 
     fine, _ = grid(shape, mesh)
     a, b, c, d = fine[:-1, :-1], fine[1:, :-1], fine[1:, 1:], fine[:-1, 1:]
@@ -124,7 +124,16 @@ def figures(shape: Shape, n: int = 81, mesh: int = 141) -> dict:
         free, reach = np.zeros(n, bool), blank(n)
         search.dummy_clear(np.flatnonzero(convex.ravel()), contacts, radius, length, 0.03, obstacles, free)
         search.search(
-            np.flatnonzero(~free), contacts, ranges, radius, length, 0.03, 0.05, obstacles, obstacles, found_of(reach)
+            np.flatnonzero(~free),
+            contacts,
+            ranges,
+            radius,
+            length,
+            0.03,
+            0.05,
+            obstacles,
+            obstacles,
+            verdict_arrays_of(reach),
         )
         lost = int(np.isin(reach.verdict, (0, 3)).sum())
         result[f"lost_{radius:g}"] = lost

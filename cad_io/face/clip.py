@@ -94,13 +94,13 @@ def inside(segments: Floats, uv: Floats) -> Bools:
     """Which of scattered points (n, 2) lie within the polygon of segments (m, 2, 2), by the even-odd rule."""
     (pu, pv), (qu, qv) = segments[:, 0].T, segments[:, 1].T
     slope = np.divide(qu - pu, qv - pv, out=np.zeros(len(pu)), where=qv != pv)
-    found = np.zeros(len(uv), bool)
+    result = np.zeros(len(uv), bool)
     step = max(1, _AT_ONCE // max(1, len(segments)))
     for start in range(0, len(uv), step):
         u, v = uv[start : start + step, :1], uv[start : start + step, 1:]
         crosses = ((pv <= v) != (qv <= v)) & (pu + (v - pv) * slope < u)
-        found[start : start + step] = crosses.sum(axis=1) % 2 == 1
-    return found
+        result[start : start + step] = crosses.sum(axis=1) % 2 == 1
+    return result
 
 
 class _Pieces:

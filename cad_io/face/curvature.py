@@ -49,7 +49,7 @@ def curvature(derivatives: Floats, sign: float = 1.0, size: float = np.inf) -> C
     from cad_io.surface.differential import differential
 
     n = len(derivatives)
-    found = Curvature(np.empty((n, 3)), np.empty((n, 2)), np.empty((n, 3)), np.empty(n, bool))
-    differential(np.ascontiguousarray(derivatives), sign, size, PARALLEL, UMBILIC, found.normal, found.curvature,
-                 found.direction_max, found.bad)  # fmt: skip
-    return found
+    result = Curvature(np.empty((n, 3)), np.empty((n, 2)), np.empty((n, 3)), np.empty(n, bool))
+    differential(np.ascontiguousarray(derivatives), sign, size, PARALLEL, UMBILIC, result.normal, result.curvature,
+                 result.direction_max, result.bad)  # fmt: skip
+    return result

@@ -55,7 +55,7 @@ def measure(surface: Surface, trim: Trim, origin: Floats) -> Measure:
     u, v, step = _border_nodes(_split(_split(trim.segments, 0, breaks_u[1:-1]), 1, breaks_v[1:-1]), breaks_u, breaks_v)
     cells = [(a, b, c, d) for a, b in pairwise(breaks_u.tolist()) for c, d in pairwise(breaks_v.tolist())]
     most = max(_MOST_TABLE // len(cells), _LEAST_TABLE)
-    total = sum((_around(_resolved(surface, cell, origin, most), cell, u, v, step) for cell in cells), np.zeros(5))
+    total = sum((_integrals(_resolved(surface, cell, origin, most), cell, u, v, step) for cell in cells), np.zeros(5))
     # A border that runs the wrong way round makes all of it negative.
     total = total if total[0] >= 0 else -total
     if not trim.closed:
@@ -67,12 +67,12 @@ def measure(surface: Surface, trim: Trim, origin: Floats) -> Measure:
 
 def _breaks(count: int, intervals: Any, low: float, high: float) -> Floats:
     """Ends of the box and, between them, parameters at which second derivatives jump, unless there are many."""
-    found = np.zeros(0)
+    breaks = np.zeros(0)
     if 1 < count <= 10 * _MOST_CELLS:
-        found = interval_ends(count, intervals, GeomAbs_C2)
+        breaks = interval_ends(count, intervals, GeomAbs_C2)
         slack = 1e-9 * (high - low)
-        found = found[(found > low + slack) & (found < high - slack)]
-    return np.concatenate([[low], found if len(found) < _MOST_CELLS else [], [high]])
+        breaks = breaks[(breaks > low + slack) & (breaks < high - slack)]
+    return np.concatenate([[low], breaks if len(breaks) < _MOST_CELLS else [], [high]])
 
 
 def _split(segments: Floats, axis: int, breaks: Floats) -> Floats:
@@ -136,7 +136,7 @@ def _table(surface: Surface, cell: tuple[float, float, float, float], origin: Fl
     return along_v @ (along_u @ density.reshape(n, -1)).reshape(n, m, 5)
 
 
-def _around(
+def _integrals(
     table: Floats, cell: tuple[float, float, float, float], u: Floats, v: Floats, step: Floats
 ) -> Floats:  # fmt: skip
     """Line integral around the border, dv, of the u-antiderivative of a density that is zero outside the cell."""

@@ -24,7 +24,7 @@ WITHIN, WITHIN_SHARE = 1e-3, 1e-4
 _BETWEEN = 3.0
 _NODES = 8
 #: Relative spread of a curvature that may still be constant: written shapes wobble, the fit decides.
-_WOBBLE = 0.1
+_VARIATION = 0.1
 #: Nodes along a piece of degree p: so many p, and more. Between them a quadric's equation (degree 2 p) is at most 1.3 times,
 #: a torus's (4 p) at most 4 times as large as at them.
 _EACH, _MORE = 6, 2
@@ -63,9 +63,9 @@ def _fits(point: Floats, normal: Floats, kappa: Floats, size: float) -> Iterator
     if large * size < 1e-3:
         return
     spread = np.ptp(kappa, axis=0)
-    constant = spread <= _WOBBLE * np.abs(kappa).max(axis=0)
+    constant = spread <= _VARIATION * np.abs(kappa).max(axis=0)
     flat = np.abs(kappa).max(axis=0) <= 1e-2 * large
-    if constant.all() and not flat.any() and abs(kappa.mean(axis=0) @ (1, -1)) <= _WOBBLE * large:
+    if constant.all() and not flat.any() and abs(kappa.mean(axis=0) @ (1, -1)) <= _VARIATION * large:
         yield _sphere(point, normal, kappa)
     elif flat.any():
         yield from _ruled(point, normal)
@@ -123,10 +123,10 @@ def _ruled(point: Floats, normal: Floats) -> Iterator[Fit]:
     """Cylinder or cone: the normals of either lie on a circle about the axis."""
     axes = np.linalg.svd(normal - normal.mean(axis=0), full_matrices=False)[2]
     axis = axes[2]
-    lean = normal @ axis  # sine of the half angle: constant on a cone, zero on a cylinder
-    if np.ptp(lean) > 1e-2:
+    tilt = normal @ axis  # sine of the half angle: constant on a cone, zero on a cylinder
+    if np.ptp(tilt) > 1e-2:
         return
-    if abs(float(lean.mean())) < 1e-4:
+    if abs(float(tilt.mean())) < 1e-4:
         middle, radius = _circle(point @ axes[:2].T)
         yield "cylinder", lambda p: np.abs(np.linalg.norm(p @ axes[:2].T - middle, axis=1) - radius)
         return

@@ -62,10 +62,10 @@ class Trim(Record):
         p, q = self.segments[:, 0], self.segments[:, 1]
         return abs(0.5 * float((p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]).sum()))
 
-    def inside_grid(self, u: Floats, v: Floats, *, beside: bool = True) -> Bools:
+    def inside_grid(self, u: Floats, v: Floats, *, border: bool = True) -> Bools:
         """Which nodes of the grid of increasing lines u (nu,) and v (nv,) lie in the face: (nu, nv).
 
-        Without `beside`, the polygon alone decides, also about nodes nearer to it than its chord error.
+        Without `border`, the polygon alone decides, also about nodes nearer to it than its chord error.
         """
         on_u, on_v = self.tolerance / self.scale
         u0, u1, v0, v1 = self.box
@@ -77,7 +77,7 @@ class Trim(Record):
             boxed[i, j] = self._asked(u[i], v[j])
             return boxed
         inside = even_odd(self.segments, u, v)
-        if not beside:
+        if not border:
             return inside
         i, j, near_exact, near = self._band(u, v)
         inside[i[near_exact], j[near_exact]] = True
@@ -91,9 +91,9 @@ class Trim(Record):
         """Which of the points (n,), (n,) lie in the face."""
         # The diagonal of a grid is wasteful, but points come here a few at a time.
         order_u, order_v = np.argsort(u), np.argsort(v)
-        found = np.empty((len(u), len(v)), bool)
-        found[np.ix_(order_u, order_v)] = self.inside_grid(u[order_u], v[order_v])
-        return found.diagonal().copy()
+        result = np.empty((len(u), len(v)), bool)
+        result[np.ix_(order_u, order_v)] = self.inside_grid(u[order_u], v[order_v])
+        return result.diagonal().copy()
 
     def _asked(self, u: Floats, v: Floats) -> Bools:
         classifier = BRepTopAdaptor_FClass2d(self.face, float(self.tolerance / self.scale.max()))

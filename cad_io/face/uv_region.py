@@ -92,8 +92,8 @@ def _followed(curve: Any, t: Floats) -> tuple[Floats, Floats]:
 
             known = BSpline(knots, poles, spline.Degree())
             return known(t), known.derivative()(t)
-    found = along(curve, t)
-    return found[:, 0], found[:, 1]
+    points = along(curve, t)
+    return points[:, 0], points[:, 1]
 
 
 def inside(segments: Floats, u: Floats, v: Floats) -> NDArray[np.bool_]:

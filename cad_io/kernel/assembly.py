@@ -22,11 +22,11 @@ class Node:
     faces: tuple[int, ...] = ()
 
     def leaves(
-        self, path: tuple[str, ...] = (), around: TopLoc_Location | None = None
+        self, path: tuple[str, ...] = (), location: TopLoc_Location | None = None
     ) -> Iterator[tuple["Node", str, TopLoc_Location]]:
         """Every leaf with its path of names (`wheel/rim`) and its location in the part."""
         path = (*path, self.instance or self.name)
-        place = around.Multiplied(self.place) if around else self.place
+        place = location.Multiplied(self.place) if location else self.place
         if not self.children:
             yield self, "/".join(filter(None, path)), place
         for child in self.children:
@@ -50,10 +50,10 @@ def faces_of(tree: Sequence[Node], name: str) -> set[int]:
     An exact path counts alone; where there is none, a trailing part of a path (`wheel/rim`) or a product's name.
     """
     nodes = [(node, path) for root in tree for node, path in _paths(root, "")]
-    found = [node for node, path in nodes if path == name] or [
+    result = [node for node, path in nodes if path == name] or [
         node for node, path in nodes if path.endswith(f"/{name}") or node.name == name
     ]
-    return {number for node in found for number in node.numbers()}
+    return {number for node in result for number in node.numbers()}
 
 
 def _paths(node: Node, above: str) -> Iterator[tuple[Node, str]]:

@@ -83,15 +83,15 @@ def silence() -> None:
 
 def shape_map(shape: TopoDS_Shape, kind: Any) -> TopTools_IndexedMapOfShape:
     """The kernel's map of the sub-shapes of one kind; `FindKey(i)` and `FindIndex(s)` count from 1."""
-    found = TopTools_IndexedMapOfShape()
-    TopExp.MapShapes_s(shape, kind, found)
-    return found
+    result = TopTools_IndexedMapOfShape()
+    TopExp.MapShapes_s(shape, kind, result)
+    return result
 
 
 def faces(shape: TopoDS_Shape) -> list[TopoDS_Face]:
     """Faces in the order of the kernel's map: face number i is `faces(shape)[i - 1]`."""
-    found = shape_map(shape, TopAbs_FACE)
-    return [TopoDS.Face_s(found.FindKey(i)) for i in range(1, found.Extent() + 1)]
+    result = shape_map(shape, TopAbs_FACE)
+    return [TopoDS.Face_s(result.FindKey(i)) for i in range(1, result.Extent() + 1)]
 
 
 def explore(shape: TopoDS_Shape, kind: Any, avoid: Any = None) -> Iterator[TopoDS_Shape]:

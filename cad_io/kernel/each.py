@@ -40,9 +40,9 @@ def each(
     if not hasattr(os, "fork"):
         yield from map(call, items)
         return
-    first, left = 0, hangs
+    first, remaining = 0, hangs
     while first < len(items):
-        if left <= 0:
+        if remaining <= 0:
             yield from (Ended("was not tried, for others before it did not come to an end") for _ in items[first:])
             return
         end, child = begin(partial(_work, call, items[first:], seconds), seconds * (len(items) - first + 1))
@@ -59,12 +59,12 @@ def each(
             os.close(end)
             status = ended(child)
         if first < len(items):
-            left -= 1
+            remaining -= 1
             first += 1
-            yield Ended(why or _told(status, seconds))
+            yield Ended(why or _failure(status, seconds))
 
 
-def _told(status: int, seconds: float) -> str:
+def _failure(status: int, seconds: float) -> str:
     if out_of_time(status):
         return f"does not come to an end within {seconds:g} s"
     return f"crashes (status {status})"

@@ -42,17 +42,17 @@ def meshed(faces: Sequence[Any], deflection: float, angle: float) -> Iterator[Me
     deflection, angle : float
         What is asked of the mesher: mm, rad.
     """
-    left = FACES
+    remaining = FACES
     for done in each(lambda face: _meshed(face, deflection, angle), faces, seconds=FACE, hangs=HANGS):
-        if left <= 0.0:
+        if remaining <= 0.0:
             yield None
         elif isinstance(done, Ended):
-            left -= FACE
+            remaining -= FACE
             yield None
         else:
-            found, spent = done
-            left -= spent
-            yield found
+            meshes, spent = done
+            remaining -= spent
+            yield meshes
 
 
 def under_mesh(
@@ -94,11 +94,11 @@ def uv_triangles(mesh: Any) -> tuple[Floats, NDArray[np.int64]]:
 def _meshed(face: Any, deflection: float, angle: float) -> tuple[Meshed | None, float]:
     start = time.process_time()
     with may_refuse():
-        return under_mesh(face, deflection, angle, _drawn)
+        return under_mesh(face, deflection, angle, _mesh)
     return None, time.process_time() - start
 
 
-def _drawn(mesh: Any, location: TopLoc_Location) -> Meshed:
+def _mesh(mesh: Any, location: TopLoc_Location) -> Meshed:
     place = location.Transformation()
     uv, triangle = uv_triangles(mesh)
     # Its own nodes, not the surface's points: along an edge these differ from face to face, and show cracks.

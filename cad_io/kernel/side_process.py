@@ -60,8 +60,8 @@ class SideProcess(Generic[Done]):
         """
         if self._copy is not None:
             try:
-                for found in answers(*self._copy):
-                    return cast(Done, found)
+                for answer in answers(*self._copy):
+                    return cast(Done, answer)
             except TimeoutError:
                 pass
             finally:

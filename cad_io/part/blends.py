@@ -52,7 +52,7 @@ class _Side(NamedTuple):
 
 class Bare(NamedTuple):
     """A face of a part: what is known of it, the kernel's face with the edges that it shares, its border and its surface; None
-    where it is not to be asked for."""
+    where it is not to be requested."""
 
     info: FaceInfo
     shape: TopoDS_Face
@@ -89,9 +89,9 @@ def blends(faces: Sequence[Bare], size: float) -> frozenset[int]:
     turned: dict[int, Floats] = {}
     for i in np.unique(owner).tolist():
         mine, which = np.nonzero(owner == i)
-        found = _side(faces[i], size, [edges[k][0] for k in mine.tolist()])
-        if found is not None:
-            normal[mine, which], kappa[mine, which], across[mine, which], turned[i] = found
+        blend = _side(faces[i], size, [edges[k][0] for k in mine.tolist()])
+        if blend is not None:
+            normal[mine, which], kappa[mine, which], across[mine, which], turned[i] = blend
     with np.errstate(invalid="ignore"):
         dot = agree[:, None] * (normal[:, 0] * normal[:, 1]).sum(axis=2)
         smooth = (dot > np.cos(SMOOTH)).mean(axis=1) >= _MOSTLY
@@ -139,8 +139,8 @@ def _side(face: Bare, size: float, edges: list[TopoDS_Edge]) -> _Side | None:
     with np.errstate(all="ignore"):
         geometry = curvature(d, 1.0, size)
         tangent = d[:n, 1] * line[:, 1, :1] + d[:n, 2] * line[:, 1, 1:]
-        beside = np.cross(geometry.normal[:n], tangent)
-        cosine = (beside * geometry.direction_max[:n]).sum(axis=1) / np.linalg.norm(beside, axis=1)
+        inward = np.cross(geometry.normal[:n], tangent)
+        cosine = (inward * geometry.direction_max[:n]).sum(axis=1) / np.linalg.norm(inward, axis=1)
         high, low = geometry.curvature[:n].T
         across = low + (high - low) * cosine**2
         # Where the surface rises round the point, its own normal points at its axis.

@@ -50,7 +50,7 @@ def bodies(part: Part, *, without: Collection[int] = ()) -> tuple[Body, ...]:
     without : collection of int
         Face numbers to leave out: a skin that has lost some of its faces is open.
     """
-    found: dict[tuple[tuple[int, ...], tuple[int, ...]], Body] = {}
+    result: dict[tuple[tuple[int, ...], tuple[int, ...]], Body] = {}
     numbers = shape_map(part.shape, TopAbs_FACE)
     for solid in part.solid_shapes():
         members = [(numbers.FindIndex(f), TopoDS.Face_s(f)) for f in explore(solid, TopAbs_FACE)]
@@ -68,7 +68,7 @@ def bodies(part: Part, *, without: Collection[int] = ()) -> tuple[Body, ...]:
                 # The solid contradicts itself, or is open: what the edges say counts, to the side that most faces name.
                 sign = group.relative.astype(int) * int(np.sign((sign * group.relative).sum()) or 1)
             for body in _body(part, [members[i][0] for i in group.members], mine, sign, solid=True):
-                found[body.faces, body.sign] = body
+                result[body.faces, body.sign] = body
     loose = {n: face for n, face in part.sewn.faces.items() if n not in without}
     order = _each_once(loose)
     for group in joined_faces([loose[n] for n in order]):
@@ -77,8 +77,8 @@ def bodies(part: Part, *, without: Collection[int] = ()) -> tuple[Body, ...]:
             mine = [loose[n] for n in mine_numbers]
             sign = group.relative.astype(int)
             for body in _body(part, mine_numbers, mine, sign, solid=False, touching=group.touching):
-                found[body.faces, body.sign] = body
-    return tuple(found.values())
+                result[body.faces, body.sign] = body
+    return tuple(result.values())
 
 
 def _each_once(loose: dict[int, TopoDS_Face]) -> list[int]:

@@ -11,13 +11,13 @@ from cad_io.arrays import Floats
 from cad_io.kernel import may_refuse
 
 
-def box_of(found: list[TopoDS_Face], aside: Container[int]) -> tuple[Floats, Floats]:
+def box_of(faces: list[TopoDS_Face], excluded: Container[int]) -> tuple[Floats, Floats]:
     """Tight corners of the box around faces.
 
     The kernel's quick box is padded and its tight one is slow, so the tight one is asked only of faces whose padded
     box still sticks out of what is covered, the farthest first; of faces set aside it is not asked at all.
     """
-    loose = np.array([face_box(face, tight=False) for face in found])
+    loose = np.array([face_box(face, tight=False) for face in faces])
     usable = np.isfinite(loose).all(axis=(1, 2))
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     if not usable.any():
@@ -26,7 +26,7 @@ def box_of(found: list[TopoDS_Face], aside: Container[int]) -> tuple[Floats, Flo
                             np.nanmax(loose[usable, 1], axis=0) - loose[:, 1]], axis=1)  # fmt: skip
     for i in np.argsort(np.where(usable, stick.min(axis=1), np.inf), kind="stable")[: usable.sum()]:
         if (loose[i, 0] < low).any() or (loose[i, 1] > high).any():
-            tight = loose[i] if i + 1 in aside else face_box(found[i], tight=True)
+            tight = loose[i] if i + 1 in excluded else face_box(faces[i], tight=True)
             tight = tight if np.isfinite(tight).all() else loose[i]
             low, high = np.minimum(low, tight[0]), np.maximum(high, tight[1])
     return low, high

@@ -47,8 +47,8 @@ def cap_of(shapes: Sequence[TopoDS_Face], sign: Floats, diagonal: float) -> Floa
     nets = [(edge, sum(way * int(sign[i]) for i, way in users)) for edge, users in edge_uses(shapes)]
     border = [(edge, net) for edge, net in nets if net]
     lines, ways = [], []
-    drawn = each(partial(polyline, chord=_CHORD * diagonal), [edge for edge, _ in border], seconds=SECONDS)
-    for line, (_, net) in zip(drawn, border, strict=True):
+    polylines = each(partial(polyline, chord=_CHORD * diagonal), [edge for edge, _ in border], seconds=SECONDS)
+    for line, (_, net) in zip(polylines, border, strict=True):
         # An edge that cannot be drawn to an end is left out, as one without a curve is.
         if not isinstance(line, Ended) and len(line) > 1:
             lines.append(line if net > 0 else line[::-1])

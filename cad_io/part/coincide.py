@@ -118,9 +118,9 @@ def _cut(group: Group, cuts: list[float]) -> Iterator[Group]:
 
 def _cuts(curves: Curves, table: _Table, alone: NDArray[np.bool_], tolerance: float) -> list[list[float]]:
     """By group: the parameters at which ends of other pieces lie on it, ascending; none for groups that are not `alone`."""
-    found: list[list[float]] = [[] for _ in alone]
+    cuts: list[list[float]] = [[] for _ in alone]
     if not alone.any():
-        return found
+        return cuts
     mine = np.flatnonzero(alone[table.group])
     table = _Table(table.edge[mine], table.low[mine], table.high[mine], table.group[mine])
     tree = cKDTree(table.ends(curves))
@@ -152,8 +152,8 @@ def _cuts(curves: Curves, table: _Table, alone: NDArray[np.bool_], tolerance: fl
     order = np.flatnonzero(keep)[np.lexsort((place[keep], piece[keep]))]
     for run in _runs(piece[order], place[order], tolerance):
         best = order[run][np.argmin(distance[order[run]])]
-        found[int(table.group[piece[best]])].append(float(t[best]))
-    return found
+        cuts[int(table.group[piece[best]])].append(float(t[best]))
+    return cuts
 
 
 def _chords(curves: Curves, table: _Table) -> tuple[Indices, Indices]:
@@ -236,10 +236,10 @@ def _candidates(
     swapped = pairs[:, 0] % 2 != pairs[:, 1] % 2
     use = (i != j) & (table.group[i] != table.group[j]) & (alone[table.group[i]] | alone[table.group[j]])
     key = (i[use] * len(table.edge) + j[use]) * 2 + swapped[use]
-    found, times = np.unique(key, return_counts=True)
-    found = found[times == 2]
-    pair = found // 2
-    return pair // len(table.edge), pair % len(table.edge), np.where(found % 2, -1, 1)
+    keys, times = np.unique(key, return_counts=True)
+    keys = keys[times == 2]
+    pair = keys // 2
+    return pair // len(table.edge), pair % len(table.edge), np.where(keys % 2, -1, 1)
 
 
 def _distances(curves: Curves, table: _Table, i: Indices, j: Indices, way: Indices) -> Floats:
@@ -305,14 +305,14 @@ def points(curves: Curves, faces: list[tuple[int, ...]], groups: Sequence[Group]
     pairs = tree.query_pairs(tolerance, output_type="ndarray") // 2
     chains = coo_array((np.ones(len(pairs), np.int8), pairs.T), shape=(len(small), len(small)))
     label = connected_components(chains, directed=False)[1]
-    found = []
+    result = []
     for which in range(int(label.max()) + 1):
         mine = label == which
         if np.linalg.norm(np.ptp(ends[mine].reshape(-1, 3), axis=0)) <= tolerance:
-            found += [short[k] for k in small[mine].tolist()]
-    few = {group.pieces[0].edge for group in found}
-    kept = {face for edge, users in enumerate(faces) if edge not in few for face in users}
-    return [group for group in found if faces[group.pieces[0].edge][0] in kept]
+            result += [short[k] for k in small[mine].tolist()]
+    few = {group.pieces[0].edge for group in result}
+    single = {face for edge, users in enumerate(faces) if edge not in few for face in users}
+    return [group for group in result if faces[group.pieces[0].edge][0] in single]
 
 
 def _whole(groups: list[Group]) -> Iterator[Group]:

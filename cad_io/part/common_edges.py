@@ -67,7 +67,7 @@ def on_common_edges(
     for piece in gone:
         parts.setdefault(piece.edge, [])
     index = TopTools_IndexedMapOfShape()
-    instead = {index.Add(sources[place][0]): sorted(found, key=lambda x: x[0]) for place, found in parts.items()}
+    instead = {index.Add(sources[place][0]): sorted(edges, key=lambda x: x[0]) for place, edges in parts.items()}
     changed = {face for place in parts for face, _ in sources[place][1]}
     return [_rebuilt(shape, index, instead) if i in changed else shape for i, shape in enumerate(shapes)]
 
@@ -119,20 +119,20 @@ def _fits(curves: Curves, groups: Sequence[Group]) -> "list[_Fit]":
     here = np.repeat(np.array([first.edge for first, _, _ in rows], np.intp), counts)
     there = np.repeat(np.array([piece.edge for _, piece, _ in rows], np.intp), counts)
     low, high = each([piece.low for _, piece, _ in rows]), each([piece.high for _, piece, _ in rows])
-    ahead = each([way for _, _, way in rows]) > 0
+    forward = each([way for _, _, way in rows]) > 0
     point, along = curves.at(here, t)
     length = curves.length(here, t)
     begin, end = np.repeat(length[starts[:-1]], counts), np.repeat(length[starts[1:] - 1], counts)
     share = (length - begin) / (end - begin)
-    share = np.where(ahead, share, 1 - share)
+    share = np.where(forward, share, 1 - share)
     begin, end = curves.length(there, low), curves.length(there, high)
     guess = curves.at_length(there, begin + share * (end - begin)).clip(low, high)
     s, _ = curves.near(there, guess, low, high, point)
     ends = np.concatenate([starts[:-1], starts[1:] - 1])
     s[ends] = np.where(share < 0.5, low, high)[ends]
-    beside = curves.at(there, s)[1]
+    tangent = curves.at(there, s)[1]
     with np.errstate(all="ignore"):
-        speed = (along * beside).sum(axis=1) / (beside * beside).sum(axis=1)
+        speed = (along * tangent).sum(axis=1) / (tangent * tangent).sum(axis=1)
     return [
         _Fit.of(t[a:b], s[a:b], speed[a:b], way)
         for a, b, (_, _, way) in zip(starts[:-1], starts[1:], rows, strict=True)
@@ -172,9 +172,9 @@ def _rebuilt(face: TopoDS_Face, index: TopTools_IndexedMapOfShape, instead: dict
     builder, forward = BRep_Builder(), face.Oriented(TopAbs_FORWARD)
     made = forward.EmptyCopied()
     for border in children(forward):
-        ahead = border.Oriented(TopAbs_FORWARD)
-        fresh = ahead.EmptyCopied()
-        for edge in children(ahead):
+        oriented = border.Oriented(TopAbs_FORWARD)
+        fresh = oriented.EmptyCopied()
+        for edge in children(oriented):
             # Internal edges are nobody's border.
             way = {TopAbs_FORWARD: 1, TopAbs_REVERSED: -1}.get(edge.Orientation(), 0)
             parts = instead.get(index.FindIndex(edge)) if way else None

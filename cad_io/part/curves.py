@@ -104,21 +104,21 @@ class Curves:
 
         A distance is never less than the true one.
         """
-        best, found = t.copy(), np.full(len(t), np.inf)
+        best, least = t.copy(), np.full(len(t), np.inf)
         going = np.arange(len(t))
         for _ in range(_STEPS):
             p, d = self.at(which[going], t)
             away = point[going] - p
             distance = np.linalg.norm(away, axis=1)
-            nearer = distance < _NEARER * found[going]
+            nearer = distance < _NEARER * least[going]
             going, t, away, d = going[nearer], t[nearer], away[nearer], d[nearer]
             if not len(going):
                 break
-            best[going], found[going] = t, distance[nearer]
+            best[going], least[going] = t, distance[nearer]
             with np.errstate(all="ignore"):
                 step = (away * d).sum(axis=1) / (d * d).sum(axis=1)
             t = np.clip(t + np.where(np.isfinite(step), step, 0.0), low[going], high[going])
-        return best, found
+        return best, least
 
     def chord_parameter(self, chord: Indices, share: Floats) -> Floats:
         """Parameters (m,) at shares of chords of the table."""
@@ -187,9 +187,9 @@ class _Kernel(NamedTuple):
     def at(self, t: Floats) -> tuple[Floats, Floats] | None:
         """Points and derivatives (k, 3); None where the kernel has none."""
         with may_refuse():
-            found = along(self.curve, t, 3)
-            if np.isfinite(found).all():
-                return found[:, 0], found[:, 1]
+            derivatives = along(self.curve, t, 3)
+            if np.isfinite(derivatives).all():
+                return derivatives[:, 0], derivatives[:, 1]
         return None
 
 
@@ -198,18 +198,18 @@ def _followed(edge: TopoDS_Edge, chord: float) -> _Drawing | None:
     kernel = _Kernel.of(edge)
     if kernel is None:
         return None
-    t, found = kernel.ends, kernel.at(kernel.ends)
-    if found is None:
+    t, points = kernel.ends, kernel.at(kernel.ends)
+    if points is None:
         return None
-    p, d = found
+    p, d = points
     doubtful = np.ones(len(t) - 1, bool)
     for _ in range(_HALVINGS):
         i = np.flatnonzero(doubtful)
         h = t[i + 1] - t[i]
-        found = kernel.at(0.5 * (t[i] + t[i + 1]))
-        if found is None:
+        points = kernel.at(0.5 * (t[i] + t[i + 1]))
+        if points is None:
             return None
-        (middle, along), across = found, h[:, None]
+        (middle, along), across = points, h[:, None]
         guess = 0.5 * (p[i] + p[i + 1]) + across * (d[i] - d[i + 1]) / 8
         slope = 1.5 * (p[i + 1] - p[i]) - across * (d[i] + d[i + 1]) / 4
         off = np.maximum(np.linalg.norm(guess - middle, axis=1), np.linalg.norm(slope - across * along, axis=1) / 8)

@@ -45,53 +45,53 @@ def orient(part: Part, towards: tuple[float, float, float] = (0.0, 0.0, 1.0), fl
     """
     count = len(part.faces)
     sign = np.zeros(count)
-    said: list[str] = []
+    notes: list[str] = []
     confident = True
     numbers = shape_map(part.shape, TopAbs_FACE)
     for solid in part.solid_shapes():
         members = [(numbers.FindIndex(f), TopoDS.Face_s(f)) for f in explore(solid, TopAbs_FACE)]
         members = [(n - 1, f) for n, f in members if n and sign[n - 1] == 0]
-        confident &= _orient_solid(part, members, sign, said)
+        confident &= _orient_solid(part, members, sign, notes)
     rest = [i for i in range(count) if sign[i] == 0]
     if rest:
-        confident &= _orient_rest(part, rest, sign, said, np.asarray(towards, float), flip)
-    return Orientation(sign, "; ".join(dict.fromkeys(said)), confident)
+        confident &= _orient_rest(part, rest, sign, notes, np.asarray(towards, float), flip)
+    return Orientation(sign, "; ".join(dict.fromkeys(notes)), confident)
 
 
-def _orient_solid(part: Part, members: Sequence[tuple[int, TopoDS_Face]], sign: Floats, said: list[str]) -> bool:
+def _orient_solid(part: Part, members: Sequence[tuple[int, TopoDS_Face]], sign: Floats, notes: list[str]) -> bool:
     """Set the signs of one solid's faces; True if they are sure."""
     flags = np.array([-1.0 if face.Orientation() == TopAbs_REVERSED else 1.0 for _, face in members])
     index = np.array([i for i, _ in members], dtype=int)
     if not len(index):
         return True
-    found = joined_faces([face for _, face in members])
-    closed = all(c.closed for c in found)
-    if closed and all(c.relative is not None for c in found):
+    joined = joined_faces([face for _, face in members])
+    closed = all(c.closed for c in joined)
+    if closed and all(c.relative is not None for c in joined):
         disagree = False
-        for c in found:
+        for c in joined:
             # The flags of one shell must all agree, or all disagree, with what its edges say.
             ratio = flags[c.members] * c.relative
             disagree |= bool(np.ptp(ratio) > 0)
         if disagree:
-            for c in found:
+            for c in joined:
                 flags[c.members] = c.relative * np.sign((flags[c.members] * c.relative).sum() or 1.0)
-            said.append("solids whose faces contradict each other were made consistent")
+            notes.append("solids whose faces contradict each other were made consistent")
     enclosed = volume(part, index, flags)
     # Of an open skin the flux says nothing: it depends on where it is taken from.
     if closed and enclosed < 0:
         flags = -flags
-        said.append("solids that were inside out were turned")
+        notes.append("solids that were inside out were turned")
     sign[index] = flags
-    said.append("faces of solids as the solid says")
+    notes.append("faces of solids as the solid says")
     if not closed:
-        said.append("a solid is not closed, so its side is a guess")
+        notes.append("a solid is not closed, so its side is a guess")
     elif part.aside.keys() & set((index + 1).tolist()):
-        said.append("a face of a solid was not measured, so its side is a guess")
+        notes.append("a face of a solid was not measured, so its side is a guess")
     return closed and enclosed != 0
 
 
 def _orient_rest(
-    part: Part, rest: Sequence[int], sign: Floats, said: list[str], towards: Floats, flip: bool
+    part: Part, rest: Sequence[int], sign: Floats, notes: list[str], towards: Floats, flip: bool
 ) -> bool:  # fmt: skip
     """Set the signs of faces outside solids; True if all belong to closed shells."""
     direction = towards / np.linalg.norm(towards)
@@ -106,27 +106,27 @@ def _orient_rest(
             enclosed = volume(part, index, relative, cap)
         if enclosed:
             sign[index] = relative * np.sign(enclosed)
-            said.append("closed shells outward")
+            notes.append("closed shells outward")
             continue
         area, vector = vector_area(part, index, relative)
         if not area:  # no surface, no side
             sign[index] = relative
             continue
         sure = False
-        lean = float(vector @ direction) / area
+        alignment = float(vector @ direction) / area
         # A shell that is nearly closed faces no direction; what it nearly encloses tells more than chance.
         nearly = float(np.linalg.norm(vector)) < NEARLY_CLOSED * area and (enclosed := volume(part, index, relative))
-        side = np.sign(enclosed) if nearly else (-1.0 if lean < 0 else 1.0)
+        side = np.sign(enclosed) if nearly else (-1.0 if alignment < 0 else 1.0)
         sign[index] = relative * side * (-1.0 if flip else 1.0)
         if nearly:
-            said.append("nearly closed shells outward" + (", flipped" if flip else ""))
+            notes.append("nearly closed shells outward" + (", flipped" if flip else ""))
             continue
-        weakest, guessed = min(weakest, abs(lean)), True
+        weakest, guessed = min(weakest, abs(alignment)), True
     if guessed:
         text = "open shells and loose faces " + ("away from" if flip else "towards") + " the given direction"
         if weakest < WEAK:
             text += f", a weak guess (a mean normal makes only {weakest:.2f} with it)"
-        said.append(text)
+        notes.append(text)
     return sure
 
 

@@ -14,20 +14,20 @@ from cad_io.kernel.assembly import Node
 from cad_io.kernel.components import children, compound
 
 #: What `Part` is made of, by the names of its parameters.
-Found = dict[str, Any]
+PartContent = dict[str, Any]
 
 
-def packed(found: Found) -> Found:
+def packed(content: PartContent) -> PartContent:
     """Without kernel objects: the shape as bytes, and behind it one vertex for the place of each node of the tree."""
     vertex = TopoDS_Vertex()
     BRep_Builder().MakeVertex(vertex, gp_Pnt(), 1e-7)
-    tree = found.get("tree", ())
+    tree = content.get("tree", ())
     stream = io.BytesIO()
-    BinTools.Write_s(compound([found["shape"], *(vertex.Located(place) for place in _places(tree))]), stream)
-    return found | {"shape": stream.getvalue(), "tree": [_bare(node) for node in tree]}
+    BinTools.Write_s(compound([content["shape"], *(vertex.Located(place) for place in _places(tree))]), stream)
+    return content | {"shape": stream.getvalue(), "tree": [_bare(node) for node in tree]}
 
 
-def unpacked(packed: Found) -> Found:
+def unpacked(packed: PartContent) -> PartContent:
     """Return the arguments that were given to `packed`, with new copies of the shape and of the locations."""
     whole = TopoDS_Shape()
     BinTools.Read_s(whole, io.BytesIO(packed["shape"]))

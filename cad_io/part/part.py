@@ -25,7 +25,7 @@ from cad_io.kernel import edges_of, explore, faces, is_kernel_error, shape_map, 
 from cad_io.kernel.assembly import Node
 from cad_io.part.blends import Bare, blends
 from cad_io.part.boxes import box_of, face_box
-from cad_io.part.packing import Found, packed, unpacked
+from cad_io.part.packing import PartContent, packed, unpacked
 from cad_io.part.sew import Sewn, edge_uses, sew
 from cad_io.surface import Surface
 
@@ -142,29 +142,29 @@ class Part:
             farthest = float(np.abs(boxes[finite]).max())
             if farthest > FARTHEST:
                 raise ReadError(
-                    f"reaches {farthest:.3g} mm from the origin, where no tolerance can be kept: its coordinates are "
+                    f"reaches {farthest:.3g} mm from the origin, where no tolerance can be met: its coordinates are "
                     "damaged, or its unit is wrong; export it again",
                     file=file,
                 )
         self._names, self._colours, self._said = names or {}, colours or {}, warnings
-        told = {each.face for each in lost}
+        reported = {each.face for each in lost}
         self.lost = (
             *lost,
             *(LostFace("", self._names.get(n, ""), "it has no finite size", n)
-              for n in (np.flatnonzero(~finite) + 1).tolist() if n not in told),
+              for n in (np.flatnonzero(~finite) + 1).tolist() if n not in reported),
         )  # fmt: skip
 
     @classmethod
-    def of(cls, found: Found) -> "Part":
+    def of(cls, content: PartContent) -> "Part":
         """Make a part from what a reader has found, by the names of the parameters, with its `references`."""
-        part = cls(**{name: value for name, value in found.items() if name != "references"})
-        part.references = found.get("references", ())
+        part = cls(**{name: value for name, value in content.items() if name != "references"})
+        part.references = content.get("references", ())
         return part
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _again, (packed(self._found()), dict(self.aside))
 
-    def _found(self) -> Found:
+    def _found(self) -> PartContent:
         """Return the arguments that the part was made from, by the names of its parameters."""
         return {
             "shape": self.shape, "file": self.file, "sha256": self.sha256, "unit": self.unit, "names": self._names,
@@ -188,17 +188,17 @@ class Part:
     def measured(self, at: Callable[[int], None] = lambda face: None) -> tuple[FaceInfo, ...]:
         """`faces`; where they are yet to be measured, `at` is told which one is."""
         if not self._infos:
-            found = []
+            result = []
             for number in range(1, len(self._faces) + 1):
                 at(number)
-                found.append(self._describe(number))
-            self._infos = tuple(found)
+                result.append(self._describe(number))
+            self._infos = tuple(result)
         return self._infos
 
-    def without(self, aside: Mapping[int, str]) -> "Part":
+    def without(self, excluded: Mapping[int, str]) -> "Part":
         """The same part with more faces set aside, by number: why."""
         part = Part.of(self._found())
-        part.aside = {**self.aside, **aside}
+        part.aside = {**self.aside, **excluded}
         return part
 
     @cached_property
@@ -348,10 +348,10 @@ class Part:
         return None, measured.area
 
 
-def _again(found: Found, aside: Mapping[int, str]) -> Part:
+def _again(content: PartContent, excluded: Mapping[int, str]) -> Part:
     """A part that was pickled."""
-    part = Part.of(unpacked(found))
-    part.aside = aside
+    part = Part.of(unpacked(content))
+    part.aside = excluded
     return part
 
 

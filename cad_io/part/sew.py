@@ -63,10 +63,10 @@ def sew(shape: TopoDS_Shape, faces: Sequence[TopoDS_Face], diagonal: float) -> S
         Of its box, mm.
     """
     numbers = _outside_solids(shape)
-    found = join([faces[number - 1] for number in numbers], diagonal)
-    open_edges, length = len(found.left), float(sum(found.left))
+    shell = join([faces[number - 1] for number in numbers], diagonal)
+    open_edges, length = len(shell.left), float(sum(shell.left))
     return Sewn(
-        dict(zip(numbers, found.faces, strict=True)), found.kept, found.tried, open_edges, length, found.stopped
+        dict(zip(numbers, shell.faces, strict=True)), shell.kept, shell.tried, open_edges, length, shell.stopped
     )
 
 
@@ -88,26 +88,26 @@ def join(shapes: Sequence[TopoDS_Face], diagonal: float) -> Join:
     faces = [tuple(face for face, _ in users) for _, users in sources]
     curves = Curves([edge for edge, _ in sources], _CHORD * next(_ladder(diagonal)))
     groups = [Group((Piece(i, float(curves.low[i]), float(curves.high[i])),), (1,)) for i in range(len(sources))]
-    blank = sum(not drawn and len(users) == 1 for drawn, users in zip(curves.drawn.tolist(), faces, strict=True))
+    blank = sum(not polyline and len(users) == 1 for polyline, users in zip(curves.drawn.tolist(), faces, strict=True))
     stopped = f"the curves of {blank} open edges cannot be followed" if blank else None
-    left, kept, tried, gone = _left(curves, faces, groups), None, None, list[Piece]()
+    open_edges, best, tried, gone = _open_length(curves, faces, groups), None, None, list[Piece]()
     for tolerance in _ladder(diagonal):
         if not _alone(faces, groups):
             break
         tried = tolerance
         try:
-            found = coinciding(curves, faces, groups, tolerance)
-            no_more = set(points(curves, faces, found, tolerance))
+            pairs = coinciding(curves, faces, groups, tolerance)
+            no_more = set(points(curves, faces, pairs, tolerance))
         except TooMany:
             stopped = f"more ends of edges lie within {tolerance:.3g} mm of each other than can be compared"
             break
-        found = [group for group in found if group not in no_more]
-        after = _left(curves, faces, found)
-        if after < (1 - _GAIN) * left:
-            kept, groups, left = tolerance, found, after
+        pairs = [group for group in pairs if group not in no_more]
+        after = _open_length(curves, faces, pairs)
+        if after < (1 - _GAIN) * open_edges:
+            best, groups, open_edges = tolerance, pairs, after
             gone += [group.pieces[0] for group in no_more]
-    now = list(shapes) if kept is None else on_common_edges(shapes, sources, curves, groups, gone, kept)
-    return Join(now, kept, tried, _open(edge_uses(now)), stopped)
+    now = list(shapes) if best is None else on_common_edges(shapes, sources, curves, groups, gone, best)
+    return Join(now, best, tried, _open(edge_uses(now)), stopped)
 
 
 def _alone(faces: Sequence[tuple[int, ...]], groups: Sequence[Group]) -> list[Piece]:
@@ -115,7 +115,7 @@ def _alone(faces: Sequence[tuple[int, ...]], groups: Sequence[Group]) -> list[Pi
     return [g.pieces[0] for g in groups if len(g.pieces) == 1 and len(faces[g.pieces[0].edge]) == 1]
 
 
-def _left(curves: Curves, faces: Sequence[tuple[int, ...]], groups: Sequence[Group]) -> float:
+def _open_length(curves: Curves, faces: Sequence[tuple[int, ...]], groups: Sequence[Group]) -> float:
     """Open length, mm, as far as it could be drawn."""
     alone = [piece for piece in _alone(faces, groups) if curves.drawn[piece.edge]]
     edge = np.array([piece.edge for piece in alone], np.intp)

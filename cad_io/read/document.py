@@ -96,33 +96,33 @@ class _Walk(FaceMarks):
         start = _Inherited(TopLoc_Location())
         self.result.tree = tuple(self.node(label, start) for label in each(labels))
 
-    def node(self, label: TDF_Label, given: "_Inherited") -> Node:
+    def node(self, label: TDF_Label, inherited: "_Inherited") -> Node:
         instance, place = "", TopLoc_Location()
         if XCAFDoc_ShapeTool.IsReference_s(label):
             instance, place = _name(label), XCAFDoc_ShapeTool.GetLocation_s(label)
-            given = given.at(label, place)
+            inherited = inherited.at(label, place)
             product = TDF_Label()
             XCAFDoc_ShapeTool.GetReferredShape_s(label, product)
             label = product
-        given = given.at(label)
+        inherited = inherited.at(label)
         if XCAFDoc_ShapeTool.IsAssembly_s(label):
             inner = TDF_LabelSequence()
             XCAFDoc_ShapeTool.GetComponents_s(label, inner, False)
-            return Node(_name(label), instance, place, children=tuple(self.node(one, given) for one in each(inner)))
-        return Node(_name(label), instance, place, faces=tuple(self.take(self.leaf(label, given))))
+            return Node(_name(label), instance, place, children=tuple(self.node(one, inherited) for one in each(inner)))
+        return Node(_name(label), instance, place, faces=tuple(self.take(self.leaf(label, inherited))))
 
-    def leaf(self, label: TDF_Label, given: "_Inherited") -> list[int]:
+    def leaf(self, label: TDF_Label, inherited: "_Inherited") -> list[int]:
         """Paint the faces of a product; their numbers."""
         shape, inner = XCAFDoc_ShapeTool.GetShape_s(label), TDF_LabelSequence()
-        numbers = self.numbers(shape, given.place)
-        self.paint(numbers, "", given.colour, given.layers)
+        numbers = self.numbers(shape, inherited.place)
+        self.paint(numbers, "", inherited.colour, inherited.layers)
         XCAFDoc_ShapeTool.GetSubShapes_s(label, inner)
         parts = [(sub, XCAFDoc_ShapeTool.GetShape_s(sub)) for sub in each(inner)]
         parts = [(sub, part) for sub, part in parts if part.ShapeType().value <= TopAbs_FACE.value]
         # Solids before shells before faces, so that the innermost has the last word.
         for sub, part in sorted(parts, key=lambda pair: int(pair[1].ShapeType().value)):
             name = _name(sub) if part.ShapeType() == TopAbs_FACE else ""
-            self.paint(self.numbers(part, given.place), name, _colour(sub), _layers(sub))
+            self.paint(self.numbers(part, inherited.place), name, _colour(sub), _layers(sub))
         return numbers
 
 
@@ -142,18 +142,18 @@ class _Inherited(NamedTuple):
 
 
 def _colour(label: TDF_Label) -> Colour | None:
-    found = Quantity_Color()
+    colour = Quantity_Color()
     for kind in (XCAFDoc_ColorSurf, XCAFDoc_ColorGen):
-        if XCAFDoc_ColorTool.GetColor_s(label, kind, found):
-            red, green, blue = found.Values(Quantity_TOC_sRGB)
+        if XCAFDoc_ColorTool.GetColor_s(label, kind, colour):
+            red, green, blue = colour.Values(Quantity_TOC_sRGB)
             return round(red, 6), round(green, 6), round(blue, 6)
     return None
 
 
 def _layers(label: TDF_Label) -> tuple[str, ...]:
-    found = TDF_LabelSequence()  # asked for strings, the kernel gives none (OCCT 7.9)
-    XCAFDoc_DocumentTool.LayerTool_s(label).GetLayers(label, found)
-    return tuple(sorted(filter(None, map(_name, each(found)))))
+    labels = TDF_LabelSequence()  # asked for strings, the kernel gives none (OCCT 7.9)
+    XCAFDoc_DocumentTool.LayerTool_s(label).GetLayers(label, labels)
+    return tuple(sorted(filter(None, map(_name, each(labels)))))
 
 
 def _name(label: TDF_Label) -> str:

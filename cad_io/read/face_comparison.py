@@ -28,8 +28,8 @@ def open_border(face: TopoDS_Face) -> bool:
 
 def edge_count(face: TopoDS_Face) -> int:
     """Edges that have a length; a seam counts once."""
-    found = shape_map(face, TopAbs_EDGE)
-    return sum(not BRep_Tool.Degenerated_s(TopoDS.Edge_s(found.FindKey(i + 1))) for i in range(found.Extent()))
+    edges = shape_map(face, TopAbs_EDGE)
+    return sum(not BRep_Tool.Degenerated_s(TopoDS.Edge_s(edges.FindKey(i + 1))) for i in range(edges.Extent()))
 
 
 def misfit(face: TopoDS_Face, others: Sequence[TopoDS_Face] = ()) -> str:

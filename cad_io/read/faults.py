@@ -30,8 +30,8 @@ class Fault:
     @property
     def parameter(self) -> str:
         """Name of the entity's parameter that is wrong, empty if the fault names none."""
-        found = re.search(r"\((?:\w+\.)?(\w+)\)|^Enumeration (\w+)", self.text)
-        return (found[1] or found[2]) if found else ""
+        match = re.search(r"\((?:\w+\.)?(\w+)\)|^Enumeration (\w+)", self.text)
+        return (match[1] or match[2]) if match else ""
 
     @property
     def short(self) -> str:
@@ -87,7 +87,7 @@ class Model:
 
     def faults(self) -> list[Fault]:
         """Return the faults of the model, found before anything is transferred. A missing text does not count as a fault."""
-        return [fault for fault in told(self.work.ModelCheckList(True), fails=True) if _TEXT not in fault.text]
+        return [fault for fault in faults_of(self.work.ModelCheckList(True), fails=True) if _TEXT not in fault.text]
 
     @cached_property
     def process(self) -> Any:
@@ -96,45 +96,45 @@ class Model:
 
     def trouble(self, *, fails: bool) -> list[Fault]:
         """Return the fails of the transfer or, if not `fails`, its warnings: entities that it repaired or doubted."""
-        return told(self.process.CheckList(fails), fails=fails)
+        return faults_of(self.process.CheckList(fails), fails=fails)
 
     def makers(self, shapes: Mapping[int, Any]) -> dict[int, int] | None:
         """Entities from which the transfer made shapes, by the shapes' keys; None where it would take too long."""
         reader = self.work.TransferReader()
         if len(shapes) * self.process.NbMapped() > _MOST_STEPS:
             return None
-        found = {key: self.number(reader.EntityFromShapeResult(shape.Located(TopLoc_Location()), 1))
+        numbers = {key: self.number(reader.EntityFromShapeResult(shape.Located(TopLoc_Location()), 1))
                  for key, shape in shapes.items()}  # fmt: skip
-        return {key: number for key, number in found.items() if number}
+        return {key: number for key, number in numbers.items() if number}
 
     def results(self) -> dict[int, str]:
         """Entities that the transfer gave a shape for, and the kind of shape."""
-        process, found = self.process, {}
+        process, result = self.process, {}
         for i in range(1, process.NbMapped() + 1):
             binder = process.MapItem(i)
             if binder is not None and binder.HasResult() and (number := self.number(process.Mapped(i))):
-                found[number] = str(binder.ResultTypeName())
-        return found
+                result[number] = str(binder.ResultTypeName())
+        return result
 
 
-def told(checks: Any, *, fails: bool) -> list[Fault]:
+def faults_of(checks: Any, *, fails: bool) -> list[Fault]:
     """Fails, or else warnings, of the kernel's list of checks."""
-    found = []
+    faults = []
     checks.Start()
     while checks.More():
         check = checks.Value()
         count, text = (check.NbFails(), check.CFail) if fails else (check.NbWarnings(), check.CWarning)
-        found += [Fault(checks.Number(), " ".join(text(i + 1).split())) for i in range(count)]
+        faults += [Fault(checks.Number(), " ".join(text(i + 1).split())) for i in range(count)]
         checks.Next()
-    return found
+    return faults
 
 
 def by_number(faults: Iterable[Fault]) -> dict[int, list[Fault]]:
     """Faults of each entity."""
-    found: dict[int, list[Fault]] = defaultdict(list)
+    numbered: dict[int, list[Fault]] = defaultdict(list)
     for fault in faults:
-        found[fault.number].append(fault)
-    return dict(found)
+        numbered[fault.number].append(fault)
+    return dict(numbered)
 
 
 def type_of(entity: Any) -> str:

@@ -258,11 +258,11 @@ def shapes_of(source: Any) -> list[TopoDS_Shape]:
 
 def _relative(shape: TopoDS_Shape) -> list[TopoDS_Shape]:
     """Sub-shapes one level down, located as in the shape without its own location."""
-    found, each = [], TopoDS_Iterator(shape, True, False)
+    children, each = [], TopoDS_Iterator(shape, True, False)
     while each.More():
-        found.append(each.Value())
+        children.append(each.Value())
         each.Next()
-    return found
+    return children
 
 
 def _face_count(shape: TopoDS_Shape) -> int:

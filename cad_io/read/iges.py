@@ -16,7 +16,7 @@ from cad_io.kernel.components import unwrapped
 from cad_io.read.document import Read, add_attributes
 from cad_io.read.faults import Model
 from cad_io.read.iges_names import add_names, any_names
-from cad_io.read.lost_iges import FACES, fell_apart, lost_of_iges
+from cad_io.read.unread_iges import FACES, fell_apart, unread_of_iges
 
 #: The standard's numbers of units.
 _FLAGS = {"in": 1, "mm": 2, "ft": 4, "m": 6, "km": 7, "mil": 8, "um": 9, "cm": 10}
@@ -57,12 +57,12 @@ class Loaded:
         ReadError
             It holds no shape that can be read.
         """
-        said = f" ({self.faults[0].short}, {len(self.faults)} faults)" if self.faults else ""
+        text = f" ({self.faults[0].short}, {len(self.faults)} faults)" if self.faults else ""
         document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
         self.reader.Transfer(document)
         shape = self.reader.OneShape()
         if shape.IsNull():
-            raise ReadError(f"nothing in it could be read{said}: export it again, or as STEP", file=self.file)
+            raise ReadError(f"nothing in it could be read{text}: export it again, or as STEP", file=self.file)
         result = Read(unwrapped(shape))
         add_attributes(document, result)
         result.tree = ()  # its roots are surfaces rather than products
@@ -72,18 +72,18 @@ class Loaded:
             add_names(self.reader, result)
         kinds = [line[:8].strip() for line in directory[::2]]
         written = sum(kind.isdigit() and int(kind) in FACES for kind in kinds)
-        found = shape_map(shape, TopAbs_FACE).Extent()
+        face_count = shape_map(shape, TopAbs_FACE).Extent()
         split = fell_apart(self.model)
-        if found < written or self.faults or split or self.model.trouble(fails=True):
-            result.lost = lost_of_iges(self.model, self.faults, faces(result.shape), split=split)
+        if face_count < written or self.faults or split or self.model.trouble(fails=True):
+            result.lost = unread_of_iges(self.model, self.faults, faces(result.shape), split=split)
             gone = sum(each.face is None for each in result.lost)
-            result.lost += [LostFace("", "", "it is written, but could not be read")] * (written - found - gone)
+            result.lost += [LostFace("", "", "it is written, but could not be read")] * (written - face_count - gone)
         unknown = [fault for fault in self.faults if "(entity type)" in fault.text]
         result.lost += [LostFace("", "", "an entity of no known type stands in the file: it may be a face")] * len(
             unknown
         )
         if self.faults:
-            result.warnings.append(f"the file has faults{said}")
+            result.warnings.append(f"the file has faults{text}")
         return result
 
     def _refuse(self) -> None:
@@ -95,7 +95,7 @@ class Loaded:
         for section, count in zip((b"S", b"G", b"D", b"P"), counts.groups() if counts else (), strict=False):
             if (here := len(self.sections[section])) < int(count):
                 raise ReadError(
-                    f"has lost lines ({here} of {int(count)} in section {section.decode()}): fetch it again",
+                    f"is missing lines ({here} of {int(count)} in section {section.decode()}): fetch it again",
                     file=self.file,
                 )
 

@@ -45,19 +45,19 @@ def add_names(reader: Any, result: Read) -> None:
         _walk(reader.RootForTransfer(i), reader.Shape(i), found)
 
 
-def _walk(entity: Any, shape: Any, found: Callable[[Any, Any], None]) -> None:
+def _walk(entity: Any, shape: Any, visit: Callable[[Any, Any], None]) -> None:
     if entity is None:
         return
     inner = _inside(entity)
     if not inner:
         if (face := unwrapped(shape)).ShapeType() == TopAbs_FACE:
-            found(entity, face)
+            visit(entity, face)
         return
     parts = children(shape)
     # No name is better than a wrong one.
     if len(inner) == len(parts):
         for sub, part in zip(inner, parts, strict=True):
-            _walk(sub, part, found)
+            _walk(sub, part, visit)
 
 
 def _inside(entity: Any) -> list[Any]:
@@ -76,7 +76,7 @@ def name_of(entity: Any) -> str:
     for has, get in ((entity.HasName, entity.NameValue), (entity.HasShortLabel, entity.ShortLabel)):
         try:
             # A damaged file may say that there is a name and have none.
-            if has() and (found := get()) is not None and (text := str(found.ToCString()).strip()):
+            if has() and (text_handle := get()) is not None and (text := str(text_handle.ToCString()).strip()):
                 return text
         except UnicodeDecodeError:  # IGES is ASCII: a name that is not has no meaning
             continue

@@ -6,14 +6,14 @@ from collections.abc import Callable
 from cad_io.errors import CadIoError, ReadError
 from cad_io.kernel import translated
 from cad_io.kernel.time_limit import ChildDied, TimeLimit, limited
-from cad_io.part.packing import Found, packed, unpacked
+from cad_io.part.packing import PartContent, packed, unpacked
 
 
 class Crashed(ReadError):
     """The kernel crashed."""
 
 
-def guarded(find: Callable[[], Found], timeout: float, file: str | None) -> Found:
+def guarded(find: Callable[[], PartContent], timeout: float, file: str | None) -> PartContent:
     """Result of `find()`, which may crash or hang.
 
     Parameters
@@ -44,7 +44,7 @@ def guarded(find: Callable[[], Found], timeout: float, file: str | None) -> Foun
         return unpacked(answer)
 
 
-def _answer(find: Callable[[], Found]) -> bytes:
+def _answer(find: Callable[[], PartContent]) -> bytes:
     try:
         return pickle.dumps(packed(find()))
     except CadIoError as error:

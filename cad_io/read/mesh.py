@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from cad_io import files
 from cad_io.arrays import Floats, Record
 from cad_io.errors import ReadError
-from cad_io.read.skins import Skins, skins
+from cad_io.read.shells import Shells, shells
 from cad_io.units import in_mm
 
 #: Kinds of files by their suffix.
@@ -32,7 +32,7 @@ class Mesh(Record):
     #: (n, 3, 3); corners, mm.
     vertex: Floats
     #: The triangles that enclose something.
-    skins: Skins
+    shells: Shells
     #: The unit that the file's lengths were taken to be in.
     unit: str
     #: The assumptions that were made.
@@ -88,7 +88,7 @@ def read_mesh(source: Any, unit: str | None = None) -> Mesh:
     vertex = np.ascontiguousarray(vertex * in_mm(unit))
     if not np.abs(vertex).max() <= _FARTHEST:
         raise ReadError(f"reaches more than {_FARTHEST:.0e} mm from the origin: is its unit right?", file=file)
-    return Mesh(vertex, skins(vertex), unit, notes, file, sha256)
+    return Mesh(vertex, shells(vertex), unit, notes, file, sha256)
 
 
 def is_mesh(source: Any) -> bool:
@@ -117,14 +117,14 @@ def _triangles(data: bytes, kind: str, file: str) -> Floats:
         raise ReadError("is empty", file=file)
     if kind == "stl" and len(data) != 84 + 50 * int.from_bytes(data[80:84], "little") and b"endsolid" not in data:
         raise ReadError("is not a whole STL file: its end is missing; export it again", file=file)
-    if kind == "glb" and (other := _buffer_elsewhere(data)):
+    if kind == "glb" and (other := _external_buffer(data)):
         raise ReadError(f"has its numbers in another file ({other}): export it as one file", file=file)
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             # Cleaning up would drop in silence what is no number.
-            found = trimesh.load(io.BytesIO(data), file_type=kind, process=False)
-        parts = list(_placed(found))
+            mesh = trimesh.load(io.BytesIO(data), file_type=kind, process=False)
+        parts = list(_placed(mesh))
     except Exception as error:
         # Whatever a broken file makes of the reader's code.
         cause = " ".join(str(error).split())[:80]
@@ -133,7 +133,7 @@ def _triangles(data: bytes, kind: str, file: str) -> Floats:
     return np.concatenate([np.zeros((0, 3, 3)), *parts])
 
 
-def _buffer_elsewhere(data: bytes) -> str:
+def _external_buffer(data: bytes) -> str:
     """Name of a file that a GLB takes numbers from; empty where it holds them all, or is none."""
     try:
         head = json.loads(data[20 : 20 + int.from_bytes(data[12:16], "little")])
@@ -143,15 +143,15 @@ def _buffer_elsewhere(data: bytes) -> str:
     return next((ascii(name)[1:-1][:80] for name in names if not name.startswith("data:")), "")
 
 
-def _placed(found: Any) -> Iterator[NDArray[np.float64]]:
+def _placed(scene: Any) -> Iterator[NDArray[np.float64]]:
     """Triangles of a mesh, or of each mesh of a scene where it stands."""
-    if not hasattr(found, "graph"):
-        if hasattr(found, "faces"):
-            yield _corners(found)
+    if not hasattr(scene, "graph"):
+        if hasattr(scene, "faces"):
+            yield _corners(scene)
         return
-    for node in found.graph.nodes_geometry:
-        place, name = found.graph[node]
-        mesh = found.geometry[name]
+    for node in scene.graph.nodes_geometry:
+        place, name = scene.graph[node]
+        mesh = scene.geometry[name]
         if hasattr(mesh, "faces"):
             yield _corners(mesh) @ np.asarray(place)[:3, :3].T + np.asarray(place)[:3, 3]
 

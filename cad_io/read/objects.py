@@ -50,13 +50,13 @@ def from_object(source: Any) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def face_numbers(part: Part, given: Any) -> tuple[int, ...]:
+def face_numbers(part: Part, value: Any) -> tuple[int, ...]:
     """Numbers of faces that are given as objects, ascending.
 
     Parameters
     ----------
     part : Part
-    given : object
+    value : object
         As for `from_object`; of a shape that is no face, all its faces.
 
     Raises
@@ -65,9 +65,9 @@ def face_numbers(part: Part, given: Any) -> tuple[int, ...]:
         It holds no face, or one that the part has not, or has in another place.
     """
     known = shape_map(part.shape, TopAbs_FACE)
-    found = set()
+    numbers = set()
     try:
-        shapes = [shape for each in each_of(given) for shape in shapes_of(each)]
+        shapes = [shape for each in each_of(value) for shape in shapes_of(each)]
     except RecursionError:
         raise ReadError("the list of faces holds itself") from None
     for face in (face for shape in shapes for face in explore(shape, TopAbs_FACE)):
@@ -80,10 +80,10 @@ def face_numbers(part: Part, given: Any) -> tuple[int, ...]:
                 if partner is None
                 else f"a face given is F{partner} of the part, but in another place: pick it on the part as it is placed"
             )
-        found.add(number)
-    if not found:
-        raise ReadError(f"no faces in a value of type {type(given).__name__}: give faces of the part")
-    return tuple(sorted(found))
+        numbers.add(number)
+    if not numbers:
+        raise ReadError(f"no faces in a value of type {type(value).__name__}: give faces of the part")
+    return tuple(sorted(numbers))
 
 
 def _in_same_place(known: TopTools_IndexedMapOfShape, face: TopoDS_Shape) -> Iterator[int]:
@@ -96,17 +96,17 @@ def _in_same_place(known: TopTools_IndexedMapOfShape, face: TopoDS_Shape) -> Ite
 class _Walk(FaceMarks):
     """The tree of components and what is said of faces."""
 
-    def node(self, item: Item, around: TopLoc_Location, colour: Colour | None, *, root: bool = False) -> Node:
+    def node(self, item: Item, location: TopLoc_Location, colour: Colour | None, *, root: bool = False) -> Node:
         place, colour = item.shape.Location(), item.colour or colour
         instance = "" if root else item.name
         if item.inner:
-            inside = around.Multiplied(place)
+            inside = location.Multiplied(place)
             return Node(item.name, instance, place, children=tuple(self.node(i, inside, colour) for i in item.inner))
-        mine = self.take(self.numbers(item.shape, around))
+        mine = self.take(self.numbers(item.shape, location))
         self.paint(mine, "", colour)
-        self.mark(item.marks, around.Multiplied(place))
+        self.mark(item.marks, location.Multiplied(place))
         return Node(item.name, instance, place, faces=tuple(mine))
 
-    def mark(self, marks: Sequence[Mark], around: TopLoc_Location) -> None:
+    def mark(self, marks: Sequence[Mark], location: TopLoc_Location) -> None:
         for mark in marks:
-            self.paint(self.numbers(mark.shape, around), mark.name, mark.colour, (mark.layer,) if mark.layer else ())
+            self.paint(self.numbers(mark.shape, location), mark.name, mark.colour, (mark.layer,) if mark.layer else ())

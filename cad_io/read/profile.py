@@ -39,10 +39,10 @@ def turned_part(source: Any, origin: Sequence[float], direction: Sequence[float]
         raise ReadError("the lines of the Workplane are not joined to a profile: close() it, or wire()")
     with translated("reading a body of revolution", error=ReadError):
         axis = gp_Ax1(gp_Pnt(*origin), gp_Dir(*direction))
-        found = [_turned(shape, axis, origin, direction) for each in each_of(source) for shape in shapes_of(each)]
-    if not found:
+        profiles = [_turned(shape, axis, origin, direction) for each in each_of(source) for shape in shapes_of(each)]
+    if not profiles:
         raise ReadError(f"the {type(source).__name__} holds no shape")
-    return Part(as_one(found))
+    return Part(as_one(profiles))
 
 
 def _turned(shape: Any, axis: gp_Ax1, origin: Sequence[float], direction: Sequence[float]) -> Any:

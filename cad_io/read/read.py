@@ -23,10 +23,10 @@ from cad_io.kernel.components import unwrapped
 from cad_io.part import Part
 from cad_io.read import iges, step
 from cad_io.read.document import Read
-from cad_io.read.isolation import Crashed, Found
+from cad_io.read.isolation import Crashed, PartContent
 from cad_io.read.isolation import guarded as in_copy
 from cad_io.read.objects import from_object
-from cad_io.read.references import beside, followed, names
+from cad_io.read.references import followed, in_folder_of, names
 from cad_io.read.referred import Referred, referred
 from cad_io.read.sniff import load
 from cad_io.units import in_mm
@@ -96,36 +96,36 @@ def read_part(source: Any, unit: str | None = None, *, guarded: bool = False, ti
     if not guarded:
         return Part.of(_find(source, unit, timeout) | {"unit": unit})
 
-    def find() -> Found:
-        found = _find(source, unit, timeout)
-        Part.of(found)  # which asks the kernel more, better here than outside
-        return found | {"unit": unit}
+    def find() -> PartContent:
+        source_part = _find(source, unit, timeout)
+        Part.of(source_part)  # which asks the kernel more, better here than outside
+        return source_part | {"unit": unit}
 
     return Part.of(in_copy(find, timeout, os.fspath(source) if isinstance(source, str | os.PathLike) else None))
 
 
-def _find(source: Any, unit: str | None, timeout: float) -> Found:
+def _find(source: Any, unit: str | None, timeout: float) -> PartContent:
     """Return the arguments that make the part, by the names of its parameters."""
     if isinstance(source, str | os.PathLike):
         return _read_file(os.fspath(source), unit, timeout)
-    found = from_object(source)
-    tree = tuple(_scaled_node(node, unit) for node in found["tree"])
-    return found | {"shape": _scaled(found["shape"], unit), "tree": tree}
+    shape = from_object(source)
+    tree = tuple(_scaled_node(node, unit) for node in shape["tree"])
+    return shape | {"shape": _scaled(shape["shape"], unit), "tree": tree}
 
 
-def _read_file(file: str, unit: str | None, timeout: float) -> Found:
+def _read_file(file: str, unit: str | None, timeout: float) -> PartContent:
     kind, data = load(file)
-    known: Found = {"file": file, "sha256": checksum(data)}
+    known: PartContent = {"file": file, "sha256": checksum(data)}
     if kind not in _LOADERS:
         with translated("reading the file", error=ReadError, file=file):
-            return known | _found(Read(_scaled(_read_brep(file, kind), unit)))
+            return known | _content(Read(_scaled(_read_brep(file, kind), unit)))
     loader, others = partial(_LOADERS[kind], file, data, unit), Referred()
     if kind == "step" and names(data):
         if unit is not None:
             raise ReadError("refers to other files, which state units of their own: leave out the unit", file=file)
         others = referred(file, data, timeout)
         loader = partial(loader, foreign=others.foreign)
-        known["references"] = checksums(followed(data, beside(file)))
+        known["references"] = checksums(followed(data, in_folder_of(file)))
     with translated("reading the file", error=ReadError, file=file):
         loaded = loader()
         if not (loaded.risky or others.risky):
@@ -140,20 +140,20 @@ def _read_file(file: str, unit: str | None, timeout: float) -> Found:
     raise crash
 
 
-def _transferred(load_again: Callable[[], Loaded], others: Referred) -> Found:
+def _transferred(load_again: Callable[[], Loaded], others: Referred) -> PartContent:
     loaded = load_again()
     with translated("reading the file", error=ReadError, file=loaded.file):
         try:
-            return _found(loaded.transfer(), others)
+            return _content(loaded.transfer(), others)
         except step.NothingError as error:
             raise ReadError(f"{error.cause}; {others.lost[0]}", file=error.file) if others.lost else error from None
 
 
-def _found(read: Read, others: Referred | None = None) -> Found:
+def _content(read: Read, others: Referred | None = None) -> PartContent:
     read.lost += [] if others is None else others.lost
     edgeless = [n for n, face in enumerate(faces(read.shape), 1) if next(explore(face, TopAbs_EDGE), None) is None]
-    told = {each.face for each in read.lost}
-    read.lost += [LostFace("", read.names.get(n, ""), "it has no edges", n) for n in edgeless if n not in told]
+    reported = {each.face for each in read.lost}
+    read.lost += [LostFace("", read.names.get(n, ""), "it has no edges", n) for n in edgeless if n not in reported]
     return {
         "shape": read.shape, "names": read.names, "colours": read.colours, "layers": read.layers, "tree": read.tree,
         "warnings": tuple(read.warnings), "lost": tuple(read.lost),

@@ -32,7 +32,7 @@ def names(data: bytes) -> tuple[str, ...]:
     if not any(word in data for word in WORDS):
         return ()
     if b"/*" in data:
-        data = _COMMENT.sub(lambda found: b" " if found[0].startswith(b"/") else found[0], data)
+        data = _COMMENT.sub(lambda match: b" " if match[0].startswith(b"/") else match[0], data)
     return tuple(name for name in dict.fromkeys(map(_name, _NAMED.findall(data))) if name.strip())
 
 
@@ -43,8 +43,8 @@ def _name(text: bytes) -> str:
     return os.fsdecode(_LETTERS.sub(_letters, whole)).replace("\\", "/")
 
 
-def _letters(found: re.Match[bytes]) -> bytes:
-    two, four, one, upper = found.groups()
+def _letters(match: re.Match[bytes]) -> bytes:
+    two, four, one, upper = match.groups()
     if two is not None:
         text = bytes.fromhex(two.decode()).decode("utf-16-be", "replace")
     elif four is not None:
@@ -87,10 +87,10 @@ def followed(data: bytes, read: Callable[[str], bytes | None]) -> Iterator[tuple
             if len(seen) >= _MOST:
                 raise ReadError(f"refers to more than {_MOST} files: save the assembly as one file")
             seen.add(path)
-            found = read(path)
-            yield path, found
-            if found is not None:
-                waiting.append((os.path.dirname(path), found))
+            raw = read(path)
+            yield path, raw
+            if raw is not None:
+                waiting.append((os.path.dirname(path), raw))
 
 
 def fingerprint_of(data: bytes, read: Callable[[str], bytes | None]) -> str:
@@ -98,7 +98,7 @@ def fingerprint_of(data: bytes, read: Callable[[str], bytes | None]) -> str:
     return files.fingerprint(files.checksum(data), files.checksums(followed(data, read)))
 
 
-def beside(file: str | os.PathLike[str]) -> Callable[[str], bytes | None]:
+def in_folder_of(file: str | os.PathLike[str]) -> Callable[[str], bytes | None]:
     """Read files by their paths from the folder of a file; None where there is none that can be read.
 
     Raises

@@ -9,7 +9,7 @@ from cad_io.errors import ReadError
 from cad_io.files import OutsideError
 from cad_io.kernel import translated
 from cad_io.kernel.time_limit import ChildDied, TimeLimit, limited
-from cad_io.read.references import DOCUMENTS, beside, names
+from cad_io.read.references import DOCUMENTS, in_folder_of, names
 from cad_io.read.sniff import sniff
 from cad_io.read.step import Loaded, distinct_faces
 
@@ -62,48 +62,48 @@ def referred(file: str, data: bytes, timeout: float, above: tuple[str, ...] = ()
     ReadError
         A file refers to itself, or to one that may not be read.
     """
-    found = Referred()
+    result = Referred()
     above = (*above, os.path.realpath(file))
     for name in names(data):
         path = os.path.join(os.path.dirname(file), name)
         if os.path.realpath(path) in above:
             raise ReadError(f"refers to {name}, which refers to it again: save the assembly as one file", file=file)
         try:
-            content = beside(file)(name)
+            content = in_folder_of(file)(name)
         except OutsideError as error:
             raise ReadError(f"refers to {name}: {error.strerror}", file=file) from None
         except ReadError as error:
             raise ReadError(error.cause, file=file) from None
-        if path in found.faces:
+        if path in result.faces:
             continue
         if content is None:
-            _miss(found, name, "the file refers to it, and it cannot be read: put it beside the file")
+            _miss(result, name, "the file refers to it, and it cannot be read: put it into the folder of the file")
             continue
         try:
             kind = sniff(content, name)
         except ReadError:
             kind = ""
         if kind != "step":
-            _miss(found, name, "the file refers to it, and it is no STEP file: only these are followed")
+            _miss(result, name, "the file refers to it, and it is no STEP file: only these are followed")
             continue
         below = referred(path, content, timeout, above)
         try:
-            count, lost, risky = _alone(path, content, below.foreign, timeout)
+            count, unread, risky = _alone(path, content, below.foreign, timeout)
         except ReadError as error:
-            _miss(found, name, f"the file refers to it, and it {error.cause}")
+            _miss(result, name, f"the file refers to it, and it {error.cause}")
             continue
-        found.add(below)
-        found.add(
+        result.add(below)
+        result.add(
             Referred(
-                {path: count}, [LostFace("", " ".join(filter(None, (name, *who))), why) for *who, why in lost], risky
+                {path: count}, [LostFace("", " ".join(filter(None, (name, *who))), why) for *who, why in unread], risky
             )
         )
-    return found
+    return result
 
 
-def _miss(found: Referred, name: str, why: str) -> None:
+def _miss(referred: Referred, name: str, why: str) -> None:
     if not name.lower().endswith(DOCUMENTS):
-        found.lost.append(LostFace("", name, why))
+        referred.lost.append(LostFace("", name, why))
 
 
 def _alone(file: str, data: bytes, foreign: int, timeout: float) -> tuple[int, list[tuple[str, str, str]], bool]:

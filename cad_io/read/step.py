@@ -37,7 +37,7 @@ from cad_io.read.document import Read, add_attributes, each, roots
 from cad_io.read.face_comparison import open_border
 from cad_io.read.faults import Model, type_of
 from cad_io.read.references import names as referred_names
-from cad_io.read.unread_faces import Lost, is_face, is_whole, mend, name_of
+from cad_io.read.unread_faces import UnreadFaces, is_face, is_whole, name_of, repair
 from cad_io.units import in_mm
 
 #: Each a pattern that starts with plain text, which is searched for ten times as fast as alternatives.
@@ -147,7 +147,7 @@ class Loaded:
         """
         traced = traced or bool(self.faults)
         real = self._mark() if traced else {}
-        mended = mend(self.model, self.faults if self.careful else ()) if traced else {}
+        repaired = repair(self.model, self.faults if self.careful else ()) if traced else {}
         try:
             result = self._shape()
         except NothingError:
@@ -155,25 +155,25 @@ class Loaded:
                 raise
             # One bad vertex can cost a whole solid: without the faces at it, the others may come.
             return self._again(names=self.names, careful=True).transfer()
-        found, written = (
+        made, written = (
             distinct_faces(result.shape) - self.foreign,
             sum(len(kind.findall(self.data)) for kind in _FACES),
         )
         if not traced:
             # All is well, or else the file is read again with marks: only then can be told what is lost.
-            if found >= written and not self.model.trouble(fails=True) and not self._doubtful(result.shape):
+            if made >= written and not self.model.trouble(fails=True) and not self._doubtful(result.shape):
                 return result
             return self._again().transfer(traced=True)
         shapes = faces(result.shape)
         numbers = self._unmark(result, shapes, real)
-        lost = Lost(self.model, self._idents(), self.faults, mended, shapes, numbers, self._scale())
-        result.lost = lost.found()
+        unread = UnreadFaces(self.model, self._idents(), self.faults, repaired, shapes, numbers, self._scale())
+        result.lost = unread.found()
         # Faces that the kernel did not even load as such, or that went unseen otherwise.
         nameless = self._no_faces()[sum(each.face is None for each in result.lost) :]
         result.lost += [LostFace(ident, "", "a shell names it, and no face can be read there") for ident in nameless]
         gone = len({each.entity for each in result.lost if each.face is None})
-        result.lost += [LostFace("", "", "it is written, but could not be read")] * max(0, written - found - gone)
-        result.warnings += self._warnings(lost)
+        result.lost += [LostFace("", "", "it is written, but could not be read")] * max(0, written - made - gone)
+        result.warnings += self._warnings(unread)
         return result
 
     def _again(self, **how: bool) -> "Loaded":
@@ -200,11 +200,11 @@ class Loaded:
 
     def _refuse_unnoticed(self) -> None:
         """Files that the kernel would open, and `references.names` does not see: in no key, and behind no wall."""
-        found = STEPConstruct_ExternRefs(self.reader.ChangeReader().WS())
-        found.LoadExternRefs()
+        references = STEPConstruct_ExternRefs(self.reader.ChangeReader().WS())
+        references.LoadExternRefs()
         seen = set(map(os.path.normpath, referred_names(self.data)))
-        for number in range(1, found.NbExternRefs() + 1):
-            name = (found.FileName(number) or "").replace("\\", "/")
+        for number in range(1, references.NbExternRefs() + 1):
+            name = (references.FileName(number) or "").replace("\\", "/")
             if not name.strip() or os.path.normpath(name) in seen:
                 continue
             path = os.path.join(os.path.dirname(self.file), name)
@@ -282,16 +282,16 @@ class Loaded:
     def _scale(self) -> float:
         return in_mm(self.unit) if self.unit is not None else _length_unit(self.reader)
 
-    def _warnings(self, lost: Lost) -> Iterator[str]:
+    def _warnings(self, lost: UnreadFaces) -> Iterator[str]:
         felt = {fault for each in lost.felt.values() for fault in each}
         groups: dict[str, dict[str, list[str]]] = defaultdict(lambda: defaultdict(list))
         for fault in self.faults:
             where = "in its text" if not fault.number else "in geometry" if fault in felt else "that touch no face"
             groups[where][fault.short].append(lost.ident(fault.number))
         for where, texts in sorted(groups.items()):
-            said = [f"{text}{_at(idents)}" for text, idents in texts.items()]
+            lines = [f"{text}{_at(idents)}" for text, idents in texts.items()]
             yield (f"the file has faults {where} ({sum(map(len, texts.values()))}): "
-                   f"{'; '.join(said[:_MOST_NAMED])}{_more(len(said) - _MOST_NAMED)}")  # fmt: skip
+                   f"{'; '.join(lines[:_MOST_NAMED])}{_more(len(lines) - _MOST_NAMED)}")  # fmt: skip
 
 
 def _at(idents: list[str]) -> str:

@@ -70,18 +70,18 @@ def name_of(entity: Any) -> str:
 
 def touched(model: Model, faults: Iterable[Fault]) -> tuple[dict[int, list[Fault]], list[Fault]]:
     """Faults by the face entities that use what is faulty, and those that no face feels."""
-    found: dict[int, list[Fault]] = {}
+    result: dict[int, list[Fault]] = {}
     harmless = []
     for number, each in by_number(faults).items():
         felt = [n for n in model.users(number, is_face) if n and is_face(model.entities[n])]
         geometry = [fault for fault in each if fault.parameter not in _WORDS]
         for n in felt:
-            found.setdefault(n, []).extend(geometry)
+            result.setdefault(n, []).extend(geometry)
         harmless += [fault for fault in each if not felt or fault not in geometry]
-    return {n: each for n, each in found.items() if each}, harmless
+    return {n: each for n, each in result.items() if each}, harmless
 
 
-def mend(model: Model, faults: Sequence[Fault] = ()) -> dict[int, str]:
+def repair(model: Model, faults: Sequence[Fault] = ()) -> dict[int, str]:
     """Take out, before the transfer, what makes the kernel crash or throw away a whole solid.
 
     Parameters
@@ -107,10 +107,10 @@ def mend(model: Model, faults: Sequence[Fault] = ()) -> dict[int, str]:
     for shell in model.entities.values() if whole else ():
         if isinstance(shell, StepShape_ConnectedFaceSet) and shell.CfsFaces() is not None:
             inner = [shell.CfsFacesValue(i + 1) for i in range(shell.NbCfsFaces())]
-            kept = [face for face in inner if model.number(face) not in whole]
-            if kept and len(kept) < len(inner):
-                array = StepShape_HArray1OfFace(1, len(kept))
-                for i, face in enumerate(kept):
+            retained = [face for face in inner if model.number(face) not in whole]
+            if retained and len(retained) < len(inner):
+                array = StepShape_HArray1OfFace(1, len(retained))
+                for i, face in enumerate(retained):
                     array.SetValue(i + 1, face)
                 shell.SetCfsFaces(array)
     return bad
@@ -142,15 +142,15 @@ def _loops(face: Any) -> list[Any]:
 
 def _edges(face: Any) -> list[Any]:
     """Edges of a face, one each time that it is used; None for what is missing."""
-    found: list[Any] = []
+    edges: list[Any] = []
     for loop in _loops(face):
         if isinstance(loop, StepShape_EdgeLoop):
             if loop.EdgeList() is None:
-                found.append(None)
+                edges.append(None)
                 continue
             uses = [loop.EdgeListValue(i + 1) for i in range(loop.NbEdgeList())]
-            found += [None if use is None else use.EdgeElement() for use in uses]
-    return found
+            edges += [None if use is None else use.EdgeElement() for use in uses]
+    return edges
 
 
 def missing_faces(model: Model) -> Iterator[tuple[int, int]]:
@@ -164,7 +164,7 @@ def missing_faces(model: Model) -> Iterator[tuple[int, int]]:
                 yield number, none
 
 
-class Lost:
+class UnreadFaces:
     """Find the unread faces of a transferred file.
 
     Parameters
@@ -185,10 +185,10 @@ class Lost:
     """
 
     def __init__(
-        self, model: Model, idents: Mapping[int, str], faults: Sequence[Fault], mended: Mapping[int, str],
+        self, model: Model, idents: Mapping[int, str], faults: Sequence[Fault], repaired: Mapping[int, str],
         shapes: Sequence[TopoDS_Face], numbers: Mapping[int, Sequence[int]], scale: float,
     ) -> None:  # fmt: skip
-        self.model, self.idents, self.mended = model, idents, mended
+        self.model, self.idents, self.mended = model, idents, repaired
         self.shapes, self.numbers, self.scale = shapes, numbers, scale
         self.felt, self.harmless = touched(model, faults)
         self.failed, _ = touched(model, model.trouble(fails=True))
@@ -200,19 +200,19 @@ class Lost:
 
     def found(self) -> list[LostFace]:
         """Every face that is lost or altered, in the order of the file."""
-        found: list[LostFace] = []
+        unread: list[LostFace] = []
         for number, entity in self.model.entities.items():
             if is_face(entity):
                 here = self.numbers.get(number, ())
                 if not here and not (number in self.results and self._unnamed):
-                    found += self._gone(number)
-                found += [LostFace(self.ident(number), name_of(entity), self._said(why, number), n)
+                    unread += self._gone(number)
+                unread += [LostFace(self.ident(number), name_of(entity), self._said(why, number), n)
                           for n in here if (why := self._altered(number, self.shapes[n - 1]))]  # fmt: skip
         for number, count in missing_faces(self.model):
             why = self._cause("a face that the shell lists is missing, or is none", [number])
-            found += [LostFace(self.ident(number), "", why)] * count
-        found += self._places()
-        return found
+            unread += [LostFace(self.ident(number), "", why)] * count
+        unread += self._places()
+        return unread
 
     def ident(self, number: int) -> str:
         return self.idents.get(number, "")
@@ -309,14 +309,14 @@ class Lost:
     def _places(self) -> Iterator[LostFace]:
         """Instances of products, and bare surfaces, that something harmless to any face has moved or lost."""
         faulty = {fault.number for fault in self.harmless if fault.number and fault.parameter not in _WORDS}
-        told: set[int] = set()
+        reported: set[int] = set()
         for number in sorted(faulty):
             users = [self.model.entities[n] for n in self.model.users(number) if n]
             place = next((user for user in users if isinstance(user, _PLACES)), None)
             if place is not None:
                 at = self.model.number(place)
-                if at not in told:
-                    told.add(at)
+                if at not in reported:
+                    reported.add(at)
                     yield LostFace(
                         self.ident(at), "", self._cause("it may put a component in the wrong place", [number])
                     )
@@ -328,8 +328,8 @@ class Lost:
             if isinstance(entity, StepRepr_NextAssemblyUsageOccurrence) and number not in self.results:
                 product = entity.RelatedProductDefinition()
                 if product is None or self.model.number(product) in self.results:
-                    said = text.ToCString() if (text := entity.Name()) is not None else ""
-                    yield LostFace(self.ident(number), said, "a component of the assembly has not been placed")
+                    name = text.ToCString() if (text := entity.Name()) is not None else ""
+                    yield LostFace(self.ident(number), name, "a component of the assembly has not been placed")
 
     def _box(self, face: Any, place: TopLoc_Location) -> Any:
         corners = []

@@ -65,13 +65,13 @@ def locate(
             return _projected(part, number, place, within)
 
     best: tuple[float, int, tuple[float, float]] | None = None
-    for number, found in zip(near, each(projected, near, seconds=SECONDS, hangs=1), strict=True):
-        if isinstance(found, Ended):
+    for number, projection in zip(near, each(projected, near, seconds=SECONDS, hangs=1), strict=True):
+        if isinstance(projection, Ended):
             # The face may be the nearest one: without it there is no answer.
-            cause = f"projecting a point on it {found}: give a point on another face, or export the part again"
+            cause = f"projecting a point on it {projection}: give a point on another face, or export the part again"
             raise SampleError(cause, file=part.file, face=f"F{number}")
-        if found is not None and (best is None or found[0] < best[0] - _PRECISION):
-            best = (found[0], number, found[1])
+        if projection is not None and (best is None or projection[0] < best[0] - _PRECISION):
+            best = (projection[0], number, projection[1])
     if best is None:
         foot, distance = nearest(part, point, ignore=ignore)
         where, there = (", ".join(f"{x:.6g}" for x in each) for each in (place, foot))
@@ -99,8 +99,8 @@ def foot_on(part: Part, face: int, point: Sequence[float] | Floats, within: floa
         The kernel fails on the face.
     """
     with translated("projecting a point", error=SampleError, file=part.file, face=f"F{face}"):
-        found = _projected(part, face, np.asarray(point, float), within)
-    return None if found is None else found[1]
+        foot = _projected(part, face, np.asarray(point, float), within)
+    return None if foot is None else foot[1]
 
 
 def nearest(part: Part, point: Sequence[float], *, ignore: Container[int] = ()) -> tuple[Floats, float]:
@@ -127,15 +127,15 @@ def nearest(part: Part, point: Sequence[float], *, ignore: Container[int] = ()) 
     def measured(shapes: list[Any]) -> tuple[tuple[float, float, float], float] | None:
         with translated("measuring a distance", error=SampleError, file=part.file):
             vertex = BRepBuilderAPI_MakeVertex(gp_Pnt(*place.tolist())).Vertex()
-            found = BRepExtrema_DistShapeShape(vertex, compound(shapes))
-            return (found.PointOnShape2(1).Coord(), float(found.Value())) if found.NbSolution() else None
+            distance = BRepExtrema_DistShapeShape(vertex, compound(shapes))
+            return (distance.PointOnShape2(1).Coord(), float(distance.Value())) if distance.NbSolution() else None
 
-    (found,) = each(measured, [looked_at], seconds=SECONDS + _A_FACE * len(looked_at))
-    if isinstance(found, Ended):
-        raise SampleError(f"measuring the distance of a point {found}", file=part.file)
-    if found is None:
+    (measurement,) = each(measured, [looked_at], seconds=SECONDS + _A_FACE * len(looked_at))
+    if isinstance(measurement, Ended):
+        raise SampleError(f"measuring the distance of a point {measurement}", file=part.file)
+    if measurement is None:
         raise SampleError("the part has no face to measure a distance from", file=part.file)
-    return np.array(found[0]), found[1]
+    return np.array(measurement[0]), measurement[1]
 
 
 def _may_be_near(part: Part, number: int, target: gp_Pnt, within: float) -> bool:
@@ -151,11 +151,11 @@ def _projected(part: Part, number: int, place: Floats, within: float) -> tuple[f
     if trim is None:
         return None
     surface = ShapeAnalysis_Surface(BRep_Tool.Surface_s(part.face(number)))
-    found = surface.ValueOfUV(gp_Pnt(*place.tolist()), _PRECISION)
+    uv = surface.ValueOfUV(gp_Pnt(*place.tolist()), _PRECISION)
     adaptor = part.adaptor(number)
     # The kernel may answer on another turn of a periodic surface than the face uses.
-    turns_u = _turns(adaptor.IsUPeriodic() and adaptor.UPeriod(), found.X(), trim.box[:2])
-    turns_v = _turns(adaptor.IsVPeriodic() and adaptor.VPeriod(), found.Y(), trim.box[2:])
+    turns_u = _turns(adaptor.IsUPeriodic() and adaptor.UPeriod(), uv.X(), trim.box[:2])
+    turns_v = _turns(adaptor.IsVPeriodic() and adaptor.VPeriod(), uv.Y(), trim.box[2:])
     for u, v in itertools.product(turns_u, turns_v):
         distance = float(np.linalg.norm(np.array(adaptor.Value(u, v).Coord()) - place))
         if distance <= within and _on_face(trim, u, v, within):

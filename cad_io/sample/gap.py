@@ -56,19 +56,19 @@ def border_probes(part: Part, number: int, gap: float) -> Probes:
 def inner_probes(part: Part, number: int, lines: Lines, finer: NDArray[np.bool_]) -> Probes:
     """Nodes of the halved grid inside the face, in cells of which not all corners are; `finer` as from `halves_inside`."""
     whole = finer[:-2:2, :-2:2] & finer[2::2, :-2:2] & finer[:-2:2, 2::2] & finer[2::2, 2::2]
-    beside = np.zeros(finer.shape, bool)
+    neighbours = np.zeros(finer.shape, bool)
     for du in range(3):
         for dv in range(3):
-            beside[du : du + 2 * whole.shape[0] - 1 : 2, dv : dv + 2 * whole.shape[1] - 1 : 2] |= ~whole
-    beside[::2, ::2] = False
-    i, j = np.nonzero(finer & beside)
+            neighbours[du : du + 2 * whole.shape[0] - 1 : 2, dv : dv + 2 * whole.shape[1] - 1 : 2] |= ~whole
+    neighbours[::2, ::2] = False
+    i, j = np.nonzero(finer & neighbours)
     u, v = halved(lines)
     return _probes(part, number, np.stack([u[i], v[j]], axis=1))
 
 
 def halved(lines: Lines) -> tuple[Floats, Floats]:
     """Grid lines and those half way between; of a closed range up to the seam's other end."""
-    found = []
+    halves = []
     for line, closed, low, high in (
         (lines.u, lines.closed_u, *lines.span[:2]),
         (lines.v, lines.closed_v, *lines.span[2:]),
@@ -76,13 +76,13 @@ def halved(lines: Lines) -> tuple[Floats, Floats]:
         whole = np.append(line, line[0] + high - low) if closed else line
         between = np.empty(2 * len(whole) - 1)
         between[::2], between[1::2] = whole, 0.5 * (whole[1:] + whole[:-1])
-        found.append(between)
-    return found[0], found[1]
+        halves.append(between)
+    return halves[0], halves[1]
 
 
 def halves_inside(trim: Trim, lines: Lines) -> NDArray[np.bool_]:
     """Which nodes of the halved grid lie in the face."""
-    return trim.inside_grid(*halved(lines), beside=False)
+    return trim.inside_grid(*halved(lines), border=False)
 
 
 def denser(lines: Lines, finer: NDArray[np.bool_], uv: Floats, trim: Trim) -> Lines:

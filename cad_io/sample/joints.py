@@ -70,9 +70,9 @@ def smooth_joints(
                 trees[number] = (cKDTree(point[rows]), rows)
             tree, rows = trees[number]
             nearest.append(rows[tree.query(at[smooth])[1]])
-        found = np.unique(np.stack(nearest, axis=1), axis=0)
-        distance = np.linalg.norm(point[found[:, 0]] - point[found[:, 1]], axis=1)
-        pairs.append(found[distance <= reach])
+        joints = np.unique(np.stack(nearest, axis=1), axis=0)
+        distance = np.linalg.norm(point[joints[:, 0]] - point[joints[:, 1]], axis=1)
+        pairs.append(joints[distance <= reach])
     return np.concatenate(pairs)
 
 

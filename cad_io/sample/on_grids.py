@@ -31,7 +31,7 @@ _MOST_MORE, _FEW_SAMPLES = 4, 2000  # so many times as many samples, or so many,
 _NODES = 40_000  # of a grid for that, whether in the face or not
 _FEW = 100  # samples: a face with fewer may be too thin for grids
 _LEAST_SAMPLES = 4  # of a face, as far as its grid can be finer
-_BESIDE = 2  # middles of triangles that each is linked with
+_NEIGHBOURS = 2  # middles of triangles that each is linked with
 _LEAST_SHARE = 0.125  # of its cell that a sample on the trim stands for
 
 
@@ -102,27 +102,27 @@ def sample(
         if step is not None and not step > 0:
             raise SampleError(f"the spacing must be positive, not {step}", file=part.file, face=info.id)
         with translated("sampling", error=SampleError, file=part.file, face=info.id):
-            found = _sample_face(part, number, trim, grid, step)
-        if found is None:
+            samples = _sample_face(part, number, trim, grid, step)
+        if samples is None:
             empty.append((number, "no sample lies inside its border"))
         else:
-            taken.append(found)
+            taken.append(samples)
     at(0)
     return _together(part, orientation, taken, tuple(empty))
 
 
 def _sample_face(part: Part, number: int, trim: Trim, grid: int | None, step: float | None) -> _FaceSamples | None:
-    found = _uniform(part, number, trim, grid) if step is None else _spaced(part, number, trim, step)
-    if found is None:
+    samples = _uniform(part, number, trim, grid) if step is None else _spaced(part, number, trim, step)
+    if samples is None:
         return _in_triangles(part, number, step)
-    if trim.rectangular and _covered(found):
-        return found
-    found = _covering(part, number, trim, found, step)
-    if step is not None and found.gap > step and len(found.uv) < _FEW:
+    if trim.rectangular and _covered(samples):
+        return samples
+    samples = _covering(part, number, trim, samples, step)
+    if step is not None and samples.gap > step and len(samples.uv) < _FEW:
         # A needle that grids hardly hit.
         thin = _in_triangles(part, number, step)
-        return thin if thin is not None and thin.gap < found.gap else found
-    return found
+        return thin if thin is not None and thin.gap < samples.gap else samples
+    return samples
 
 
 def _uniform(part: Part, number: int, trim: Trim, grid: int | None) -> _FaceSamples | None:
@@ -137,7 +137,7 @@ def _uniform(part: Part, number: int, trim: Trim, grid: int | None) -> _FaceSamp
 
 def _spaced(part: Part, number: int, trim: Trim, step: float) -> _FaceSamples | None:
     """Samples on lines so near that grid neighbours are at most a step apart, on more where few hit the face."""
-    surface, found = part.surface(number), None
+    surface, samples = part.surface(number), None
     more = np.ones(2)
     for doubling in range(_DOUBLINGS + 1):
         for _ in range(_CORRECTIONS):
@@ -145,31 +145,31 @@ def _spaced(part: Part, number: int, trim: Trim, step: float) -> _FaceSamples | 
             inside = trim.inside_grid(lines.u, lines.v)
             if not inside.any():
                 break
-            found = _on_grid(part, number, trim, lines, inside)
-            worst = _widest(found, lines) / step
+            samples = _on_grid(part, number, trim, lines, inside)
+            worst = _widest(samples, lines) / step
             if (worst <= 1 + 1e-9).all():
                 break
             more *= np.where(worst > 1, 1.02 * worst, 1.0)
-        if found is not None and len(found.uv) >= _LEAST_SAMPLES:
+        if samples is not None and len(samples.uv) >= _LEAST_SAMPLES:
             break
-    return found
+    return samples
 
 
-def _covering(part: Part, number: int, trim: Trim, found: _FaceSamples, step: float | None) -> _FaceSamples:
+def _covering(part: Part, number: int, trim: Trim, samples: _FaceSamples, step: float | None) -> _FaceSamples:
     """Samples with how far the face is from them; with a step, on more lines where it is farther than that."""
-    grid = found.grid
+    grid = samples.grid
     assert grid is not None, "samples in triangles have no lines"
     lines = Lines(grid.u, grid.v, grid.closed_u, grid.closed_v, grid.span)
-    near = _gap(found.derivatives[:, 0], found.pairs)
+    near = _gap(samples.derivatives[:, 0], samples.pairs)
     border = border_probes(part, number, near if step is None else step)
     if not trim.closed:  # only the kernel knows what is inside, a node at a time
-        return found._replace(gap=float(border.distance(found.derivatives[:, 0]).max(initial=0.0)))
-    most, nodes = max(_MOST_MORE * len(found.uv), _FEW_SAMPLES), max(_MOST_MORE * grid.index.size, _NODES)
+        return samples._replace(gap=float(border.distance(samples.derivatives[:, 0]).max(initial=0.0)))
+    most, nodes = max(_MOST_MORE * len(samples.uv), _FEW_SAMPLES), max(_MOST_MORE * grid.index.size, _NODES)
     for _ in range(_HALVINGS + 1):
         finer = halves_inside(trim, lines)
         probes = [border, inner_probes(part, number, lines, finer)]
-        away = np.concatenate([each.distance(found.derivatives[:, 0]) for each in probes])
-        found = found._replace(gap=float(away.max(initial=0.0)))
+        away = np.concatenate([each.distance(samples.derivatives[:, 0]) for each in probes])
+        samples = samples._replace(gap=float(away.max(initial=0.0)))
         far = away > (np.inf if step is None else step)
         if not far.any():
             break
@@ -177,13 +177,13 @@ def _covering(part: Part, number: int, trim: Trim, found: _FaceSamples, step: fl
         inside = trim.inside_grid(lines.u, lines.v)
         if inside.sum() > most or inside.size > nodes:
             break
-        found = _on_grid(part, number, trim, lines, inside)._replace(gap=found.gap)
-    return found
+        samples = _on_grid(part, number, trim, lines, inside)._replace(gap=samples.gap)
+    return samples
 
 
-def _covered(found: _FaceSamples) -> bool:
+def _covered(samples: _FaceSamples) -> bool:
     """Nodes stand all over the face and along its border: it is no farther from them than they are from each other."""
-    return found.grid is not None and bool((found.grid.index >= 0).all())
+    return samples.grid is not None and bool((samples.grid.index >= 0).all())
 
 
 def _on_grid(part: Part, number: int, trim: Trim, lines: Lines, inside: NDArray[np.bool_]) -> _FaceSamples:
@@ -222,8 +222,8 @@ def _in_triangles(part: Part, number: int, step: float | None) -> _FaceSamples |
     pairs = np.zeros((0, 2), np.int32)
     if len(known) > 1:
         tree = cKDTree(derivatives[known, 0])
-        beside = tree.query(derivatives[known, 0], min(_BESIDE + 1, len(known)))[1]
-        both = np.stack([np.repeat(np.arange(len(known)), beside.shape[1]), beside.ravel()], axis=1)
+        neighbours = tree.query(derivatives[known, 0], min(_NEIGHBOURS + 1, len(known)))[1]
+        both = np.stack([np.repeat(np.arange(len(known)), neighbours.shape[1]), neighbours.ravel()], axis=1)
         both = np.unique(np.sort(both[both[:, 0] != both[:, 1]], axis=1), axis=0)
         pairs = known[both].astype(np.int32)
     gap = border_probes(part, number, step or 0.0).distance(derivatives[:, 0]).max(initial=0.0)
@@ -311,11 +311,11 @@ def _adjacent(index: Ints) -> Ints:
     return _linked(index[:-1].ravel(), index[1:].ravel())
 
 
-def _widest(found: _FaceSamples, lines: Lines) -> Floats:
+def _widest(samples: _FaceSamples, lines: Lines) -> Floats:
     """Largest distance between neighbours along u and along v, mm."""
-    point, pairs = found.derivatives[:, 0], found.pairs
+    point, pairs = samples.derivatives[:, 0], samples.pairs
     distance = np.linalg.norm(point[pairs[:, 0]] - point[pairs[:, 1]], axis=1)
-    along_v = found.uv[pairs[:, 0], 0] == found.uv[pairs[:, 1], 0]
+    along_v = samples.uv[pairs[:, 0], 0] == samples.uv[pairs[:, 1], 0]
     return np.array([np.nanmax(distance[~along_v], initial=0.0), np.nanmax(distance[along_v], initial=0.0)])
 
 
@@ -324,12 +324,12 @@ def _cells(lines: Floats, closed: bool, low: float, high: float) -> tuple[Floats
     half = 0.5 * np.diff(lines)
     if closed:
         seam = 0.5 * (high - low - (lines[-1] - lines[0]))
-        left, right = np.concatenate([[seam], half]), np.concatenate([half, [seam]])
+        lower, upper = np.concatenate([[seam], half]), np.concatenate([half, [seam]])
     else:
         # Up to the ends of the range: lines beside a border that is a point stand off it.
-        left = np.concatenate([[max(lines[0] - low, 0.0)], half])
-        right = np.concatenate([half, [max(high - lines[-1], 0.0)]])
-    return np.stack([left, right], axis=1), left + right
+        lower = np.concatenate([[max(lines[0] - low, 0.0)], half])
+        upper = np.concatenate([half, [max(high - lines[-1], 0.0)]])
+    return np.stack([lower, upper], axis=1), lower + upper
 
 
 def _share_inside(trim: Trim, lines: Lines) -> Floats:
@@ -347,6 +347,6 @@ def _share_inside(trim: Trim, lines: Lines) -> Floats:
 
     u, back_u = quarters(lines.u, lines.closed_u, *lines.span[:2])
     v, back_v = quarters(lines.v, lines.closed_v, *lines.span[2:])
-    inside = trim.inside_grid(u, v, beside=False)[np.ix_(back_u, back_v)]
+    inside = trim.inside_grid(u, v, border=False)[np.ix_(back_u, back_v)]
     share = inside.reshape(len(lines.u), 2, len(lines.v), 2).mean(axis=(1, 3))
     return np.maximum(share, _LEAST_SHARE)

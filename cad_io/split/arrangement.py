@@ -163,20 +163,20 @@ class Arrangement:
             line_t = np.concatenate([[first - over[0]], t, [last + over[1]]])
             line = np.vstack([at(line_t[0])[0], xy, at(line_t[-1])[0]])
         hits = crossings(chain(line), self.border.segments)
-        found = []
+        bounds = []
         for i, j, at_i, at_j in zip(*(x.tolist() for x in hits), strict=True):
             span = self.border.parameters[j]
             x, s = line_t[i] + at_i * (line_t[i + 1] - line_t[i]), span[0] + at_j * (span[1] - span[0])
             reach = (2 * float(line_t[i + 1] - line_t[i]), 2 * abs(float(span[1] - span[0])))
             side = int(self.border.side_of[j])
             x, s = _refined(at, self.border.sides[side], self.border.scale, (float(x), float(s)), reach)
-            found.append((x, s, side))
-        found.sort()
+            bounds.append((x, s, side))
+        bounds.sort()
         if spline.closed:
-            return [(first, None), *((min(max(x, first), last), (side, s)) for x, s, side in found), (last, None)]
-        before = [f for f in found if f[0] < first + near[0]][-1:] or self._snapped(xy[0], first)
-        after = [f for f in found if f[0] > last - near[1]][:1] or self._snapped(xy[-1], last)
-        inner = [f for f in found if first + near[0] <= f[0] <= last - near[1]]
+            return [(first, None), *((min(max(x, first), last), (side, s)) for x, s, side in bounds), (last, None)]
+        before = [f for f in bounds if f[0] < first + near[0]][-1:] or self._snapped(xy[0], first)
+        after = [f for f in bounds if f[0] > last - near[1]][:1] or self._snapped(xy[-1], last)
+        inner = [f for f in bounds if first + near[0] <= f[0] <= last - near[1]]
         stops = [(min(max(x, first), last), (side, s)) for x, s, side in before + inner + after]
         return [*([] if before else [(first, None)]), *stops, *([] if after else [(last, None)])]
 
@@ -202,10 +202,10 @@ class Arrangement:
         if not self.stretches:
             return 0
         low, high = (np.array([of(s.xy, axis=0) for s in self.stretches]) for of in (np.min, np.max))
-        beside = ((low[:, None] <= high) & (low <= high[:, None])).all(axis=2)
+        overlapping = ((low[:, None] <= high) & (low <= high[:, None])).all(axis=2)
         cuts: dict[int, list[tuple[float, int]]] = defaultdict(list)
         count = 0
-        for i, j in np.argwhere(np.tril(beside, -1)).tolist():
+        for i, j in np.argwhere(np.tril(overlapping, -1)).tolist():
             pair = self.stretches[i], self.stretches[j]
             ends = np.array([s.xy[e] for s in pair for e in (0, -1)])
             for k, l, *shares in zip(*(x.tolist() for x in crossings(*(chain(s.xy) for s in pair))), strict=True):

@@ -45,7 +45,7 @@ class Trial:
 
     def __init__(
         self,
-        given: Any,
+        inputs: Any,
         base: Any,
         faces: dict[int, Any],
         surface_of: Callable[[int], Surface],
@@ -53,7 +53,7 @@ class Trial:
         careful: bool,
     ) -> None:
         """`surface_of` gives a face's surface by its number."""
-        self.given, self.base, self.faces, self.works_on, self.careful = given, base, faces, works_on, careful
+        self.given, self.base, self.faces, self.works_on, self.careful = inputs, base, faces, works_on, careful
         known = shape_map(base, TopAbs_FACE)
         numbers = {known.FindIndex(face): n for n, face in faces.items()}
         self._surface_of = lambda i: surface_of(numbers[i])
@@ -99,51 +99,53 @@ class Attempt:
         for number in sorted(self._cut):
             works_on({number})
             changed[number] = self._pieces(number, fresh[number], drawings[number])
-        beside: dict[int, set[int]] = {}
+        neighbours: dict[int, set[int]] = {}
         for number, face in fresh.items():
             cutters = {n for e in edges_of(face) for n in self._cutters.get(net.edges.FindIndex(e), ())}
             if number not in self._cut and cutters:
-                beside[number] = cutters
+                neighbours[number] = cutters
                 works_on(cutters)
                 changed[number] = [rewired(net, face)]
         if trial.careful:
-            self._ask(changed, beside)
+            self._ask(changed, neighbours)
         if self.wrong or not changed:
             return
         numbers = {net.faces.FindIndex(face): number for number, face in fresh.items()}
         self._placed = Placed(own, numbers, net.faces, changed)
         works_on(self._cut)
         if reason := wrong_whole(trial.given, as_one(self._placed.shapes)):
-            self._ask(changed, beside)
+            self._ask(changed, neighbours)
             if not self.wrong:
                 self.wrong = dict.fromkeys(self._cut, reason)
 
-    def _ask(self, changed: dict[int, list[Any]], beside: dict[int, set[int]]) -> None:
+    def _ask(self, changed: dict[int, list[Any]], neighbours: dict[int, set[int]]) -> None:
         """Find faces that are not valid, though they were, and whose fault that is."""
         for number, made in changed.items():
-            cutters = beside.get(number, {number})
+            cutters = neighbours.get(number, {number})
             self._works_on(cutters)
             if cutters & self.wrong.keys() or all(map(valid, made)) or not valid(self._given[number]):
                 continue
             why = (
-                f"with its edges cut there, F{number} beside it is not valid"
-                if number in beside
+                f"with its edges cut there, F{number} next to it is not valid"
+                if number in neighbours
                 else "a piece of it is not valid"
             )
             self.wrong |= dict.fromkeys(cutters, why)
 
     def _pieces(self, number: int, face: Any, drawing: Drawing) -> list[Any]:
-        found, regions = drawing.found, [part.region for part in drawing.parts]
-        mark = tuple(tuple(cut.stops) if (cut := self._net.cuts.get(side.key)) else () for side in found.border.sides)
+        arrangement, regions = drawing.found, [part.region for part in drawing.parts]
+        mark = tuple(
+            tuple(cut.stops) if (cut := self._net.cuts.get(side.key)) else () for side in arrangement.border.sides
+        )
         try:
-            made = pieces(self._net, face, drawing.surface, found, regions)
-            reason = "" if mark in found.sound else wrong_pieces(face, made)
+            made = pieces(self._net, face, drawing.surface, arrangement, regions)
+            reason = "" if mark in arrangement.sound else wrong_pieces(face, made)
         except Exception as error:
             made, reason = [], in_words(error)
         if reason:
             self.wrong[number] = reason
         else:
-            found.sound.add(mark)
+            arrangement.sound.add(mark)
         return made
 
     def packed(self) -> tuple[list[int], bytes] | None:

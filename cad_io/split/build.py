@@ -20,7 +20,7 @@ from cad_io.split.surface_edge import followed, surface_edge, trimmed
 from cad_io.surface import Surface
 
 
-def pieces(net: Net, face: Any, surface: Surface, found: Arrangement, regions: list[Region]) -> list[Any]:
+def pieces(net: Net, face: Any, surface: Surface, arrangement: Arrangement, regions: list[Region]) -> list[Any]:
     """Faces of the regions of a face, in its FORWARD orientation.
 
     Parameters
@@ -31,7 +31,7 @@ def pieces(net: Net, face: Any, surface: Surface, found: Arrangement, regions: l
         Of that net.
     surface : Surface
         The face's own.
-    found : Arrangement
+    arrangement : Arrangement
         Of the face.
     regions : list of Region
 
@@ -43,13 +43,13 @@ def pieces(net: Net, face: Any, surface: Surface, found: Arrangement, regions: l
         A curve cannot be followed in space.
     """
     builder, plain = BRep_Builder(), TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))
-    drawn = _drawn(net, plain, surface, found)
+    drawing = _edges(net, plain, surface, arrangement)
     out = []
     for region in regions:
         piece = TopoDS.Face_s(plain.EmptyCopied())
         builder.NaturalRestriction(piece, False)
         for loop in region.loops:
-            edges = [edge for half in loop for edge in _along(net, found, half, drawn)]
+            edges = [edge for half in loop for edge in _along(net, arrangement, half, drawing)]
             if not edges:
                 raise CannotSplit("a piece of it vanishes")
             wire = TopoDS_Wire()
@@ -120,38 +120,38 @@ class Placed:
         return [new.Oriented(shape.Orientation())]
 
 
-def _drawn(net: Net, face: Any, surface: Surface, found: Arrangement) -> list[Any]:
+def _edges(net: Net, face: Any, surface: Surface, arrangement: Arrangement) -> list[Any]:
     """Edges of all stretches, FORWARD; their ends are moved to where the border's edges are cut."""
     free: dict[int, Any] = {}
     edges = []
-    for stretch in found.stretches:
+    for stretch in arrangement.stretches:
         ends = [
-            _inner(free, node, surface, found) if c is None else _crossed(net, found, c)
+            _inner(free, node, surface, arrangement) if c is None else _crossed(net, arrangement, c)
             for c, node in zip(stretch.crossing, stretch.nodes, strict=True)
         ]
         first, last = float(stretch.t[0]), float(stretch.t[-1])
         mark = stretch.curve, first, last, *ends[0][1].tolist(), *ends[1][1].tolist()
-        if mark not in found.followed:
-            spline = trimmed(found.splines[stretch.curve], first, last)
+        if mark not in arrangement.followed:
+            spline = trimmed(arrangement.splines[stretch.curve], first, last)
             spline.poles[0], spline.poles[-1] = ends[0][1], ends[1][1]
-            found.followed[mark] = followed(surface, spline)
-        edges.append(surface_edge(face, found.followed[mark], ends[0][0], ends[1][0]))
+            arrangement.followed[mark] = followed(surface, spline)
+        edges.append(surface_edge(face, arrangement.followed[mark], ends[0][0], ends[1][0]))
     return edges
 
 
-def _inner(free: dict[int, Any], node: int, surface: Surface, found: Arrangement) -> tuple[Any, Floats]:
+def _inner(free: dict[int, Any], node: int, surface: Surface, arrangement: Arrangement) -> tuple[Any, Floats]:
     """Vertex of a node within the face, and its surface parameters."""
-    uv = found.free[node] / found.border.scale
+    uv = arrangement.free[node] / arrangement.border.scale
     if node not in free:
         free[node] = TopoDS_Vertex()
         BRep_Builder().MakeVertex(free[node], gp_Pnt(*surface.values(uv[:1], uv[1:])[0].tolist()), 1e-7)
     return free[node], uv
 
 
-def _crossed(net: Net, found: Arrangement, number: int) -> tuple[Any, Floats]:
+def _crossed(net: Net, arrangement: Arrangement, number: int) -> tuple[Any, Floats]:
     """Vertex of a crossing, and the surface parameters there of the border's edge."""
-    crossing = found.crossings[number]
-    side = found.border.sides[crossing.side]
+    crossing = arrangement.crossings[number]
+    side = arrangement.border.sides[crossing.side]
     if crossing.end is None:
         at = net.stop(side.key, crossing.s)
         cut = net.cuts[side.key]
@@ -160,14 +160,14 @@ def _crossed(net: Net, found: Arrangement, number: int) -> tuple[Any, Floats]:
     return vertex, np.array(side.curve.Value(float(side.t[-crossing.end])).Coord())
 
 
-def _along(net: Net, found: Arrangement, half: Half, drawn: list[Any]) -> list[Any]:
+def _along(net: Net, arrangement: Arrangement, half: Half, edges: list[Any]) -> list[Any]:
     """Edges of a half, as they stand in the border of the piece on its left."""
     if half.stretch:
         number, way = half.stretch
-        return [drawn[number].Oriented(TopAbs_FORWARD if way > 0 else TopAbs_REVERSED)]
+        return [edges[number].Oriented(TopAbs_FORWARD if way > 0 else TopAbs_REVERSED)]
     assert half.side is not None
     number, a, b = half.side
-    side = found.border.sides[number]
+    side = arrangement.border.sides[number]
     parts = net.parts(side.key)
     low = 0 if a == side.t[0] else net.stop(side.key, a)
     high = len(parts) if b == side.t[-1] else net.stop(side.key, b)

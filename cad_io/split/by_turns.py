@@ -61,19 +61,19 @@ def split_by_turns(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 
         `dropped` counts the nodes that lie within a piece of another label.
     """
     fields = {each.face: each for each in labels}
-    roomy = {number: with_room(each) for number, each in fields.items()}
+    roomy = {number: with_margin(each) for number, each in fields.items()}
     start = split(part, [])
     stage = _Stage(part, start.shape, [_first(each, roomy.get(each.face)) for each in start.pieces])
-    whole, left, joined = dict[int, str](), dict[int, FaceLabels](), Counter[int]()
+    whole, remaining, joined = dict[int, str](), dict[int, FaceLabels](), Counter[int]()
     while any(len(group) > 1 for _, group in stage.pieces):
-        asked = []
+        requests = []
         taken = _taken(stage.pieces, roomy)
         for i, (piece, group) in enumerate(stage.pieces, 1):
             if len(group) > 1:
                 field = roomy[piece.face]
                 off = np.isin(taken[piece.face], [0, i], invert=True)
-                asked.append(FaceLabels(i, field.u, field.v, _halves(field, off, group)))
-        done = split(stage, asked, seconds=seconds)
+                requests.append(FaceLabels(i, field.u, field.v, _halves(field, off, group)))
+        done = split(stage, requests, seconds=seconds)
         pieces = []
         for each in done.pieces:
             before, group = stage.pieces[each.face - 1]
@@ -82,13 +82,13 @@ def split_by_turns(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 
                 group = () if each.label < 0 else group[:middle] if each.label == 0 else group[middle:]
                 label = group[0] if len(group) == 1 else MIXED
                 own = before.shares.get(MIXED, 1.0) * each.shares.get(each.label, 0.0)
-                found = Piece(before.face, label, each.shape, {label: own} if own else {})
+                own_piece = Piece(before.face, label, each.shape, {label: own} if own else {})
             else:
-                found = Piece(before.face, before.label, each.shape, before.shares)
-            pieces.append((found, group))
+                own_piece = Piece(before.face, before.label, each.shape, before.shares)
+            pieces.append((own_piece, group))
         for i, why in done.whole.items():
             whole[stage.pieces[i - 1][0].face] = why
-            left[stage.pieces[i - 1][0].face] = fields[stage.pieces[i - 1][0].face]
+            remaining[stage.pieces[i - 1][0].face] = fields[stage.pieces[i - 1][0].face]
         for i, n in done.joined.items():
             joined[stage.pieces[i - 1][0].face] += n
         stage = _Stage(part, done.shape, pieces)
@@ -96,10 +96,10 @@ def split_by_turns(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 
     strays = {
         number: _strays(each, [piece for piece in last if piece.face == number]) for number, each in fields.items()
     }
-    return Split(stage.shape, last, whole, {k: n for k, n in strays.items() if n}, left, dict(joined))
+    return Split(stage.shape, last, whole, {k: n for k, n in strays.items() if n}, remaining, dict(joined))
 
 
-def with_room(labels: FaceLabels) -> FaceLabels:
+def with_margin(labels: FaceLabels) -> FaceLabels:
     """Lay grid lines close beside nodes whose label none of their neighbours has, so that a boundary goes around each of these.
 
     `split` leaves out islands of one node: they become three by three of one label.
@@ -112,12 +112,12 @@ def with_room(labels: FaceLabels) -> FaceLabels:
         before[axis], after[axis] = (1, 0), (0, 1)
         alone &= ~np.pad(same, before) & ~np.pad(same, after)
     (u, rows), (v, columns) = (
-        _beside(line, np.asarray(alone.any(axis=1 - k))) for k, line in enumerate((labels.u, labels.v))
+        _with_neighbours(line, np.asarray(alone.any(axis=1 - k))) for k, line in enumerate((labels.u, labels.v))
     )
     return FaceLabels(labels.face, u, v, field[np.ix_(rows, columns)])
 
 
-def _beside(line: Floats, wanted: NDArray[np.bool_]) -> tuple[Floats, NDArray[np.int64]]:
+def _with_neighbours(line: Floats, wanted: NDArray[np.bool_]) -> tuple[Floats, NDArray[np.int64]]:
     """A line of parameters with one more on either side of those wanted, a third of a cell away; and the node each copies."""
     at = np.flatnonzero(wanted)
     low, high = at[at > 0], at[at < len(line) - 1]
@@ -139,13 +139,13 @@ def _first(piece: Piece, labels: FaceLabels | None) -> tuple[Piece, tuple[int, .
 
 def _taken(pieces: Sequence[tuple[Piece, tuple[int, ...]]], labels: Mapping[int, FaceLabels]) -> dict[int, Ints]:
     """The piece, from 1, that each node (nu, nv) of a face with labels to part lies on; 0 on any border, the face's own too."""
-    found = {
+    taken = {
         piece.face: np.zeros(labels[piece.face].label.shape, np.int32) for piece, group in pieces if len(group) > 1
     }
     for i, (piece, _) in enumerate(pieces, 1):
-        if piece.face in found:
-            found[piece.face][_on(labels[piece.face], piece.shape)] = i
-    return found
+        if piece.face in taken:
+            taken[piece.face][_on(labels[piece.face], piece.shape)] = i
+    return taken
 
 
 def _halves(labels: FaceLabels, off: NDArray[np.bool_], group: tuple[int, ...]) -> Ints:
@@ -170,23 +170,23 @@ def _on(labels: FaceLabels, face: Any) -> NDArray[np.bool_]:
             (surface.IsVPeriodic(), surface.VPeriod() if surface.IsVPeriodic() else 0.0),
         )
     ]
-    found = np.zeros(labels.label.shape, bool)
+    on_face = np.zeros(labels.label.shape, bool)
     for du in turns[0]:
         for dv in turns[1]:
-            found |= inside(segments, labels.u + du, labels.v + dv)
-    return found
+            on_face |= inside(segments, labels.u + du, labels.v + dv)
+    return on_face
 
 
 def _strays(labels: FaceLabels, pieces: Sequence[Piece]) -> int:
     """Nodes that lie on a piece of another label, and on none of their own, or whose label has no piece at all."""
     shown = [piece.label for piece in pieces]
-    lost = ~np.isin(labels.label, shown) & (MIXED not in shown)
+    missing = ~np.isin(labels.label, shown) & (MIXED not in shown)
     if len(pieces) < 2:
-        return int((lost & (labels.label >= 0)).sum())
+        return int((missing & (labels.label >= 0)).sum())
     own, other = np.zeros((2, *labels.label.shape), bool)
     for piece in pieces:
         on = _on(labels, piece.shape)
         same = (labels.label == piece.label) | (piece.label == MIXED)
         own |= on & same
         other |= on & ~same
-    return int((((other & ~own) | lost) & (labels.label >= 0)).sum())
+    return int((((other & ~own) | missing) & (labels.label >= 0)).sum())

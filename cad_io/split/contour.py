@@ -85,12 +85,12 @@ def without_specks(field: Ints, closed_u: bool, closed_v: bool) -> Ints:
             alone = above == value
             for axis, closed in ((0, closed_u), (1, closed_v)):
                 for way in (1, -1):
-                    beside = np.roll(above, way, axis)
+                    neighbour = np.roll(above, way, axis)
                     if not closed:
                         edge = [slice(None), slice(None)]
                         edge[axis] = slice(0, 1) if way == 1 else slice(-1, None)
-                        beside[tuple(edge)] = not value  # beyond the border is nobody
-                    alone &= beside != value
+                        neighbour[tuple(edge)] = not value  # beyond the border is nobody
+                    alone &= neighbour != value
             above = above ^ alone
         out += above
     return out + low
@@ -200,14 +200,14 @@ def _chains(grid: LabelGrid, k: int) -> list[_Chain]:
 def _linked(segments: NDArray[np.int64]) -> list[tuple[NDArray[np.int64], bool]]:
     """Chains of the numbers that pairs share (each in at most two pairs): (numbers, closed), open ones first."""
     ids, where = np.unique(segments, return_inverse=True)
-    beside = np.full((len(ids), 2), -1)
+    neighbours = np.full((len(ids), 2), -1)
     for a, b in where.reshape(-1, 2).tolist():
-        beside[a, int(beside[a, 0] >= 0)] = b
-        beside[b, int(beside[b, 0] >= 0)] = a
-    links = beside.tolist()
+        neighbours[a, int(neighbours[a, 0] >= 0)] = b
+        neighbours[b, int(neighbours[b, 0] >= 0)] = a
+    links = neighbours.tolist()
     used = [False] * len(ids)
     out = []
-    for start in [*np.flatnonzero(beside[:, 1] < 0).tolist(), *range(len(ids))]:
+    for start in [*np.flatnonzero(neighbours[:, 1] < 0).tolist(), *range(len(ids))]:
         if used[start]:
             continue
         closed = links[start][1] >= 0
@@ -216,8 +216,8 @@ def _linked(segments: NDArray[np.int64]) -> list[tuple[NDArray[np.int64], bool]]
         while at >= 0 and not used[at]:
             used[at] = True
             chain.append(at)
-            ahead, behind = links[at]
-            at = ahead if ahead >= 0 and not used[ahead] else behind
+            following, behind = links[at]
+            at = following if following >= 0 and not used[following] else behind
         out.append((ids[chain], closed))
     return out
 
@@ -252,18 +252,18 @@ def _relaxed(chains: list[_Chain]) -> list[Floats]:
         return behind, beyond
 
     t = 0.5 * (lo + hi)
-    ahead, momentum = t.copy(), 1.0
+    extrapolated, momentum = t.copy(), 1.0
     for _ in range(STEPS):
         gradient = np.zeros(total)
         for at, way, turn in coordinates:
-            x = at + ahead * way
+            x = at + extrapolated * way
             behind, beyond = neighbours(x)
             bend = (behind + beyond + turn - 2 * x) * inner
             behind, beyond = neighbours(bend)
             gradient += (behind * has_before + beyond * has_after - 2 * bend) * way
-        new = np.clip(ahead - gradient / 16, lo, hi)  # 16: the largest curvature of the sum
+        new = np.clip(extrapolated - gradient / 16, lo, hi)  # 16: the largest curvature of the sum
         following = 0.5 * (1 + np.sqrt(1 + 4 * momentum * momentum))
-        ahead = np.clip(new + (momentum - 1) / following * (new - t), lo, hi)
+        extrapolated = np.clip(new + (momentum - 1) / following * (new - t), lo, hi)
         t, momentum = new, following
     return np.split(t, last[:-1] + 1)
 
@@ -313,8 +313,8 @@ def _fitted(points: Floats, closed: bool, fit: float) -> tuple[Floats, Floats]:
             break
     # A periodic fit runs over its ends; the same piecewise cubic on clamped knots, found by interpolation, does not.
     clamped = np.concatenate([[knots[3]] * 4, knots[4:-4], [knots[-4]] * 4])
-    sites = np.convolve(clamped[1:-1], np.ones(3) / 3, mode="valid")
-    poles = make_interp_spline(sites, curve(sites), k=3, t=clamped).c
+    result = np.convolve(clamped[1:-1], np.ones(3) / 3, mode="valid")
+    poles = make_interp_spline(result, curve(result), k=3, t=clamped).c
     poles[0], poles[-1] = points[0], points[-1]
     if closed:
         poles[0] = poles[-1] = curve(knots[3])

@@ -25,7 +25,7 @@ from cad_io.kernel.time_limit import ChildDied, TimeLimit, limited
 from cad_io.split.attempt import Attempt, Trial, copied
 from cad_io.split.contour import smoothed
 from cad_io.split.drawing import Drawing, in_words
-from cad_io.split.mend import mend
+from cad_io.split.repair import repair
 from cad_io.surface import Surface
 
 #: Why a face is not cut if the limit ended the work.
@@ -39,7 +39,7 @@ _WHOLE, _EACH = 4, 0.2
 
 
 @dataclass(slots=True)
-class Found:
+class CutFaces:
     """This record holds the result of `cut_faces`."""
 
     #: Number of a face that changed -> TopoDS_Face list.
@@ -60,7 +60,7 @@ def cut_faces(
     surface_of: Callable[[int], Surface],
     worst: int,
     seconds: float,
-) -> tuple[Any, Found]:
+) -> tuple[Any, CutFaces]:
     """Cut faces of a shape along the boundaries of their labels.
 
     Parameters
@@ -88,13 +88,13 @@ def cut_faces(
         # Here once, not in each copy: half a second.
         import scipy.interpolate
         import scipy.optimize  # noqa: F401
-    lost: dict[int, str] = {}
+    failed: dict[int, str] = {}
     for number, each in labels.items():
         # Once here: code that is yet to be compiled may wait for ever in a copy of the process.
         surface_of(number).first(each.u[:1], each.v[:1])
     careful = False
     for _ in range(_HANGS):
-        rest = {number: each for number, each in labels.items() if number not in lost}
+        rest = {number: each for number, each in labels.items() if number not in failed}
         if not rest:
             break
         watch = _Watch({number: seconds * (1 + each.label.size / _NODES) for number, each in rest.items()})
@@ -105,13 +105,15 @@ def cut_faces(
             seen = watch.seen() & rest.keys()
             if careful or len(seen) < 2:
                 why = TOO_LONG if isinstance(error, TimeLimit) else f"splitting it fails: {error}"
-                lost |= dict.fromkeys(seen or rest, why)
+                failed |= dict.fromkeys(seen or rest, why)
             careful = careful or len(seen) > 1
             continue
-        result, found = _unpacked(answer, shape)
-        found.failed |= lost
-        return result, found
-    return shape, Found(failed=lost | {n: "too many other faces could not be split" for n in labels if n not in lost})
+        result, pieces = _unpacked(answer, shape)
+        pieces.failed |= failed
+        return result, pieces
+    return shape, CutFaces(
+        failed=failed | {n: "too many other faces could not be split" for n in labels if n not in failed}
+    )
 
 
 class _Watch:
@@ -124,11 +126,11 @@ class _Watch:
 
     def works_on(self, numbers: set[int]) -> None:
         """From now on, until it is told anew."""
-        told = sorted(numbers & self._limits.keys())
-        for i, number in enumerate((len(told), *told)):
+        reported = sorted(numbers & self._limits.keys())
+        for i, number in enumerate((len(reported), *reported)):
             self._page[8 * i : 8 * i + 8] = number.to_bytes(8, "little")
-        if hasattr(os, "fork") and told:
-            end_within(max(self._limits[n] for n in told))
+        if hasattr(os, "fork") and reported:
+            end_within(max(self._limits[n] for n in reported))
 
     def seen(self) -> set[int]:
         """Return the numbers of the faces that the copy named last in `works_on`."""
@@ -146,7 +148,7 @@ def _answer(
     careful: bool,
 ) -> bytes:
     """Cut the faces, and return the pickled result that `_unpacked` reads."""
-    found = Found()
+    answer = CutFaces()
     base, faces = copied(shape, faces)
     drawings: dict[int, Drawing] = {}
     for number, mine in labels.items():
@@ -154,44 +156,44 @@ def _answer(
         try:
             drawings[number] = Drawing(faces[number], surface_of(number), mine)
         except Exception as error:
-            found.failed[number] = in_words(error)
+            answer.failed[number] = in_words(error)
     watch.works_on(set(drawings))
     for drawing, lines in zip(drawings.values(), smoothed([d.grid for d in drawings.values()]), strict=True):
         drawing.lines = lines
     done: dict[int, Drawing] = {}
     units: list[tuple[list[int], bytes] | None] = []
     # Components share no edge: what is wrong with one is no reason to build the others again.
-    for given, unit in zip(components(shape), components(base), strict=True):
+    for part_unit, unit in zip(components(shape), components(base), strict=True):
         inside = shape_map(unit, TopAbs_FACE)
         here = {n: face for n, face in faces.items() if inside.FindIndex(face)}
-        drawn = {n: drawing for n, drawing in drawings.items() if n in here}
-        trial = Trial(given, unit, here, surface_of, watch.works_on, careful)
-        units.append(_settled(trial, drawn, worst, found).packed() if drawn else None)
-        done |= drawn
-    found.labels = {n: [(part.label, part.counts) for part in d.parts] for n, d in done.items()}
-    found.missed = {n: d.missed for n, d in done.items() if d.missed}
-    found.joined = {n: d.joined for n, d in done.items() if d.joined}
-    return pickle.dumps((units, found))
+        in_component = {n: drawing for n, drawing in drawings.items() if n in here}
+        trial = Trial(part_unit, unit, here, surface_of, watch.works_on, careful)
+        units.append(_settled(trial, in_component, worst, answer).packed() if in_component else None)
+        done |= in_component
+    answer.labels = {n: [(part.label, part.counts) for part in d.parts] for n, d in done.items()}
+    answer.missed = {n: d.missed for n, d in done.items() if d.missed}
+    answer.joined = {n: d.joined for n, d in done.items() if d.joined}
+    return pickle.dumps((units, answer))
 
 
-def _settled(trial: Trial, drawings: dict[int, Drawing], worst: int, found: Found) -> Attempt:
+def _settled(trial: Trial, drawings: dict[int, Drawing], worst: int, result: CutFaces) -> Attempt:
     """The first attempt at which nothing is wrong; drawings that cannot be cut are taken out, and why is put down."""
     net, faces = trial.net, trial.faces
-    wanted, mended = set(drawings), set[int]()
+    wanted, repaired = set(drawings), set[int]()
     while True:
         for number in sorted(wanted):
             trial.works_on({number})
             if not drawings[number].plan(net, worst):
-                found.failed[number] = drawings.pop(number).fault
+                result.failed[number] = drawings.pop(number).fault
         attempt = Attempt(trial, drawings)
         wanted = set(attempt.wrong)
         for number, why in attempt.wrong.items():
             drawings[number].fault = why
         for key, (off, cutters) in attempt.loose.items():
             trial.works_on(cutters)
-            if key not in mended:
-                mended.add(key)
-                mend(net, key)
+            if key not in repaired:
+                repaired.add(key)
+                repair(net, key)
                 net.forget(key)
                 users = {net.faces.FindIndex(face) for face, _ in net.users(key)}
                 concerned = {n for n in drawings if net.faces.FindIndex(faces[n]) in users}
@@ -201,15 +203,15 @@ def _settled(trial: Trial, drawings: dict[int, Drawing], worst: int, found: Foun
                 continue
             # Cut there, its neighbour across the edge would not be valid either; no other curve helps.
             for number in cutters & drawings.keys():
-                found.failed[number] = f"an edge of it lies {off:.2g} mm off the face"
+                result.failed[number] = f"an edge of it lies {off:.2g} mm off the face"
                 del drawings[number]
         wanted &= drawings.keys()
         if not (attempt.loose or attempt.wrong):
             return attempt
 
 
-def _unpacked(answer: bytes, shape: Any) -> tuple[Any, Found]:
-    units, found = pickle.loads(answer)
+def _unpacked(answer: bytes, shape: Any) -> tuple[Any, CutFaces]:
+    units, pieces = pickle.loads(answer)
     made: list[Any] = []
     for old, unit in zip(components(shape), units, strict=True):
         if unit is None:
@@ -219,5 +221,5 @@ def _unpacked(answer: bytes, shape: Any) -> tuple[Any, Found]:
         BinTools.Read_s(whole, io.BytesIO(unit[1]))
         result, *groups = children(whole)
         made += children(result)
-        found.faces |= {n: [TopoDS.Face_s(f) for f in children(g)] for n, g in zip(unit[0], groups, strict=True)}
-    return (as_one(made) if any(units) else shape), found
+        pieces.faces |= {n: [TopoDS.Face_s(f) for f in children(g)] for n, g in zip(unit[0], groups, strict=True)}
+    return (as_one(made) if any(units) else shape), pieces

@@ -89,11 +89,11 @@ class Drawing:
         regions = regions_of(self.found)
         self.parts = judged(regions, border.scale, self.grid, self.known)
         # Some lie next to the border, and their boundary runs outside.
-        lost = self._specks | ((self.known >= 0) & ~np.isin(self.known, [part.label for part in self.parts]))
-        self.missed = int(lost.sum())
-        kept, group, self.joined = slivers(self.found, self.parts, worst)
+        missing = self._specks | ((self.known >= 0) & ~np.isin(self.known, [part.label for part in self.parts]))
+        self.missed = int(missing.sum())
+        group_kept, group, self.joined = slivers(self.found, self.parts, worst)
         if self.joined:
-            self.found.keep(kept)
+            self.found.keep(group_kept)
             self.parts = joined(self.parts, group, regions_of(self.found))
 
 

@@ -108,16 +108,16 @@ def _from_seam(line: Floats, label: Ints, axis: int, start: float, period: float
     near = 1e-3 * period / len(line)
     if line[-1] - line[0] > period - near:
         line, label = line[:-1], np.delete(label, -1, axis)
-    past = (line - start) % period
-    past[past > period - near] = 0.0
-    order = np.argsort(past)
-    past, label = past[order], np.take(label, order, axis)
-    if past[0] > near:
-        twin = 0 if past[0] < period - past[-1] else -1
-        past = np.insert(past, 0, 0.0)
+    offset = (line - start) % period
+    offset[offset > period - near] = 0.0
+    order = np.argsort(offset)
+    offset, label = offset[order], np.take(label, order, axis)
+    if offset[0] > near:
+        twin = 0 if offset[0] < period - offset[-1] else -1
+        offset = np.insert(offset, 0, 0.0)
         label = np.insert(label, 0, np.take(label, twin, axis), axis)
-    past[0] = 0.0
-    return start + np.append(past, period), label
+    offset[0] = 0.0
+    return start + np.append(offset, period), label
 
 
 def _reaching(line: Floats, label: Ints, axis: int, ends: tuple[float, float]) -> tuple[Floats, Ints]:

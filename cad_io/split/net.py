@@ -88,13 +88,13 @@ class Net:
 
     def cut(self, places: Iterable[tuple[int, float]]) -> None:
         """Cut edges: (number of the edge, parameter). Places nearer than MERGE are one."""
-        found: dict[int, list[float]] = defaultdict(list)
+        cuts: dict[int, list[float]] = defaultdict(list)
         for key, s in places:
-            found[key].append(s)
-        for key in sorted(found):
+            cuts[key].append(s)
+        for key in sorted(cuts):
             edge, point, first, last, curve = known = self.edge(key)
             groups: list[list[float]] = []
-            for s in sorted(found[key]):
+            for s in sorted(cuts[key]):
                 if groups and self._same(known, groups[-1][0], s, 1e-9 * (last - first)):
                     groups[-1].append(s)
                 else:

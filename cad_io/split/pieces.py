@@ -85,19 +85,19 @@ def split(part: Any, labels: Sequence[FaceLabels], *, worst: int = -1, seconds: 
     faces = {info.number: part.face(info.number) for info in part.faces}
     shares = {number: _shares(fields[number].label) if number in fields else {} for number in faces}
     mixed = {number: fields[number] for number in faces if len(shares[number]) > 1}
-    shape, found = cut_faces(part.shape, faces, mixed, part.surface, worst, seconds)
+    shape, cut = cut_faces(part.shape, faces, mixed, part.surface, worst, seconds)
     pieces: list[Piece] = []
     for number, face in faces.items():
-        shapes = found.faces.get(number, [face])
-        if number in found.labels:
-            for (label, counts), piece in zip(found.labels[number], shapes, strict=True):
+        shapes = cut.faces.get(number, [face])
+        if number in cut.labels:
+            for (label, counts), piece in zip(cut.labels[number], shapes, strict=True):
                 known = sum(counts.values())
                 pieces.append(Piece(number, label, piece, {k: n / known for k, n in counts.items()}))
         else:
             label = MIXED if number in mixed else max(shares[number], key=lambda k: shares[number][k], default=UNKNOWN)
             pieces += [Piece(number, label, piece, shares[number]) for piece in shapes]
-    left = {number: fields[number] for number in sorted(found.failed)}
-    return Split(shape, tuple(pieces), found.failed, found.missed, left, found.joined)
+    failed = {number: fields[number] for number in sorted(cut.failed)}
+    return Split(shape, tuple(pieces), cut.failed, cut.missed, failed, cut.joined)
 
 
 def _shares(label: Ints) -> dict[int, float]:

@@ -26,7 +26,7 @@ def crossings(p: Floats, q: Floats) -> Crossings:
     Of each segment one end counts and the other does not, so that a chain is crossed once where two of its segments meet.
     """
     none = np.empty(0, np.intp)
-    found = [Crossings(none, none, np.empty(0), np.empty(0))]
+    result = [Crossings(none, none, np.empty(0), np.empty(0))]
     low, high = np.minimum(p[:, 0], p[:, 1]), np.maximum(p[:, 0], p[:, 1])
     q_low, q_high = np.minimum(q[:, 0], q[:, 1]), np.maximum(q[:, 0], q[:, 1])
     near = np.flatnonzero(((q_low <= high.max(axis=0)) & (q_high >= low.min(axis=0))).all(axis=1)) if len(p) else none
@@ -37,9 +37,9 @@ def crossings(p: Floats, q: Floats) -> Crossings:
     for begin in range(0, len(starts) if len(near) else 0, rows):
         some = starts[begin : begin + rows]
         stop = min(int(some[-1]) + _BLOCK, len(p))
-        around = np.minimum.reduceat(low[:stop], some), np.maximum.reduceat(high[:stop], some)
-        apart = (around[0][:, :1] > q_high[:, 0]) | (around[1][:, :1] < q_low[:, 0])
-        apart |= (around[0][:, 1:] > q_high[:, 1]) | (around[1][:, 1:] < q_low[:, 1])
+        spans = np.minimum.reduceat(low[:stop], some), np.maximum.reduceat(high[:stop], some)
+        apart = (spans[0][:, :1] > q_high[:, 0]) | (spans[1][:, :1] < q_low[:, 0])
+        apart |= (spans[0][:, 1:] > q_high[:, 1]) | (spans[1][:, 1:] < q_low[:, 1])
         block, k = np.nonzero(~apart)
         i = (some[block][:, None] + np.arange(_BLOCK)).ravel()
         k = np.repeat(k, _BLOCK)[i < stop]
@@ -52,8 +52,8 @@ def crossings(p: Floats, q: Floats) -> Crossings:
         of_c, of_d, of_a, of_b = _side(a, b, c), _side(a, b, d), _side(c, d, a), _side(c, d, b)
         hit = ((of_c >= 0) != (of_d >= 0)) & ((of_a >= 0) != (of_b >= 0))
         i, j, of_a, of_b, of_c, of_d = (x[hit] for x in (i, j, of_a, of_b, of_c, of_d))
-        found.append(Crossings(i, j, of_a / (of_a - of_b), of_c / (of_c - of_d)))
-    return Crossings(*(np.concatenate(each) for each in zip(*found, strict=True)))
+        result.append(Crossings(i, j, of_a / (of_a - of_b), of_c / (of_c - of_d)))
+    return Crossings(*(np.concatenate(each) for each in zip(*result, strict=True)))
 
 
 def _side(a: Floats, b: Floats, p: Floats) -> Floats:

@@ -20,7 +20,7 @@ _ASTRAY = 0.01
 #: Known nodes that a sliver has at most; and its area, cells.
 _FEW, _SMALL = 3, 1.0
 #: Directions at a node are looked at so far from it at most, cells.
-_AROUND = 0.05
+_FEWEST_STEPS = 0.05
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,9 +62,9 @@ class Judged:
     counts: dict[int, int]
 
 
-def regions_of(found: Arrangement) -> list[Region]:
+def regions_of(arrangement: Arrangement) -> list[Region]:
     """Regions into which the stretches of drawn curves cut a face."""
-    halves = _halves(found)
+    halves = _halves(arrangement)
     twin = {i: i ^ 1 for i, half in enumerate(halves) if half.stretch}
     leaving: dict[int, list[int]] = defaultdict(list)
     arriving: dict[int, list[int]] = defaultdict(list)
@@ -73,8 +73,8 @@ def regions_of(found: Arrangement) -> list[Region]:
         arriving[half.stop].append(i)
     following = [-1] * len(halves)
     for node, come in arriving.items():
-        for i, ahead in _turns(halves, twin, come, leaving[node], _AROUND * found.border.size):
-            following[i] = ahead
+        for i, next_half in _turns(halves, twin, come, leaving[node], _FEWEST_STEPS * arrangement.border.size):
+            following[i] = next_half
     loops: list[list[int]] = []
     used = [False] * len(halves)
     for start in range(len(halves)):
@@ -88,7 +88,7 @@ def regions_of(found: Arrangement) -> list[Region]:
         if at != start:
             raise CannotSplit("its regions do not close")
         loops.append(loop)
-    return _nested([[halves[i] for i in loop] for loop in loops], found.border.size)
+    return _nested([[halves[i] for i in loop] for loop in loops], arrangement.border.size)
 
 
 def judged(regions: list[Region], scale: Floats, grid: LabelGrid, known: Ints) -> list[Judged]:
@@ -116,7 +116,7 @@ def judged(regions: list[Region], scale: Floats, grid: LabelGrid, known: Ints) -
     return out
 
 
-def slivers(found: Arrangement, parts: list[Judged], worst: int) -> tuple[list[int], dict[int, int], int]:
+def slivers(arrangement: Arrangement, parts: list[Judged], worst: int) -> tuple[list[int], dict[int, int], int]:
     """Tell which slivers are to join what is around them.
 
     A sliver has some nodes at most and less area than a cell. It joins the neighbour with the longest common border if that
@@ -131,27 +131,27 @@ def slivers(found: Arrangement, parts: list[Judged], worst: int) -> tuple[list[i
     count : int
         Slivers that joined.
     """
-    cell = found.border.size**2 * _SMALL
+    cell = arrangement.border.size**2 * _SMALL
     owner: dict[tuple[int, int], int] = {
         half.stretch: r for r, part in enumerate(parts) for loop in part.region.loops for half in loop if half.stretch
     }
-    beside = [(owner[i, 1], owner[i, -1]) for i in range(len(found.stretches))]
-    lengths = [float(np.linalg.norm(np.diff(s.xy, axis=0), axis=1).sum()) for s in found.stretches]
+    neighbours = [(owner[i, 1], owner[i, -1]) for i in range(len(arrangement.stretches))]
+    lengths = [float(np.linalg.norm(np.diff(s.xy, axis=0), axis=1).sum()) for s in arrangement.stretches]
     area, group = [part.region.area for part in parts], {r: r for r in range(len(parts))}
     for r in sorted(group, key=lambda r: (area[r], r)):
         if area[r] >= cell or sum(parts[r].counts.values()) > _FEW or group[r] != r:
             continue
         shared: Counter[int] = Counter()
-        for (a, b), length in zip(beside, lengths, strict=True):
+        for (a, b), length in zip(neighbours, lengths, strict=True):
             if group[a] != group[b] and r in (group[a], group[b]):
                 shared[group[b] if group[a] == r else group[a]] += length  # type: ignore[assignment]
-        around = max(shared, key=lambda k: (shared[k], -k), default=r)
-        worse = parts[r].label < parts[around].label <= worst
-        if parts[around].counts and (worse or (worst < 0 and not parts[r].counts)):
-            group = {k: around if g == r else g for k, g in group.items()}
-            area[around] += area[r]
-    kept = [i for i, (a, b) in enumerate(beside) if group[a] != group[b]]
-    return kept, group, sum(g != r for r, g in group.items())
+        enclosing = max(shared, key=lambda k: (shared[k], -k), default=r)
+        worse = parts[r].label < parts[enclosing].label <= worst
+        if parts[enclosing].counts and (worse or (worst < 0 and not parts[r].counts)):
+            group = {k: enclosing if g == r else g for k, g in group.items()}
+            area[enclosing] += area[r]
+    separate = [i for i, (a, b) in enumerate(neighbours) if group[a] != group[b]]
+    return separate, group, sum(g != r for r, g in group.items())
 
 
 def joined(parts: list[Judged], group: dict[int, int], again: list[Region]) -> list[Judged]:
@@ -172,22 +172,22 @@ def _mark(half: Half) -> tuple[float, ...]:
     return (*half.xy[0].tolist(), *half.xy[1].tolist())
 
 
-def _halves(found: Arrangement) -> list[Half]:
+def _halves(arrangement: Arrangement) -> list[Half]:
     """Both halves of each stretch (2 i and 2 i + 1), then those along the border."""
     halves = []
-    for i, stretch in enumerate(found.stretches):
+    for i, stretch in enumerate(arrangement.stretches):
         halves.append(Half(*stretch.nodes, stretch.xy, stretch=(i, 1)))
         halves.append(Half(*stretch.nodes[::-1], stretch.xy[::-1], stretch=(i, -1)))
     cuts: dict[int, list[tuple[float, int]]] = defaultdict(list)
-    for c in found.used():
-        crossing = found.crossings[c]
+    for c in arrangement.used():
+        crossing = arrangement.crossings[c]
         if crossing.end is None:
             cuts[crossing.side].append((crossing.s, crossing.node))
-    for i, side in enumerate(found.border.sides):
+    for i, side in enumerate(arrangement.border.sides):
         stops = [(float(side.t[0]), side.node[0]), *sorted(cuts[i]), (float(side.t[-1]), side.node[1])]
         for (a, start), (b, stop) in itertools.pairwise(stops):
             among = (side.t > a) & (side.t < b)
-            xy = np.vstack([side.at(a, found.border.scale), side.xy[among], side.at(b, found.border.scale)])
+            xy = np.vstack([side.at(a, arrangement.border.scale), side.xy[among], side.at(b, arrangement.border.scale)])
             if side.sign < 0:
                 start, stop, xy = stop, start, xy[::-1]
             halves.append(Half(start, stop, xy, side=(i, a, b)))
@@ -195,22 +195,22 @@ def _halves(found: Arrangement) -> list[Half]:
 
 
 def _turns(
-    halves: list[Half], twin: dict[int, int], come: list[int], leave: list[int], around: float
+    halves: list[Half], twin: dict[int, int], come: list[int], leave: list[int], span: float
 ) -> list[tuple[int, int]]:
     """For each half that arrives at a node, the next one around the region on its left."""
     if not leave:
         raise CannotSplit("the border of a region ends")
-    drawn = [i for i in leave if i in twin]
+    outgoing = [i for i in leave if i in twin]
     out = []
     directions: dict[int, float] = {}
     for i in come:
         choice = [k for k in leave if k != twin.get(i)] or leave
-        if len(choice) == 2 and len(drawn) == 1 and i not in twin:
-            choice = drawn  # the one curve that leaves the border here lies left of it
+        if len(choice) == 2 and len(outgoing) == 1 and i not in twin:
+            choice = outgoing  # the one curve that leaves the border here lies left of it
         if len(choice) > 1:
             if not directions:
                 paths = {k: halves[k].xy for k in leave} | {~k: halves[k].xy[::-1] for k in come}
-                radius = min(0.3 * min(extent(path) for path in paths.values()), around)
+                radius = min(0.3 * min(extent(path) for path in paths.values()), span)
                 directions = {k: bearing(path, radius) for k, path in paths.items()}
             back = directions[~i]
             choice = [min(choice, key=lambda k: ((back - directions[k]) % (2 * np.pi) or 2 * np.pi, k))]
@@ -232,10 +232,10 @@ def _nested(loops: list[list[Half]], size: float) -> list[Region]:
             continue
         probe = left_of(paths[i], 1e-3 * size)
         boxed = [o for o in holes if (lows[o] <= probe).all() and (probe <= highs[o]).all()]
-        around = [o for o in boxed if holds(rings[o], probe[None])[0]]
-        if not around:
+        enclosing = [o for o in boxed if holds(rings[o], probe[None])[0]]
+        if not enclosing:
             raise CannotSplit("a hole lies in none of its regions")
-        holes[min(around, key=lambda o: areas[o])].append(i)
+        holes[min(enclosing, key=lambda o: areas[o])].append(i)
     return [Region([loops[k] for k in (o, *inner)], np.concatenate([rings[k] for k in (o, *inner)]))
             for o, inner in holes.items()]  # fmt: skip
 

@@ -16,7 +16,7 @@ from cad_io.surface import Surface
 
 #: Most that an edge's curve in space may leave its curve on the surface, mm.
 DEVIATION = 1e-4
-_MOST_SITES = 5000
+_MOST_POINTS = 5000
 
 
 class Followed(NamedTuple):
@@ -38,8 +38,8 @@ def trimmed(spline: Spline, a: float, b: float) -> Spline:
     inner = spline.knots[(spline.knots > a + near) & (spline.knots < b - near)]
     knots = np.concatenate([[a] * 4, inner, [b] * 4])
     # By rounding, means of equal knots lie beyond them.
-    sites = np.clip(np.convolve(knots[1:-1], np.ones(3) / 3, mode="valid"), a, b)
-    poles = make_interp_spline(sites, BSpline(spline.knots, spline.poles, 3)(sites), k=3, t=knots).c
+    averages = np.clip(np.convolve(knots[1:-1], np.ones(3) / 3, mode="valid"), a, b)
+    poles = make_interp_spline(averages, BSpline(spline.knots, spline.poles, 3)(averages), k=3, t=knots).c
     return Spline(knots, np.array(poles), False)
 
 
@@ -72,22 +72,26 @@ def followed(surface: Surface, spline: Spline) -> Followed:
         return surface.values(*curve(t).T)
 
     knots = np.unique(spline.knots)
-    sites = np.linspace(knots[0], knots[-1], 9) if len(knots) < 5 else np.union1d(knots, 0.5 * (knots[1:] + knots[:-1]))
+    averages = (
+        np.linspace(knots[0], knots[-1], 9) if len(knots) < 5 else np.union1d(knots, 0.5 * (knots[1:] + knots[:-1]))
+    )
     while True:
-        space = make_interp_spline(sites, at(sites), k=3)
-        gap = np.diff(sites)
-        between = np.stack([sites[:-1] + share * gap for share in (0.25, 0.5, 0.75)])
+        space = make_interp_spline(averages, at(averages), k=3)
+        gap = np.diff(averages)
+        between = np.stack([averages[:-1] + share * gap for share in (0.25, 0.5, 0.75)])
         error = np.linalg.norm(space(between.ravel()) - at(between.ravel()), axis=1).reshape(between.shape).max(axis=0)
         worst = float(error.max())
         if worst < DEVIATION:
             break
-        if len(sites) > _MOST_SITES or not np.isfinite(worst):
+        if len(averages) > _MOST_POINTS or not np.isfinite(worst):
             raise ValueError(f"a curve on the surface stays {worst:.1e} mm off its curve in space")
-        sites = np.union1d(sites, between[1][error >= DEVIATION])
+        averages = np.union1d(averages, between[1][error >= DEVIATION])
 
-    ends = gp_Pnt(*space(sites[0]).tolist()), gp_Pnt(*space(sites[-1]).tolist())
+    ends = gp_Pnt(*space(averages[0]).tolist()), gp_Pnt(*space(averages[-1]).tolist())
     plane = cubic(spline.knots, spline.poles)
-    return Followed(cubic(space.t, space.c), plane, float(sites[0]), float(sites[-1]), ends, max(1.2 * worst, 1e-7))
+    return Followed(
+        cubic(space.t, space.c), plane, float(averages[0]), float(averages[-1]), ends, max(1.2 * worst, 1e-7)
+    )
 
 
 def surface_edge(face: Any, curve: Followed, start: Any, stop: Any) -> Any:

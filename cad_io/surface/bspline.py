@@ -117,7 +117,7 @@ def _summed(net, row, column, order, workspace):
 
     What is far from the origin would lose digits of its derivatives.
     """
-    bu, bv, across, found, origin, pole = (
+    bu, bv, across, span, origin, pole = (
         workspace.bu,
         workspace.bv,
         workspace.across,
@@ -125,17 +125,17 @@ def _summed(net, row, column, order, workspace):
         workspace.origin,
         net.pole,
     )
-    top, left, wide = row - net.degree_u, column - net.degree_v, 4 if net.rational else 3
+    top, first, wide = row - net.degree_u, column - net.degree_v, 4 if net.rational else 3
     for c in range(3):
-        origin[c] = pole[top, left, c] / pole[top, left, 3]
+        origin[c] = pole[top, first, c] / pole[top, first, 3]
     for a in range(net.degree_u + 1):
         for d in range(order + 1):
             x, y, z, w = 0.0, 0.0, 0.0, 0.0
             for b in range(net.degree_v + 1):
-                share, weight = bv[d, b], pole[top + a, left + b, 3]
-                x += share * (pole[top + a, left + b, 0] - origin[0] * weight)
-                y += share * (pole[top + a, left + b, 1] - origin[1] * weight)
-                z += share * (pole[top + a, left + b, 2] - origin[2] * weight)
+                share, weight = bv[d, b], pole[top + a, first + b, 3]
+                x += share * (pole[top + a, first + b, 0] - origin[0] * weight)
+                y += share * (pole[top + a, first + b, 1] - origin[1] * weight)
+                z += share * (pole[top + a, first + b, 2] - origin[2] * weight)
                 w += share * weight
             across[d, a, 0], across[d, a, 1], across[d, a, 2], across[d, a, 3] = x, y, z, w
     for k in range(1 if order == 0 else 3 if order == 1 else 6):
@@ -146,23 +146,23 @@ def _summed(net, row, column, order, workspace):
             total = 0.0
             for a in range(net.degree_u + 1):
                 total += bu[du, a] * across[dv, a, c]
-            found[k, c] = total
+            span[k, c] = total
 
 
 @kernel
-def _divided(found, origin, order, out):
+def _divided(result, origin, order, out):
     """Write the quotients of a rational surface by its weight, and their derivatives."""
-    w = found[0, 3]
+    w = result[0, 3]
     for c in range(3):
-        p = found[0, c] / w
+        p = result[0, c] / w
         out[0, c] = origin[c] + p
         if order > 0:
-            pu, pv = (found[1, c] - found[1, 3] * p) / w, (found[2, c] - found[2, 3] * p) / w
+            pu, pv = (result[1, c] - result[1, 3] * p) / w, (result[2, c] - result[2, 3] * p) / w
             out[1, c], out[2, c] = pu, pv
             if order > 1:
-                out[3, c] = (found[3, c] - 2.0 * found[1, 3] * pu - found[3, 3] * p) / w
-                out[4, c] = (found[4, c] - 2.0 * found[2, 3] * pv - found[4, 3] * p) / w
-                out[5, c] = (found[5, c] - found[1, 3] * pv - found[2, 3] * pu - found[5, 3] * p) / w
+                out[3, c] = (result[3, c] - 2.0 * result[1, 3] * pu - result[3, 3] * p) / w
+                out[4, c] = (result[4, c] - 2.0 * result[2, 3] * pv - result[4, 3] * p) / w
+                out[5, c] = (result[5, c] - result[1, 3] * pv - result[2, 3] * pu - result[5, 3] * p) / w
 
 
 @kernel

@@ -96,9 +96,9 @@ def _limits(v: Floats, *each: Floats | float) -> Limits:
 
 def plane_bends(u: Floats, v: Floats) -> Bends:
     """How a plane bends: not at all."""
-    found = Bends.none(u, v)
-    found.first[:] = 1.0
-    return found
+    bends = Bends.none(u, v)
+    bends.first[:] = 1.0
+    return bends
 
 
 def bends(frame: Floats, profile: Profile, u: Floats, v: Floats) -> Bends:
@@ -112,12 +112,12 @@ def turned_bends(evaluate: Callable[[Floats, Floats, int], Floats], limits: Limi
     Along u the profile is turned as a whole: a derivative along it turns the vector by a right angle and drops its part
     along the axis, so none is longer than the profile's own.
     """
-    found = Bends.none(u, v)
+    bends = Bends.none(u, v)
     s, t = (each.ravel() for each in np.meshgrid(0.5 * (u[1:] + u[:-1]), 0.5 * (v[1:] + v[:-1]), indexing="ij"))
-    found.middle[:] = evaluate(s, t, 6)[:, 3:].reshape(found.middle.shape)
+    bends.middle[:] = evaluate(s, t, 6)[:, 3:].reshape(bends.middle.shape)
     half_u, half_v = 0.5 * np.diff(u)[:, None], 0.5 * np.diff(v)[None]
-    found.spread[..., 0] = limits.reach * half_u + limits.first * half_v
-    found.spread[..., 1] = limits.second * half_u + limits.spread
-    found.spread[..., 2] = limits.first * half_u + limits.second * half_v
-    found.first[..., 0], found.first[..., 1] = limits.reach, limits.speed
-    return found
+    bends.spread[..., 0] = limits.reach * half_u + limits.first * half_v
+    bends.spread[..., 1] = limits.second * half_u + limits.spread
+    bends.spread[..., 2] = limits.first * half_u + limits.second * half_v
+    bends.first[..., 0], bends.first[..., 1] = limits.reach, limits.speed
+    return bends

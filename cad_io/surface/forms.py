@@ -64,17 +64,17 @@ def form_of(adaptor: BRepAdaptor_Surface) -> Form | None:
         frame = elementary.frame_of(adaptor.Plane().Position())
         return Form(lambda u, v, count: elementary.plane(frame, u, v, count), elementary.plane_bends)
     if kind == GeomAbs_Cylinder:
-        found: Any = adaptor.Cylinder()
-        return _elementary(found, elementary.cylinder(found.Radius()))
+        form: Any = adaptor.Cylinder()
+        return _elementary(form, elementary.cylinder(form.Radius()))
     if kind == GeomAbs_Cone:
-        found = adaptor.Cone()
-        return _elementary(found, elementary.cone(found.RefRadius(), found.SemiAngle()))
+        form = adaptor.Cone()
+        return _elementary(form, elementary.cone(form.RefRadius(), form.SemiAngle()))
     if kind == GeomAbs_Sphere:
-        found = adaptor.Sphere()
-        return _elementary(found, elementary.torus(0.0, found.Radius()))
+        form = adaptor.Sphere()
+        return _elementary(form, elementary.torus(0.0, form.Radius()))
     if kind == GeomAbs_Torus:
-        found = adaptor.Torus()
-        return _elementary(found, elementary.torus(found.MajorRadius(), found.MinorRadius()))
+        form = adaptor.Torus()
+        return _elementary(form, elementary.torus(form.MajorRadius(), form.MinorRadius()))
     if kind == GeomAbs_BSplineSurface:
         return _of_net(_bspline(adaptor.BSpline()))
     if kind == GeomAbs_BezierSurface:

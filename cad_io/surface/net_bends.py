@@ -235,13 +235,13 @@ def _fill(net, u, v, bends, workspace):
         _bezier(net.knot_u, p, top, a, b, workspace.square, workspace.share)
         _row(net, top, workspace.share, workspace.rows)
         for j in range(len(v) - 1):
-            left, share = workspace.left[j], workspace.across[j]
+            previous, share = workspace.left[j], workspace.across[j]
             for k in range(p + 1):
                 for m in range(q + 1):
                     for c in range(4):
                         total = 0.0
                         for n in range(q + 1):
-                            total += share[m, n] * workspace.rows[k, left - q + n, c]
+                            total += share[m, n] * workspace.rows[k, previous - q + n, c]
                         cell[k, m, c] = total
             _of_cell(cell, p, q, u[i + 1] - u[i], v[j + 1] - v[j], net.rational, workspace)
             for k in range(3):

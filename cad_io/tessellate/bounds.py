@@ -134,7 +134,7 @@ def _bounded(bends: Bends) -> bool:
 def _loose(bends: Bends, lines: list[Floats], chord: float) -> list[NDArray[np.bool_]]:
     """Which cells along u, and along v, have bounds that are loose: what is not known of their bending is more than what is
     known, and more than a chord error, mm, across the cell."""
-    found = []
+    loose = []
     for k, each in enumerate(lines):
         width = np.diff(each)
         if bends.spread.shape[k] != len(width):
@@ -142,18 +142,18 @@ def _loose(bends: Bends, lines: list[Floats], chord: float) -> list[NDArray[np.b
         spread, middle = bends.spread[:, :, k], np.linalg.norm(bends.middle[:, :, k], axis=2)
         with np.errstate(over="ignore"):
             far = 0.125 * spread * np.expand_dims(width * width, 1 - k) > chord
-        found.append((far & (spread > middle)).any(axis=1 - k))
-    return found
+        loose.append((far & (spread > middle)).any(axis=1 - k))
+    return loose
 
 
 def _merged(knots: Floats, ends: tuple[float, float]) -> Floats:
     """Lines at the ends and at the knots between, one where knots are nearly one."""
     narrow = _NARROW * (ends[1] - ends[0])
-    kept = [ends[0]]
+    merged = [ends[0]]
     for knot in knots.tolist():
-        if knot - kept[-1] > narrow and ends[1] - knot > narrow:
-            kept.append(knot)
-    return np.array([*kept, max(ends[1], ends[0] + 1e-300)])
+        if knot - merged[-1] > narrow and ends[1] - knot > narrow:
+            merged.append(knot)
+    return np.array([*merged, max(ends[1], ends[0] + 1e-300)])
 
 
 def evenly(lines: Floats, times: NDArray[np.int64]) -> Floats:
@@ -222,9 +222,9 @@ def _table(u: Floats, v: Floats, kink_u: Floats, kink_v: Floats, bends: Bends) -
     cells[:, 12:14] = bends.first.reshape(-1, 2)
     width = np.stack([np.repeat(np.diff(u), len(v) - 1), np.tile(np.diff(v), len(u) - 1)], axis=1)
     cells[:, 14:] = cells[:, 12:14] * width
-    found = Table(u, v, np.ascontiguousarray(kink_u), np.ascontiguousarray(kink_v), node, start, along_u, along_v)
-    _gather(found)
-    return found
+    table = Table(u, v, np.ascontiguousarray(kink_u), np.ascontiguousarray(kink_v), node, start, along_u, along_v)
+    _gather(table)
+    return table
 
 
 def _windows(cells: int) -> NDArray[np.int64]:

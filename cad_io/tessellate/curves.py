@@ -114,15 +114,15 @@ def _conic(curve: BRepAdaptor_Curve2d) -> Floats | None:
     """Centre and half axes (6,) of a circle or an ellipse."""
     kind: Any = curve.GetType()
     if kind == GeomAbs_Circle:
-        found: Any = curve.Circle()
-        radii = (found.Radius(), found.Radius())
+        conic: Any = curve.Circle()
+        radii = (conic.Radius(), conic.Radius())
     elif kind == GeomAbs_Ellipse:
-        found = curve.Ellipse()
-        radii = (found.MajorRadius(), found.MinorRadius())
+        conic = curve.Ellipse()
+        radii = (conic.MajorRadius(), conic.MinorRadius())
     else:
         return None
-    axes = found.XAxis().Direction(), found.YAxis().Direction()
-    return np.array([*found.Location().Coord(), *(r * c for r, d in zip(radii, axes, strict=True) for c in d.Coord())])
+    axes = conic.XAxis().Direction(), conic.YAxis().Direction()
+    return np.array([*conic.Location().Coord(), *(r * c for r, d in zip(radii, axes, strict=True) for c in d.Coord())])
 
 
 def _on_conic(conic: Floats, t: Floats) -> Floats:
@@ -166,9 +166,9 @@ def _bends(net: Net, ends: tuple[float, float]) -> tuple[Floats, Floats]:
     if net.degree_v == 1 and not net.rational:
         return knots, np.column_stack([np.zeros((len(knots), 2)), jumps])
     line = evenly(knots, np.maximum(1, np.ceil(_CELLS * np.diff(knots) / (ends[1] - ends[0]))).astype(int))
-    found = net_bends(net, _UNIT, line)
+    bends = net_bends(net, _UNIT, line)
     bend = np.zeros((len(line), 3))
-    bend[:-1, :2] = np.abs(found.middle[0, :, 1, :2]) + found.spread[0, :, 1:2]
+    bend[:-1, :2] = np.abs(bends.middle[0, :, 1, :2]) + bends.spread[0, :, 1:2]
     bend[np.searchsorted(line, knots), 2] = jumps
     return line, bend
 

@@ -31,10 +31,10 @@ def delaunay(point: Floats, corner: Ints) -> Ints:
     (t, 3) int
         They cover the same region and have the same outer edges.
     """
-    found, twin = corner.astype(np.int64), _twins(corner)
+    corners, twin = corner.astype(np.int64), _twins(corner)
     # Lawson's flips end, at the latest when each pair of points was an edge once; with rounding, a number ends them.
-    _flip(np.ascontiguousarray(point), found.ravel(), twin, min(len(corner) ** 2 // 2, 50_000_000))
-    return found.astype(corner.dtype)
+    _flip(np.ascontiguousarray(point), corners.ravel(), twin, min(len(corner) ** 2 // 2, 50_000_000))
+    return corners.astype(corner.dtype)
 
 
 def _twins(corner: Ints) -> Ints:
@@ -63,9 +63,9 @@ def _within(point, a, b, c, d):
     bx, by = point[b, 0] - point[d, 0], point[b, 1] - point[d, 1]
     cx, cy = point[c, 0] - point[d, 0], point[c, 1] - point[d, 1]
     aa, bb, cc = ax * ax + ay * ay, bx * bx + by * by, cx * cx + cy * cy
-    found = aa * (bx * cy - by * cx) + bb * (cx * ay - cy * ax) + cc * (ax * by - ay * bx)
+    determinant = aa * (bx * cy - by * cx) + bb * (cx * ay - cy * ax) + cc * (ax * by - ay * bx)
     size = aa * (abs(bx * cy) + abs(by * cx)) + bb * (abs(cx * ay) + abs(cy * ax)) + cc * (abs(ax * by) + abs(ay * bx))
-    return found > _CLEAR * size
+    return determinant > _CLEAR * size
 
 
 @kernel
@@ -83,15 +83,15 @@ def _join(twin, h, other):
 @entry
 def _flip(point, corner, twin, most):
     """Flip edges, `most` times at the most, in `corner` and `twin` (3 t,)."""
-    left = np.empty(len(corner), np.int64)
+    open_edges = np.empty(len(corner), np.int64)
     waiting = np.ones(len(corner), np.bool_)
     top = len(corner)
     for h in range(top):
-        left[h] = top - 1 - h
+        open_edges[h] = top - 1 - h
     flips = 0
     while top > 0 and flips < most:
         top -= 1
-        h = left[top]
+        h = open_edges[top]
         waiting[h] = False
         g = twin[h]
         if g < 0:
@@ -117,5 +117,5 @@ def _flip(point, corner, twin, most):
         for each in (h, hn, g, gn):
             if not waiting[each]:
                 waiting[each] = True
-                left[top] = each
+                open_edges[top] = each
                 top += 1

@@ -80,12 +80,12 @@ def meridian(part: Part, origin: Sequence[float], direction: Sequence[float], ch
     meshed, loose = [], []
     with translated("looking for the outline of a body of revolution", error=ReadError):
         for face in part.faces:
-            found = _turning(part.face(face.number), base, along, chord)
-            if not found:
+            turning = _turning(part.face(face.number), base, along, chord)
+            if not turning:
                 meshed.append(face.number)
-            if found is None:
+            if turning is None:
                 loose.append(face.number)
-            for (q, w, r, h), on_body in found or ():
+            for (q, w, r, h), on_body in turning or ():
                 lines.append((q, w, r, h) if w <= h else (r, h, q, w))
                 exact.append(on_body)
     off = 0.0 if all(exact) else chord
@@ -112,10 +112,10 @@ def meridian(part: Part, origin: Sequence[float], direction: Sequence[float], ch
     return Meridian(line, own, off, foot, tuple(loose))
 
 
-_Found = list[tuple[tuple[float, float, float, float], bool]]
+_Lines = list[tuple[tuple[float, float, float, float], bool]]
 
 
-def _turning(face: Any, base: Floats, along: Floats, chord: float) -> _Found | None:
+def _turning(face: Any, base: Floats, along: Floats, chord: float) -> _Lines | None:
     """Lines of a face that turns about the axis, none where they are not known; None where it does not turn about it."""
     surface = BRepAdaptor_Surface(face)
     kind = surface.GetType()
@@ -158,8 +158,8 @@ def _turning(face: Any, base: Floats, along: Floats, chord: float) -> _Found | N
         return list(_arc(body.MajorRadius(), foot, body.MinorRadius(), up, v0, v1, chord))
     if made == "Cylinder":
         return [((body.Radius(), foot + up * v0, body.Radius(), foot + up * v1), True)]
-    lean = body.SemiAngle()
-    ends = [(abs(body.RefRadius() + v * math.sin(lean)), foot + up * v * math.cos(lean)) for v in (v0, v1)]
+    slope = body.SemiAngle()
+    ends = [(abs(body.RefRadius() + v * math.sin(slope)), foot + up * v * math.cos(slope)) for v in (v0, v1)]
     return [((*ends[0], *ends[1]), True)]
 
 
@@ -168,12 +168,12 @@ def _ends(face: Any, v0: float, v1: float) -> bool:
 
     These are loose around curved borders, and a foot that is too low would lift the whole outline.
     """
-    found = []
+    ends = []
     for edge in edges_of(face):
         curve = BRepAdaptor_Curve2d(edge, face)
         if curve.GetType() == GeomAbs_Line:
-            found += [curve.Value(end).Y() for end in (curve.FirstParameter(), curve.LastParameter())]
-    return bool(found) and abs(min(found) - v0) <= _SAME and abs(max(found) - v1) <= _SAME
+            ends += [curve.Value(end).Y() for end in (curve.FirstParameter(), curve.LastParameter())]
+    return bool(ends) and abs(min(ends) - v0) <= _SAME and abs(max(ends) - v1) <= _SAME
 
 
 def _arc(

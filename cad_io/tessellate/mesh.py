@@ -121,17 +121,17 @@ def bordered(mesh: UVMesh, on_curve: Sequence[Floats], surface: Surface) -> UVMe
     # All borders at once: a call for each takes longer than its points.
     every = [mesh.uv[border.nodes] for border in mesh.border]
     here, there = np.concatenate([*every, mesh.uv[:0]]), np.concatenate([*on_curve, mesh.uv[:0]])
-    beside = np.flatnonzero((np.abs(there - here) > _SAME * np.maximum(1.0, np.abs(here))).any(axis=1))
-    if not len(beside):
+    different = np.flatnonzero((np.abs(there - here) > _SAME * np.maximum(1.0, np.abs(here))).any(axis=1))
+    if not len(different):
         return mesh
-    point = surface.values(*np.concatenate([there[beside], here[beside]]).T)
-    off = point[: len(beside)] - point[len(beside) :]
-    beside = beside[np.linalg.norm(off, axis=1) > _ON]
-    if not len(beside):
+    point = surface.values(*np.concatenate([there[different], here[different]]).T)
+    off = point[: len(different)] - point[len(different) :]
+    different = different[np.linalg.norm(off, axis=1) > _ON]
+    if not len(different):
         return mesh
     firsts = np.cumsum([0, *map(len, every)])
     for (nodes, parameter, curve), first, last in zip(mesh.border, firsts[:-1], firsts[1:], strict=True):
-        passed = beside[(beside >= first) & (beside < last)] - first
+        passed = different[(different >= first) & (different < last)] - first
         if not len(passed):
             border.append(BorderCurve(nodes, parameter, curve))
             continue

@@ -128,16 +128,16 @@ def cut_where_they_meet(outline: Outline) -> Outline:
     row, chord, share = row[within], chord[within], share[within]
     order = np.lexsort((share, chord))
     row, chord, share = row[order], chord[order], share[order]
-    found, first = [], 0
+    cuts, first = [], 0
     for mine, each in zip(outline.nodes, outline.uses, strict=True):
         here = (chord >= first) & (chord < first + len(mine) - 1)
         at = chord[here] - first
         t = each.parameter
         t = np.insert(t, at + 1, t[at] + share[here] * (t[at + 1] - t[at]))
         on_curve = np.array([each.use.curve.Value(x).Coord() for x in t.tolist()])
-        found.append((np.insert(mine, at + 1, row[here]), Sampled(each.use, t, on_curve)))
+        cuts.append((np.insert(mine, at + 1, row[here]), Sampled(each.use, t, on_curve)))
         first += len(mine) - 1
-    return Outline(nodes, tuple(mine for mine, _ in found), tuple(each for _, each in found))
+    return Outline(nodes, tuple(mine for mine, _ in cuts), tuple(each for _, each in cuts))
 
 
 def _sampled(use: Use, steps: Steps, most: int) -> Sampled:
@@ -165,14 +165,14 @@ def _bent(use: Use, steps: Steps, most: int) -> Floats:
     t[0], t[-1] = use.first, use.last
     (per_u, per_v), (bend_u, bend_v) = steps.scale.tolist(), steps.bend.tolist()
     limit, sag = 8.0 * steps.chord, steps.sag * steps.sag
-    found = [float(t[0])]
+    parameters = [float(t[0])]
     here, at = float(t[0]), value(float(t[0])).Coord()
     for last in t[1:].tolist():
-        ahead = [(last, value(last).Coord(), 0)]
-        while ahead:
-            there, to, halvings = ahead[-1]
+        pending = [(last, value(last).Coord(), 0)]
+        while pending:
+            there, to, halvings = pending[-1]
             du, dv = to[0] - at[0], to[1] - at[1]
-            far = halvings < _HALVINGS and len(found) <= most
+            far = halvings < _HALVINGS and len(parameters) <= most
             if far and bend_u * du * du + bend_v * dv * dv <= limit:
                 far = False
                 for share in _TRIED:
@@ -187,10 +187,10 @@ def _bent(use: Use, steps: Steps, most: int) -> Floats:
                         break
             if far:
                 middle = 0.5 * (here + there)
-                ahead[-1] = (there, to, halvings + 1)
-                ahead.append((middle, value(middle).Coord(), halvings + 1))
+                pending[-1] = (there, to, halvings + 1)
+                pending.append((middle, value(middle).Coord(), halvings + 1))
                 continue
-            found.append(there)
+            parameters.append(there)
             here, at = there, to
-            ahead.pop()
-    return np.array(found)
+            pending.pop()
+    return np.array(parameters)

@@ -11,7 +11,7 @@ from cad_io.surface import Surface
 from cad_io.tessellate.bounds import COARSE, FINE, MIDDLE, Ground, Table, table_of
 from cad_io.tessellate.curves import Curves, packed, reach
 from cad_io.tessellate.mesh import UVMesh
-from cad_io.tessellate.refine import Found, Start, refined
+from cad_io.tessellate.refine import RefinedMesh, Start, refined
 
 #: Measured distances count this much larger, for what lies between the points measured.
 MARGIN = 1.05
@@ -28,12 +28,12 @@ _FINER = ((400, MIDDLE), (8000, FINE))
 Indices = NDArray[np.int64]
 
 
-def workspace(triangles: int) -> Found:
+def workspace(triangles: int) -> RefinedMesh:
     """Room for so many triangles of a face, and as many nodes."""
-    return Found(np.empty((triangles, 2)), np.empty((triangles, 3), np.int64))
+    return RefinedMesh(np.empty((triangles, 2)), np.empty((triangles, 3), np.int64))
 
 
-NO_ROOM = workspace(0)
+EMPTY = workspace(0)
 
 
 class Laid(NamedTuple):
@@ -75,7 +75,7 @@ class Patch(NamedTuple):
         table, proved = table_of(ground)
         return Patch(number, surface, start, ground, table, curves, proved and exact)
 
-    def begun(self, chord: float, most: int, workspace: Found) -> tuple["Patch", "Tried"]:
+    def begun(self, chord: float, most: int, workspace: RefinedMesh) -> tuple["Patch", "Tried"]:
         """The patch with a table as fine as is worth while for a chord error, and its triangles."""
         before = COARSE
         for many, cells in _FINER if self.ground.whole else ():
@@ -86,14 +86,14 @@ class Patch(NamedTuple):
                 self, before = self._replace(table=table_of(self.ground, cells)[0]), cells
         return self, self.tried(chord, most, workspace)
 
-    def tried(self, chord: float, most: int, workspace: Found) -> "Tried":
+    def tried(self, chord: float, most: int, workspace: RefinedMesh) -> "Tried":
         """Triangles for a chord error, counted, and kept if there is room for them."""
         count, number, off, strayed, area = refined(
             self.start, self.table, self.curves, self._asked(chord), most, workspace
         )
         own = None
         if count <= min(most, len(workspace.corner)) and number <= len(workspace.uv):
-            own = Found(workspace.uv[:number].copy(), workspace.corner[:count].copy())
+            own = RefinedMesh(workspace.uv[:number].copy(), workspace.corner[:count].copy())
         return Tried(chord, count, number, own, off, strayed, area, count <= most)
 
     def _asked(self, chord: float) -> float:
@@ -103,18 +103,18 @@ class Patch(NamedTuple):
         """Triangles that were counted, and no more than `most` where that was a guess."""
         chord = tried.chord
         for guess in range(_GUESSES):
-            found, off = tried.found, tried.off
-            if found is None:
-                found = Found(np.empty((tried.nodes, 2)), np.empty((tried.triangles, 3), np.int64))
-                refined(self.start, self.table, self.curves, self._asked(chord), tried.triangles, found)
-            point = self.surface.values(found.uv[:, 0], found.uv[:, 1])
+            mesh, off = tried.found, tried.off
+            if mesh is None:
+                mesh = RefinedMesh(np.empty((tried.nodes, 2)), np.empty((tried.triangles, 3), np.int64))
+                refined(self.start, self.table, self.curves, self._asked(chord), tried.triangles, mesh)
+            point = self.surface.values(mesh.uv[:, 0], mesh.uv[:, 1])
             if not self.proved:
-                off = MARGIN * _measured(self.surface, found, point) + tried.strayed
-            laid = Laid(point, found.corner, off, tried.area, tried.whole)
+                off = MARGIN * _measured(self.surface, mesh, point) + tried.strayed
+            laid = Laid(point, mesh.corner, off, tried.area, tried.whole)
             if self.proved or off <= chord or not np.isfinite(off) or tried.triangles >= most or guess + 1 == _GUESSES:
                 break
             self = self._replace(table=self.table._replace(node=_LARGER * off / chord * self.table.node))
-            tried = self.tried(chord, most, NO_ROOM)
+            tried = self.tried(chord, most, EMPTY)
         return laid
 
 
@@ -124,20 +124,20 @@ class Tried(NamedTuple):
     chord: float
     triangles: int
     nodes: int
-    found: Found | None
+    found: RefinedMesh | None
     off: float
     strayed: float
     area: float
     whole: bool
 
 
-def _measured(surface: Surface, found: Found, point: Floats) -> float:
+def _measured(surface: Surface, mesh: RefinedMesh, point: Floats) -> float:
     """Largest distance found between points of triangles and of the surface with the same parameters, mm."""
     worst = 0.0
-    for first in range(0, len(found.corner), _AT_ONCE):
-        corner = found.corner[first : first + _AT_ONCE]
+    for first in range(0, len(mesh.corner), _AT_ONCE):
+        corner = mesh.corner[first : first + _AT_ONCE]
         for share in _MEASURED:
-            uv = np.einsum("c,tcx->tx", share, found.uv[corner])
+            uv = np.einsum("c,tcx->tx", share, mesh.uv[corner])
             off = surface.values(uv[:, 0], uv[:, 1]) - np.einsum("c,tcx->tx", share, point[corner])
             # Not a number counts as far.
             worst = max(worst, float(np.nan_to_num(np.linalg.norm(off, axis=1), nan=np.inf).max(initial=0.0)))

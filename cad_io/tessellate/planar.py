@@ -53,11 +53,11 @@ def triangulated(uv: Floats, chords: Ints, lines: tuple[Floats, Floats], metric:
     points = np.concatenate([uv, node[used]])
     if whole.any():
         region = shapely.difference(region, _cells_region(whole, u, v))
-    around = _corners(region, points * factor)
-    if around is None:
+    outer = _corners(region, points * factor)
+    if outer is None:
         return None
-    found = upright(points, np.concatenate([corner, around]).astype(np.int32))
-    return (points, found) if bounded_by(found, border) else None
+    corners = upright(points, np.concatenate([corner, outer]).astype(np.int32))
+    return (points, corners) if bounded_by(corners, border) else None
 
 
 def cells(whole: Bools) -> tuple[Indices, Indices]:

@@ -38,7 +38,7 @@ class Stack(NamedTuple):
     age: Any
 
 
-class Found(NamedTuple):
+class RefinedMesh(NamedTuple):
     """Where finished triangles go: uv (n, 2) of nodes, corner (t, 3)."""
 
     uv: Any
@@ -190,11 +190,11 @@ def _twice_area(stack, k):
 
 
 @kernel
-def _refined(start, table, curves, chord, most, stack, spare, found):
+def _refined(start, table, curves, chord, most, stack, spare, result):
     nodes, leaves, worst, strayed, area = np.int64(len(start.uv)), np.int64(0), 0.0, 0.0, 0.0
-    room_uv, room_corner = len(found.uv), len(found.corner)
-    for node in range(min(nodes, room_uv)):
-        found.uv[node, 0], found.uv[node, 1] = start.uv[node, 0], start.uv[node, 1]
+    uv_count, corner_count = len(result.uv), len(result.corner)
+    for node in range(min(nodes, uv_count)):
+        result.uv[node, 0], result.uv[node, 1] = start.uv[node, 0], start.uv[node, 1]
     for first in range(len(start.corner)):
         for c in range(3):
             node = start.corner[first, c]
@@ -207,8 +207,8 @@ def _refined(start, table, curves, chord, most, stack, spare, found):
             look = _look(stack, top, table, curves, chord)
             if look.off > chord and look.off < np.inf and stack.age[top] < _DEEPEST:
                 u, v = _cut(stack, top, look, curves, nodes, spare)
-                if nodes < room_uv:
-                    found.uv[nodes, 0], found.uv[nodes, 1] = u, v
+                if nodes < uv_count:
+                    result.uv[nodes, 0], result.uv[nodes, 1] = u, v
                 nodes += 1
                 top += 1
                 continue
@@ -217,11 +217,11 @@ def _refined(start, table, curves, chord, most, stack, spare, found):
             strayed = max(strayed, look.strayed) if look.strayed == look.strayed else np.inf
             twice = _twice_area(stack, top)
             area += 0.5 * abs(twice)
-            if leaves < room_corner:
+            if leaves < corner_count:
                 # A middle on a bent border may lie beyond the opposite corner: such a child is folded over.
                 turn = 1 if twice < 0.0 else 0
-                found.corner[leaves, 0] = stack.corner[top, 0]
-                found.corner[leaves, 1], found.corner[leaves, 2] = (
+                result.corner[leaves, 0] = stack.corner[top, 0]
+                result.corner[leaves, 1], result.corner[leaves, 2] = (
                     stack.corner[top, 1 + turn],
                     stack.corner[top, 2 - turn],
                 )
@@ -233,7 +233,7 @@ def _refined(start, table, curves, chord, most, stack, spare, found):
 
 
 @entry
-def refined(start, table, curves, chord, most, found):
+def refined(start, table, curves, chord, most, result):
     """Cut triangles until each is within a distance of the surface.
 
     Parameters
@@ -245,7 +245,7 @@ def refined(start, table, curves, chord, most, found):
         mm.
     most : int
         Where there are more triangles, it ends: they are too many.
-    found : Found, written
+    result : Found, written
         As far as there is room: with none, triangles are only counted.
 
     Returns
@@ -259,4 +259,4 @@ def refined(start, table, curves, chord, most, found):
         np.empty((high, 3, 2)), np.empty((high, 3), np.int64), np.empty((high, 3), np.int64), np.empty((high, 3, 2)),
         np.empty(high, np.int64),
     )  # fmt: skip
-    return _refined(start, table, curves, chord, most, stack, workspace(), found)
+    return _refined(start, table, curves, chord, most, stack, workspace(), result)

@@ -62,25 +62,25 @@ def starts(
     again : bool
         Where the kernel's mesher has been at a face, for whatever chord error, take what it made, also if that was nothing.
     """
-    found: dict[int, UVMesh | None] = {}
+    meshes: dict[int, UVMesh | None] = {}
     why: dict[int, str] = {}
-    left = _TOTAL
+    remaining = _TOTAL
     for number in numbers:
         at("own", number)
-        found[number] = own_start(part, number, chord)
-        if found[number] is not None:
+        meshes[number] = own_start(part, number, chord)
+        if meshes[number] is not None:
             continue
         if not (again and number in part.meshed):
             at("kernel", number)
-            if left <= 0.0:
+            if remaining <= 0.0:
                 why[number] = "the kernel's mesher, which it is left to, has spent its time on others"
                 continue
-            part.meshed[number], spent = _second(part, number, chord, min(left, _SECONDS))
-            left -= spent
-        found[number], said = part.meshed[number]
-        if said:
-            why[number] = said
-    return {number: mesh for number, mesh in found.items() if mesh is not None}, why
+            part.meshed[number], spent = _second(part, number, chord, min(remaining, _SECONDS))
+            remaining -= spent
+        meshes[number], reason = part.meshed[number]
+        if reason:
+            why[number] = reason
+    return {number: mesh for number, mesh in meshes.items() if mesh is not None}, why
 
 
 def _second(part: Part, number: int, chord: float, seconds: float) -> tuple[tuple[UVMesh | None, str], float]:
@@ -169,12 +169,12 @@ def _density(surface: Surface, trim: Trim) -> tuple[Floats, Floats] | None:
     u0, u1, v0, v1 = trim.box
     share = (np.arange(_LOOKED) + 0.5) / _LOOKED
     u, v = (each.ravel() for each in np.meshgrid(u0 + share * (u1 - u0), v0 + share * (v1 - v0), indexing="ij"))
-    found = np.linalg.norm(surface.second(u, v), axis=2).reshape(_LOOKED, _LOOKED, -1)
-    if not np.isfinite(found).all():
+    density = np.linalg.norm(surface.second(u, v), axis=2).reshape(_LOOKED, _LOOKED, -1)
+    if not np.isfinite(density).all():
         return None
     # The twist is shared out in the ratio in which steps of one length stand.
     ratio = trim.scale[0] / trim.scale[1]
-    uu, vv, uv = found[:, :, 3], found[:, :, 4], found[:, :, 5]
+    uu, vv, uv = density[:, :, 3], density[:, :, 4], density[:, :, 5]
     return (uu + ratio * uv).max(axis=1), (vv + uv / ratio).max(axis=0)
 
 
@@ -185,9 +185,9 @@ def _lines(density: Floats, ends: tuple[float, ...], chord: float) -> Floats:
     if count == 1 or not total[-1] > 0.0:
         return np.array(ends)
     along = np.linspace(ends[0], ends[1], len(total))
-    found = np.interp(np.linspace(0.0, total[-1], count + 1), total, along)
-    found[0], found[-1] = ends
-    return found
+    parameters = np.interp(np.linspace(0.0, total[-1], count + 1), total, along)
+    parameters[0], parameters[-1] = ends
+    return parameters
 
 
 def _steps(density: Floats, width: float, chord: float) -> Floats:
@@ -235,7 +235,7 @@ def _on_grid(surface: Surface, trim: Trim, uses: list[Use], lines: tuple[Floats,
     for use, (along, far, span) in zip(uses, known, strict=True):
         low, high = (int(np.argmin(np.abs(grid[along] - t))) for t in sorted(span))
         way = slice(None, None, 1 if span[0] < span[1] else -1)
-        parameter = _found_at(use, along, grid[along][low : high + 1][way])
+        parameter = _parameter_at(use, along, grid[along][low : high + 1][way])
         if parameter is None:
             return None
         row = -1 if far else 0
@@ -243,8 +243,8 @@ def _on_grid(surface: Surface, trim: Trim, uses: list[Use], lines: tuple[Floats,
         border.append(BorderCurve(nodes, parameter, use.curve))
         on_curve.append(np.array([use.curve.Value(t).Coord() for t in parameter.tolist()]))
     chords = np.concatenate([np.stack([each.nodes[:-1], each.nodes[1:]], axis=1) for each in border])
-    around = [np.stack([line[:-1], line[1:]], axis=1) for line in (number[0], number[-1], number[:, 0], number[:, -1])]
-    if len(chords) != len(np.concatenate(around)) or not np.array_equal(odd(chords), odd(np.concatenate(around))):
+    outer = [np.stack([line[:-1], line[1:]], axis=1) for line in (number[0], number[-1], number[:, 0], number[:, -1])]
+    if len(chords) != len(np.concatenate(outer)) or not np.array_equal(odd(chords), odd(np.concatenate(outer))):
         return None
     return bordered(UVMesh(uv, filled[corner].astype(np.int32), tuple(border)), on_curve, surface)
 
@@ -276,15 +276,15 @@ def _through(lines: Floats, ends: Floats) -> Floats | None:
     if len(wanted) > len(lines) + _MORE:
         return None
     inner = lines[1:-1]
-    room = _MOVED * np.interp(inner, 0.5 * (lines[1:] + lines[:-1]), np.diff(lines)) if len(inner) else inner
+    allowed = _MOVED * np.interp(inner, 0.5 * (lines[1:] + lines[:-1]), np.diff(lines)) if len(inner) else inner
     after = (
         np.clip(np.searchsorted(wanted, inner), 1, len(wanted) - 1) if len(wanted) > 1 else np.zeros(len(inner), int)
     )
     apart = np.minimum(np.abs(inner - wanted[after]), np.abs(inner - wanted[np.maximum(after - 1, 0)]))
-    return np.unique(np.concatenate([[low], inner[apart > room], wanted, [high]]))
+    return np.unique(np.concatenate([[low], inner[apart > allowed], wanted, [high]]))
 
 
-def _found_at(use: Use, along: int, at: Floats) -> Floats | None:
+def _parameter_at(use: Use, along: int, at: Floats) -> Floats | None:
     """Parameters (k,) at which a curve passes values of u (0) or v (1), which run with or against it."""
 
     def off(t: float, wanted: float) -> float:
@@ -296,7 +296,7 @@ def _found_at(use: Use, along: int, at: Floats) -> Floats | None:
     if start == stop:
         return None
     order = 1.0 if stop > start else -1.0
-    found = []
+    parameters = []
     for wanted in at.tolist():
         low, high = ends
         t = low + (wanted - start) / (stop - start) * (high - low)
@@ -313,8 +313,8 @@ def _found_at(use: Use, along: int, at: Floats) -> Floats | None:
             t -= here / (stop - start) * (ends[1] - ends[0])
             if not low < t < high:
                 t = 0.5 * (low + high)
-        found.append(t)
-    ordered = np.array(found)
+        parameters.append(t)
+    ordered = np.array(parameters)
     # Its own ends are those of the curve.
     backwards = (at[0] > at[-1]) == (stop > start)
     ordered[0], ordered[-1] = (ends[1], ends[0]) if backwards else ends

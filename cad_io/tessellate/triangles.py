@@ -17,8 +17,8 @@ from OCP.BRepTools import BRepTools
 from cad_io.arrays import Triangles
 from cad_io.kernel import translated
 from cad_io.part import Part
-from cad_io.tessellate.patch import NO_ROOM, Patch, Tried, workspace
-from cad_io.tessellate.refine import Found
+from cad_io.tessellate.patch import EMPTY, Patch, Tried, workspace
+from cad_io.tessellate.refine import RefinedMesh
 from cad_io.tessellate.start import At, expected, starts
 
 #: The start is this much coarser than wanted: cutting is quicker, and halves twice each way go on evenly.
@@ -38,7 +38,7 @@ _PATIENCE = 8
 #: A face is loose if its bound is so many times the chord error of the others.
 _LOOSE = 1.25
 #: Triangles of a face that are kept as they are counted; more are counted first and laid then.
-_ROOM = 1 << 19
+_LARGEST = 1 << 19
 
 Item = TypeVar("Item")
 Done = TypeVar("Done")
@@ -104,11 +104,11 @@ def tessellate(
             missing[patch.number] = "its surface cannot be evaluated everywhere"
             continue
         if not each.whole:
-            missing[patch.number] = "it takes more triangles than there is room for"
+            missing[patch.number] = "it takes more triangles than the budget allows"
             continue
         off[patch.number] = each.off
-        if left := _uncovered(part, patch.number, each.area, chord):
-            missing[patch.number] = f"its triangles leave up to {math.ceil(100.0 * left)} % of it uncovered"
+        if uncovered := _uncovered(part, patch.number, each.area, chord):
+            missing[patch.number] = f"its triangles leave up to {math.ceil(100.0 * uncovered)} % of it uncovered"
     loose = {number: error for number, error in off.items() if error > _LOOSE * most}
     if len(loose) == len(off):
         # Nothing is closer: all of it is as close as it is.
@@ -141,13 +141,13 @@ def _begun(
 
 
 def _affordable(
-    part: Part, patches: Sequence[Patch], asked: tuple[float, float], budget: int, jobs: int, at: At
+    part: Part, patches: Sequence[Patch], requested: tuple[float, float], budget: int, jobs: int, at: At
 ) -> tuple[list[Patch], list[Tried]]:
     """Patches with tables as fine as is worth while, and triangles of each that are within the budget: for the chord error that
-    was asked for where that is possible, else for the smallest ones found; `asked`: the chord error asked for, and the one at
+    was requested where that is possible, else for the smallest ones found; `requested`: the chord error asked for, and the one at
     which to begin to look."""
-    finer, tried = _alike(part, patches, asked, budget, jobs, at)
-    least, chord = asked[0], max((each.chord for each in tried), default=asked[0])
+    finer, tried = _alike(part, patches, requested, budget, jobs, at)
+    least, chord = requested[0], max((each.chord for each in tried), default=requested[0])
     if chord <= least or len(finer) < 2:
         return finer, tried
     # A face costs so many triangles for its area: those that cost least are laid as close as was asked.
@@ -155,14 +155,14 @@ def _affordable(
     cost = np.array([each.triangles for each in tried]) / np.maximum(area, np.finfo(float).tiny)
     close: dict[int, Tried] = {}
     own_budget = int(_OWN * budget)
-    left, dear = budget - own_budget, 0
+    remaining, dear = budget - own_budget, 0
     for i in np.argsort(cost, kind="stable").tolist():
-        each = finer[i].tried(least, left, NO_ROOM)
-        dear = dear + 1 if each.triangles > left else 0
+        each = finer[i].tried(least, remaining, EMPTY)
+        dear = dear + 1 if each.triangles > remaining else 0
         if dear > _PATIENCE:
             break
         if not dear:
-            close[i], left = each, left - each.triangles
+            close[i], remaining = each, remaining - each.triangles
     loose = [i for i in range(len(finer)) if i not in close]
     if not close or not loose or (area[loose].sum() > _FEW * area.sum() and chord <= _ALIKE * least):
         return finer, tried
@@ -176,22 +176,22 @@ def _affordable(
 
 
 def _alike(
-    part: Part, patches: Sequence[Patch], asked: tuple[float, float], budget: int, jobs: int, at: At
+    part: Part, patches: Sequence[Patch], requested: tuple[float, float], budget: int, jobs: int, at: At
 ) -> tuple[list[Patch], list[Tried]]:
     """Patches with tables as fine as is worth while, and triangles of each for the smallest chord error found, one for all, at
-    which they are within the budget; `asked` as above."""
+    which they are within the budget; `requested` as above."""
     size, most = float(np.linalg.norm(part.size)), _TOO_MANY * budget
     # Room to work in: one for each thread.
-    workspaces = [workspace(min(budget, _ROOM)) for _ in range(jobs)]
-    least, chord = asked
+    workspaces = [workspace(min(budget, _LARGEST)) for _ in range(jobs)]
+    least, chord = requested
 
     def begun(patch: Patch) -> tuple[Patch, Tried]:
-        with _lent(workspaces) as mine:
-            return patch.begun(chord, most, mine if total <= budget else NO_ROOM)
+        with _borrowed(workspaces) as mine:
+            return patch.begun(chord, most, mine if total <= budget else EMPTY)
 
     def again(patch: Patch) -> Tried:
-        with _lent(workspaces) as mine:
-            return patch.tried(chord, most, mine if total <= budget else NO_ROOM)
+        with _borrowed(workspaces) as mine:
+            return patch.tried(chord, most, mine if total <= budget else EMPTY)
 
     finer, tried, total = [], [], 0
     for patch, each in _each(begun, patches, jobs):
@@ -222,7 +222,7 @@ def _alike(
 
 
 @contextmanager
-def _lent(workspaces: list[Found]) -> Iterator[Found]:
+def _borrowed(workspaces: list[RefinedMesh]) -> Iterator[RefinedMesh]:
     mine = workspaces.pop()
     try:
         yield mine
@@ -249,6 +249,6 @@ def _uncovered(part: Part, number: int, area: float, chord: float) -> float:
     trim = part.trim(number)
     if trim is None or not trim.closed:
         return 0.0
-    left = 1.0 - area / trim.uv_area if trim.uv_area > 0 else 0.0
+    share = 1.0 - area / trim.uv_area if trim.uv_area > 0 else 0.0
     border = float(np.linalg.norm((trim.segments[:, 1] - trim.segments[:, 0]) * trim.scale, axis=1).sum())
-    return left if left > _UNCOVERED and left * part.faces[number - 1].area > 2 * chord * border else 0.0
+    return share if share > _UNCOVERED and share * part.faces[number - 1].area > 2 * chord * border else 0.0

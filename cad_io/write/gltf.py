@@ -22,8 +22,8 @@ from cad_io.kernel import translated
 from cad_io.kernel.mesher import meshed
 from cad_io.split.pieces import MIXED, Piece, Split
 from cad_io.surface import Surface
-from cad_io.write.aside import aside
 from cad_io.write.render_mesh import ANGLE, FINE, Mesh, diagonal, face_mesh
+from cad_io.write.temporary_file import temporary_file
 
 _METRE = 1e-3
 _COMPONENT = {"float32": 5126, "uint32": 5125, "uint16": 5123}
@@ -41,7 +41,7 @@ class Other(NamedTuple):
     below: str = "fixtures"
 
 
-class _Drawn(NamedTuple):
+class _Mesh(NamedTuple):
     """A piece as vertex attributes: by name, arrays of n vertices; and its triangles (m, 3)."""
 
     attributes: dict[str, NDArray[Any]]
@@ -92,18 +92,18 @@ def write_gltf(
     WriteError
         The file cannot be written, or there is no triangle to write.
     """
-    with aside(path) as temporary:
+    with temporary_file(path) as temporary:
         with translated("meshing", error=WriteError, file=str(path)):
             meshes = list(meshes_of(split, deflection))
         if not any(mesh for _, mesh in meshes):
             raise WriteError("the CAD kernel made no triangle of the part", file=str(path))
         pieces = [piece for piece, _ in meshes]
-        drawn = [_draw(mesh, style(piece).rgb) if mesh else None for piece, mesh in meshes]
+        drawings = [_draw(mesh, style(piece).rgb) if mesh else None for piece, mesh in meshes]
         glb = _Glb()
         if merged:
-            _fill_merged(glb, pieces, drawn, extras)
+            _fill_merged(glb, pieces, drawings, extras)
         else:
-            _fill(glb, pieces, drawn, style, extras, piece_extras)
+            _fill(glb, pieces, drawings, style, extras, piece_extras)
         _fill_others(glb, others)
         temporary.write_bytes(glb.bytes())
     return tuple(sorted({piece.face for piece, mesh in meshes if mesh is None}))
@@ -126,38 +126,38 @@ def meshes_of(split: Split, deflection: float | None = None) -> Iterator[tuple[P
         deflection = FINE * diagonal(split.shape)
     surfaces: dict[int, Surface] = {}
     shapes = [piece.shape for piece in split.pieces]
-    for piece, found in zip(split.pieces, meshed(shapes, deflection, ANGLE), strict=True):
+    for piece, render_mesh in zip(split.pieces, meshed(shapes, deflection, ANGLE), strict=True):
         labels = split.labels.get(piece.face) if piece.label == MIXED else None
         # To see whether a surface is one that we evaluate takes longer than a small piece: those of a face share it.
         surface = surfaces.get(piece.face) or surfaces.setdefault(piece.face, Surface(piece.shape))
-        meshes = face_mesh(piece.shape, surface, found, labels)
+        meshes = face_mesh(piece.shape, surface, render_mesh, labels)
         for label, mesh in (meshes or {}).items():
             yield (piece if labels is None else Piece(piece.face, label, piece.shape)), mesh
         if not meshes:
             yield piece, None
 
 
-def _draw(mesh: Mesh, rgb: tuple[float, float, float]) -> _Drawn:
+def _draw(mesh: Mesh, rgb: tuple[float, float, float]) -> _Mesh:
     light = np.round(np.array([*linear(rgb), 1.0]) * 65535).astype(np.uint16)
     attributes: dict[str, NDArray[Any]] = {
         "POSITION": _y_up(mesh.point * _METRE),
         "NORMAL": _y_up(mesh.normal),
         "COLOR_0": np.tile(light, (len(mesh.point), 1)),
     }
-    return _Drawn(attributes, mesh.triangle)
+    return _Mesh(attributes, mesh.triangle)
 
 
 def _fill(
     glb: "_Glb",
     pieces: Sequence[Piece],
-    drawn: Sequence[_Drawn | None],
+    meshes: Sequence[_Mesh | None],
     style: Callable[[Piece], Style],
     extras: Callable[[int], dict[str, Any]],
     piece_extras: Callable[[Piece], dict[str, Any]],
 ) -> None:
     node_of: dict[int, int] = {}
     root = glb.node({"name": "part"})
-    for piece, mesh in zip(pieces, drawn, strict=True):
+    for piece, mesh in zip(pieces, meshes, strict=True):
         if piece.face not in node_of:
             node_of[piece.face] = glb.node({"name": f"F{piece.face}", "extras": extras(piece.face)}, root)
         name = style(piece).name
@@ -165,16 +165,16 @@ def _fill(
 
 
 def _fill_merged(
-    glb: "_Glb", pieces: Sequence[Piece], drawn: Sequence[_Drawn | None], extras: Callable[[int], dict[str, Any]]
+    glb: "_Glb", pieces: Sequence[Piece], meshes: Sequence[_Mesh | None], extras: Callable[[int], dict[str, Any]]
 ) -> None:
-    shown = [(piece, mesh) for piece, mesh in zip(pieces, drawn, strict=True) if mesh]
+    shown = [(piece, mesh) for piece, mesh in zip(pieces, meshes, strict=True) if mesh]
     sizes = [len(mesh.attributes["POSITION"]) for _, mesh in shown]
     starts = np.cumsum([0, *sizes[:-1]])
     attributes = {k: np.concatenate([mesh.attributes[k] for _, mesh in shown]) for k in shown[0][1].attributes}
     attributes["_FACE"] = np.repeat(np.array([piece.face for piece, _ in shown], np.float32), sizes)
     triangle = np.concatenate([mesh.triangle + np.uint32(a) for a, (_, mesh) in zip(starts, shown, strict=True)])
     facts = [extras(number) for number in dict.fromkeys(piece.face for piece in pieces)]
-    glb.node({"name": "part", "extras": {"faces": facts}, **glb.mesh("part", _Drawn(attributes, triangle))})
+    glb.node({"name": "part", "extras": {"faces": facts}, **glb.mesh("part", _Mesh(attributes, triangle))})
 
 
 def _fill_others(glb: "_Glb", others: Sequence[Other]) -> None:
@@ -186,12 +186,12 @@ def _fill_others(glb: "_Glb", others: Sequence[Other]) -> None:
         corner = (other.vertex * _METRE).astype(np.float32)
         normal = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]).astype(float)
         length = np.linalg.norm(normal, axis=1)
-        kept = length > 0
-        points = other.vertex[kept].reshape(-1, 3)
-        unit = np.repeat(normal[kept] / length[kept, None], 3, axis=0)
+        valid = length > 0
+        points = other.vertex[valid].reshape(-1, 3)
+        unit = np.repeat(normal[valid] / length[valid, None], 3, axis=0)
         mesh = Mesh(points, unit, np.arange(len(points), dtype=np.uint32).reshape(-1, 3), np.zeros((len(points), 2)))
-        drawn = glb.mesh(other.name, _draw(mesh, other.rgb) if kept.any() else None)
-        glb.node({"name": other.name, "extras": other.extras, **drawn}, root[other.below])
+        other_mesh = glb.mesh(other.name, _draw(mesh, other.rgb) if valid.any() else None)
+        glb.node({"name": other.name, "extras": other.extras, **other_mesh}, root[other.below])
 
 
 class _Glb:
@@ -213,12 +213,12 @@ class _Glb:
         self.nodes.append(node)
         return len(self.nodes) - 1
 
-    def mesh(self, name: str, drawn: _Drawn | None) -> dict[str, int]:
+    def mesh(self, name: str, mesh: _Mesh | None) -> dict[str, int]:
         """The `mesh` of a node; nothing where nothing could be drawn."""
-        if drawn is None:
+        if mesh is None:
             return {}
-        attributes = {key: self._accessor(array, key) for key, array in drawn.attributes.items()}
-        indices = self._accessor(drawn.triangle.reshape(-1))
+        attributes = {key: self._accessor(array, key) for key, array in mesh.attributes.items()}
+        indices = self._accessor(mesh.triangle.reshape(-1))
         self.meshes.append(
             {"name": name, "primitives": [{"attributes": attributes, "indices": indices, "material": 0}]}
         )

@@ -60,9 +60,9 @@ def label_mesh(face: Any, uv: Floats, point: Floats, triangle: NDArray[np.int64]
         rows = np.flatnonzero(across.any(axis=1))
         at = np.floor(0.5 * (first + last))[rows, axis[rows]] + 0.5
         corner = _cut(corner[rows], axis[rows], at)
-    found = np.concatenate(done)
-    node = np.clip(np.rint(found[:, :, :2].mean(axis=1)), 0, np.array(filled.shape) - 1).astype(int)
-    each, index = np.unique(found.reshape(-1, found.shape[2]), axis=0, return_inverse=True)
+    joined = np.concatenate(done)
+    node = np.clip(np.rint(joined[:, :, :2].mean(axis=1)), 0, np.array(filled.shape) - 1).astype(int)
+    each, index = np.unique(joined.reshape(-1, joined.shape[2]), axis=0, return_inverse=True)
     return LabelledMesh(each[:, 2:4], each[:, 4:], index.reshape(-1, 3), filled[node[:, 0], node[:, 1]])
 
 
@@ -79,12 +79,12 @@ class _Mixed:
     def __call__(self, low: Floats, high: Floats) -> NDArray[np.bool_]:
         i, j = np.clip(np.rint(low), 0, self.last).astype(int).T
         m, n = np.clip(np.rint(high), 0, self.last).astype(int).T + 1
-        found = np.zeros(len(low), bool)
+        mixed = np.zeros(len(low), bool)
         # A step leads to its node from the one before: the first ones lead into the box, not through it.
         for count, a, b in ((self.count[0], i + 1, j), (self.count[1], i, j + 1)):
             a, b = np.minimum(a, m), np.minimum(b, n)
-            found |= count[m, n] - count[a, n] - count[m, b] + count[a, b] > 0
-        return found
+            mixed |= count[m, n] - count[a, n] - count[m, b] + count[a, b] > 0
+        return mixed
 
 
 def _cut(corner: Floats, axis: NDArray[np.intp], at: Floats) -> Floats:
@@ -117,8 +117,8 @@ def _cells(at: Floats, line: Floats, period: float) -> tuple[Floats, int, bool]:
         # The corners may lie whole periods off the grid.
         off = np.round((at.mean() - 0.5 * (line[0] + line[-1])) / period) * period
         return np.interp(at - off, line, np.arange(len(line))), 1, False
-    past = at - line[0]
-    turn = np.floor(past / period + 1e-9)
+    excess = at - line[0]
+    turn = np.floor(excess / period + 1e-9)
     turn -= turn.min()
-    inner = np.interp(past - np.floor(past / period + 1e-9) * period, line - line[0], np.arange(len(line)))
+    inner = np.interp(excess - np.floor(excess / period + 1e-9) * period, line - line[0], np.arange(len(line)))
     return inner + turn * (len(line) - 1), int(turn.max()) + 2, True

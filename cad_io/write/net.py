@@ -124,7 +124,7 @@ def cut(nets: Sequence[Net], chord: float, angle: float, most: int) -> float:
 
     The farthest are cut first; it ends where there are so many triangles. Returns the largest distance seen that is left, mm.
     """
-    left = 0.0
+    first = 0.0
     open_nets = list(nets)
     for _ in range(_ROUNDS):
         looks = [net.looked_at(chord, angle) for net in open_nets]
@@ -133,17 +133,17 @@ def cut(nets: Sequence[Net], chord: float, angle: float, most: int) -> float:
         open_nets = [net for net, more in zip(open_nets, wanted, strict=True) if more]
         looks = [look for look, more in zip(looks, wanted, strict=True) if more]
         # A cut edge makes two more triangles.
-        room = (most - sum(len(net.corner) for net in nets)) // 2
+        quota = (most - sum(len(net.corner) for net in nets)) // 2
         worth = np.concatenate([np.zeros(0), *(look.worth for look in looks)])
         count = int((worth > 0.0).sum())
-        left = float(worth.max(initial=0.0))
-        if not count or room <= 0:
+        first = float(worth.max(initial=0.0))
+        if not count or quota <= 0:
             break
         chosen = worth > 0.0
-        if count > room:
+        if count > quota:
             chosen[:] = False
-            chosen[np.argsort(-worth, kind="stable")[:room]] = True
+            chosen[np.argsort(-worth, kind="stable")[:quota]] = True
         ends = np.cumsum([len(look.worth) for look in looks])[:-1]
         for net, look, mine in zip(open_nets, looks, np.split(chosen, ends), strict=True):
             net.cut(look, mine)
-    return left
+    return first

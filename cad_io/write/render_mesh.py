@@ -41,7 +41,7 @@ class Mesh(NamedTuple):
     uv: Floats
 
 
-class Drawn(NamedTuple):
+class RenderMesh(NamedTuple):
     """Meshes by face number; periods of their surfaces' parameters u and v, 0 where there is none; the chord error that was asked
     for, mm; and the faces of which the kernel made no mesh."""
 
@@ -51,7 +51,9 @@ class Drawn(NamedTuple):
     missing: tuple[int, ...]
 
 
-def drawn(part: Part, sides: Sequence[float] | Floats, *, most: int, deflection: float | None = None) -> Drawn:
+def render_mesh(
+    part: Part, sides: Sequence[float] | Floats, *, most: int, deflection: float | None = None
+) -> RenderMesh:
     """Mesh all faces of a part to be looked at; the part itself stays without a mesh.
 
     Coarse triangles are cut where they lie farthest from the surface, until they are near enough or there are as many as are
@@ -81,16 +83,16 @@ def drawn(part: Part, sides: Sequence[float] | Floats, *, most: int, deflection:
         meshes, periods = {}, {}
         for number, net in nets.items():
             whole = np.zeros(len(net.corner), np.int32)
-            found = _finished(net.surface, net.uv, net.point, net.corner, whole, turned=not sides[number - 1] > 0)
-            if found:
-                meshes[number] = found[0]
+            mesh = _finished(net.surface, net.uv, net.point, net.corner, whole, turned=not sides[number - 1] > 0)
+            if mesh:
+                meshes[number] = mesh[0]
                 surface = BRep_Tool.Surface_s(part.face(number))
                 periods[number] = (
                     surface.UPeriod() if surface.IsUPeriodic() else 0.0, surface.VPeriod() if surface.IsVPeriodic() else 0.0
                 )  # fmt: skip
     if not meshes:
         raise WriteError("the CAD kernel made no triangle of the part", file=part.file)
-    return Drawn(meshes, periods, max(wanted, off), tuple(f.number for f in part.faces if f.number not in meshes))
+    return RenderMesh(meshes, periods, max(wanted, off), tuple(f.number for f in part.faces if f.number not in meshes))
 
 
 def _begun(part: Part, numbers: Sequence[int], wanted: float, most: int) -> float:
@@ -141,15 +143,15 @@ def _finished(
     # Corners that are one point in 32 bits make a triangle without a normal or an inside.
     corner = (point * _METRE).astype(np.float32)[triangle]
     facet = np.cross(corner[:, 1] - corner[:, 0], corner[:, 2] - corner[:, 0]).astype(float)
-    kept = (facet**2).sum(1) > 0
-    triangle, facet, label = triangle[kept], facet[kept], label[kept]
+    valid = (facet**2).sum(1) > 0
+    triangle, facet, label = triangle[valid], facet[valid], label[valid]
     tangents = s[:, 1:]
     length = np.linalg.norm(normal, axis=1)
     # At a pole the tangents give no normal: there the facets around it do.
     pole = ~(length > 1e-6 * np.linalg.norm(tangents, axis=2).prod(axis=1))
-    around = np.zeros_like(point)
-    np.add.at(around, triangle, facet[:, None] / np.linalg.norm(facet, axis=1)[:, None, None])
-    normal = np.where(pole[:, None], around, normal / np.where(pole, 1.0, length)[:, None])
+    normals = np.zeros_like(point)
+    np.add.at(normals, triangle, facet[:, None] / np.linalg.norm(facet, axis=1)[:, None, None])
+    normal = np.where(pole[:, None], normals, normal / np.where(pole, 1.0, length)[:, None])
     meshes = {}
     for value in np.unique(label).tolist():
         used, mine = np.unique(triangle[label == value], return_inverse=True)

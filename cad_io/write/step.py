@@ -37,8 +37,8 @@ from cad_io.kernel.bodies import placed
 from cad_io.kernel.components import compound, flat
 from cad_io.kernel.time_limit import ChildDied, TimeLimit, limited
 from cad_io.split.pieces import Piece, Split
-from cad_io.write.aside import aside
 from cad_io.write.canonical import canonical
+from cad_io.write.temporary_file import temporary_file
 
 #: Of every file: a fixed one, so that the same input gives the same bytes.
 TIME_STAMP = "2000-01-01T00:00:00"
@@ -100,7 +100,7 @@ def write_step(
     silence()
     file = str(path)
     styles = {id(piece): style(piece) for piece in split.pieces}
-    with aside(path) as temporary:
+    with temporary_file(path) as temporary:
 
         def write() -> bytes:
             try:
@@ -199,10 +199,10 @@ class _Document:
         leaves = [leaf for root in tree for leaf, _, _ in root.leaves()]
         leaf_of = {number: i for i, leaf in enumerate(leaves) for number in leaf.faces}
         owner = TopTools_IndexedMapOfShape()
-        found = [piece for piece in split.pieces if owner.Add(piece.shape) == owner.Extent()]
+        own_pieces = [piece for piece in split.pieces if owner.Add(piece.shape) == owner.Extent()]
         mine: dict[int, list[_Body]] = {id(leaf): [] for leaf in leaves}
         for shape in flat(split.shape):
-            pieces = [found[owner.FindIndex(face) - 1] for face in faces(shape)]
+            pieces = [own_pieces[owner.FindIndex(face) - 1] for face in faces(shape)]
             # What has no face (curves, points) goes with the first product.
             at = leaf_of[pieces[0].face] if pieces else 0
             mine[id(leaves[at])].append(_Body(shape, pieces))
@@ -225,10 +225,10 @@ class _Document:
         if not node.children:
             bodies = mine[id(node)]
             return self.leaf(node.name or self.product, bodies, place) if bodies else None
-        found = [(child, self.node(child, place.Multiplied(child.place), mine)) for child in node.children]
+        children = [(child, self.node(child, place.Multiplied(child.place), mine)) for child in node.children]
         label = self.shapes.NewShape()
         _name(label, node.name or self.product)
-        for child, product in found:
+        for child, product in children:
             if product is not None:
                 _name(self.shapes.AddComponent(label, product, child.place), child.instance or child.name)
         return label
@@ -344,8 +344,8 @@ def _pieces(bodies: Sequence[_Body]) -> list[Piece]:
 
 def _exact(shape: Any) -> bool:
     """Whether a face, or any face of a shape, has a surface and a border: others are not written as advanced faces."""
-    found = (TopoDS.Face_s(face) for face in explore(shape, TopAbs_FACE))
-    return any(BRep_Tool.Surface_s(face) is not None and edges_of(face) for face in found)
+    faces = (TopoDS.Face_s(face) for face in explore(shape, TopAbs_FACE))
+    return any(BRep_Tool.Surface_s(face) is not None and edges_of(face) for face in faces)
 
 
 def _unplaced(shape: Any) -> Iterator[Any]:
@@ -366,13 +366,13 @@ def _head(model: Any, product: str) -> None:
     header.SetAuthorisation(TCollection_HAsciiString(ORIGIN))
 
 
-def _recount(text: bytes, asked: _Document, file: str) -> None:
+def _recount(text: bytes, document: _Document, file: str) -> None:
     """Count faces and styles in the written text: the kernel is known to lose some in silence."""
     faces = len(re.findall(rb"=\s*ADVANCED_FACE\s*\(", text))
     styles = len(re.findall(rb"=\s*(?:OVER_RIDING_)?STYLED_ITEM\s*\(", text))
-    if faces < asked.faces or styles < asked.styles:
+    if faces < document.faces or styles < document.styles:
         raise WriteError(
-            f"of {asked.faces} faces the CAD kernel wrote {faces}, of {asked.styles} colours {styles}", file=file
+            f"of {document.faces} faces the CAD kernel wrote {faces}, of {document.styles} colours {styles}", file=file
         )
 
 

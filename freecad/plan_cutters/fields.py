@@ -208,7 +208,7 @@ class ToolsBox:
         )  # fmt: skip
 
     def tools(self) -> model.Tools:
-        """What is asked for."""
+        """What is requested."""
         return model.Tools(
             specs=self._entries("spec"), files=self._entries("file"), bits=self._entries("bit"),
             holder=windows.chosen(self._holder), stick_out=self._stick_out.value() or None,

@@ -35,7 +35,7 @@ class Panel(windows.Panel):
         self.part.take(quiet=True)
 
     def job(self) -> model.Job:
-        """What is asked for now."""
+        """What is requested now."""
         if not self.part.body:
             raise model.Refused("select the body to machine, or faces of it, and press “Take”")
         model.thing_of(self.part.document, self.part.body)

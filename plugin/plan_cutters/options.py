@@ -22,12 +22,12 @@ from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.errors import OptionError
 from plan_cutters.library.records import Entry, Library, libraries_of
-from plan_cutters.machines.given_setups import setups_given, without
+from plan_cutters.machines.requested_setups import setups_requested, without
 from plan_cutters.option_types import ANGLES, PlanOptions
 
-#: Gouge tolerances that can be asked for, mm.
+#: Gouge tolerances that can be requested, mm.
 LEAST_TOLERANCE, MOST_TOLERANCE = 1e-4, 10.0
-#: Longest length that can be asked for, mm: longer ones are rather a mistake. Most threads.
+#: Longest length that can be requested, mm: longer ones are rather a mistake. Most threads.
 _LONGEST, _MOST_JOBS = 1e6, 1024
 #: What the plan of operations reckons with: the least and the largest value of each option, and its unit.
 _RECKONED = {"feed": (0.1, 1e6, "mm/min"), "scallop": (1e-5, 10.0, "mm"), "stepover": (0.01, 1.0, "diameters"),
@@ -35,13 +35,13 @@ _RECKONED = {"feed": (0.1, 1e6, "mm/min"), "scallop": (1e-5, 10.0, "mm"), "stepo
              "change_time": (0.0, 1e5, "s"), "setup_time": (0.0, 1e6, "s"), "overlap": (0.0, 1e3, "mm")}  # fmt: skip
 
 
-def machine_given(given: Any) -> Machine:
+def machine_option(value: Any) -> Machine:
     """A machine, or what a text names: a file is read only where it is none of the names."""
-    if isinstance(given, str | os.PathLike) and given != "unlimited":
+    if isinstance(value, str | os.PathLike) and value != "unlimited":
         from plan_cutters.machines.read import machine_of
 
-        return machine_of(given)
-    return Machine.of(given)
+        return machine_of(value)
+    return Machine.of(value)
 
 
 def cores() -> int:
@@ -51,7 +51,7 @@ def cores() -> int:
     return os.cpu_count() or 1
 
 
-#: Contacts between the samples unless a number is asked for: so many for each sample, and at most.
+#: Contacts between the samples unless a number is requested: so many for each sample, and at most.
 _BETWEEN, _MOST_BETWEEN = 24, 100_000
 
 
@@ -70,7 +70,7 @@ class Options:
     holder : Holder, optional
         Of the cutters that have none, but for those of libraries; may be given as a text such as `R15L30`.
     allowance, holder_clearance : float
-        Stock left on the surface, and room asked of neck, shank and holder, for cutters that do not say so themselves.
+        Stock left on the surface, and clearance required of neck, shank and holder, for cutters that do not say so themselves.
     machine : Machine
         May be given as a text: `tilt:60`, the name of a built-in one, or a machine file.
     setup : tuple of float
@@ -110,7 +110,7 @@ class Options:
     answers : tuple of str
         What is to be answered after the plan, of `domain.answers.ANSWERS`, or `all`; may be given as one text.
     length_over_radius : float
-        Of the bare flat and ball ends whose largest radius is asked for.
+        Of the bare flat and ball ends whose largest radius is requested.
     operations : str, optional
         `fewest`, `fastest` or `both`: plan operations with fixed orientations, by their number, by their time, or both.
     feed : float, optional
@@ -229,9 +229,9 @@ class Options:
             raise OptionError(f"on machine {self.machine.name} {axes} the tool: a plan of operations chooses the angles of two; "
                               "leave out --operations, or name a machine that has them")  # fmt: skip
         if not self.held_alike and (self.posture_maps or {"mend", "mend-all"} & set(self.answers)):
-            asked = "posture maps are" if self.posture_maps else "the answer mend is"
+            answer = "posture maps are" if self.posture_maps else "the answer mend is"
             raise OptionError(
-                f"{asked} about one setup, and these differ in fixtures or clamped faces: plan one setup by itself"
+                f"{answer} about one setup, and these differ in fixtures or clamped faces: plan one setup by itself"
             )
         if self.operations in ("fastest", "both") and self.feed is None and not self.libraries:
             raise OptionError("the fastest operations need a feed: give --feed MM/MIN, or ask for the fewest")
@@ -239,7 +239,7 @@ class Options:
             raise OptionError(f"most operations {self.most_operations} must be at least 1")
         for word, (low, high, unit_) in _RECKONED.items():
             value = getattr(self, word)
-            # Angles are rad here, and degrees where they are asked for and read.
+            # Angles are rad here, and degrees where they are requested and read.
             if value is not None and not low <= (value := math.degrees(value) if unit_ == "deg" else value) <= high:
                 raise OptionError(
                     f"{word.replace('_', ' ')} {value:g} must lie between {low:g} and {high:,.9g} {unit_}"
@@ -262,8 +262,8 @@ class Options:
             take(libraries=(self.cutters, *libraries), cutters=())
         else:
             take(libraries=libraries, cutters=Cutter.each_of(self.cutters))
-        take(machine=machine_given(self.machine))
-        take(**setups_given(self.setup, self.placement, self.other_setups, self.other_placements, self.fixtures,
+        take(machine=machine_option(self.machine))
+        take(**setups_requested(self.setup, self.placement, self.other_setups, self.other_placements, self.fixtures,
                             propose=flag(self.propose, "propose")))  # fmt: skip
         take(tolerance=number(self.tolerance, "tolerance"))
         take(jobs=cores() if self.jobs is None else whole(self.jobs, "jobs"))
@@ -331,19 +331,19 @@ class Options:
     def judged(self) -> tuple[Cutter, ...]:
         """The cutters to judge, each id once, with what is asked for the whole plan."""
         built_in = () if self.cutters or self.libraries else builtin()
-        given = [self._asked(c, self.holder) for c in (*self.cutters, *built_in)]
+        cutters = [self._asked(c, self.holder) for c in (*self.cutters, *built_in)]
         listed = [self._asked(c, None) for library in self.libraries for c in library]
-        return tuple({c.id: c for c in (*given, *listed)}.values())
+        return tuple({c.id: c for c in (*cutters, *listed)}.values())
 
     @property
     def sources(self) -> dict[str, tuple[tuple[Library, Entry], ...]]:
         """By the id of a cutter to judge, where it is listed in the libraries."""
-        found: dict[str, list[tuple[Library, Entry]]] = {}
+        result: dict[str, list[tuple[Library, Entry]]] = {}
         for library in self.libraries:
             for cutter in library:
-                places = found.setdefault(self._asked(cutter, None).id, [])
+                places = result.setdefault(self._asked(cutter, None).id, [])
                 places += [(library, entry) for entry in library.entries_of(cutter)]
-        return {name: tuple(places) for name, places in found.items()}
+        return {name: tuple(places) for name, places in result.items()}
 
     def _asked(self, cutter: Cutter, holder: Holder | None) -> Cutter:
         return cutter.asked(self.allowance, self.holder_clearance, holder)

@@ -19,7 +19,7 @@ from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock, Progress
 from plan_cutters.document.notes import noted
 from plan_cutters.document.operations_entry import with_motion
-from plan_cutters.document.plan import Elsewhere, OverSetups, completed, plan_of, selection
+from plan_cutters.document.plan import OtherSetup, OverSetups, completed, plan_of, selection
 from plan_cutters.document.setup_table import setup_table
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.checks import shown
@@ -107,27 +107,30 @@ def plan(
     """
     if progress is not None and not callable(progress):
         raise OptionError(f"progress must be a function of (stage, done, total), not {shown(progress)}")
-    given = {**part.options, **options} if isinstance(part, Scene) else options
-    return run(part, Options.of(given), Clock(progress), judged=judged)
+    settings = {**part.options, **options} if isinstance(part, Scene) else options
+    return run(part, Options.of(settings), Clock(progress), judged=judged)
 
 
 def run(
     part: Any, options: Options, clock: Clock, *, read_timeout: float = TIMEOUT, at: At = lambda whose, face: None,
-    ahead: Callable[[str], None] = lambda entry: None, aside: Mapping[int, str] | None = None, judged: Judge = judge,
+    compiling: Callable[[str], None] = lambda entry: None, excluded: Mapping[int, str] | None = None, judged: Judge = judge,
 ) -> Result:  # fmt: skip
     """`plan` with its options gathered.
 
     `read_timeout` is the most seconds that a faulty file may take to read; `at` is told whose work goes on at which face;
-    `ahead` waits for the machine code of an entry that is made meanwhile; `aside` says by number why faces are not to be worked
-    on at all; `judged` gives the verdicts of each cutter in each setup, as `judge` does.
+    `compiling` waits for the machine code of an entry that is made meanwhile; `excluded` says by number why faces are not
+    to be worked on at all; `judged` gives the verdicts of each cutter in each setup, as `judge` does.
     """
     if options.propose:
-        again = partial(run, read_timeout=read_timeout, at=at, ahead=ahead, judged=judged)
+        again = partial(run, read_timeout=read_timeout, at=at, compiling=compiling, judged=judged)
         return plan_proposed(
-            partial(prepare, part, read_timeout=read_timeout, at=at, ahead=ahead, aside=aside), again, options, clock
+            partial(prepare, part, read_timeout=read_timeout, at=at, compiling=compiling, excluded=excluded),
+            again,
+            options,
+            clock,
         )
     started = datetime.datetime.now(datetime.UTC)
-    ready = prepare(part, options, clock, read_timeout=read_timeout, at=at, ahead=ahead, aside=aside)
+    ready = prepare(part, options, clock, read_timeout=read_timeout, at=at, compiling=compiling, excluded=excluded)
     here: dict[Cutter, Verdicts] = {}
     seconds: dict[Cutter, float] = {}
     searched = Work()
@@ -139,24 +142,24 @@ def run(
             here[cutter] = judged(ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell,
                                   work=searched)  # fmt: skip
             seconds[cutter] = time.perf_counter() - began
-    elsewhere = [(axis, _elsewhere(ready, here, k, clock, judged)) for k, axis in enumerate(options.other_setups, 1)]
-    told = _judged(ready, here, elsewhere, seconds, clock)
-    answers = ask(ready, {cutter: each.here for cutter, each in told.items()}, clock.stage, elsewhere)
+    others = [(axis, _in_other_setup(ready, here, k, clock, judged)) for k, axis in enumerate(options.other_setups, 1)]
+    reported = _judged(ready, here, others, seconds, clock)
+    answers = ask(ready, {cutter: each.here for cutter, each in reported.items()}, clock.stage, others)
     if options.operations is not None:
         from plan_cutters.operations.planning import plan_operations
 
         everywhere = [
-            {c: each.here for c, each in told.items()},
-            *({c: found[c.id] for c in told} for _, found in elsewhere),
+            {c: each.here for c, each in reported.items()},
+            *({c: verdicts_there[c.id] for c in reported} for _, verdicts_there in others),
         ]
         answers = replace(answers, operations=plan_operations(ready, everywhere, answers.least_set, clock.stage))
-    result = assemble(ready, told, clock, started, answers, elsewhere, searched, ahead)
+    result = assemble(ready, reported, clock, started, answers, others, searched, compiling)
     if not options.posture_maps:
         return result
     with clock.stage("maps") as tell:
-        ahead("free_map.free_map")
+        compiling("free_map.free_map")
         cutter = next(c for c in ready.cutters if c.id == result.shown)
-        verdicts = told[cutter].here
+        verdicts = reported[cutter].here
         if ready.conditions.machine.limited:
             verdicts = judge(replace(ready, conditions=ready.conditions.machineless), cutter)
         maps = posture_maps(
@@ -175,29 +178,35 @@ def run(
     return replace(result, plan=clock.stamp(with_text(document)), maps=maps)
 
 
-def _elsewhere(
+def _in_other_setup(
     ready: Prepared, here: Mapping[Cutter, Verdicts], setup: int, clock: Clock, judged: Judge
 ) -> dict[str, Verdicts]:
     """Find the verdicts of each cutter in another setup."""
-    found = {}
+    by_cutter = {}
     for cutter, verdicts in here.items():
         with clock.stage("setups") as tell:
-            found[cutter.id] = in_setup(ready, cutter, setup, verdicts, progress=tell, judged=judged)
-    return found
+            by_cutter[cutter.id] = in_setup(ready, cutter, setup, verdicts, progress=tell, judged=judged)
+    return by_cutter
 
 
 def prepare(
-    part: Any, options: Options, clock: Clock | None = None, *, read_timeout: float = TIMEOUT,
-    at: At = lambda whose, face: None, ahead: Callable[[str], None] = lambda entry: None, aside: Mapping[int, str] | None = None,
-) -> Prepared:  # fmt: skip
+    part: Any,
+    options: Options,
+    clock: Clock | None = None,
+    *,
+    read_timeout: float = TIMEOUT,
+    at: At = lambda whose, face: None,
+    compiling: Callable[[str], None] = lambda entry: None,
+    excluded: Mapping[int, str] | None = None,
+) -> Prepared:
     """Read, sample, classify and surround with obstacles; arguments as for `run`."""
     if options.propose:
         raise OptionError("setup auto is for a whole plan: name the setup")
     clock = clock or Clock()
     with clock.stage("read"):
         stands = _read(part, options, read_timeout)
-        if aside and isinstance(stands, Part):
-            stands = stands.without(aside)
+        if excluded and isinstance(stands, Part):
+            stands = stands.without(excluded)
     cutters = tuple(ranked(options.judged))
     whole = stands.part if isinstance(stands, Scene) else stands
     with clock.stage("measure"):
@@ -220,7 +229,7 @@ def prepare(
     # Sampling and meshing need nothing of each other.
     with SideProcess(job, _SAMPLING, worth=options.jobs > 1 and len(chosen.targets) >= _MANY_FACES) as side:
         with clock.stage("tessellate"):
-            around = scene.surround(at, jobs=options.jobs)
+            surroundings = scene.surround(at, jobs=options.jobs)
         with clock.stage("sample"):
             samples, spacing, coarser = side.result(partial(job, at=partial(at, "kernel")))
     with clock.stage("classify"):
@@ -234,15 +243,15 @@ def prepare(
     with clock.stage("tree"):
         conditions, *_ = each = conditions_of(scene, options)
         for one in each:
-            one.around.build(options.jobs)
+            one.surroundings.build(options.jobs)
     with clock.stage("compile"):
-        ahead("search.search")
+        compiling("search.search")
         warm(contacts_of(samples), cutters[0], conditions)
     with clock.stage("bodies"):
         within = inside_material(
-            samples, scene.orientation, around.enclosing, around.certain, conditions.tolerance, options.jobs
+            samples, scene.orientation, surroundings.enclosing, surroundings.certain, conditions.tolerance, options.jobs
         )
-        inside = inside_bodies(within, around.bodies, scene.orientation)
+        inside = inside_bodies(within, surroundings.bodies, scene.orientation)
         ready = with_setups(
             Prepared(
                 scene,
@@ -300,41 +309,52 @@ class Judged:
 
 
 def _judged(
-    ready: Prepared, here: Mapping[Cutter, Verdicts], elsewhere: Sequence[Elsewhere], seconds: Mapping[Cutter, float],
+    ready: Prepared, here: Mapping[Cutter, Verdicts], other_setups: Sequence[OtherSetup], seconds: Mapping[Cutter, float],
     clock: Clock,
 ) -> dict[Cutter, Judged]:  # fmt: skip
     """Combine the verdicts of each cutter over all setups, find the reasons, and make its line in the plan."""
-    samples, convex, around = ready.samples, ready.surface_class == CONVEX, ready.conditions.around
+    samples, convex, surroundings = ready.samples, ready.surface_class == CONVEX, ready.conditions.surroundings
     inside = ready.inside_bodies
     reasons = Reasons(samples, ready.setups, ready.somewhere, ready.machinable)
-    told = {}
+    by_cutter = {}
     with clock.stage("reasons") as tell:
         for k, (cutter, mine) in enumerate(here.items()):
-            over, which = over_setups([mine, *(found[cutter.id] for _, found in elsewhere)])
-            told[cutter] = reasons.of(cutter, over, part_of(tell, k, len(here))), which
+            over, which = over_setups([mine, *(verdicts_there[cutter.id] for _, verdicts_there in other_setups)])
+            by_cutter[cutter] = reasons.of(cutter, over, part_of(tell, k, len(here))), which
     judged = {}
     for cutter, mine in here.items():
-        explained, which = told[cutter]
+        explained, which = by_cutter[cutter]
         verdicts = explained.verdicts
         with clock.stage(cutter.id, shown=False):
             slack, part = ready.conditions.outer_tool(cutter).slack, ready.scene.part
-            found = witnesses(samples, verdicts, cutter, ready.conditions, inside=ready.shut, part=part)
+            witness_list = witnesses(samples, verdicts, cutter, ready.conditions, inside=ready.shut, part=part)
             marched = march_differs(samples, convex, ready.region, mine.interference_free)
-            entry = cutter_entry(cutter, samples, verdicts, found, marched, seconds[cutter], part=part, around=around,
-                                 slack=slack, inside=inside, besides=explained.besides)  # fmt: skip
-            judged[cutter] = Judged(verdicts, which, mine if elsewhere else verdicts, entry)
+            entry = cutter_entry(
+                cutter,
+                samples,
+                verdicts,
+                witness_list,
+                marched,
+                seconds[cutter],
+                part=part,
+                surroundings=surroundings,
+                slack=slack,
+                inside=inside,
+                besides=explained.besides,
+            )
+            judged[cutter] = Judged(verdicts, which, mine if other_setups else verdicts, entry)
     return judged
 
 
 def assemble(
     ready: Prepared, judged: Mapping[Cutter, Judged], clock: Clock | None = None,
     started: datetime.datetime | None = None, answers: Answers | None = None,
-    elsewhere: Sequence[Elsewhere] = (), searched: Work | None = None,
-    ahead: Callable[[str], None] = lambda entry: None,
+    other_setups: Sequence[OtherSetup] = (), searched: Work | None = None,
+    compiling: Callable[[str], None] = lambda entry: None,
 ) -> Result:  # fmt: skip
     """The result of all cutters: the choice, the area between the samples for the one chosen, what was answered, the plan.
 
-    `searched`: the work of all searches, which bounds that between the samples unless a budget was asked for.
+    `searched`: the work of all searches, which bounds that between the samples unless a budget was requested.
     """
     clock, answers = clock or Clock(), answers or Answers()
     reaches = {cutter.id: each.verdicts for cutter, each in judged.items()}
@@ -344,7 +364,7 @@ def assemble(
     beyond = ready.somewhere & ~np.logical_or.reduce(within)
     moved = travels(ready.options, ready.samples, {cutter: each.here for cutter, each in judged.items()})
     over = OverSetups(reaches, here, served_in, ready.scene.setup,
-                      tuple((axis, dict(found)) for axis, found in elsewhere))  # fmt: skip
+                      tuple((axis, dict(verdicts_there)) for axis, verdicts_there in other_setups))  # fmt: skip
     entries = completed([judged[c].entry for c in ready.cutters], ready, answers, over, beyond, moved)
     selected, chosen = selection(entries)
     # Where obstacles are missing, none is selected, but one may reach all that could be judged.
@@ -352,7 +372,7 @@ def assemble(
     budget = ready.options.contacts_between(len(ready.samples))
     if best and budget:
         with clock.stage("area"):
-            ahead("cover.cover")
+            compiling("cover.cover")
             cutter = next(c for c in ready.cutters if c.id == best)
             most = np.inf
             if searched is not None and ready.options.area_budget is None:
@@ -361,7 +381,7 @@ def assemble(
             setups = ready.setups[:1] if ready.alike else ready.setups
             which = np.minimum(judged[cutter].which, len(setups) - 1)
             served = in_each(ready.samples, judged[cutter].verdicts, which, cutter, ready.scene.part, ready.scene.orientation,
-                             setups, budget=budget, most=most, beside=ready.inside_bodies)  # fmt: skip
+                             setups, budget=budget, most=most, covered_samples=ready.inside_bodies)  # fmt: skip
         area = AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
                          short=served.short, dropped=served.dropped, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
         entries = [

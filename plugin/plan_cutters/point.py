@@ -19,9 +19,9 @@ from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange, Range
 from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.errors import OptionError
-from plan_cutters.machines.given_setups import setups_given
+from plan_cutters.machines.requested_setups import setups_requested
 from plan_cutters.option_types import PointOptions
-from plan_cutters.options import Options, machine_given
+from plan_cutters.options import Options, machine_option
 from plan_cutters.scene.conditions import tools
 from plan_cutters.scene.scene import Scene
 from plan_cutters.stages.posture_map import SETTLED, Ask, PostureMap, moved, posture_map_of
@@ -91,7 +91,7 @@ def posture_map(
     >>> [np.degrees(tilts).round(1).tolist() for tilts in found.free]
     [[[27.6, 61.4]], []]
     """
-    cutter, machine = Cutter.of(cutter), machine_given(machine)
+    cutter, machine = Cutter.of(cutter), machine_option(machine)
     place = numbers(point, "point", 3)
     angles = in_radians(
         {"rotations": rotations, "rotations_deg": rotations_deg}, {"rotations": Angle(-360.0, 360.0, "several")}
@@ -113,25 +113,33 @@ def posture_map(
         across = np.array(Placement(stage.setup, x).x)
     ask = Ask(contact, cutter, np.array(turns), (low, high), machine, np.array(stage.setup), across)
     if wanted > 0:
-        around = stage.surround()
-        kept = around.tolerance(wanted)
-        found = posture_map_of(ask, around, tools(cutter, kept, around.certain.triangles.chord_error), _NARROWEST, kept)
-        if cutter.large_enough(kept):
-            return found
+        surroundings = stage.surround()
+        held_tolerance = surroundings.tolerance(wanted)
+        posture_map = posture_map_of(
+            ask,
+            surroundings,
+            tools(cutter, held_tolerance, surroundings.certain.triangles.chord_error),
+            _NARROWEST,
+            held_tolerance,
+        )
+        if cutter.large_enough(held_tolerance):
+            return posture_map
         # So coarse a tolerance says nothing about so small a cutter.
         none = tuple(np.zeros((0, 2)) for _ in turns)
-        left = tuple(complement(forbidden, low, high) for forbidden in found.axis_limit)
-        return replace(found, free=none, undecided=left, rear_gouge=none, collision=none, buried=none, certified=False)
+        free = tuple(complement(forbidden, low, high) for forbidden in posture_map.axis_limit)
+        return replace(
+            posture_map, free=none, undecided=free, rear_gouge=none, collision=none, buried=none, certified=False
+        )
     chord = min(_FIRST_CHORD, 1e-3 * cutter.radius)
     before: PostureMap | None = None
     for _ in range(_ROUNDS):
-        around = stage.surround_closer(chord)
-        triangles = around.certain.triangles
+        surroundings = stage.surround_closer(chord)
+        triangles = surroundings.certain.triangles
         # Twice the chord error: next to the contact, where the true clearance is zero, triangles must not count,
         # local gouging does.
         nominal = 2 * triangles.chord_error + 1e-9
         tool = assembly(cutter, nominal, nominal)
-        now = posture_map_of(ask, around, (tool, tool), _NARROWEST_NOMINAL, 0.0)
+        now = posture_map_of(ask, surroundings, (tool, tool), _NARROWEST_NOMINAL, 0.0)
         if before is not None and moved(before, now) < SETTLED:
             return replace(now, settled=True)
         before, chord = now, chord * _FINER
@@ -146,11 +154,11 @@ def _placed(part: Any, scene: PointOptions, x: Any) -> tuple[PointOptions, Any]:
     if "setup" not in scene:
         return scene, x
     own = part.fixtures if isinstance(part, Scene) else ()
-    known = setups_given(scene["setup"], None, (), (), scene.get("fixtures", own), propose=False)
+    known = setups_requested(scene["setup"], None, (), (), scene.get("fixtures", own), propose=False)
     if known["propose"]:
         raise OptionError("setup auto is for a whole plan: name the setup")
     place = known["placement"]
-    found: PointOptions = {**scene, "setup": known["setup"]}
+    options: PointOptions = {**scene, "setup": known["setup"]}
     if place is not None and place.fixtures:
-        found["fixtures"] = known["fixtures"]
-    return found, place.x if x is None and place is not None else x
+        options["fixtures"] = known["fixtures"]
+    return options, place.x if x is None and place is not None else x

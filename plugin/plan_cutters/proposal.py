@@ -21,7 +21,7 @@ from plan_cutters.result import Result
 from plan_cutters.scene.preparation import Prepared
 
 #: Proposals that are planned, at most, and the share of what was promised that a plan must hold.
-_TRIES, _KEPT = 3, 0.99
+_TRIES, _ENOUGH = 3, 0.99
 #: Shares of area that differ by less are equal.
 _ROUNDING = 1e-9
 
@@ -50,8 +50,8 @@ def plan_proposed(
     OptionError
         In no direction is anything within the limits or reached, or no proposal can be planned.
     """
-    asked = replace(options, propose=False)
-    ready = prepare(asked, clock)
+    unproposed = replace(options, propose=False)
+    ready = prepare(unproposed, clock)
     most = 1 if options.operations is None else MOST
     with clock.stage("proposal"):
         ranking = ranked(ready, most)
@@ -63,16 +63,16 @@ def plan_proposed(
         if not promised.any():
             break
         try:
-            result = run(ready.scene.turned_to(_axis(ranking, chosen[0])), _options(asked, ranking, chosen), clock)
+            result = run(ready.scene.turned_to(_axis(ranking, chosen[0])), _options(unproposed, ranking, chosen), clock)
         except PlanError as error:
             why, failed = error.cause, failed | {chosen[0]}
             continue
-        found, kept, worst = _compared(result, ranking, chosen)
-        told = _told(result, ranking, chosen, clock, (found, kept, tried))
-        if kept >= _KEPT:
-            return told
-        if best is None or found > best[0]:
-            best = found, told
+        reached_share, held_share, worst = _compared(result, ranking, chosen)
+        texts = _texts(result, ranking, chosen, clock, (reached_share, held_share, tried))
+        if held_share >= _ENOUGH:
+            return texts
+        if best is None or reached_share > best[0]:
+            best = reached_share, texts
         failed |= {worst}
     if best is not None:
         return best[1]
@@ -87,14 +87,14 @@ def _axis(ranking: Ranking, k: int) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _options(asked: Options, ranking: Ranking, chosen: tuple[int, ...]) -> Options:
+def _options(options: Options, ranking: Ranking, chosen: tuple[int, ...]) -> Options:
     """The options of a plan in the chosen setups, a table under the part in each; the scene has the unit already."""
     table = (Fixture.parse("table"),)
     first, *others = (
         Placement(_axis(ranking, k), clamped=tuple(f"F{n}" for n in ranking.candidates.stands_on[k]), fixtures=table)
         for k in chosen
     )
-    return replace(asked, setup=first.z, placement=first, other_setups=tuple(each.z for each in others),
+    return replace(options, setup=first.z, placement=first, other_setups=tuple(each.z for each in others),
                    other_placements=tuple(others), unit=None)  # fmt: skip
 
 
@@ -103,45 +103,45 @@ def _compared(result: Result, ranking: Ranking, chosen: tuple[int, ...]) -> tupl
     samples, ready = result.samples, ranking.ready
     reached = np.logical_or.reduce([each.reached for each in result.reaches.values()]) & result.ready.finished
     whole = float(np.nansum(ready.samples.area[ready.finished]))
-    found = float(np.nansum(samples.area[reached])) / max(1e-300, whole)
+    reached_share = float(np.nansum(samples.area[reached])) / max(1e-300, whole)
     # Samples may stand elsewhere where fewer faces are targets: the nearest one answers.
     near = cKDTree(samples.point).query(ready.samples.point[ranking.rows])[1]
     held = reached[near]
     served = np.stack([ranking.served[k] for k in chosen], axis=1)
     promised = served.any(axis=1)
-    kept = float(ranking.area[promised & held].sum()) / max(1e-300, float(ranking.area[promised].sum()))
-    lost = np.asarray(ranking.area @ (served & ~held[:, None]))
+    held_share = float(ranking.area[promised & held].sum()) / max(1e-300, float(ranking.area[promised].sum()))
+    missed = np.asarray(ranking.area @ (served & ~held[:, None]))
     # Clamped faces are no targets of the plan, but of the area that was to be reached.
-    every = found > 1.0 - _ROUNDING and bool((reached == result.ready.finished).all())
+    every = reached_share > 1.0 - _ROUNDING and bool((reached == result.ready.finished).all())
     return (
-        exact(found, some=bool(reached.any()), whole=every),
-        exact(kept, some=bool(held[promised].any()), whole=bool(held[promised].all())),
-        chosen[int(lost.argmax())],
+        exact(reached_share, some=bool(reached.any()), whole=every),
+        exact(held_share, some=bool(held[promised].any()), whole=bool(held[promised].all())),
+        chosen[int(missed.argmax())],
     )
 
 
-def _told(
-    result: Result, ranking: Ranking, chosen: tuple[int, ...], clock: Clock, found: tuple[float, float, int]
+def _texts(
+    result: Result, ranking: Ranking, chosen: tuple[int, ...], clock: Clock, shares: tuple[float, float, int]
 ) -> Result:  # fmt: skip
     """The same plan with its proposal."""
     served = np.stack([ranking.served[k] for k in chosen], axis=1)
     alone, any_of = ranking.share(served), np.asarray(served.any(axis=1))
     together = exact(float(ranking.share(any_of[:, None])[0]), some=bool(any_of.any()), whole=bool(any_of.all()))
-    share, kept, tried = found
+    share, held_share, tried = shares
     setups = [
         ProposedSetup(axis=_axis(ranking, k), stands_on=[f"F{n}" for n in ranking.candidates.stands_on[k]],
                       promised=min(1.0, float(each)))
         for k, each in zip(chosen, alone, strict=True)
     ]  # fmt: skip
-    held = kept >= _KEPT
+    held = held_share >= _ENOUGH
     where = [axis_words(each.axis) + (f" (on {', '.join(each.stands_on)})" if each.stands_on else " (on no plane)")
              for each in setups]  # fmt: skip
     of = f"{len(ranking.served)} of {len(ranking.candidates.axis)} directions searched at {len(ranking.rows)} samples"
     why = (f"With {of} over a table, {'this one serves' if len(setups) == 1 else 'these serve'} {percent(together)} of the "
            f"samples' area. The plan reaches {percent(share)} of the target area"
-           f"{'' if held else f', and holds only {percent(kept)} of what was promised'}.")  # fmt: skip
+           f"{'' if held else f', and holds only {percent(held_share)} of what was promised'}.")  # fmt: skip
     entry = SetupProposal(setups=setups, directions=len(ranking.candidates.axis), searched=len(ranking.served),
-                          samples=len(ranking.rows), promised=together, found=share, kept=kept, held=held, tried=tried,
+                          samples=len(ranking.rows), promised=together, found=share, kept=held_share, held=held, tried=tried,
                           why=why)  # fmt: skip
     document = noted(result.plan, setup_proposed(where, why)).model_copy(update={"setup_proposal": entry})
     return replace(result, plan=clock.stamp(with_text(document)))

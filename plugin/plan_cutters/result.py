@@ -183,7 +183,7 @@ class Result:
 
     @property
     def operations(self) -> Operations | None:
-        """The plan of operations; None where none was asked for."""
+        """The plan of operations; None where none was requested."""
         return self.answers.operations
 
     def judged(self, cutter: str | None = None) -> Cutter:
@@ -195,10 +195,10 @@ class Result:
             No cutter of the plan is called so.
         """
         wanted = self.shown if cutter is None else cutter
-        found = next((each for each in self.ready.cutters if each.id == wanted), None)
-        if found is None:
+        match = next((each for each in self.ready.cutters if each.id == wanted), None)
+        if match is None:
             raise OptionError(f"cutter {wanted!r} is none of this plan's: {', '.join(c.id for c in self.cutters)}")
-        return found
+        return match
 
     def face(self, which: Any, cutter: str | None = None, *, stick_out: bool = False) -> OnFace:
         """Tell how much of one face a cutter reaches, why not the rest, and where the worst place is.
@@ -210,7 +210,7 @@ class Result:
         cutter : str, optional
             Id; default the one `shown`.
         stick_out : bool
-            Look for the least stick-out for this face, too, where it was not asked for with the plan.
+            Look for the least stick-out for this face, too, where it was not requested with the plan.
 
         Raises
         ------
@@ -224,11 +224,11 @@ class Result:
         >>> result.face("F1", "R6L80").reached
         1.0
         """
-        found = face_numbers(self.part, which)
-        if len(found) != 1:
-            raise OptionError(f"{len(found)} faces were given, {', '.join(f'F{n}' for n in found[:5])}: ask for one, or "
+        numbers = face_numbers(self.part, which)
+        if len(numbers) != 1:
+            raise OptionError(f"{len(numbers)} faces were given, {', '.join(f'F{n}' for n in numbers[:5])}: ask for one, or "
                               "use faces(...)")  # fmt: skip
-        return self._on_face(found[0], cutter, stick_out)
+        return self._on_face(numbers[0], cutter, stick_out)
 
     def faces(self, which: Any = None, cutter: str | None = None, *, stick_out: bool = False) -> tuple[OnFace, ...]:
         """The same for several faces; default all targets.
@@ -236,10 +236,10 @@ class Result:
         `which` is given in the words of `Options.faces`, as numbers, or as objects of the kernel or a CAD host.
         """
         if which is None:
-            found = tuple(int(each.id[1:]) for each in self.plan.faces if each.target)
+            numbers = tuple(int(each.id[1:]) for each in self.plan.faces if each.target)
         else:
-            found = face_numbers(self.part, which)
-        return tuple(self._on_face(number, cutter, stick_out) for number in found)
+            numbers = face_numbers(self.part, which)
+        return tuple(self._on_face(number, cutter, stick_out) for number in numbers)
 
     def _on_face(self, number: int, cutter: str | None, stick_out: bool) -> OnFace:
         tool = self.judged(cutter)
@@ -254,7 +254,7 @@ class Result:
             known = least_stick_out(
                 self.ready, tool, replace(verdicts, verdict=np.where(mine, verdicts.verdict, UNJUDGED).astype(np.uint8))
             )
-        doubtful = self.conditions.around.doubtful
+        doubtful = self.conditions.surroundings.doubtful
         return on_face(
             self.plan.faces[number - 1],
             entry,

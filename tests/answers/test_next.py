@@ -23,7 +23,7 @@ from plan_cutters.domain.change import MEANS
 from plan_cutters.pipeline import prepare, run
 from plan_cutters.plan_file.words.answers import answers
 from plan_cutters.plan_file.words.change_text import patch
-from plan_cutters.plan_file.words.next_steps import is_left_out, step_told, together
+from plan_cutters.plan_file.words.next_steps import is_excluded, step_text, together
 from tests.support import shapes
 from tests.support.cad_parts import box, cut, real
 from tests.support.places import SAMPLES
@@ -71,7 +71,7 @@ def left(result, step):
 
 def steps_of(result, cutter=None):
     entries = [c for c in result.plan.cutters if c.mend and (cutter is None or c.id == cutter)]
-    return [step for step in entries[0].mend.steps if not is_left_out(step)]
+    return [step for step in entries[0].mend.steps if not is_excluded(step)]
 
 
 def single(result, thing):
@@ -134,7 +134,7 @@ def test_what_is_left_by_the_best_step_is_an_area_with_its_place():
     assert area.faces == ["F3"]
     assert area.point == pytest.approx((101.5, 0, 0))
     assert area.across_mm == pytest.approx(math.hypot(2.0, 80.0), rel=0.03)
-    out = [step for step in result.cutters[0].mend.steps if is_left_out(step)]
+    out = [step for step in result.cutters[0].mend.steps if is_excluded(step)]
     assert result.cutters[0].mend.steps[-1:] == out
 
 
@@ -147,7 +147,7 @@ BELOW = ("--cutter", "R3L20F10S3", "--holder", "R15L100", "--machine", "tilt:10"
 
 
 def test_turned_over_as_a_second_setup():
-    """On a block whose top and underside are asked for, turned over frees the underside: as many samples as the top has."""
+    """On a block whose top and underside are requested, turned over frees the underside: as many samples as the top has."""
     part = read_part(box(30, 40, 20))
     words = ("--cutter", "R3L40", "--machine", "tilt:10", "--faces", flat_faces(part), "--grid", "5")
     result = asked(part, *words)
@@ -163,7 +163,7 @@ def test_turned_over_as_a_second_setup():
     assert [run.samples for run in again.plan.least_set.runs] == [25, 25]
     # All of the underside is not reached: only whole faces can be left out by an option.
     out = result.cutters[0].mend.steps[-1]
-    assert is_left_out(out)
+    assert is_excluded(out)
     assert not result.reaches["R3L40"].reached[result.samples.normal[:, 2] < 0].any()
     (top,) = np.unique(result.samples.face[result.samples.normal[:, 2] > 0])
     assert out.option == f"--faces F{top}"
@@ -214,7 +214,7 @@ def test_steps_are_in_the_order_of_what_they_leave_then_of_what_they_ask():
     for entry in asked(SAMPLES / "pocket_top.step", *TRIED["pocket_top.step"]).cutters:
         if entry.mend is None:
             continue
-        told = [step for step in entry.mend.steps if not is_left_out(step)]
+        told = [step for step in entry.mend.steps if not is_excluded(step)]
         ranks = [
             (round(step.lost_after, 4), len(step.changes), sum(MEANS.index(c.thing) for c in step.changes))
             for step in told
@@ -248,7 +248,7 @@ def test_each_advice_that_is_followed_is_true(name):
     result = asked(part, *words)
     count = 0
     for entry in [c for c in result.cutters if c.mend]:
-        for step in [each for each in entry.mend.steps if not is_left_out(each)][:3]:
+        for step in [each for each in entry.mend.steps if not is_excluded(each)][:3]:
             assert step.option is not None
             count += 1
             assert left(followed(part, step, *words), step) == pytest.approx(step.lost_after, abs=0.005)
@@ -397,7 +397,7 @@ def test_a_set_is_a_sentence():
         return together(SimpleNamespace(least_set=found, samples=samples, faces=[]))
 
     up, down = (0, 0, 1), (0, 0, -1)
-    assert of([("R6L60", 0.81, up), ("R1L12", 0.182, up)], 0.992, left=9) == (
+    assert of([("R6L60", 0.81, up), ("R1L12", 0.182, up)], 0.992, omitted=9) == (
         "R6L60 for 81 % of the area and R1L12 for the rest reach 99.2 %; nothing given reaches the other 0.8 %"
     )
     assert of([("R6L60", 0.6, up), ("R6L60", 0.4, down)], 1.0) == (
@@ -410,7 +410,7 @@ def test_a_set_is_a_sentence():
     assert of([("A", 0.6, up), ("B", 0.3, up)], 0.9, unjudged=3) == (
         "A for 60 % of the area and B for the rest reach all of it that could be judged"
     )
-    assert of([("A", 0.6, up), ("B", 0.3, up)], 0.9, left=2, unjudged=3).endswith(
+    assert of([("A", 0.6, up), ("B", 0.3, up)], 0.9, omitted=2, unjudged=3).endswith(
         "; nothing given reaches another 10 %"
     )
 
@@ -463,4 +463,4 @@ def test_what_is_to_be_typed_is_typed_out():
     lines = [line for line in answered(result.plan) if "[add --cutter" in line]
     assert lines
     assert all("--cutter R" in line.partition("[")[2] for line in lines)
-    assert all("HR15L200" not in step_told(step) for step in steps_of(result))
+    assert all("HR15L200" not in step_text(step) for step in steps_of(result))

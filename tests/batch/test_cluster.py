@@ -7,8 +7,8 @@ import pytest
 from distributed import Client, LocalCluster
 
 from plan_cutters import Options, PlanError, plan, plan_many
-from plan_cutters.batch import cluster, handing
-from plan_cutters.batch.lending import Lent
+from plan_cutters.batch import cluster, job_input
+from plan_cutters.batch.shared_cluster import SharedCluster
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.files.lock import Lock
 from plan_cutters.pipeline import prepare
@@ -63,9 +63,9 @@ def test_workers_with_other_versions_are_refused_with_both_named(running, monkey
 
 
 def test_a_large_part_of_a_batch_is_judged_by_its_cluster_and_says_so(ready, running, tmp_path):
-    offer = handing.Offer(running, str(tmp_path / "turn"), str(tmp_path / "said"))
+    offer = job_input.Offer(running, str(tmp_path / "turn"), str(tmp_path / "said"))
     cutter = ready.cutters[0]
-    lent = Lent(offer, large=len(ready.samples))
+    lent = SharedCluster(offer, large=len(ready.samples))
     try:
         found = lent(ready, cutter)
         assert (tmp_path / "said").exists()
@@ -81,9 +81,9 @@ def test_a_large_part_of_a_batch_is_judged_by_its_cluster_and_says_so(ready, run
 def test_a_part_that_does_not_get_the_cluster_judges_by_itself(ready, running, tmp_path, monkeypatch, why):
     monkeypatch.setattr(cluster, "_ANSWER", 0.3)
     address = "tcp://127.0.0.1:9" if why == "no scheduler" else running
-    offer = handing.Offer(address, str(tmp_path / "turn"), str(tmp_path / "said"))
+    offer = job_input.Offer(address, str(tmp_path / "turn"), str(tmp_path / "said"))
     other = Lock(tmp_path / "turn") if why == "taken" else None
-    lent = Lent(offer, large=len(ready.samples) + (why == "small"))
+    lent = SharedCluster(offer, large=len(ready.samples) + (why == "small"))
     found = lent(ready, ready.cutters[0])
     lent.close()
     assert not (tmp_path / "said").exists()
@@ -94,7 +94,9 @@ def test_a_part_that_does_not_get_the_cluster_judges_by_itself(ready, running, t
 
 def test_a_cluster_that_is_lost_on_the_way_costs_nothing(ready, tmp_path):
     with LocalCluster(n_workers=1, processes=False, dashboard_address=":0") as mortal:
-        lent = Lent(handing.Offer(mortal.scheduler_address, str(tmp_path / "turn"), str(tmp_path / "said")), large=0)
+        lent = SharedCluster(
+            job_input.Offer(mortal.scheduler_address, str(tmp_path / "turn"), str(tmp_path / "said")), large=0
+        )
         lent(ready, ready.cutters[0])
     found = lent(ready, ready.cutters[1])
     lent.close()

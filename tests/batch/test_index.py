@@ -175,7 +175,7 @@ def test_the_summary_keeps_to_its_schema(files):
         "name": "lost",
         "file": "lost.step",
         "code": 3,
-        "error": "no cause was told (exit code 0)",
+        "error": "no cause was reported (exit code 0)",
     }
     assert summary["run"]["cluster"] == {
         "workers": 2,
@@ -296,7 +296,7 @@ def test_failures_stand_on_top_with_their_cause(page):
     assert names(page)[1:] == ["lost", "rim 10", "rim 9", "arm", "blade"]
     first = page.inner_text("#parts tbody tr:first-child")
     assert "<img src=x onerror=" in first
-    assert "no cause was told" in page.inner_text("#parts tbody tr:nth-child(2)")
+    assert "no cause was reported" in page.inner_text("#parts tbody tr:nth-child(2)")
     assert "not written: review.png: full disk" in page.inner_text("#parts tbody tr:nth-child(5)")
     assert page.title() == "Week <47>: 6 parts"
     assert "2 failed" in page.inner_text(".counts")
@@ -368,7 +368,7 @@ def test_without_scripts_every_row_is_there(browser, folder):
     context = browser.new_context(java_script_enabled=False)
     page = context.new_page()
     page.goto((folder / "index.html").as_uri())
-    assert "no cause was told" in page.inner_text("#parts")
+    assert "no cause was reported" in page.inner_text("#parts")
     assert page.locator("#parts tbody tr:visible").count() == 6
     context.close()
 

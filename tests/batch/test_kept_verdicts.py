@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 import plan_cutters
 from plan_cutters import Cutter, Machine, Options, PlanError
 from plan_cutters.batch import verdicts as kept_verdicts
-from plan_cutters.batch.verdicts import Kept, packed, unpacked
+from plan_cutters.batch.verdicts import VerdictCache, packed, unpacked
 from plan_cutters.document.clock import Clock
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, NO_REASON, UNJUDGED, WORDS, Verdicts
 from plan_cutters.pipeline import prepare, run
@@ -36,7 +36,7 @@ def planned(folder, part=PART, **asked):
         judged.append(cutter.id)
         return judge(ready, cutter, *given, **more)
 
-    kept = Kept(str(folder), counted)
+    kept = VerdictCache(str(folder), counted)
     result = run(part, Options.of(ASKED | asked), Clock(), judged=kept)
     assert (kept.judged, kept.found + kept.judged) == (len(judged), len(result.cutters))
     return result, judged, kept.faults
@@ -73,7 +73,7 @@ def test_the_entry_of_the_same_company_comes_first(tmp_path):
     first = planned(tmp_path)[0]
     ready = prepare(PART, Options.of(ASKED))
     cutter = ready.cutters[0]
-    kept = Kept(str(tmp_path))
+    kept = VerdictCache(str(tmp_path))
     alone = kept(ready, cutter, known=None)  # an entry of the same cutter serves
     assert (kept.found, kept.judged) == (1, 0)
     assert alone == first.here[cutter.id]
@@ -101,7 +101,7 @@ def test_the_entry_of_the_same_company_comes_first(tmp_path):
 )  # fmt: skip
 def test_only_what_verdicts_depend_on_counts(before, asked, again):
     folder, ready = before
-    kept = Kept(str(folder))
+    kept = VerdictCache(str(folder))
     kept._write = lambda *given: None
     there = prepare(PART, Options.of(ASKED | asked)) if asked else ready
     told = []
@@ -117,7 +117,7 @@ def test_only_what_verdicts_depend_on_counts(before, asked, again):
 def before(tmp_path_factory):
     folder = tmp_path_factory.mktemp("kept")
     ready = prepare(PART, Options.of(ASKED))
-    kept = Kept(str(folder))
+    kept = VerdictCache(str(folder))
     for cutter in ready.cutters:
         kept(ready, cutter)
     return folder, ready
@@ -216,7 +216,7 @@ def test_a_write_that_fails_half_way_leaves_nothing(tmp_path, monkeypatch):
 def test_another_program_judges_again(before, monkeypatch):
     folder, ready = before
     monkeypatch.setattr(kept_verdicts, "made_by", lambda: "a later version")
-    kept = Kept(str(folder))
+    kept = VerdictCache(str(folder))
     kept._write = lambda *given: None
     kept(ready, ready.cutters[0])
     assert (kept.found, kept.judged) == (0, 1)
@@ -225,7 +225,7 @@ def test_another_program_judges_again(before, monkeypatch):
 def test_rows_and_work_are_as_of_judge(before):
     folder, ready = before
     cutter, rows = ready.cutters[0], np.arange(100, 300)
-    kept, one, other = Kept(str(folder)), Work(), Work()
+    kept, one, other = VerdictCache(str(folder)), Work(), Work()
     whole = judge(ready, cutter, work=one)
     assert kept(ready, cutter, work=other) == whole
     assert one.looked == other.looked > 0
@@ -280,7 +280,7 @@ def test_a_key_keeps_out_what_others_wrote(tmp_path):
     cutter = ready.cutters[0]
 
     def judged_with(key):
-        kept = Kept(str(tmp_path), key=key)
+        kept = VerdictCache(str(tmp_path), key=key)
         kept(ready, cutter)
         return kept.judged, kept.faults
 

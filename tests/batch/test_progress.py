@@ -31,7 +31,7 @@ def test_plain_lines_name_each_part_and_the_cause_of_a_failure():
     assert lines(found[1]) == [
         "blade: finished: Take flat end D12 x 60",
         "rim\\n\\x1b[2J: failed: rim.step: not a STEP file",
-        "blade: finished: Take flat end D12 x 60; kept from an earlier run; not written: review.png",
+        "blade: finished: Take flat end D12 x 60; reused from an earlier run; not written: review.png",
         "3 of 3 parts done, 1 failed",
     ]
 
@@ -45,7 +45,7 @@ def test_a_line_is_never_wrapped():
 def test_quiet_tells_failures_alone_even_after_it_is_closed():
     one, text = board(quiet=True)
     one.say("dashboard: http://127.0.0.1:8787")
-    one.told(1, 2, 3)
+    one.progress(1, 2, 3)
     one.row(GOOD)
     one.close()
     assert text.getvalue() == ""
@@ -83,7 +83,7 @@ def test_the_address_is_said_once():
 
 def test_a_terminal_has_a_bar_and_lines_for_failures():
     one, text = board(terminal=True)
-    one.told(0, 2, 3)
+    one.progress(0, 2, 3)
     one.row(GOOD)
     one.row(BAD)
     one.say("dashboard: http://127.0.0.1:8787/status")
@@ -114,7 +114,7 @@ def test_a_stream_that_is_gone_ends_nothing(terminal):
     one = Board(False, 2, console=Screen(file=Broken(), force_terminal=terminal))
     one.say("hello")
     one.row(BAD)
-    one.told(1, 0, 2)
+    one.progress(1, 0, 2)
     one.close()
     assert (one.done, one.failed) == (1, 1)
 
@@ -123,7 +123,7 @@ def test_a_stream_that_is_gone_ends_nothing(terminal):
 def test_a_part_that_is_told_of_twice_counts_once(before):
     one, text = board(total=3)
     for done in (1, 2, 3):
-        steps = [lambda done=done: one.told(done, 3 - done, 3), lambda: one.row(GOOD)]
+        steps = [lambda done=done: one.progress(done, 3 - done, 3), lambda: one.row(GOOD)]
         for step in steps if before else steps[::-1]:
             step()
     one.close()

@@ -18,8 +18,8 @@ from hypothesis import strategies as st
 
 import plan_cutters
 from plan_cutters import Cutter, Options, PlanError
-from plan_cutters.batch import rows as cut
-from plan_cutters.batch.rows import Rows, judged_block
+from plan_cutters.batch import distributed_judge as cut
+from plan_cutters.batch.distributed_judge import DistributedJudge, judged_block
 from plan_cutters.document.clock import Clock
 from plan_cutters.domain.nesting import handed
 from plan_cutters.domain.verdicts import ACCESSIBLE, INTERFERENCE_FREE, UNJUDGED, Verdicts
@@ -72,7 +72,7 @@ def told(result):
 @given(block=st.integers(1, 5000), reverse=st.booleans())
 @settings(max_examples=6, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 def test_however_it_is_cut_the_verdicts_and_the_work_are_those_of_one_run(client, ready, single, block, reverse):
-    judged = Rows(client, large=0, block=block)
+    judged = DistributedJudge(client, large=0, block=block)
     for cutter in sorted(single, key=lambda c: c.id, reverse=reverse):
         verdicts, known, looked = single[cutter]
         work = Work()
@@ -106,7 +106,7 @@ def test_a_ground_holds_no_shape_of_the_kernel(ready):
 def test_a_plan_is_the_same_with_its_area_bound_and_other_setups_and_fixtures(client, tmp_path):
     asked = ASKED | {"grid": 25, "other_setups": [(0, 1, 1)], "fixtures": "table"}
     one = run(PART, Options.of(asked), Clock())
-    other = run(PART, Options.of(asked), Clock(), judged=Rows(client, large=0, block=CHUNK))
+    other = run(PART, Options.of(asked), Clock(), judged=DistributedJudge(client, large=0, block=CHUNK))
     assert told(one) == told(other)
     assert one.plan.cutters[0].area is not None or any(each.area for each in one.plan.cutters)
     for cutter, verdicts in one.here.items():
@@ -117,7 +117,7 @@ def test_a_plan_is_the_same_with_its_area_bound_and_other_setups_and_fixtures(cl
 
 def test_python_takes_a_client(client, monkeypatch):
     monkeypatch.setattr(cut, "LARGE", 0)
-    monkeypatch.setitem(Rows.__init__.__kwdefaults__, "large", 0)
+    monkeypatch.setitem(DistributedJudge.__init__.__kwdefaults__, "large", 0)
     asked = {"cutters": "R6L60", "grid": 25, "area_budget": 0}
     sent = []
     real = client.submit
@@ -129,10 +129,10 @@ def test_python_takes_a_client(client, monkeypatch):
 def test_a_small_part_and_single_rows_are_judged_here(ready, single):
     cutter = next(iter(single))
     verdicts, known, _ = single[cutter]
-    nobody = Rows(None)
+    nobody = DistributedJudge(None)
     assert nobody(ready, cutter, known=known) == verdicts
     rows = np.arange(100, 700)
-    assert Rows(None, large=0)(ready, cutter, rows, known) == verdicts.of(rows)
+    assert DistributedJudge(None, large=0)(ready, cutter, rows, known) == verdicts.of(rows)
 
 
 def test_what_judging_raises_is_raised(client, ready, monkeypatch):
@@ -141,7 +141,7 @@ def test_what_judging_raises_is_raised(client, ready, monkeypatch):
 
     monkeypatch.setattr(cut, "judge", broken)
     with pytest.raises(ZeroDivisionError, match="at sample 7"):
-        Rows(client, large=0)(ready, ready.cutters[0])
+        DistributedJudge(client, large=0)(ready, ready.cutters[0])
 
 
 def test_a_worker_of_another_version_is_refused(ready):
@@ -155,14 +155,14 @@ def test_another_version_is_one_line(client, ready, monkeypatch):
     here, real = threading.get_ident(), cut.made_by
     monkeypatch.setattr(cut, "made_by", lambda: "plan-cutters 9.9" if threading.get_ident() == here else real())
     with pytest.raises(PlanError, match=r"another version .* than this program \(plan-cutters 9\.9\)"):
-        Rows(client, large=0)(ready, ready.cutters[0])
+        DistributedJudge(client, large=0)(ready, ready.cutters[0])
 
 
 def test_what_is_lost_with_a_worker_is_handed_out_again(client, ready, single, monkeypatch):
     """The ground that was scattered may be gone with all workers that had it: the scheduler then cancels what needs it."""
     cutter = next(iter(single))
     verdicts, known, looked = single[cutter]
-    judged, real, rounds, work = Rows(client, large=0, block=CHUNK), client.submit, [], Work()
+    judged, real, rounds, work = DistributedJudge(client, large=0, block=CHUNK), client.submit, [], Work()
 
     def submit(*given, **more):
         future = real(*given, **more)
@@ -188,7 +188,7 @@ def test_losing_workers_for_ever_is_an_error(client, ready, monkeypatch):
 
     monkeypatch.setattr(client, "submit", submit)
     with pytest.raises(PlanError, match="again and again"):
-        Rows(client, large=0)(ready, ready.cutters[0])
+        DistributedJudge(client, large=0)(ready, ready.cutters[0])
 
 
 @pytest.mark.slow
@@ -204,7 +204,7 @@ def test_a_worker_that_is_killed_costs_nothing(ready, single):
             killer = threading.Timer(0.05, lambda pid=pids[0]: os.kill(pid, signal.SIGKILL))
             killer.start()
             work = Work()
-            assert Rows(client, large=0, block=CHUNK)(ready, cutter, known=known, work=work) == verdicts
+            assert DistributedJudge(client, large=0, block=CHUNK)(ready, cutter, known=known, work=work) == verdicts
             assert work.looked == looked
             killer.join()
             client.wait_for_workers(2, timeout=60)
@@ -247,7 +247,7 @@ def test_a_scheduler_that_is_killed_while_blocks_are_on_it_is_one_line(ready, tm
 
                 def judging():
                     try:
-                        Rows(client, large=0, block=CHUNK)(ready, ready.cutters[0])
+                        DistributedJudge(client, large=0, block=CHUNK)(ready, ready.cutters[0])
                     except PlanError as error:
                         caught.append(str(error))
 

@@ -204,7 +204,7 @@ def test_what_is_in_flight_is_bounded_and_an_error_is_not_tried_again(client):
     class Counted:
         most = 0
 
-        def told(self, done, running, total):
+        def progress(self, done, running, total):
             self.most = max(self.most, running)
 
     board, drawn = Counted(), []
@@ -242,7 +242,7 @@ def test_a_worker_that_can_plan_nothing_is_left_out_and_fails_no_part(client):
     class Board:
         lines: ClassVar[list[str]] = []
 
-        def told(self, *_):
+        def progress(self, *_):
             pass
 
         def say(self, text):

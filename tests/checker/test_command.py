@@ -59,7 +59,7 @@ def test_files_that_are_not_there_or_broken_end_with_2(copied, name):
     (copied / name).unlink()
     gone = checked(copied)
     assert gone.returncode == 2
-    assert f"{name} must stand beside it" in gone.stderr
+    assert f"{name} must be in its folder" in gone.stderr
 
 
 @pytest.mark.parametrize(

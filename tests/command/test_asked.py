@@ -1,4 +1,4 @@
-"""What is asked for: faces chosen and left out, kinds of arguments, angles that cannot be radians."""
+"""What is requested: faces chosen and left out, kinds of arguments, angles that cannot be radians."""
 
 import json
 import math

@@ -200,7 +200,7 @@ def test_where_none_is_feasible_the_worst_faces_are_listed(capsys, failing):
     }
     worst = sorted(not_reached.values(), reverse=True)[:5]
     assert [not_reached[row[0]] for row in rows] == pytest.approx([each for each in worst if each])
-    assert all(head in said for head in ("mm2 lost", "of the face"))
+    assert all(head in said for head in ("mm2 not reached", "of the face"))
     assert "Over the 2 setups" in said
 
 

@@ -44,7 +44,7 @@ class Children:
         monkeypatch.setattr(retry, "supervise", self)
 
     def __call__(self, words, *, more, timeout, since, **_):
-        self.told.append((json.loads(more.get(retry.ASIDE, "[0, {}]"))[0], since))
+        self.told.append((json.loads(more.get(retry.EXCLUDED, "[0, {}]"))[0], since))
         end = self.ends.pop(0)
         if isinstance(end, Exception):
             raise end

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from plan_cutters.comparison.markdown import escaped, markdown
 from plan_cutters.comparison.matching import match_faces
-from plan_cutters.comparison.model import ASKED, Comparison, schema_text
+from plan_cutters.comparison.model import REQUESTED, Comparison, schema_text
 from plan_cutters.comparison.plans import SLACK, compare
 from plan_cutters.plan_file.model import FaceEntry
 from tests.support.places import ROOT
@@ -232,7 +232,7 @@ def test_two_questions_are_not_comparable_unless_asked_for(word, changed):
     found = compare(old, new)
     assert not found.comparable
     assert [c.what for c in found.changes if c.hinders] == [word]
-    assert word in ASKED
+    assert word in REQUESTED
     assert found.why_not[0].startswith(f"{word} differs: ")
     assert compare(old, new, despite=[word]).comparable
 

@@ -44,7 +44,7 @@ def test_a_cutter_that_has_its_own_keeps_it():
     ("make", "cause"),
     [
         (lambda: Cutter.parse("R6L20F30"), "shorter than its flutes"),
-        (lambda: Cutter.parse("R6L20S6"), "no room for a shank"),
+        (lambda: Cutter.parse("R6L20S6"), "no length for a shank"),
         (lambda: Cutter.parse("R6L80F20N5x70"), "more than the length"),
         (lambda: Cutter.parse("R6L20rc6F5"), "end within its corner"),
         (lambda: Cutter.parse("R6L80T85"), "beyond 80 deg"),

@@ -536,8 +536,8 @@ def bad(session):
 def test_a_program_that_gives_no_plan_is_a_line(bad):
     says = {
         "wrong": "the part holds nothing",
-        "silent": "the program ended with code 7 and said nothing",
-        "killed": "the program ended with code -9 and said nothing",
+        "silent": "the program ended with code 7 and wrote nothing",
+        "killed": "the program ended with code -9 and wrote nothing",
         "none": "the program wrote no plan: give options of plan-cutters alone, no files of parts",
         "torn": "the program wrote no plan: give options of plan-cutters alone, no files of parts",
         "other": "the program wrote no plan of plan-cutters",

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from cad_io import ReadError
 from plan_cutters import CutterError, Holder, OptionError, plan
-from plan_cutters.domain.revolution import stages_around
+from plan_cutters.domain.revolution import enclosing_segments
 from plan_cutters.hosts import holder
 
 CHUCK = "R13:15L2+R15L28+R20L40"
@@ -219,7 +219,7 @@ def test_stages_enclose_any_lines(sections, tolerance, most, exact):
         line.append((0.5 * first, low + 0.3 * length, 0.5 * last, low + 0.6 * length))
         low += length
     rows = np.array(line)
-    stages, kept = stages_around(rows, np.full(len(rows), exact), 3.0, tolerance=tolerance, most=most)
+    stages, kept = enclosing_segments(rows, np.full(len(rows), exact), 3.0, tolerance=tolerance, most=most)
     assert len(stages) <= most
     assert kept >= tolerance
     made = Holder(stages)

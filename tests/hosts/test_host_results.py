@@ -229,7 +229,7 @@ def test_the_least_stick_out_of_a_face(result):
     top = next(each.number for each in result.faces() if each.number != floor)
     unknown = result.face(floor)
     assert unknown.least_stick_out is None
-    assert "was not asked for" in unknown.why_no_stick_out
+    assert "was not requested" in unknown.why_no_stick_out
     held = {number: result.face(number, stick_out=True).least_stick_out for number in (floor, top)}
     # The slot is 10 mm deep and the holder wider than it: upright it ends at 10 mm; tilted along the slot it may be less.
     assert held[top] < held[floor] <= 10.0 + 2 * EXACT

@@ -9,7 +9,7 @@ import pytest
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.kernels import material
 from plan_cutters.kernels.search import search
-from plan_cutters.scene.conditions import found_of
+from plan_cutters.scene.conditions import verdict_arrays_of
 from tests.support import waves
 from tests.support.counted import counted
 
@@ -37,7 +37,7 @@ def work(nudge):
     contacts, vertex = waves.samples(14), waves.triangles(61)
     vertex += 1e-9 * rng.standard_normal(vertex.shape)
     n, turn = len(contacts.point), 2 * np.pi * np.arange(24) / 24
-    found = found_of(blank(n))
+    found = verdict_arrays_of(blank(n))
     found.axis[:] = 0.0
     solids = material.sheet(waves.tree_of(vertex))
     tools = waves.flat(6.0, 40.0, 0.04), waves.flat(6.0, 40.0, 0.06)
@@ -63,7 +63,7 @@ def not_reached(nudge):
     rng = np.random.default_rng(nudge)
     contacts, vertex = waves.comb_samples(6), waves.comb_triangles(24)
     vertex += 1e-9 * rng.standard_normal(vertex.shape)
-    found, solids = found_of(blank(72)), material.sheet(waves.tree_of(vertex))
+    found, solids = verdict_arrays_of(blank(72)), material.sheet(waves.tree_of(vertex))
     turned = waves.ranges(2 * np.pi * np.arange(24) / 24)
     tools = waves.flat(1.6, 20.0, 0.02), waves.flat(1.6, 20.0, 0.03)
     search.search(np.arange(72), contacts, turned, *tools, solids, solids, found)

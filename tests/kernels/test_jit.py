@@ -131,7 +131,7 @@ def test_sources_in_rooms_below_count(tmp_path, monkeypatch):
 
 @pytest.fixture
 def loaded(tmp_path, monkeypatch):
-    """Import the kernels anew, as a later process does; the entry that was asked for, its hits, and what was warned of."""
+    """Import the kernels anew, as a later process does; the entry that was requested, its hits, and what was warned of."""
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
     (tmp_path / "sources").mkdir()
     source = tmp_path / "sources" / "kernels_of_test.py"

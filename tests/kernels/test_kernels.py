@@ -18,7 +18,7 @@ from plan_cutters.kernels.rows import Contacts, Frame, Tree
 from plan_cutters.kernels.search import place, search
 from plan_cutters.kernels.tool import hit
 from plan_cutters.kernels.tool.arcs import point_arc
-from plan_cutters.scene.conditions import found_of, ranges_of
+from plan_cutters.scene.conditions import ranges_of, verdict_arrays_of
 from tests.support import waves
 from tests.support.reference import depth_in_cutter, posture, random_frame, triangle_points
 
@@ -242,7 +242,7 @@ def test_search_agrees_with_a_posture_grid(seed):
     point = rng.normal(0, 6, (n, 3))
     radius, length, s = 3.0, 30.0, 0.01
     rotations = np.arange(12) * math.pi / 6
-    out = found_of(blank(n))
+    out = verdict_arrays_of(blank(n))
     contacts = Contacts(point, normal, direction, np.zeros((n, 2)))
     tool = waves.flat(radius, length, s)
     search.search(np.arange(n), contacts, waves.ranges(rotations), tool, tool, solids, solids, out)

@@ -12,7 +12,7 @@ from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, UNDECIDED, bl
 from plan_cutters.kernels import material
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.kernels.search import place, search, sweep
-from plan_cutters.scene.conditions import Conditions, found_of
+from plan_cutters.scene.conditions import Conditions, verdict_arrays_of
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.stages import witness
@@ -33,7 +33,7 @@ def comb():
 def searched(contacts, solids, radius, rows):
     reach = blank(len(contacts.point))
     tools = waves.flat(radius, LENGTH, SAFE), waves.flat(radius, LENGTH, BLOCKED)
-    search.search(rows, contacts, RANGES, *tools, solids, solids, found_of(reach))
+    search.search(rows, contacts, RANGES, *tools, solids, solids, verdict_arrays_of(reach))
     return reach
 
 

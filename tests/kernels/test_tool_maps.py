@@ -102,7 +102,7 @@ def test_a_flat_end_through_the_planes_is_the_same(scene):
     """Its eight sides are a short cut: without them the same tilts are free, up to what is undecided."""
     tool = tool_of(assembly(TOOLS["flat"], DEPTH, DEPTH))
     part, count, unsure = mapped(scene, tool)
-    # They want tilts up to 90 deg: a little more is asked for.
+    # They want tilts up to 90 deg: a little more is requested.
     plain = tool._replace(mode=np.array([[*tool.mode[0, :3], np.pi / 2 + 1e-6, tool.mode[0, 4]]]))
     wide, few, doubt = mapped((*scene[:2], scene[2]._replace(tilt_high=np.pi / 2 + 1e-6)), plain)
     _, _, eight = bounds.turning_of(tool.piece[0], tool.mode[0, 0], 0.0, np.pi / 2)

@@ -116,7 +116,7 @@ def test_a_tool_drawn_out_meets_every_triangle_that_reaches_into_it(kind):
         corner = near(rng, made, mode, tilt, size) + size * rng.standard_normal((3, 3)) * 10.0 ** rng.uniform(-2, 0, 3)
         corner[:, 1] += rng.uniform(-1.2, 1.2) * half
         whole = (1 << made.piece.shape[1]) - 1
-        mask = extrusion.drawn_hit(corner[None].copy(), 0, body, made.piece[mode], whole, scratch)
+        mask = extrusion.extruded_hit(corner[None].copy(), 0, body, made.piece[mode], whole, scratch)
         points = GRID @ corner
         deepest = np.full(made.piece.shape[1], -np.inf)
         # The nearest copy of the tool: y is cut down by up to half.

@@ -414,7 +414,7 @@ def test_a_freecad_library_finds_its_bits_and_nothing_else(tmp_path):
              {"nr": 4, "path": "/etc/passwd"}, {"nr": 5}]  # fmt: skip
     path = tmp_path / "Library" / "shop.fctl"
     path.write_text(json.dumps({"label": "shop", "tools": tools}))
-    with pytest.raises(LibraryError, match="its bit is neither beside"):
+    with pytest.raises(LibraryError, match="its bit is neither in the folder of"):
         freecad(path)
     library = freecad(path, skip_bad=True)
     assert [(entry.number, entry.broken) for entry in library.entries[:2]] == [(1, False), (2, False)]

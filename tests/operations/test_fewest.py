@@ -1,4 +1,4 @@
-"""The fewest orientations with rows and candidates that are made only when they are asked for, against the whole table."""
+"""The fewest orientations with rows and candidates that are made only when they are requested, against the whole table."""
 
 from types import SimpleNamespace
 

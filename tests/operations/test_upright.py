@@ -6,9 +6,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from plan_cutters import plan
-from plan_cutters.kernels.search.fixed_axis import LEANS
+from plan_cutters.kernels.search.fixed_axis import DIRECTIONS
 from plan_cutters.scene.clearance import least_clearance
-from plan_cutters.scene.fixed_axis import held_at, served_by, standing
+from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at, served_by
 
 LONG, WIDE, DEEP, RADIUS = 40.0, 16.0, 8.0, 7.0
 #: A turn of the part by which none of its axes stays, and that leaves its floor a normal of many digits.
@@ -46,7 +46,7 @@ def test_a_floor_is_served_wherever_the_end_finds_room(pocket):
     free = served_by(rows, axis[None], result.samples, result.judged(cutter), result.conditions)[0][0]
     at_best = room(place)
     # From the best side the nearest that is tried is half a step away at most.
-    loss = RADIUS * (np.pi / LEANS) * 1.01
+    loss = RADIUS * (np.pi / DIRECTIONS) * 1.01
     assert not free[at_best < -0.02].any()
     assert free[at_best > loss].all()
     assert (at_best > loss).sum() > 60
@@ -65,7 +65,7 @@ def test_postures_of_a_floor_keep_the_tool_from_the_walls(pocket):
     assert np.allclose(np.linalg.norm(lean, axis=1), 1.0)
     middle = place[free] - RADIUS * lean[:, :2]
     assert (np.abs(middle) + RADIUS <= np.array([0.5 * LONG, 0.5 * WIDE]) + 0.02).all()
-    assert least_clearance(standing(samples, held), cutter, held, result.conditions) >= 0.0
+    assert least_clearance(at_fixed_axis(samples, held), cutter, held, result.conditions) >= 0.0
 
 
 def test_rotations_that_are_limited_leave_one_side(pocket):

@@ -101,7 +101,7 @@ def test_a_finer_tolerance_is_not_promised_where_none_can_be_kept():
 )
 def test_only_what_lies_on_loose_faces_alone_is_not_asked(faces, verdict, asked):
     around = SimpleNamespace(loose={2: 0.3})
-    conditions = SimpleNamespace(tolerance=0.01, around=around, judges=lambda cutter: True)
+    conditions = SimpleNamespace(tolerance=0.01, surroundings=around, judges=lambda cutter: True)
     ready = SimpleNamespace(finished=np.ones(2, bool), conditions=conditions, scene=SimpleNamespace(asked=0.01),
                             samples=SimpleNamespace(face=np.array(faces)))  # fmt: skip
     found = blank(2)

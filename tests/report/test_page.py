@@ -150,7 +150,7 @@ def forbidding(found, k):
 def test_the_live_map_agrees_with_the_posture_map_away_from_borders(page, planned):
     """For a cutter without stored maps: every cause, and nothing free that is forbidden two degrees around.
 
-    The map is asked for with the tolerance that the live one keeps: the drawn triangles lie that far from the surface.
+    The map is requested with the tolerance that the live one keeps: the drawn triangles lie that far from the surface.
     """
     page.locator(f'#cutters tr[data-cutter="{OTHER}"] button.text').click()
     verdict = planned.reaches[OTHER].verdict

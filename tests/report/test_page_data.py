@@ -498,7 +498,7 @@ def test_a_page_that_cannot_be_made_costs_only_itself(valley, tmp_path, monkeypa
         raise WriteError("the CAD kernel made no triangle of the part")
 
     result, _ = valley
-    monkeypatch.setattr(write, "drawn", fails)
+    monkeypatch.setattr(write, "render_mesh", fails)
     document = result.write(tmp_path, ("json", "html", "npz"))
     assert document.not_written == {"html": "the CAD kernel made no triangle of the part"}
     assert sorted(p.name for p in tmp_path.iterdir()) == ["plan.json", "postures.npz", "samples.npz"]

@@ -99,7 +99,7 @@ def test_sentences_are_those_of_the_story(planned, read):
 
 
 def test_only_what_no_fixed_axis_reaches_is_said_to_need_simultaneous_motion(planned):
-    """Where fewer orientations were asked for than all needs, another one may reach what is left."""
+    """Where fewer orientations were requested than all needs, another one may reach what is left."""
     entry = planned.plan.operations
     first = entry.plans[0]
     moved = first.operations[-1].model_copy(update={"mode": "simultaneous", "axis": None, "angles_deg": None})

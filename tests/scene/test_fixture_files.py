@@ -9,7 +9,7 @@ import trimesh
 from cad_io import ReadError, read_part
 from cad_io.files import noted
 from cad_io.read.mesh import read_mesh
-from cad_io.read.skins import skins
+from cad_io.read.shells import shells
 from plan_cutters import Fixture, plan
 from plan_cutters.plan_file.palette import PALETTE
 from plan_cutters.report.to_json import schema
@@ -40,8 +40,8 @@ def test_units_and_axes(tmp_path, kind, unit, scale):
         # Its Y is up, and it is in metres.
         expected, scale = np.array([[1, -11, 2], [5, -3, 8.0]]), scale if unit else 1000.0
     assert corners == pytest.approx(scale * expected, rel=1e-6)
-    assert (found.skins.closed, found.skins.open) == (1, 0)
-    assert found.skins.weight.tolist() == [1] * 12
+    assert (found.shells.closed, found.shells.open) == (1, 0)
+    assert found.shells.weight.tolist() == [1] * 12
     assert len(found.sha256) == 64
     said = " ".join(found.notes)
     assert ("mm was assumed" in said) == (unit is None and kind != "glb")
@@ -51,7 +51,7 @@ def test_units_and_axes(tmp_path, kind, unit, scale):
 def test_ascii_stl_and_meshes_of_several_bodies(tmp_path):
     file = tmp_path / "block.stl"
     file.write_text(trimesh.exchange.stl.export_stl_ascii(solid()))
-    assert read_mesh(file).skins.closed == 1
+    assert read_mesh(file).shells.closed == 1
     scene = trimesh.Scene()
     scene.add_geometry(solid(np.zeros(3), np.ones(3)), node_name="one")
     scene.add_geometry(
@@ -61,7 +61,7 @@ def test_ascii_stl_and_meshes_of_several_bodies(tmp_path):
     )
     scene.export(tmp_path / "two.glb")
     found = read_mesh(tmp_path / "two.glb")
-    assert found.skins.closed == 2
+    assert found.shells.closed == 2
     assert np.ptp(found.vertex, axis=(0, 1)) == pytest.approx([6000, 1000, 1000])
 
 
@@ -74,31 +74,31 @@ def test_our_own_model_comes_back_where_the_part_is(tmp_path):
 
 def test_what_encloses():
     block = vises.block(LOW, HIGH)
-    assert skins(block[:, ::-1]).weight.tolist() == [-1] * 12
+    assert shells(block[:, ::-1]).weight.tolist() == [-1] * 12
     mixed = block.copy()
     mixed[[1, 4, 7]] = mixed[[1, 4, 7], ::-1]
-    found = skins(mixed)
+    found = shells(mixed)
     assert (found.closed, found.turned) == (1, 1)
     assert np.flatnonzero(found.weight < 0).tolist() == [1, 4, 7]
-    opened = skins(block[1:])
+    opened = shells(block[1:])
     assert (opened.closed, opened.open, opened.weight.any()) == (0, 1, False)
     # Two that touch along an edge, one apart, and an open one.
     beside = vises.block(LOW + np.array([4, 6, 0]), HIGH + np.array([4, 6, 0]))
-    found = skins(np.concatenate([block, beside, block + 50.0, block[1:] - 50.0]))
+    found = shells(np.concatenate([block, beside, block + 50.0, block[1:] - 50.0]))
     assert (found.closed, found.open) == (2, 1)
     assert (found.weight[:36] == 1).all()
     # A corner that is off in its last digits, and triangles without area.
     loose = block + 1e-9 * np.random.default_rng(1).standard_normal(block.shape)
-    assert skins(loose).closed == 1
-    assert skins(np.concatenate([block, block[:1, [0, 1, 1]]])).closed == 1
-    assert skins(np.zeros((3, 3, 3))).closed == 0
+    assert shells(loose).closed == 1
+    assert shells(np.concatenate([block, block[:1, [0, 1, 1]]])).closed == 1
+    assert shells(np.zeros((3, 3, 3))).closed == 0
     # One side only: a strip with a half turn.
     turn = np.linspace(0, 2 * np.pi, 25)
     rim = [np.stack([(9 + s * np.cos(t / 2)) * np.cos(t), (9 + s * np.cos(t / 2)) * np.sin(t), s * np.sin(t / 2)], axis=1)
            for s, t in ((-2, turn), (2, turn))]  # fmt: skip
     a, b = rim
     strip = np.concatenate([np.stack([a[:-1], a[1:], b[1:]], axis=1), np.stack([a[:-1], b[1:], b[:-1]], axis=1)])
-    assert skins(strip).closed == 0
+    assert shells(strip).closed == 0
 
 
 def broken(folder):

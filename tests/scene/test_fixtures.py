@@ -103,7 +103,7 @@ def test_a_fixture_and_a_face_of_the_part_give_the_same_verdicts(cutter, height,
         assert one.not_reached.all() if not_reached else one.reached.all()
     if not one.not_reached.any():
         return
-    # What the fixture stops is the holder: a longer stick-out would do, and is asked for before another place of the fixture.
+    # What the fixture stops is the holder: a longer stick-out would do, and is requested before another place of the fixture.
     assert {REASONS[r] for r in other.reason[other.not_reached]} == {"fixture" if walled else "holder"}
     assert set(fixed.cutters[0].by_reason) == set(REASONS)
     assert {w.obstacle_face for w in fixed.cutters[0].witnesses} & {"fixture:table", "fixture:box"}

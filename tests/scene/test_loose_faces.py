@@ -13,14 +13,14 @@ from cad_io import read_part
 from cad_io.tessellate import tessellate
 from plan_cutters import PostureMaps, plan
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INTERFERENCE_FREE, UNDECIDED
-from plan_cutters.scene.obstacles import CHORD_ASKED, CHORD_SHARE
+from plan_cutters.scene.obstacles import CHORD_REQUESTED, CHORD_SHARE
 from tests.support.cad_parts import real
 from tests.support.distances import ROUNDING, farthest_from, surface_points
 
 PROPELLER, SPRING = real("hard/autogiro_Prop1045_inverso.step", "hard/occtds_bug22869_Spring.igs")
 ASKED = {"cutters": "R3L60rc3F20S3", "spacing": 4, "area_budget": 0}
 TOLERANCE = 0.01
-CHORD = CHORD_ASKED * TOLERANCE
+CHORD = CHORD_REQUESTED * TOLERANCE
 #: So many triangles leave one small face of the propeller loose, F23.
 BUDGET, LOOSE = 350_000, 23
 

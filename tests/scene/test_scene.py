@@ -1,4 +1,4 @@
-"""A scene is what was asked for; what stands in the way of it is made when it is asked for, once, and handed on."""
+"""A scene is what was requested; what stands in the way of it is made when it is requested, once, and handed on."""
 
 import inspect
 import pickle
@@ -53,7 +53,7 @@ def test_surroundings_are_made_once_and_handed_on(made):
     result = plan(scene, **SMALL)
     posture_map(scene, point=(0, 0, 0), cutter="R3L40", rotations=[0.0])
     assert made.count("surroundings") == made.count("joined") == 1
-    assert scene.surround() is around is result.conditions.around
+    assert scene.surround() is around is result.conditions.surroundings
     with pytest.raises(AttributeError):
         around.possible = None
 
@@ -83,7 +83,7 @@ def test_meshing_comes_before_sampling_however_many_work(jobs):
     order = list(dict.fromkeys(told))
     assert order.index("tessellate") < order.index("classify")
     assert len(told) - 1 - told[::-1].index("sample") > told.index("tessellate")
-    assert ready.conditions.tolerance == ready.conditions.around.tolerance(ready.scene.asked)
+    assert ready.conditions.tolerance == ready.conditions.surroundings.tolerance(ready.scene.asked)
 
 
 def test_a_tolerance_is_kept_or_raised_to_what_triangles_allow():

@@ -191,7 +191,7 @@ def test_what_lies_between_samples_that_are_far_apart_is_said_not_to_be_seen(mon
     assert "was not seen" in " ".join(story_of(found).scope)
     assert code_of(found) == NOT_ALL_JUDGED
     assert any("times as far apart as curvature and the smallest cutter ask" in note for note in found.notes)
-    # Who asks for it is told, too, but has what was asked for.
+    # Who asks for it is told, too, but has what was requested.
     asked = plan(part, cutters=CUTTERS, faces="F6", area_budget=0, spacing=20.0).plan
     assert not_seen(asked, short_names(asked))
     assert code_of(asked) == FEASIBLE

@@ -110,7 +110,7 @@ def test_fixtures_are_listed_with_the_setups_that_they_stand_in():
     assert sum("fixture:table" in note and "in the setup 0,0,-1" in note for note in found.plan.notes) == 1
     tables = [each.setups for each in found.plan.fixtures if each.name == "fixture:table"]
     assert tables == [[0], [1]]
-    first = [each.name for each in found.conditions.around.fixtures]
+    first = [each.name for each in found.conditions.surroundings.fixtures]
     assert [each.name for each in found.plan.fixtures][: len(first)] == first
     assert [each.setups[0] for each in found.plan.fixtures] == sorted(each.setups[0] for each in found.plan.fixtures)
 

@@ -16,8 +16,8 @@ from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.stages.cells import CellContacts, Field, quartered
+from plan_cutters.stages.face_cells import FaceCells, _cover
 from plan_cutters.stages.nodes import tensors
-from plan_cutters.stages.site import Site, _cover
 from tests.support import shapes
 from tests.support.contacts import UP, deepest, dense, served
 from tests.support.places import SAMPLES
@@ -104,8 +104,8 @@ def test_no_smaller_patch_is_served_where_none_is_said_to_be():
     part = read_part(shapes.shell(shapes.Patch.random(np.random.default_rng(3), height=9.0).face()))
     cutter, sites = Cutter.flat(radius=3.0, length=40.0), []
     with pytest.MonkeyPatch.context() as patch:
-        made = Site.refine
-        patch.setattr(Site, "refine", lambda site, *asked: (sites.append(site), made(site, *asked))[1])
+        made = FaceCells.refine
+        patch.setattr(FaceCells, "refine", lambda site, *asked: (sites.append(site), made(site, *asked))[1])
         served(part, cutter, budget=2000, grid=31, tolerance=0.02)
     (site,) = sites
     never = 0
@@ -135,7 +135,7 @@ def test_leans_too_small_to_know_their_side_serve_no_cell_beside_a_wall():
             assert deepest(found, geometry, whole, cutter, dense(whole, 0.4), 400, np.random.default_rng(0)) < 0.01
         # Farther than a diameter from the wall, at x = 9, it does not matter on which side the cutter stands.
         near = geometry(1, found.cells.uv)[0][:, 0] > 9.0 - 2.0 * cutter.radius
-        assert low > 0.4 or found.cells.area[near].sum() < 0.05 * found.around.sum()
+        assert low > 0.4 or found.cells.area[near].sum() < 0.05 * found.surroundings.sum()
 
 
 def test_axes_between_samples_keep_the_machines_limit():

@@ -158,7 +158,7 @@ def test_stored_maps_answer_on_the_command_line(tmp_path):
         assert message in refused.stderr
     refused = run(SAMPLES / "pocket_top.step", "--postures", maps, "--cutter", "R1L9", cwd=tmp_path)
     assert refused.returncode == 2
-    assert "which was not asked for" in refused.stderr
+    assert "which was not requested" in refused.stderr
     refused = run(part, "--postures", part, cwd=tmp_path)
     assert refused.returncode == 2
     assert "no posture maps" in refused.stderr

@@ -94,7 +94,7 @@ def test_neck_and_shank_are_told_from_the_holder():
 
 
 def test_a_fixture_that_an_axis_limit_could_avoid_comes_second():
-    """In the order of what is asked for first; each is true by a plan without it."""
+    """In the order of what is requested first; each is true by a plan without it."""
     part, wall = read_part(cut(box(40, 40, 20), rod(12, 8, (20, 20, 14)))), ["box:10,60,60@40.5,-10,-10"]
     found = {
         (machine, bool(fixtures)): plan(part, cutters=["R3L40"], machine=machine, fixtures=fixtures, **HOW).reaches["R3L40"]

@@ -24,10 +24,10 @@ from tests.support.schemas import valid
 PART = str(SAMPLES / "pocket_top.step")
 CUTTER = "R4L40"
 BASE = {"cutters": CUTTER, "grid": 7, "area_budget": 0, "fixtures": "box:5,5,5@0,0,60"}
-#: By option: values that a plan could be asked for; None: it is refused by name, else it is answered.
+#: By option: values that a plan could be requested; None: it is refused by name, else it is answered.
 CASES = {
-    "cutters": [("R3L40", "cutter R4L40, which was not asked for"), ("R4L40", None), (["R1L9", "R4L40"], None)],
-    "libraries": [("library", "cutter R4L40, which was not asked for")],
+    "cutters": [("R3L40", "cutter R4L40, which was not requested"), ("R4L40", None), (["R1L9", "R4L40"], None)],
+    "libraries": [("library", "cutter R4L40, which was not requested")],
     "holder": [("R15L30", "another holder")],
     "allowance": [(0.2, "allowance 0, not 0.2"), (0.0, None)],
     "holder_clearance": [(0.5, "holder clearance 0, not 0.5")],
@@ -141,7 +141,7 @@ def told(*words):
         (["--holder-clearance", "0.2"], "holder clearance"),
         (["--holder", "R15L30"], "another holder"),
         (["--cutter", "R4L40", "--allowance", "0.2"], "allowance"),
-        (["--cutter", "R1L9"], "which was not asked for"),
+        (["--cutter", "R1L9"], "which was not requested"),
         (["--grid", "9"], "grid"),
         (["--spacing", "3"], "spacing"),
         (["--tilt", "0:120"], "tilts 0:90"),

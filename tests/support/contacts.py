@@ -14,7 +14,7 @@ from plan_cutters.scene.fixed_axis import held_at, served_by
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.stages.between import between
-from plan_cutters.stages.site import Fixed
+from plan_cutters.stages.face_cells import Fixed
 
 UP = np.array([0.0, 0.0, 1.0])
 

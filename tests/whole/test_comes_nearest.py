@@ -11,7 +11,7 @@ from plan_cutters.batch.rows_of_plans import row_of
 from plan_cutters.command.summary import summary
 from plan_cutters.plan_file.load import plan_of
 from plan_cutters.plan_file.nearest import leaves, nearest
-from plan_cutters.plan_file.words.cutters import left
+from plan_cutters.plan_file.words.cutters import remaining_text
 from plan_cutters.plan_file.words.story import shown as shown_of
 from plan_cutters.plan_file.words.story import story_of
 from plan_cutters.report.page.tables import Drawing, of
@@ -85,4 +85,4 @@ def test_of_equal_areas_fewer_samples_decide_and_then_the_order():
 def test_faces_are_named_by_the_area_that_is_lost_on_them():
     faces = [face(1, area=1.0), face(2, area=5000.0)]
     document = made(faces, [cutter("R6L80", {"F1": verdicts(900), "F2": verdicts(10)})])
-    assert "They lie on F2, F1." in left(document, document.cutters[0])
+    assert "They lie on F2, F1." in remaining_text(document, document.cutters[0])

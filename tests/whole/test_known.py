@@ -74,7 +74,7 @@ def test_the_plan_says_for_how_many_samples_a_witness_stands():
 def test_the_way_out_is_the_one_that_all_triangles_tell(ready, seed):
     """The walk of the tree, beside a look at each triangle."""
     rng = np.random.default_rng(seed)
-    around = ready.conditions.around
+    around = ready.conditions.surroundings
     skin, body = around.certain, around.enclosing[int(rng.integers(len(around.enclosing)))]
     mine = np.isin(skin.triangles.face, body.faces)
     vertex, face = skin.triangles.vertex[mine], skin.triangles.face[mine]
@@ -179,7 +179,7 @@ def test_the_page_asks_for_one_coarse_mesh_and_draws_what_it_may(monkeypatch):
     monkeypatch.setattr(drawing, "starts", lambda *a, **more: calls.append(a[2]) or starts(*a, **more))
     sides = np.ones(len(part.faces))
     for most, chord in ((60_000, 1e-2), (2_000, 3e-2)):
-        found = drawing.drawn(part, sides, most=most, deflection=chord)
+        found = drawing.render_mesh(part, sides, most=most, deflection=chord)
         assert len(calls) == 1
         assert calls.pop() > chord
         assert sum(len(mesh.triangle) for mesh in found.meshes.values()) <= most

@@ -32,7 +32,7 @@ from plan_cutters.kernels.maps import free_tilts
 from plan_cutters.kernels.material import sheet
 from plan_cutters.kernels.rows import Contacts, Tree
 from plan_cutters.kernels.search import search
-from plan_cutters.scene.conditions import Conditions, found_of, search_postures, tool_of
+from plan_cutters.scene.conditions import Conditions, search_postures, tool_of, verdict_arrays_of
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings, surroundings
 from tests.support import shapes, waves
@@ -219,7 +219,7 @@ def test_kernels_take_what_is_no_number_for_a_hit():
         assert not (parts[:, 2] == free_tilts.OPEN).any()
         out = blank(1)
         contact = Contacts(point[None], normal[None], tilt_direction[None], straight)
-        search.search(one, contact, waves.ranges(np.zeros(1)), tool, inner_tool, far, far, found_of(out))
+        search.search(one, contact, waves.ranges(np.zeros(1)), tool, inner_tool, far, far, verdict_arrays_of(out))
         assert out.verdict[0] != ACCESSIBLE
         tried += 1
     assert tried == 9

@@ -50,7 +50,7 @@ class Reason(Entry):
     name: str
     meaning: str
     try_first: str = Field(description="a rule of thumb, not computed: what was computed is in `would_help`")
-    share: float = Field(description="of the area in question that is lost by it")
+    share: float = Field(description="of the area in question that is not reached for it")
 
 
 class Help(Entry):
@@ -70,7 +70,7 @@ class Lost(Entry):
 
     face: str
     share: float = Field(description="of the face that is not reached")
-    reason: str | None = Field(description="code of the reason by which most is lost")
+    reason: str | None = Field(description="code of the reason for which most is not reached")
 
 
 class CutterAnswer(Entry):
@@ -85,7 +85,7 @@ class CutterAnswer(Entry):
     lost_by: dict[str, float] = Field(description="code of a reason -> share of the area")
     faces: list[Lost] = Field(description="the worst first")
     more_faces: int = 0
-    next: Help | None = Field(default=None, description="the step that gains most, where `mend` was asked for")
+    next: Help | None = Field(default=None, description="the step that gains most, where `mend` was requested")
 
 
 class Missing(Entry):
@@ -183,7 +183,7 @@ class Postures(Entry):
 
     point: Vector = Field(description="the nearest point of the part")
     face: str
-    off_mm: float = Field(description="from the point that was asked for")
+    off_mm: float = Field(description="from the requested point")
     normal: Vector
     direction_max: Vector = Field(description="rotation 0")
     certified: bool = Field(description="free tilts are safe for the true surface, to the tolerance")

@@ -18,13 +18,13 @@ from cad_io.files import WITHIN
 from plan_cutters.agents.limits import CallError, Limits
 
 #: Told of each step of the work: seconds since it began, and words about it.
-Onlooker = Callable[[float, str], Awaitable[None]]
+ProgressListener = Callable[[float, str], Awaitable[None]]
 #: A line of progress of the command, and a line about what went wrong.
 _STEP, _FAULT = re.compile(r"^\s*(\d+\.\d) s  (.+)$"), re.compile(r"^plan-cutters[\w -]*: ")
 #: Seconds that a process has to end in order.
 _GRACE = 3.0
 #: Most bytes of its output that are kept: what is longer is no answer, and of what it says the end counts.
-_OUTPUT, _SAID = 256 << 20, 1 << 20
+_OUTPUT, _LOG = 256 << 20, 1 << 20
 #: Environment variable by which the command knows how many samples it may take.
 MOST_SAMPLES = "PLAN_CUTTERS_MOST_SAMPLES"
 
@@ -42,7 +42,7 @@ async def run(
     words: Sequence[str],
     cwd: Path,
     limits: Limits,
-    tell: Onlooker,
+    tell: ProgressListener,
     *,
     within: Sequence[Path],
     answers: Sequence[int] = (0, 1, 4),
@@ -67,20 +67,20 @@ async def run(
         [sys.executable, "-c", begin, *words[1:], *more], stdin=DEVNULL, cwd=cwd, env=_environment(limits, within),
         start_new_session=True,
     )  # fmt: skip
-    kept, said = bytearray(), bytearray()
+    output, errors = bytearray(), bytearray()
     try:
         async with anyio.create_task_group() as tasks:
-            tasks.start_soon(_collect, process.stdout, kept)
-            tasks.start_soon(_listen, process.stderr, said, tell)
+            tasks.start_soon(_collect, process.stdout, output)
+            tasks.start_soon(_listen, process.stderr, errors, tell)
         code = await process.wait()
     finally:
         await _end(process)
-    if len(kept) > _OUTPUT:
+    if len(output) > _OUTPUT:
         raise CallError("the answer of the command is too long: choose fewer faces or cutters")
-    faults = tuple(line for line in bytes(said).decode(errors="replace").splitlines() if _FAULT.match(line))
+    faults = tuple(line for line in bytes(errors).decode(errors="replace").splitlines() if _FAULT.match(line))
     if code not in answers:
-        raise CallError(_line(faults[-1]) if faults else f"the command ended with exit code {code} and said nothing")
-    return Ended(code, bytes(kept), faults)
+        raise CallError(_line(faults[-1]) if faults else f"the command ended with exit code {code} and wrote nothing")
+    return Ended(code, bytes(output), faults)
 
 
 def _environment(limits: Limits, within: Sequence[Path]) -> Mapping[str, str]:
@@ -93,20 +93,20 @@ def _line(fault: str) -> str:
     return fault.partition(": ")[2][:2000]
 
 
-async def _collect(stream: ByteReceiveStream | None, kept: bytearray) -> None:
+async def _collect(stream: ByteReceiveStream | None, buffer: bytearray) -> None:
     if stream is not None:
         async for piece in stream:
-            if len(kept) <= _OUTPUT:
-                kept += piece
+            if len(buffer) <= _OUTPUT:
+                buffer += piece
 
 
-async def _listen(stream: ByteReceiveStream | None, said: bytearray, tell: Onlooker) -> None:
+async def _listen(stream: ByteReceiveStream | None, output: bytearray, tell: ProgressListener) -> None:
     rest = b""
     if stream is None:
         return
     async for piece in stream:
-        said += piece
-        del said[:-_SAID]
+        output += piece
+        del output[:-_LOG]
         *lines, rest = (rest + piece).split(b"\n")
         for line in lines:
             if step := _STEP.match(line.decode(errors="replace")):

@@ -42,12 +42,14 @@ def chosen(name: str, known: list[tuple[str, str]]) -> str:
         lambda id, label: text in (id.lower(), label.lower()),
         lambda id, label: begins(id) or begins(label),
     ):
-        found = [id for id, label in known if test(id, label)]
-        if len(found) > 1 and _PLAIN.fullmatch(text):
+        matches = [id for id, label in known if test(id, label)]
+        if len(matches) > 1 and _PLAIN.fullmatch(text):
             # R6 says no corner radius, as R6L80 does.
-            found = [id for id in found if "rc" not in id] or found
-        if len(found) == 1:
-            return found[0]
-        if found:
-            raise CallError(f"{len(found)} cutters may be meant by {name!r}: {', '.join(found[:8])}; give the whole id")
+            matches = [id for id in matches if "rc" not in id] or matches
+        if len(matches) == 1:
+            return matches[0]
+        if matches:
+            raise CallError(
+                f"{len(matches)} cutters may be meant by {name!r}: {', '.join(matches[:8])}; give the whole id"
+            )
     raise CallError(f"no cutter is called {name!r}; there is {listed([id for id, _ in known])}")

@@ -101,9 +101,12 @@ def _by_share(lost_by: Mapping[str, float]) -> list[tuple[str, float]]:
 
 
 def _cutter(plan: Plan, c: CutterEntry, text: str, most: int) -> CutterAnswer:
-    lost = sorted((-v.area_share.not_reached, name) for name, v in c.faces.items() if v.not_reached)
+    by_face = sorted((-v.area_share.not_reached, name) for name, v in c.faces.items() if v.not_reached)
     faces, more = first(
-        [Lost(face=name, share=-share, reason=main_reason(c.faces[name].area_share) or None) for share, name in lost],
+        [
+            Lost(face=name, share=-share, reason=main_reason(c.faces[name].area_share) or None)
+            for share, name in by_face
+        ],
         most,
     )
     steps = helps(plan, c)

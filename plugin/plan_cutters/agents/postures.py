@@ -14,19 +14,19 @@ _DIGITS = 3
 
 def postures_of(output: bytes, tilt: tuple[float, float], most: int) -> Postures:
     """The postures in the output of the command; `tilt`: what was searched, deg."""
-    found = json.loads(output)
-    rows = found["rotations"]
+    answer = json.loads(output)
+    rows = answer["rotations"]
     wide = max(1e-12, (tilt[1] - tilt[0]) * len(rows))
     forbidden = {word: sum(_width(row[word]) for row in rows) / wide for word in CAUSES}
     gouge = sum(_below(row["local_gouge"], tilt) for row in rows) / wide
     forbidden = {word: min(1.0, share) for word, share in {"local_gouge": gouge, **forbidden}.items() if share > 0.0}
     rotations, more = first([_row(row) for row in rows], most)
     return Postures(
-        point=found["point"], face=found["face"], off_mm=found["off_mm"], normal=found["normal"],
-        direction_max=found["direction_max"], certified=found["certified"],
+        point=answer["point"], face=answer["face"], off_mm=answer["off_mm"], normal=answer["normal"],
+        direction_max=answer["direction_max"], certified=answer["certified"],
         free_share=min(1.0, sum(_width(row["free"]) for row in rows) / wide),
         undecided_share=min(1.0, sum(_width(row["undecided"]) for row in rows) / wide),
-        forbidden=forbidden, rotations=rotations, more_rotations=more, missing=len(found["missing"]),
+        forbidden=forbidden, rotations=rotations, more_rotations=more, missing=len(answer["missing"]),
     )  # fmt: skip
 
 
@@ -52,5 +52,5 @@ def _rounded(intervals: list[list[float]]) -> list[tuple[float, float]]:
 def _inward(intervals: list[list[float]]) -> list[tuple[float, float]]:
     """Free tilts, none told wider than it is; those too narrow for the digits are left out."""
     unit = 10**_DIGITS
-    found = [(math.ceil(low * unit) / unit, math.floor(high * unit) / unit) for low, high in intervals]
-    return [(low, high) for low, high in found if low <= high]
+    ranges = [(math.ceil(low * unit) / unit, math.floor(high * unit) / unit) for low, high in intervals]
+    return [(low, high) for low, high in ranges if low <= high]

@@ -60,7 +60,7 @@ class Conditions(Question):
     tolerance_mm: float = Field(default=0.01, gt=0.0, le=10.0, description="gouge tolerance")
     allowance_mm: float = Field(default=0.0, ge=-100.0, le=100.0, description="stock left on the surface")
     holder_clearance_mm: float = Field(
-        default=0.0, ge=0.0, le=1000.0, description="room asked of neck, shank and holder"
+        default=0.0, ge=0.0, le=1000.0, description="clearance required of neck, shank and holder"
     )
 
 
@@ -117,7 +117,7 @@ class ExplainQuestion(Conditions, Sampling):
     """Why does a cutter not reach a face or a point, and what would help?"""
 
     part: Path | None = Field(default=None, description="STEP, IGES or BREP, in a root: it is judged now")
-    plan: Path | None = Field(default=None, description="or a plan.json in a root: what it says is told, in a moment")
+    plan: Path | None = Field(default=None, description="or a plan.json in a root: it answers at once")
     cutter: Word = Field(
         description="R6L80 and so on; an id, a name or their beginning (R6) where that is one of the plan or library"
     )
@@ -133,11 +133,9 @@ class ExplainQuestion(Conditions, Sampling):
         if (self.face is None) == (self.point is None):
             raise ValueError("give either `face` or `point`")
         if self.plan is not None and (
-            beside := self.model_fields_set - {"plan", "cutter", "face", "point", "within_mm"}
+            others := self.model_fields_set - {"plan", "cutter", "face", "point", "within_mm"}
         ):
-            raise ValueError(
-                f"`{min(beside)}` is asked of a part, and a plan has its own: leave it out, or give `part`"
-            )
+            raise ValueError(f"`{min(others)}` is for a part, and a plan has its own: leave it out, or give `part`")
         return self
 
 

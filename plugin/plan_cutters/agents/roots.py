@@ -25,7 +25,7 @@ class Roots:
         CallError
             One is no folder.
         """
-        found = []
+        roots = []
         for each in folders:
             try:
                 path = Path(each).resolve(strict=True)
@@ -33,13 +33,13 @@ class Roots:
                 path = None
             if path is None or not path.is_dir():
                 raise CallError("is no folder; give one with --root", file=str(each))
-            found.append(path)
-        return cls(tuple(dict.fromkeys(found)))
+            roots.append(path)
+        return cls(tuple(dict.fromkeys(roots)))
 
     @classmethod
     def of_client(cls, uris: Sequence[str]) -> "Roots":
         """Folders that a client offers, as `file://` addresses; others and those that are not here say nothing."""
-        found = []
+        roots = []
         for uri in uris:
             parts = urlsplit(uri)
             if parts.scheme != "file" or parts.netloc not in ("", "localhost"):
@@ -49,8 +49,8 @@ class Roots:
             except (OSError, ValueError, RuntimeError):
                 continue
             if path.is_dir():
-                found.append(path)
-        return cls(tuple(dict.fromkeys(found)))
+                roots.append(path)
+        return cls(tuple(dict.fromkeys(roots)))
 
     def __or__(self, other: "Roots") -> "Roots":
         return Roots(tuple(dict.fromkeys((*self.folders, *other.folders))))

@@ -16,7 +16,7 @@ from plan_cutters import __version__
 from plan_cutters.agents.limits import CallError, Limits
 from plan_cutters.agents.roots import Roots
 from plan_cutters.agents.tools import TOOLS, Call, Reply, Tool
-from plan_cutters.agents.words import Room
+from plan_cutters.agents.words import Permissions
 from plan_cutters.errors import PlanError
 from plan_cutters.files.temporary import require_temporary
 
@@ -62,14 +62,14 @@ class Service:
             tool = next((each for each in TOOLS if each.name == params.name), None)
             if tool is None:
                 raise CallError(f"there is no tool {params.name!r}; there are {', '.join(each.name for each in TOOLS)}")
-            asked = _question(tool, params.arguments or {})
+            question = _question(tool, params.arguments or {})
             roots = await self._roots(context, params)
             if not isinstance(roots, Roots):
                 return roots
             with anyio.CancelScope() as scope:
                 self._working.add(scope)
                 try:
-                    reply = await self._answered(tool, asked, roots, context)
+                    reply = await self._answered(tool, question, roots, context)
                 finally:
                     self._working.discard(scope)
             if scope.cancelled_caught:
@@ -94,7 +94,7 @@ class Service:
         while self._working:
             await anyio.sleep(0.02)
 
-    async def _answered(self, tool: Tool, asked: Any, roots: Roots, context: Any) -> Reply:
+    async def _answered(self, tool: Tool, question: Any, roots: Roots, context: Any) -> Reply:
         if self._turns is None:
             self._turns = anyio.CapacityLimiter(self.limits.calls)
         shown = 0.0
@@ -109,7 +109,9 @@ class Service:
             async with self._turns:
                 require_temporary()
                 with tempfile.TemporaryDirectory(prefix="plan-cutters-mcp-") as folder:
-                    return await tool.work(asked, Call(Room(roots, self.limits), Path(folder).resolve(), tell))
+                    return await tool.work(
+                        question, Call(Permissions(roots, self.limits), Path(folder).resolve(), tell)
+                    )
 
     async def _roots(self, context: Any, params: "types.CallToolRequestParams") -> Any:
         """The roots of this call; where the client is to be asked for its own in an answer, that answer."""
@@ -121,14 +123,14 @@ class Service:
             return self.roots
         try:
             if context.session.can_send_request:
-                found = await context.session.send_request(types.ListRootsRequest(), types.ListRootsResult, 10.0)
+                reply = await context.session.send_request(types.ListRootsRequest(), types.ListRootsResult, 10.0)
             else:
-                found = (params.input_responses or {}).get(_ROOTS)
-                if found is None:
+                reply = (params.input_responses or {}).get(_ROOTS)
+                if reply is None:
                     return types.InputRequiredResult(input_requests={_ROOTS: types.ListRootsRequest()})
         except MCPError:
             return self.roots  # it offers none after all
-        uris = [str(each.uri) for each in getattr(found, "roots", ())]
+        uris = [str(each.uri) for each in getattr(reply, "roots", ())]
         return self.roots | Roots.of_client(uris)
 
 

@@ -20,7 +20,7 @@ from plan_cutters.agents.answers import (
     Sample,
     Vector,
 )
-from plan_cutters.agents.child import Ended, Onlooker, run
+from plan_cutters.agents.child import Ended, ProgressListener, run
 from plan_cutters.agents.cutter_names import chosen, cutter_of
 from plan_cutters.agents.limits import CallError
 from plan_cutters.agents.plan_answers import compared, explained, pictured, planned
@@ -35,7 +35,7 @@ from plan_cutters.agents.requests import (
     Question,
     RenderQuestion,
 )
-from plan_cutters.agents.words import Room
+from plan_cutters.agents.words import Permissions
 from plan_cutters.errors import CutterError
 from plan_cutters.plan_file.load import plan_of
 from plan_cutters.plan_file.model import Plan
@@ -59,22 +59,24 @@ class Reply:
 class Call:
     """A call that is worked on: what it may touch, a folder of its own that goes with it, and who is told of its progress."""
 
-    room: Room
+    permissions: Permissions
     cwd: Path
-    tell: Onlooker
+    tell: ProgressListener
 
     async def _run(self, words: Sequence[str], **more: Any) -> Ended:
-        return await run(words, self.cwd, self.room.limits, self.tell, within=self.room.roots.folders, **more)
+        return await run(
+            words, self.cwd, self.permissions.limits, self.tell, within=self.permissions.roots.folders, **more
+        )
 
     async def plan(self, words: Sequence[str]) -> tuple[Plan, int]:
         """Plan a part; the plan and the exit code."""
         ended = await self._run(["plan", *words, "--json=-"])
         return plan_of(ended.output, "the plan", CallError), ended.code
 
-    async def map(self, asked: MapQuestion, most: int, spec: str | None = None) -> tuple[bytes, int]:
+    async def map(self, question: MapQuestion, most: int, spec: str | None = None) -> tuple[bytes, int]:
         """Map the postures at a point; the map as JSON and the exit code."""
         words = [
-            *self.room.map(asked),
+            *self.permissions.map(question),
             *([f"--cutter={spec}"] if spec else []),
             "--json=-",
             f"--out={self.cwd / 'map.png'}",
@@ -90,16 +92,19 @@ class Call:
         CallError
             There are too many.
         """
-        ended = await self._run(["tools", self.room.file(library), "--json"], answers=(0,))
-        found = [
+        ended = await self._run(["tools", self.permissions.file(library), "--json"], answers=(0,))
+        libraries = [
             (each["id"], next(iter(each["names"]), ""))
             for one in json.loads(ended.output)["libraries"]
             for each in one["cutters"]
         ]
-        if len(found) > self.room.limits.cutters:
-            raise CallError(f"lists {len(found)} cutters, and this server judges at most {self.room.limits.cutters} in a call: "
-                            "make a library of those in question", file=library)  # fmt: skip
-        return found
+        if len(libraries) > self.permissions.limits.cutters:
+            raise CallError(
+                f"lists {len(libraries)} cutters, and this server judges at most {self.permissions.limits.cutters} in a call: "
+                "make a library of those in question",
+                file=library,
+            )
+        return libraries
 
 
 @dataclass(frozen=True, slots=True)
@@ -132,119 +137,124 @@ def fitting(make: Callable[[int], Answer], characters: int, picture: bytes | Non
     )
 
 
-async def plan_part(asked: PlanQuestion, call: Call) -> Reply:
+async def plan_part(question: PlanQuestion, call: Call) -> Reply:
     """Plan a part, into a folder where one is named."""
-    words = await _part(asked, call)
-    words += [f"--answers={','.join(asked.answers)}"] if asked.answers else []
-    if asked.out is None:
+    words = await _part(question, call)
+    words += [f"--answers={','.join(question.answers)}"] if question.answers else []
+    if question.out is None:
         plan, code = await call.plan(words)
         files = {}
     else:
-        out = call.room.roots.folder(asked.out)
-        formats = ",".join(dict.fromkeys(("json", *asked.formats)))
+        out = call.permissions.roots.folder(question.out)
+        formats = ",".join(dict.fromkeys(("json", *question.formats)))
         with _whole(out):
             plan, code = await call.plan([*words, f"--out={out}", f"--formats={formats}"])
         files = {"json": str(out / "plan.json"), **{name: str(out / each.name) for name, each in plan.files.items()}}
-    return fitting(lambda most: planned(plan, code, most, files), call.room.limits.characters)
+    return fitting(lambda most: planned(plan, code, most, files), call.permissions.limits.characters)
 
 
-async def compare_cutters(asked: CompareQuestion, call: Call) -> Reply:
+async def compare_cutters(question: CompareQuestion, call: Call) -> Reply:
     """Judge some cutters and tell them apart."""
-    plan, code = await call.plan(await _part(asked, call))
-    return fitting(lambda most: compared(plan, code, most), call.room.limits.characters)
+    plan, code = await call.plan(await _part(question, call))
+    return fitting(lambda most: compared(plan, code, most), call.permissions.limits.characters)
 
 
-async def render(asked: RenderQuestion, call: Call) -> Reply:
+async def render(question: RenderQuestion, call: Call) -> Reply:
     """Draw the part with the verdicts of the cutter that the plan selects, or that comes nearest."""
     out = call.cwd / "review"
-    plan, code = await call.plan([*await _part(asked, call), f"--out={out}", "--formats=json,png"])
+    plan, code = await call.plan([*await _part(question, call), f"--out={out}", "--formats=json,png"])
     picture = out / "review.png"
     if not picture.is_file():
         raise CallError(plan.not_written.get("png", "the picture was not written"), file=plan.part.file)
     if picture.stat().st_size > _PICTURE:
         raise CallError(f"the picture has more than {_PICTURE >> 20} MB", file=plan.part.file)
-    return fitting(lambda most: pictured(plan, code, most), call.room.limits.characters, picture.read_bytes())
+    return fitting(lambda most: pictured(plan, code, most), call.permissions.limits.characters, picture.read_bytes())
 
 
-async def posture_map(asked: MapQuestion, call: Call) -> Reply:
+async def posture_map(question: MapQuestion, call: Call) -> Reply:
     """Map all postures of a cutter at a point."""
-    if asked.library is not None:
-        await call.tools_of(asked.library)
-    spec = await _spec(asked.cutter, asked, call) if asked.library is None else None
-    output, code = await call.map(asked, 0, spec)
-    picture = (call.cwd / "map.png").read_bytes() if asked.picture else None
-    part, cutter = Path(asked.part).name, json.loads(output)["cutter"]
+    if question.library is not None:
+        await call.tools_of(question.library)
+    spec = await _spec(question.cutter, question, call) if question.library is None else None
+    output, code = await call.map(question, 0, spec)
+    picture = (call.cwd / "map.png").read_bytes() if question.picture else None
+    part, cutter = Path(question.part).name, json.loads(output)["cutter"]
 
     def make(most: int) -> Answer:
-        found = postures_of(output, asked.tilt_deg, most)
-        free = (
-            f"{percent(found.free_share)} of the postures searched are free, {percent(found.undecided_share)} undecided"
-        )
-        told = f"{cutter} at ({', '.join(f'{x:.6g}' for x in found.point)}) on {found.face}: {free}."
-        return MapAnswer(part=part, told=told, cutter=cutter, exit_code=code, postures=found)
+        postures = postures_of(output, question.tilt_deg, most)
+        free = f"{percent(postures.free_share)} of the postures searched are free, {percent(postures.undecided_share)} undecided"
+        text = f"{cutter} at ({', '.join(f'{x:.6g}' for x in postures.point)}) on {postures.face}: {free}."
+        return MapAnswer(part=part, told=text, cutter=cutter, exit_code=code, postures=postures)
 
-    return fitting(make, call.room.limits.characters, picture)
+    return fitting(make, call.permissions.limits.characters, picture)
 
 
-async def explain_sample(asked: ExplainQuestion, call: Call) -> Reply:
+async def explain_sample(question: ExplainQuestion, call: Call) -> Reply:
     """Say why a cutter does not reach a face or a point, and what would help."""
     postures: bytes | None = None
     sample = None
-    if asked.plan is not None:
-        path = Path(call.room.file(asked.plan))
-        plan = plan_of(await anyio.to_thread.run_sync(path.read_bytes), asked.plan, CallError)
-        cutter, face = cutter_of(plan, asked.cutter), asked.face
-        if asked.point is not None:
-            sample = await anyio.to_thread.run_sync(_nearest, asked.plan, plan, cutter.id, asked, call.room)
+    if question.plan is not None:
+        path = Path(call.permissions.file(question.plan))
+        plan = plan_of(await anyio.to_thread.run_sync(path.read_bytes), question.plan, CallError)
+        cutter, face = cutter_of(plan, question.cutter), question.face
+        if question.point is not None:
+            sample = await anyio.to_thread.run_sync(
+                _nearest, question.plan, plan, cutter.id, question, call.permissions
+            )
             face = sample.face
     else:
-        plan, name, face, postures = await _judged(asked, call)
+        plan, name, face, postures = await _judged(question, call)
         cutter = cutter_of(plan, name)
     if face is None:
         raise CallError("which place? give a face or a point")
 
     def make(most: int) -> Answer:
-        found = None if postures is None else postures_of(postures, (0.0, 90.0), min(most, 12))
-        return explained(plan, cutter, face, most, point=asked.point, postures=found, sample=sample)
+        judged = None if postures is None else postures_of(postures, (0.0, 90.0), min(most, 12))
+        return explained(plan, cutter, face, most, point=question.point, postures=judged, sample=sample)
 
-    return fitting(make, call.room.limits.characters)
+    return fitting(make, call.permissions.limits.characters)
 
 
-async def _judged(asked: ExplainQuestion, call: Call) -> tuple[Plan, str, str, bytes | None]:
+async def _judged(question: ExplainQuestion, call: Call) -> tuple[Plan, str, str, bytes | None]:
     """Judge the face in question with the cutter in question: the plan, the cutter, the face, and the map at the point."""
-    if asked.part is None:
+    if question.part is None:
         raise CallError("give either `part` or `plan`")
-    spec = await _spec(asked.cutter, asked, call)
-    face, postures = asked.face, None
-    under = {name: getattr(asked, name) for name in Conditions.model_fields if name != "library"}
-    if asked.point is not None:
-        if asked.setup[0] == "auto":
+    spec = await _spec(question.cutter, question, call)
+    face, postures = question.face, None
+    under = {name: getattr(question, name) for name in Conditions.model_fields if name != "library"}
+    if question.point is not None:
+        if question.setup[0] == "auto":
             raise CallError("setup: `auto` proposes one for a plan; for a point, name the direction")
         at = MapQuestion(
-            part=asked.part, cutter=spec, point=asked.point, within_mm=asked.within_mm, setup=asked.setup[0], **under
+            part=question.part,
+            cutter=spec,
+            point=question.point,
+            within_mm=question.within_mm,
+            setup=question.setup[0],
+            **under,
         )
         postures, _ = await call.map(at, 0)
         face = json.loads(postures)["face"]
-    one = PartQuestion(part=asked.part, cutters=[spec], setup=asked.setup, faces=face or "", grid=asked.grid,
-                       spacing_mm=asked.spacing_mm, **under)  # fmt: skip
-    plan, _ = await call.plan([*call.room.part(one), "--answers=mend"])
+    one = PartQuestion(part=question.part, cutters=[spec], setup=question.setup, faces=face or "", grid=question.grid,
+                       spacing_mm=question.spacing_mm, **under)  # fmt: skip
+    plan, _ = await call.plan([*call.permissions.part(one), "--answers=mend"])
     # An id may have been given a holder.
     return plan, plan.cutters[0].id, face or "", postures
 
 
-async def _part(asked: PartQuestion, call: Call) -> list[str]:
+async def _part(question: PartQuestion, call: Call) -> list[str]:
     """Words of a question about a part, once it is known that its cutters are not too many."""
-    words = call.room.part(asked)
-    if asked.library is not None:
-        await call.tools_of(asked.library)
+    words = call.permissions.part(question)
+    if question.library is not None:
+        await call.tools_of(question.library)
     return words
 
 
-async def _spec(name: str, asked: Conditions, call: Call) -> str:
+async def _spec(name: str, question: Conditions, call: Call) -> str:
     """A cutter by words, where a tool of a library or of the built-in set may be meant."""
     from plan_cutters.domain.cutter import Cutter
 
-    if asked.library is None:
+    if question.library is None:
         try:
             Cutter.parse(name)
         except CutterError as error:
@@ -256,17 +266,17 @@ async def _spec(name: str, asked: Conditions, call: Call) -> str:
             except CallError as other:
                 raise CallError(f"{error.cause}; or the built-in set is meant: {other.cause}") from None
         return name
-    mine = chosen(name, await call.tools_of(asked.library))
+    mine = chosen(name, await call.tools_of(question.library))
     try:
         if Cutter.parse(mine).id == mine:
             return mine
     except CutterError:
         pass
     raise CallError(f"{mine} has no form that words can say: plan the part with the library, `faces` and `answers`, and ask with "
-                    "`plan`", file=asked.library)  # fmt: skip
+                    "`plan`", file=question.library)  # fmt: skip
 
 
-def _nearest(file: str, plan: Plan, cutter: str, asked: ExplainQuestion, room: Room) -> Sample:
+def _nearest(file: str, plan: Plan, cutter: str, question: ExplainQuestion, permissions: Permissions) -> Sample:
     """The sample of a plan that is nearest to the point in question."""
     import numpy as np
 
@@ -275,11 +285,11 @@ def _nearest(file: str, plan: Plan, cutter: str, asked: ExplainQuestion, room: R
 
     if "npz" not in plan.files:
         raise CallError(
-            "has no samples.npz beside it, so a point cannot be looked up: give a face, or plan with the format npz",
+            "has no samples.npz in its folder, so a point cannot be looked up: give a face, or plan with the format npz",
             file=file,
         )
-    beside = str(Path(file).parent / plan.files["npz"].name)
-    with Archive(room.file(beside), "samples", CallError) as archive:
+    npz = str(Path(file).parent / plan.files["npz"].name)
+    with Archive(permissions.file(npz), "samples", CallError) as archive:
         names = ("point", "face", f"verdict_{cutter}", f"reason_{cutter}", f"axis_{cutter}")
         if any(name not in archive.headers for name in names):
             raise archive.fault(f"without {cutter}")
@@ -290,10 +300,10 @@ def _nearest(file: str, plan: Plan, cutter: str, asked: ExplainQuestion, room: R
         or not len(points)
         or any(len(a) != len(points) for a in (faces, verdicts, reasons, axes))
     ):
-        raise CallError("its arrays do not belong together: plan the part again", file=beside)
-    off = np.linalg.norm(points - np.array(asked.point), axis=1)
+        raise CallError("its arrays do not belong together: plan the part again", file=npz)
+    off = np.linalg.norm(points - np.array(question.point), axis=1)
     row = int(np.nanargmin(off))
-    most, face = max(asked.within_mm, plan.samples.max_gap_mm or 0.0), f"F{int(faces[row])}"
+    most, face = max(question.within_mm, plan.samples.max_gap_mm or 0.0), f"F{int(faces[row])}"
     if not off[row] <= most:
         raise CallError(f"the nearest sample is {off[row]:.4g} mm from the point, on {face}; give a point within {most:.3g} mm "
                         "of one, or a face", file=file)  # fmt: skip

@@ -8,7 +8,7 @@ from plan_cutters.agents.roots import Roots
 from plan_cutters.errors import PlanError
 
 
-class Room:
+class Permissions:
     """A call may read and write here, and cost so much.
 
     Parameters
@@ -24,40 +24,49 @@ class Room:
         """The path of a file that may be read."""
         return str(self.roots.file(text, self.limits.file_mb))
 
-    def conditions(self, asked: Conditions) -> list[str]:
+    def conditions(self, question: Conditions) -> list[str]:
         """Words for what cutters are judged under, without the cutters."""
-        found = [f"--tolerance={asked.tolerance_mm!r}", f"--allowance={asked.allowance_mm!r}",
-                 f"--holder-clearance={asked.holder_clearance_mm!r}", f"--machine={self._machine(asked.machine)}"]  # fmt: skip
-        found += [f"--cutters={self.file(asked.library)}"] if asked.library is not None else []
-        found += [f"--holder={self._holder(asked.holder)}"] if asked.holder is not None else []
-        found += [f"--fixture={self._fixture(each)}" for each in asked.fixtures]
-        found += [f"--ignore={each}" for each in asked.ignore]
-        found += [f"--unit={asked.unit}"] if asked.unit is not None else []
-        return found + ["--flip"] * asked.flip
+        options = [
+            f"--tolerance={question.tolerance_mm!r}",
+            f"--allowance={question.allowance_mm!r}",
+            f"--holder-clearance={question.holder_clearance_mm!r}",
+            f"--machine={self._machine(question.machine)}",
+        ]
+        options += [f"--cutters={self.file(question.library)}"] if question.library is not None else []
+        options += [f"--holder={self._holder(question.holder)}"] if question.holder is not None else []
+        options += [f"--fixture={self._fixture(each)}" for each in question.fixtures]
+        options += [f"--ignore={each}" for each in question.ignore]
+        options += [f"--unit={question.unit}"] if question.unit is not None else []
+        return options + ["--flip"] * question.flip
 
-    def sampling(self, asked: Sampling) -> list[str]:
+    def sampling(self, question: Sampling) -> list[str]:
         """Words for how densely a surface is looked at; the area between the samples is not."""
-        found = ["--area-budget=0"]
-        found += [f"--grid={asked.grid}"] if asked.grid is not None else []
-        return found + ([f"--spacing={asked.spacing_mm!r}"] if asked.spacing_mm is not None else [])
+        options = ["--area-budget=0"]
+        options += [f"--grid={question.grid}"] if question.grid is not None else []
+        return options + ([f"--spacing={question.spacing_mm!r}"] if question.spacing_mm is not None else [])
 
-    def part(self, asked: PartQuestion) -> list[str]:
+    def part(self, question: PartQuestion) -> list[str]:
         """Words for a part, its cutters and their conditions."""
-        if len(asked.cutters) > self.limits.cutters:
+        if len(question.cutters) > self.limits.cutters:
             raise CallError(
-                f"cutters: {len(asked.cutters)} are given, and this server judges at most {self.limits.cutters} in a call"
+                f"cutters: {len(question.cutters)} are given, and this server judges at most {self.limits.cutters} in a call"
             )
-        found = [self.file(asked.part), *self.conditions(asked), *self.sampling(asked), f"--faces={asked.faces}"]
-        found += [f"--cutter={each}" for each in asked.cutters]
-        return found + [f"--setup={each}" for each in asked.setup]
+        options = [
+            self.file(question.part),
+            *self.conditions(question),
+            *self.sampling(question),
+            f"--faces={question.faces}",
+        ]
+        options += [f"--cutter={each}" for each in question.cutters]
+        return options + [f"--setup={each}" for each in question.setup]
 
-    def map(self, asked: MapQuestion) -> list[str]:
+    def map(self, question: MapQuestion) -> list[str]:
         """Words for a posture map."""
-        low, high = asked.tilt_deg
-        at = ",".join(repr(x) for x in asked.point)
-        return [self.file(asked.part), *self.conditions(asked), f"--at={at}", f"--within={asked.within_mm!r}",
-                f"--cutter={asked.cutter}", f"--setup={asked.setup}", f"--tilt={low!r}:{high!r}",
-                f"--rotation-step={asked.rotation_step_deg!r}"]  # fmt: skip
+        low, high = question.tilt_deg
+        at = ",".join(repr(x) for x in question.point)
+        return [self.file(question.part), *self.conditions(question), f"--at={at}", f"--within={question.within_mm!r}",
+                f"--cutter={question.cutter}", f"--setup={question.setup}", f"--tilt={low!r}:{high!r}",
+                f"--rotation-step={question.rotation_step_deg!r}"]  # fmt: skip
 
     def _machine(self, text: str) -> str:
         from plan_cutters.domain.machine import builtin_machines

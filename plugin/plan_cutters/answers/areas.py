@@ -71,7 +71,7 @@ def patches(samples: SurfaceSamples, finished: Finished, rows: Rows) -> list[Pat
     group = connected_components(graph, directed=False)[1]
     sequence = np.argsort(group, kind="stable")
     each = np.split(rows[sequence], np.flatnonzero(np.diff(group[sequence])) + 1)
-    return sorted((_patch(samples, finished, mine) for mine in each), key=lambda found: (-found.area, found.place))
+    return sorted((_patch(samples, finished, mine) for mine in each), key=lambda patch: (-patch.area, patch.place))
 
 
 def _patch(samples: SurfaceSamples, finished: Finished, rows: Rows) -> Patch:

@@ -14,7 +14,7 @@ from plan_cutters.answers.steps import steps
 from plan_cutters.answers.stick_out import least_stick_out
 from plan_cutters.answers.undecidable import undecidable
 from plan_cutters.domain.answers import Answers
-from plan_cutters.domain.change import Mend
+from plan_cutters.domain.change import WhatIfAnswer
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.radius_map import RadiusMap
 from plan_cutters.domain.verdicts import Verdicts
@@ -22,18 +22,18 @@ from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress, part_of
 
 Axis = tuple[float, float, float]
-Elsewhere = Sequence[tuple[Axis, Mapping[str, Verdicts]]]
+OtherSetups = Sequence[tuple[Axis, Mapping[str, Verdicts]]]
 
 #: Of every sample the least stick-out is found to this, mm.
 STEP = 0.5
 _ENDS: tuple[Literal["flat", "ball"], ...] = ("flat", "ball")
-#: Cutters that are mended unless all are asked for: those that come nearest.
+#: Cutters that are mended unless all are requested: those that come nearest.
 NEAREST = 3
 
 
 def ask(
     ready: Prepared, reaches: Mapping[Cutter, Verdicts], stage: Callable[[str], AbstractContextManager[Progress]],
-    elsewhere: Elsewhere = (),
+    other_setups: OtherSetups = (),
 ) -> Answers:  # fmt: skip
     """Answer what is asked, and what costs nothing.
 
@@ -44,19 +44,19 @@ def ask(
         What each cutter reaches.
     stage : callable
         Opens a stage of work by its name; what it gives is told how much of how much is done.
-    elsewhere : sequence
+    other_setups : sequence
         Of each other setup its axis, and what each cutter reaches there by its id.
     """
-    asked = ready.options.answers
+    requested = ready.options.answers
     stick_outs, mends = {}, {}
     radius_maps: list[RadiusMap] = []
-    if "stick-out" in asked or "stick-out-map" in asked:
-        step = STEP if "stick-out-map" in asked else None
+    if "stick-out" in requested or "stick-out-map" in requested:
+        step = STEP if "stick-out-map" in requested else None
         with stage("stick-out") as tell:
             for k, cutter in enumerate(ready.cutters):
                 mine = part_of(tell, k, len(ready.cutters))
                 stick_outs[cutter.id] = least_stick_out(ready, cutter, reaches[cutter], step=step, progress=mine)
-    if "radius" in asked:
+    if "radius" in requested:
         with stage("radius") as tell:
             ratio = ready.options.length_over_radius
             radius_maps = [
@@ -64,38 +64,43 @@ def ask(
             ]
     near: list[Cutter] = []
     failing: list[Cutter] = []
-    if "mend" in asked or "mend-all" in asked:
-        failing = nearest(ready, reaches, elsewhere)
-        near = failing if "mend-all" in asked else failing[:NEAREST]
+    if "mend" in requested or "mend-all" in requested:
+        failing = nearest(ready, reaches, other_setups)
+        near = failing if "mend-all" in requested else failing[:NEAREST]
         with stage("mend") as tell:
             for k, cutter in enumerate(near):
-                mends[cutter.id] = _mended(ready, cutter, reaches, elsewhere, part_of(tell, k, len(near)))
+                mends[cutter.id] = _what_if(ready, cutter, reaches, other_setups, part_of(tell, k, len(near)))
     rest = tuple(cutter.id for cutter in failing if cutter not in near)
-    return Answers(stick_outs, tuple(radius_maps), mends, rest, least_set(ready, reaches, elsewhere))
+    return Answers(stick_outs, tuple(radius_maps), mends, rest, least_set(ready, reaches, other_setups))
 
 
-def _mended(
-    ready: Prepared, cutter: Cutter, reaches: Mapping[Cutter, Verdicts], elsewhere: Elsewhere, tell: Progress
-) -> Mend:  # fmt: skip
-    why = "" if elsewhere else undecidable(ready, cutter, reaches[cutter])
+def _what_if(
+    ready: Prepared, cutter: Cutter, reaches: Mapping[Cutter, Verdicts], other_setups: OtherSetups, tell: Progress
+) -> WhatIfAnswer:  # fmt: skip
+    why = "" if other_setups else undecidable(ready, cutter, reaches[cutter])
     if why:
-        left = reaches[cutter].not_reached
-        within = int((ready.inside_bodies & left).sum())
-        lost = left & ready.finished
-        return Mend(
-            cutter.id, int(lost.sum()) + within, within, (), why, Finished.of(ready).of_rows(np.flatnonzero(lost))
+        not_reached = reaches[cutter].not_reached
+        within = int((ready.inside_bodies & not_reached).sum())
+        unfinished = not_reached & ready.finished
+        return WhatIfAnswer(
+            cutter.id,
+            int(unfinished.sum()) + within,
+            within,
+            (),
+            why,
+            Finished.of(ready).of_rows(np.flatnonzero(unfinished)),
         )
     alone = mend(ready, cutter, reaches[cutter], progress=part_of(tell, 0, 2))
-    return steps(ready, alone, cutter, reaches, elsewhere, progress=part_of(tell, 1, 2))
+    return steps(ready, alone, cutter, reaches, other_setups, progress=part_of(tell, 1, 2))
 
 
-def nearest(ready: Prepared, reaches: Mapping[Cutter, Verdicts], elsewhere: Elsewhere) -> list[Cutter]:
+def nearest(ready: Prepared, reaches: Mapping[Cutter, Verdicts], other_setups: OtherSetups) -> list[Cutter]:
     """Cutters that do not finish the part in all setups together, the one that leaves least first, then by rank."""
-    finished, missing = Finished.of(ready), ready.conditions.around.doubtful
-    left = {}
+    finished, missing = Finished.of(ready), ready.conditions.surroundings.doubtful
+    unreached = {}
     for cutter in ready.cutters:
-        each = [reaches[cutter], *(found[cutter.id] for _, found in elsewhere)]
+        each = [reaches[cutter], *(found[cutter.id] for _, found in other_setups)]
         not_reached = np.logical_and.reduce([verdicts.not_reached for verdicts in each]) & finished.wanted
         if not_reached.any() or missing:
-            left[cutter] = finished.of_rows(np.flatnonzero(not_reached))
-    return sorted(left, key=lambda cutter: round(left[cutter], 9))
+            unreached[cutter] = finished.of_rows(np.flatnonzero(not_reached))
+    return sorted(unreached, key=lambda cutter: round(unreached[cutter], 9))

@@ -15,16 +15,16 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.radius_map import RadiusMap, Shape
 from plan_cutters.domain.verdicts import INACCESSIBLE, INSIDE, UNJUDGED, blank
 from plan_cutters.errors import OptionError
-from plan_cutters.scene.conditions import contacts_of, found_of, require_finite
+from plan_cutters.scene.conditions import contacts_of, require_finite, verdict_arrays_of
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress, in_chunks
 
 if TYPE_CHECKING:
     from plan_cutters.kernels.search.radius import Ladder
 
-#: Smallest radius that is looked at unless one is asked for, mm; of small parts this share of the largest.
+#: Smallest radius that is looked at unless one is requested, mm; of small parts this share of the largest.
 _LEAST, _SHARE = 0.1, 0.01
-#: Steps and lengths over radius that can be asked for.
+#: Steps and lengths over radius that can be requested.
 _STEPS, _RATIOS = (0.001, 1.0), (0.1, 1000.0)
 #: Radii that are tried, at most.
 _MOST = 5000
@@ -67,12 +67,12 @@ def largest_radius(
     level, beyond, reach = np.full(len(samples), -1), np.full(len(samples), UNJUDGED, np.uint8), blank(len(samples))
     outer_tool = _ladder([conditions.outer_tool(cutter) for cutter in cutters])
     inner_tool = _ladder([conditions.inner_tool(cutter) for cutter in cutters])
-    rows, contacts, found = np.flatnonzero(judged & ~within), contacts_of(samples), found_of(reach)
-    possible, certain = conditions.around.possible.solids, conditions.around.certain.solids
+    rows, contacts, verdicts = np.flatnonzero(judged & ~within), contacts_of(samples), verdict_arrays_of(reach)
+    possible, certain = conditions.surroundings.possible.solids, conditions.surroundings.certain.solids
     require_finite(contacts, rows)
 
     def work(piece: NDArray[np.int64]) -> None:
-        largest(piece, contacts, conditions.ranges, outer_tool, inner_tool, possible, certain, found, level, beyond)
+        largest(piece, contacts, conditions.ranges, outer_tool, inner_tool, possible, certain, verdicts, level, beyond)
 
     in_chunks(work, rows, conditions.jobs, progress, fixed=True)
     beyond[judged & within], reach.reason[judged & within] = INACCESSIBLE, INSIDE

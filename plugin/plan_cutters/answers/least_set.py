@@ -18,7 +18,9 @@ _SECONDS = 10.0
 
 
 def least_set(
-    ready: Prepared, reaches: Mapping[Cutter, Verdicts], elsewhere: Sequence[tuple[Axis, Mapping[str, Verdicts]]] = ()
+    ready: Prepared,
+    reaches: Mapping[Cutter, Verdicts],
+    other_setups: Sequence[tuple[Axis, Mapping[str, Verdicts]]] = (),
 ) -> LeastSet | None:
     """Find the fewest runs, a cutter in a setup each, that reach all that any of them reaches of the finished surface.
 
@@ -27,7 +29,7 @@ def least_set(
     ready : Prepared
     reaches : mapping
         What each cutter reaches in the plan's first setup.
-    elsewhere : sequence
+    other_setups : sequence
         Of each other setup its axis, and what each cutter reaches there by its id.
 
     Returns
@@ -35,7 +37,7 @@ def least_set(
     LeastSet or None
         None where one cutter was judged in one setup.
     """
-    setups = [(ready.scene.setup, {cutter.id: verdicts for cutter, verdicts in reaches.items()}), *elsewhere]
+    setups = [(ready.scene.setup, {cutter.id: verdicts for cutter, verdicts in reaches.items()}), *other_setups]
     cutters = [cutter for cutter in ready.cutters if cutter in reaches]
     if len(cutters) * len(setups) < 2:
         return None
@@ -54,9 +56,14 @@ def least_set(
             tuple(f"F{n}" for n in np.unique(ready.samples.face[mine]).tolist()),
             int((whole[:, k] & (whole.sum(axis=1) == 1)).sum()),
         ))  # fmt: skip
-    left = np.flatnonzero(finished.wanted & ~done)
+    open_rows = np.flatnonzero(finished.wanted & ~done)
     return LeastSet(
-        tuple(runs), int(done.sum()), len(left), finished.of_rows(np.flatnonzero(done)), finished.of_rows(left), proven
+        tuple(runs),
+        int(done.sum()),
+        len(open_rows),
+        finished.of_rows(np.flatnonzero(done)),
+        finished.of_rows(open_rows),
+        proven,
     )
 
 
@@ -110,22 +117,27 @@ def _cover(rows: list[list[int]], setup: Sequence[int], rank: Sequence[int]) -> 
         # A run needs its setup.
         held[len(rows) + k, k], held[len(rows) + k, m + places.index(setup[k])] = -1.0, 1.0
     low = np.concatenate([np.ones(len(rows)), np.zeros(m)])
-    found = milp(cost, integrality=np.ones(len(cost)), bounds=Bounds(0, 1), options={"time_limit": _SECONDS, "mip_rel_gap": 0.0},
-                 constraints=LinearConstraint(held.tocsr(), low, np.inf))  # fmt: skip
-    if found.x is None:
+    solution = milp(
+        cost,
+        integrality=np.ones(len(cost)),
+        bounds=Bounds(0, 1),
+        options={"time_limit": _SECONDS, "mip_rel_gap": 0.0},
+        constraints=LinearConstraint(held.tocsr(), low, np.inf),
+    )
+    if solution.x is None:
         return _greedy(rows, rank), False
-    chosen = np.flatnonzero(found.x[:m] > 0.5).tolist()
+    chosen = np.flatnonzero(solution.x[:m] > 0.5).tolist()
     if not all(set(row) & set(chosen) for row in rows):
         return _greedy(rows, rank), False
-    return chosen, found.status == 0
+    return chosen, solution.status == 0
 
 
 def _greedy(rows: list[list[int]], rank: Sequence[int]) -> list[int]:
     """A cover, not the least: always the run that covers most of what is left."""
-    left, chosen = [set(row) for row in rows], set()
-    while left:
-        count = {k: sum(k in row for row in left) for k in set().union(*left)}
+    uncovered, chosen = [set(row) for row in rows], set()
+    while uncovered:
+        count = {k: sum(k in row for row in uncovered) for k in set().union(*uncovered)}
         best = min(count, key=lambda k: (-count[k], rank[k], k))
         chosen.add(best)
-        left = [row for row in left if best not in row]
+        uncovered = [row for row in uncovered if best not in row]
     return sorted(chosen)

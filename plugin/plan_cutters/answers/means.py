@@ -7,22 +7,22 @@ the samples that are not reached; `steps` judges each step before it is reported
 from dataclasses import replace
 
 from plan_cutters.answers.means_place import axis, tilt_range, tolerance
-from plan_cutters.answers.means_tool import corner, given, holder, radius, stick_out
+from plan_cutters.answers.means_tool import corner, holder, other_cutters, radius, stick_out
 from plan_cutters.answers.scan import Candidate, Scan, under
 from plan_cutters.domain.machine import Machine
 
 #: What changes the tool alone.
-_TOOLS = (stick_out, given, corner, radius, holder)
+_TOOLS = (stick_out, other_cutters, corner, radius, holder)
 #: Changes of the tool that are looked at together with another axis.
 _JOINED = 3
 
 
 def candidates(scan: Scan) -> list[Candidate]:
     """Steps that gain something of a few samples, those that may leave least first."""
-    found: list[Candidate] = []
+    result: list[Candidate] = []
     for each in (tolerance, tilt_range, *_TOOLS, axis):
-        found += each(scan)
-    return sorted(found, key=lambda candidate: candidate.estimate)
+        result += each(scan)
+    return sorted(result, key=lambda candidate: candidate.estimate)
 
 
 def joined(scan: Scan) -> list[Candidate]:
@@ -35,10 +35,10 @@ def joined(scan: Scan) -> list[Candidate]:
     missed = scan.known.glance(free, scan.few)
     if not len(missed):
         return []
-    found: list[Candidate] = []
+    result: list[Candidate] = []
     tools = [each for tool in _TOOLS for each in tool(replace(scan, state=free, left=missed, few=missed))]
     for first in sorted(tools, key=lambda each: each.estimate)[:_JOINED]:
         held = under(first.state, conditions)
         for second in axis(replace(scan, state=held), plain=True):
-            found.append(replace(second, moves=(*first.moves, *second.moves), nested=first.nested and second.nested))
-    return sorted(found, key=lambda candidate: candidate.estimate)
+            result.append(replace(second, moves=(*first.moves, *second.moves), nested=first.nested and second.nested))
+    return sorted(result, key=lambda candidate: candidate.estimate)

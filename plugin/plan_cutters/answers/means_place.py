@@ -36,13 +36,13 @@ def tolerance(scan: Scan) -> Iterator[Candidate]:
     if not len(few) or (Case(ready, cutter).look(few).verdict == UNDECIDED).mean() < _UNSURE:
         return
     now = ready.scene.asked
-    asked = float(f"{now * FINER[0]:.6g}")
-    if asked < LEAST_TOLERANCE:
+    tried = float(f"{now * FINER[0]:.6g}")
+    if tried < LEAST_TOLERANCE:
         return
-    state = replace(scan.state, ready=closer(Case(ready, cutter), asked).ready)
+    state = replace(scan.state, ready=closer(Case(ready, cutter), tried).ready)
     missed = scan.known.glance(state, scan.few)
     if len(missed) < len(scan.few):
-        yield scan.found(Move("tolerance", now, asked, change_text.tolerance(asked, now)), state, missed, nested=False)
+        yield scan.found(Move("tolerance", now, tried, change_text.tolerance(tried, now)), state, missed, nested=False)
 
 
 def tilt_range(scan: Scan) -> Iterator[Candidate]:
@@ -54,12 +54,12 @@ def tilt_range(scan: Scan) -> Iterator[Candidate]:
     highest_tilt = max(high, min(180.0, float(math.ceil(math.degrees(max(mode.high for mode in touching)) - 1e-6))))
     if (lowest, highest_tilt) == (low, high):
         return
-    asked = (lowest, highest_tilt)
+    tried = (lowest, highest_tilt)
     postures = replace(ready.conditions.postures, tilt=(math.radians(lowest), math.radians(highest_tilt)))
     state = under(scan.state, replace(ready.conditions, postures=postures))
     missed = scan.known.glance(state, scan.few)
     if len(missed) < len(scan.few):
-        move = Move("tilt_range", (low, high), asked, change_text.tilt_range(asked, (low, high)))
+        move = Move("tilt_range", (low, high), tried, change_text.tilt_range(tried, (low, high)))
         yield scan.found(move, state, missed, nested=True)
 
 
@@ -85,8 +85,8 @@ def axis(scan: Scan, *, plain: bool = False) -> Iterator[Candidate]:
         return under(state, replace(conditions, machine=Machine.parse(f"tilt:{(first + at) * _TURN:g}")))
 
     for at, made, missed in scan.least(limit, most):
-        asked = (first + at) * _TURN
-        move = Move("tilt_limit", now, asked, change_text.tilt_limit(asked, now, machine.name))
+        tried = (first + at) * _TURN
+        move = Move("tilt_limit", now, tried, change_text.tilt_limit(tried, now, machine.name))
         yield scan.found(move, made, missed, nested=now is not None)
     yield from _setups(scan, gained, plain=plain)
 
@@ -94,9 +94,11 @@ def axis(scan: Scan, *, plain: bool = False) -> Iterator[Candidate]:
 def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
     state, known, ready = scan.state, scan.known, scan.state.ready
     blocked = np.setdiff1d(scan.few, gained, assume_unique=True)
-    kept = np.setdiff1d(np.flatnonzero(scan.finished.wanted), scan.left, assume_unique=True)
+    retained = np.setdiff1d(np.flatnonzero(scan.finished.wanted), scan.left, assume_unique=True)
     axes = [
-        axis for axis in directions(ready, Trials(scan.left, kept)) if all(angle(axis, own) > 1.0 for own in state.axes)
+        axis
+        for axis in directions(ready, Trials(scan.left, retained))
+        if all(angle(axis, own) > 1.0 for own in state.axes)
     ]
     now = state.axes[0]
     if plain:
@@ -114,13 +116,13 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
         yield scan.found(move, made, np.union1d(blocked, missed), nested=True)
     if plain or len(state.setups) > 1:
         return
-    some = spread(kept)
+    some = spread(retained)
     other = []
-    for left, _, axis, _, missed in second:
-        if left < scan.estimate(gained) and flip_of(ready, axis) == ready.options.flip:
+    for open_count, _, axis, _, missed in second:
+        if open_count < scan.estimate(gained) and flip_of(ready, axis) == ready.options.flip:
             made = replace(state, setups=((axis, None),))
             worse = known.glance(made, some)
-            share = scan.finished.of_rows(kept) * len(worse) / max(1, len(some))
+            share = scan.finished.of_rows(retained) * len(worse) / max(1, len(some))
             other.append((scan.estimate(np.union1d(blocked, missed)) + share, angle(now, axis), axis, made))
     if other:
         estimate, _, axis, made = min(other, key=lambda each: (round(each[0], 3), each[1]))

@@ -24,7 +24,7 @@ _SLIM = (0.9, 0.8, 0.7, 0.6, 0.5, 0.4)
 #: What a holder is thicker than what it holds, at least, mm.
 _WALL = 2.0
 #: Other given cutters that are looked at for the rest, at most.
-_GIVEN = 4
+_MOST_CUTTERS = 4
 
 
 def stick_out(scan: Scan) -> Iterator[Candidate]:
@@ -66,22 +66,22 @@ def holder(scan: Scan) -> Iterator[Candidate]:
         return _with_first(scan.state, made_of(cutter, holder=slimmed(at)))
 
     for at, state, missed in scan.least(make, len(_SLIM) - 1):
-        asked = max(max(s.radius, s.upper_radius) for s in slimmed(at).stages)
-        if asked < now:
+        tried = max(max(s.radius, s.upper_radius) for s in slimmed(at).stages)
+        if tried < now:
             words = change_text.holder(slimmed(at), cutter)
             yield scan.found(Move("holder", cutter.holder.id, slimmed(at).id, words), state, missed, nested=True)
 
 
-def given(scan: Scan) -> Iterator[Candidate]:
+def other_cutters(scan: Scan) -> Iterator[Candidate]:
     """Other given cutters for the rest: the one that leaves least, and the most wanted that leaves hardly more."""
     base, known = scan.state, scan.known
     others = [cutter for cutter in scan.given if cutter not in base.cutters]
     rows = scan.few
-    if len(others) > _GIVEN:
+    if len(others) > _MOST_CUTTERS:
         # Those that leave least by what is known already.
         alone = [replace(base, cutters=(cutter,), ready=base.ready) for cutter in others]
-        left = [scan.estimate(known.glance(state, rows[:32])) for state in alone]
-        order = sorted(range(len(others)), key=lambda k: (left[k], k))[:_GIVEN]
+        estimates = [scan.estimate(known.glance(state, rows[:32])) for state in alone]
+        order = sorted(range(len(others)), key=lambda k: (estimates[k], k))[:_MOST_CUTTERS]
         others = [others[k] for k in sorted(order)]
     tried = []
     for cutter in others:
@@ -132,8 +132,8 @@ def corner(scan: Scan) -> Iterator[Candidate]:
         made = None if corner == cutter.corner_radius else made_of(cutter, corner_radius=corner)
         if made is not None and made not in scan.given:
             state = replace(scan.state, cutters=(*scan.state.cutters, made))
-            left = scan.estimate(scan.known.glance(state, few))
-            tried.append((left, abs(corner - cutter.corner_radius), state))
+            estimate = scan.estimate(scan.known.glance(state, few))
+            tried.append((estimate, abs(corner - cutter.corner_radius), state))
     tried = [each for each in tried if each[0] < scan.estimate(few)]
     if tried:
         _, _, state = min(tried, key=lambda each: each[:2])

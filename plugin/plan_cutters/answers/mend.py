@@ -10,7 +10,7 @@ from plan_cutters.answers.what_if import WhatIf, search
 from plan_cutters.answers.what_if_cutter import corner_radius, radius, stick_out
 from plan_cutters.answers.what_if_place import faces, setup, tolerance
 from plan_cutters.answers.what_if_tilt import tilt_limit, tilt_range
-from plan_cutters.domain.change import THINGS, Change, Mend, Thing
+from plan_cutters.domain.change import THINGS, Change, Thing, WhatIfAnswer
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.plan_file.words.change_text import samples
@@ -25,7 +25,7 @@ _WHAT_IFS: dict[Thing, Callable[[Case, Trials], WhatIf | Change]] = {
 
 def mend(
     ready: Prepared, cutter: Cutter, verdicts: Verdicts, *, progress: Callable[[int, int], None] | None = None
-) -> Mend:  # fmt: skip
+) -> WhatIfAnswer:  # fmt: skip
     """Find for each thing that could be changed alone the change that asks least and lets a cutter finish the part.
 
     Values are tried on the samples that are not reached now; one that serves there is judged on all samples (`judge`), and so is
@@ -59,7 +59,7 @@ def mend(
     """
     tell = progress or (lambda done, total: None)
     trials = Trials.of(verdicts, ready.finished)
-    around = ready.conditions.around
+    surroundings = ready.conditions.surroundings
     within = int((ready.inside_bodies & verdicts.not_reached).sum())
     if not len(trials.not_reached):
         inside = f"{samples(within)} within another body, which is no surface of the finished part" if within else ""
@@ -67,8 +67,8 @@ def mend(
             f"no {'other ' * bool(within)}sample is lost, but faces are missing from what is in the way: no change of the cutter "
             "mends that"
         )
-        why = "; ".join(filter(None, (inside, missing if around.doubtful else inside and "nothing else is lost")))
-        return Mend(cutter.id, within, within, (), why)
+        why = "; ".join(filter(None, (inside, missing if surroundings.doubtful else inside and "nothing else is lost")))
+        return WhatIfAnswer(cutter.id, within, within, (), why)
     case = Case(ready, cutter)
     share = Finished.of(ready).of_rows(trials.not_reached)
     for done, (thing, what_if) in enumerate(_WHAT_IFS.items()):
@@ -76,16 +76,16 @@ def mend(
         what = what_if(case, trials)
         trials.found[thing] = what if isinstance(what, Change) else search(thing, what, trials)
     tell(len(_WHAT_IFS), len(_WHAT_IFS))
-    found = [_told(case, change, share) for change in trials.found.values()]
-    if around.doubtful:
-        found = [_doubted(change) for change in found]
+    answers = [_with_option(case, change, share) for change in trials.found.values()]
+    if surroundings.doubtful:
+        answers = [_doubted(change) for change in answers]
     rank = {True: 0, None: 1, False: 2}
-    changes = sorted(found, key=lambda change: (rank[change.helps], THINGS.index(change.thing)))
+    changes = sorted(answers, key=lambda change: (rank[change.helps], THINGS.index(change.thing)))
     why = "" if any(change.helps for change in changes) else "no change of one thing is known to help"
-    return Mend(cutter.id, len(trials.not_reached) + within, within, tuple(changes), why)
+    return WhatIfAnswer(cutter.id, len(trials.not_reached) + within, within, tuple(changes), why)
 
 
-def _told(case: Case, change: Change, share: float) -> Change:
+def _with_option(case: Case, change: Change, share: float) -> Change:
     """With the share of the finished area that is not reached now and with it, and how it is said on the command line."""
     if not change.helps:
         return replace(change, before=share)
@@ -95,12 +95,12 @@ def _told(case: Case, change: Change, share: float) -> Change:
     conditions = replace(conditions, machine=words.get("machine", conditions.machine))
     if "tilt" in words:
         conditions = replace(conditions, postures=replace(conditions.postures, tilt=words["tilt"]))
-    said = option(
+    answer = option(
         case.ready, case.cutter, cutters=words.get("cutters", (case.cutter,)), conditions=conditions,
         setups=(words["setup"],) if "setup" in words else None, flip=words.get("flip"), tolerance=words.get("tolerance"),
         faces=[int(each[1:]) for each in faces.split(",")] if faces else None,
     )  # fmt: skip
-    return replace(change, before=share, after=0.0, option=said)
+    return replace(change, before=share, after=0.0, option=answer)
 
 
 def _doubted(change: Change) -> Change:

@@ -65,10 +65,10 @@ class Scan:
 
     @classmethod
     def of(
-        cls, state: State, left: Rows, finished: Finished, known: Judgements, given: tuple[Cutter, ...]
+        cls, state: State, open_rows: Rows, finished: Finished, known: Judgements, cutters: tuple[Cutter, ...]
     ) -> "Scan":  # fmt: skip
         """With every so-manieth of the samples that are left."""
-        return cls(state, left, spread(left), finished, known, given)
+        return cls(state, open_rows, spread(open_rows), finished, known, cutters)
 
     def estimate(self, missed: Rows) -> float:
         """The share of the area that is left, if of the few these are."""
@@ -94,7 +94,7 @@ class Scan:
         gained = np.setdiff1d(self.few, missed, assume_unique=True)
         if not len(gained):
             return
-        told = set()
+        seen = set()
         for share in shares:
             low, high, still = -1, most, gained[:0]
             while high - low > 1:
@@ -106,8 +106,8 @@ class Scan:
                 else:
                     low = middle
             made = make(high)
-            if high not in told and made is not None:
-                told.add(high)
+            if high not in seen and made is not None:
+                seen.add(high)
                 yield high, made, np.union1d(missed, still)
 
 

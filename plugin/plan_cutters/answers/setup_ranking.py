@@ -58,8 +58,8 @@ class Candidates(Record):
     @classmethod
     def of(cls, ready: Prepared) -> "Candidates":
         """Directions of a cube's corners, edges and faces, normals of planes both ways, and some all over the sphere."""
-        around, part = ready.conditions.around, ready.scene.part
-        triangles = (around.alone or around).certain.triangles
+        surroundings, part = ready.conditions.surroundings, ready.scene.part
+        triangles = (surroundings.alone or surroundings).certain.triangles
         planar = [face.number for face in part.faces if face.shape == "plane"]
         axis = distinct(
             np.concatenate([cube(), _normals(triangles.vertex, triangles.face, planar), fibonacci(_SPREAD)])
@@ -91,29 +91,29 @@ def fibonacci(count: int) -> Floats:
 
 def distinct(axis: Floats) -> Floats:
     """Directions without those that are nearly one before them."""
-    kept: list[int] = []
+    result: list[int] = []
     for k in range(len(axis)):
-        if not kept or (axis[kept] @ axis[k]).max() < _ONE:
-            kept.append(k)
-    return axis[kept]
+        if not result or (axis[result] @ axis[k]).max() < _ONE:
+            result.append(k)
+    return axis[result]
 
 
 def _normals(vertex: Floats, face: NDArray[np.int32], planar: Sequence[int]) -> Floats:
     """Normals of the families of parallel planes with the most area, both ways: the machine may look at them or away."""
     wide = np.cross(vertex[:, 1] - vertex[:, 0], vertex[:, 2] - vertex[:, 0])
-    found: list[tuple[float, Floats]] = []
+    normals: list[tuple[float, Floats]] = []
     for number in planar:
         normal = wide[face == number].sum(axis=0)
         size = float(np.linalg.norm(normal))
         if not size > 0.0:
             continue
-        same = next((k for k, (_, known) in enumerate(found) if abs(known @ normal) >= _ONE * size), None)
+        same = next((k for k, (_, known) in enumerate(normals) if abs(known @ normal) >= _ONE * size), None)
         if same is None:
-            found.append((size, normal / size))
+            normals.append((size, normal / size))
         else:
-            found[same] = found[same][0] + size, found[same][1]
-    found = sorted(found, key=lambda each: -each[0])[:_FAMILIES]
-    return np.array([way * normal for _, normal in found for way in (1.0, -1.0)]).reshape(-1, 3)
+            normals[same] = normals[same][0] + size, normals[same][1]
+    normals = sorted(normals, key=lambda each: -each[0])[:_FAMILIES]
+    return np.array([way * normal for _, normal in normals for way in (1.0, -1.0)]).reshape(-1, 3)
 
 
 def holdable(
@@ -148,8 +148,8 @@ def holdable(
         if not len(mine):
             continue
         # The end of the axis lies the length from the tip, and the tip a diameter from the contact at most.
-        lean = max(min(1.0, (float(high) + 2.0 * cutter.radius) / cutter.length) for cutter in cutters)
-        cap = float(np.arccos(-lean))
+        tilt = max(min(1.0, (float(high) + 2.0 * cutter.radius) / cutter.length) for cutter in cutters)
+        cap = float(np.arccos(-tilt))
         limit = cap if machine.tilt_limit is None else min(cap, machine.tilt_limit)
         over = replace(conditions, machine=replace(machine, tilt_limit=limit))
         held |= within_limits(samples, cutters, over, setup, mine)
@@ -203,8 +203,8 @@ class Ranking:
                 f"setup auto: in none of {len(candidates.axis)} directions does machine {few.machine.name} hold an axis "
                 f"at which a cutter touches with tilts from {low:g} to {high:g} deg; give other tilts or machine"
             )
-        around = few.around.alone or few.around
-        free = _reached(ready, rows, replace(few.machineless, around=around))
+        surroundings = few.surroundings.alone or few.surroundings
+        free = _reached(ready, rows, replace(few.machineless, surroundings=surroundings))
         return cls(ready, candidates, rows, bound & free[rows, None] if free.any() else bound, {})
 
     @property
@@ -216,10 +216,10 @@ class Ranking:
         """The share of area of some columns (r, k): (k,)."""
         return np.asarray(self.area @ table / max(1e-300, float(self.area.sum())))
 
-    def search(self, left: NDArray[np.bool_], most: int) -> None:
+    def search(self, open_rows: NDArray[np.bool_], most: int) -> None:
         """Search the directions that may serve most of what is left (r,), at most so many, while they may beat what was found."""
         worth = np.array([1.0 if each else _ON_NO_PLANE for each in self.candidates.stands_on])
-        upper = worth * self.share(self.bound & left[:, None])
+        upper = worth * self.share(self.bound & open_rows[:, None])
         order = np.lexsort((np.arange(len(upper)), -np.round(upper / _EVEN)))
         best, tried = 0.0, 0
         for k in order.tolist():
@@ -228,13 +228,13 @@ class Ranking:
             if k not in self.served:
                 self.served[k] = self._searched(k)
                 tried += 1
-            best = max(best, float(worth[k] * self.share((self.served[k] & left)[:, None])[0]))
+            best = max(best, float(worth[k] * self.share((self.served[k] & open_rows)[:, None])[0]))
 
     def _searched(self, k: int) -> NDArray[np.bool_]:
         """Where any cutter has a posture with a table under the part, of the rows (r,)."""
         x, y, z = self.candidates.axis[k].tolist()
-        around = self.ready.scene.surround_on_table((x, y, z))
-        conditions = replace(self.ready.conditions, setup=np.array([x, y, z]), x=None, around=around)
+        surroundings = self.ready.scene.surround_on_table((x, y, z))
+        conditions = replace(self.ready.conditions, setup=np.array([x, y, z]), x=None, surroundings=surroundings)
         return _reached(self.ready, self.rows[self.bound[:, k]], conditions)[self.rows]
 
     def choose(self, most: int, without: frozenset[int] = frozenset()) -> tuple[int, ...]:
@@ -271,29 +271,29 @@ class Ranking:
         share = self.share(table)
         chosen = cover(table, range(len(every)), range(len(every)))[0] if most > 1 else []
         if not chosen or len(chosen) > most:
-            chosen, left = [], np.ones(len(table), bool)
+            chosen, uncovered = [], np.ones(len(table), bool)
             while len(chosen) < most:
-                gain = self.share(table & left[:, None])
+                gain = self.share(table & uncovered[:, None])
                 k = int(np.round(gain / _EVEN).argmax())
                 if not gain[k] > 0.0:
                     break
                 chosen.append(k)
-                left &= ~table[:, k]
+                uncovered &= ~table[:, k]
         return tuple(every[k] for k in sorted(chosen, key=lambda k: -round(float(share[k]) / _EVEN)))
 
 
 def _reached(ready: Prepared, rows: Rows, conditions: Conditions) -> NDArray[np.bool_]:
     """The samples (n,) of some rows at which any of the cutters has a posture under some conditions."""
-    found, left = np.zeros(len(ready.samples), bool), rows
+    reached, open_rows = np.zeros(len(ready.samples), bool), rows
     # The least wanted cutter is the smallest: it reaches most.
     for cutter in reversed(ready.cutters):
-        if len(left) and conditions.judges(cutter):
-            verdicts = blank(len(found))
+        if len(open_rows) and conditions.judges(cutter):
+            verdicts = blank(len(reached))
             tools = conditions.outer_tool(cutter), conditions.inner_tool(cutter)
-            search_postures(contacts_of(ready.samples), left, *tools, conditions, verdicts, fixed=True)
-            found |= verdicts.reached
-            left = left[~verdicts.reached[left]]
-    return found
+            search_postures(contacts_of(ready.samples), open_rows, *tools, conditions, verdicts, fixed=True)
+            reached |= verdicts.reached
+            open_rows = open_rows[~verdicts.reached[open_rows]]
+    return reached
 
 
 def ranked(ready: Prepared, most: int) -> Ranking:
@@ -311,12 +311,14 @@ def ranked(ready: Prepared, most: int) -> Ranking:
     OptionError
         As for `Ranking.of`.
     """
-    found = Ranking.of(ready)
-    found.search(np.ones(len(found.rows), bool), _FIRST)
+    ranking = Ranking.of(ready)
+    ranking.search(np.ones(len(ranking.rows), bool), _FIRST)
     for number in range(1, most):
-        chosen = found.choose(number)
-        done = np.logical_or.reduce([found.served[k] for k in chosen]) if chosen else np.zeros(len(found.rows), bool)
+        chosen = ranking.choose(number)
+        done = (
+            np.logical_or.reduce([ranking.served[k] for k in chosen]) if chosen else np.zeros(len(ranking.rows), bool)
+        )
         if done.all():
             break
-        found.search(~done, _MORE)
-    return found
+        ranking.search(~done, _MORE)
+    return ranking

@@ -75,16 +75,16 @@ class Judgements:
         cls,
         ready: Prepared,
         reaches: Mapping[Cutter, Verdicts],
-        elsewhere: Sequence[tuple[Axis, Mapping[str, Verdicts]]] = (),
+        other_setups: Sequence[tuple[Axis, Mapping[str, Verdicts]]] = (),
     ) -> "Judgements":
         """Those of a plan."""
-        found, wanted = cls(), ready.finished
-        for (axis, x), each in zip(ready.axes, (None, *(verdicts for _, verdicts in elsewhere)), strict=False):
+        judgements, wanted = cls(), ready.finished
+        for (axis, x), each in zip(ready.axes, (None, *(verdicts for _, verdicts in other_setups)), strict=False):
             for cutter, verdicts in reaches.items():
                 mine = verdicts if each is None else each[cutter.id]
                 name = key(ready, cutter, axis, x)
-                found.looked[name], found.missed[name] = wanted.copy(), mine.not_reached & wanted
-        return found
+                judgements.looked[name], judgements.missed[name] = wanted.copy(), mine.not_reached & wanted
+        return judgements
 
     def left(self, state: State, rows: Rows) -> Rows:
         """Those of some samples of the finished surface that a state leaves, judged as a plan judges."""

@@ -14,7 +14,7 @@ from plan_cutters.answers.option import Axis, option
 from plan_cutters.answers.scan import Candidate, Scan
 from plan_cutters.answers.state import Judgements, State
 from plan_cutters.domain.area import Patch
-from plan_cutters.domain.change import MEANS, Mend, Move, Step
+from plan_cutters.domain.change import MEANS, Move, Step, WhatIfAnswer
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.plan_file.words import change_text
@@ -42,9 +42,9 @@ _APART = {"setup": {"second_setup", "tilt_limit"}, "second_setup": {"setup", "ti
 
 
 def steps(
-    ready: Prepared, found: Mend, cutter: Cutter, reaches: Mapping[Cutter, Verdicts],
-    elsewhere: Sequence[tuple[Axis, Mapping[str, Verdicts]]] = (), *, progress: Progress | None = None,
-) -> Mend:  # fmt: skip
+    ready: Prepared, what_if: WhatIfAnswer, cutter: Cutter, reaches: Mapping[Cutter, Verdicts],
+    other_setups: Sequence[tuple[Axis, Mapping[str, Verdicts]]] = (), *, progress: Progress | None = None,
+) -> WhatIfAnswer:  # fmt: skip
     """Find what to do next, and what it gains.
 
     Values are compared on a few samples; each of those that may gain most is judged on all samples that are not reached and,
@@ -53,13 +53,13 @@ def steps(
     Parameters
     ----------
     ready : Prepared
-    found : Mend
+    what_if : Mend
         What was found of the cutter so far.
     cutter : Cutter
         One of `reaches`.
     reaches : mapping
         What each given cutter reaches in the plan's first setup.
-    elsewhere : sequence
+    other_setups : sequence
         Of each other setup its axis, and what each cutter reaches there by its id.
     progress : callable, optional
         Called with the number of cases judged, and the largest number there can be.
@@ -69,11 +69,11 @@ def steps(
     Mend
         With `share`, `steps` and `areas`.
     """
-    finished, known = Finished.of(ready), Judgements.of(ready, reaches, elsewhere)
+    finished, known = Finished.of(ready), Judgements.of(ready, reaches, other_setups)
     state = State(ready, (cutter,), ready.axes)
-    left = known.left(state, np.flatnonzero(finished.wanted))
-    if not len(left):
-        return found
+    open_rows = known.left(state, np.flatnonzero(finished.wanted))
+    if not len(open_rows):
+        return what_if
     count, most = 0, _SINGLES + _PAIRS * _BEST + _JOINED
 
     def tell() -> None:
@@ -83,22 +83,22 @@ def steps(
             progress(min(count, most), most)
 
     known.tell = tell
-    areas = patches(ready.samples, finished, left)
-    scan = Scan.of(state, left, finished, known, tuple(each for each in ready.cutters if each in reaches))
+    areas = patches(ready.samples, finished, open_rows)
+    scan = Scan.of(state, open_rows, finished, known, tuple(each for each in ready.cutters if each in reaches))
     # What other given cutters reach is known.
     listed = candidates(scan)
     dear = [each for each in listed if each.moves[0].means != "cutter"][:_SINGLES]
     chosen = [each for each in listed if each in dear or each.moves[0].means == "cutter"]
     made = [(each, known.left(each.state, _rows(scan, each))) for each in chosen]
-    before = finished.of_rows(left)
+    before = finished.of_rows(open_rows)
     singles = [each for each in made if before - finished.of_rows(each[1]) > min(_WORTH, _LITTLE * before)]
     pairs = _pairs(scan, singles)
     base = (ready, cutter, state)
-    found_steps = [_step(base, finished, left, each, rows) for each, rows in (*singles, *pairs)]
-    found_steps.sort(key=lambda step: (round(step.after, _ALIKE), *effort(step.moves)))
+    result = [_step(base, finished, open_rows, each, rows) for each, rows in (*singles, *pairs)]
+    result.sort(key=lambda step: (round(step.after, _ALIKE), *effort(step.moves)))
     return replace(
-        found, share=before, steps=(*found_steps, _left_out(base, finished, left, areas)), areas=tuple(areas[:_AREAS]),
-        more_areas=len(areas[_AREAS:]), unsure=ready.conditions.around.doubtful,
+        what_if, share=before, steps=(*result, _excluded(base, finished, open_rows, areas)), areas=tuple(areas[:_AREAS]),
+        more_areas=len(areas[_AREAS:]), unsure=ready.conditions.surroundings.doubtful,
     )  # fmt: skip
 
 
@@ -119,7 +119,7 @@ def _pairs(scan: Scan, singles: list[Judged]) -> list[Judged]:
     best = sorted(singles, key=lambda each: (round(finished.of_rows(each[1]), _ALIKE), *effort(each[0].moves)))
     if best and not len(best[0][1]):
         return []
-    found: dict[tuple[Named, ...], Judged] = {}
+    pairs: dict[tuple[Named, ...], Judged] = {}
     tried: set[tuple[Named, ...]] = set()
 
     def judge(each: Candidate, rows: Rows) -> bool:
@@ -132,7 +132,7 @@ def _pairs(scan: Scan, singles: list[Judged]) -> list[Judged]:
         least = min(alone.get(_name(move), finished.of_rows(scan.left)) for move in each.moves)
         share = finished.of_rows(still)
         if share < least - _WORTH or (not len(still) and least > 0.0):
-            found[name] = each, still
+            pairs[name] = each, still
         return True
 
     started: set[str] = set()
@@ -154,40 +154,42 @@ def _pairs(scan: Scan, singles: list[Judged]) -> list[Judged]:
         count += judge(both, scan.left)
         if count == _JOINED:
             break
-    return list(found.values())
+    return list(pairs.values())
 
 
 def _name(move: Move) -> Named:
     return move.means, str(move.asked)
 
 
-def _step(base: tuple[Prepared, Cutter, State], finished: Finished, left: Rows, found: Candidate, rows: Rows) -> Step:
+def _step(
+    base: tuple[Prepared, Cutter, State], finished: Finished, open_rows: Rows, candidate: Candidate, rows: Rows
+) -> Step:
     ready, cutter, state = base
-    after = found.state
-    said = option(
+    after = candidate.state
+    result = option(
         ready, cutter, cutters=after.cutters, setups=after.axes if after.axes != state.axes else None,
         conditions=after.ready.conditions,
         tolerance=after.ready.scene.asked if after.ready.scene.asked != ready.scene.asked else None,
     )  # fmt: skip
-    freed = len(np.setdiff1d(left, rows, assume_unique=True))
+    freed = len(np.setdiff1d(open_rows, rows, assume_unique=True))
     return Step(
-        found.moves, finished.of_rows(left), finished.of_rows(rows), freed, len(rows), after.cutters, after.axes, said,
+        candidate.moves, finished.of_rows(open_rows), finished.of_rows(rows), freed, len(rows), after.cutters, after.axes, result,
         tuple(patches(ready.samples, finished, rows)[:_REMAINS]),
     )  # fmt: skip
 
 
-def _left_out(base: tuple[Prepared, Cutter, State], finished: Finished, left: Rows, areas: list[Patch]) -> Step:
+def _excluded(base: tuple[Prepared, Cutter, State], finished: Finished, open_rows: Rows, areas: list[Patch]) -> Step:
     """Nothing changed: what is not reached is left to other means."""
     ready, cutter, state = base
     face = ready.samples.face
-    bad = np.unique(face[left])
+    bad = np.unique(face[open_rows])
     rest = np.setdiff1d(ready.chosen.targets, bad)
     # An option leaves out whole faces alone.
-    whole = len(rest) and len(left) == int((finished.wanted & np.isin(face, bad)).sum())
-    said = option(ready, cutter, cutters=(cutter,), faces=rest.tolist()) if whole else None
-    area, share = float(finished.area[left].sum()), finished.of_rows(left)
-    move = Move("area", None, round(area, 6), change_text.left_out(areas, area))
+    whole = len(rest) and len(open_rows) == int((finished.wanted & np.isin(face, bad)).sum())
+    result = option(ready, cutter, cutters=(cutter,), faces=rest.tolist()) if whole else None
+    area, share = float(finished.area[open_rows].sum()), finished.of_rows(open_rows)
+    move = Move("area", None, round(area, 6), change_text.excluded_areas(areas, area))
     return Step(
-        (move,), share, 0.0, 0, len(left), (cutter,), state.axes, said,
+        (move,), share, 0.0, 0, len(open_rows), (cutter,), state.axes, result,
         tuple(areas[:_REMAINS]),
     )  # fmt: skip

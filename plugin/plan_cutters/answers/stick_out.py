@@ -16,7 +16,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.stick_out import StickOut, floor_of, held, outline
 from plan_cutters.domain.verdicts import ACCESSIBLE, VerdictBuffer, Verdicts, blank
 from plan_cutters.kernels.rows import Contacts, Tool
-from plan_cutters.scene.conditions import contacts_of, found_of, rotations_of, tool_of
+from plan_cutters.scene.conditions import contacts_of, rotations_of, tool_of, verdict_arrays_of
 from plan_cutters.scene.deepest import deepest_on
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import CHUNK, in_chunks
@@ -66,14 +66,14 @@ def least_stick_out(
         least, limiting = min(longest, max(longer, least + EXACT)), row
     least, limiting = search.lowered(rows, least, limiting)
     each = None if step is None else search.each(rows, step)
-    found = StickOut(least, search.floor, longest, "floor" if limiting < 0 else "obstacle", served=len(rows), each=each,
+    stick_out = StickOut(least, search.floor, longest, "floor" if limiting < 0 else "obstacle", served=len(rows), each=each,
                      step=step or np.nan)  # fmt: skip
-    return found if limiting < 0 else _limited(ready, cutter, search, found, limiting)
+    return stick_out if limiting < 0 else _limited(ready, cutter, search, stick_out, limiting)
 
 
-def _limited(ready: Prepared, cutter: Cutter, search: "_Search", found: StickOut, row: int) -> StickOut:
+def _limited(ready: Prepared, cutter: Cutter, search: "_Search", stick_out: StickOut, row: int) -> StickOut:
     """With the posture and the obstacle of the sample that limits it, and what a shorter one finds there."""
-    beyond = max(search.floor, found.least - BEYOND)
+    beyond = max(search.floor, stick_out.least - BEYOND)
     shorter = judge(ready, held(cutter, beyond), np.array([row]))
     posture, one = search.found, slice(row, row + 1)
     triangle = int(search.needed(np.array([row]), posture)[1][row])
@@ -91,7 +91,7 @@ def _limited(ready: Prepared, cutter: Cutter, search: "_Search", found: StickOut
         )
     samples = ready.samples
     turn = float(rotations_of(samples.normal[one], samples.direction_max[one], posture.tilt_direction[one])[0])
-    return replace(found, beyond=beyond, verdict=int(shorter.verdict[0]), sample=row, tilt=float(posture.tilt[row]),
+    return replace(stick_out, beyond=beyond, verdict=int(shorter.verdict[0]), sample=row, tilt=float(posture.tilt[row]),
                    rotation=turn, axis=axis, tilt_direction=posture.tilt_direction[row], obstacle_face=face,
                    obstacle_point=point)  # fmt: skip
 
@@ -133,38 +133,38 @@ class _Search:
         for company in (few, rows):
             pieces = [company[i : i + CHUNK] for i in range(0, len(company), CHUNK)]
             at = np.zeros(len(pieces), np.int64)
-            while len(left := np.flatnonzero(at < [len(piece) for piece in pieces])):
-                not_reached = self._round(pieces, at, left, least)
+            while len(open_rows := np.flatnonzero(at < [len(piece) for piece in pieces])):
+                not_reached = self._round(pieces, at, open_rows, least)
                 for row in not_reached:
                     # What an earlier one of this round asked for may be enough.
-                    longer, found = self.one(row, least)
-                    if found >= 0:
-                        least, limiting = longer, found
+                    longer, result = self.one(row, least)
+                    if result >= 0:
+                        least, limiting = longer, result
                 done = int(at.sum())
                 self.progress(min(done, len(rows) - 1), len(rows))
         return least, limiting
 
     def _round(
-        self, pieces: list[NDArray[np.int64]], at: NDArray[np.int64], left: NDArray[np.int64], stick_out: float
+        self, pieces: list[NDArray[np.int64]], at: NDArray[np.int64], open_rows: NDArray[np.int64], stick_out: float
     ) -> list[int]:
         """Search each piece that is left up to the first sample that is not reached; move `at` on, and return those samples."""
         from plan_cutters.kernels.search.search import until_not_reached
 
         tool, ranges, solids = self.tool(stick_out), self.conditions.ranges, self.conditions.obstacles.solids
-        found = blank(len(self.ready.samples))
+        verdicts = blank(len(self.ready.samples))
         not_reached: dict[int, int] = {}
 
         def work(which: NDArray[np.int64]) -> None:
             for k in which.tolist():
                 piece = pieces[k]
                 at[k] = until_not_reached(
-                    piece, int(at[k]), self.contacts, ranges, tool, solids, False, found_of(found)
+                    piece, int(at[k]), self.contacts, ranges, tool, solids, False, verdict_arrays_of(verdicts)
                 )
                 row = int(piece[at[k] - 1])
-                if found.verdict[row] != ACCESSIBLE:
+                if verdicts.verdict[row] != ACCESSIBLE:
                     not_reached[k] = row
 
-        in_chunks(work, left, self.conditions.jobs, chunk=1)
+        in_chunks(work, open_rows, self.conditions.jobs, chunk=1)
         return [not_reached[k] for k in sorted(not_reached)]
 
     def lowered(self, rows: NDArray[np.int64], least: float, limiting: int) -> tuple[float, int]:
@@ -208,12 +208,14 @@ class _Search:
         contact = Contacts(samples.point[one], samples.normal[one], samples.direction_max[one], samples.curvature[one])
         best, start = blank(1), (max(0, int(self.found.rotation[row])), float(self.found.tilt[row]))
         turns, solids = len(ranges.rotation_cos), self.conditions.obstacles.solids
-        if not posture(contact, ranges, self.tool(stick_out), _NARROWEST, start, turns, solids, found_of(best)):
+        if not posture(
+            contact, ranges, self.tool(stick_out), _NARROWEST, start, turns, solids, verdict_arrays_of(best)
+        ):
             return False
         self.found.take_posture(row, best, 0)
         return True
 
-    def with_room(self, rows: NDArray[np.int64], posture: VerdictBuffer) -> Floats:
+    def with_margin(self, rows: NDArray[np.int64], posture: VerdictBuffer) -> Floats:
         """Stick-outs (m,), mm, that known postures need, and `BEYOND` more.
 
         With no more than they need, no other tilt is left, and a search would miss the posture.
@@ -227,25 +229,25 @@ class _Search:
 
         ranges, solids = self.conditions.ranges, self.conditions.obstacles.solids
         best = np.full(len(self.ready.samples), np.nan)
-        best[rows] = self.with_room(rows, self.found)
+        best[rows] = self.with_margin(rows, self.found)
         low, high = np.full(len(best), -1), np.zeros(len(best), np.int64)
         high[rows] = np.ceil((best[rows] - self.floor) / step - 1e-9)
-        while len(left := rows[high[rows] - low[rows] > 1]):
+        while len(open_rows := rows[high[rows] - low[rows] > 1]):
             # The floor first: most samples are free with it.
-            middle = np.where(low[left] < 0, 0, (low[left] + high[left]) // 2)
+            middle = np.where(low[open_rows] < 0, 0, (low[open_rows] + high[open_rows]) // 2)
             for level in np.unique(middle).tolist():
-                some, found = left[middle == level], blank(len(best))
+                some, buffer = open_rows[middle == level], blank(len(best))
                 tool = self.tool(min(self.cutter.length, self.floor + level * step))
 
-                def work(piece: NDArray[np.int64], tool: Tool = tool, found: VerdictBuffer = found) -> None:
-                    until_not_reached(piece, 0, self.contacts, ranges, tool, solids, True, found_of(found))
+                def work(piece: NDArray[np.int64], tool: Tool = tool, buffer: VerdictBuffer = buffer) -> None:
+                    until_not_reached(piece, 0, self.contacts, ranges, tool, solids, True, verdict_arrays_of(buffer))
 
                 in_chunks(work, some, self.conditions.jobs)
-                reached = some[found.verdict[some] == ACCESSIBLE]
+                reached = some[buffer.verdict[some] == ACCESSIBLE]
                 best[reached] = np.minimum(
-                    np.minimum(best[reached], self.floor + level * step), self.with_room(reached, found)
+                    np.minimum(best[reached], self.floor + level * step), self.with_margin(reached, buffer)
                 )
                 high[reached] = np.minimum(level, np.ceil((best[reached] - self.floor) / step - 1e-9))
-                low[some[found.verdict[some] != ACCESSIBLE]] = level
-                self.progress(len(rows) - len(left), len(rows))
+                low[some[buffer.verdict[some] != ACCESSIBLE]] = level
+                self.progress(len(rows) - len(open_rows), len(rows))
         return best

@@ -58,10 +58,10 @@ class Case:
         """
         from plan_cutters.kernels.search.search import dummy_clear
 
-        ready, conditions, found = self.ready, self.ready.conditions, blank(len(rows))
+        ready, conditions, verdicts = self.ready, self.ready.conditions, blank(len(rows))
         if not conditions.judges(self.cutter):
-            found.verdict[:], found.reason[:] = UNDECIDED, TOLERANCE
-            return found.freeze()
+            verdicts.verdict[:], verdicts.reason[:] = UNDECIDED, TOLERANCE
+            return verdicts.freeze()
         contacts = Contacts(*(np.ascontiguousarray(column[rows]) for column in contacts_of(ready.samples)))
         outer_tool, inner_tool = conditions.outer_tool(self.cutter), conditions.inner_tool(self.cutter)
         free = np.zeros(len(rows), bool)
@@ -75,12 +75,12 @@ class Case:
                 conditions.obstacles.solids,
                 free,
             )
-        found.verdict[free] = ACCESSIBLE
+        verdicts.verdict[free] = ACCESSIBLE
         # Of the finished surface these lie within a fixture.
         within = ready.inside[rows] >= 0
-        search_postures(contacts, np.flatnonzero(~free & ~within), outer_tool, inner_tool, conditions, found)
-        found.verdict[within], found.reason[within] = INACCESSIBLE, INSIDE
-        return found.freeze()
+        search_postures(contacts, np.flatnonzero(~free & ~within), outer_tool, inner_tool, conditions, verdicts)
+        verdicts.verdict[within], verdicts.reason[within] = INACCESSIBLE, INSIDE
+        return verdicts.freeze()
 
     def misses(self, rows: Rows) -> Rows:
         """Those of some samples that it does not reach."""
@@ -121,8 +121,11 @@ class Trials:
     @classmethod
     def of(cls, verdicts: Verdicts, finished: NDArray[np.bool_]) -> "Trials":
         """The samples of a reach that are of the finished surface (n,)."""
-        not_reached, kept = np.flatnonzero(verdicts.not_reached & finished), np.flatnonzero(verdicts.reached & finished)
-        return cls(not_reached, kept, blocked=int((verdicts.verdict[not_reached] == INACCESSIBLE).sum()))
+        not_reached, reached_rows = (
+            np.flatnonzero(verdicts.not_reached & finished),
+            np.flatnonzero(verdicts.reached & finished),
+        )
+        return cls(not_reached, reached_rows, blocked=int((verdicts.verdict[not_reached] == INACCESSIBLE).sum()))
 
     @property
     def count(self) -> int:
@@ -172,13 +175,13 @@ def batches(rows: Rows) -> Iterator[Rows]:
     while first < len(mixed):
         yield mixed[first : first + size]
         first, size = first + size, size * _MORE
-    left = np.setdiff1d(rows, mixed, assume_unique=True)
-    if len(left):
-        yield left
+    pure = np.setdiff1d(rows, mixed, assume_unique=True)
+    if len(pure):
+        yield pure
 
 
 @dataclass(frozen=True, slots=True)
-class Left:
+class StillMissed:
     """Count the samples that are not reached now and stay so with a new value, and give the reasons.
 
     count, blocked : int
@@ -195,7 +198,7 @@ class Left:
     words: str
 
     @classmethod
-    def by(cls, case: Case, rows: Rows) -> "Left":
+    def by(cls, case: Case, rows: Rows) -> "StillMissed":
         """Count the samples among some that a case does not reach."""
         few = rows[:: 1 + (len(rows) - 1) // _LOOKED_AT]
         verdicts = case.look(few)
@@ -268,15 +271,15 @@ def _case(steps: Steps, at: int) -> Case:
     return case
 
 
-def _back(steps: Steps, found: Step, trials: Trials) -> Step:
+def _back(steps: Steps, step: Step, trials: Trials) -> Step:
     """Take a value back as long as a plan with the one before finds a posture everywhere."""
-    while found.steps > 1:
-        case = _case(steps, found.steps - 1)
+    while step.steps > 1:
+        case = _case(steps, step.steps - 1)
         hard = np.array(sorted(trials.hard[:1]), np.int64)
         if len(case.judged(hard)) or len(case.judged()):
             break
-        found = Step(found.steps - 1, case, found.steps - 2)
-    return found
+        step = Step(step.steps - 1, case, step.steps - 2)
+    return step
 
 
 def first(steps: Steps, most: int, trials: Trials) -> Step | None:

@@ -21,14 +21,14 @@ def undecidable(ready: Prepared, cutter: Cutter, verdicts: Verdicts) -> str:
     verdicts : Verdicts
         Of all samples.
     """
-    left = verdicts.not_reached & ready.finished
-    if not left.any() or (verdicts.verdict[left] != UNDECIDED).any():
+    not_reached = verdicts.not_reached & ready.finished
+    if not not_reached.any() or (verdicts.verdict[not_reached] != UNDECIDED).any():
         return ""
-    conditions, number = ready.conditions, int(np.count_nonzero(left))
+    conditions, number = ready.conditions, int(np.count_nonzero(not_reached))
     raised = conditions.tolerance > _RAISED * ready.scene.asked
     if raised and not conditions.judges(cutter):
         cause = f"the tolerance that can be kept, {mm(conditions.tolerance)}, is too coarse for the cutter"
-    elif set(faces := np.unique(ready.samples.face[left]).tolist()) <= set(conditions.around.loose):
+    elif set(faces := np.unique(ready.samples.face[not_reached]).tolist()) <= set(conditions.surroundings.loose):
         cause = f"they lie on {', '.join(f'F{face}' for face in faces)}, which triangles follow too loosely"
     else:
         return ""

@@ -4,7 +4,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any
 
-from plan_cutters.answers.trial import Case, Left, Step, Trials, first, least
+from plan_cutters.answers.trial import Case, Step, StillMissed, Trials, first, least
 from plan_cutters.domain.change import UNDECIDED, Change, Thing, Value
 
 
@@ -33,50 +33,50 @@ class WhatIf:
     ends: list[Case]
     nested: bool = False
     reads: Callable[[Case], Value]
-    fails: Callable[[Case, Left], str]
+    fails: Callable[[Case, StillMissed], str]
     serves: Callable[[Any, Case], tuple[str, dict[str, Any]]]
 
 
 def search(thing: Thing, what: WhatIf, trials: Trials) -> Change:
     """Find the value that asks least, judged on all samples as is the one before it; or tell what the best one leaves."""
-    left = Left.by(what.ends[0], trials.not_reached) if what.nested else None
-    found = None if left and left.count else _fewest(what, trials)
-    if found:
-        step, value = found
-        asked, beyond = value(step.steps), None if step.beyond is None else value(step.beyond)
-        words, options = what.serves(asked, step.case)
+    remaining = StillMissed.by(what.ends[0], trials.not_reached) if what.nested else None
+    best = None if remaining and remaining.count else _fewest(what, trials)
+    if best:
+        step, value = best
+        result, beyond = value(step.steps), None if step.beyond is None else value(step.beyond)
+        words, options = what.serves(result, step.case)
         (cutter,) = options.get("cutters", (None,))
         return Change(
-            thing, what.now, asked, True, 0, len(trials.not_reached), trials.count, beyond, cutter, words, options
+            thing, what.now, result, True, 0, len(trials.not_reached), trials.count, beyond, cutter, words, options
         )
     end = what.ends[0] if what.nested else trials.closest(what.ends)
-    left = left or Left.by(end, trials.not_reached)
-    why = what.fails(end, left)
+    remaining = remaining or StillMissed.by(end, trials.not_reached)
+    why = what.fails(end, remaining)
     # Where all that are not reached now are reached, others are not.
-    worst = left if left.count or not len(trials.kept) else Left.by(end, trials.kept)
+    worst = remaining if remaining.count or not len(trials.kept) else StillMissed.by(end, trials.kept)
     if worst.blocked or not worst.count:
-        return none(thing, what.now, left.count, why, left.looked)
+        return none(thing, what.now, remaining.count, why, remaining.looked)
     why = UNDECIDED + why
     return Change(thing, what.now, what.reads(end), None, worst.count, worst.looked, 0, None, None, why)
 
 
 def _fewest(what: WhatIf, trials: Trials) -> tuple[Step, Callable[[int], Any]] | None:
-    found: tuple[Step, Callable[[int], Any]] | None = None
+    best: tuple[Step, Callable[[int], Any]] | None = None
     for way in what.ways:
-        if found and way.last_resort:
+        if best and way.last_resort:
             break
 
         def steps(at: int, way: Way = way) -> Case | None:
             return what.make(way.value(at))
 
-        most = min(way.most, found[0].steps - 1) if found and not what.nested else way.most
+        most = min(way.most, best[0].steps - 1) if best and not what.nested else way.most
         step = (least if what.nested else first)(steps, most, trials)
-        if step and (found is None or step.steps < found[0].steps):
-            found = step, way.value
-    return found
+        if step and (best is None or step.steps < best[0].steps):
+            best = step, way.value
+    return best
 
 
-def none(thing: Thing, now: Value, left: int, why: str, looked: int | None = None) -> Change:
+def none(thing: Thing, now: Value, unserved: int, why: str, looked: int | None = None) -> Change:
     """Tell that nothing serves, or that there is nothing to try; `looked`: samples looked at, if not all that are left."""
-    looked = left if looked is None else looked
-    return Change(thing, now, None, False, left, looked, 0, None, None, f"does not help: {why}")
+    looked = unserved if looked is None else looked
+    return Change(thing, now, None, False, unserved, looked, 0, None, None, f"does not help: {why}")

@@ -50,9 +50,9 @@ def stick_out(case: Case, trials: Trials) -> WhatIf | Change:
         return none("stick_out", now, not_reached, "no shank can go on above it")
     return WhatIf(
         now=now, ways=[way], make=make, ends=[end], nested=True, reads=lambda end: end.cutter.length,
-        fails=lambda end, left: f"{left.words} at every stick-out" if left.count else
+        fails=lambda end, rest: f"{rest.words} at every stick-out" if rest.count else
         "where the holder is out of the way, something else is",
-        serves=lambda asked, made: (change_text.stick_out(asked, cutter), {"cutters": (made.cutter,)}),
+        serves=lambda requested, made: (change_text.stick_out(requested, cutter), {"cutters": (made.cutter,)}),
     )  # fmt: skip
 
 
@@ -86,9 +86,9 @@ def radius(case: Case, trials: Trials) -> WhatIf | Change:
     assert end is not None
     return WhatIf(
         now=now, ways=[Way(most, value)], make=make, ends=[end], reads=lambda end: end.cutter.radius,
-        fails=lambda end, left: f"with {how.size(end.cutter.radius)}, the least tried, {left.words}" if left.count else
+        fails=lambda end, rest: f"with {how.size(end.cutter.radius)}, the least tried, {rest.words}" if rest.count else
         f"none of {most} sizes down to {how.size(end.cutter.radius)} serves all samples",
-        serves=lambda asked, made: (change_text.radius(asked, cutter), {"cutters": (made.cutter,)}),
+        serves=lambda requested, made: (change_text.radius(requested, cutter), {"cutters": (made.cutter,)}),
     )  # fmt: skip
 
 
@@ -110,9 +110,9 @@ def corner_radius(case: Case, trials: Trials) -> WhatIf | Change:
 
     return WhatIf(
         now=now, ways=[Way(len(ends), values.__getitem__)], make=make, ends=ends, reads=lambda end: end.cutter.corner_radius,
-        fails=lambda end, left: f"with {how.mm(end.cutter.corner_radius)}, the best of {len(ends)} tried, {left.words}"
-        if left.count else f"each of {len(ends)} corner radii tried loses some samples",
-        serves=lambda asked, made: (change_text.corner_radius(asked, cutter), {"cutters": (made.cutter,)}),
+        fails=lambda end, rest: f"with {how.mm(end.cutter.corner_radius)}, the best of {len(ends)} tried, {rest.words}"
+        if rest.count else f"each of {len(ends)} corner radii tried loses some samples",
+        serves=lambda requested, made: (change_text.corner_radius(requested, cutter), {"cutters": (made.cutter,)}),
     )  # fmt: skip
 
 

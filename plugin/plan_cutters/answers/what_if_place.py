@@ -10,7 +10,7 @@ import numpy as np
 
 from cad_io.arrays import Floats
 from cad_io.part.orient import orient
-from plan_cutters.answers.trial import Case, Left, Trials
+from plan_cutters.answers.trial import Case, StillMissed, Trials
 from plan_cutters.answers.what_if import Way, WhatIf, none
 from plan_cutters.domain.change import UNDECIDED, Change
 from plan_cutters.domain.posture import unit
@@ -59,18 +59,18 @@ def setup(case: Case, trials: Trials) -> WhatIf | Change:
         Way(math.ceil(angle(now, end) / TURN - 1e-9), partial(_towards, now, end)) for end in islice(ends, _APPROACHED)
     )
 
-    def fails(_: Case, left: Left) -> str:
-        if left.count and not left.blocked:
+    def fails(_: Case, rest: StillMissed) -> str:
+        if rest.count and not rest.blocked:
             return (
-                f"the best of {len(tried)} directions tried leaves {left.count:,} of {left.looked:,} samples undecided"
+                f"the best of {len(tried)} directions tried leaves {rest.count:,} of {rest.looked:,} samples undecided"
             )
-        why = f"the best leaves {left.count:,} of {left.looked:,} samples" if left.count else "each loses some samples"
+        why = f"the best leaves {rest.count:,} of {rest.looked:,} samples" if rest.count else "each loses some samples"
         return f"none of {len(tried)} directions tried serves, {why}"
 
-    def serves(asked: Axis, _: Case) -> tuple[str, dict[str, Any]]:
-        flip = flip_of(ready, asked)
+    def serves(requested: Axis, _: Case) -> tuple[str, dict[str, Any]]:
+        flip = flip_of(ready, requested)
         changes = {} if flip == ready.options.flip else {"flip": flip}
-        return change_text.setup(asked, angle(now, asked), changes.get("flip")), {"setup": asked, **changes}
+        return change_text.setup(requested, angle(now, requested), changes.get("flip")), {"setup": requested, **changes}
 
     return WhatIf(
         now=now, ways=ways, make=lambda axis: _turned(case, axis), ends=[*tried.values()],
@@ -88,13 +88,13 @@ def directions(ready: Prepared, trials: Trials) -> list[Axis]:
         for rows in (trials.not_reached, np.sort([*trials.not_reached, *trials.kept]))
     ]
     cube = [np.array(each, float) for each in product((-1, 0, 1), repeat=3) if any(each)]
-    found: list[Axis] = []
+    axes: list[Axis] = []
     for vector in [*means, *cube]:
         if np.linalg.norm(vector) > 1e-6:
             axis = _axis(vector)
-            if all(angle(axis, other) > _ALIKE for other in [now, *found]):
-                found.append(axis)
-    return sorted(found, key=lambda axis: (round(angle(now, axis), 6), axis))
+            if all(angle(axis, other) > _ALIKE for other in [now, *axes]):
+                axes.append(axis)
+    return sorted(axes, key=lambda axis: (round(angle(now, axis), 6), axis))
 
 
 def _axis(vector: Floats) -> Axis:
@@ -149,7 +149,7 @@ def tolerance(case: Case, trials: Trials) -> Change:
     if trials.blocked:
         why = f"{samples(trials.blocked)} blocked for certain, which no finer tolerance mends"
         return none("tolerance", now, trials.blocked, why)
-    left, best, before = len(trials.not_reached), now, now
+    not_reached, best, before = len(trials.not_reached), now, now
     for share in FINER:
         finer = float(f"{now * share:.6g}")
         if finer < LEAST_TOLERANCE:
@@ -158,27 +158,29 @@ def tolerance(case: Case, trials: Trials) -> Change:
         if not trials.stopped(finely, everywhere=True) and not len(finely.judged()):
             return Change("tolerance", now, finer, True, 0, len(trials.not_reached), trials.count, before, None,
                           change_text.tolerance(finer, now), {"tolerance": finer})  # fmt: skip
-        still = Left.by(finely, trials.not_reached)
+        still = StillMissed.by(finely, trials.not_reached)
         if still.blocked:
             why = f"with {mm(finer)} {samples(still.blocked)} blocked for certain"
             return none("tolerance", now, still.count, why, still.looked)
         before = finer
-        if still.count >= left:
+        if still.count >= not_reached:
             # Nothing was gained.
             break
-        left, best = still.count, finer
-    return Change("tolerance", now, None if best == now else best, None, left, len(trials.not_reached), 0, None, None,
-                  f"{UNDECIDED}with {mm(before)}, the finest tried, {samples(left)} undecided")  # fmt: skip
+        not_reached, best = still.count, finer
+    return Change("tolerance", now, None if best == now else best, None, not_reached, len(trials.not_reached), 0, None, None,
+                  f"{UNDECIDED}with {mm(before)}, the finest tried, {samples(not_reached)} undecided")  # fmt: skip
 
 
-def closer(case: Case, asked: float) -> Case:
+def closer(case: Case, requested: float) -> Case:
     """Make the same, surrounded anew for a finer tolerance."""
     ready = case.ready
-    scene = replace(ready.scene, asked=asked)
-    around = scene.surround(jobs=ready.conditions.jobs)
-    conditions = replace(ready.conditions, around=around, tolerance=around.tolerance(asked))
-    within = inside_material(ready.samples, scene.orientation, around.enclosing, around.certain, conditions.tolerance)
-    inside = inside_bodies(within, around.bodies, scene.orientation)
+    scene = replace(ready.scene, asked=requested)
+    surroundings = scene.surround(jobs=ready.conditions.jobs)
+    conditions = replace(ready.conditions, surroundings=surroundings, tolerance=surroundings.tolerance(requested))
+    within = inside_material(
+        ready.samples, scene.orientation, surroundings.enclosing, surroundings.certain, conditions.tolerance
+    )
+    inside = inside_bodies(within, surroundings.bodies, scene.orientation)
     return replace(case, ready=replace(ready, scene=scene, conditions=conditions, inside=within, inside_bodies=inside))
 
 

@@ -31,10 +31,10 @@ def tilt_limit(case: Case, trials: Trials) -> WhatIf | Change:
     return WhatIf(
         now=now, ways=[way], ends=[_within(case, machine=Machine())], nested=True,
         make=lambda limit: _within(case, machine=Machine.parse(f"tilt:{limit:.6g}")), reads=lambda _: 180.0,
-        fails=lambda _, left: f"without any limit {left.words}" if left.count else
+        fails=lambda _, rest: f"without any limit {rest.words}" if rest.count else
         "no limit was found that serves all samples",
-        serves=lambda asked, made: (
-            change_text.tilt_limit(asked, now, machine.name), {"machine": made.ready.conditions.machine}),
+        serves=lambda requested, made: (
+            change_text.tilt_limit(requested, now, machine.name), {"machine": made.ready.conditions.machine}),
     )  # fmt: skip
 
 
@@ -66,10 +66,10 @@ def tilt_range(case: Case, trials: Trials) -> WhatIf | Change:
     return WhatIf(
         now=(low, high), ways=ways(), make=make, ends=[make((lowest, highest))], nested=True,
         reads=lambda _: (lowest, highest),
-        fails=lambda _, left: f"at all tilts from {angle(lowest)} to {angle(highest)} {left.words}" if left.count else
+        fails=lambda _, rest: f"at all tilts from {angle(lowest)} to {angle(highest)} {rest.words}" if rest.count else
         "no range was found that serves all samples",
-        serves=lambda asked, made: (
-            change_text.tilt_range(asked, (low, high)), {"tilt": made.ready.conditions.postures.tilt}),
+        serves=lambda requested, made: (
+            change_text.tilt_range(requested, (low, high)), {"tilt": made.ready.conditions.postures.tilt}),
     )  # fmt: skip
 
 

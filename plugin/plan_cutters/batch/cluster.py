@@ -132,14 +132,14 @@ def _reached(distributed: Any, address: str) -> Iterator[Any]:
 
 def _same(client: Any) -> None:
     """An error where a worker has other versions than this process."""
-    found = client.get_versions(packages=["plan_cutters", "numba"])
-    for where, worker in found["workers"].items():
-        if fault := differs(_flat(found["client"]), _flat(worker)):
+    versions = client.get_versions(packages=["plan_cutters", "numba"])
+    for where, worker in versions["workers"].items():
+        if fault := differs(_flat(versions["client"]), _flat(worker)):
             raise PlanError(f"worker {where} has {fault}: install the same on both")
 
 
-def _flat(said: Mapping[str, Any]) -> dict[str, str]:
-    packages, host = dict(said["packages"]), said.get("host", {})
+def _flat(versions: Mapping[str, Any]) -> dict[str, str]:
+    packages, host = dict(versions["packages"]), versions.get("host", {})
     python = host.get("python") or packages.get("python")
     return {shown: str(python if name == "python" else packages.get(name)) for shown, name in keys.COMPARED.items()}
 

@@ -12,12 +12,12 @@ import numpy as np
 
 def sources(*folders: Path) -> str:
     """A short checksum of all Python sources in some folders, with their names."""
-    found = [
+    paths = [
         (f"{home.name}/{source.relative_to(home).as_posix()}", source.read_bytes())
         for home in folders
         for source in sorted(home.rglob("*.py"))
     ]
-    return digest(found).hex()[:12]
+    return digest(paths).hex()[:12]
 
 
 def digest(value: Any) -> bytes:
@@ -33,37 +33,37 @@ def digest(value: Any) -> bytes:
     -------
     bytes
     """
-    found = hashlib.sha256()
-    _feed(found, value)
-    return found.digest()
+    state = hashlib.sha256()
+    _feed(state, value)
+    return state.digest()
 
 
-def _feed(found: Any, value: Any) -> None:
+def _feed(state: Any, value: Any) -> None:
     """Write a value in one way; each piece says what it is and how long, so that no two values are written alike."""
     match value:
         case None | bool() | int() | float() | str():
             text = repr(value).encode()
-            found.update(b"%s %d:" % (type(value).__name__.encode(), len(text)) + text)
+            state.update(b"%s %d:" % (type(value).__name__.encode(), len(text)) + text)
         case bytes():
-            found.update(b"bytes %d:" % len(value) + value)
+            state.update(b"bytes %d:" % len(value) + value)
         case np.generic():
-            _feed(found, value.item())
+            _feed(state, value.item())
         case np.ndarray() if not value.dtype.hasobject:
-            found.update(f"array {value.dtype.str} {value.shape}:".encode())
-            found.update(np.ascontiguousarray(value).data)
+            state.update(f"array {value.dtype.str} {value.shape}:".encode())
+            state.update(np.ascontiguousarray(value).data)
         case tuple() | list():
-            found.update(f"list {len(value)}:".encode())
+            state.update(f"list {len(value)}:".encode())
             for each in value:
-                _feed(found, each)
+                _feed(state, each)
         case set() | frozenset():
-            found.update(b"set ")
-            _feed(found, sorted(map(digest, value)))
+            state.update(b"set ")
+            _feed(state, sorted(map(digest, value)))
         case Mapping():
-            found.update(b"mapping ")
-            _feed(found, sorted((digest(name), digest(each)) for name, each in value.items()))
+            state.update(b"mapping ")
+            _feed(state, sorted((digest(name), digest(each)) for name, each in value.items()))
         case _ if is_dataclass(value) and not isinstance(value, type):
-            found.update(f"{type(value).__qualname__} ".encode())
+            state.update(f"{type(value).__qualname__} ".encode())
             # Trees and the like are made of the fields, and not fields that compare.
-            _feed(found, [(each.name, getattr(value, each.name)) for each in fields(value) if each.compare])
+            _feed(state, [(each.name, getattr(value, each.name)) for each in fields(value) if each.compare])
         case _:
-            _feed(found, pickle.dumps(value, protocol=5))
+            _feed(state, pickle.dumps(value, protocol=5))

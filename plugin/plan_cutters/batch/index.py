@@ -107,12 +107,12 @@ def page(rows: Sequence[PartRow], summary: Summary) -> bytes:
 
 
 def _shown(row: PartRow) -> _Shown:
-    found = outcome(row)
+    result = outcome(row)
     return _Shown(
         row=row,
-        outcome=found,
-        says=cause(row) if found == "failed" else row.verdict,
-        wrong="" if found == "failed" else row.error or "",
+        outcome=result,
+        says=cause(row) if result == "failed" else row.verdict,
+        wrong="" if result == "failed" else row.error or "",
         made=_made(row),
         share="" if row.share is None else percent(row.share),
         reason=reason(row.reason) if row.reason else "",
@@ -125,7 +125,7 @@ def _shown(row: PartRow) -> _Shown:
 
 def _made(row: PartRow) -> str:
     """Whether the answer is an earlier one."""
-    return "kept from an earlier run" if row.status == "kept" else ""
+    return "reused from an earlier run" if row.status == "kept" else ""
 
 
 def _link(path: str | None) -> str:
@@ -150,8 +150,8 @@ def _clean(row: PartRow) -> PartRow:
 
 
 def _facts(cluster: Mapping[str, object]) -> dict[str, Any]:
-    found = to_jsonable_python(dict(cluster), fallback=str, inf_nan_mode="constants")
-    return {plain(str(name)): plain(value) for name, value in finite(found).items()}
+    facts = to_jsonable_python(dict(cluster), fallback=str, inf_nan_mode="constants")
+    return {plain(str(name)): plain(value) for name, value in finite(facts).items()}
 
 
 def _table(name: str, data: bytes) -> Table:

@@ -66,7 +66,7 @@ class Job:
 
 @dataclass(frozen=True)
 class Fault:
-    """A part that cannot be planned, or a source that holds none: `why` is one line, with the place where it was asked for."""
+    """A part that cannot be planned, or a source that holds none: `why` is one line, with the place where it was requested."""
 
     name: str
     file: str
@@ -114,15 +114,15 @@ def handed(options: Options) -> Handed:
         if fixture.kind or not isinstance(fixture.source, str):
             return fixture
         if fixture.source not in names:
-            found = content(fixture.source, _read)
+            copied = content(fixture.source, _read)
             name = PurePath(PureWindowsPath(fixture.source).name).name
             # What it refers to is called as it is called there: it gets a folder of its own.
-            name = f"fixture-{len(names) + 1}/{name}" if found.references else name
+            name = f"fixture-{len(names) + 1}/{name}" if copied.references else name
             while name in files:
                 name = f"_{name}"
-            files[name] = found.data
-            files.update((f"{os.path.dirname(name)}/{other}", data) for other, data in found.within())
-            outside.extend(found.outside())
+            files[name] = copied.data
+            files.update((f"{os.path.dirname(name)}/{other}", data) for other, data in copied.within())
+            outside.extend(copied.outside())
             names[fixture.source] = name
         # A copy past the checks: they looked at the same words.
         return _with(fixture, source=names[fixture.source])

@@ -21,8 +21,8 @@ def version() -> str:
     import cad_io
     import plan_cutters
 
-    found = sources(*(Path(str(module.__file__)).parent for module in (cad_io, plan_cutters)))
-    return f"{plan_cutters.__version__}+{found}"
+    digest = sources(*(Path(str(module.__file__)).parent for module in (cad_io, plan_cutters)))
+    return f"{plan_cutters.__version__}+{digest}"
 
 
 def versions() -> dict[str, str]:
@@ -46,7 +46,7 @@ def settings_key(settings: Settings, there: Handed) -> str:
     """
     options = {each.name: getattr(settings.options, each.name) for each in fields(settings.options)}
     del options["jobs"]
-    asked = [
+    parts = [
         options,
         sorted(settings.formats),
         sorted(settings.read),
@@ -54,7 +54,7 @@ def settings_key(settings: Settings, there: Handed) -> str:
         version(),
         [_installed(name) for name in _COUNTED],
     ]
-    return digest([asked, there.outside, *there.files]).hex()
+    return digest([parts, there.outside, *there.files]).hex()
 
 
 def key(content: str, settings: str) -> str:

@@ -66,10 +66,10 @@ def manifest(file: str, known: Sequence[str]) -> list[Source | Fault]:
         raise PlanError(f"is no text in UTF-8 (byte {error.start}): save it so", file=file) from None
     kind = PurePosixPath(file.lower()).suffix
     entries = _toml(file, text, known) if kind == ".toml" else (_csv if kind == ".csv" else _list)(file, text)
-    found = [_part(file, line, fields, known) for line, fields in entries]
-    if not found:
+    parts = [_part(file, line, fields, known) for line, fields in entries]
+    if not parts:
         raise PlanError("names no part", file=file)
-    return found
+    return parts
 
 
 def _part(file: str, line: int, fields: dict[str, Any] | str, known: Sequence[str]) -> Source | Fault:
@@ -81,7 +81,7 @@ def _part(file: str, line: int, fields: dict[str, Any] | str, known: Sequence[st
         entry = Entry.model_validate(fields)
     except ValidationError as error:
         return Fault(f"{shown} (line {line})", str(fields.get("file", "")), f"{place}: {_why(error)}", USAGE)
-    path = entry.file if "://" in entry.file or posixpath.isabs(entry.file) else _beside(file, entry.file)
+    path = entry.file if "://" in entry.file or posixpath.isabs(entry.file) else _relative_to(file, entry.file)
     name = entry.name or _name(entry.file)
     options = dict(entry.model_extra or {})
     for word in options:
@@ -113,7 +113,7 @@ def _name(file: str) -> str:
     return path.with_suffix("").as_posix() if inside else path.stem
 
 
-def _beside(file: str, path: str) -> str:
+def _relative_to(file: str, path: str) -> str:
     head, slash, _ = file.rpartition("/")
     return f"{head}{slash}{path}"
 
@@ -148,19 +148,19 @@ class _Lines(int):
 
 
 def _at(text: str, begin: int, end: int, fields: dict[str, Any], line: int) -> _Lines:
-    found = _Lines(line)
-    found.fields = {}
+    lines = _Lines(line)
+    lines.fields = {}
     for name in fields:
         key = re.compile(rf"^[ \t]*[\"']?{re.escape(name)}[\"']?[ \t]*=", re.MULTILINE).search(text, begin, end)
         if key:
-            found.fields[name] = line + text.count("\n", begin, key.start())
-    return found
+            lines.fields[name] = line + text.count("\n", begin, key.start())
+    return lines
 
 
 def _line(text: str, word: str) -> int:
     """The line of a table or a key, from 1."""
-    found = re.compile(rf"^[ \t]*\[{{0,2}}[ \t]*[\"']?{re.escape(word)}\b", re.MULTILINE).search(text)
-    return text.count("\n", 0, found.start()) + 1 if found else 1
+    match = re.compile(rf"^[ \t]*\[{{0,2}}[ \t]*[\"']?{re.escape(word)}\b", re.MULTILINE).search(text)
+    return text.count("\n", 0, match.start()) + 1 if match else 1
 
 
 def _csv(file: str, text: str) -> Iterator[tuple[int, dict[str, Any] | str]]:

@@ -61,7 +61,7 @@ def plan_many(
     ----------
     parts : iterable
         Paths, URLs, or objects as `plan` takes them (CadQuery, build123d, `cad_io.Part`). Of objects, the name is their place:
-        `part-1`. A pair (name, part) gives another name. They are asked for as they are needed.
+        `part-1`. A pair (name, part) gives another name. They are requested as they are needed.
     client : distributed.Client, optional
         Of a running cluster; default workers of this machine, as many as its cores and memory allow, for this call.
     out : path or URL, optional
@@ -101,8 +101,8 @@ def plan_many(
     if isinstance(parts, str | os.PathLike):
         raise OptionError("parts is one path: give a list of parts, or use the command `batch` for folders")
     with noted() as files:
-        asked = Options.of({"jobs": 1, **options})
-    settings = Settings(asked, tuple(dict.fromkeys(("json", *read_formats(",".join(formats))))),
+        base = Options.of({"jobs": 1, **options})
+    settings = Settings(base, tuple(dict.fromkeys(("json", *read_formats(",".join(formats))))),
                         read=tuple(filter(None, files.values())))  # fmt: skip
     secret = None if verdicts_key is None else key_of(os.fspath(verdicts_key))
     store = None if out is None else Store(os.fspath(out), secret)
@@ -126,11 +126,11 @@ def plan_many(
 
 
 def _jobs(parts: Iterable[Any], settings: Settings, terms: "Terms", faults: list[PartRow]) -> Iterator[Job]:
-    """Jobs of parts as they are asked for; those that cannot be planned are put aside."""
+    """Jobs of parts as they are requested; those that cannot be planned are put aside."""
     names: set[str] = set()
-    for number, given in enumerate(parts, 1):
+    for number, entry in enumerate(parts, 1):
         name, part = (
-            given if isinstance(given, tuple) and len(given) == 2 and isinstance(given[0], str) else (None, given)
+            entry if isinstance(entry, tuple) and len(entry) == 2 and isinstance(entry[0], str) else (None, entry)
         )
         is_file = isinstance(part, str | PurePath)
         file = str(part) if is_file else f"part {number}"
@@ -159,5 +159,5 @@ def _jobs(parts: Iterable[Any], settings: Settings, terms: "Terms", faults: list
 def _packed(part: Any, settings: Settings) -> tuple[Settings, bytes]:
     from cad_io import read_part
 
-    found = read_part(part, settings.options.unit)
-    return faced(settings, found), pickle.dumps(found, protocol=5)
+    result = read_part(part, settings.options.unit)
+    return faced(settings, result), pickle.dumps(result, protocol=5)

@@ -69,11 +69,11 @@ def judging(
     """What judges with a cluster, with kept verdicts, with both, or with neither: then `otherwise`."""
     judged: Judge = otherwise or judge
     if client is not None:
-        from plan_cutters.batch.rows import Rows
+        from plan_cutters.batch.distributed_judge import DistributedJudge
 
-        judged = Rows(client)
+        judged = DistributedJudge(client)
     if verdicts is not None:
-        from plan_cutters.batch.verdicts import Kept
+        from plan_cutters.batch.verdicts import VerdictCache
 
-        judged = Kept(verdicts, judged, key)
+        judged = VerdictCache(verdicts, judged, key)
     return judged

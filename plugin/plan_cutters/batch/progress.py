@@ -66,18 +66,18 @@ class Board:
         with self._lock:
             self._rows += 1
             self.done = max(self.done, self._rows)
-            found = outcome(row)
-            failed = found == "failed"
+            result = outcome(row)
+            failed = result == "failed"
             self.failed += failed
             if failed:
                 self._print(f"{self._clock}{row.name}: failed: {cause(row)}")
             elif not self.quiet and self._bar is None and self._each:
-                kept = "; kept from an earlier run" if row.status == "kept" else ""
+                note = "; reused from an earlier run" if row.status == "kept" else ""
                 wrong = f"; {row.error}" if row.error else ""
-                self._print(f"{self._clock}{row.name}: {OUTCOMES[found]}: {row.verdict}{kept}{wrong}")
+                self._print(f"{self._clock}{row.name}: {OUTCOMES[result]}: {row.verdict}{note}{wrong}")
             self._update()
 
-    def told(self, done: int, running: int, total: int | None) -> None:
+    def progress(self, done: int, running: int, total: int | None) -> None:
         """Take over counts from whoever knows them better: parts done, in work, and in all."""
         with self._lock:
             # It may be told of a part before its row comes, or after.

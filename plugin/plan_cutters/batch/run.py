@@ -14,19 +14,19 @@ from plan_cutters.batch import keys, store
 from plan_cutters.batch.content import content
 from plan_cutters.batch.job import UNREADABLE, USAGE, Fault, Handed, Job, Settings, handed
 from plan_cutters.batch.row import PartRow
-from plan_cutters.batch.work import Outcome, Task, content_of, kept, work
+from plan_cutters.batch.work import Outcome, Task, cached, content_of, work
 from plan_cutters.errors import PlanError
 
 #: Tasks in flight for each thread of the cluster, and at least so many: the next one is there when a thread is free.
-_AHEAD, _LEAST = 2, 8
+_QUEUED, _LEAST = 2, 8
 #: How often a quiet run looks around, s, and how long its scheduler may be gone before it is given up.
 _LOOK, _GONE = 1.0, 20.0
 
 
-class Told(Protocol):
+class ProgressListener(Protocol):
     """Who is told how far a run is: `batch.progress.Board`."""
 
-    def told(self, done: int, running: int, total: int | None) -> None:
+    def progress(self, done: int, running: int, total: int | None) -> None:
         """So many parts are done and so many are with workers, of all."""
 
     def say(self, text: str) -> None:
@@ -57,16 +57,16 @@ class Terms:
 
     def of(self, settings: Settings) -> tuple[Handed, str]:
         """Settings as they travel, and their key: made once for all parts that share them."""
-        found = self.packed.get(id(settings))
-        if found is None:
+        packed = self.packed.get(id(settings))
+        if packed is None:
             there = handed(settings.options)
             # The settings are kept with it, so that no other ones get their number.
-            found = self.packed[id(settings)] = (settings, there, keys.settings_key(settings, there))
-        return found[1], found[2]
+            packed = self.packed[id(settings)] = (settings, there, keys.settings_key(settings, there))
+        return packed[1], packed[2]
 
 
 def run_batch(
-    parts: Sequence[Job | Fault], client: Any, out: store.Store, terms: Terms, *, board: Told | None = None,
+    parts: Sequence[Job | Fault], client: Any, out: store.Store, terms: Terms, *, board: ProgressListener | None = None,
     title: str = "plan-cutters batch",
 ) -> Iterator[PartRow]:  # fmt: skip
     """Plan parts on a cluster, and write the table of all when the last one is done.
@@ -114,7 +114,7 @@ def run_batch(
 
 def outcomes(
     jobs: Iterable[Job], client: Any, terms: Terms, *, out: store.Store | None = None, token: str = "",
-    board: Told | None = None, total: int | None = None,
+    board: ProgressListener | None = None, total: int | None = None,
 ) -> Iterator[Outcome]:  # fmt: skip
     """Plan parts on a cluster; outcomes as they come. Without `out`, the files come with them."""
     if total is None and isinstance(jobs, Sequence):
@@ -132,7 +132,7 @@ def outcomes(
                 task = Task(job.name, job.file, here, job.part, there,
                             _words(job.settings, terms), key, where, token, terms.force, terms.timeout, versions,
                             job.file if "://" in job.file else os.path.abspath(job.file), terms.secret)  # fmt: skip
-                if travels and out is not None and not terms.force and (row := _kept(task, out)):
+                if travels and out is not None and not terms.force and (row := _cached(task, out)):
                     faulty.append(Outcome(row, {}))
                     continue
             except PlanError as error:
@@ -140,17 +140,17 @@ def outcomes(
                 continue
             yield task
 
-    for task, found in handed_out(client, tasks(), work, board=board, total=total):
-        if isinstance(found, BaseException):
-            yield Outcome(_failed(task, _lost(task, found), UNREADABLE), {})
-        elif travels and out is not None and found.files:
+    for task, outcome in handed_out(client, tasks(), work, board=board, total=total):
+        if isinstance(outcome, BaseException):
+            yield Outcome(_failed(task, _lost_worker(task, outcome), UNREADABLE), {})
+        elif travels and out is not None and outcome.files:
             try:
-                out.publish(task.folder, dict(found.files), found.row)
-                yield replace(found, files={})
+                out.publish(task.folder, dict(outcome.files), outcome.row)
+                yield replace(outcome, files={})
             except PlanError as error:
                 yield Outcome(_failed(task, str(error), USAGE), {})
         else:
-            yield found
+            yield outcome
         while faulty:
             yield faulty.pop()
     yield from faulty
@@ -161,7 +161,7 @@ def handed_out(
     tasks: Iterator[Any],
     function: Callable[[Any], Any],
     *,
-    board: Told | None = None,
+    board: ProgressListener | None = None,
     total: int | None = None,
 ) -> Iterator[tuple[Any, Any]]:
     """Work on tasks on a cluster, a bounded number at a time; each with its result, or the exception that it ended in.
@@ -190,7 +190,7 @@ def handed_out(
         while True:
             if not gone and time.monotonic() - looked > _LOOK:
                 threads, looked = _threads(client), time.monotonic()
-                most = max(_LEAST, _AHEAD * sum(threads.values()))
+                most = max(_LEAST, _QUEUED * sum(threads.values()))
             while not begun_all and len(flying) < most and not gone:
                 task = next(tasks, None)
                 if task is None:
@@ -198,7 +198,7 @@ def handed_out(
                     break
                 hand(task)
             if board is not None:
-                board.told(done, len(flying), total)
+                board.progress(done, len(flying), total)
             if not flying:
                 return
             try:
@@ -210,20 +210,25 @@ def handed_out(
                 continue
             if future not in flying:
                 continue
-            task, found = flying.pop(future), _result(future)
+            task, outcome = flying.pop(future), _result(future)
             future.release()
-            if where := getattr(found, "unfit", ""):
+            if where := getattr(outcome, "unfit", ""):
                 unfit.add(where)
                 threads = _threads(client)
                 if any(each not in unfit for each in threads):
                     if board is not None:
-                        board.say(f"worker {where} is left out: {found.row.error}")
+                        board.say(f"worker {where} is left out: {outcome.row.error}")
                     hand(task)
                     continue
             done += 1
-            yield task, found
+            yield task, outcome
         for task in itertools.chain(flying.values(), tasks):
-            yield task, ConnectionError("the scheduler was lost: run the same command again, what is done is kept")
+            yield (
+                task,
+                ConnectionError(
+                    "the connection to the scheduler broke: run the same command again, what is done is reused"
+                ),
+            )
     finally:
         if flying and client.status == "running":
             client.cancel(list(flying))
@@ -244,12 +249,12 @@ def _result(future: Any) -> Any:
         return error
 
 
-def _lost(task: Task, error: BaseException) -> str:
+def _lost_worker(task: Task, error: BaseException) -> str:
     name = type(error).__name__
     if name == "KilledWorker":
         return f"{task.file}: the worker ended at this part, and others after it (killed, or out of memory): it is left out"
     if name in ("CancelledError", "FutureCancelledError"):
-        return f"{task.file}: the scheduler was lost: run the same command again, what is done is kept"
+        return f"{task.file}: the connection to the scheduler broke: run the same command again, what is done is reused"
     return f"{task.file}: {' '.join(str(error).split()) or name}"
 
 
@@ -263,8 +268,8 @@ def _words(settings: Settings, terms: Terms) -> tuple[str, ...]:
     return (*words, *(() if terms.memory is None else ("--memory", repr(terms.memory / 1e9))))
 
 
-def _kept(task: Task, out: store.Store) -> PartRow | None:
-    return kept(out, task.folder, keys.key(content_of(task).key, task.settings), task.name, task.file)
+def _cached(task: Task, out: store.Store) -> PartRow | None:
+    return cached(out, task.folder, keys.key(content_of(task).key, task.settings), task.name, task.file)
 
 
 def foreseen(parts: Iterable[Job | Fault], out: store.Store, terms: Terms) -> Iterator[PartRow]:
@@ -276,7 +281,7 @@ def foreseen(parts: Iterable[Job | Fault], out: store.Store, terms: Terms) -> It
         try:
             there, key = terms.of(part.settings)
             task = Task(part.name, part.file, None, part.part, there, (), key, out.url, "", False, None, {})
-            row = None if terms.force else _kept(task, out)
+            row = None if terms.force else _cached(task, out)
             if row is None:
                 store.read(part.file) if part.part is None and terms.force else None
             yield row or PartRow(name=part.name, file=part.file, status="planned", code=0)

@@ -17,7 +17,7 @@ _MAGIC = frozenset("*?[")
 
 @dataclass(frozen=True)
 class Source:
-    """A part as it was asked for.
+    """A part as it was requested.
 
     Attributes
     ----------
@@ -50,13 +50,13 @@ def sources(
     manifest : callable
         Reads a manifest.
     """
-    found: list[Source | Fault] = []
+    jobs: list[Source | Fault] = []
     for word in words:
         try:
-            found += _of(word, out, manifest)
+            jobs += _of(word, out, manifest)
         except PlanError as error:
-            found.append(Fault(word, word, str(error), UNREADABLE))
-    return _named_once(found)
+            jobs.append(Fault(word, word, str(error), UNREADABLE))
+    return _named_once(jobs)
 
 
 def _of(word: str, out: str, manifest: Callable[[str], Sequence[Source | Fault]]) -> Sequence[Source | Fault]:
@@ -118,18 +118,18 @@ def _own(fs: Any, out: str) -> str | None:
     return path.rstrip("/") if type(there) is type(fs) else None
 
 
-def _named_once(found: Sequence[Source | Fault]) -> list[Source | Fault]:
+def _named_once(sources: Sequence[Source | Fault]) -> list[Source | Fault]:
     """Names that are folders, each once; parts that share one are not planned, for neither has a right to the folder."""
     names: dict[str, list[str]] = {}
-    for each in found:
+    for each in sources:
         if isinstance(each, Source):
             names.setdefault(each.name.casefold(), []).append(each.file)
-    taken: set[str] = {each.name for each in found if isinstance(each, Fault)}
+    taken: set[str] = {each.name for each in sources if isinstance(each, Fault)}
     checked: list[Source | Fault] = []
-    for each in found:
+    for each in sources:
         if isinstance(each, Source) and (why := _unusable(each, names[each.name.casefold()])):
             short = each.name if len(names[each.name.casefold()]) == 1 else PurePosixPath(each.file).name
-            tried = (short, each.file, *(f"{each.file} ({n})" for n in range(2, len(found) + 2)))
+            tried = (short, each.file, *(f"{each.file} ({n})" for n in range(2, len(sources) + 2)))
             name = next(name for name in tried if name not in taken)
             each = Fault(name, each.file, f"{each.place or each.file}: {why}", USAGE)
             taken.add(name)

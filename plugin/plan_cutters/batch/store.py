@@ -25,7 +25,7 @@ from plan_cutters.files.seal import seal
 #: In the folder of a part that is done: its row, and the checksums of its files.
 MARKER = "done.json"
 #: Beside the folders of the parts: what is being made.
-_ASIDE = ".batch"
+_STAGING = ".batch"
 #: Most bytes of a marker.
 _MARKER_BYTES = 16 << 20
 _MISSING = 'is not there: pip install "plan-cutters[batch]"'
@@ -142,10 +142,10 @@ class Store:
                     self._lock = Lock(Path(self.root))
                 except OSError as error:
                     raise PlanError(cause(error, "written"), file=self.url) from None
-                shutil.rmtree(Path(self.root, _ASIDE), ignore_errors=True)
+                shutil.rmtree(Path(self.root, _STAGING), ignore_errors=True)
             token = secrets.token_hex(8)
             try:
-                self.put(f"{_ASIDE}/token", token.encode())
+                self.put(f"{_STAGING}/token", token.encode())
             except PlanError:
                 self.end()
                 raise
@@ -156,14 +156,14 @@ class Store:
         """Leave nothing but the files of parts and the table, and let others write there."""
         if self._token:
             with contextlib.suppress(Exception):
-                self._fs.rm(self._at(_ASIDE), recursive=True)
+                self._fs.rm(self._at(_STAGING), recursive=True)
         if self._lock is not None:
             self._lock.release()
         self._token, self._lock = "", None
 
     def seen(self, token: str) -> bool:
         """Whether this process sees the folder in which the batch was begun."""
-        return self._content(f"{_ASIDE}/token") == token.encode()
+        return self._content(f"{_STAGING}/token") == token.encode()
 
     def put(self, name: str, data: bytes) -> None:
         """Write a file, whole or not at all.
@@ -178,13 +178,13 @@ class Store:
             if not self.local:
                 self._fs.pipe_file(path, data)
                 return
-            aside = Path(path).with_name(f".{Path(path).name}-{secrets.token_hex(4)}")
+            temporary = Path(path).with_name(f".{Path(path).name}-{secrets.token_hex(4)}")
             try:
-                aside.parent.mkdir(parents=True, exist_ok=True)
-                aside.write_bytes(data)
-                os.replace(aside, path)
+                temporary.parent.mkdir(parents=True, exist_ok=True)
+                temporary.write_bytes(data)
+                os.replace(temporary, path)
             finally:
-                aside.unlink(missing_ok=True)
+                temporary.unlink(missing_ok=True)
         except Exception as error:
             raise PlanError(cause(error, "written"), file=f"{self.url}/{name}") from None
 
@@ -213,11 +213,11 @@ class Store:
             They cannot be written: the part is not done.
         """
         try:
-            said = {
+            options = {
                 "row": row.model_dump(mode="json"),
                 "sha256": {name: _checksum(what) for name, what in files.items()},
             }
-            marker = json.dumps(said | {"seal": seal(said, self._key)}, indent=1).encode()
+            marker = json.dumps(options | {"seal": seal(options, self._key)}, indent=1).encode()
             if self.local:
                 self._rename(folder, files, marker)
             else:
@@ -226,7 +226,7 @@ class Store:
             raise PlanError(cause(error, "written"), file=f"{self.url}/{folder}") from None
 
     def _rename(self, folder: str, files: Mapping[str, Path | bytes], marker: bytes) -> None:
-        made = Path(self.root, _ASIDE, secrets.token_hex(8))
+        made = Path(self.root, _STAGING, secrets.token_hex(8))
         new, old, target = made / "new", made / "old", Path(self.root, folder)
         try:
             new.mkdir(parents=True)
@@ -257,10 +257,10 @@ class Store:
     def _listed(self, folder: str) -> set[str]:
         here = self._at(folder).rstrip("/") + "/"
         try:
-            found = self._fs.find(here)
+            names = self._fs.find(here)
         except FileNotFoundError:
             return set()
-        return {path[len(here) :] for path in found if path.startswith(here)}
+        return {path[len(here) :] for path in names if path.startswith(here)}
 
     def _content(self, name: str) -> bytes | None:
         try:

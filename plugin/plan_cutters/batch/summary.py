@@ -49,7 +49,7 @@ def code_of(row: PartRow) -> int:
 
 def cause(row: PartRow) -> str:
     """Why a part failed: never empty."""
-    return row.error or f"no cause was told (exit code {row.code})"
+    return row.error or f"no cause was reported (exit code {row.code})"
 
 
 class _Entry(BaseModel):
@@ -72,7 +72,7 @@ class Parts(Counts):
 
     count: int
     planned: int = Field(description="planned in this run")
-    kept: int = Field(description="answers kept from earlier runs; those that failed are in neither")
+    kept: int = Field(description="answers reused from earlier runs; those that failed are in neither")
 
 
 class CutterParts(Counts):
@@ -131,12 +131,12 @@ def summary_of(
     """Sum up the rows."""
     outcomes = [outcome(row) for row in rows]
     cutters: dict[str, Counter[str]] = {}
-    for row, found in zip(rows, outcomes, strict=True):
+    for row, result in zip(rows, outcomes, strict=True):
         if row.cutter is not None:
-            cutters.setdefault(row.cutter, Counter())[found] += 1
-    failed = [row for row, found in zip(rows, outcomes, strict=True) if found == "failed"]
+            cutters.setdefault(row.cutter, Counter())[result] += 1
+    failed = [row for row, result in zip(rows, outcomes, strict=True) if result == "failed"]
     reasons = Counter(
-        row.reason for row, found in zip(rows, outcomes, strict=True) if row.reason and found != "finished"
+        row.reason for row, result in zip(rows, outcomes, strict=True) if row.reason and result != "finished"
     )
     made = Counter(row.status for row in rows)
     return Summary(
@@ -144,8 +144,8 @@ def summary_of(
         code=max(map(code_of, rows), default=0),
         parts=Parts(count=len(rows), planned=made["planned"], kept=made["kept"], **_counts(Counter(outcomes))),
         by_cutter=[
-            CutterParts(cutter=name, **_counts(found))
-            for name, found in sorted(cutters.items(), key=lambda each: (-each[1].total(), each[0]))
+            CutterParts(cutter=name, **_counts(result))
+            for name, result in sorted(cutters.items(), key=lambda each: (-each[1].total(), each[0]))
         ],
         by_reason=[
             ReasonParts(reason=code, parts=parts)
@@ -158,8 +158,8 @@ def summary_of(
     )
 
 
-def _counts(found: Mapping[str, int]) -> dict[str, int]:
-    return {word: found.get(word, 0) for word in OUTCOMES}
+def _counts(counts: Mapping[str, int]) -> dict[str, int]:
+    return {word: counts.get(word, 0) for word in OUTCOMES}
 
 
 def schema() -> dict[str, Any]:

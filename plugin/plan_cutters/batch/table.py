@@ -26,8 +26,8 @@ def columns() -> dict[str, type]:
 
 def values(row: PartRow) -> dict[str, Any]:
     """The cells of a row; None for what is not known. A part that failed always says why."""
-    found = outcome(row)
-    cells = {**row.model_dump(), "outcome": found, "error": cause(row) if found == "failed" else row.error}
+    result = outcome(row)
+    cells = {**row.model_dump(), "outcome": result, "error": cause(row) if result == "failed" else row.error}
     return {
         name: None if isinstance(cells[name], float) and not math.isfinite(cells[name]) else cells[name]
         for name in columns()

@@ -48,7 +48,7 @@ _MOST = 1 << 30
 _SUFFIX = ".verdicts"
 
 
-class Kept:
+class VerdictCache:
     """Judge as `stages.judge.judge` does, but for what stands in a folder already; what is judged is put there.
 
     An entry belongs to the ground (samples, obstacles, machine, setup, postures, tolerance), the cutter and this program. Beside
@@ -152,9 +152,9 @@ class Kept:
         if content is None:
             return None
         try:
-            found = unpacked(content, len(ready.samples), own, self._key)
-            require_sound(found[0], ready.samples.normal, ready.options.postures)
-            return found
+            verdicts = unpacked(content, len(ready.samples), own, self._key)
+            require_sound(verdicts[0], ready.samples.normal, ready.options.postures)
+            return verdicts
         except (ValueError, TypeError, LookupError, OverflowError, RecursionError, MemoryError, zlib.error) as error:
             self._fault(own, "is damaged and not used", error)
             return None
@@ -167,7 +167,7 @@ class Kept:
 
     def _fault(self, own: str, what: str, error: BaseException) -> None:
         why = " ".join(str(getattr(error, "strerror", None) or error).split())[:120] or type(error).__name__
-        self.faults.append(f"{self._where}: kept verdicts {own[:12]}: {what} ({why})")
+        self.faults.append(f"{self._where}: stored verdicts {own[:12]}: {what} ({why})")
 
 
 def packed(verdicts: Verdicts, looked: int, key: str, secret: bytes | None = None) -> bytes:
@@ -177,8 +177,8 @@ def packed(verdicts: Verdicts, looked: int, key: str, secret: bytes | None = Non
     )
     content = zlib.compress(columns, 1)
     head = {"key": key, "samples": len(verdicts.verdict), "looked": looked}
-    said = json.dumps(head, sort_keys=True).encode()
-    return _MAGIC + stamp(said + content, secret).encode() + b"\n" + said + b"\n" + content
+    header = json.dumps(head, sort_keys=True).encode()
+    return _MAGIC + stamp(header + content, secret).encode() + b"\n" + header + b"\n" + content
 
 
 def unpacked(entry: bytes, n: int, key: str, secret: bytes | None = None) -> tuple[Verdicts, int]:
@@ -192,10 +192,10 @@ def unpacked(entry: bytes, n: int, key: str, secret: bytes | None = None) -> tup
     if not entry.startswith(_MAGIC):
         raise ValueError("no entry of verdicts")
     checksum, _, rest = entry[len(_MAGIC) :].partition(b"\n")
-    said, _, content = rest.partition(b"\n")
-    if not hmac.compare_digest(stamp(said + content, secret).encode(), checksum):
+    header, _, content = rest.partition(b"\n")
+    if not hmac.compare_digest(stamp(header + content, secret).encode(), checksum):
         raise ValueError("its checksum differs" if secret is None else "it is not sealed with this key")
-    head = json.loads(said)
+    head = json.loads(header)
     looked = head["looked"]
     if head["key"] != key or head["samples"] != n or type(looked) is not int or looked < 0:
         raise ValueError("it belongs to something else")
@@ -249,9 +249,9 @@ def made_by() -> str:
     import plan_cutters
 
     home = Path(str(plan_cutters.__file__)).parent
-    found = sources(*(home / room for room in _ROOMS))
+    digest = sources(*(home / folder for folder in _ROOMS))
     packages = " ".join(f"{name} {metadata.version(name)}" for name in _PACKAGES)
-    return f"plan-cutters {plan_cutters.__version__}, method {METHOD}, sources {found}, {packages}"
+    return f"plan-cutters {plan_cutters.__version__}, method {METHOD}, sources {digest}, {packages}"
 
 
 def _place(own: str, name: str) -> str:
@@ -277,13 +277,13 @@ class _Local:
         path = self._root / name
         path.parent.mkdir(parents=True, exist_ok=True)
         # Several runs may write the same entry at a time.
-        aside = path.with_name(f".{path.name}-{secrets.token_hex(4)}")
+        temporary = path.with_name(f".{path.name}-{secrets.token_hex(4)}")
         try:
-            aside.write_bytes(content)
-            os.replace(aside, path)
+            temporary.write_bytes(content)
+            os.replace(temporary, path)
         finally:
             with contextlib.suppress(OSError):
-                aside.unlink(missing_ok=True)
+                temporary.unlink(missing_ok=True)
 
     def names(self, folder: str) -> list[str]:
         return [path.name.removesuffix(_SUFFIX) for path in (self._root / folder).glob(f"[!.]*{_SUFFIX}")]

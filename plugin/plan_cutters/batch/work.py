@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from plan_cutters.batch import handing, keys, store
+from plan_cutters.batch import job_input, keys, store
 from plan_cutters.batch.content import Content, content
 from plan_cutters.batch.job import TIMED_OUT, UNREADABLE, USAGE, Handed
 from plan_cutters.batch.row import PartRow
@@ -122,15 +122,15 @@ def work(task: Task) -> Outcome:
             return unfit(f"{_here()}: this worker does not see {task.store} (give a folder that all machines share, or a URL), "
                           "or another batch has begun there since")  # fmt: skip
         try:
-            found = content_of(task)
+            content = content_of(task)
         except PlanError as error:
             return failed(str(error).replace(task.source or task.file, task.file), UNREADABLE)
-        key = keys.key(found.key, task.settings)
-        if output is not None and not task.force and (row := kept(output, task.folder, key, task.name, task.file)):
+        key = keys.key(content.key, task.settings)
+        if output is not None and not task.force and (row := cached(output, task.folder, key, task.name, task.file)):
             return Outcome(row, {})
         with tempfile.TemporaryDirectory(prefix="plan-", dir=_scratch(), ignore_cleanup_errors=True) as name:
             folder = Path(name)
-            code, line = planned(task, found, folder)
+            code, line = planned(task, content, folder)
             made = files_of(folder / "out")
             if code not in _PLANNED or PLAN not in made:
                 return failed(line or f"ended with exit code {code} and no plan", code if code > 1 else UNREADABLE, key)
@@ -158,7 +158,7 @@ def content_of(task: Task) -> Content:
     return Content(task.part) if task.part else task.content or content(task.source or task.file)
 
 
-def kept(output: store.Store, folder: str, key: str, name: str, file: str) -> PartRow | None:
+def cached(output: store.Store, folder: str, key: str, name: str, file: str) -> PartRow | None:
     """The row of an earlier run with the same key; None where there is none, or its files have changed."""
     row = output.row(folder)
     if row is None or row.key != key:
@@ -197,7 +197,7 @@ def _ready() -> str:
             continue
         try:
             if at_hand("search.search") is False:
-                environment = {**os.environ, handing.PARENT: str(os.getpid())}
+                environment = {**os.environ, job_input.PARENT: str(os.getpid())}
                 code = "import plan_cutters.command.background_compile as b; b.follow_parent(); b.compile_all(False)"
                 made = subprocess.run(
                     [sys.executable, "-P", "-c", code], env=environment, capture_output=True, check=False
@@ -245,28 +245,28 @@ def _wanted() -> Callable[[], bool]:
     return wanted
 
 
-def _offered(folder: Path) -> handing.Offer | None:
+def _offered(folder: Path) -> job_input.Offer | None:
     """The cluster of this worker, for a part that turns out to be large; None where another process cannot reach it."""
     worker = _worker()
     if worker is None or not worker.scheduler.address.startswith("tcp://"):
         return None
-    return handing.Offer(
+    return job_input.Offer(
         worker.scheduler.address, str(Path(worker.local_directory, "large-part")), str(folder / ".lent")
     )
 
 
-def _make_room() -> None:
+def _free_memory() -> None:
     """Give this task's place at the worker to another one: it only waits while others judge for it."""
     from distributed import secede
 
     secede()
 
 
-def planned(task: Task, found: Content, folder: Path) -> tuple[int, str]:
+def planned(task: Task, content: Content, folder: Path) -> tuple[int, str]:
     """Run the command in a folder; its exit code, and the last line that it said."""
     name = PurePosixPath(task.file.replace("\\", "/")).name or "part"
     if task.part is None:
-        found.write(folder / name)
+        content.write(folder / name)
     for file, data in task.handed.files:
         there = folder / file
         if there.exists():
@@ -274,18 +274,18 @@ def planned(task: Task, found: Content, folder: Path) -> tuple[int, str]:
         there.parent.mkdir(parents=True, exist_ok=True)
         there.write_bytes(data)
     offer = _offered(folder)
-    (folder / ".handed").write_bytes(handing.packed(task.handed.options, task.part, offer, task.secret))
+    (folder / ".handed").write_bytes(job_input.packed(task.handed.options, task.part, offer, task.secret))
     environment = {name: value for name, value in os.environ.items() if not name.startswith("PLAN_CUTTERS_")}
-    environment |= {handing.FILE: str(folder / ".handed"), handing.PARENT: str(os.getpid())}
+    environment |= {job_input.FILE: str(folder / ".handed"), job_input.PARENT: str(os.getpid())}
     words = [sys.executable, "-P", "-m", "plan_cutters", "plan", f"./{name}", "-o", "out", "--quiet", *task.words]
     if task.store is not None:
         # A cutter that joins later is judged alone: the verdicts of the others are there.
         words += ["--verdicts", f"{task.store.rstrip('/')}/{VERDICTS}"]
     wanted = _wanted()
-    with open(folder / ".said", "wb") as said:
-        child = subprocess.Popen(words, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=said, stderr=said,
+    with open(folder / ".said", "wb") as log:
+        child = subprocess.Popen(words, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
                                  start_new_session=True)  # fmt: skip
-    lent = False
+    shared = False
     try:
         ends = time.monotonic() + (task.timeout or float("inf"))
         while True:
@@ -300,13 +300,13 @@ def planned(task: Task, found: Content, folder: Path) -> tuple[int, str]:
                 if not wanted():
                     _end(child)
                     return 130, f"{task.file}: interrupted"
-                if offer is not None and not lent and os.path.exists(offer.said):
-                    _make_room()
-                    lent = True
+                if offer is not None and not shared and os.path.exists(offer.said):
+                    _free_memory()
+                    shared = True
     finally:
         _end(child)
-    said_last = (folder / ".said").read_text(encoding="utf-8", errors="replace").strip().splitlines()
-    line = said_last[-1] if said_last else ""
+    log_lines = (folder / ".said").read_text(encoding="utf-8", errors="replace").strip().splitlines()
+    line = log_lines[-1] if log_lines else ""
     if code < 0:
         return UNREADABLE, f"{task.file}: the process was killed ({signal.Signals(-code).name}): out of memory, perhaps"
     line = line.removeprefix("plan-cutters: ")
@@ -327,9 +327,9 @@ def _end(child: "subprocess.Popen[bytes]") -> None:
 
 def files_of(folder: Path) -> dict[str, Path]:
     """Files of a plan, the plan itself last."""
-    found = {each.relative_to(folder).as_posix(): each for each in sorted(folder.rglob("*")) if each.is_file()}
-    return {name: path for name, path in found.items() if name != PLAN} | {
-        name: path for name, path in found.items() if name == PLAN
+    files = {each.relative_to(folder).as_posix(): each for each in sorted(folder.rglob("*")) if each.is_file()}
+    return {name: path for name, path in files.items() if name != PLAN} | {
+        name: path for name, path in files.items() if name == PLAN
     }
 
 

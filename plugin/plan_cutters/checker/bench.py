@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from plan_cutters.checker.clash import FREE, MET, Clock, lowest, met, nearest
-from plan_cutters.checker.fixtures import Standing, rotation_of
+from plan_cutters.checker.fixtures import PlacedFixture, rotation_of
 from plan_cutters.checker.question import Question, frame_of
 from plan_cutters.checker.surface import Cells, Face
 from plan_cutters.checker.tool import FLAT, Tool, tool_of
@@ -59,18 +59,18 @@ class Bench:
         self.hollow: list[str] = []
         own = self.cells.add(faces)
         low, high = self.cells.point[own] - self.cells.slack[own], self.cells.point[own] + self.cells.slack[own]
-        self.standing: list[list[Standing]] = []
+        self.standing: list[list[PlacedFixture]] = []
         self.root: list[int] = []
         for setup in question.setups:
-            standing = []
+            placed = []
             for body in setup.fixtures:
                 if body.kind == "table" and not body.sizes:
                     frame = np.eye(3) if any(body.placement[3:]) else frame_of(setup)
                     body = replace(body, sizes=(lowest(self.cells, own, rotation_of(body) @ frame[2], self.grain),))
-                standing.append(Standing(body, setup, low, high))
-                self.hollow += [] if standing[-1].known else [standing[-1].name]
-            self.standing.append(standing)
-            groups = [own, *(self.cells.add(each.sources) for each in standing)]
+                placed.append(PlacedFixture(body, setup, low, high))
+                self.hollow += [] if placed[-1].known else [placed[-1].name]
+            self.standing.append(placed)
+            groups = [own, *(self.cells.add(each.sources) for each in placed)]
             self.root.append(self.cells.joined(groups) if len(groups) > 1 else own)
 
     @property
@@ -79,25 +79,25 @@ class Bench:
         return _GRAIN * self.question.tolerance
 
     def stands(
-        self, setup: int, tool: Tool, rows: Rows, axis: Floats, lean: Floats, clock: Clock, *, surely: bool = True,
+        self, setup: int, tool: Tool, rows: Rows, axis: Floats, tilt_direction: Floats, clock: Clock, *, surely: bool = True,
         tell: Callable[[int], None] = lambda done: None,
     ) -> NDArray[np.int8]:  # fmt: skip
         """Whether a tool stands free at samples (m,) with axes and leans (m, 3): `FREE`, `MET` or `OPEN`.
 
         `surely`: free with nothing deeper than the tolerance; else also what a search may refuse as not proved is `MET`.
         """
-        found, _ = self.looked(setup, tool, rows, axis, lean, clock, surely=surely, tell=tell)
-        return found
+        verdicts, _ = self.looked(setup, tool, rows, axis, tilt_direction, clock, surely=surely, tell=tell)
+        return verdicts
 
     def looked(
-        self, setup: int, tool: Tool, rows: Rows, axis: Floats, lean: Floats, clock: Clock, *, surely: bool = True,
+        self, setup: int, tool: Tool, rows: Rows, axis: Floats, tilt_direction: Floats, clock: Clock, *, surely: bool = True,
         tell: Callable[[int], None] = lambda done: None,
     ) -> tuple[NDArray[np.int8], list[str]]:  # fmt: skip
         """The same, with words for the first few that are not free."""
         tolerance, words = self.question.tolerance, list[str]()
         verdict = np.full(len(rows), MET, np.int8)
-        tip = tool.tips(self.point[rows], self.normal[rows], axis, lean)
-        able = np.isfinite(tip).all(axis=1) & self._leans(rows, axis)
+        tip = tool.tips(self.point[rows], self.normal[rows], axis, tilt_direction)
+        able = np.isfinite(tip).all(axis=1) & self._can_tilt(rows, axis)
         able &= ~np.isin(self.question.samples["face"][rows], [*self.question.setups[setup].clamped])
         for each in self.standing[setup]:
             # What is in the way at no place of its surface may still hold all of the tool.
@@ -122,8 +122,8 @@ class Bench:
     ) -> NDArray[np.int8]:
         """The same for a fixed axis at samples (m,), (m, 3): where the axis is the normal, with any side of the bottom."""
         normal = self.normal[rows]
-        lean = self.own_lean(rows, axis)
-        verdict = self.stands(setup, tool, rows, axis, lean, clock, surely=surely)
+        tilt_direction = self.own_tilt_direction(rows, axis)
+        verdict = self.stands(setup, tool, rows, axis, tilt_direction, clock, surely=surely)
         upright = np.linalg.norm(np.cross(normal, axis), axis=1) <= FLAT
         for k in np.flatnonzero(upright & (verdict != FREE)).tolist():
             first = self.question.samples["direction_max"][rows[k]]
@@ -136,7 +136,7 @@ class Bench:
             verdict[k] = FREE if (every == FREE).any() else max(every)
         return verdict
 
-    def own_lean(self, rows: Rows, axis: Floats) -> Floats:
+    def own_tilt_direction(self, rows: Rows, axis: Floats) -> Floats:
         """Unit directions (m, 3) to which axes lean from the normals; that of the larger curvature where they do not."""
         normal = self.normal[rows]
         across = axis - (normal * axis).sum(axis=1)[:, None] * normal
@@ -144,10 +144,10 @@ class Bench:
         return np.where(size > 1e-12, across / np.maximum(size, 1e-300), self.question.samples["direction_max"][rows])
 
     def clearance(
-        self, setup: int, tool: Tool, rows: Rows, axis: Floats, lean: Floats, beyond: float, clock: Clock
+        self, setup: int, tool: Tool, rows: Rows, axis: Floats, tilt_direction: Floats, beyond: float, clock: Clock
     ) -> tuple[float, str] | None:
         """The least distance of what does not cut from anything, mm, at samples (m,), and which part comes nearest."""
-        tip = tool.tips(self.point[rows], self.normal[rows], axis, lean)
+        tip = tool.tips(self.point[rows], self.normal[rows], axis, tilt_direction)
         return nearest(
             self.cells, self.root[setup], tool.above(2.0 * tool.radius), tip, axis, beyond, self.grain, clock
         )
@@ -157,7 +157,7 @@ class Bench:
         cutters: Any = self.question.document["cutters"]
         return self.tools[cutters[index]["id"]]
 
-    def _leans(self, rows: Rows, axis: Floats) -> NDArray[np.bool_]:
+    def _can_tilt(self, rows: Rows, axis: Floats) -> NDArray[np.bool_]:
         """Which axes (m, 3) lean from the normals by tilts and towards rotations that the plan allows."""
         normal, first = self.normal[rows], self.question.samples["direction_max"][rows]
         cosine = (normal * axis).sum(axis=1)

@@ -57,23 +57,23 @@ def check(question: Question, *, seconds: float = SECONDS, tell: Callable[[str],
 
 def _answer(question: Question, seconds: float, tell: Callable[[str], None]) -> Answer:
     start, rng, reckoned = time.monotonic(), np.random.default_rng(0), Reckoned(question)
-    found = [*Paper(question, reckoned, rng).findings()]
+    findings = [*Paper(question, reckoned, rng).findings()]
     entry = reckoned.entry()
-    first = _compared(question, found, entry)
+    first = _compared(question, findings, entry)
     if not first.holds:
         last = Finding(None, "No tool was put down: what is written contradicts itself, or the part, already.")
         return Answer((*first.findings, last), first.entries)
     bench = Bench(question, tell)
     trials = Trials(question, reckoned, bench, rng, lambda part: Clock(start + seconds * _PARTS[part]), tell)
-    found += trials.findings(entry)
-    return _compared(question, found, entry)
+    findings += trials.findings(entry)
+    return _compared(question, findings, entry)
 
 
-def _compared(question: Question, found: Iterable[Finding], entry: dict[str, Any]) -> Answer:
+def _compared(question: Question, findings: Iterable[Finding], entry: dict[str, Any]) -> Answer:
     """The findings, with those of the entries of plan.json."""
     entries = compared(entry, question.document["operations"])
     unknown = [f"operations.{path} is an entry that this checker does not know." for path in entries.unknown]
     wrong = [Finding(False, words) for words in (*unknown, *(f"operations.{line}." for line in entries.differ))]
     right = Finding(True, f"{len(entries.agree)} numbers and words of the plan follow from its samples and labels, "
                           f"{len(entries.unchecked)} are not checked.")  # fmt: skip
-    return Answer((*found, *(wrong or [right])), entries)
+    return Answer((*findings, *(wrong or [right])), entries)

@@ -76,20 +76,20 @@ def met(
         Called with how many are done.
     """
     n = len(tip)
-    found = Met(np.full(n, OPEN, np.int8), np.full(n, -1, np.int64), np.full(n, np.nan), np.full(n, -1, np.int64))
+    hits = Met(np.full(n, OPEN, np.int8), np.full(n, -1, np.int64), np.full(n, np.nan), np.full(n, -1, np.int64))
     limit = np.array([limits[0] if each.part == "flutes" else limits[1] for each in tool.solids])
     for start in range(0, n, _TOOLS):
         if clock.over:
             break
         some = np.arange(start, min(n, start + _TOOLS))
-        _some_met(cells, root, tool.solids, tip, axis, limit, grain, clock, some, found)
+        _some_met(cells, root, tool.solids, tip, axis, limit, grain, clock, some, hits)
         tell(len(some))
-    return found
+    return hits
 
 
 def _some_met(
     cells: Cells, root: int, solids: Sequence[Solid], tip: Floats, axis: Floats, limit: Floats, grain: float, clock: Clock,
-    some: Rows, found: Met,
+    some: Rows, hits: Met,
 ) -> None:  # fmt: skip
     # The cells nearest to a contact come last, and are the smallest: the stack keeps few of them at a time.
     stack = [(some, np.full(len(some), root, np.int64))]
@@ -97,7 +97,7 @@ def _some_met(
         if clock.over:
             return
         who, cell = stack.pop()
-        open_ = (found.verdict[who] != MET) & (cells.state[cell] != OUTSIDE)
+        open_ = (hits.verdict[who] != MET) & (cells.state[cell] != OUTSIDE)
         who, cell = who[open_], cell[open_]
         if len(who) > _PAIRS:
             half = len(who) // 2
@@ -110,14 +110,14 @@ def _some_met(
             deep, most = bounds(solid, tip[who], axis[who], cells.point[cell], cells.offset[cell])
             near |= most + cells.slack[cell] > limit[k] + grain
             hit = np.flatnonzero((deep > limit[k] + _ROUNDING) & cells.proper[cell])
-            found.verdict[who[hit]], found.cell[who[hit]] = MET, cell[hit]
-            found.depth[who[hit]], found.solid[who[hit]] = deep[hit], k
-        near &= (found.verdict[who] != MET) & (cells.size[cell] > grain)
+            hits.verdict[who[hit]], hits.cell[who[hit]] = MET, cell[hit]
+            hits.depth[who[hit]], hits.solid[who[hit]] = deep[hit], k
+        near &= (hits.verdict[who] != MET) & (cells.size[cell] > grain)
         if near.any():
             pieces, owner = cells.children(cell[near])
             stack.append((who[near][owner], pieces))
-    rest = some[found.verdict[some] == OPEN]
-    found.verdict[rest] = FREE
+    rest = some[hits.verdict[some] == OPEN]
+    hits.verdict[rest] = FREE
 
 
 def nearest(
@@ -144,10 +144,10 @@ def nearest(
             deep = np.where(cells.proper[cell], deep, -np.inf)
             if deep.max(initial=-np.inf) > best:
                 best, part = float(deep.max()), solid.part
-        left = (most > best + grain) & (cells.state[cell] != OUTSIDE) & (cells.size[cell] > grain)
-        if left.any():
-            pieces, owner = cells.children(cell[left])
-            stack.append((who[left][owner], pieces))
+        open_cells = (most > best + grain) & (cells.state[cell] != OUTSIDE) & (cells.size[cell] > grain)
+        if open_cells.any():
+            pieces, owner = cells.children(cell[open_cells])
+            stack.append((who[open_cells][owner], pieces))
     return -best, part
 
 
@@ -158,6 +158,6 @@ def lowest(cells: Cells, root: int, direction: Floats, grain: float) -> float:
         at = cells.point[cell] @ direction
         best = min(best, float(at[cells.proper[cell]].min(initial=np.inf)))
         least = at - np.abs(cells.offset[cell] @ direction).max(axis=1) - cells.slack[cell]
-        left = (least < best - grain) & (cells.state[cell] != OUTSIDE) & (cells.size[cell] > grain)
-        cell = cells.children(cell[left])[0]
+        open_cells = (least < best - grain) & (cells.state[cell] != OUTSIDE) & (cells.size[cell] > grain)
+        cell = cells.children(cell[open_cells])[0]
     return best

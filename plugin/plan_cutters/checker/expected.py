@@ -72,14 +72,14 @@ class Reckoned:
         if [plan["name"] for plan in written["plans"]] != names:
             plans = [{"name": name} for name in names]
         timed_ = any(plan["seconds"] is not None for plan in plans if "seconds" in plan)
-        given = effective["index_time_s"]
+        stated = effective["index_time_s"]
         source = written["assumed"]["index_from"]
         if source == "given" or not question.machine.rates:
             source = source if source in ("given", "assumed") else "assumed"
         else:
             source = "rates"
         total = sum(weight for _, weight in few["weights"])
-        found = len(question.operations["chosen"])
+        count = len(question.operations["chosen"])
         fastest: Any = None
         if "fastest" in names:
             own = next((plan for plan in written["plans"] if plan["name"] == "fastest"), None)
@@ -100,18 +100,18 @@ class Reckoned:
             "rotary": list(question.machine.names),
             "plans": plans,
             "fewest": {
-                "found": found, "proof": self._proof(few), "weights": self._weights(few), "bound": total / 1e6,
-                "lp": Loose(total / 1e6 - 1e-6, found), "samples": int(self.reached.sum()),
-                "candidates": len(question.operations["candidate_cutter"]), "at_least": self._at_least(few, total, found),
+                "found": count, "proof": self._proof(few), "weights": self._weights(few), "bound": total / 1e6,
+                "lp": Loose(total / 1e6 - 1e-6, count), "samples": int(self.reached.sum()),
+                "candidates": len(question.operations["candidate_cutter"]), "at_least": self._at_least(few, total, count),
                 "at_least_any": Loose(0, few["at_least"]),
             },
             "fastest": fastest,
             "cutters": self._cutters(written) if many and "fastest" in names and timed_ else [],
-            "curve": self._curve(written["curve"], found),
+            "curve": self._curve(written["curve"], count),
             "assumed": {
                 "feed_mm_min": self._feeds(written, effective), "scallop_mm": effective["scallop_mm"],
                 "stepover": effective["stepover"], "overlap_mm": effective["overlap_mm"],
-                "index_s": _INDEX_TIME if given is None else given, "index_from": source,
+                "index_s": _INDEX_TIME if stated is None else stated, "index_from": source,
                 "change_s": effective["change_time_s"], "setup_s": effective["setup_time_s"],
             },
         }  # fmt: skip
@@ -130,12 +130,12 @@ class Reckoned:
             return "not closed"
         return "weights" if total >= few["at_least"] else "branch and bound"
 
-    def _at_least(self, few: Mapping[str, Any], total: int, found: int) -> Any:
+    def _at_least(self, few: Mapping[str, Any], total: int, count: int) -> Any:
         proved = -(-total // 1_000_000)
         if few["proof"] == "weights":
             return proved
         # A choice that serves all bounds it from above.
-        return proved if few["at_least"] == proved else Loose(proved, found)
+        return proved if few["at_least"] == proved else Loose(proved, count)
 
     def _weights(self, few: Mapping[str, Any]) -> Any:
         """The weights as they are, if they can be any: whole numbers on samples that are reached, once on each."""
@@ -145,14 +145,14 @@ class Reckoned:
         good = good and all(0 < weight <= 1_000_000 for _, weight in few["weights"])
         return [list(pair) for pair in few["weights"]] if good else "whole numbers on reached samples, one for each"
 
-    def _curve(self, written: Sequence[Mapping[str, Any]], found: int) -> list[dict[str, Any]]:
+    def _curve(self, written: Sequence[Mapping[str, Any]], count: int) -> list[dict[str, Any]]:
         # Shares are of what can be machined in some setup: of what stands in a fixture in all of them it is not known.
         least = float(self.area[self.reached].sum()) / max(self.whole, 1e-300)
         steps: list[dict[str, Any]] = []
         before = 0.0
-        for k in range(found if self.reached.any() else 0):
+        for k in range(count if self.reached.any() else 0):
             share = written[k]["share"] if k < len(written) else 0.0
-            low = max(before, (1.0 - _DOUBT) * least) if k + 1 == found else before
+            low = max(before, (1.0 - _DOUBT) * least) if k + 1 == count else before
             steps.append({"orientations": k + 1, "share": Loose(low, 1.0)})
             if k < len(written) and written[k]["at_most"] is not None:
                 steps[-1]["at_most"] = Loose(share, 1.0)
@@ -160,11 +160,11 @@ class Reckoned:
         return steps
 
     def _cutters(self, written: Mapping[str, Any]) -> list[dict[str, Any]]:
-        found = []
+        entries = []
         for use in written["cutters"]:
             name = use["id"]
             if name not in self.considered:
-                found.append({"id": "one of the cutters that were compared"})
+                entries.append({"id": "one of the cutters that were compared"})
                 continue
             takes = {
                 plan["name"]: sum(
@@ -183,10 +183,10 @@ class Reckoned:
             }
             if use["saves_seconds"] is not None:
                 entry["saves_seconds"] = Loose(0.0, math.inf)
-            found.append(entry)
-        if len(found) != len(self.considered) or len({use["id"] for use in written["cutters"]}) != len(found):
+            entries.append(entry)
+        if len(entries) != len(self.considered) or len({use["id"] for use in written["cutters"]}) != len(entries):
             return [{"id": name} for name in self.considered]
-        return found
+        return entries
 
     def _plan(self, k: int, plan: Mapping[str, Any]) -> dict[str, Any]:
         question, label, seconds = self.question, self.array(k, "operation"), self.array(k, "seconds")
@@ -194,7 +194,7 @@ class Reckoned:
         fixed = [each for each in operations if each["mode"] == "fixed"]
         assumed = question.document["operations"]["assumed"]
         rest = self.finished & (label < 0)
-        left = float(self.area[rest].sum())
+        rest_area = float(self.area[rest].sum())
         first = self.question.samples[f"reason_{self.considered[0]}"][rest]
         words = question.document["reasons"]
         counts = {
@@ -222,7 +222,7 @@ class Reckoned:
             "pieces": sum(len(each["regions"]) for each in operations),
             "operations": operations,
             "rest": {
-                "samples": int(rest.sum()), "area_mm2": left, "share": left / self.whole if self.whole > 0.0 else 0.0,
+                "samples": int(rest.sum()), "area_mm2": rest_area, "share": rest_area / self.whole if self.whole > 0.0 else 0.0,
                 "reason_counts": counts,
             },
         }  # fmt: skip
@@ -308,20 +308,20 @@ class Reckoned:
     def _faces(self, rows: Rows, written: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
         """The faces of samples, the one with the most area first; of equal ones, as they are written."""
         face = self.question.samples["face"][rows]
-        found: list[dict[str, Any]] = [
+        entries: list[dict[str, Any]] = [
             {"face": f"F{f}", "samples": int((face == f).sum()), "area_mm2": float(self.area[rows][face == f].sum())}
             for f in np.unique(face).tolist()
         ]
         place = {each["face"]: k for k, each in enumerate(written)}
-        as_written = sorted(found, key=lambda each: place.get(each["face"], len(place)))
+        as_written = sorted(entries, key=lambda each: place.get(each["face"], len(place)))
         if all(a["area_mm2"] >= b["area_mm2"] * (1.0 - _SAME_AREA) for a, b in pairwise(as_written)):
             return as_written
-        return sorted(found, key=lambda each: -each["area_mm2"])
+        return sorted(entries, key=lambda each: -each["area_mm2"])
 
     def _regions(self, k: int, i: int, each: Mapping[str, Any], rows: Rows) -> Any:
         """The regions of an operation: their samples are those that are written, if together they are the operation's."""
         before = sum(len(one["regions"]) for one in self.question.document["operations"]["plans"][k]["operations"][:i])
-        found, seen = [], []
+        regions, seen = [], []
         for number, region in enumerate(each["regions"], before):
             runs = [(int(first), int(last)) for first, last in region["rows"]]
             if not all(0 <= first <= last < len(self.area) for first, last in runs):
@@ -329,7 +329,7 @@ class Reckoned:
             mine = np.concatenate([np.arange(first, last + 1) for first, last in runs] or [np.zeros(0, np.int64)])
             seen.append(mine)
             point = self.question.samples["point"][mine]
-            found.append({
+            regions.append({
                 "id": number, "samples": len(mine), "area_mm2": float(self.area[mine].sum()),
                 "faces": self._faces(mine, region["faces"]),
                 "low": point.min(axis=0, initial=np.inf).tolist(), "high": point.max(axis=0, initial=-np.inf).tolist(),
@@ -337,8 +337,8 @@ class Reckoned:
             })  # fmt: skip
         if not np.array_equal(np.sort(np.concatenate([*seen, np.zeros(0, np.int64)])), rows):
             return f"regions with the {len(rows)} samples that operations.npz gives it"
-        sizes = [one["area_mm2"] for one in found]
-        return found if all(a >= b * (1.0 - _SAME_AREA) for a, b in pairwise(sizes)) else "the largest region first"
+        sizes = [one["area_mm2"] for one in regions]
+        return regions if all(a >= b * (1.0 - _SAME_AREA) for a, b in pairwise(sizes)) else "the largest region first"
 
 
 def other_angles(question: Question, setup: int, degrees: Floats) -> tuple[float, ...] | None:

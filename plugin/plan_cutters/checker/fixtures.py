@@ -25,17 +25,17 @@ _BOX = np.array([
 
 def rotation_of(body: Body) -> Floats:
     """The matrix (3, 3) of a placement: about x, then about y, then about z, all fixed in the part."""
-    found = np.eye(3)
+    rotation = np.eye(3)
     for k, angle in enumerate(body.placement[3:]):
         c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
         turn = np.eye(3)
         i, j = (k + 1) % 3, (k + 2) % 3
         turn[i, i], turn[i, j], turn[j, i], turn[j, j] = c, -s, s, c
-        found = turn @ found
-    return found
+        rotation = turn @ rotation
+    return rotation
 
 
-class Standing:
+class PlacedFixture:
     """A fixture where it stands in a setup.
 
     Attributes
@@ -73,14 +73,14 @@ class Standing:
         """Which points (n, 3) lie within it, by the solid angle of its triangles; of a CAD file none is known to."""
         if self._vertex is None:
             return np.zeros(len(points), bool)
-        found = np.zeros(len(points))
+        inside = np.zeros(len(points))
         for a, b, c in self._vertex:
             p, q, r = a - points, b - points, c - points
             u, v, w = (np.linalg.norm(each, axis=1) for each in (p, q, r))
             top = (p * np.cross(q, r)).sum(axis=1)
             under = u * v * w + (p * q).sum(axis=1) * w + (q * r).sum(axis=1) * u + (r * p).sum(axis=1) * v
-            found += 2.0 * np.arctan2(top, under)
-        return np.asarray(np.abs(found) > 2.0 * math.pi)
+            inside += 2.0 * np.arctan2(top, under)
+        return np.asarray(np.abs(inside) > 2.0 * math.pi)
 
 
 def _read(body: Body) -> Part | Mesh:

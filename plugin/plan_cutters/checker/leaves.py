@@ -21,7 +21,7 @@ UNCHECKED = {
     "plans[].operations[].strip_mm": "widths of passes are taken from operations.npz",
     "plans[].operations[].proved_share": "the area between samples is proved by the plan alone",
     "plans[].operations[].approaches_proved": "the area between samples is proved by the plan alone",
-    "plans[].operations[].clearance_mm": "nothing is known of what stands around, or the time was over",
+    "plans[].operations[].clearance_mm": "the surroundings are not known, or the time was over",
     "plans[].operations[].index_s": "the best order of the rotary axes is not looked for",
     "plans[].operations[].colour": "the models are not read",
     "fewest.at_least": "it is not proved by weights alone",
@@ -118,43 +118,43 @@ def leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
 
 def compared(expected: Any, actual: Any) -> Compared:
     """Compare what is expected, as far as it is known, with what is there."""
-    found = Compared()
-    _compare(expected, actual, "", found)
-    return found
+    comparison = Compared()
+    _compare(expected, actual, "", comparison)
+    return comparison
 
 
-def _compare(expected: Any, actual: Any, path: str, found: Compared) -> None:
+def _compare(expected: Any, actual: Any, path: str, comparison: Compared) -> None:
     if isinstance(expected, dict) and isinstance(actual, dict):
         for name in [*expected, *(each for each in actual if each not in expected)]:
             below = f"{path}.{name}" if path else name
             if name not in actual:
-                found.differ.append(f"{below} is not there")
+                comparison.differ.append(f"{below} is not there")
             elif name in expected:
-                _compare(expected[name], actual[name], below, found)
+                _compare(expected[name], actual[name], below, comparison)
             else:
-                _unchecked(actual[name], below, found)
+                _unchecked(actual[name], below, comparison)
     elif isinstance(expected, list) and isinstance(actual, list):
         if len(expected) != len(actual):
-            found.differ.append(f"{path} has {len(actual)} entries, not {len(expected)}")
+            comparison.differ.append(f"{path} has {len(actual)} entries, not {len(expected)}")
         elif not actual:
-            found.agree.append(path)
+            comparison.agree.append(path)
         for k, (one, other) in enumerate(zip(expected, actual, strict=False)):
-            _compare(one, other, f"{path}[{k}]", found)
+            _compare(one, other, f"{path}[{k}]", comparison)
     elif not _same(expected, actual):
-        found.differ.append(f"{path} is {_short(actual)}, not {_short(expected)}")
+        comparison.differ.append(f"{path} is {_short(actual)}, not {_short(expected)}")
     elif isinstance(expected, Loose):
-        _unchecked(actual, path, found)
+        _unchecked(actual, path, comparison)
     else:
-        found.agree.append(path)
+        comparison.agree.append(path)
 
 
-def _unchecked(value: Any, path: str, found: Compared) -> None:
+def _unchecked(value: Any, path: str, comparison: Compared) -> None:
     for leaf, each in leaves(value, path):
         plain = pattern(leaf)
         empty = isinstance(each, dict | list) and any(
             known.startswith((f"{plain}[", f"{plain}.")) for known in UNCHECKED
         )
-        (found.unchecked if plain in UNCHECKED or empty else found.unknown).append(leaf)
+        (comparison.unchecked if plain in UNCHECKED or empty else comparison.unknown).append(leaf)
 
 
 def _same(expected: Any, actual: Any) -> bool:

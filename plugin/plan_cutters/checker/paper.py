@@ -95,8 +95,10 @@ class Paper:
         known = (cutter >= 0) & (cutter < len(ids)) & (setup >= 0) & (setup < len(question.setups))
         known &= np.isfinite(angle).all(axis=1)
         if not known.all():
-            lost = int((~known).sum())
-            yield Finding(False, f"{lost} candidates are of cutters or setups that there are not, or have no angles.")
+            unknown = int((~known).sum())
+            yield Finding(
+                False, f"{unknown} candidates are of cutters or setups that there are not, or have no angles."
+            )
             return
         wrong = beyond = 0
         for s, each in enumerate(question.setups):
@@ -116,7 +118,7 @@ class Paper:
         high = math.radians(min(question.document["effective"]["tilt_deg"][1], 180.0) - near)
         normal = question.samples["normal"][self.reckoned.reached]
         low_high = np.clip(np.degrees(question.machine.limits), -180.0, 180.0)
-        worst, lost, tried = 0.0, 0, 0
+        worst, missing, tried = 0.0, 0, 0
         for s, each in enumerate(question.setups):
             angle = self.rng.uniform(low_high[:, 0], low_high[:, 1], (_TRIED, 2))
             wanted = axes_of(question.machine, each, angle[allowed(question.machine, each, angle)])
@@ -127,18 +129,18 @@ class Paper:
                 mine = axis[(setup == s) & (cutter == self.reckoned.ids.index(name))]
                 cosine = (wanted @ mine.T).max(axis=1, initial=-1.0) if len(mine) else np.full(len(wanted), -1.0)
                 away = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
-                lost, tried = lost + int((away > near).sum()), tried + len(away)
+                missing, tried = missing + int((away > near).sum()), tried + len(away)
                 worst = max(worst, float(away.max(initial=0.0)))
-        words = (f"Of {tried} tool axes that face a sample, drawn by seed 0 for each setup and cutter, {lost} are more than "
+        words = (f"Of {tried} tool axes that face a sample, taken by seed 0 for each setup and cutter, {missing} are more than "
                  f"{near:g} deg from a candidate; the farthest is {worst:.3g} deg away.")  # fmt: skip
-        return Finding(lost == 0, words)
+        return Finding(missing == 0, words)
 
     def _labels(self, k: int) -> Iterator[Finding]:
         """Samples go with operations that there are, and only those that are finished."""
-        plan, label, lean = self.plans[k], self.reckoned.array(k, "operation"), self.reckoned.array(k, "lean")
+        plan, label, tilt_direction = self.plans[k], self.reckoned.array(k, "operation"), self.reckoned.array(k, "lean")
         bad = (label < -1) | (label >= len(plan["operations"])) | ((label >= 0) & ~self.reckoned.finished)
         bad |= (label < 0) & self.reckoned.reached
-        bad |= (label < 0) & (np.isfinite(lean).any(axis=1) | self.reckoned.array(k, "exclusive"))
+        bad |= (label < 0) & (np.isfinite(tilt_direction).any(axis=1) | self.reckoned.array(k, "exclusive"))
         if bad.any():
             yield Finding(False, f"The {plan['name']} plan: {int(bad.sum())} of {len(label)} samples go with operations "
                                  "that there are not, or with none though they are reached.")  # fmt: skip

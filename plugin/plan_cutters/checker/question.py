@@ -146,12 +146,12 @@ def frame_of(setup: Setup) -> Floats:
 def carried(machine: MachineAxes, setup: Setup, vector: Floats, degrees: Floats) -> Floats:
     """Where vectors that are fixed to the tool point in the part's coordinates, (n, 3), at angles (n, 2) in degrees."""
     frame = frame_of(setup)
-    found = np.broadcast_to(np.asarray(vector, float), (len(degrees), 3))
+    vectors = np.broadcast_to(np.asarray(vector, float), (len(degrees), 3))
     for direction, angle in reversed([*zip(machine.direction, np.radians(degrees).T, strict=True)]):
         c, s = np.cos(angle)[:, None], np.sin(angle)[:, None]
-        along = (found @ direction)[:, None] * direction
-        found = along + c * (found - along) + s * np.cross(direction, found)
-    return np.asarray(found @ frame)
+        along = (vectors @ direction)[:, None] * direction
+        vectors = along + c * (vectors - along) + s * np.cross(direction, vectors)
+    return np.asarray(vectors @ frame)
 
 
 def axes_of(machine: MachineAxes, setup: Setup, degrees: Floats) -> Floats:

@@ -59,11 +59,11 @@ def faults(question: Question) -> Iterator[str]:
 
 def _shaped(file: str, arrays: Any, wanted: dict[str, tuple[tuple[int, ...], str]], count: int) -> Iterator[str]:
     for name, (last, kind) in wanted.items():
-        found = arrays.get(name)
-        if found is None:
+        array = arrays.get(name)
+        if array is None:
             yield f"{file} has no array {name}"
-        elif found.shape != (count, *last) or found.dtype.kind != kind:
-            yield f"{file}: array {name} is {found.dtype} {found.shape}, not {(count, *last)} of the kind {kind}"
+        elif array.shape != (count, *last) or array.dtype.kind != kind:
+            yield f"{file}: array {name} is {array.dtype} {array.shape}, not {(count, *last)} of the kind {kind}"
 
 
 def _not_finite(value: Any, path: str) -> Iterator[str]:

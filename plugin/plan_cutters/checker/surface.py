@@ -26,7 +26,7 @@ _CORNERS = np.array([(-1.0, -1.0), (-1.0, 1.0), (1.0, -1.0), (1.0, 1.0)])
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Found:
+class MeasuredCells:
     """Cells as they were measured, n of them: see `Cells`."""
 
     point: Floats
@@ -77,7 +77,7 @@ class Face:
                 owner.append(number[mine])
         return np.concatenate(pieces), np.concatenate(owner)
 
-    def measured(self, form: Floats) -> Found:
+    def measured(self, form: Floats) -> MeasuredCells:
         """Evaluate boxes (n, 3, 3)."""
         u, v = form[:, 0, :2].mean(axis=1), form[:, 1, :2].mean(axis=1)
         a, b = 0.5 * np.diff(form[:, 0, :2], axis=1)[:, 0], 0.5 * np.diff(form[:, 1, :2], axis=1)[:, 0]
@@ -101,10 +101,16 @@ class Face:
         for some in np.array_split(across, -(-len(across) // _AT_ONCE) or 1):
             if len(some):
                 proper[some] = self._trim.inside(u[some], v[some])
-        lost = ~np.isfinite(point).all(axis=1) | ~np.isfinite(slack)
+        unusable = ~np.isfinite(point).all(axis=1) | ~np.isfinite(slack)
         # Where the kernel has no value there is nothing to look at.
-        point[lost], offset[lost], slack[lost], proper[lost], state[lost] = 0.0, 0.0, 0.0, False, OUTSIDE
-        return Found(point @ self._rotation.T + self._shift, offset @ self._rotation.T, slack, state, proper)
+        point[unusable], offset[unusable], slack[unusable], proper[unusable], state[unusable] = (
+            0.0,
+            0.0,
+            0.0,
+            False,
+            OUTSIDE,
+        )
+        return MeasuredCells(point @ self._rotation.T + self._shift, offset @ self._rotation.T, slack, state, proper)
 
     def _state(self, form: Floats) -> NDArray[np.int8]:
         """Whether boxes lie in the face: those that no segment of its border comes near are all in it or all out of it."""
@@ -160,12 +166,12 @@ class Triangles:
         pieces = np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
         return pieces, np.concatenate([number, number])
 
-    def measured(self, form: Floats) -> Found:
+    def measured(self, form: Floats) -> MeasuredCells:
         """Their middles and corners; they are flat, and have no border to be beyond."""
         point = form.mean(axis=1)
         offset = form - point[:, None]
         n = len(form)
-        return Found(
+        return MeasuredCells(
             point,
             np.concatenate([offset, offset[:, :1]], axis=1),
             np.zeros(n),
@@ -249,10 +255,10 @@ class Cells:
                 high = (self.point[part] + self.size[part, None]).max(axis=0)
                 point = 0.5 * (low + high)
                 radius = float((np.linalg.norm(self.point[part] - point, axis=1) + self.size[part]).max())
-                found = Found(
+                contacts = MeasuredCells(
                     point[None], np.zeros((1, 4, 3)), np.array([radius]), np.array([ACROSS], np.int8), np.zeros(1, bool)
                 )
-                number = int(self._append(np.zeros((1, 3, 3)), found, -1)[0])
+                number = int(self._append(np.zeros((1, 3, 3)), contacts, -1)[0])
                 self._first[number], self._count[number] = first, len(part)
                 groups.append(number)
             cells = np.array(groups, np.int64)
@@ -260,8 +266,10 @@ class Cells:
 
     def _links(self, cells: Rows) -> int:
         """Copies of cells that follow each other, with the pieces of the cells: the number of the first."""
-        found = Found(self.point[cells], self.offset[cells], self.slack[cells], self.state[cells], self.proper[cells])
-        new = self._append(self._form[cells], found, 0)
+        contacts = MeasuredCells(
+            self.point[cells], self.offset[cells], self.slack[cells], self.state[cells], self.proper[cells]
+        )
+        new = self._append(self._form[cells], contacts, 0)
         self.source[new], self._first[new], self._count[new] = (
             self.source[cells],
             self._first[cells],
@@ -269,7 +277,7 @@ class Cells:
         )
         return int(new[0])
 
-    def _append(self, form: Floats, found: Found, source: int) -> Rows:
+    def _append(self, form: Floats, contacts: MeasuredCells, source: int) -> Rows:
         n, start = len(form), self.used
         if start + n > len(self.slack):
             more = max(n, len(self.slack), 1024)
@@ -277,9 +285,9 @@ class Cells:
                 old = getattr(self, name)
                 setattr(self, name, np.concatenate([old, np.zeros((more, *old.shape[1:]), old.dtype)]))
         mine = slice(start, start + n)
-        self._form[mine], self.point[mine], self.offset[mine] = form, found.point, found.offset
-        self.slack[mine], self.state[mine], self.proper[mine] = found.slack, found.state, found.proper
-        self.size[mine] = np.linalg.norm(found.offset, axis=2).max(axis=1) + found.slack
+        self._form[mine], self.point[mine], self.offset[mine] = form, contacts.point, contacts.offset
+        self.slack[mine], self.state[mine], self.proper[mine] = contacts.slack, contacts.state, contacts.proper
+        self.size[mine] = np.linalg.norm(contacts.offset, axis=2).max(axis=1) + contacts.slack
         self.source[mine], self._first[mine], self._count[mine] = source, -1, 0
         self.used = start + n
         return np.arange(start, start + n)

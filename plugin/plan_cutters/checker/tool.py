@@ -132,19 +132,19 @@ class Tool:
 
     def above(self, height: float) -> tuple[Solid, ...]:
         """Give what is above a height over the tip: flutes cut off there, and all other sections."""
-        found = []
+        pieces = []
         for each in self.solids:
             if each.part == "flutes":
                 if each.high <= height:
                     continue
                 each = _cut(each, height)
-            found.append(each)
-        return tuple(found)
+            pieces.append(each)
+        return tuple(pieces)
 
-    def tips(self, contact: Floats, normal: Floats, axis: Floats, lean: Floats) -> Floats:
+    def tips(self, contact: Floats, normal: Floats, axis: Floats, tilt_direction: Floats) -> Floats:
         """Where its tip is, (n, 3), with its contact at points (n, 3); nan where it does not touch at that tilt.
 
-        `lean` (n, 3) says which side of the bottom touches where the axis is the normal.
+        `tilt_direction` (n, 3) says which side of the bottom touches where the axis is the normal.
         """
         cosine = np.clip((normal * axis).sum(axis=1), -1.0, 1.0)
         across = axis - cosine[:, None] * normal
@@ -152,20 +152,20 @@ class Tool:
         tilt = np.arctan2(sine, cosine)
         # From the axis to the contact: across the axis, away from the normal.
         outward = -normal + cosine[:, None] * axis
-        aside = lean - (lean * axis).sum(axis=1)[:, None] * axis
+        sideways = tilt_direction - (tilt_direction * axis).sum(axis=1)[:, None] * axis
         with np.errstate(invalid="ignore", divide="ignore"):
-            turned = np.linalg.norm(lean - across / sine[:, None], axis=1) > _SAME
+            turned = np.linalg.norm(tilt_direction - across / sine[:, None], axis=1) > _SAME
             upright = (tilt <= FLAT) & ((sine < _UPRIGHT) | turned)
-            outward = np.where(upright[:, None], aside, outward)
+            outward = np.where(upright[:, None], sideways, outward)
             outward = outward / np.linalg.norm(outward, axis=1)[:, None]
         normal, tilt = np.where(upright[:, None], axis, normal), np.where(upright, 0.0, tilt)
-        found, left = np.full(contact.shape, np.nan), np.ones(len(contact), bool)
+        tips, open_rows = np.full(contact.shape, np.nan), np.ones(len(contact), bool)
         for arc in self.contacts:
-            mine = left & (tilt + _DOWN >= arc.first - _HAIR) & (tilt + _DOWN <= arc.last + _HAIR)
+            mine = open_rows & (tilt + _DOWN >= arc.first - _HAIR) & (tilt + _DOWN <= arc.last + _HAIR)
             centre = contact[mine] + (arc.radius + self.allowance) * normal[mine]
-            found[mine] = centre - arc.q * outward[mine] - arc.h * axis[mine]
-            left &= ~mine
-        return found
+            tips[mine] = centre - arc.q * outward[mine] - arc.h * axis[mine]
+            open_rows &= ~mine
+        return tips
 
 
 def _cut(solid: Solid, height: float) -> Solid:

@@ -73,8 +73,12 @@ class Trials:
         """Each operation, put down at each of its samples."""
         clock = self.clock("placed")
         for k, plan in enumerate(self.plans):
-            label, lean, words = self.reckoned.array(k, "operation"), self.reckoned.array(k, "lean"), list[str]()
-            tested, wrong, open_, leans = 0, 0, 0, 0
+            label, tilt_direction, words = (
+                self.reckoned.array(k, "operation"),
+                self.reckoned.array(k, "lean"),
+                list[str](),
+            )
+            tested, wrong, open_, wrong_tilts = 0, 0, 0, 0
             for i, each in enumerate(plan["operations"]):
                 self.tell(f"{plan['name']}: putting {each['id']} down ({i + 1} of {len(plan['operations'])})")
                 # In a drawn order, so that what there was no time for is no part of the surface.
@@ -82,18 +86,18 @@ class Trials:
                 setup, tool = each["setup"], self.bench.tools[each["cutter"]]
                 axis, there = self._axes(each, rows)
                 open_ += len(rows) - len(there)
-                leans += self._other_leans(there, axis, lean[there])
-                found, more = self.bench.looked(setup, tool, there, axis, lean[there], clock)
-                wrong, open_ = wrong + int((found == MET).sum()), open_ + int((found == OPEN).sum())
-                tested += int((found != OPEN).sum())
+                wrong_tilts += self._other_tilt_directions(there, axis, tilt_direction[there])
+                verdicts, more = self.bench.looked(setup, tool, there, axis, tilt_direction[there], clock)
+                wrong, open_ = wrong + int((verdicts == MET).sum()), open_ + int((verdicts == OPEN).sum())
+                tested += int((verdicts != OPEN).sum())
                 words += [f"{each['id']}, {one}" for one in more]
-            said = f" {leans} have another lean than their axis has." if leans else ""
-            said += f" {'; '.join(words[:3])}." if words else ""
-            late = f" of {tested + open_} (drawn by seed 0)" if open_ else ""
-            holds = wrong == 0 and leans == 0
+            text = f" {wrong_tilts} have another tilt direction than their axis has." if wrong_tilts else ""
+            text += f" {'; '.join(words[:3])}." if words else ""
+            late = f" of {tested + open_} (taken by seed 0)" if open_ else ""
+            holds = wrong == 0 and wrong_tilts == 0
             yield Finding(None if holds and not tested and open_ else holds,
                           f"The {plan['name']} plan: its operations were put down at {tested} samples{late}; at {wrong} the tool "
-                          f"is too deep in something, or cannot stand.{said}")  # fmt: skip
+                          f"is too deep in something, or cannot stand.{text}")  # fmt: skip
 
     def _axes(self, each: dict[str, Any], rows: Rows) -> tuple[Floats, Rows]:
         """The axes of an operation at some of its samples, and which these are: all, unless an axis is not written."""
@@ -109,12 +113,14 @@ class Trials:
         there = rows if served is None else rows[served[rows] == each["setup"]]
         return samples[f"axis_{name}"][there], there
 
-    def _other_leans(self, rows: Rows, axis: Floats, lean: Floats) -> int:
+    def _other_tilt_directions(self, rows: Rows, axis: Floats, tilt_direction: Floats) -> int:
         """How many written leans are not those of their axes; where an axis is the normal any across it is one."""
-        own = self.bench.own_lean(rows, axis)
+        own = self.bench.own_tilt_direction(rows, axis)
         tilt = np.linalg.norm(np.cross(self.bench.normal[rows], axis), axis=1)
-        same = np.abs(own - lean).max(axis=1, initial=0.0) <= _SAME
-        across = (np.abs((lean * axis).sum(axis=1)) <= 1e-3) & (np.abs(np.linalg.norm(lean, axis=1) - 1.0) <= _SAME)
+        same = np.abs(own - tilt_direction).max(axis=1, initial=0.0) <= _SAME
+        across = (np.abs((tilt_direction * axis).sum(axis=1)) <= 1e-3) & (
+            np.abs(np.linalg.norm(tilt_direction, axis=1) - 1.0) <= _SAME
+        )
         return int((~(same | ((tilt <= FLAT) & across))).sum())
 
     def weights(self) -> Finding:
@@ -135,15 +141,15 @@ class Trials:
             for c, s in sorted({*zip(cutter[some].tolist(), setup[some].tolist(), strict=True)}):
                 mine = np.flatnonzero((cutter[some] == c) & (setup[some] == s))
                 pairs, which = np.tile(rows, len(mine)), np.repeat(mine, len(rows))
-                found = self.bench.serves(s, self.bench.named(c), pairs, axis[some[which]], clock, surely=False)
-                late |= bool((found == OPEN).any())
-                np.add.at(carried, which[found == FREE], np.tile(weight, len(mine))[found == FREE])
+                serves = self.bench.serves(s, self.bench.named(c), pairs, axis[some[which]], clock, surely=False)
+                late |= bool((serves == OPEN).any())
+                np.add.at(carried, which[serves == FREE], np.tile(weight, len(mine))[serves == FREE])
             if late:
                 break
             done, most = done + len(some), max(most, int(carried.max()))
             self.tell(f"weights: {done} of {len(order)} candidates")
         total = int(weight.sum())
-        part = "" if done == len(order) else f" (checked {done} of {len(order)}, drawn by seed 0)"
+        part = "" if done == len(order) else f" (checked {done} of {len(order)}, taken by seed 0)"
         proof = "" if few["proof"] == "weights" else f" ({few['proof']}, which is not checked)"
         words = (f"The weights of {len(rows)} samples sum up to {total / _UNIT:.6f}; no candidate{part} carries more than "
                  f"{most / _UNIT:.6f}: at least {-(-total // _UNIT)} orientations are needed, the plan says {few['at_least']}"
@@ -171,16 +177,16 @@ class Trials:
         verdict = self._chosen(chosen, rows, clock, surely=True)
         table, doubt = verdict == FREE, (verdict == OPEN).any(axis=0)
         served = table.any(axis=0)
-        lost, open_ = int((~served & ~doubt).sum()), int((~served & doubt).sum())
+        not_served, open_ = int((~served & ~doubt).sum()), int((~served & doubt).sum())
         if not open_:
             # A search may take samples for not served that are by a hair.
-            strictly = verdict if few["alone"] == lost else self._chosen(chosen, rows, clock, surely=False)
-            entry["fewest"]["alone"] = Between(lost, int((strictly != FREE).all(axis=0).sum()))
+            strictly = verdict if few["alone"] == not_served else self._chosen(chosen, rows, clock, surely=False)
+            entry["fewest"]["alone"] = Between(not_served, int((strictly != FREE).all(axis=0).sum()))
             self._steps(entry, table, self.reckoned.area[rows])
         late = f"; {open_} were not looked at" if open_ else ""
         words = (f"The {len(chosen)} chosen candidates serve {int(served.sum())} of the {len(rows)} samples that are reached"
-                 f"{late}; {lost} are left, and the plan says that {few['alone']} need simultaneous motion.")  # fmt: skip
-        yield Finding(lost <= few["alone"], words)
+                 f"{late}; {not_served} are left, and the plan says that {few['alone']} need simultaneous motion.")  # fmt: skip
+        yield Finding(not_served <= few["alone"], words)
 
     def _chosen(self, chosen: Rows, rows: Rows, clock: Clock, *, surely: bool) -> NDArray[np.int8]:
         """How each chosen candidate stands at samples: (chosen, m)."""
@@ -194,14 +200,14 @@ class Trials:
     def _steps(self, entry: dict[str, Any], table: NDArray[np.bool_], area: Floats) -> None:
         """Raise what each step of the curve must reach at least: what the chosen candidates do, the largest gain first."""
         written, steps = self.question.document["operations"]["curve"], entry["curve"]
-        left, have = area.copy(), 0.0
+        uncovered, have = area.copy(), 0.0
         whole = float(area[table.any(axis=0)].sum())
         if not len(steps) or len(written) != len(steps) or whole <= 0.0:
             return
         for step in steps:
-            gain = table @ left
+            gain = table @ uncovered
             have += float(gain.max())
-            left = left * ~table[int(gain.argmax())]
+            uncovered = uncovered * ~table[int(gain.argmax())]
             # A search may count a little less than stands free.
             least = written[-1]["share"] * have / whole * (1.0 - _DOUBT)
             step["share"] = Loose(max(step["share"].low, least), step["share"].high)
@@ -224,7 +230,7 @@ class Trials:
                     break
                 bad = np.where(alone[some], surely, ~perhaps & ~moving[some])
                 wrong, done = wrong + int(bad.sum()), done + len(some)
-            part = "" if done == len(rows) else f" of {len(rows)} (drawn by seed 0)"
+            part = "" if done == len(rows) else f" of {len(rows)} (taken by seed 0)"
             yield Finding(None if len(rows) and not done else wrong == 0,
                           f"The {plan['name']} plan: {done} samples{part} go with the only operation that serves them, or with "
                           f"one of several, as operations.npz says; {wrong} do not.")  # fmt: skip
@@ -233,22 +239,22 @@ class Trials:
         self, plan: dict[str, Any], fixed: list[int], label: NDArray[Any], rows: Rows, surely: bool, clock: Clock
     ) -> NDArray[np.bool_]:
         """At which samples (m,) another fixed operation than theirs stands free; `surely` as for `Bench.stands`."""
-        found = np.zeros(len(rows), bool)
+        served = np.zeros(len(rows), bool)
         for i in fixed:
             each = plan["operations"][i]
-            mine = np.flatnonzero((label[rows] != i) & ~found)
+            mine = np.flatnonzero((label[rows] != i) & ~served)
             axis, there = self._axes(each, rows[mine])
             verdict = self.bench.serves(
                 each["setup"], self.bench.tools[each["cutter"]], there, axis, clock, surely=surely
             )
-            found[mine[verdict == FREE]] = True
-        return found
+            served[mine[verdict == FREE]] = True
+        return served
 
     def clearances(self, entry: dict[str, Any]) -> None:
         """Put into the entry between what the least clearance of each operation must lie."""
         clock = self.clock("clearance")
         for k, plan in enumerate(self.plans):
-            label, lean = self.reckoned.array(k, "operation"), self.reckoned.array(k, "lean")
+            label, tilt_direction = self.reckoned.array(k, "operation"), self.reckoned.array(k, "lean")
             for i, each in enumerate(plan["operations"]):
                 claimed, tool = each["clearance_mm"], self.bench.tools[each["cutter"]]
                 self.tell(f"{plan['name']}: the clearance of {each['id']}")
@@ -261,10 +267,10 @@ class Trials:
                 if len(there) < len(rows) or clock.over or (claimed is None and doubtful):
                     continue
                 beyond = (claimed or 0.0) * (1.0 + _EDGE) + _CLEARANCE_STEP + self.question.tolerance
-                found = self.bench.clearance(each["setup"], tool, there, axis, lean[there], beyond, clock)
-                if found is None:
+                clearance = self.bench.clearance(each["setup"], tool, there, axis, tilt_direction[there], beyond, clock)
+                if clearance is None:
                     continue
-                true, part = found
+                true, part = clearance
                 share = _EDGE if part == "flutes" else _CLEARANCE_SHARE
                 least = (true - _CLEARANCE_STEP - self.question.tolerance) / (1.0 + share) if part else true
                 entry["plans"][k]["operations"][i]["clearance_mm"] = Between(

@@ -22,7 +22,7 @@ def begin(maps: bool) -> Callable[[str], None] | None:
     Parameters
     ----------
     maps : bool
-        Whether posture maps will be asked for.
+        Whether posture maps will be requested.
     """
     from plan_cutters.kernels.jit import at_hand
 

@@ -51,7 +51,7 @@ _many = heading("Many parts")
     ),
     codes=(
         *((code, what) for code, what in CODES if code != "130"),
-        ("130", "interrupted; parts that are done are kept"),
+        ("130", "interrupted; parts that are done are stored"),
     ),
 )
 @click.argument("sources", nargs=-1, required=True, metavar="SRC...", type=File("SRC"))
@@ -97,7 +97,7 @@ def command(request: BatchRequest) -> int:
     parts = _parts(request)
     if all(isinstance(part, Fault) for part in parts):
         for part in parts:
-            _told(part.row.error or "")  # type: ignore[union-attr]
+            _progress_line(part.row.error or "")  # type: ignore[union-attr]
         return max(part.row.code for part in parts)  # type: ignore[union-attr]
     memory = None if request.limit_memory is None else request.limit_memory * 1e9
     for word in ("timeout_part", "limit_memory", "read_timeout"):
@@ -132,7 +132,7 @@ def _all(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", request: 
 
     out.begin()  # what is wrong with it is said before any worker is started
     board = Board(request.quiet, len(parts))
-    code, found = FEASIBLE, Counter[str]()
+    code, totals = FEASIBLE, Counter[str]()
     try:
         count, share = cluster.workers_of(request.workers, terms.memory, request.jobs or 1)
         if request.cluster is None:
@@ -143,14 +143,16 @@ def _all(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", request: 
                       + (f"; dashboard {facts['dashboard']}" if facts["dashboard"] else ""))  # fmt: skip
             for row in run_batch(parts, client, out, terms, board=board, title=" ".join(request.sources)):
                 code = max(code, row.code)
-                found[outcome(row)] += 1
+                totals[outcome(row)] += 1
                 board.row(row)
     finally:
         board.close()
         out.end()
     if not request.quiet:
-        many = ", ".join(f"{found[each]} {word}" for each, word in reversed(OUTCOMES.items()) if found[each])
-        terminal.show(f"{counted(found.total(), 'part')}: {many}.", f"Look at them in a browser: {out.root_url}/{PAGE}")
+        many = ", ".join(f"{totals[each]} {word}" for each, word in reversed(OUTCOMES.items()) if totals[each])
+        terminal.show(
+            f"{counted(totals.total(), 'part')}: {many}.", f"Look at them in a browser: {out.root_url}/{PAGE}"
+        )
         terminal.all_shown()
     return code
 
@@ -166,7 +168,7 @@ def _foreseen(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms") -> i
     return code
 
 
-def _told(line: str) -> None:
+def _progress_line(line: str) -> None:
     terminal.error(f"{_SELF}: {line}")
 
 
@@ -180,24 +182,24 @@ def _parts(request: BatchRequest) -> "list[Job | Fault]":
     own = {p.opts[0][2:]: p for p in command.params if getattr(p, "group", "") in _OF_A_PART and p.expose_value}
     settled = functools.cache(lambda key: _settings(replace(request, **dict(key))))
     settled(())
-    found: list[Job | Fault] = []
+    jobs: list[Job | Fault] = []
     for each in sources(request.sources, request.out, lambda file: manifest(file, sorted(own))):
         if isinstance(each, Fault):
-            found.append(each)
+            jobs.append(each)
             continue
         try:
-            found.append(Job(each.name, each.file, settled(_values(each, own))))
+            jobs.append(Job(each.name, each.file, settled(_values(each, own))))
         except (PlanError, click.BadParameter) as error:
             why = error.format_message() if isinstance(error, click.BadParameter) else str(error)
-            found.append(Fault(each.name, each.file, f"{each.place}: {why}"))
-    return found
+            jobs.append(Fault(each.name, each.file, f"{each.place}: {why}"))
+    return jobs
 
 
 def _values(source: "Source", own: Mapping[str, click.Parameter]) -> tuple[tuple[str, Any], ...]:
     """The options of a part as the command line would have them: each takes the place of the one for all parts."""
     from plan_cutters.errors import OptionError
 
-    found = []
+    values = []
     near = os.path.dirname(source.place) if "://" not in source.place else ""
     for word, value in source.options.items():
         option = own[word.replace("_", "-")]
@@ -210,13 +212,13 @@ def _values(source: "Source", own: Mapping[str, click.Parameter]) -> tuple[tuple
             raise OptionError(f"{word} takes one value, not a list")
         else:
             files = isinstance(option.type, Words) and option.type.files
-            words = [_beside(str(each), near) if files or word == "setup" else str(each) for each in several]
+            words = [_relative_to(str(each), near) if files or word == "setup" else str(each) for each in several]
             taken = option.type_cast_value(click.Context(command), words if option.multiple else words[0])
-        found.append((str(option.name), taken))
-    return tuple(found)
+        values.append((str(option.name), taken))
+    return tuple(values)
 
 
-def _beside(word: str, folder: str) -> str:
+def _relative_to(word: str, folder: str) -> str:
     """A file's name as the manifest has it, which is beside the manifest: the same from here."""
     file, at, rest = word.partition("@")
     there = os.path.join(folder, file)

@@ -61,10 +61,10 @@ class Row:
     def breaks(self, rule: str) -> bool:
         """Whether the part fails by a rule."""
         at = RULES.index(rule)
-        lost = self.difference is not None and self.difference.lost
+        worse = self.difference is not None and self.difference.lost
         doubtful = bool(self.unread) or (self.difference is not None and not self.difference.comparable)
         return (
-            (at >= 1 and (lost or bool(self.failed))) or (at >= 2 and bool(self.unreachable)) or (at >= 3 and doubtful)
+            (at >= 1 and (worse or bool(self.failed))) or (at >= 2 and bool(self.unreachable)) or (at >= 3 and doubtful)
         )
 
 
@@ -173,8 +173,8 @@ def command(request: ChangedRequest) -> int:
     require_temporary()
     began, head, parts = changed(base, None if request.staged else request.head)
     out = Path(request.out)
-    with tempfile.TemporaryDirectory() as aside:
-        cache = Path(request.cache or aside).absolute()
+    with tempfile.TemporaryDirectory() as folder:
+        cache = Path(request.cache or folder).absolute()
         of_part = PartRequest.of(request.plan_options) if parts else None
         rows = [_compared(part, began, head, of_part, cache, out) for part in parts]
     links: dict[Path, str] = {}
@@ -184,8 +184,8 @@ def command(request: ChangedRequest) -> int:
         except PlanError as fault:
             error(f"{_SELF}: pictures are in {out} alone: {fault}")
     failing = [row for row in rows if row.breaks(request.fail_on)]
-    told, job = (_summary(rows, request.fail_on, failing, links, began, at) for at in ("", _artifacts()))
-    _hand_on(rows, out, told, job, failing)
+    text, job = (_summary(rows, request.fail_on, failing, links, began, at) for at in ("", _artifacts()))
+    _hand_on(rows, out, text, job, failing)
     for row in rows:
         for line in filter(None, (row.failed, row.unread)):
             error(f"{_SELF}: {line}")
@@ -204,7 +204,7 @@ def _compared(part: Changed, began: str, head: str, request: PartRequest | None,
     from plan_cutters.comparison.states import unreachable
     from plan_cutters.plan_file.load import PLAN, load_plan
 
-    found: dict[str, Path] = {}
+    pages: dict[str, Path] = {}
     why: dict[str, str] = {}
     known: dict[Content, Path] = {}
     for side, at, path in (("after", head, part.new), ("before", began, part.old)):
@@ -214,31 +214,31 @@ def _compared(part: Changed, began: str, head: str, request: PartRequest | None,
         try:
             data = all_of(path, partial(content, at))
             # A part that was only renamed is planned once.
-            known[data] = kept = known.get(data) or _planned(data, path, request, cache)
-            found[side] = out / side / part.name
-            shutil.rmtree(found[side], ignore_errors=True)
-            shutil.copytree(kept, found[side], ignore=shutil.ignore_patterns(MARKER))
+            known[data] = plan = known.get(data) or _planned(data, path, request, cache)
+            pages[side] = out / side / part.name
+            shutil.rmtree(pages[side], ignore_errors=True)
+            shutil.copytree(plan, pages[side], ignore=shutil.ignore_patterns(MARKER))
         except PlanError as fault:
             why[side] = str(fault) if fault.file == path else f"{path}: {fault}"
-    plans = {side: load_plan(folder / PLAN) for side, folder in found.items()}
+    plans = {side: load_plan(folder / PLAN) for side, folder in pages.items()}
     difference = compare(plans["before"], plans["after"], name=part.name) if len(plans) == 2 else None
-    beside = Path("compare", part.name, PAGE)
-    shutil.rmtree((out / beside).parent, ignore_errors=True)
+    side_page = Path("compare", part.name, PAGE)
+    shutil.rmtree((out / side_page).parent, ignore_errors=True)
     if difference and not difference.same:
         names = {"before": f"as it was, {began[:12]}", "after": "as it is"}
-        (out / beside).parent.mkdir(parents=True)
-        with whole(out / beside) as aside:
-            sides = [Side(names[side], plans[side], picture_of(found[side] / PLAN, plans[side])) for side in names]
-            aside.write_bytes(page(difference, *sides))
+        (out / side_page).parent.mkdir(parents=True)
+        with whole(out / side_page) as temporary:
+            sides = [Side(names[side], plans[side], picture_of(pages[side] / PLAN, plans[side])) for side in names]
+            temporary.write_bytes(page(difference, *sides))
     return Row(
-        part, found.get("before"), found.get("after"), difference=difference,
-        beside=beside if (out / beside).is_file() else None,
+        part, pages.get("before"), pages.get("after"), difference=difference,
+        beside=side_page if (out / side_page).is_file() else None,
         unreachable=tuple(unreachable(plans["after"])) if "after" in plans else (),
         failed=why.get("after", ""), unread=why.get("before", ""),
     )  # fmt: skip
 
 
-def _planned(found: "Content", path: str, request: PartRequest, cache: Path) -> Path:
+def _planned(content: "Content", path: str, request: PartRequest, cache: Path) -> Path:
     """The folder of a plan of a part in the cache, planned unless it is there.
 
     Raises
@@ -252,16 +252,16 @@ def _planned(found: "Content", path: str, request: PartRequest, cache: Path) -> 
     from plan_cutters.plan_file.load import load_plan
 
     name = Path(path).name
-    key = keys.key(found.key, keys.settings_key(request.settings, request.handed))
+    key = keys.key(content.key, keys.settings_key(request.settings, request.handed))
     # The part's name stands in its plan.
     folder = keys.key(key, keys.checksum(name.encode("utf-8", "surrogateescape")))
     store = Store(str(cache))
-    if work.kept(store, folder, key, name, path) is not None:
+    if work.cached(store, folder, key, name, path) is not None:
         return cache / folder
     cache.mkdir(parents=True, exist_ok=True)
     task = work.Task(name, path, None, None, request.handed, request.words, key, None, "", False, None, {})
     with tempfile.TemporaryDirectory(dir=cache, prefix=".") as place:
-        code, line = work.planned(task, found, Path(place))
+        code, line = work.planned(task, content, Path(place))
         made = work.files_of(Path(place) / "out")
         if code not in _PLANNED or work.PLAN not in made:
             raise PlanError(line or f"ended with exit code {code} and no plan")
@@ -293,15 +293,15 @@ def _summary(
     """The summary: with links to the files beside it, or to the artifacts of the job, which have them."""
     if not rows:
         return f"## plan-cutters\n\nNo part changed since {began[:12]}.\n"
-    from plan_cutters.comparison.markdown import beside, escaped, section, table
+    from plan_cutters.comparison.markdown import escaped, page_link, section, table
     from plan_cutters.plan_file.numbers import count, listed
 
     lines = ["## plan-cutters", ""]
     many = count(len(rows), "part")
-    said = (
+    text = (
         f"{len(failing)} of {many} fail{'s' if len(failing) == 1 else ''}" if failing else f"{many} changed, none fails"
     )
-    lines += [f"**{said}** by the rule `{rule}`, since {began[:12]}."]
+    lines += [f"**{text}** by the rule `{rule}`, since {began[:12]}."]
     lines += table(
         ("", "part", "how", "result", "reached before", "reached now"), (_line(row, row in failing) for row in rows)
     )
@@ -309,7 +309,7 @@ def _summary(
         if row.difference is not None and not row.difference.same:
             lines += ["", *section(row.difference)]
         if row.beside is not None:
-            lines += ["", beside(row.beside.as_posix(), artifacts)]
+            lines += ["", page_link(row.beside.as_posix(), artifacts)]
         if row.unreachable:
             lines += [
                 "",
@@ -322,20 +322,20 @@ def _summary(
     if not links:
         lines += [
             "",
-            f"Pictures and review pages are {'in the artifact of this job' if artifacts else 'beside this summary'}.",
+            f"Pictures and review pages are {'in the artifact of this job' if artifacts else 'in the folder of this summary'}.",
         ]
     return "\n".join(lines) + "\n"
 
 
 def _line(row: Row, fails: bool) -> tuple[str, ...]:
-    from plan_cutters.comparison.told import mark_of
+    from plan_cutters.comparison.wording import mark_of
 
-    said = row.failed or row.unread or (mark_of(row.difference) if row.difference else "")
+    text = row.failed or row.unread or (mark_of(row.difference) if row.difference else "")
     return (
         "fails" if fails else "",
         row.part.name,
         row.part.how,
-        said,
+        text,
         *(_bar(folder) for folder in (row.before, row.after)),
     )
 
@@ -367,8 +367,8 @@ def _hand_on(rows: Sequence[Row], out: Path, text: str, job: str, failing: Seque
         "failing": len(failing),
         "folder": out,
     }
-    told = "".join(f"{name}={value}\n" for name, value in outputs.items())
-    for variable, what in (("GITHUB_STEP_SUMMARY", job), ("GITHUB_OUTPUT", told)):
+    assignments = "".join(f"{name}={value}\n" for name, value in outputs.items())
+    for variable, what in (("GITHUB_STEP_SUMMARY", job), ("GITHUB_OUTPUT", assignments)):
         if os.environ.get(variable):
             with open(os.environ[variable], "a", encoding="utf-8") as file:
                 file.write(what)

@@ -99,7 +99,7 @@ def question_of(
         for s, (axis, place) in enumerate(zip(axes, places, strict=True))
     )  # fmt: skip
     machine, cutters = options.machine, {cutter.id: cutter for cutter in options.judged}
-    kept = _fits(part, options, document, [*cutters], setups)
+    tolerance = _fits(part, options, document, [*cutters], setups)
     turning, free = machine.rotary, (-math.inf, math.inf)
     # A machine without rotary axes is set by the azimuth about the setup axis and the tilt from it.
     moved = MachineAxes(
@@ -112,7 +112,7 @@ def question_of(
     sign = orient(part, axes[0], options.flip).sign
     return Question(
         part, moved, {name: _sizes(cutter) for name, cutter in cutters.items()}, setups,
-        ignored_faces(part, ignored_words(part, options.ignore)), sign, kept, document, arrays["operations.npz"],
+        ignored_faces(part, ignored_words(part, options.ignore)), sign, tolerance, document, arrays["operations.npz"],
         arrays["samples.npz"],
     )  # fmt: skip
 
@@ -140,12 +140,12 @@ def _fits(
     """Refuse a plan of another part or of other options; the tolerance that it keeps, mm."""
     from plan_cutters.errors import OptionError
 
-    asked = document["effective"]
-    places = (asked["placement"], *(asked["other_placements"] or [None] * len(asked["other_setups"])))
+    effective = document["effective"]
+    places = (effective["placement"], *(effective["other_placements"] or [None] * len(effective["other_setups"])))
     # A plan may keep a tolerance that is coarser than the one asked for, as its triangles allow.
-    kept, wanted = float(asked["tolerance_mm"]), options.tolerance
-    if kept > wanted and abs(kept - asked["chord_error_mm"] / _CHORD_SHARE) <= 1e-9 * kept:
-        wanted = kept
+    tolerance, wanted = float(effective["tolerance_mm"]), options.tolerance
+    if tolerance > wanted and abs(tolerance - effective["chord_error_mm"] / _CHORD_SHARE) <= 1e-9 * tolerance:
+        wanted = tolerance
     pairs = [
         ("part", document["part"].get("sha256"), part.sha256),
         (
@@ -153,12 +153,12 @@ def _fits(
             [(each["file"], each["sha256"]) for each in document["part"].get("references", [])],
             list(part.references),
         ),
-        ("cutters (--cutter, --holder)", sorted(asked["cutters"]), sorted(cutters)),
+        ("cutters (--cutter, --holder)", sorted(effective["cutters"]), sorted(cutters)),
         ("list of cutters", sorted(each["id"] for each in document["cutters"]), sorted(cutters)),
-        ("machine (--machine)", asked["machine"], options.machine.name),
+        ("machine (--machine)", effective["machine"], options.machine.name),
         (
             "setups (--setup)",
-            [round(x, 9) for axis in (asked["setup"], *asked["other_setups"]) for x in axis],
+            [round(x, 9) for axis in (effective["setup"], *effective["other_setups"]) for x in axis],
             [round(x, 9) for setup in setups for x in setup.z],
         ),
         # Not their places: where a fixture stands shows in what it serves.
@@ -178,15 +178,15 @@ def _fits(
                 for place in (options.placement, *(options.other_placements or (None,) * len(options.other_setups)))
             ],
         ),
-        ("tolerance (--tolerance)", kept, wanted),
+        ("tolerance (--tolerance)", tolerance, wanted),
         (
             "tilts (--tilt)",
-            [round(x, 6) for x in asked["tilt_deg"]],
+            [round(x, 6) for x in effective["tilt_deg"]],
             [round(math.degrees(x), 6) for x in options.postures.tilt],
         ),
         (
             "rotations (--rotation)",
-            [round(x, 6) for x in asked["rotation_deg"]],
+            [round(x, 6) for x in effective["rotation_deg"]],
             [round(math.degrees(x), 6) for x in options.postures.rotation],
         ),
     ]
@@ -195,7 +195,7 @@ def _fits(
             raise OptionError(
                 f"the plan of operations does not fit: {what}: {_short(was)} in the plan, {_short(now)} here"
             )
-    return kept
+    return tolerance
 
 
 def _short(value: Any) -> str:
@@ -221,7 +221,7 @@ def _read(file: str) -> tuple[dict[str, Any], dict[str, dict[str, Any]], dict[st
     for name, noun in _FILES.items():
         path = Path(file).parent / name
         if not path.exists():
-            raise OptionError(f"{name} must stand beside it: copy all files of the plan", file=file)
+            raise OptionError(f"{name} must be in its folder: copy all files of the plan", file=file)
         with Archive(path, noun, OptionError) as archive:
             arrays[name] = {each: archive.read(each) for each in archive.headers}
         if name in stated:

@@ -57,7 +57,7 @@ def command(request: PlanRequest) -> int:
     reason. The plan, models coloured by verdict and the samples are written into a folder.
     """
     from plan_cutters.command.one_part import one_part
-    from plan_cutters.command.retry import set_aside
+    from plan_cutters.command.retry import excluded_faces
     from plan_cutters.command.validation import check, folders
 
     parts = request.parts
@@ -75,13 +75,13 @@ def command(request: PlanRequest) -> int:
     codes = []
     outs = folders(request)
     since: float | None = began()
-    done, aside = set_aside()
+    done, excluded = excluded_faces()
     for i, part in enumerate(parts):
         if i < done:
             continue
         out = outs[i] if outs else None
-        code, line = guarded(partial(one_part, part, out, requested, request, since, aside), request.debug)
-        since, aside = None, {}
+        code, line = guarded(partial(one_part, part, out, requested, request, since, excluded), request.debug)
+        since, excluded = None, {}
         codes.append(code)
         report("done", str(code))
         if line:
@@ -157,7 +157,7 @@ def _watched(words: list[str], name: str) -> int:
     memory = default_memory() if request.memory is None else int(request.memory * 1e9)
     display.stage("start")
     try:
-        found = supervised(
+        code = supervised(
             words, parts=request.parts, read_timeout=request.read_timeout, memory=memory, display=display,
             timeout=math.inf if request.timeout is None else request.timeout, since=began(),
         )  # fmt: skip
@@ -165,8 +165,8 @@ def _watched(words: list[str], name: str) -> int:
         from plan_cutters.command.partial_plan import without_models
 
         display.clear()
-        found = without_models(stopped, request)
+        code = without_models(stopped, request)
     finally:
         display.clear()
     terminal.all_shown()
-    return found
+    return code

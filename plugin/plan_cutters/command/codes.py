@@ -87,9 +87,9 @@ def faults(names: Sequence[str], work: Callable[[str], None], debug: bool) -> li
         work(name)
         return FEASIBLE, ""
 
-    found = [guarded(partial(one, name), debug) for name in names]
+    codes = [guarded(partial(one, name), debug) for name in names]
     command = click.get_current_context().info_name
-    return [line.replace("plan-cutters:", f"{command}:", 1) for code, line in found if code]
+    return [line.replace("plan-cutters:", f"{command}:", 1) for code, line in codes if code]
 
 
 def invoked(command: click.Command, name: str, words: Sequence[str]) -> int:
@@ -130,7 +130,7 @@ def ended(name: str, words: Sequence[str], work: Callable[[], int]) -> NoReturn:
 
     terminal.keep_streams()
     terminal.warn_in_lines()
-    code, line = guarded(lambda: terminal.handing_out(all_of_it), "--debug" in words)
+    code, line = guarded(lambda: terminal.writing_out(all_of_it), "--debug" in words)
     if line:
         terminal.error(line.replace("plan-cutters:", f"{name}:", 1))
     # All is said: an interrupt has nothing left to end.

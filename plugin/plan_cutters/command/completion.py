@@ -33,13 +33,13 @@ class Subcommands(click.Group):
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
         if incomplete.startswith("-"):
             first = module_of("plan-cutters").command
-            found: list[CompletionItem] = first.shell_complete(click.Context(first, resilient_parsing=True), incomplete)
-            return found
+            items: list[CompletionItem] = first.shell_complete(click.Context(first, resilient_parsing=True), incomplete)
+            return items
         return [CompletionItem(name) for name in SUBCOMMANDS if name.startswith(incomplete)] or [FILE]
 
 
 def main(name: str) -> NoReturn:
     """Answer the shell that asks about the program of this name, as the environment says."""
     variable = f"_{name.replace('-', '_').upper()}_COMPLETE"
-    asked = Subcommands() if name == "plan-cutters" else module_of(name).command
-    ended(name, [], lambda: shell_complete(asked, {}, name, variable, os.environ[variable]))
+    main_command = Subcommands() if name == "plan-cutters" else module_of(name).command
+    ended(name, [], lambda: shell_complete(main_command, {}, name, variable, os.environ[variable]))

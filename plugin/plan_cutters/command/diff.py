@@ -28,10 +28,10 @@ _COLOURS = {"lost": "bold red", "won": "green", "lost and won": "bold red"}
 _output, _rules = heading("Output"), heading("Comparison")
 
 
-def asked_words() -> Sequence[str]:
-    from plan_cutters.comparison.model import ASKED
+def requested_words() -> Sequence[str]:
+    from plan_cutters.comparison.model import REQUESTED
 
-    return ASKED
+    return REQUESTED
 
 
 @click.command(
@@ -68,7 +68,7 @@ def asked_words() -> Sequence[str]:
 )
 @_rules(
     "--despite",
-    type=Words("LIST", asked_words, listed=True),
+    type=Words("LIST", requested_words, listed=True),
     default="",
     help="Compare although these differ: unit, faces, sampling, postures, tolerance, clearance, machine, setup, fixtures.",
 )
@@ -87,32 +87,32 @@ def command(request: DiffRequest) -> int:
         raise OptionError("--json and --markdown both write standard output: give one of them")
     despite = [word.strip() for word in request.despite.split(",") if word.strip()]
     for word in despite:
-        if word not in asked_words():
-            raise OptionError(f"--despite {word!r} is not known; give some of {','.join(asked_words())}")
+        if word not in requested_words():
+            raise OptionError(f"--despite {word!r} is not known; give some of {','.join(requested_words())}")
     old, new = Path(request.old), Path(request.new)
-    found = compare_folders(old, new, slack=request.slack / 100.0, despite=despite)
-    made = _pages(old, new, found, Path(request.out)) if request.out else {}
+    comparison = compare_folders(old, new, slack=request.slack / 100.0, despite=despite)
+    made = _pages(old, new, comparison, Path(request.out)) if request.out else {}
     if request.as_json:
-        hand_out(found.model_dump_json(indent=2) + "\n")
+        hand_out(comparison.model_dump_json(indent=2) + "\n")
     elif request.as_markdown:
         from plan_cutters.comparison.markdown import markdown
 
-        hand_out(markdown(found, {name: path.as_posix() for name, path in made.items()}))
+        hand_out(markdown(comparison, {name: path.as_posix() for name, path in made.items()}))
     else:
-        from plan_cutters.comparison.told import apart, verdict
+        from plan_cutters.comparison.wording import apart, verdict
 
         with paper(120) as console:
-            for each in found.plans:
+            for each in comparison.plans:
                 _show(each, console)
-            beside = [f"Side by side: {path}" for path in made.values()]
-            for line in (*apart(found), *beside, verdict(found)):
+            lines = [f"Side by side: {path}" for path in made.values()]
+            for line in (*apart(comparison), *lines, verdict(comparison)):
                 console.print(clean(line), soft_wrap=True)
-    for line in found.unread if request.as_json or request.as_markdown else ():
+    for line in comparison.unread if request.as_json or request.as_markdown else ():
         error(f"{_SELF}: {line}")
-    return NOT_COMPARABLE if not found.comparable else LOST if found.lost else 0
+    return NOT_COMPARABLE if not comparison.comparable else LOST if comparison.lost else 0
 
 
-def _pages(old: Path, new: Path, found: "Comparison", out: Path) -> dict[str, Path]:
+def _pages(old: Path, new: Path, comparison: "Comparison", out: Path) -> dict[str, Path]:
     """Write the pages of the pairs that differ; where each is, by the name of its pair.
 
     Raises
@@ -126,7 +126,7 @@ def _pages(old: Path, new: Path, found: "Comparison", out: Path) -> dict[str, Pa
     from plan_cutters.plan_file.load import PLAN
 
     made = {}
-    for name, page in pages(old, new, found):
+    for name, page in pages(old, new, comparison):
         path = out / name / PAGE
         if (path.parent / PLAN).exists():
             raise PlanError(
@@ -140,30 +140,30 @@ def _pages(old: Path, new: Path, found: "Comparison", out: Path) -> dict[str, Pa
             path.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise PlanError(f"cannot be written: {error.strerror}", file=str(path)) from None
-        with whole(path) as aside:
-            aside.write_bytes(page)
+        with whole(path) as temporary:
+            temporary.write_bytes(page)
         made[name] = path
     return made
 
 
-def _show(found: "PlanDifference", console: "Console") -> None:
+def _show(difference: "PlanDifference", console: "Console") -> None:
     from rich.table import Table
     from rich.text import Text
 
-    from plan_cutters.comparison.told import CUTTERS, FACES, change, choice, cutter_rows, face_rows, headline, known
+    from plan_cutters.comparison.wording import CUTTERS, FACES, change, choice, cutter_rows, face_rows, headline, known
 
     def say(text: str, style: str = "") -> None:
         console.print(Text(clean(text), style), soft_wrap=True)
 
-    say(headline(found), "bold")
-    for line in found.why_not:
+    say(headline(difference), "bold")
+    for line in difference.why_not:
         say(f"  not comparable: {line}", "bold yellow")
-    for line in filter(None, (choice(found), known(found))):
+    for line in filter(None, (choice(difference), known(difference))):
         say(f"  {line}")
-    for each in found.changes:
+    for each in difference.changes:
         if not each.hinders:
             say(f"  {change(each)}")
-    for names, rows in ((FACES, list(face_rows(found))), (CUTTERS, list(cutter_rows(found)))):
+    for names, rows in ((FACES, list(face_rows(difference))), (CUTTERS, list(cutter_rows(difference)))):
         if rows:
             table = Table(*names)
             for row in rows:

@@ -68,25 +68,25 @@ def command(request: MachinesRequest) -> int:
         raise OptionError("--to-toml writes one machine: give one")
     axis = None if request.angles is None else _vector(request.angles)
     turned = None if request.axis is None else _angles(request.axis)
-    found: list[dict[str, Any]] = []
+    entries: list[dict[str, Any]] = []
     read: list[Machine] = []
 
     def one(name: str) -> None:
         machine, form = source_of(name)
-        found.append(_facts(name, form, machine, axis, turned))
+        entries.append(_facts(name, form, machine, axis, turned))
         read.append(machine)
 
     lines = faults(machines or tuple(builtin_machines()), one, request.debug)
     if read and not lines and request.to_toml is not None:
         write(Path(request.to_toml), import_module("plan_cutters.machines").to_toml(read[0]))
     if request.as_json:
-        said = {"format": "plan-cutters-machines", "format_version": 1, "machines": found}
-        hand_out(json.dumps(said, indent=2, ensure_ascii=False) + "\n")
+        document = {"format": "plan-cutters-machines", "format_version": 1, "machines": entries}
+        hand_out(json.dumps(document, indent=2, ensure_ascii=False) + "\n")
     else:
         with paper(200) as console:
             if not machines:
                 _list(read, console)
-            for facts, machine in zip(found, read, strict=True) if machines else ():
+            for facts, machine in zip(entries, read, strict=True) if machines else ():
                 _explain(facts, machine, console)
     for line in lines:
         error(line)
@@ -109,17 +109,17 @@ def _angles(text: str) -> dict[str, float]:
     """Angles, rad, by the names of the axes."""
     from plan_cutters.errors import OptionError
 
-    found: dict[str, float] = {}
+    angles: dict[str, float] = {}
     for word in text.split(","):
         name, _, value = word.partition("=")
         try:
             degrees = float(value)
         except ValueError:
             degrees = math.nan
-        if not name.strip() or not math.isfinite(degrees) or name.strip() in found:
+        if not name.strip() or not math.isfinite(degrees) or name.strip() in angles:
             raise OptionError(f"--axis {text!r}: angles are given in degrees, each axis once, as A=30,C=10")
-        found[name.strip()] = math.radians(degrees)
-    return found
+        angles[name.strip()] = math.radians(degrees)
+    return angles
 
 
 def _facts(
@@ -133,7 +133,7 @@ def _facts(
 
     held, near = share(machine)
     cone = singular(machine)
-    found: dict[str, Any] = {
+    facts: dict[str, Any] = {
         "given": name,
         "format": form or "built in",
         "machine": plain(machine),
@@ -142,7 +142,7 @@ def _facts(
         "singular_share": near,
     }
     if axis is not None:
-        found["angles"] = {
+        facts["angles"] = {
             "tool_axis": list(axis),
             "solutions": [
                 {"deg": {key: math.degrees(angle) for key, angle in each.angles.items()}, "taken": each.taken}
@@ -151,12 +151,12 @@ def _facts(
         }
     if turned is not None:
         held_axis, beyond = tool_axis(machine, turned)
-        found["axis"] = {
+        facts["axis"] = {
             "deg": {key: math.degrees(angle) for key, angle in turned.items()},
             "tool_axis": [float(value) for value in held_axis],
             "beyond_limits": beyond,
         }
-    return found
+    return facts
 
 
 def _list(machines: "Sequence[Machine]", console: "Console") -> None:
@@ -216,19 +216,19 @@ def _explain(facts: dict[str, Any], machine: "Machine", console: "Console") -> N
     if "angles" in facts:
         _solutions(facts["angles"], say)
     if "axis" in facts:
-        told = facts["axis"]
-        at = ", ".join(f"{name} {exact_angle(angle)}" for name, angle in told["deg"].items())
-        beyond = f"; beyond the limits: {', '.join(told['beyond_limits'])}" if told["beyond_limits"] else ""
-        say(f"  At {at} the tool axis is ({', '.join(f'{value:.9g}' for value in told['tool_axis'])}){beyond}.")
+        axis_text = facts["axis"]
+        at = ", ".join(f"{name} {exact_angle(angle)}" for name, angle in axis_text["deg"].items())
+        beyond = f"; beyond the limits: {', '.join(axis_text['beyond_limits'])}" if axis_text["beyond_limits"] else ""
+        say(f"  At {at} the tool axis is ({', '.join(f'{value:.9g}' for value in axis_text['tool_axis'])}){beyond}.")
 
 
-def _solutions(told: dict[str, Any], say: Any) -> None:
-    axis = f"({', '.join(f'{value:g}' for value in told['tool_axis'])})"
-    if not told["solutions"]:
+def _solutions(axis_facts: dict[str, Any], say: Any) -> None:
+    axis = f"({', '.join(f'{value:g}' for value in axis_facts['tool_axis'])})"
+    if not axis_facts["solutions"]:
         say(f"  No position within the limits holds the tool axis {axis}.")
-    for each in told["solutions"]:
+    for each in axis_facts["solutions"]:
         angles = ", ".join(f"{name} {exact_angle(angle)}" for name, angle in each["deg"].items())
-        taken = " (taken: the smaller turns)" if each["taken"] and len(told["solutions"]) > 1 else ""
+        taken = " (taken: the smaller turns)" if each["taken"] and len(axis_facts["solutions"]) > 1 else ""
         say(f"  The tool axis {axis} is held{f' at {angles}' if angles else ''}{taken}.")
 
 

@@ -63,7 +63,7 @@ _point = heading("Point")
     type=float,
     default=1.0,
     metavar="MM",
-    help="How far the point may be from the part: the nearest point of a face is taken, and said.  [default: 1]",
+    help="How far the point may be from the part: the nearest point of a face is taken, and reported.  [default: 1]",
 )
 @options(
     "holder", "machine", "fixture", "ignore", "flip", "unit", "allowance", "holder_clearance", "tilt", "rotation",
@@ -127,21 +127,21 @@ def command(request: MapRequest) -> int:
             f"that, or --within {math.ceil(off)}",
             file=part,
         )
-    found = posture_map(
+    result = posture_map(
         scene, point=foot.tolist(), cutter=cutter, rotations=options.postures.rotations, tilt=options.tilt, machine=machine,
         tolerance=request.tolerance, x=None if placement is None else placement.x,
     )  # fmt: skip
     face = int(locate(scene.part, scene.orientation, foot.tolist(), ignore=scene.ignored).face[0])
-    about = _about(found, f"F{face}", off, cutter, request)
-    _draw(found, options.tilt, about, outs)
+    about = _about(result, f"F{face}", off, cutter, request)
+    _draw(result, options.tilt, about, outs)
     if request.json_out == "-":
-        hand_out(json.dumps(_facts(found, f"F{face}", off, cutter, request), indent=2) + "\n")
+        hand_out(json.dumps(_facts(result, f"F{face}", off, cutter, request), indent=2) + "\n")
     elif not request.quiet:
         with paper(80) as console:
-            _table(found, about, outs, console)
-    if any(len(each) for each in found.free) and not found.missing:
+            _table(result, about, outs, console)
+    if any(len(each) for each in result.free) and not result.missing:
         return _FREE
-    return _UNDECIDED if found.missing or any(len(each) for each in found.undecided) else _NONE
+    return _UNDECIDED if result.missing or any(len(each) for each in result.undecided) else _NONE
 
 
 def _point_of(text: str) -> tuple[float, float, float]:
@@ -173,7 +173,7 @@ def _options(request: MapRequest) -> "Options":
     else:
         tools = read_tools((request.cutter,), (), request.holder)
         cutters = tools.cutters
-    # A map may be asked for with a smaller one, and with none.
+    # A map may be requested with a smaller one, and with none.
     tolerance = max(request.tolerance, LEAST_TOLERANCE)
     return Options(**options | {"cutters": cutters, "holder": tools.holder, "setup": setup, "tolerance": tolerance})
 
@@ -182,34 +182,34 @@ def _text(values: Iterable[float]) -> str:
     return ", ".join(f"{x + 0.0:.6g}" for x in values)
 
 
-def _about(found: "PostureMap", face: str, off: float, cutter: "Cutter", request: MapRequest) -> list[str]:
+def _about(result: "PostureMap", face: str, off: float, cutter: "Cutter", request: MapRequest) -> list[str]:
     """Describe the map line by line: its contact, cutter and search; the first line is its title."""
     from plan_cutters.domain.spec import notation, parted
     from plan_cutters.plan_file.numbers import angle, capital, mm
     from plan_cutters.plan_file.words.names import called
     from plan_cutters.report.drawing.sheet import printable
 
-    curvature = ", ".join(f"{x + 0.0:.4g}" for x in found.curvature)
-    apart = "one rotation: nothing is said of others"
-    if len(found.rotations) > 1:
-        step = math.degrees(found.rotations[1] - found.rotations[0])
+    curvature = ", ".join(f"{x + 0.0:.4g}" for x in result.curvature)
+    apart = "one rotation: others are not judged"
+    if len(result.rotations) > 1:
+        step = math.degrees(result.rotations[1] - result.rotations[0])
         apart = f"rotations {angle(step)} apart: nothing is said between them"
-    proved = f"gouge tolerance {mm(found.tolerance)}" if found.tolerance else "nominal, not certified"
+    proved = f"gouge tolerance {mm(result.tolerance)}" if result.tolerance else "nominal, not certified"
     held = f", {cutter.holder.called(notation(cutter.name))}" if cutter.holder else ""
     title = f"{capital(called(cutter))}{held} ({parted(cutter.typed)[0]})"
-    moved = f"; the point asked for is {mm(off)} off" if off > 1e-3 else ""
+    moved = f"; the requested point is {mm(off)} off" if off > 1e-3 else ""
     lines = [
-        f"{title} at ({_text(_round(found.point))}) on {face} of {printable(Path(request.part).name, 80)}",
-        f"Normal ({_text(_round(found.normal))}), rotation 0 towards ({_text(_round(found.direction_max))}); curvatures "
+        f"{title} at ({_text(_round(result.point))}) on {face} of {printable(Path(request.part).name, 80)}",
+        f"Normal ({_text(_round(result.normal))}), rotation 0 towards ({_text(_round(result.direction_max))}); curvatures "
         f"{curvature} 1/mm, concave positive{moved}.",
         f"Machine {printable(Path(request.machine).name, 40)}, setup {printable(Path(request.setup).name, 40)}; {proved}; "
         f"{apart}.",
     ]
-    if found.missing:
+    if result.missing:
         lines.append(
-            f"Not certified: obstacles are missing or guessed ({len(found.missing)}), first {printable(found.missing[0])}."
+            f"Not certified: obstacles are missing or guessed ({len(result.missing)}), first {printable(result.missing[0])}."
         )
-    elif found.tolerance:
+    elif result.tolerance:
         lines.append("A free tilt is safe for the true surface to the tolerance; of several causes the first in the legend is "
                      "shown.")  # fmt: skip
     return lines
@@ -224,7 +224,7 @@ def _degrees(intervals: "Floats") -> list[list[float]]:
     return [[math.degrees(low), math.degrees(high)] for low, high in intervals.tolist()]
 
 
-def _facts(found: "PostureMap", face: str, off: float, cutter: "Cutter", request: MapRequest) -> dict[str, Any]:
+def _facts(result: "PostureMap", face: str, off: float, cutter: "Cutter", request: MapRequest) -> dict[str, Any]:
     """The map as JSON has it; degrees and mm."""
     words = (
         "free",
@@ -238,43 +238,45 @@ def _facts(found: "PostureMap", face: str, off: float, cutter: "Cutter", request
         "buried",
         "no_contact",
     )
-    none = [None if math.isnan(x) else math.degrees(x) for x in found.local_gouge.tolist()]
+    none = [None if math.isnan(x) else math.degrees(x) for x in result.local_gouge.tolist()]
     return {
         "format": "plan-cutters-map", "format_version": 1,
-        "part": Path(request.part).name, "face": face, "point": found.point.tolist(),
-        "off_mm": off, "normal": found.normal.tolist(), "direction_max": found.direction_max.tolist(),
-        "curvature": found.curvature.tolist(), "cutter": cutter.id, "machine": request.machine,
+        "part": Path(request.part).name, "face": face, "point": result.point.tolist(),
+        "off_mm": off, "normal": result.normal.tolist(), "direction_max": result.direction_max.tolist(),
+        "curvature": result.curvature.tolist(), "cutter": cutter.id, "machine": request.machine,
         "setup": request.setup,
-        "tolerance_mm": found.tolerance, "certified": found.certified, "missing": list(found.missing),
+        "tolerance_mm": result.tolerance, "certified": result.certified, "missing": list(result.missing),
         "rotations": [
-            {"deg": math.degrees(turn), "local_gouge": none[i], **{w: _degrees(getattr(found, w)[i]) for w in words}}
-            for i, turn in enumerate(found.rotations.tolist())
+            {"deg": math.degrees(turn), "local_gouge": none[i], **{w: _degrees(getattr(result, w)[i]) for w in words}}
+            for i, turn in enumerate(result.rotations.tolist())
         ],
     }  # fmt: skip
 
 
-def _draw(found: "PostureMap", tilt: tuple[float, float], about: list[str], outs: Sequence[Path]) -> None:
+def _draw(result: "PostureMap", tilt: tuple[float, float], about: list[str], outs: Sequence[Path]) -> None:
     """Draw the files, each whole or not at all."""
     from plan_cutters.errors import PlanError
     from plan_cutters.report.drawing.posture_map import draw_map
 
     asides = [out.with_name(f".{out.stem}.part{out.suffix}") for out in outs]
-    for aside in asides:
-        report("staging", str(aside.absolute()))
+    for temporary in asides:
+        report("staging", str(temporary.absolute()))
     try:
-        draw_map(found, tilt, about[0], about[1:], asides)
-        for aside, out in zip(asides, outs, strict=True):
-            os.replace(aside, out)
+        draw_map(result, tilt, about[0], about[1:], asides)
+        for temporary, out in zip(asides, outs, strict=True):
+            os.replace(temporary, out)
     except OSError as error:
-        out = next((out for aside, out in zip(asides, outs, strict=True) if error.filename == str(aside)), outs[0])
+        out = next(
+            (out for temporary, out in zip(asides, outs, strict=True) if error.filename == str(temporary)), outs[0]
+        )
         raise PlanError(f"cannot be written: {error.strerror or error}", file=str(out)) from None
     finally:
-        for aside in asides:
+        for temporary in asides:
             with contextlib.suppress(OSError):
-                aside.unlink(missing_ok=True)
+                temporary.unlink(missing_ok=True)
 
 
-def _table(found: "PostureMap", about: list[str], outs: Sequence[Path], console: "Console") -> None:
+def _table(result: "PostureMap", about: list[str], outs: Sequence[Path], console: "Console") -> None:
     """The free intervals for people."""
     from rich.table import Table
 
@@ -284,27 +286,27 @@ def _table(found: "PostureMap", about: list[str], outs: Sequence[Path], console:
     table = Table("Rotation", "Free tilts (deg)", "Undecided", "Local gouge below")
     for column in (table.columns[0], table.columns[3]):
         column.justify = "right"
-    for i, turn in enumerate(found.rotations.tolist()):
-        gouge = found.local_gouge[i]
+    for i, turn in enumerate(result.rotations.tolist()):
+        gouge = result.local_gouge[i]
         below = "always" if math.isnan(gouge) else f"{math.degrees(gouge):.2f}"
         table.add_row(
             f"{math.degrees(turn):g}",
-            _spans(found.free[i]) or ("under 0.01" if len(found.free[i]) else "none"),
-            _spans(found.undecided[i], False),
+            _spans(result.free[i]) or ("under 0.01" if len(result.free[i]) else "none"),
+            _spans(result.undecided[i], False),
             below,
         )
     console.print(table)
-    console.print(f"Drawn in {names}.", soft_wrap=True)
+    console.print(f"Pictures in {names}.", soft_wrap=True)
 
 
 def _spans(intervals: "Floats", inward: bool = True) -> str:
     """Intervals of degrees, two digits behind the point: of free ones none is told wider than it is."""
-    found = []
+    spans = []
     for low, high in _degrees(intervals):
         first, last = (math.ceil, math.floor) if inward else (math.floor, math.ceil)
         if not inward or first(100 * low - 1e-7) <= last(100 * high + 1e-7):
-            found.append(f"{first(100 * low - 1e-7) / 100:.2f} to {last(100 * high + 1e-7) / 100:.2f}")
-    return ", ".join(found)
+            spans.append(f"{first(100 * low - 1e-7) / 100:.2f} to {last(100 * high + 1e-7) / 100:.2f}")
+    return ", ".join(spans)
 
 
 def main(words: Sequence[str], name: str | None = None) -> NoReturn:

@@ -26,7 +26,7 @@ _access, _limits = heading("Access"), heading("Limits of a call")
         (f"{_SELF} --root parts", "What a client starts; parts and libraries in this folder can be named:"),
         (
             f"{_SELF} --root parts --root tools --most-cutters 20 --timeout 300",
-            "Two folders, and less room for a call:",
+            "Two folders, and a lower limit for a call:",
         ),
     ),
     codes=(

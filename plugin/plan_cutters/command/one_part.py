@@ -8,7 +8,7 @@ from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from plan_cutters.batch import handing
+from plan_cutters.batch import job_input
 from plan_cutters.command import terminal
 from plan_cutters.command.codes import code_of
 from plan_cutters.command.progress import Display, Teller
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 
 def one_part(
     part: str, out: Path | None, options: "Options", request: "PlanRequest", began: float | None = None,
-    aside: Mapping[int, str] | None = None,
+    omitted: Mapping[int, str] | None = None,
 ) -> tuple[int, str]:  # fmt: skip
     """Plan one part into a folder, None for none; exit code and a line about it.
 
-    `began`: when the command did, for the first part (`time.monotonic`); `aside`: why faces are not to be worked on, by number.
+    `began`: when the command did, for the first part (`time.monotonic`); `omitted`: why faces are not to be worked on, by number.
     """
     from plan_cutters.report.folder import DEFAULT_FORMATS, Staging, ended, file_name, read_formats, write_all
     from plan_cutters.report.to_json import dumps
@@ -39,10 +39,10 @@ def one_part(
     formats = formats if out else ()
     report("part", part)
     staging = Staging(out, lambda folder: report("staging", str(folder))) if out else None
-    watch = Onlooker(out, options, request, began)
+    watch = ProgressListener(out, options, request, began)
     try:
         watch.tell("start", 0, 1)
-        ahead = _compiling(options, request.quiet)
+        compiling = _compiling(options, request.quiet)
         import plan_cutters.report.models  # noqa: F401  all that takes time to load is loaded in the stage `start`
         from plan_cutters.document.clock import Clock
         from plan_cutters.pipeline import run
@@ -50,16 +50,16 @@ def one_part(
         gc.freeze()
         gc.enable()
         clock = Clock(watch.tell, began=began)
-        source = handing.part() if handing.holds_part() else part
+        source = job_input.part() if job_input.holds_part() else part
         with _judging(request) as judged:
-            result = run(source, options, clock, read_timeout=request.read_timeout, at=report_work, ahead=ahead,
-                         aside=aside, judged=judged)  # fmt: skip
+            result = run(source, options, clock, read_timeout=request.read_timeout, at=report_work, compiling=compiling,
+                         excluded=omitted, judged=judged)  # fmt: skip
         document = result.plan
         if out is None:
             watch.summarise(document)
         else:
             watch.tell("files", 0, 1)
-            document = write_all(result, out, formats, staging, step_schema=request.step_schema, onlooker=watch,
+            document = write_all(result, out, formats, staging, step_schema=request.step_schema, listener=watch,
                                  clock=clock)  # fmt: skip
     except KeyboardInterrupt:
         if watch.plan is None or out is None:
@@ -96,7 +96,7 @@ def _compiling(options: "Options", quiet: bool) -> Callable[[str], None]:
 
 @contextmanager
 def _judging(request: "PlanRequest") -> "Iterator[Judge]":
-    """What judges the cutters, with the cluster and the kept verdicts that were asked for; it says what came of these."""
+    """What judges the cutters, with the cluster and the kept verdicts that were requested; it says what came of these."""
     from plan_cutters.batch.one import judging
     from plan_cutters.files.seal import key_of
 
@@ -106,25 +106,25 @@ def _judging(request: "PlanRequest") -> "Iterator[Judge]":
             from plan_cutters.batch import cluster
 
             client = stack.enter_context(cluster.opened(request.cluster))
-        lent = None
-        if (offer := handing.offer()) is not None:
-            from plan_cutters.batch.lending import Lent
+        shared = None
+        if (offer := job_input.offer()) is not None:
+            from plan_cutters.batch.shared_cluster import SharedCluster
 
-            lent = stack.enter_context(closing(Lent(offer)))
-        key = handing.key() if request.verdicts_key is None else key_of(request.verdicts_key)
-        judged = judging(client, request.verdicts, lent, key)
+            shared = stack.enter_context(closing(SharedCluster(offer)))
+        key = job_input.key() if request.verdicts_key is None else key_of(request.verdicts_key)
+        judged = judging(client, request.verdicts, shared, key)
         yield judged
     if request.verdicts is not None:
-        from plan_cutters.batch.verdicts import Kept
+        from plan_cutters.batch.verdicts import VerdictCache
 
-        assert isinstance(judged, Kept)
+        assert isinstance(judged, VerdictCache)
         for fault in judged.faults:
             terminal.error(f"plan-cutters: {fault}")
         if not request.quiet:
-            terminal.say(f"Verdicts: {judged.found} kept from before, {judged.judged} judged now.")
+            terminal.say(f"Verdicts: {judged.found} reused, {judged.judged} judged now.")
 
 
-class Onlooker:
+class ProgressListener:
     """Shows what is found as soon as it is safe on disk, and tells how far the work is."""
 
     def __init__(self, out: Path | None, options: "Options", request: "PlanRequest", began: float | None) -> None:

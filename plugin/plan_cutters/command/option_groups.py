@@ -24,7 +24,7 @@ EXAMPLES = (
         "plan-cutters blade.step --cutter R6L80 --answers stick-out,mend",
         "How short it can be held, and what would help:",
     ),
-    ("plan-cutters map blade.step --at 12,3,40 --cutter R6L80", "All postures of a cutter at one point, drawn:"),
+    ("plan-cutters map blade.step --at 12,3,40 --cutter R6L80", "A picture of all postures of a cutter at one point:"),
     ("plan-cutters blade.step --cutter R6L80 --json - --quiet", "For a script, the plan on standard output:"),
 )
 ENDED = ("130", "interrupted; nothing is half-written")
@@ -43,9 +43,9 @@ CODES = (
 )
 
 
-def _list_cutters(ctx: click.Context, param: click.Parameter, asked: bool) -> None:
+def _list_cutters(ctx: click.Context, param: click.Parameter, requested: bool) -> None:
     """Print the default tool set, one cutter a line, and end."""
-    if not asked or ctx.resilient_parsing:
+    if not requested or ctx.resilient_parsing:
         return
     from plan_cutters.domain.default_tools import builtin
 
@@ -252,7 +252,7 @@ _OPTIONS = (
         type=float,
         metavar="MM/MIN",
         help="Feed of all cutters.  [default: the libraries' finishing presets; without them "
-        "cut lengths are told, and no times]",
+        "cut lengths are reported, and no times]",
     ),
     _operations(
         "--scallop", type=float, default=0.01, metavar="MM", help="Height of the cusps between passes.  [default: 0.01]"
@@ -309,13 +309,13 @@ _OPTIONS = (
     _run(
         "--verdicts",
         type=Folder("DIR"),
-        help="Folder or URL (s3://..., memory://...) in which the verdicts of each cutter are kept: with another cutter, only "
+        help="Folder or URL (s3://..., memory://...) in which the verdicts of each cutter are stored: with another cutter, only "
         "that one is judged.",
     ),
     _run(
         "--verdicts-key",
         type=File("FILE"),
-        help="File with a key of 16 bytes or more that seals kept verdicts: those that nobody with this key wrote are not "
+        help="File with a key of 16 bytes or more that seals stored verdicts: those that nobody with this key wrote are not "
         "taken.",
     ),
     _run(

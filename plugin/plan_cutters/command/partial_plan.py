@@ -21,8 +21,8 @@ def without_models(stopped: Unfinished, request: "PlanRequest") -> int:
     terminal.error(f"plan-cutters: {missing} in {stopped.out}: not written: {stopped}")
     if request.json_out == "-" and path.is_file():
         terminal.hand_out(path.read_text(encoding="utf-8"))
-    left = request.parts[stopped.parts :]
-    if left and stopped.code != INTERRUPTED:
-        terminal.error(f"plan-cutters: not planned: {', '.join(left)}")
+    remaining = request.parts[stopped.parts :]
+    if remaining and stopped.code != INTERRUPTED:
+        terminal.error(f"plan-cutters: not planned: {', '.join(remaining)}")
         return max(stopped.code, UNREADABLE)
     return stopped.code

@@ -47,9 +47,9 @@ def git(*words: str, stdin: bytes | None = None, codes: Collection[int] = (0,)) 
     except OSError as error:
         raise PlanError(f"cannot be run ({error.strerror}): install it", file="git") from None
     if done.returncode not in codes:
-        said = done.stderr.decode(errors="replace").strip().splitlines() or [f"exit code {done.returncode}"]
+        errors = done.stderr.decode(errors="replace").strip().splitlines() or [f"exit code {done.returncode}"]
         word = next(each for each in words if each[0] not in "-u")
-        raise PlanError(f"git {word}: {said[0]}")
+        raise PlanError(f"git {word}: {errors[0]}")
     return done.stdout
 
 
@@ -81,7 +81,7 @@ def changed(base: str, head: str | None) -> tuple[str, str, list[Changed]]:
                 f"{base} and {head} have no common commit here: fetch all of them (fetch-depth: 0)"
             ) from None
     words = git("diff", "--name-status", "-z", "--find-renames", began, until).decode("utf-8", "surrogateescape")
-    each, found = iter(words.split("\0")), []
+    each, paths = iter(words.split("\0")), []
     for status in each:
         if not status:
             continue
@@ -89,10 +89,10 @@ def changed(base: str, head: str | None) -> tuple[str, str, list[Changed]]:
         new = next(each) if status[0] in "RC" else old
         pair = Changed(None if status[0] in "AC" else old, None if status[0] == "D" else new)
         if Path(pair.name).suffix.lower() in PARTS:
-            found.append(pair)
-    files = {path for part in found for path in (part.old, part.new) if path is not None}
-    found += [Changed(path, path) for path in _referring(until, files) - files]
-    return began, until, sorted(found, key=lambda part: part.name)
+            paths.append(pair)
+    files = {path for part in paths for path in (part.old, part.new) if path is not None}
+    paths += [Changed(path, path) for path in _referring(until, files) - files]
+    return began, until, sorted(paths, key=lambda part: part.name)
 
 
 def _referring(at: str, files: Collection[str]) -> set[str]:
@@ -100,10 +100,10 @@ def _referring(at: str, files: Collection[str]) -> set[str]:
     if not files:
         return set()
     words = [part for word in references.WORDS for part in ("-e", word.decode())]
-    found = git(
+    output = git(
         "grep", "-lzaF", "--full-name", *words, at, "--", ":(top,icase)*.step", ":(top,icase)*.stp", codes=(0, 1)
     )
-    paths = [each.partition(":")[2] for each in found.decode("utf-8", "surrogateescape").split("\0") if each]
+    paths = [each.partition(":")[2] for each in output.decode("utf-8", "surrogateescape").split("\0") if each]
     refers = {
         path: {posixpath.normpath(posixpath.join(posixpath.dirname(path), name))
                for name in references.names(git("cat-file", "--filters", f"{at}:{path}"))}

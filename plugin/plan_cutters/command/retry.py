@@ -16,15 +16,15 @@ from plan_cutters.command.worker import TIMED_OUT
 from plan_cutters.command.worker_errors import OutOfTime, Stuck, Unfinished
 
 #: Environment variable by which the child knows which parts are done and which faces of the next one are set aside.
-ASIDE = "PLAN_CUTTERS_ASIDE"
+EXCLUDED = "PLAN_CUTTERS_ASIDE"
 #: Faces that are set aside for a part: with more of them, the file is rather to be exported again.
 MOST = 5
 
 
-def set_aside() -> tuple[int, dict[int, str]]:
+def excluded_faces() -> tuple[int, dict[int, str]]:
     """How many parts are done; of the next one, by face number, why nothing more is to be asked about a face."""
-    found = json.loads(os.environ.get(ASIDE, "[0, {}]"))
-    return found[0], {int(number): why for number, why in found[1].items()}
+    attempt = json.loads(os.environ.get(EXCLUDED, "[0, {}]"))
+    return attempt[0], {int(number): why for number, why in attempt[1].items()}
 
 
 def supervised(
@@ -39,7 +39,7 @@ def supervised(
     began: float | None = since
     faces: dict[int, str] = {}
     while True:
-        more = {ASIDE: json.dumps([done, faces])} if done or faces else {}
+        more = {EXCLUDED: json.dumps([done, faces])} if done or faces else {}
         try:
             return max(code, supervise(words, read_timeout=read_timeout, memory=memory, display=display, more=more,
                                        timeout=timeout, since=began))  # fmt: skip
@@ -59,14 +59,14 @@ def supervised(
             done, code = done + stopped.before, max(code, stopped.code)
             if done == len(parts):  # all of them are, and only the end was slow
                 return code
-            terminal.error(f"plan-cutters: {parts[done]}: {_left(stopped.out, timeout)}")
+            terminal.error(f"plan-cutters: {parts[done]}: {_failure_text(stopped.out, timeout)}")
             done, faces, began = done + 1, {}, None
             code = max(code, TIMED_OUT)
             if done == len(parts):
                 return code
 
 
-def _left(out: Path | None, timeout: float) -> str:
+def _failure_text(out: Path | None, timeout: float) -> str:
     """Say why a part is left, and what is missing where its plan is in the output already."""
     why = f"not done within {timeout:g} s"
     advice = "sample more coarsely (--spacing), or give more time (--timeout)"

@@ -28,7 +28,7 @@ WORDS = {
     "undecided": "undecided",
     "inaccessible": "inaccessible",
 }
-#: Rows that are shown unless all are asked for.
+#: Rows that are shown unless all are requested.
 MOST_ROWS = 40
 #: Widest line of a cutter's name beside its numbers, so that 80 columns hold all; what is longer has a second line.
 _NAME = 27
@@ -46,27 +46,27 @@ def cutter_rows(plan: "Plan", story: "Story", *, verbose: bool) -> list[Any]:
     """A row for each cutter, of many the best alone, and how many more there are."""
     rows = list(story.cutters)
     if not verbose and len(rows) > MOST_ROWS:
-        left = {c.id: leaves(c) for c in plan.cutters}
-        kept = sorted(rows, key=lambda c: (c.id != story.taken, left[c.id]))[:MOST_ROWS]
-        rows = [c for c in rows if c in kept]
+        missing_shares = {c.id: leaves(c) for c in plan.cutters}
+        shown = sorted(rows, key=lambda c: (c.id != story.taken, missing_shares[c.id]))[:MOST_ROWS]
+        rows = [c for c in rows if c in shown]
     here = f", over {1 + len(plan.effective.other_setups)} setups" if plan.effective.other_setups else ""
-    found: list[Any] = [f"Share of the area to machine, by the verdict of its samples{here}:"]
+    lines: list[Any] = [f"Share of the area to machine, by the verdict of its samples{here}:"]
     short = _distinct([clean(c.name) for c in rows], _CUTTER)
     table = _table(("  cutter", "feasible"), tuple(WORDS.values()), apart=1)
     for c, name in zip(rows, short, strict=True):
         taken = c.id == story.taken
         table.add_row(Text(f"{'>' if taken else ' '} {_in_lines(name)}", "bold" if taken else ""),
                       Text(FEASIBLE[c.feasible], _COLOURS[c.feasible]), *(c.shares[word] for word in WORDS))  # fmt: skip
-    found.append(_Fitting(table, [_listed(c, c.id == story.taken) for c in rows]))
+    lines.append(_Fitting(table, [_listed(c, c.id == story.taken) for c in rows]))
     if len(rows) < len(plan.cutters):
-        found.append(f"  and {len(plan.cutters) - len(rows)} more cutters that reach less: -v or plan.json.")
-    return found
+        lines.append(f"  and {len(plan.cutters) - len(rows)} more cutters that reach less: -v or plan.json.")
+    return lines
 
 
 def _listed(c: "CutterStory", taken: bool) -> Text:
-    said = ", ".join(f"{word} {c.shares[key]}" for key, word in WORDS.items() if c.shares[key] != "0 %")
+    text = ", ".join(f"{word} {c.shares[key]}" for key, word in WORDS.items() if c.shares[key] != "0 %")
     return Text.assemble(cell(f"{'>' if taken else ' '} {c.name}: ", "bold" if taken else ""),
-                         (FEASIBLE[c.feasible], _COLOURS[c.feasible]), f"; {said}")  # fmt: skip
+                         (FEASIBLE[c.feasible], _COLOURS[c.feasible]), f"; {text}")  # fmt: skip
 
 
 def worst_faces(story: "Story") -> list[Any]:
@@ -79,7 +79,7 @@ def worst_faces(story: "Story") -> list[Any]:
         f"the {len(c.faces)} worst of {c.failing} faces" if few else f"{c.failing} face{'s' if c.failing > 1 else ''}"
     )
     lines: list[Any] = [cell(f"Where {c.name} {'fails' if c.feasible is False else 'is not sure'}, {which}:")]
-    table = _table(("  face", "mainly", "in the way"), ("mm2 lost", "of the face", "mm too deep"))
+    table = _table(("  face", "mainly", "in the way"), ("mm2 not reached", "of the face", "mm too deep"))
     for f in c.faces:
         table.add_row(
             f"  {f.id}", f.reason, cell(_distinct([f.obstacle or "-"], _OBSTACLE)[0]), f.area, f.share, f.depth or "-"

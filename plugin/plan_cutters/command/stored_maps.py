@@ -84,7 +84,7 @@ def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
 def stored(
     part: str | None, postures: str, options: "Options", request: "StoredRequest | PlanRequest", named: Collection[str]
 ) -> int:
-    """Say what a cutter reaches on the machine that is asked for, by its posture maps of the part; the exit code.
+    """Say what a cutter reaches on the machine that is requested, by its posture maps of the part; the exit code.
 
     Parameters
     ----------
@@ -116,7 +116,7 @@ def stored(
             raise OptionError(f"{option}: nothing is written with --postures; leave it out")
     maps, name = PostureMaps.load(postures), Path(postures).name
     try:
-        reach = maps.asked(part, **_asked(options, request, named), jobs=options.jobs)
+        reach = maps.asked(part, **_requested(options, request, named), jobs=options.jobs)
         setup = options.setup if "setup" in named else setup_of(maps.about).z
         missing, unjudged = maps.missing, words_of(maps.about, "unjudged_faces")
     except OptionError as error:
@@ -134,9 +134,9 @@ def stored(
                   "missing": list(missing), "unjudged_faces": list(unjudged), "asked": dict(maps.about)}  # fmt: skip
         terminal.hand_out(json.dumps(answer, indent=2) + "\n")
     if not request.quiet:
-        said = ", ".join(f"{count} {word.replace('_', ' ')}" for word, count in counts.items() if count)
+        text = ", ".join(f"{count} {word.replace('_', ' ')}" for word, count in counts.items() if count)
         on = f"{maps.cutter} on {options.machine.name}, setup {axis_words(setup)}"
-        lines = [f"{Path(part).name if part else name}: {on}, by {name}: {said}"]
+        lines = [f"{Path(part).name if part else name}: {on}, by {name}: {text}"]
         if inside:
             lines.append(f"{inside} more samples lie inside another body of the part: they are no surface of it.")
         if counts["undecided"]:
@@ -156,7 +156,7 @@ def stored(
     return NOT_ALL_JUDGED if counts["undecided"] or counts["unjudged"] or missing or unjudged else FEASIBLE
 
 
-def _asked(options: "Options", request: "StoredRequest | PlanRequest", named: Collection[str]) -> dict[str, Any]:
+def _requested(options: "Options", request: "StoredRequest | PlanRequest", named: Collection[str]) -> dict[str, Any]:
     """Gather the options that the user gave, by the names of `Options`."""
     from dataclasses import fields
 

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from plan_cutters.plan_file.model import Plan
     from plan_cutters.plan_file.words.line import Line
 
-#: Doubts of one kind that are shown unless all are asked for.
+#: Doubts of one kind that are shown unless all are requested.
 _LINES = 5
 _MARKS = {True: "bold green", False: "bold red", None: "bold yellow"}
 
@@ -43,7 +43,7 @@ def summary(plan: "Plan", *, verbose: bool = False, tells: Callable[..., None] =
 
 def written(plan: "Plan", out: Path | None, formats: Sequence[str]) -> list[Any]:
     """List the files of the output, and the faces that the models do not show split in their place."""
-    from plan_cutters.report.folder import left_over
+    from plan_cutters.report.folder import stale_files
 
     lines = []
     files = [*(["plan.json"] if "json" in formats else []), *sorted(f.name for f in plan.files.values())]
@@ -58,7 +58,7 @@ def written(plan: "Plan", out: Path | None, formats: Sequence[str]) -> list[Any]
             if entry.rung != "contour":
                 how = "it is one piece in the STEP, and the GLB shows it by its samples"
                 lines.append(f"{face} could not be split in its place{where} ({entry.why}): {how}.")
-    if out is not None and formats and (old := left_over(out, plan, formats)):
+    if out is not None and formats and (old := stale_files(out, plan, formats)):
         lines.append(f"Left over from an earlier run, or not ours: {', '.join(old)} in {out}")
     return lines
 
@@ -69,7 +69,7 @@ def _apart(lines: Sequence[Any]) -> list[Any]:
 
 
 def _lines(lines: "Iterable[Line]", verbose: bool) -> Iterator[Text]:
-    """Those of some lines that are asked for."""
+    """Those of some lines that are requested."""
     for line in lines:
         if verbose or not line.minor:
             yield Text.assemble(cell(f"{line.mark} " if line.mark else ""), cell(line.text + line.typed))

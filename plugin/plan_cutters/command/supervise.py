@@ -33,7 +33,7 @@ LIMITED = {"read": 1.0, "measure": 5.0, "sew": 5.0, "orient": 5.0, "fixtures": 5
            "write": 5.0}  # fmt: skip
 _WORK = {"measure": "measuring of faces", "sew": "sewing", "orient": "search for the inside", "fixtures": "reading of fixtures",
          "sample": "sampling", "tessellate": "tessellation", "write": "splitting and writing"}  # fmt: skip
-#: Of these, how many times the limit of reading one face may take, in processor time. Samples may be asked for by the million.
+#: Of these, how many times the limit of reading one face may take, in processor time. Samples may be requested by the million.
 A_FACE = {"measure": 0.25, "sample": 1.0, "tessellate": 0.25}
 
 
@@ -118,12 +118,12 @@ def supervise(
     """
     watch = _Watch(read_timeout, display, began=since)
     child: Worker | None = None
-    asked: list[int] = []
+    signals: list[int] = []
 
     def stop(number: int, _: object) -> None:
         # Ask once; a child that has not begun, or is asked again, has nothing to tidy that this process does not.
-        asked.append(number)
-        if child is not None and (len(asked) > 1 or watch.stage == "start"):
+        signals.append(number)
+        if child is not None and (len(signals) > 1 or watch.stage == "start"):
             child.kill()
         elif child is not None:
             child.process.send_signal(signal.SIGINT)
@@ -135,7 +135,7 @@ def supervise(
     try:
         child = (None if more else early(words)) or Worker(words, name, memory, more=more)
         watch.pipe, watch.child = child.here, child.process.pid
-        if asked:  # before there was anyone to tell
+        if signals:  # before there was anyone to tell
             raise KeyboardInterrupt
         child.begin(memory)
         while child.process.poll() is None:
@@ -163,7 +163,7 @@ def supervise(
     if code >= 0:
         return code
     # Whoever ends all processes of a service, as its manager does, ends the child at the same time.
-    if asked or -code in _stopping():
+    if signals or -code in _stopping():
         if watch.safe is None:
             raise KeyboardInterrupt
         raise watch.ended("interrupted", "", interrupted=True)
@@ -177,10 +177,10 @@ def supervise(
 
 def _stopping() -> list[int]:
     """Signals that end a run in order: an interrupt, a request to end, and a terminal that is closed, unless `nohup` was used."""
-    found = [signal.SIGINT, signal.SIGTERM]
+    signals = [signal.SIGINT, signal.SIGTERM]
     if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:
-        found.append(signal.SIGHUP)
-    return [int(number) for number in found]
+        signals.append(signal.SIGHUP)
+    return [int(number) for number in signals]
 
 
 def _processor(child: int | None) -> float:

@@ -177,7 +177,7 @@ def hand_out(text: str) -> None:
     """Write on standard output, for programs to read; errors as of `handing_out`, and where it is closed."""
     if sys.stdout is None:
         raise PlanError("cannot be written: it is closed", file="standard output")
-    handing_out(lambda: (sys.stdout.write(text), sys.stdout.flush()))
+    writing_out(lambda: (sys.stdout.write(text), sys.stdout.flush()))
 
 
 class _Paper(StringIO):
@@ -207,7 +207,7 @@ def paper(width: int) -> Iterator["Console"]:
     hand_out(text.getvalue())
 
 
-def handing_out(work: Callable[[], T]) -> T:
+def writing_out(work: Callable[[], T]) -> T:
     """Do what writes on standard output.
 
     Raises

@@ -40,7 +40,7 @@ _cutters, _output = heading("Cutters"), heading("Output")
         (f"{_SELF} shop.tools --assume-stickout 35 --holder R15L40", "With what the library leaves out:"),
         (
             f"{_SELF} --cutter D12L80 --holder hsk63a-er32 --draw drawings",
-            "An assembly given by words, drawn:",
+            "A picture of an assembly given by words:",
         ),
         (f"{_SELF} --list-holders", "The built-in holders:"),
         (
@@ -56,7 +56,7 @@ _cutters, _output = heading("Cutters"), heading("Output")
 )
 @click.argument("files", nargs=-1, metavar="[FILE]...", type=File("FILE"))
 @options("holder", "assume_stickout", "skip_bad",
-         cutter={"help": "A cutter by words, D12L80 and so on, to be shown and drawn in its holder. Repeatable."})  # fmt: skip
+         cutter={"help": "A cutter by words, D12L80 and so on, to be shown, also as a picture. Repeatable."})  # fmt: skip
 @_cutters(
     "--list-holders", is_flag=True, help="List the built-in holders; with --draw, draw each with its largest shank."
 )
@@ -78,13 +78,13 @@ def command(request: ToolsRequest) -> int:
     if not request.files and not request.cutter:
         raise click.UsageError("Missing argument 'FILE...'.")
     holder = None if request.holder is None else holder_of(request.holder)
-    found: list[Library] = []
+    libraries: list[Library] = []
     if request.cutter:
-        found.append(of_words(request.cutter, None if isinstance(holder, str) else holder))
+        libraries.append(of_words(request.cutter, None if isinstance(holder, str) else holder))
 
     def one(file: str) -> None:
         library = listing(file, assume_stickout=request.assume_stickout, holder=holder, skip_bad=request.skip_bad)
-        found.append(library)
+        libraries.append(library)
         if not library and not (library.holders and not library.entries):
             raise nothing(library)
 
@@ -92,19 +92,19 @@ def command(request: ToolsRequest) -> int:
     if not lines:
         # Nothing is written if anything was wrong.
         if request.to_toml is not None:
-            _to_toml(found, Path(request.to_toml))
+            _to_toml(libraries, Path(request.to_toml))
         if request.draw is not None:
-            _draw(found, Path(request.draw))
+            _draw(libraries, Path(request.draw))
     if request.as_json:
-        said = {
+        document = {
             "format": "plan-cutters-tools",
             "format_version": 1,
-            "libraries": [_plain(library) for library in found],
+            "libraries": [_plain(library) for library in libraries],
         }
-        hand_out(json.dumps(said, indent=2, ensure_ascii=False) + "\n")
+        hand_out(json.dumps(document, indent=2, ensure_ascii=False) + "\n")
     else:
         with paper(200) as console:
-            for library in found:
+            for library in libraries:
                 _table(library, console)
     for line in lines:
         error(line)
@@ -112,7 +112,7 @@ def command(request: ToolsRequest) -> int:
 
 
 def _holders(request: ToolsRequest) -> int:
-    """The built-in holders: listed, and drawn where that is asked for."""
+    """The built-in holders: listed, and drawn where that is requested."""
     from plan_cutters.library.words import pinned, standard
 
     words = ("cutter", "holder", "assume_stickout", "to_toml")
@@ -125,8 +125,8 @@ def _holders(request: ToolsRequest) -> int:
         plain = [
             {"word": word, "name": each.name, "id": each.id, "bore": each.bore} for word, each in standard().items()
         ]
-        said = {"format": "plan-cutters-holders", "format_version": 1, "holders": plain}
-        hand_out(json.dumps(said, indent=2) + "\n")
+        document = {"format": "plan-cutters-holders", "format_version": 1, "holders": plain}
+        hand_out(json.dumps(document, indent=2) + "\n")
         return 0
     lines = [
         "Collet chucks as outer bounds, from the nose up to the gauge line; mm. A chuck of another length: hsk63a-er32x120.",
@@ -205,9 +205,9 @@ def _listed(console: "Console", row: list[str]) -> None:
 
     place, number, name, kind, unit, *sizes, why = row
     console.print(" ".join(word for word in (place, number and f"T{number}", name and f'"{name}"', kind) if word))
-    said = [f"{word} {size}" for word, size in zip(_COLUMNS[5:11], sizes, strict=True) if size]
-    if said:
-        console.print(Padding(f"{', '.join(said)}{f' ({unit} in the file)' if unit else ''}", (0, 0, 0, 4)))
+    sizes_text = [f"{word} {size}" for word, size in zip(_COLUMNS[5:11], sizes, strict=True) if size]
+    if sizes_text:
+        console.print(Padding(f"{', '.join(sizes_text)}{f' ({unit} in the file)' if unit else ''}", (0, 0, 0, 4)))
     console.print(Padding(why, (0, 0, 0, 4)), overflow="fold")
 
 
@@ -217,12 +217,12 @@ def _row(entry: "Entry") -> list[str]:
 
 
 def _words(entry: "Entry") -> list[str]:
-    given, cutter = dict(entry.given), entry.cutter
+    codes, cutter = dict(entry.given), entry.cutter
     number = "" if entry.number is None else str(entry.number)
     words = [entry.place, number, entry.name, entry.kind, entry.unit]
     if cutter is None:
         broken = "broken: " if entry.broken else "not used: "
-        sizes = [f"{given[key]:.6g}" if key in given else "" for key in ("DC", "RE", "LCF", "LPR", "DMM")]
+        sizes = [f"{codes[key]:.6g}" if key in codes else "" for key in ("DC", "RE", "LCF", "LPR", "DMM")]
         return [*words, *sizes, "", "; ".join([f"{broken}{entry.unused}", *entry.notes])]
     from plan_cutters.domain.shapes import flute_length
 
@@ -232,37 +232,37 @@ def _words(entry: "Entry") -> list[str]:
     return [*words, *(f"{length:.6g}" for length in lengths), shank, holder, "; ".join([cutter.id, *entry.notes])]
 
 
-def _to_toml(found: "Sequence[Library]", path: Path) -> None:
+def _to_toml(libraries: "Sequence[Library]", path: Path) -> None:
     from plan_cutters.library import to_toml
 
-    texts = [to_toml(library) for library in found]
+    texts = [to_toml(library) for library in libraries]
     # Every part says the unit; the file says it once.
     text = "".join([texts[0], *(part.replace('unit = "mm"\n', "", 1) for part in texts[1:])])
     write(path, text)
 
 
-def _draw(found: "Sequence[Library]", folder: Path) -> None:
+def _draw(libraries: "Sequence[Library]", folder: Path) -> None:
     from plan_cutters.domain.spec import is_spec
     from plan_cutters.errors import PlanError
     from plan_cutters.plan_file.words.names import called
 
     draw = import_module("plan_cutters.report.drawing.tool").draw
-    drawn: dict[str, str] = {}
-    for library in found:
+    drawings: dict[str, str] = {}
+    for library in libraries:
         for cutter in library:
             numbers = library.numbers(cutter)
             held = f", {cutter.holder.name}" if cutter.holder and is_spec(cutter.name or cutter.id) else ""
             words = [*(f"T{number}" for number in numbers[:1]), f"{called(cutter)}{held}"]
             stem = re.sub(r"[^\w.-]+", "_", " ".join(words)).strip("._")[:80] or "tool"
             name, i = stem, 2
-            while name in drawn:
+            while name in drawings:
                 name, i = f"{stem}_{i}", i + 1
-            drawn[name] = draw(cutter, name=" ".join(words))
+            drawings[name] = draw(cutter, name=" ".join(words))
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise PlanError(f"cannot be made: {error.strerror}", file=str(folder)) from None
-    for name, text in drawn.items():
+    for name, text in drawings.items():
         write(folder / f"{name}.svg", text)
 
 

@@ -110,7 +110,7 @@ def _words(request: PlanRequest) -> None:
         from plan_cutters.files.seal import key_of
 
         if request.verdicts is None:
-            raise OptionError("--verdicts-key seals kept verdicts: give it with --verdicts, or leave it out")
+            raise OptionError("--verdicts-key seals stored verdicts: give it with --verdicts, or leave it out")
         key_of(request.verdicts_key)
     if request.timeout is not None and not 0.0 < request.timeout < math.inf:
         raise OptionError("--timeout must be a positive number of seconds")
@@ -141,16 +141,16 @@ def refuse_unplanned_operations(request: PlanningRequest) -> None:
 def _faults(parts: Sequence[str]) -> list[CadIoError]:
     """Why parts cannot be read, as far as their first bytes tell."""
     from cad_io.read.sniff import kind
-    from plan_cutters.batch.handing import holds_part
+    from plan_cutters.batch.job_input import holds_part
 
-    found: list[CadIoError] = []
+    errors: list[CadIoError] = []
     for part in () if holds_part() else parts:
         try:
             kind(part)
         except CadIoError as error:
             near = [] if os.path.exists(part) else get_close_matches(part, SUBCOMMANDS, 1)
-            found.append(ReadError(f"no such file; the command {near[0]}?", file=part) if near else error)
-    return found
+            errors.append(ReadError(f"no such file; the command {near[0]}?", file=part) if near else error)
+    return errors
 
 
 def _writable(out: Path) -> None:
@@ -171,8 +171,8 @@ def look_at(options: "Options") -> None:
     """An error for words for faces that say nothing, and for fixtures whose file cannot be read."""
     from plan_cutters.scene.faces import grammar
 
-    given = options.ignore if isinstance(options.ignore, list | tuple) else (options.ignore,)
-    for option, text in (("--faces", options.faces), *(("--ignore", each) for each in given)):
+    names = options.ignore if isinstance(options.ignore, list | tuple) else (options.ignore,)
+    for option, text in (("--faces", options.faces), *(("--ignore", each) for each in names)):
         if isinstance(text, str):
             grammar(text, option)
     others = [each for place in options.other_placements if place is not None for each in place.fixtures]
@@ -198,8 +198,8 @@ def _fixture(file: str) -> None:
 
 def options_of(request: PlanningRequest) -> "Options":
     """The options of a plan, from the words of the command line; a PlanError for what has no meaning."""
-    from plan_cutters.batch import handing
+    from plan_cutters.batch import job_input
     from plan_cutters.options import Options
 
     # A batch has looked at its words already, perhaps on another machine.
-    return handing.options() or Options(**planning_options(request))
+    return job_input.options() or Options(**planning_options(request))

@@ -40,10 +40,10 @@ class Words(click.ParamType):
 
     def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
         before, comma, last = incomplete.rpartition(",") if self.listed else ("", "", incomplete)
-        given = before.split(",")
-        found = [CompletionItem(f"{before}{comma}{word}") for word in self.offered()
-                 if word.startswith(last) and word not in given]  # fmt: skip
-        return found or ([FILE] if self.files else [])
+        words = before.split(",")
+        items = [CompletionItem(f"{before}{comma}{word}") for word in self.offered()
+                 if word.startswith(last) and word not in words]  # fmt: skip
+        return items or ([FILE] if self.files else [])
 
 
 class Faces(Words):
@@ -104,8 +104,8 @@ class Setup(click.ParamType):
         return x, y, z
 
     def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
-        found = [CompletionItem(f"{sign}{axis}") for axis in "xyz" for sign in "+-"] + [CompletionItem("auto")]
-        return [each for each in found if each.value.startswith(incomplete)] or [FILE]
+        items = [CompletionItem(f"{sign}{axis}") for axis in "xyz" for sign in "+-"] + [CompletionItem("auto")]
+        return [each for each in items if each.value.startswith(incomplete)] or [FILE]
 
 
 def machine_names() -> Sequence[str]:

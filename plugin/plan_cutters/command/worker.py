@@ -18,7 +18,7 @@ BEGAN, PARENT = "PLAN_CUTTERS_BEGAN", "PLAN_CUTTERS_PARENT"
 #: And the number of the pipe on which it is told that its words are in order, where it began before they were looked at.
 GO = "PLAN_CUTTERS_GO"
 #: One line at a time: stages tell from their threads.
-_TELLING = threading.Lock()
+_WRITING = threading.Lock()
 #: Exit code of an interrupted run.
 INTERRUPTED = 130
 #: Of a run with a part that took longer than it may: as of `timeout`, the program.
@@ -47,7 +47,7 @@ def report(word: str, text: str) -> None:
     # Names of files may hold line ends, and bytes that are no text.
     line = f"{word} ".encode() + text.encode("unicode_escape") + b"\n"
     try:
-        with _TELLING:
+        with _WRITING:
             while line:
                 line = line[os.write(int(os.environ[REPORT]), line) :]
     except BrokenPipeError:
@@ -91,17 +91,17 @@ class Worker:
     ) -> None:  # fmt: skip
         self.words, self.waits = list(words), waits
         self.here, there = os.pipe()
-        told, self.go = os.pipe() if waits else (-1, -1)
+        reports, self.go = os.pipe() if waits else (-1, -1)
         environment = {**os.environ, REPORT: str(there), BEGAN: str(began()), PARENT: str(os.getpid())}
-        environment |= {GO: str(told)} if waits else {}
+        environment |= {GO: str(reports)} if waits else {}
         environment |= {} if memory is None else {MEMORY: str(memory)}
         environment |= more or {}
         run = f"from plan_cutters.command.entry import begin; begin({name!r})"
         self.process = subprocess.Popen([sys.executable, "-c", run, *words], env=environment, start_new_session=True,
-                                        pass_fds=(there, told) if waits else (there,))  # fmt: skip
+                                        pass_fds=(there, reports) if waits else (there,))  # fmt: skip
         os.close(there)
         if waits:
-            os.close(told)
+            os.close(reports)
 
     def begin(self, memory: int | None) -> None:
         """Let it begin, if it waits for that."""

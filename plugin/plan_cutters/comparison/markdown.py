@@ -6,7 +6,7 @@ from types import MappingProxyType
 from urllib.parse import quote
 
 from plan_cutters.comparison.model import Comparison, PlanDifference
-from plan_cutters.comparison.told import (
+from plan_cutters.comparison.wording import (
     CUTTERS,
     FACES,
     apart,
@@ -25,43 +25,43 @@ MOST_ROWS = 100
 _OWN = frozenset("\\`*_{}[]<>()#+!|~&@$")
 
 
-def markdown(found: Comparison, pages: Mapping[str, str] = MappingProxyType({})) -> str:
+def markdown(comparison: Comparison, pages: Mapping[str, str] = MappingProxyType({})) -> str:
     """The comparison in Markdown: a section for each pair of plans that differ, and a sentence for the others.
 
     Parameters
     ----------
-    found : Comparison
+    comparison : Comparison
     pages : mapping
         Paths of the pages of both plans by the name of their pair; the only one has none.
     """
-    same = [each for each in found.plans if each.same]
-    lines = [f"**{verdict(found)}**", ""]
-    for each in found.plans:
+    same = [each for each in comparison.plans if each.same]
+    lines = [f"**{verdict(comparison)}**", ""]
+    for each in comparison.plans:
         if not each.same:
             page = pages.get(each.name) or pages.get("")
-            lines += [*section(each), *(["", beside(page)] if page else []), ""]
-    lines += [f"- {escaped(line)}" for line in apart(found)]
+            lines += [*section(each), *(["", page_link(page)] if page else []), ""]
+    lines += [f"- {escaped(line)}" for line in apart(comparison)]
     if same:
         lines += ["", f"Nothing changed: {', '.join(escaped(each.name) for each in same)}."]
     return "\n".join(lines).rstrip() + "\n"
 
 
-def section(found: PlanDifference) -> Iterator[str]:
+def section(difference: PlanDifference) -> Iterator[str]:
     """The lines of one pair of plans."""
-    yield f"### {escaped(headline(found))}"
+    yield f"### {escaped(headline(difference))}"
     yield ""
-    for line in found.why_not:
+    for line in difference.why_not:
         yield f"- **Not comparable:** {escaped(line)}"
-    for line in filter(None, (choice(found), known(found))):
+    for line in filter(None, (choice(difference), known(difference))):
         yield f"- {escaped(line)}"
-    for each in found.changes:
+    for each in difference.changes:
         if not each.hinders:
             yield f"- {escaped(change(each))}"
-    yield from table(FACES, face_rows(found))
-    yield from table(CUTTERS, cutter_rows(found))
+    yield from table(FACES, face_rows(difference))
+    yield from table(CUTTERS, cutter_rows(difference))
 
 
-def beside(path: str, address: str = "") -> str:
+def page_link(path: str, address: str = "") -> str:
     """A link to the page of two plans, or to an address that has it.
 
     >>> beside("compared/a b/review.html")
@@ -73,16 +73,16 @@ def beside(path: str, address: str = "") -> str:
 
 def table(names: Sequence[str], rows: Iterable[Sequence[str]]) -> Iterator[str]:
     """A table with a blank line before it; nothing where there is no row."""
-    found = list(rows)
-    if not found:
+    lines = list(rows)
+    if not lines:
         return
     yield ""
     yield f"| {' | '.join(name or ' ' for name in names)} |"
     yield f"|{' --- |' * len(names)}"
-    yield from (f"| {' | '.join(escaped(cell) or ' ' for cell in row)} |" for row in found[:MOST_ROWS])
-    if len(found) > MOST_ROWS:
+    yield from (f"| {' | '.join(escaped(cell) or ' ' for cell in row)} |" for row in lines[:MOST_ROWS])
+    if len(lines) > MOST_ROWS:
         yield ""
-        yield f"and {len(found) - MOST_ROWS} more: `--json` has all."
+        yield f"and {len(lines) - MOST_ROWS} more: `--json` has all."
 
 
 def escaped(text: str) -> str:

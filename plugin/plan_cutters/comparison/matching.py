@@ -40,36 +40,39 @@ def match_faces(old: Plan, new: Plan) -> list[tuple[FaceEntry, FaceEntry, FaceMa
         return [(face, there[face.id], "same file") for face in old.faces if face.id in there]
     size = math.hypot(*(max(a, b) for a, b in zip(old.part.size_mm, new.part.size_mm, strict=True)))
     pairs: list[tuple[FaceEntry, FaceEntry, FaceMatch]] = []
-    left = list(old.faces), list(new.faces)
+    open_faces = list(old.faces), list(new.faces)
 
-    def take(found: Iterable[tuple[FaceEntry, FaceEntry]], how: FaceMatch) -> None:
-        nonlocal left
-        pairs.extend((a, b, how) for a, b in found)
+    def take(matched: Iterable[tuple[FaceEntry, FaceEntry]], how: FaceMatch) -> None:
+        nonlocal open_faces
+        pairs.extend((a, b, how) for a, b in matched)
         mine, theirs = {a.id for a, _, _ in pairs}, {b.id for _, b, _ in pairs}
-        left = [f for f in left[0] if f.id not in mine], [f for f in left[1] if f.id not in theirs]
+        open_faces = [f for f in open_faces[0] if f.id not in mine], [f for f in open_faces[1] if f.id not in theirs]
 
-    take(_in_place(*left, size), "place")
+    take(_in_place(*open_faces, size), "place")
     if any(all(face.centre_mm is None for face in plan.faces) for plan in (old, new)):
-        take(_alone(*left, _numbered), "number")
-    take(_alone(*left, _named), "name")
-    take(_alike(*left, size), "likeness")
+        take(_alone(*open_faces, _numbered), "number")
+    take(_alone(*open_faces, _named), "name")
+    take(_alike(*open_faces, size), "likeness")
     return sorted(pairs, key=lambda pair: int(pair[0].id[1:]))
 
 
 def match_cutters(old: Plan, new: Plan) -> list[tuple[CutterEntry, CutterEntry, CutterMatch]]:
     """Pairs of cutters by id; else by the name, then by the cutting part, where it stands once on each side."""
     pairs: list[tuple[CutterEntry, CutterEntry, CutterMatch]] = []
-    left = sorted(old.cutters, key=lambda c: c.id), sorted(new.cutters, key=lambda c: c.id)
+    open_cutters = sorted(old.cutters, key=lambda c: c.id), sorted(new.cutters, key=lambda c: c.id)
     steps: tuple[tuple[CutterMatch, Callable[[CutterEntry], Hashable]], ...] = (
         ("id", lambda c: c.id),
         ("name", lambda c: c.name or None),
         ("cutting part", lambda c: (c.shape, c.radius, c.corner_radius, c.taper_deg)),
     )
     for how, key in steps:
-        found = list(_alone(*left, key))
-        pairs += [(a, b, how) for a, b in found]
-        mine, theirs = {a.id for a, _ in found}, {b.id for _, b in found}
-        left = [c for c in left[0] if c.id not in mine], [c for c in left[1] if c.id not in theirs]
+        matched = list(_alone(*open_cutters, key))
+        pairs += [(a, b, how) for a, b in matched]
+        mine, theirs = {a.id for a, _ in matched}, {b.id for _, b in matched}
+        open_cutters = (
+            [c for c in open_cutters[0] if c.id not in mine],
+            [c for c in open_cutters[1] if c.id not in theirs],
+        )
     return sorted(pairs, key=lambda pair: pair[0].id)
 
 
@@ -77,10 +80,10 @@ def _alone(old: Iterable[Item], new: Iterable[Item], key: Callable[[Item], Hasha
     """Pairs whose key stands once on each side; None is no key."""
     sides: list[dict[Hashable, list[Item]]] = []
     for side in (old, new):
-        found = defaultdict(list)
+        groups = defaultdict(list)
         for each in side:
-            found[key(each)].append(each)
-        sides.append(found)
+            groups[key(each)].append(each)
+        sides.append(groups)
     for word, mine in sides[0].items():
         if word is not None and len(mine) == len(theirs := sides[1].get(word, [])) == 1:
             yield mine[0], theirs[0]
@@ -127,11 +130,11 @@ def _distances(
     """For each form: faces with a place and an area, distances (n, m) in sizes, logarithms (n, m) of the ratios of areas."""
     sides: list[dict[str, list[FaceEntry]]] = []
     for side in (old, new):
-        found = defaultdict(list)
+        distances = defaultdict(list)
         for face in side:
             if face.centre_mm is not None and math.isfinite(face.area_mm2) and face.area_mm2 > 0.0:
-                found[face.shape].append(face)
-        sides.append(found)
+                distances[face.shape].append(face)
+        sides.append(distances)
     for shape, mine in sides[0].items():
         theirs = sides[1].get(shape, [])
         if not theirs or len(mine) * len(theirs) > _MOST_PAIRS:

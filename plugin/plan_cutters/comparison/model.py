@@ -16,13 +16,13 @@ Reach = Literal["reached", "undecided", "partly", "not reached", "not judged", "
 FaceMatch = Literal["same file", "place", "number", "name", "likeness"]
 CutterMatch = Literal["id", "name", "cutting part"]
 #: Changes of what was asked: as long as one is not named by `--despite`, verdicts are answers to two questions.
-ASKED = ("unit", "faces", "sampling", "postures", "tolerance", "clearance", "machine", "setup", "fixtures")
+REQUESTED = ("unit", "faces", "sampling", "postures", "tolerance", "clearance", "machine", "setup", "fixtures")
 
 
 class Change(Frozen):
     """Something other than verdicts differs."""
 
-    what: str = Field(description=f"code: {', '.join(ASKED)}; part, tools, version, missing; of a cutter its field")
+    what: str = Field(description=f"code: {', '.join(REQUESTED)}; part, tools, version, missing; of a cutter its field")
     old: str
     new: str
     hinders: bool = Field(default=False, description="the plans are not comparable for it")

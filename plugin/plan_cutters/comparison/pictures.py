@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from plan_cutters.plan_file.model import Plan
 
 #: Data that a comparison shows nothing of: postures and their maps, operations, other colours, and the frames of samples.
-_LEFT = re.compile(
+_OMITTED = re.compile(
     r"(tilt|lean|maps|scalar|operation|operation_lean|setup|reason)\.|sample\.(point|normal|direction|curvature)$"
 )
 _ELEMENT = r'<script type="{}" id="{}">([^<]*)</script>'
@@ -43,18 +43,18 @@ def picture_of(path: Path, plan: Plan) -> Picture:
     try:
         data = page.read_bytes()
     except OSError:
-        return _none(f"there is no {name} beside the plan: {_AGAIN}")
+        return _none(f"there is no {name} in the folder of the plan: {_AGAIN}")
     if entry and hashlib.sha256(data).hexdigest() != entry.sha256:
         return _none(f"{name} is not the one that was written with the plan: {_AGAIN}")
     try:
-        found = _found(data.decode("utf-8"))
+        picture = _picture(data.decode("utf-8"))
     except (ValueError, LookupError, TypeError, AttributeError, zlib.error):
         return _none(f"{name} cannot be read: {_AGAIN}")
-    if found is None:
+    if picture is None:
         return _none(f"{name} was made by another version of the program: {_AGAIN}")
-    if _shows(found) != (plan.part.sha256, {face.id for face in plan.faces}):
+    if _shows(picture) != (plan.part.sha256, {face.id for face in plan.faces}):
         return _none(f"{name} is of another part: {_AGAIN}")
-    return found
+    return picture
 
 
 def _shows(picture: Picture) -> tuple[str | None, set[str]]:
@@ -66,13 +66,15 @@ def _none(why: str) -> Picture:
     return Picture(None, "", why)
 
 
-def _found(text: str) -> Picture | None:
+def _picture(text: str) -> Picture | None:
     """The picture that a page holds; None where its data have another form."""
-    told, stream = (_element(text, kind, name) for kind, name in (("application/json", "meta"), ("text/plain", "data")))
-    meta = json.loads(told)
+    meta_text, stream = (
+        _element(text, kind, name) for kind, name in (("application/json", "meta"), ("text/plain", "data"))
+    )
+    meta = json.loads(meta_text)
     if meta["format"] != _FORMAT:
         return None
-    whole = {name: entry for name, entry in meta["arrays"].items() if not _LEFT.match(name)}
+    whole = {name: entry for name, entry in meta["arrays"].items() if not _OMITTED.match(name)}
     end = max(entry["offset"] + entry["bytes"] for entry in whole.values())
     inflated = zlib.decompressobj(-15).decompress(base64.b64decode(stream, validate=True), end)
     if len(inflated) < end or min(min(entry["offset"], entry["bytes"]) for entry in whole.values()) < 0:
@@ -87,13 +89,21 @@ def _found(text: str) -> Picture | None:
     cutters = [{"id": each["id"], "name": each["name"]} for each in meta["cutters"]]
     if any(f"verdict.{each['id']}" not in entries for each in cutters):
         raise LookupError("a cutter has no verdicts")
-    kept = {**meta, "cutters": cutters, "spots": [], "scalars": [], "operations": None, "maps": None, "arrays": entries}
-    return Picture(kept, data, "")
+    reduced = {
+        **meta,
+        "cutters": cutters,
+        "spots": [],
+        "scalars": [],
+        "operations": None,
+        "maps": None,
+        "arrays": entries,
+    }
+    return Picture(reduced, data, "")
 
 
 def _element(text: str, kind: str, name: str) -> str:
     """What an element of the page says: nothing that the page writes into it begins another one."""
-    found = re.search(_ELEMENT.format(re.escape(kind), name), text)
-    if found is None:
+    match = re.search(_ELEMENT.format(re.escape(kind), name), text)
+    if match is None:
         raise LookupError(name)
-    return found[1]
+    return match[1]

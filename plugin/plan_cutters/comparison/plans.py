@@ -7,7 +7,7 @@ from typing import Any
 
 from cad_io.files import fingerprint
 from plan_cutters.comparison.matching import match_cutters, match_faces
-from plan_cutters.comparison.model import ASKED, Change, CutterDifference, FaceDifference, FaceState, PlanDifference
+from plan_cutters.comparison.model import REQUESTED, Change, CutterDifference, FaceDifference, FaceState, PlanDifference
 from plan_cutters.comparison.states import (
     cutter_falls,
     cutter_state,
@@ -71,9 +71,9 @@ def compare(
         *(_one_sided(old, c, None) for c in _rest(old.cutters, [a.id for a, _, _ in tools])),
         *(_one_sided(new, None, c) for c in _rest(new.cutters, [b.id for _, b, _ in tools])),
     ]
-    told_faces = sorted((each for each in faces if each is not None), key=_place)
-    told_cutters = sorted((each for each in cutters if each is not None), key=_id)
-    told: list[FaceDifference | CutterDifference] = [*told_faces, *told_cutters]
+    face_rows = sorted((each for each in faces if each is not None), key=_place)
+    cutter_rows = sorted((each for each in cutters if each is not None), key=_id)
+    differences: list[FaceDifference | CutterDifference] = [*face_rows, *cutter_rows]
     return PlanDifference(
         name=name,
         comparable=not why_not,
@@ -81,11 +81,11 @@ def compare(
         changes=changes,
         selected=(taken(old), taken(new)),
         matched=dict(sorted(Counter(str(how) for _, _, how in pairs).items())),
-        faces=told_faces,
-        cutters=told_cutters,
+        faces=face_rows,
+        cutters=cutter_rows,
         unreachable=unreachable(new),
-        lost=any(each.lost for each in told),
-        won=any(each.won for each in told),
+        lost=any(each.lost for each in differences),
+        won=any(each.won for each in differences),
     )
 
 
@@ -96,8 +96,8 @@ def taken(plan: Plan) -> str | None:
 
 def _changes(old: Plan, new: Plan, despite: Collection[str]) -> Iterable[Change]:
     """Differences of what was asked, then of other things that may be the cause of differences."""
-    then, now = _asked(old), _asked(new)
-    for what, (mine, theirs) in {word: (then[word], now[word]) for word in ASKED}.items():
+    then, now = _requested(old), _requested(new)
+    for what, (mine, theirs) in {word: (then[word], now[word]) for word in REQUESTED}.items():
         if mine != theirs:
             if what == "machine" and mine[0] != theirs[0]:
                 mine, theirs = mine[0], theirs[0]
@@ -114,7 +114,7 @@ def _changes(old: Plan, new: Plan, despite: Collection[str]) -> Iterable[Change]
             yield Change(what=what, old=_text(mine), new=_text(theirs))
 
 
-def _asked(plan: Plan) -> dict[str, Any]:
+def _requested(plan: Plan) -> dict[str, Any]:
     """Answers to what differs here are answers to two questions; by the codes of `model.ASKED`."""
     e = plan.effective
     return {
@@ -146,8 +146,8 @@ def _text(value: Any) -> str:
 
 
 def _rest(entries: Iterable[Any], known: Collection[str]) -> list[Any]:
-    found = set(known)
-    return [each for each in entries if each.id not in found]
+    names = set(known)
+    return [each for each in entries if each.id not in names]
 
 
 def _face(old: Plan, a: FaceEntry, new: Plan, b: FaceEntry, how: Any, slack: float) -> FaceDifference | None:
@@ -157,17 +157,17 @@ def _face(old: Plan, a: FaceEntry, new: Plan, b: FaceEntry, how: Any, slack: flo
     # Which cutters reach all of it is told with each cutter.
     if not (loses or wins) and (was.reach, was.reason) == (now.reach, now.reason):
         return None
-    return _told(b, old=a.id, new=b.id, matched_by=how, was=was, now=now, lost=loses, won=wins)
+    return _face_difference(b, old=a.id, new=b.id, matched_by=how, was=was, now=now, lost=loses, won=wins)
 
 
 def _gone(plan: Plan, face: FaceEntry) -> FaceDifference:
     was = face_state(plan, face)
-    return _told(face, old=face.id, was=was, lost=False, won=_open(was))
+    return _face_difference(face, old=face.id, was=was, lost=False, won=_open(was))
 
 
 def _added(plan: Plan, face: FaceEntry) -> FaceDifference:
     now = face_state(plan, face)
-    return _told(face, new=face.id, now=now, lost=_open(now), won=False)
+    return _face_difference(face, new=face.id, now=now, lost=_open(now), won=False)
 
 
 def _open(state: FaceState) -> bool:
@@ -175,11 +175,11 @@ def _open(state: FaceState) -> bool:
     return state.reach not in ("reached", "not asked", "inside other bodies")
 
 
-def _told(face: FaceEntry, **found: Any) -> FaceDifference:
+def _face_difference(face: FaceEntry, **fields: Any) -> FaceDifference:
     """A face as the last plan has it that has it."""
     area = face.area_mm2 if math.isfinite(face.area_mm2) else None
     return FaceDifference(
-        name=face.name, kind=face.kind or face.shape, area_mm2=area, centre_mm=face.centre_mm, **found
+        name=face.name, kind=face.kind or face.shape, area_mm2=area, centre_mm=face.centre_mm, **fields
     )
 
 
@@ -189,19 +189,19 @@ def _cutter(
 ) -> CutterDifference | None:  # fmt: skip
     """A cutter that both have; None where its form and its answer are the same."""
     was, now = cutter_state(old, a), cutter_state(new, b)
-    lost, won = list[tuple[str, str]](), list[tuple[str, str]]()
+    gone, won = list[tuple[str, str]](), list[tuple[str, str]]()
     for mine, theirs, _ in pairs:
         if mine.target and theirs.target:
             before, after = reached_whole(a.faces.get(mine.id)), reached_whole(b.faces.get(theirs.id))
             if before != after:
-                (lost if before else won).append((mine.id, theirs.id))
+                (gone if before else won).append((mine.id, theirs.id))
     forms = [(name, _form(a, name), _form(b, name)) for name in _FORM]
     changes = [Change(what=name, old=before, new=after) for name, before, after in forms if before != after]
-    loses = cutter_falls(was, now, slack) or bool(lost)
+    loses = cutter_falls(was, now, slack) or bool(gone)
     wins = cutter_falls(now, was, slack) or bool(won)
     if not (loses or wins or changes):
         return None
-    return CutterDifference(name=called(b), matched_by=how, was=was, now=now, changes=changes, faces_lost=lost,
+    return CutterDifference(name=called(b), matched_by=how, was=was, now=now, changes=changes, faces_lost=gone,
                             faces_won=won, lost=loses, won=wins)  # fmt: skip
 
 

@@ -12,7 +12,7 @@ from plan_cutters.comparison.model import Comparison, PlanDifference
 from plan_cutters.comparison.pictures import Picture, picture_of
 from plan_cutters.comparison.plans import taken
 from plan_cutters.comparison.states import face_state
-from plan_cutters.comparison.told import change, choice, cutter_rows, face_rows, headline, known, mark
+from plan_cutters.comparison.wording import change, choice, cutter_rows, face_rows, headline, known, mark
 from plan_cutters.plan_file import numbers
 from plan_cutters.plan_file.load import load_plan
 from plan_cutters.plan_file.model import Plan
@@ -44,14 +44,14 @@ class Side(NamedTuple):
     picture: Picture
 
 
-def pages(old: Path, new: Path, found: Comparison) -> Iterator[tuple[str, bytes | None]]:
+def pages(old: Path, new: Path, comparison: Comparison) -> Iterator[tuple[str, bytes | None]]:
     """A page for each pair of plans that differ, by name; one without a name for two plans, whether they differ or not.
 
     Parameters
     ----------
     old, new : Path
         As they were compared.
-    found : Comparison
+    comparison : Comparison
         Of these two.
 
     Yields
@@ -67,32 +67,33 @@ def pages(old: Path, new: Path, found: Comparison) -> Iterator[tuple[str, bytes 
         A plan is not there any more, or cannot be read any more.
     """
     mine, theirs = plans_in(old), plans_in(new)
-    for each in found.plans:
+    for each in comparison.plans:
         name = "" if "" in mine else each.name
         if name and each.same:
             yield name, None
             continue
         sides = []
-        for given, path in ((old, mine[name]), (new, theirs[name])):
+        for folder, path in ((old, mine[name]), (new, theirs[name])):
             plan = load_plan(path)
-            sides.append(Side(str(given / name) if name else str(given), plan, picture_of(path, plan)))
+            sides.append(Side(str(folder / name) if name else str(folder), plan, picture_of(path, plan)))
         yield name, page(each, *sides)
 
 
-def page(found: PlanDifference, old: Side, new: Side) -> bytes:
+def page(difference: PlanDifference, old: Side, new: Side) -> bytes:
     """The page of two plans, UTF-8; the same for the same plans.
 
     Parameters
     ----------
-    found : PlanDifference
+    difference : PlanDifference
         From the old one to the new one.
     old, new : Side
     """
     sides = {"old": old, "new": new}
-    told = {
+    data = {
         "marks": {word: dict(zip(("label", "colour", "pattern"), row, strict=True)) for word, row in MARKS.items()},
         "states": {
-            word: _states(side.plan, {getattr(f, word): mark(f) for f in found.faces}) for word, side in sides.items()
+            word: _states(side.plan, {getattr(f, word): mark(f) for f in difference.faces})
+            for word, side in sides.items()
         },
         "pairs": [(a.id, b.id) for a, b, _ in match_faces(old.plan, new.plan)],
         "cutters": list(_cutters(old.plan, new.plan)),
@@ -103,41 +104,41 @@ def page(found: PlanDifference, old: Side, new: Side) -> bytes:
         policy=policy(script, style, "data: blob:"),
         script=Markup(script),
         style=Markup(style),
-        told=Markup(embedded(told)),
+        told=Markup(embedded(data)),
         data={word: Markup(side.picture.data) for word, side in sides.items()},
         sides=sides,
-        found=found,
-        outcome=_outcome(found),
-        headline=headline(found),
-        remarks=[line for line in (choice(found), known(found)) if line],
-        changes=[change(each) for each in found.changes if not each.hinders],
+        found=difference,
+        outcome=_outcome(difference),
+        headline=headline(difference),
+        remarks=[line for line in (choice(difference), known(difference)) if line],
+        changes=[change(each) for each in difference.changes if not each.hinders],
         # What is lost is seen first.
         faces=sorted(
-            zip(found.faces, face_rows(found), strict=True), key=lambda row: (not row[0].lost, not row[0].won)
+            zip(difference.faces, face_rows(difference), strict=True), key=lambda row: (not row[0].lost, not row[0].won)
         ),
-        cutters=list(cutter_rows(found)),
+        cutters=list(cutter_rows(difference)),
         facts=list(_facts(old.plan, new.plan)),
         w=numbers,
     ).encode()
 
 
-def _outcome(found: PlanDifference) -> Chip:
+def _outcome(difference: PlanDifference) -> Chip:
     """What became of the part."""
-    if not found.comparable:
+    if not difference.comparable:
         return Chip("unsure", "?", "Not comparable")
-    if found.lost:
-        return Chip("bad", "✕", "Lost and won" if found.won else "Lost")
-    return Chip("good", "✓", "Won" if found.won else "Nothing lost")
+    if difference.lost:
+        return Chip("bad", "✕", "Lost and won" if difference.won else "Lost")
+    return Chip("good", "✓", "Won" if difference.won else "Nothing lost")
 
 
 def _states(plan: Plan, marked: dict[str | None, str]) -> dict[str, str]:
     """What became of each face, in words of `MARKS`."""
-    found = {}
+    states = {}
     for face in plan.faces:
         word = marked.get(face.id) or face_state(plan, face).reach
         word = {"new": "alone", "gone": "alone", "lost and won": "lost"}.get(word, word)
-        found[face.id] = word if word in MARKS else "not reached"
-    return found
+        states[face.id] = word if word in MARKS else "not reached"
+    return states
 
 
 def _cutters(old: Plan, new: Plan) -> Iterator[dict[str, str | None]]:
@@ -156,7 +157,7 @@ def _cutters(old: Plan, new: Plan) -> Iterator[dict[str, str | None]]:
 
 def _facts(old: Plan, new: Plan) -> Iterator[tuple[str, str, str]]:
     """Rows on what was compared: a title, and a cell of each plan."""
-    yield from ((title, told(old), told(new)) for title, told in _FACTS)
+    yield from ((title, value_of(old), value_of(new)) for title, value_of in _FACTS)
 
 
 def _size(plan: Plan) -> str:

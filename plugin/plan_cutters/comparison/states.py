@@ -14,15 +14,15 @@ def face_state(plan: Plan, face: FaceEntry) -> FaceState:
     """How all cutters together answer for a face: each by itself, for what two reach in turns is in no plan file."""
     if not face.target:
         return FaceState(reach="not asked", share=0.0, cutters=[], reason=None)
-    found = {c.id: c.faces[face.id] for c in plan.cutters if face.id in c.faces}
-    if not found:
+    by_cutter = {c.id: c.faces[face.id] for c in plan.cutters if face.id in c.faces}
+    if not by_cutter:
         return FaceState(reach="not judged", share=0.0, cutters=[], reason=None)
-    if all(not _finished(each) for each in found.values()):
+    if all(not _finished(each) for each in by_cutter.values()):
         return FaceState(reach="inside other bodies", share=0.0, cutters=[], reason=None)
-    whole = sorted(name for name, each in found.items() if reached_whole(each))
+    whole = sorted(name for name, each in by_cutter.items() if reached_whole(each))
     if whole:
         return FaceState(reach="reached", share=1.0, cutters=whole, reason=None)
-    best = found[max(sorted(found), key=lambda name: (not found[name].blocked, reached(found[name])))]
+    best = by_cutter[max(sorted(by_cutter), key=lambda name: (not by_cutter[name].blocked, reached(by_cutter[name])))]
     share = reached(best)
     reach: Reach = "undecided" if not best.blocked else "partly" if share > 0.0 else "not reached"
     if _finished(best) == best.unjudged:
@@ -31,7 +31,7 @@ def face_state(plan: Plan, face: FaceEntry) -> FaceState:
 
 
 def cutter_state(plan: Plan, cutter: CutterEntry) -> CutterState:
-    """How a cutter is answered for, over all setups that were asked for."""
+    """How a cutter is answered for, over all setups that were requested."""
     over = plan.selected_over_setups is not None and cutter.lost_in_all == 0
     return CutterState(
         id=cutter.id,
@@ -54,9 +54,9 @@ def reached_whole(verdicts: FaceVerdicts | None) -> bool:
     return verdicts is not None and _finished(verdicts) > 0 and not (verdicts.not_reached or verdicts.unjudged)
 
 
-def worst(lost_by: Mapping[str, float]) -> str | None:
+def worst(shares: Mapping[str, float]) -> str | None:
     """The reason of the largest share, the first by name of several."""
-    return min(lost_by, key=lambda reason: (-lost_by[reason], reason), default=None)
+    return min(shares, key=lambda reason: (-shares[reason], reason), default=None)
 
 
 def falls(was: FaceState, now: FaceState, slack: float) -> bool:

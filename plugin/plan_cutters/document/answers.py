@@ -4,7 +4,7 @@ import numpy as np
 
 from cad_io.arrays import SurfaceSamples
 from plan_cutters.domain.area import Patch
-from plan_cutters.domain.change import Change, Mend, Step, Value
+from plan_cutters.domain.change import Change, Step, Value, WhatIfAnswer
 from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.radius_map import RadiusMap
 from plan_cutters.domain.stick_out import StickOut
@@ -29,69 +29,69 @@ from plan_cutters.scene.surroundings import Surroundings
 _WORDS: dict[int, Beyond] = {INACCESSIBLE: "inaccessible", UNDECIDED: "undecided"}
 
 
-def stick_out_entry(found: StickOut, samples: SurfaceSamples, around: Surroundings) -> StickOutEntry:
+def stick_out_entry(stick_out: StickOut, samples: SurfaceSamples, surroundings: Surroundings) -> StickOutEntry:
     """A least stick-out."""
-    limited, none = found.sample >= 0, np.isnan(found.least)
+    limited, none = stick_out.sample >= 0, np.isnan(stick_out.least)
     return StickOutEntry(
-        least_mm=None if none else found.least,
-        floor_mm=None if none else found.floor,
-        longest_mm=found.longest,
-        limited_by=found.why,
-        served=found.served,
-        beyond_mm=found.beyond if limited else None,
-        beyond=_WORDS.get(found.verdict),
-        face=f"F{samples.face[found.sample]}" if limited else None,
-        point=vector(samples.point[found.sample]) if limited else None,
-        posture=None if found.axis is None else posture(found.tilt, found.rotation, found.axis),
-        obstacle_face=around.called(found.obstacle_face) if found.obstacle_face else None,
-        obstacle_point=None if found.obstacle_point is None else vector(found.obstacle_point),
-        doubtful=around.doubtful,
-        step_mm=None if found.each is None else found.step,
+        least_mm=None if none else stick_out.least,
+        floor_mm=None if none else stick_out.floor,
+        longest_mm=stick_out.longest,
+        limited_by=stick_out.why,
+        served=stick_out.served,
+        beyond_mm=stick_out.beyond if limited else None,
+        beyond=_WORDS.get(stick_out.verdict),
+        face=f"F{samples.face[stick_out.sample]}" if limited else None,
+        point=vector(samples.point[stick_out.sample]) if limited else None,
+        posture=None if stick_out.axis is None else posture(stick_out.tilt, stick_out.rotation, stick_out.axis),
+        obstacle_face=surroundings.called(stick_out.obstacle_face) if stick_out.obstacle_face else None,
+        obstacle_point=None if stick_out.obstacle_point is None else vector(stick_out.obstacle_point),
+        doubtful=surroundings.doubtful,
+        step_mm=None if stick_out.each is None else stick_out.step,
     )
 
 
-def radius_entry(found: RadiusMap, samples: SurfaceSamples, *, doubtful: bool = False) -> RadiusEntry:
+def radius_entry(radius_map: RadiusMap, samples: SurfaceSamples, *, doubtful: bool = False) -> RadiusEntry:
     """A map of largest radii."""
-    row = found.bottleneck
-    reason = None if row is None or found.reason[row] == NO_REASON else REASONS[found.reason[row]]
+    row = radius_map.bottleneck
+    reason = None if row is None or radius_map.reason[row] == NO_REASON else REASONS[radius_map.reason[row]]
     return RadiusEntry(
-        shape=found.shape,
-        length_over_radius=found.ratio,
-        step=found.step,
-        least_mm=found.least,
-        most_mm=found.most,
-        percentiles_mm={str(q): radius for q, radius in found.percentiles(samples.area).items()},
-        below=int(found.less.sum()),
-        no_less=int(found.no_less.sum()),
+        shape=radius_map.shape,
+        length_over_radius=radius_map.ratio,
+        step=radius_map.step,
+        least_mm=radius_map.least,
+        most_mm=radius_map.most,
+        percentiles_mm={str(q): radius for q, radius in radius_map.percentiles(samples.area).items()},
+        below=int(radius_map.less.sum()),
+        no_less=int(radius_map.no_less.sum()),
         doubtful=doubtful,
-        bottleneck_mm=None if row is None else float(found.radius[row]),
+        bottleneck_mm=None if row is None else float(radius_map.radius[row]),
         bottleneck_face=None if row is None else f"F{samples.face[row]}",
         bottleneck_point=None if row is None else vector(samples.point[row]),
-        beyond=None if row is None else _WORDS.get(int(found.beyond[row])),
+        beyond=None if row is None else _WORDS.get(int(radius_map.beyond[row])),
         reason=reason,
     )
 
 
-def mend_entry(found: Mend) -> MendEntry:
+def what_if_entry(what_if: WhatIfAnswer) -> MendEntry:
     """Make the entry of a what-if answer: the changes that would make a cutter feasible, and the next steps."""
     return filled(
-        MendEntry, found, changes=[_change_entry(each) for each in found.changes], lost_share=found.share,
-        steps=[_step_entry(each) for each in found.steps], lost_areas=[_area_entry(each) for each in found.areas],
-        more_lost_areas=found.more_areas,
+        MendEntry, what_if, changes=[_change_entry(each) for each in what_if.changes], lost_share=what_if.share,
+        steps=[_step_entry(each) for each in what_if.steps], lost_areas=[_area_entry(each) for each in what_if.areas],
+        more_lost_areas=what_if.more_areas,
     )  # fmt: skip
 
 
-def least_set_entry(found: LeastSet, *, doubtful: bool = False) -> LeastSetEntry:
+def least_set_entry(least: LeastSet, *, doubtful: bool = False) -> LeastSetEntry:
     """The fewest runs."""
     runs = [
-        filled(RunEntry, each, cutter=each.cutter.id, area_mm2=each.area, faces=list(each.faces)) for each in found.runs
+        filled(RunEntry, each, cutter=each.cutter.id, area_mm2=each.area, faces=list(each.faces)) for each in least.runs
     ]
-    return filled(LeastSetEntry, found, runs=runs, doubtful=doubtful)
+    return filled(LeastSetEntry, least, runs=runs, doubtful=doubtful)
 
 
-def _area_entry(found: Patch) -> LostAreaEntry:
-    return filled(LostAreaEntry, found, area_mm2=found.area, faces=list(found.faces), point=found.place, across_mm=found.across,
-                  why=patch(found))  # fmt: skip
+def _area_entry(area: Patch) -> LostAreaEntry:
+    return filled(LostAreaEntry, area, area_mm2=area.area, faces=list(area.faces), point=area.place, across_mm=area.across,
+                  why=patch(area))  # fmt: skip
 
 
 def _joined(words: list[str]) -> str:
@@ -101,20 +101,20 @@ def _joined(words: list[str]) -> str:
     return ", and ".join(words)
 
 
-def _step_entry(found: Step) -> StepEntry:
+def _step_entry(step: Step) -> StepEntry:
     return filled(
-        StepEntry, found,
-        changes=[MoveEntry(thing=each.means, now=each.now, asked=each.asked, why=each.words) for each in found.moves],
-        lost_before=found.before, lost_after=found.after, cutters=[each.id for each in found.cutters],
-        setups=[vector(each) for each in found.setups], why=_joined([each.words for each in found.moves]),
-        remains=[_area_entry(each) for each in found.remains],
+        StepEntry, step,
+        changes=[MoveEntry(thing=each.means, now=each.now, asked=each.asked, why=each.words) for each in step.moves],
+        lost_before=step.before, lost_after=step.after, cutters=[each.id for each in step.cutters],
+        setups=[vector(each) for each in step.setups], why=_joined([each.words for each in step.moves]),
+        remains=[_area_entry(each) for each in step.remains],
     )  # fmt: skip
 
 
-def _change_entry(found: Change) -> ChangeEntry:
+def _change_entry(change: Change) -> ChangeEntry:
     return filled(
-        ChangeEntry, found, now=_plain(found.now), asked=_plain(found.asked), beyond=_plain(found.beyond),
-        cutter=None if found.cutter is None else found.cutter.id, lost_before=found.before, lost_after=found.after,
+        ChangeEntry, change, now=_plain(change.now), asked=_plain(change.asked), beyond=_plain(change.beyond),
+        cutter=None if change.cutter is None else change.cutter.id, lost_before=change.before, lost_after=change.after,
     )  # fmt: skip
 
 

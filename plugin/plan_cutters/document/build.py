@@ -38,23 +38,23 @@ from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.surroundings import Surroundings
 
 
-def missing_entries(part: Part, around: Surroundings) -> list[MissingEntry]:
+def missing_entries(part: Part, surroundings: Surroundings) -> list[MissingEntry]:
     """Faces that are in the way only as a guess, or of which nothing is known but that the file has them."""
-    found = [
+    entries = [
         MissingEntry(face=f"F{number}", entity=None, name=part.faces[number - 1].name, why=why, stand_in=how)
-        for number, why, how in around.missing
+        for number, why, how in surroundings.missing
     ]
-    found += [
+    entries += [
         MissingEntry(face=None, entity=each.entity or None, name=each.name, why=each.why,
                      stand_in="none" if each.box is None else "box")
-        for each in around.lost
+        for each in surroundings.lost
     ]  # fmt: skip
-    found += [
+    entries += [
         MissingEntry(face=None, entity=None, name=f"{each.name} {face}".strip(), why=why, stand_in=how)
-        for each in around.fixtures
+        for each in surroundings.fixtures
         for face, why, how in each.missing
     ]
-    return found
+    return entries
 
 
 def degrees(pair: tuple[float, float]) -> tuple[float, float]:
@@ -64,17 +64,17 @@ def degrees(pair: tuple[float, float]) -> tuple[float, float]:
 
 
 def cutter_entry(
-    cutter: Cutter, samples: SurfaceSamples, reach: Verdicts, found: Sequence[Witness], march_differs: int, seconds: float,
-    *, part: Part, around: Surroundings, slack: float, inside: NDArray[np.bool_], besides: NDArray[np.uint8],
+    cutter: Cutter, samples: SurfaceSamples, reach: Verdicts, witnesses: Sequence[Witness], march_differs: int, seconds: float,
+    *, part: Part, surroundings: Surroundings, slack: float, inside: NDArray[np.bool_], besides: NDArray[np.uint8],
 ) -> CutterEntry:  # fmt: skip
-    """Make the plan's entry of a cutter: its verdicts among the obstacles `around`, and the reasons; `slack` as in `Assembly`.
+    """Make the plan's entry of a cutter: its verdicts in the `surroundings`, and the reasons; `slack` as in `Assembly`.
 
     `inside` (n,): samples inside other bodies of the part. `besides` (n,): the reasons that take part in the axis limit.
     """
     mine = counts(reach.verdict, inside)
     blocked = mine["inaccessible"] - mine["inside_bodies"]
     # What is missing from the obstacles can only be in the way of more.
-    feasible = False if blocked else None if mine["undecided"] or around.doubtful else True
+    feasible = False if blocked else None if mine["undecided"] or surroundings.doubtful else True
     not_reached, unsure = reach.verdict == INACCESSIBLE, reach.verdict == UNDECIDED
     faces = face_verdicts(samples, reach, inside)
     return filled(
@@ -101,14 +101,14 @@ def cutter_entry(
         axis_limit_with={name: int((besides == i).sum()) for i, name in enumerate(REASONS) if (besides == i).any()},
         faces=faces,
         area_share=whole_share(faces, samples, part),
-        witnesses=[_witness_entry(w, samples, around, reach, inside) for w in found],
-        witnesses_untried=sum(w.untried for w in found),
+        witnesses=[_witness_entry(w, samples, surroundings, reach, inside) for w in witnesses],
+        witnesses_untried=sum(w.untried for w in witnesses),
         seconds=seconds,
     )  # fmt: skip
 
 
 def _witness_entry(
-    witness: Witness, samples: SurfaceSamples, around: Surroundings, reach: Verdicts, inside: NDArray[np.bool_]
+    witness: Witness, samples: SurfaceSamples, surroundings: Surroundings, reach: Verdicts, inside: NDArray[np.bool_]
 ) -> WitnessEntry:
     best = None
     if witness.tilt is not None and witness.rotation is not None and witness.axis is not None:
@@ -119,7 +119,7 @@ def _witness_entry(
         point=vector(samples.point[witness.sample]),
         face=f"F{samples.face[witness.sample]}",
         verdict="undecided" if reach.verdict[witness.sample] == UNDECIDED else "inaccessible",
-        obstacle_face=None if not witness.obstacle_face else around.called(witness.obstacle_face),
+        obstacle_face=None if not witness.obstacle_face else surroundings.called(witness.obstacle_face),
         obstacle_point=None if witness.obstacle_point is None else vector(witness.obstacle_point),
         best_posture=best,
         depth_mm=witness.depth,
@@ -127,16 +127,16 @@ def _witness_entry(
     )
 
 
-def part_info(scene: Scene, around: Surroundings) -> PartInfo:
+def part_info(scene: Scene, surroundings: Surroundings) -> PartInfo:
     """The part, and what is odd about it."""
     part, orientation = scene.part, scene.orientation
     warnings = list(part.warnings)
     # Without the faces that are left out on purpose there are openings, too.
-    for body in () if scene.ignored else (body for body in around.bodies if not body.closed):
+    for body in () if scene.ignored else (body for body in surroundings.bodies if not body.closed):
         warnings.append(f"{listed([f'F{number}' for number in body.faces])} enclose a body with openings: what lies within it is "
                         "not known for sure; a face or an edge may be missing")  # fmt: skip
-    if around.on_bodies:
-        names = listed([f"F{number}" for number in around.on_bodies])
+    if surroundings.on_bodies:
+        names = listed([f"F{number}" for number in surroundings.on_bodies])
         warnings.append(f"{names} lie on faces of solids, as construction geometry does, and are judged and in the way like "
                         "all others: --ignore leaves them out")  # fmt: skip
     return PartInfo(
@@ -198,8 +198,8 @@ def versions() -> dict[str, str]:
     from importlib.metadata import version
 
     names = {"cadquery-ocp-proxy": "occt", "numba": "numba", "numpy": "numpy", "scipy": "scipy", "trimesh": "trimesh"}
-    found = {label: version(name) for name, label in names.items()}
-    return {"plan_cutters": __version__, **found, "python": platform.python_version()}
+    result = {label: version(name) for name, label in names.items()}
+    return {"plan_cutters": __version__, **result, "python": platform.python_version()}
 
 
 def scope_of(faces: Sequence[FaceEntry]) -> Scope:
@@ -221,7 +221,7 @@ def _area(faces: Sequence[FaceEntry]) -> float:
 
 
 def _kinds(faces: Sequence[FaceEntry]) -> dict[str, int]:
-    found: dict[str, int] = {}
+    counts: dict[str, int] = {}
     for face in faces:
-        found[face.kind] = found.get(face.kind, 0) + 1
-    return dict(sorted(found.items()))
+        counts[face.kind] = counts.get(face.kind, 0) + 1
+    return dict(sorted(counts.items()))

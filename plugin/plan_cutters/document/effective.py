@@ -16,7 +16,7 @@ from plan_cutters.scene.preparation import Prepared
 
 def effective(ready: Prepared) -> Effective:
     """Every option after defaults: as `Options` keeps it where nothing more is said here, angles in degrees."""
-    scene, options, choice, around = ready.scene, ready.options, ready.chosen, ready.conditions.around
+    scene, options, choice, surroundings = ready.scene, ready.options, ready.chosen, ready.conditions.surroundings
     made: dict[str, Any] = {
         "cutters": [c.id for c in ready.cutters],
         "cutter_source": " and ".join(_sources(options)) or "built-in",
@@ -33,29 +33,31 @@ def effective(ready: Prepared) -> Effective:
         "sampled_by": "grid" if options.grid is not None else "default" if options.spacing is None else "spacing",
         "tolerance_mm": ready.conditions.tolerance,
         "local_tolerance": _local(ready),
-        "chord_error_mm": around.certain.triangles.chord_error,
-        "chord_measured_share": around.certain.triangles.measured_share,
-        "obstacle_triangles": len(around.possible.triangles),
+        "chord_error_mm": surroundings.certain.triangles.chord_error,
+        "chord_measured_share": surroundings.certain.triangles.measured_share,
+        "obstacle_triangles": len(surroundings.possible.triangles),
         "area_budget": options.contacts_between(len(ready.samples)),
         "index_time_s": INDEX_TIME if options.index_time is None else options.index_time,
     }
-    return Effective(**{name: _as_asked(options, name) for name in Effective.model_fields if name not in made}, **made)
+    return Effective(
+        **{name: _as_requested(options, name) for name in Effective.model_fields if name not in made}, **made
+    )
 
 
 def _local(ready: Prepared) -> list[LocalTolerance]:
     faces, targets = ready.scene.part.faces, set(ready.chosen.targets)
     whole = sum(faces[number - 1].area for number in targets)
-    found = [
+    changes = [
         LocalTolerance(
             face=f"F{number}", chord_error_mm=error, tolerance_mm=error / CHORD_SHARE, area_mm2=faces[number - 1].area,
             share=faces[number - 1].area / whole if number in targets and whole > 0.0 else 0.0,
         )
-        for number, error in ready.conditions.around.loose.items()
+        for number, error in ready.conditions.surroundings.loose.items()
     ]  # fmt: skip
-    return sorted(found, key=lambda each: (-each.chord_error_mm, int(each.face[1:])))
+    return sorted(changes, key=lambda each: (-each.chord_error_mm, int(each.face[1:])))
 
 
-def _as_asked(options: Options, name: str) -> Any:
+def _as_requested(options: Options, name: str) -> Any:
     """The option of an entry's name."""
     value = getattr(options, re.sub("_(mm|deg|s|mm_min)$", "", name))
     if value is None or not name.endswith("_deg"):

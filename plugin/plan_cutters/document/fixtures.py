@@ -11,22 +11,22 @@ from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
 
 def fixture_entries(each: Sequence[Surroundings]) -> list[FixtureEntry]:
     """Fixtures of all setups, those of the first one first; what stands there in the same place is one entry."""
-    return [fixture_entry(standing).model_copy(update={"setups": setups}) for standing, setups in standing_in(each)]
+    return [fixture_entry(fixture).model_copy(update={"setups": setups}) for fixture, setups in fixtures_in(each)]
 
 
-def standing_in(each: Sequence[Surroundings]) -> list[tuple[PlacedFixture, list[int]]]:
+def fixtures_in(each: Sequence[Surroundings]) -> list[tuple[PlacedFixture, list[int]]]:
     """Placed fixtures of all setups, each with the setups in which it stands, in the order of `fixture_entries`."""
-    found: list[tuple[PlacedFixture, list[int]]] = []
+    fixtures: list[tuple[PlacedFixture, list[int]]] = []
     known: list[FixtureEntry] = []
-    for number, around in enumerate(each):
-        for standing in around.fixtures:
-            mine = fixture_entry(standing)
+    for number, surroundings in enumerate(each):
+        for fixture in surroundings.fixtures:
+            mine = fixture_entry(fixture)
             if number and mine in known:
-                found[known.index(mine)][1].append(number)
+                fixtures[known.index(mine)][1].append(number)
             else:
-                found.append((standing, [number]))
+                fixtures.append((fixture, [number]))
                 known.append(mine)
-    return found
+    return fixtures
 
 
 def references(part: Part) -> list[ReferenceEntry]:
@@ -34,13 +34,13 @@ def references(part: Part) -> list[ReferenceEntry]:
     return [ReferenceEntry(file=file, sha256=sha256) for file, sha256 in part.references]
 
 
-def fixture_entry(standing: PlacedFixture) -> FixtureEntry:
+def fixture_entry(placed: PlacedFixture) -> FixtureEntry:
     """A fixture where it stands."""
-    fixture, source, triangles = standing.fixture, standing.source, standing.obstacles.triangles
+    fixture, source, triangles = placed.fixture, placed.source, placed.obstacles.triangles
     file = None if source is None else source.file
     x, y, z, rx, ry, rz = fixture.placement
     return FixtureEntry(
-        name=standing.name,
+        name=placed.name,
         file=None if file is None else Path(file).name,
         sha256=None if source is None else source.sha256,
         references=references(source) if isinstance(source, Part) else [],
@@ -48,6 +48,6 @@ def fixture_entry(standing: PlacedFixture) -> FixtureEntry:
         placement=(x, y, z, rx, ry, rz),
         triangles=len(triangles),
         chord_error_mm=triangles.chord_error,
-        watertight=standing.body is not None,
-        notes=list(standing.notes),
+        watertight=placed.body is not None,
+        notes=list(placed.notes),
     )

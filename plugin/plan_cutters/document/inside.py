@@ -42,7 +42,7 @@ def inside_entry(ready: Prepared, faces: Mapping[str, FaceVerdicts]) -> InsideEn
         )
         for each in coverings(ready)
     ]
-    names = ready.conditions.around.on_bodies
+    names = ready.conditions.surroundings.on_bodies
     on_bodies = None
     if len(lying):
         on_bodies = SheetsEntry(

@@ -23,20 +23,20 @@ from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
 
 def notes_of(ready: Prepared, entries: Sequence[CutterEntry]) -> list[Note]:
     """All notes, in the order in which people read them."""
-    scene, options, around = ready.scene, ready.options, ready.conditions.around
+    scene, options, surroundings = ready.scene, ready.options, ready.conditions.surroundings
     return [
         *_of_cutters(options, ready.cutters),
         *_of_samples(ready),
         *_of_sides(scene, options, ready.conditions.tolerance),
         *_of_loose_faces(ready),
-        *_of_obstacles(scene.part, around),
-        *_of_fixtures(around.fixtures, options.shared_fixtures, several=bool(options.other_setups)),
+        *_of_obstacles(scene.part, surroundings),
+        *_of_fixtures(surroundings.fixtures, options.shared_fixtures, several=bool(options.other_setups)),
         *_of_other_fixtures(ready),
         *ready.chosen.notes,
         *notes_of_setups(ready),
         *_of_spacing(ready),
         *_of_travel(options),
-        *_of_area(entries, doubtful=around.doubtful),
+        *_of_area(entries, doubtful=surroundings.doubtful),
     ]
 
 
@@ -52,20 +52,20 @@ def _of_samples(ready: Prepared) -> Iterator[Note]:
         yield notes.not_sampled([f"F{number}" for number, _ in samples.empty])
 
 
-def _of_sides(scene: Scene, options: Options, kept: float) -> Iterator[Note]:
+def _of_sides(scene: Scene, options: Options, tolerance: float) -> Iterator[Note]:
     if not options.machine.limited:
         yield notes.no_machine()
     if not scene.orientation.confident:
         yield notes.side_guessed()
         if other := scene.turned_faces():
             yield notes.side_by_setup(other)
-    if kept > 1.001 * scene.asked:
-        yield notes.tolerance_raised(scene.asked, kept)
+    if tolerance > 1.001 * scene.asked:
+        yield notes.tolerance_raised(scene.asked, tolerance)
 
 
 def _of_loose_faces(ready: Prepared) -> Iterator[Note]:
     """Which faces triangles do not follow closely, and what that means."""
-    loose = sorted(ready.conditions.around.loose.items(), key=lambda each: (-each[1], each[0]))
+    loose = sorted(ready.conditions.surroundings.loose.items(), key=lambda each: (-each[1], each[0]))
     if loose:
         yield notes.faces_loose([f"F{number}" for number, _ in loose], loose[0][1], ready.conditions.tolerance)
 
@@ -96,10 +96,10 @@ def _of_cutters(options: Options, cutters: Sequence[Cutter]) -> Iterator[Note]:
         yield notes.all_length_cuts()
 
 
-def _of_obstacles(part: Part, around: Surroundings) -> Iterator[Note]:
+def _of_obstacles(part: Part, surroundings: Surroundings) -> Iterator[Note]:
     """Name the obstacles that enclose no material: only their surface is in the way."""
-    closed = {number for body in around.bodies if body.closed for number in body.faces}
-    bare = set(np.unique((around.alone or around).possible.triangles.face).tolist()) - closed
+    closed = {number for body in surroundings.bodies if body.closed for number in body.faces}
+    bare = set(np.unique((surroundings.alone or surroundings).possible.triangles.face).tolist()) - closed
     if sheets := [f.id for f in part.faces if f.number in bare]:
         yield notes.open_faces(sheets) if closed else notes.all_faces_open()
 
@@ -133,9 +133,9 @@ def _of_travel(options: Options) -> Iterator[Note]:
 
 def _of_other_fixtures(ready: Prepared) -> Iterator[Note]:
     """Give the notes on fixtures that stand in other setups than the first alone."""
-    first = [(each.name, each.notes) for each in ready.conditions.around.fixtures]
+    first = [(each.name, each.notes) for each in ready.conditions.surroundings.fixtures]
     for conditions in ready.setups[1:]:
-        for each in conditions.around.fixtures:
+        for each in conditions.surroundings.fixtures:
             for how in each.notes if (each.name, each.notes) not in first else ():
                 yield notes.fixture(each.name, how, axis_words(conditions.setup.tolist()))
 

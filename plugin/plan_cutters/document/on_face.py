@@ -72,9 +72,9 @@ class OnFace:
         """Share of the face's area that is reached, 0 to 1; None where the face was not sampled."""
         if not self.shares:
             return None
-        found = [share for word, share in self.shares.items() if word in ("interference_free", "accessible")]
+        shares = [share for word, share in self.shares.items() if word in ("interference_free", "accessible")]
         # Rounding must not make a little less of all, nor more.
-        return 1.0 if len(found) == len(self.shares) else min(1.0, sum(found))
+        return 1.0 if len(shares) == len(self.shares) else min(1.0, sum(shares))
 
     @property
     def reason(self) -> str | None:
@@ -91,7 +91,7 @@ def on_face(
     `inside` (n,): samples that are no surface of the finished part.
     """
     whole_face = samples.face == int(entry.id[1:])
-    found = counts(reach.verdict[whole_face], inside[whole_face])
+    verdicts = counts(reach.verdict[whole_face], inside[whole_face])
     mine = whole_face & ~inside
     area, verdict = samples.area[mine], reach.verdict[mine]
     shares, reasons = {}, {}
@@ -108,7 +108,7 @@ def on_face(
     least, unknown = _least(entry, mine, reach, stick_out)
     return OnFace(
         entry.id, entry.name, entry.component, entry.target, cutter.id, entry.area_mm2, int(whole_face.sum()),
-        VerdictCounts(**found), shares, reasons, max(deepest, key=lambda w: w.depth_mm or 0.0, default=None), least, unknown,
+        VerdictCounts(**verdicts), shares, reasons, max(deepest, key=lambda w: w.depth_mm or 0.0, default=None), least, unknown,
         doubtful, _unjudged(entry),
     )  # fmt: skip
 
@@ -119,20 +119,20 @@ def _words(verdict: NDArray[np.uint8]) -> list[tuple[int, str]]:
 
 
 def _least(
-    entry: FaceEntry, mine: NDArray[np.bool_], reach: Verdicts, found: StickOut | None
+    entry: FaceEntry, mine: NDArray[np.bool_], reach: Verdicts, stick_out: StickOut | None
 ) -> tuple[float | None, str]:
     """The least stick-out for the face, or why it is not known."""
     if not mine.any():
         return None, "the face has no samples"
     if not (reach.reached & mine).any():
         return None, f"the cutter reaches nothing of {entry.id}"
-    if found is None:
-        return None, "it was not asked for: give stick_out=True here, or plan with answers='stick-out-map'"
-    if found.why == "no holder":
+    if stick_out is None:
+        return None, "it was not requested: give stick_out=True here, or plan with answers='stick-out-map'"
+    if stick_out.why == "no holder":
         return None, "the cutter has no holder"
-    if found.each is not None:
-        return float(np.nanmax(found.each[mine])), ""
-    return float(found.least), ""
+    if stick_out.each is not None:
+        return float(np.nanmax(stick_out.each[mine])), ""
+    return float(stick_out.least), ""
 
 
 def _unjudged(entry: FaceEntry) -> str:

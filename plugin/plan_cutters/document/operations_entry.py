@@ -41,13 +41,13 @@ _SAME_AREA = 1e-3
 
 
 def operations_entry(
-    found: Operations, samples: SurfaceSamples, wanted: NDArray[np.bool_], options: Options
+    operations: Operations, samples: SurfaceSamples, wanted: NDArray[np.bool_], options: Options
 ) -> OperationsEntry:
     """Make the entry of what was found.
 
     Parameters
     ----------
-    found : Operations
+    operations : Operations
     samples : SurfaceSamples
     wanted : (n,) bool
         Judged samples of the finished surface.
@@ -55,28 +55,38 @@ def operations_entry(
     """
     area = np.where(wanted, np.nan_to_num(samples.area), 0.0)
     assumed = AssumedEntry(
-        feed_mm_min=None if found.feed is None else {cutter.id: feed for cutter, feed in found.feed.items()},
+        feed_mm_min=None if operations.feed is None else {cutter.id: feed for cutter, feed in operations.feed.items()},
         scallop_mm=options.scallop, stepover=options.stepover, overlap_mm=options.overlap,
-        index_s=INDEX_TIME if options.index_time is None else options.index_time, index_from=found.index_from,
+        index_s=INDEX_TIME if options.index_time is None else options.index_time, index_from=operations.index_from,
         change_s=options.change_time, setup_s=options.setup_time,
     )  # fmt: skip
-    plans = [_plan(each, found, samples, area, wanted) for each in found.plans]
-    uses = [_use(each, plans, area) for each in found.worth]
-    steps = [CurveStepEntry(orientations=s.orientations, share=s.share, at_most=s.at_most) for s in found.curve]
+    plans = [_plan(each, operations, samples, area, wanted) for each in operations.plans]
+    uses = [_use(each, plans, area) for each in operations.worth]
+    steps = [CurveStepEntry(orientations=s.orientations, share=s.share, at_most=s.at_most) for s in operations.curve]
     return OperationsEntry(
-        asked=found.which,  # type: ignore[arg-type]
-        rotary=found.names, plans=plans, fewest=_fewest(found.fewest), cutters=uses, curve=steps, fastest=_fastest(found),
-        assumed=assumed, probes=found.probes, motion=None, notes=list(found.notes),
-    )  # fmt: skip
+        asked=operations.which,  # type: ignore[arg-type]
+        rotary=operations.names,
+        plans=plans,
+        fewest=_fewest(operations.fewest),
+        cutters=uses,
+        curve=steps,
+        fastest=_fastest(operations),
+        assumed=assumed,
+        probes=operations.probes,
+        motion=None,
+        notes=list(operations.notes),
+    )
 
 
-def _fewest(found: Fewest) -> FewestEntry:
-    weights = [(row, weight) for row, weight in zip(found.rows.tolist(), found.weight.tolist(), strict=True) if weight]
+def _fewest(fewest: Fewest) -> FewestEntry:
+    weights = [
+        (row, weight) for row, weight in zip(fewest.rows.tolist(), fewest.weight.tolist(), strict=True) if weight
+    ]
     return FewestEntry(
-        found=len(found.chosen), at_least=found.at_least, proof=found.proof, weights=sorted(weights), bound=found.bound,
-        lp=found.relaxed, samples=found.samples, candidates=len(found.columns), spacing_deg=float(np.degrees(found.spacing)),
-        alone=len(found.alone), at_least_any=found.at_least_any,
-        cells_deg=float(np.degrees(found.cells)) if np.isfinite(found.cells) else None,
+        found=len(fewest.chosen), at_least=fewest.at_least, proof=fewest.proof, weights=sorted(weights), bound=fewest.bound,
+        lp=fewest.relaxed, samples=fewest.samples, candidates=len(fewest.columns), spacing_deg=float(np.degrees(fewest.spacing)),
+        alone=len(fewest.alone), at_least_any=fewest.at_least_any,
+        cells_deg=float(np.degrees(fewest.cells)) if np.isfinite(fewest.cells) else None,
     )  # fmt: skip
 
 
@@ -87,8 +97,8 @@ def with_motion(plan: OperationsEntry, motion: MotionEntry | str) -> OperationsE
     return plan.model_copy(update={"motion": motion})
 
 
-def _fastest(found: Operations) -> FastestEntry | None:
-    timed = found.fastest
+def _fastest(operations: Operations) -> FastestEntry | None:
+    timed = operations.fastest
     if timed is None:
         return None
     known = np.isfinite(timed.seconds)
@@ -98,25 +108,25 @@ def _fastest(found: Operations) -> FastestEntry | None:
     )  # fmt: skip
 
 
-def _use(found: Worth, plans: list[OperationPlanEntry], area: Floats) -> CutterUse:
+def _use(worth: Worth, plans: list[OperationPlanEntry], area: Floats) -> CutterUse:
     takes: dict[str, float] = {
-        str(plan.name): sum(each.area_mm2 for each in plan.operations if each.cutter == found.cutter.id)
+        str(plan.name): sum(each.area_mm2 for each in plan.operations if each.cutter == worth.cutter.id)
         for plan in plans
     }
-    return CutterUse(id=found.cutter.id, takes_mm2=takes, only_mm2=float(area[found.only].sum()), saves_seconds=found.saves,
-                     change_seconds=found.change)  # fmt: skip
+    return CutterUse(id=worth.cutter.id, takes_mm2=takes, only_mm2=float(area[worth.only].sum()), saves_seconds=worth.saves,
+                     change_seconds=worth.change)  # fmt: skip
 
 
 def _plan(
-    plan: OperationPlan, found: Operations, samples: SurfaceSamples, area: Floats, wanted: NDArray[np.bool_]
+    plan: OperationPlan, results: Operations, samples: SurfaceSamples, area: Floats, wanted: NDArray[np.bool_]
 ) -> OperationPlanEntry:  # fmt: skip
     whole = float(area.sum())
     operations = [
-        _operation(i, each, plan, plane, found.names, samples, area, whole, found.index_from)
+        _operation(i, each, plan, plane, results.names, samples, area, whole, results.index_from)
         for i, (each, plane) in enumerate(zip(plan.operations, plan.planes, strict=True))
     ]
     rest = wanted & (plan.label < 0)
-    left = float(area[rest].sum())
+    unserved = float(area[rest].sum())
     cutting = plan.cutting if np.isfinite(plan.cutting) else None
     held = [each for each in operations if each.proved_share is not None]
     size = sum(each.area_mm2 for each in held)
@@ -125,12 +135,12 @@ def _plan(
         name=plan.name, orientations=sum(each.mode == "fixed" for each in operations),  # type: ignore[arg-type]
         cut_length_mm=sum(each.cut_length_mm or 0.0 for each in operations), operations=operations,
         seconds=None if cutting is None else plan.total, cutting_seconds=cutting, other_seconds=plan.other,
-        ratio_at_most=_ratio(operations, found.fastest), proved_share=share,
+        ratio_at_most=_ratio(operations, results.fastest), proved_share=share,
         changes=max(0, len({each.cutter for each in operations}) - 1),
         pieces=len(np.unique(plan.region[plan.region >= 0])),
         approaches_proved=sum(each.approaches_proved or 0 for each in held) if held else None,
-        rest=RestEntry(samples=int(rest.sum()), area_mm2=left, share=left / whole if whole > 0.0 else 0.0,
-                       reason_counts=_reasons(found.reason[rest])),
+        rest=RestEntry(samples=int(rest.sum()), area_mm2=unserved, share=unserved / whole if whole > 0.0 else 0.0,
+                       reason_counts=_reasons(results.reason[rest])),
     )  # fmt: skip
 
 
@@ -151,22 +161,22 @@ def _ratio(operations: list[OperationEntry], timed: Fastest | None) -> float | N
 
 
 def _operation(
-    number: int, found: Operation, plan: OperationPlan, plane: Workplane | None, names: tuple[str, str],
+    number: int, operation: Operation, plan: OperationPlan, plane: Workplane | None, names: tuple[str, str],
     samples: SurfaceSamples, area: Floats, whole: float, index_from: IndexFrom,
 ) -> OperationEntry:  # fmt: skip
-    rows = found.rows
+    rows = operation.rows
     strip, mine = plan.strip[rows], area[rows]
     known = np.isfinite(strip) & (strip > 0.0)
     length = float((mine[known] / strip[known]).sum()) if known.all() else None
     seconds = plan.seconds[rows]
     return OperationEntry(
-        id=found.name, mode=found.mode, cutter=found.cutter.id, setup=found.setup,
-        axis=None if found.axis is None else vector(found.axis), angles_deg=_angles(found.angle, names),
-        other_angles_deg=_angles(found.other_angle, names), samples=len(rows), area_mm2=float(mine.sum()),
-        share=min(1.0, float(mine.sum()) / whole) if whole > 0.0 else 0.0, exclusive_mm2=float(area[found.only].sum()),
+        id=operation.name, mode=operation.mode, cutter=operation.cutter.id, setup=operation.setup,
+        axis=None if operation.axis is None else vector(operation.axis), angles_deg=_angles(operation.angle, names),
+        other_angles_deg=_angles(operation.other_angle, names), samples=len(rows), area_mm2=float(mine.sum()),
+        share=min(1.0, float(mine.sum()) / whole) if whole > 0.0 else 0.0, exclusive_mm2=float(area[operation.only].sum()),
         strip_mm=_tenths(strip[known]), cut_length_mm=length,
-        seconds=float(seconds.sum()) if np.isfinite(seconds).all() else None, proved_share=found.proved,
-        approaches_proved=found.approaches, clearance_mm=found.clearance,
+        seconds=float(seconds.sum()) if np.isfinite(seconds).all() else None, proved_share=operation.proved,
+        approaches_proved=operation.approaches, clearance_mm=operation.clearance,
         faces=_faces(rows, samples, area), frame=None if plane is None else _frame(plane),
         colour=operation_colour(number), index_s=None if plane is None else plane.index,
         index_from=None if plane is None else index_from,

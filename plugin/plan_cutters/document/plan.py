@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Ints
-from plan_cutters.document.answers import least_set_entry, mend_entry, radius_entry, stick_out_entry
+from plan_cutters.document.answers import least_set_entry, radius_entry, stick_out_entry, what_if_entry
 from plan_cutters.document.build import (
     degrees,
     face_entries,
@@ -59,9 +59,9 @@ def plan_of(
 ) -> Plan:  # fmt: skip
     """The plan of a part from the entries of its cutters, and what was answered after them."""
     scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
-    part, around = scene.part, ready.conditions.around
+    part, surroundings = scene.part, ready.conditions.surroundings
     faces, remarks = (
-        face_entries(part, samples, choice, dict(around.certain.triangles.errors)),
+        face_entries(part, samples, choice, dict(surroundings.certain.triangles.errors)),
         notes_of(ready, entries),
     )
     absent = {
@@ -69,7 +69,7 @@ def plan_of(
         *(() if ready.inside_bodies.any() else ("inside_bodies",)),
     }
     return Plan(
-        part=part_info(scene, around),
+        part=part_info(scene, surroundings),
         effective=effective(ready),
         versions=versions(),
         samples=SampleCounts(
@@ -85,23 +85,27 @@ def plan_of(
         scope=scope_of(faces),
         inside_other_bodies=inside_entry(ready, entries[0].faces),
         faces=faces,
-        missing=missing_entries(part, around),
+        missing=missing_entries(part, surroundings),
         reasons=list(REASONS),
         reason_words={code: WORDS[code].name for code in REASONS},
         machine=machine_entry(options.machine, ready.conditions.kinematics),
-        fixtures=fixture_entries([each.around for each in ready.setups]),
+        fixtures=fixture_entries([each.surroundings for each in ready.setups]),
         libraries=[library_entry(library) for library in options.libraries],
         cutters=list(entries),
         selected=selected,
         shown=selected or nearest(entries).id,
         selection=selection,
-        selected_over_setups=None if around.doubtful else next((e.id for e in entries if e.lost_in_all == 0), None),
+        selected_over_setups=None
+        if surroundings.doubtful
+        else next((e.id for e in entries if e.lost_in_all == 0), None),
         selected_for_setup=None if selected else for_setup(entries),
         setups=list(setups),
-        least_set=None if answers.least_set is None else least_set_entry(answers.least_set, doubtful=around.doubtful),
+        least_set=None
+        if answers.least_set is None
+        else least_set_entry(answers.least_set, doubtful=surroundings.doubtful),
         operations=_operations(ready, answers),
         not_mended=list(answers.not_mended),
-        largest_radius=[radius_entry(found, samples, doubtful=around.doubtful) for found in answers.radius_maps],
+        largest_radius=[radius_entry(radii, samples, doubtful=surroundings.doubtful) for radii in answers.radius_maps],
         notes=[each.text for each in remarks],
         note_codes=[each.code for each in remarks],
         legend={word: colour for word, colour in PALETTE.items() if word not in absent},
@@ -112,7 +116,7 @@ def plan_of(
 
 def _anything_held(ready: Prepared) -> bool:
     """Whether a fixture stands, or a target face is clamped, in any setup."""
-    return any(each.around.fixtures for each in ready.setups) or not ready.alike
+    return any(each.surroundings.fixtures for each in ready.setups) or not ready.alike
 
 
 def _operations(ready: Prepared, answers: Answers) -> OperationsEntry | None:
@@ -135,7 +139,7 @@ def machine_entry(machine: Machine, kinematics: Kinematics | None) -> MachineEnt
 
 
 #: A setup axis, and what each cutter reaches there by its id.
-Elsewhere = tuple[Vector, Mapping[str, Verdicts]]
+OtherSetup = tuple[Vector, Mapping[str, Verdicts]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +157,7 @@ class OverSetups:
     #: In each other setup.
     elsewhere: tuple[tuple[Vector, dict[str, Verdicts]], ...] = ()
 
-    def each(self) -> tuple[Elsewhere, ...]:
+    def each(self) -> tuple[OtherSetup, ...]:
         """Every setup with what is reached there, the first one first."""
         return ((self.first, self.here), *self.elsewhere)
 
@@ -164,8 +168,8 @@ def _of_setups(ready: Prepared, name: str, over: OverSetups) -> dict[str, Any]:
         return {}
     inside, serves = ready.inside_bodies, over.served_in[name]
     entries = [
-        SetupReach(axis=axis, serves=int((serves == k).sum()), **counts(found[name].verdict, inside))
-        for k, (axis, found) in enumerate(over.each())
+        SetupReach(axis=axis, serves=int((serves == k).sum()), **counts(verdicts[name].verdict, inside))
+        for k, (axis, verdicts) in enumerate(over.each())
     ]
     return {"setups": entries, "lost_in_all": int((over.reaches[name].not_reached & ready.finished).sum())}
 
@@ -186,7 +190,7 @@ def completed(
     travels: Mapping[str, Travel] | None = None,
 ) -> list[CutterEntry]:  # fmt: skip
     """The entries of cutters with where they are listed, what the limits lose for all (n,), and what was answered about them."""
-    found, sources, samples = [], ready.options.sources, ready.samples
+    completed_entries, sources, samples = [], ready.options.sources, ready.samples
     reached_by_none = int(beyond.sum())
     for entry in entries:
         moved = (travels or {}).get(entry.id)
@@ -200,11 +204,11 @@ def completed(
             "sources": [source_entry(*place) for place in sources.get(entry.id, ())],
             "least_stick_out": None
             if stick_out is None
-            else stick_out_entry(stick_out, samples, ready.conditions.around),
-            "mend": None if mend is None else mend_entry(mend),
+            else stick_out_entry(stick_out, samples, ready.conditions.surroundings),
+            "mend": None if mend is None else what_if_entry(mend),
         }
-        found.append(entry.model_copy(update=more))
-    return found
+        completed_entries.append(entry.model_copy(update=more))
+    return completed_entries
 
 
 def for_setup(entries: Sequence[CutterEntry]) -> str | None:
@@ -221,8 +225,8 @@ def selection(entries: Sequence[CutterEntry]) -> tuple[str | None, Selection]:
     feasible = [e for e in entries if e.feasible]
     if not feasible:
         best = nearest(entries)
-        left = f"{unreached(best, best.area_share)} of the area"
-        why = f"no cutter reaches every sample; {best.id} comes nearest and leaves {left}"
+        text = f"{unreached(best, best.area_share)} of the area"
+        why = f"no cutter reaches every sample; {best.id} comes nearest and leaves {text}"
         if not best.not_reached:
             why = f"{best.id} reaches every judged sample, but obstacles are missing: see the notes"
         return None, Selection(rule=RULE, runner_up=None, why=why)

@@ -18,19 +18,19 @@ def setup_table(ready: Prepared, within: Sequence[NDArray[np.bool_]], over: Over
     """
     if not ready.conditions.machine.limited:
         return []
-    asked = ready.finished
-    whole = float(ready.samples.area[asked].sum())
+    finished = ready.finished
+    whole = float(ready.samples.area[finished].sum())
 
     def share(mine: NDArray[np.bool_]) -> float:
         return min(1.0, float(ready.samples.area[mine].sum()) / whole) if whole > 0.0 else 0.0
 
-    found: dict[Vector, SetupEntry] = {}
+    entries: dict[Vector, SetupEntry] = {}
     for k, (axis, each) in enumerate(over.each()):
-        mine = asked & np.logical_or.reduce([verdicts.reached for verdicts in each.values()])
-        found.setdefault(axis, SetupEntry(axis=axis, within=int(within[k].sum()), share=share(within[k]),
+        mine = finished & np.logical_or.reduce([verdicts.reached for verdicts in each.values()])
+        entries.setdefault(axis, SetupEntry(axis=axis, within=int(within[k].sum()), share=share(within[k]),
                                           reached=int(mine.sum()), reached_share=share(mine)))  # fmt: skip
     for axis in AXES:
-        if axis not in found:
-            mine = asked & within_limits(ready.samples, ready.cutters, ready.conditions, axis)
-            found[axis] = SetupEntry(axis=axis, within=int(mine.sum()), share=share(mine))
-    return list(found.values())
+        if axis not in entries:
+            mine = finished & within_limits(ready.samples, ready.cutters, ready.conditions, axis)
+            entries[axis] = SetupEntry(axis=axis, within=int(mine.sum()), share=share(mine))
+    return list(entries.values())

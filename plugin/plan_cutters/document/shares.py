@@ -22,14 +22,14 @@ def face_verdicts(
     samples: SurfaceSamples, reach: Verdicts, inside: NDArray[np.bool_] | None = None
 ) -> dict[str, FaceVerdicts]:
     """Sum up the verdicts on each face that has samples, by its id; `inside` as in `counts`."""
-    found, inside = {}, np.zeros(len(samples.face), bool) if inside is None else inside
+    entries, inside = {}, np.zeros(len(samples.face), bool) if inside is None else inside
     for number, mine in samples.by_face().items():
         area = weights(samples.area[mine])
         within, seen = inside[mine], mine[~inside[mine]]
         share = _share(reach.verdict[seen], reach.reason[seen], area[~within])
         part = min(1.0, float(area[within].sum() / area.sum())) if len(seen) else 1.0
-        found[f"F{number}"] = FaceVerdicts(**counts(reach.verdict[mine], within), area_share=share, inside_share=part)
-    return found
+        entries[f"F{number}"] = FaceVerdicts(**counts(reach.verdict[mine], within), area_share=share, inside_share=part)
+    return entries
 
 
 def covered(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part: Part) -> tuple[float, float]:

@@ -20,12 +20,12 @@ def placement_entry(placement: Placement | None) -> PlacementEntry | None:
     )
 
 
-def travel_entry(machine: Machine, found: Travel, reach: Verdicts, samples: SurfaceSamples) -> TravelEntry:
+def travel_entry(machine: Machine, travel: Travel, reach: Verdicts, samples: SurfaceSamples) -> TravelEntry:
     """Give the travel of the linear axes that a cutter needs."""
-    known = reach.reached & np.isfinite(found.position).all(axis=1)
+    known = reach.reached & np.isfinite(travel.position).all(axis=1)
     axes, worst = [], []
     for k, axis in enumerate(machine.linear):
-        position, beyond = found.position[known, k], np.where(known, found.beyond[:, k], 0.0)
+        position, beyond = travel.position[known, k], np.where(known, travel.beyond[:, k], 0.0)
         low, high = (end if np.isfinite(end) else None for end in axis.limits or (np.inf, np.inf))
         least, most = (float(position.min()), float(position.max())) if len(position) else (None, None)
         axes.append(AxisTravel(name=axis.name, limits_mm=(low, high), least_mm=least, most_mm=most,
@@ -37,7 +37,7 @@ def travel_entry(machine: Machine, found: Travel, reach: Verdicts, samples: Surf
     return TravelEntry(
         judged=int(known.sum()),
         unknown=int((reach.reached & ~known).sum()),
-        outside=int((found.outside & known).sum()),
+        outside=int((travel.outside & known).sum()),
         axes=axes,
         worst=sorted(worst, key=lambda each: -each.beyond_mm),
     )

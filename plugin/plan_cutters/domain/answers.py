@@ -1,11 +1,11 @@
-"""The answers that may be asked for after the plan, and what was found."""
+"""The answers that may be requested after the plan, and what was found."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from plan_cutters.domain.answer_kinds import ANSWERS, LONG
-from plan_cutters.domain.change import Mend
+from plan_cutters.domain.change import WhatIfAnswer
 from plan_cutters.domain.checks import items, shown
 from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.operations import Operations
@@ -14,7 +14,7 @@ from plan_cutters.domain.stick_out import StickOut
 from plan_cutters.errors import OptionError
 
 
-def answers_of(given: Any) -> tuple[str, ...]:
+def answers_of(value: Any) -> tuple[str, ...]:
     """Words of ANSWERS, each once and in that order; `all` for all but those that take long (LONG); a text may hold several,
     joined by commas.
 
@@ -31,16 +31,16 @@ def answers_of(given: Any) -> tuple[str, ...]:
     Traceback (most recent call last):
     plan_cutters.errors.OptionError: answers: 'radii' is none of stick-out, stick-out-map, radius, mend, mend-all and all
     """
-    if isinstance(given, str):
-        words: list[Any] = given.split(",") if given.strip() else []
+    if isinstance(value, str):
+        words: list[Any] = value.split(",") if value.strip() else []
     else:
-        words = items(given, "answers", "words", error=OptionError) if given is not None else []
-    found = {word.strip().lower() if isinstance(word, str) else word for word in words}
-    for word in sorted(found - {*ANSWERS, "all"}, key=str):
+        words = items(value, "answers", "words", error=OptionError) if value is not None else []
+    result = {word.strip().lower() if isinstance(word, str) else word for word in words}
+    for word in sorted(result - {*ANSWERS, "all"}, key=str):
         raise OptionError(f"answers: {shown(word)} is none of {', '.join(ANSWERS)} and all")
-    if "all" in found:
-        found |= {*ANSWERS} - LONG
-    return tuple(word for word in ANSWERS if word in found)
+    if "all" in result:
+        result |= {*ANSWERS} - LONG
+    return tuple(word for word in ANSWERS if word in result)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,7 +65,7 @@ class Answers:
 
     stick_outs: Mapping[str, StickOut] = field(default_factory=dict)
     radius_maps: tuple[RadiusMap, ...] = ()
-    mends: Mapping[str, Mend] = field(default_factory=dict)
+    mends: Mapping[str, WhatIfAnswer] = field(default_factory=dict)
     not_mended: tuple[str, ...] = ()
     least_set: LeastSet | None = None
     operations: Operations | None = None

@@ -85,10 +85,10 @@ class Assembly(Record):
 
     def at(self, tilt: Floats) -> NDArray[np.int64]:
         """The mode (n,) in which it touches at each tilt, rad; the last one where it touches in none."""
-        found = np.full(len(tilt), len(self.mode) - 1)
+        mode = np.full(len(tilt), len(self.mode) - 1)
         for i in range(len(self.mode) - 1, -1, -1):
-            found[(tilt >= self.mode[i, TILT_FROM] - HAIR) & (tilt <= self.mode[i, TILT_TO] + HAIR)] = i
-        return found
+            mode[(tilt >= self.mode[i, TILT_FROM] - HAIR) & (tilt <= self.mode[i, TILT_TO] + HAIR)] = i
+        return mode
 
     def on_axis(self, contact: Floats, normal: Floats, tilt_direction: Floats, tilt: Floats) -> Floats:
         """The point (n, 3) of the axis as deep in the tool as any, at contacts, normals and leans (n, 3) and tilts (n,), rad."""
@@ -195,8 +195,8 @@ def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "outer"
     table = np.array([row for row in rows if solid(row)], float).reshape(-1, COLUMNS)
     if len(table) > MOST_PIECES:
         raise CutterError(f"cutter {cutter.typed}: it has more sections than can be judged; give fewer that enclose it")
-    found = modes(cutter)
-    touching = np.array([_mode(mode, cutter.allowance or 0.0) for mode in found])
+    result = modes(cutter)
+    touching = np.array([_mode(mode, cutter.allowance or 0.0) for mode in result])
     inner, highest = _inner(cutter, bands)
     return Assembly(
         _placed(table, touching[:, 4]),

@@ -102,10 +102,10 @@ class Axis:
 
 
 def numbers_of(value: Any, what: str, count: int) -> tuple[float, ...]:
-    found = tuple(number(each, what, error=MachineError) for each in items(value, what, "numbers", error=MachineError))
-    if len(found) != count or any(math.isnan(each) for each in found):
+    values = tuple(number(each, what, error=MachineError) for each in items(value, what, "numbers", error=MachineError))
+    if len(values) != count or any(math.isnan(each) for each in values):
         raise MachineError(f"{what} must be {count} numbers")
-    return found
+    return values
 
 
 def direction_of(value: Any, what: str) -> tuple[float, float, float]:

@@ -133,7 +133,7 @@ class Step:
 
 
 @dataclass(frozen=True, slots=True)
-class Mend:
+class WhatIfAnswer:
     """A what-if answer: the changes that would make one cutter finish a part, and the next steps.
 
     Attributes

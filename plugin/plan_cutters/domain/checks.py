@@ -24,20 +24,20 @@ def number(value: Any, what: str, *, error: Callable[[str], Exception] = OptionE
     if not isinstance(value, Real) or isinstance(value, bool):
         raise error(f"{what} must be a number, not {shown(value)}")
     try:
-        found = float(value)
+        result = float(value)
     except OverflowError:
-        found = math.inf
-    if math.isnan(found):
+        result = math.inf
+    if math.isnan(result):
         raise error(f"{what} must be a number, not nan")
-    return found
+    return result
 
 
 def finite(value: Any, what: str, *, error: Callable[[str], Exception] = OptionError) -> float:
     """A finite real number, as files of tools and machines state it."""
-    found = number(value, what, error=error)
-    if math.isinf(found):
+    result = number(value, what, error=error)
+    if math.isinf(result):
         raise error(f"{what} must be a finite number, not {shown(value)}")
-    return found
+    return result
 
 
 def whole(value: Any, what: str) -> int:
@@ -80,10 +80,10 @@ def numbers(
 ) -> tuple[float, ...]:
     """Real numbers, `count` of them if that is given."""
     of = "numbers" if count is None else f"{count} numbers"
-    found = tuple(number(each, what, error=error) for each in items(value, what, of, error=error))
-    if count is not None and len(found) != count:
-        raise error(f"{what} must be a list of {of}, not of {len(found)}")
-    return found
+    values = tuple(number(each, what, error=error) for each in items(value, what, of, error=error))
+    if count is not None and len(values) != count:
+        raise error(f"{what} must be a list of {of}, not of {len(values)}")
+    return values
 
 
 def pair(value: Any, what: str) -> tuple[float, float]:
@@ -117,11 +117,11 @@ def shown(value: Any) -> str:
     return f"a value of type {type(value).__name__}"
 
 
-def radians_said(text: str) -> float:
+def stated_radians(text: str) -> float:
     """An angle that is written as `0.5 rad`; nan for any other text, and for one that is not finite."""
     match = _RADIANS.fullmatch(text)
     try:
-        found = float(match[1]) if match else math.nan
+        radians = float(match[1]) if match else math.nan
     except ValueError:
         return math.nan
-    return found if math.isfinite(found) else math.nan
+    return radians if math.isfinite(radians) else math.nan

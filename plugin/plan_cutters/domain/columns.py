@@ -15,7 +15,7 @@ class Columns(Record):
     Attributes
     ----------
     cutter, setup : (m,) int32
-        Index into the cutters and setups that were asked for.
+        Index into the cutters and setups that were requested.
     axis : (m, 3) float
         Unit tool axis in part coordinates: the one that the rounded `angle` gives.
     angle : (m, 2) float

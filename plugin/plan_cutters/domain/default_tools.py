@@ -25,7 +25,7 @@ _HOLDER = 60.0
 
 def builtin() -> tuple[Cutter, ...]:
     """Flat ends, bull noses and ball ends from 2 to 24 mm across, each with flutes, neck or shank, and a plain round holder."""
-    found = []
+    cutters = []
     for radius, length, flutes, corner, nose in _SIZES:
         for name, rounding in (("flat end", 0.0), ("bull nose", corner), ("ball end", radius)):
             if name == "bull nose" and not rounding:
@@ -34,8 +34,8 @@ def builtin() -> tuple[Cutter, ...]:
             if radius < _SHANK:
                 neck, shank = Segment(0.95 * radius, length - flutes - _STUB), _SHANK
             what = f"{name} D{2 * radius:g}" + (f" rc{rounding:g}" if name == "bull nose" else "")
-            found.append(
+            cutters.append(
                 Cutter(radius, length, rounding, f"{what} x {length:g}, built-in", flutes=flutes, neck=neck, shank_radius=shank,
                        holder=Holder((Segment(nose, _HOLDER),), "plain, built-in"))
             )  # fmt: skip
-    return tuple(found)
+    return tuple(cutters)

@@ -22,13 +22,13 @@ class Angle(NamedTuple):
 
 
 def in_radians(
-    given: Mapping[str, Any], angles: Mapping[str, Angle], *, error: type[OptionError] = OptionError
+    values: Mapping[str, Any], angles: Mapping[str, Angle], *, error: type[OptionError] = OptionError
 ) -> dict[str, Any]:
     """Give the same words, with `tilt_deg` turned into `tilt`: a number, a list of numbers, or a range.
 
     Parameters
     ----------
-    given : mapping
+    values : mapping
         Words and their values. Degrees that are None were not given, nor were radians beside degrees.
     angles : mapping
         The words for angles, without `_deg`, and what each may be in degrees.
@@ -49,15 +49,17 @@ def in_radians(
     Traceback (most recent call last):
     plan_cutters.errors.OptionError: tilt and tilt_deg are one angle, in radians and in degrees: give one of them
     """
-    found = {word: value for word, value in given.items() if word in angles or word.removesuffix("_deg") not in angles}
+    result = {
+        word: value for word, value in values.items() if word in angles or word.removesuffix("_deg") not in angles
+    }
     for word, angle in angles.items():
-        value = given.get(f"{word}_deg")
+        value = values.get(f"{word}_deg")
         if value is None:
             continue
-        if given.get(word) is not None:
+        if values.get(word) is not None:
             raise error(f"{word} and {word}_deg are one angle, in radians and in degrees: give one of them")
-        found[word] = _radians(value, f"{word}_deg", angle, error)
-    return found
+        result[word] = _radians(value, f"{word}_deg", angle, error)
+    return result
 
 
 def _radians(value: Any, what: str, angle: Angle, error: type[OptionError]) -> float | tuple[float, ...]:
@@ -69,8 +71,8 @@ def _radians(value: Any, what: str, angle: Angle, error: type[OptionError]) -> f
             raise error(f"{what} {one:g} must lie between {angle.least:g} and {angle.most:g} degrees")
     if angle.kind == "range" and each[0] > each[1]:
         raise error(f"{what} {each[0]:g}:{each[1]:g} must run upwards")
-    found = tuple(map(math.radians, each))
-    return found[0] if single else found
+    radians = tuple(map(math.radians, each))
+    return radians[0] if single else radians
 
 
 def degrees_too(angles: Mapping[str, Angle], *, error: type[OptionError] = OptionError) -> Callable[[_Class], _Class]:

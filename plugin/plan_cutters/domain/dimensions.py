@@ -65,7 +65,7 @@ class Dimensions:
     outline : tuple of (float, float)
         Of a form: points (radius, height) from the axis at the tip to the end of the flutes, mm.
     allowance, clearance : float, optional
-        Stock left on the surface, and room asked of neck, shank and holder, mm. None: as asked for the whole plan.
+        Stock left on the surface, and clearance required of neck, shank and holder, mm. None: as asked for the whole plan.
     """
 
     radius: float
@@ -119,19 +119,19 @@ class Dimensions:
         return math.fsum(stage.length for stage in self.necks)
 
 
-def _neck(given: Any) -> Segment | tuple[Segment, ...] | None:
+def _neck(value: Any) -> Segment | tuple[Segment, ...] | None:
     """One section as itself, several as a tuple: so that one neck has one form."""
-    if given is None or isinstance(given, Segment):
-        return given
-    found = items(given, "a cutter's neck", "stages", error=CutterError)
-    for each in found:
+    if value is None or isinstance(value, Segment):
+        return value
+    segments = items(value, "a cutter's neck", "stages", error=CutterError)
+    for each in segments:
         if not isinstance(each, Segment):
             raise CutterError(f"a cutter's neck must be a Segment or several, not {shown(each)}")
-    return tuple(found) if len(found) > 1 else found[0] if found else None
+    return tuple(segments) if len(segments) > 1 else segments[0] if segments else None
 
 
 def points_of(outline: Any) -> tuple[tuple[float, float], ...]:
-    found = []
+    points = []
     for point in items(outline, "an outline", "points (radius, height)", error=CutterError):
         pair = items(point, "a point of an outline", "a radius and a height", error=CutterError)
         if len(pair) != 2:
@@ -139,5 +139,5 @@ def points_of(outline: Any) -> tuple[tuple[float, float], ...]:
         r, h = (number(value, "a radius or height of an outline", error=CutterError) for value in pair)
         if not (math.isfinite(r) and math.isfinite(h)):
             raise CutterError("radii and heights of an outline must be finite")
-        found.append((r, h))
-    return tuple(found)
+        points.append((r, h))
+    return tuple(points)

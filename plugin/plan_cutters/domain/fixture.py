@@ -79,17 +79,17 @@ class Fixture:
         object.__setattr__(self, "placement", _placed(placement, str(self)))
         if self.unit is not None and self.unit not in UNITS:
             raise FixtureError(f"{self}: no length unit is called {shown(self.unit)}; give one of {', '.join(UNITS)}")
-        given = name(self.name, "a fixture's name", error=FixtureError)
+        label = name(self.name, "a fixture's name", error=FixtureError)
         error = number(self.chord_error, "a fixture's chord error", error=FixtureError)
         if not 0.0 <= error < math.inf:
             raise FixtureError(f"{self}: its chord error must be 0 or a positive number of mm, not {error:g}")
         object.__setattr__(self, "chord_error", error)
-        object.__setattr__(self, "name", given or name(self._named(), "a fixture's name"))
+        object.__setattr__(self, "name", label or name(self._named(), "a fixture's name"))
         _ = self.sizes
 
     def __str__(self) -> str:
-        said = self.source if isinstance(self.source, str) else type(self.source).__name__
-        return f"fixture {said!r}"
+        text = self.source if isinstance(self.source, str) else type(self.source).__name__
+        return f"fixture {text!r}"
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Fixture):
@@ -114,8 +114,8 @@ class Fixture:
     @property
     def kind(self) -> str:
         """The word that it is given by; empty for files and objects."""
-        found = _WORD.fullmatch(self.source) if isinstance(self.source, str) else None
-        return (found[1] or found[3]).lower() if found else ""
+        match = _WORD.fullmatch(self.source) if isinstance(self.source, str) else None
+        return (match[1] or match[3]).lower() if match else ""
 
     @property
     def follows_setup(self) -> bool:
@@ -125,11 +125,11 @@ class Fixture:
     @property
     def sizes(self) -> tuple[float, ...]:
         """Numbers of a word, mm; none for files, objects and a table right below the part."""
-        found = _WORD.fullmatch(self.source) if isinstance(self.source, str) else None
-        if found is None or found[1] is None:
+        match = _WORD.fullmatch(self.source) if isinstance(self.source, str) else None
+        if match is None or match[1] is None:
             return ()
-        kind, form = found[1].lower(), WORDS[found[1].lower()]
-        sizes = _numbers(found[2], f"{self}: its {'height' if kind == 'table' else 'sizes'}", form)
+        kind, form = match[1].lower(), WORDS[match[1].lower()]
+        sizes = _numbers(match[2], f"{self}: its {'height' if kind == 'table' else 'sizes'}", form)
         if len(sizes) != form.count(",") + 1:
             raise FixtureError(f"{self}: {kind} takes {form}, not {len(sizes)} number{'s'[: len(sizes) != 1]}")
         for size in sizes:
@@ -205,18 +205,18 @@ class Fixture:
         """One fixture, text or object, or a list of such, each with a name of its own."""
         if given is None:
             return ()
-        found = [cls.of(each) for each in (given if isinstance(given, list | tuple) else [given])]
-        return tuple(replace(each, name=name) for each, name in zip(found, _told_apart(found), strict=True))
+        fixtures = [cls.of(each) for each in (given if isinstance(given, list | tuple) else [given])]
+        return tuple(replace(each, name=name) for each, name in zip(fixtures, _distinct_names(fixtures), strict=True))
 
     def placed(self, points: Floats) -> Floats:
         """Points (..., 3) of the source in part coordinates, mm."""
         return np.ascontiguousarray(points @ self.rotation.T + self.shift)
 
 
-def _told_apart(found: Sequence[Fixture]) -> list[str]:
+def _distinct_names(fixtures: Sequence[Fixture]) -> list[str]:
     """Their names, the later ones of the same with a number."""
     names: list[str] = []
-    for each in found:
+    for each in fixtures:
         name, count = each.name, 2
         while name in names:
             name, count = f"{each.name} {count}", count + 1
@@ -226,20 +226,20 @@ def _told_apart(found: Sequence[Fixture]) -> list[str]:
 
 def _numbers(text: str, what: str, form: str) -> tuple[float, ...]:
     try:
-        found = tuple(float(word) for word in text.split(","))
+        sizes = tuple(float(word) for word in text.split(","))
     except ValueError:
         raise FixtureError(f"{what} {text!r} is not of the form {form}") from None
-    if not all(math.isfinite(each) for each in found):
+    if not all(math.isfinite(each) for each in sizes):
         raise FixtureError(f"{what} {text!r} must be finite numbers {form}")
-    return found
+    return sizes
 
 
-def _placed(given: tuple[float, ...], which: str) -> tuple[float, ...]:
-    if len(given) not in (3, 6):
-        raise FixtureError(f"{which}: a placement is x,y,z or x,y,z,rx,ry,rz, not {len(given)} numbers")
-    if not all(abs(each) <= _FARTHEST for each in given):
+def _placed(numbers: tuple[float, ...], which: str) -> tuple[float, ...]:
+    if len(numbers) not in (3, 6):
+        raise FixtureError(f"{which}: a placement is x,y,z or x,y,z,rx,ry,rz, not {len(numbers)} numbers")
+    if not all(abs(each) <= _FARTHEST for each in numbers):
         raise FixtureError(f"{which}: a placement must be finite numbers of mm and degrees, up to {_FARTHEST:g}")
-    return tuple(float(each) for each in (*given, 0.0, 0.0, 0.0)[:6])
+    return tuple(float(each) for each in (*numbers, 0.0, 0.0, 0.0)[:6])
 
 
 def _cos(angle: float) -> float:

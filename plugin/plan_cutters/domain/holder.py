@@ -18,10 +18,10 @@ _STAGE = re.compile(
 
 def positive(value: Any, what: str, *, zero: bool = False) -> float:
     """A finite number of mm above 0, or no less than that."""
-    found = number(value, what, error=CutterError)
-    if not math.isfinite(found) or found < 0.0 or (found == 0.0 and not zero):
-        raise CutterError(f"{what} must be {'0 or ' if zero else ''}a positive number of mm, not {found:g}")
-    return found
+    result = number(value, what, error=CutterError)
+    if not math.isfinite(result) or result < 0.0 or (result == 0.0 and not zero):
+        raise CutterError(f"{what} must be {'0 or ' if zero else ''}a positive number of mm, not {result:g}")
+    return result
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +135,7 @@ class Holder:
         made = chuck(spec.strip())
         if made is not None:
             return cls(tuple(Segment(radius, long) for radius, long in made.stages), made.name, made.bore)
-        found = []
+        segments = []
         for word in spec.strip().split("+"):
             match = _STAGE.fullmatch(word.strip())
             if not match:
@@ -144,8 +144,8 @@ class Holder:
                     "nor a word as er32 or hsk63a-er32"
                 )
             upper = across(match["by"], match["upper"]) if match["upper"] else math.nan
-            found.append(Segment(across(match["by"], match["lower"]), length(match["length"]), upper))
-        return cls(tuple(found))
+            segments.append(Segment(across(match["by"], match["lower"]), length(match["length"]), upper))
+        return cls(tuple(segments))
 
     @classmethod
     def of(cls, given: Any) -> "Holder":

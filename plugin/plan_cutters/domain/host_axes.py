@@ -58,16 +58,16 @@ HostPlane = BuildPlane | CadPlane
 Heading = str | HostAxis | Iterable[float]
 
 
-def plane_of(given: Any) -> tuple[Direction, Direction] | None:
+def plane_of(plane: Any) -> tuple[Direction, Direction] | None:
     """The normal and the X of a host's plane; None where it is none."""
     for normal, across in (("z_dir", "x_dir"), ("zDir", "xDir")):
-        z, x = _coordinates(getattr(given, normal, None)), _coordinates(getattr(given, across, None))
+        z, x = _coordinates(getattr(plane, normal, None)), _coordinates(getattr(plane, across, None))
         if z is not None and x is not None:
             return z, x
     return None
 
 
-def vector_of(given: Any) -> Any:
+def vector_of(vector: Any) -> Any:
     """The three numbers of a host's axis; anything else as it is.
 
     An `Axis` of a machine is none of these: its direction is in the machine's frame.
@@ -75,15 +75,15 @@ def vector_of(given: Any) -> Any:
     >>> vector_of((0, 0, 1)), vector_of(None)
     ((0, 0, 1), None)
     """
-    found = _coordinates(getattr(given, "direction", None))
-    return given if found is None else found
+    coordinates = _coordinates(getattr(vector, "direction", None))
+    return vector if coordinates is None else coordinates
 
 
 def _coordinates(vector: Any) -> Direction | None:
     """Those of a host's vector; whether they are finite numbers is looked at where they are used."""
     for words in ("XYZ", "xyz"):
-        found: list[Any] = [getattr(vector, word, None) for word in words]
-        if not any(each is None or callable(each) for each in found):
-            x, y, z = found
+        coordinates: list[Any] = [getattr(vector, word, None) for word in words]
+        if not any(each is None or callable(each) for each in coordinates):
+            x, y, z = coordinates
             return x, y, z
     return None

@@ -8,8 +8,8 @@ import numpy as np
 from cad_io.arrays import Floats
 
 
-def _rows(found: list[tuple[float, float]]) -> Floats:
-    return np.array(found, float).reshape(-1, 2)
+def _rows(intervals: list[tuple[float, float]]) -> Floats:
+    return np.array(intervals, float).reshape(-1, 2)
 
 
 def join(intervals: Floats) -> Floats:
@@ -45,17 +45,17 @@ def without(intervals: Floats, others: Floats) -> Floats:
     >>> without(np.zeros((0, 2)), np.array([[1.0, 2.0]])).tolist()
     []
     """
-    kept = []
+    remaining = []
     for low, high in intervals.tolist():
         for first, last in others.tolist():
             if last <= low or first >= high:
                 continue
             if first > low:
-                kept.append((low, first))
+                remaining.append((low, first))
             low = max(low, last)
         if high > low:
-            kept.append((low, high))
-    return _rows(kept)
+            remaining.append((low, high))
+    return _rows(remaining)
 
 
 def complement(intervals: Floats, low: float, high: float) -> Floats:

@@ -72,20 +72,20 @@ class Kinematics(Record):
 
         An axis whose limits leave one angle stands still, and so does one that lies along the tool, with nothing between.
         """
-        kept: list[int] = []
+        turning_axes: list[int] = []
         direction, tool = np.array(self.direction), self.tool
         for k in range(len(direction) - 1, -1, -1):
             low, high = self.limit[k]
             if high - low <= PARALLEL:
                 still = np.array(0.5 * (low + high))
                 tool = turned(direction[k], still, tool)
-                for other in kept:
+                for other in turning_axes:
                     direction[other] = turned(direction[k], still, direction[other])
-            elif kept or np.linalg.norm(np.cross(direction[k], tool)) > PARALLEL:
-                kept.insert(0, k)
-        if len(kept) == len(direction):
-            return self, kept
-        return Kinematics(direction[kept], self.limit[kept], tool), kept
+            elif turning_axes or np.linalg.norm(np.cross(direction[k], tool)) > PARALLEL:
+                turning_axes.insert(0, k)
+        if len(turning_axes) == len(direction):
+            return self, turning_axes
+        return Kinematics(direction[turning_axes], self.limit[turning_axes], tool), turning_axes
 
     def axis(self, angle: Floats) -> Floats:
         """Tool axes (n, 3) at angles (n, k), rad."""
@@ -93,10 +93,10 @@ class Kinematics(Record):
 
     def carried(self, vector: Floats, angle: Floats) -> Floats:
         """Directions (n, 3) of what points along a vector (3,) at zero angles and turns with the tool, at angles (n, k), rad."""
-        found = np.broadcast_to(vector, (len(angle), 3))
+        vectors = np.broadcast_to(vector, (len(angle), 3))
         for k in range(len(self.direction) - 1, -1, -1):
-            found = turned(self.direction[k], angle[:, k], found)
-        return np.asarray(found)
+            vectors = turned(self.direction[k], angle[:, k], vectors)
+        return np.asarray(vectors)
 
     def angles(self, axis: Floats) -> Floats:
         """Angles (n, 2, k), rad, of the two solutions that hold tool axes (n, 3); nan where one does not, whatever the limits.
@@ -104,22 +104,22 @@ class Kinematics(Record):
         Within the limits, where another turn brings them there. A machine of fewer than two rotary axes has one solution at
         most, the second is nan.
         """
-        found = np.full((len(axis), 2, len(self.direction)), np.nan)
+        angles = np.full((len(axis), 2, len(self.direction)), np.nan)
         if len(self.direction) == 0:
-            return found
+            return angles
         if len(self.direction) == 1:
             held = np.abs(axis @ self.direction[0] - self.tool @ self.direction[0]) <= self._reach()
-            found[held, 0, 0] = angle_about(self.direction[0], self.tool, axis[held])
-            return found
+            angles[held, 0, 0] = angle_about(self.direction[0], self.tool, axis[held])
+            return angles
         first, second = self.direction
         start, most, base = self.swing
         share = (axis @ first - base) / most
         held = np.abs(share) <= 1.0 + self._reach()
         swing = np.arccos(np.clip(share[held], -1.0, 1.0))
         for i, sign in enumerate((1.0, -1.0)):
-            found[held, i, 1] = start + sign * swing
-            found[held, i, 0] = angle_about(first, turned(second, found[held, i, 1], self.tool), axis[held])
-        return found
+            angles[held, i, 1] = start + sign * swing
+            angles[held, i, 0] = angle_about(first, turned(second, angles[held, i, 1], self.tool), axis[held])
+        return angles
 
     def positions(self, axis: Floats) -> tuple[Floats, NDArray[np.int8], NDArray[np.bool_]]:
         """Find the angles that hold tool axes (n, 3).
@@ -127,34 +127,34 @@ class Kinematics(Record):
         They are: both solutions (n, 2, k), rad, nan where beyond a limit; the one to take (n,), that with the smaller angles, -1
         for none; and where (n,) the axis next to the part is near to the tool axis, so that the position is singular.
         """
-        machine, kept = self.turning()
+        machine, turning = self.turning()
         if machine is not self:
             mine, taken, singular = machine.positions(axis)
             # Held by one solution; axes that stand still are where their limits have them, next to 0.
-            found = np.full((len(axis), 2, len(self.direction)), np.nan)
-            found[taken >= 0, 0] = np.clip(0.0, *self.limit.T)
-            found[:, :, kept] = mine
-            return found, taken, singular
-        found = self.angles(axis)
+            positions = np.full((len(axis), 2, len(self.direction)), np.nan)
+            positions[taken >= 0, 0] = np.clip(0.0, *self.limit.T)
+            positions[:, :, turning] = mine
+            return positions, taken, singular
+        positions = self.angles(axis)
         for k, (low, high) in enumerate(self.limit):
-            found[:, :, k] = within(found[:, :, k], low, high)
+            positions[:, :, k] = within(positions[:, :, k], low, high)
         if len(self.direction) == 0:
             held = np.linalg.norm(np.cross(axis, self.tool), axis=1) <= self._reach()
             taken = np.where(held & (axis @ self.tool > 0.0), 0, -1)
-            return found, taken.astype(np.int8), np.zeros(len(axis), bool)
+            return positions, taken.astype(np.int8), np.zeros(len(axis), bool)
         sine = np.linalg.norm(np.cross(axis, self.direction[0]), axis=1)
         if len(self.direction) == 2:
             # On the singular axis itself any angle of the first one serves, so one within its limits does.
             low, high = self.limit[0]
             still = min(max(0.0, low), high)
-            on = (sine <= PARALLEL)[:, None] & np.isfinite(found[:, :, 1])
-            found[:, :, 0] = np.where(on & ~np.isfinite(found[:, :, 0]), still, found[:, :, 0])
-        lost = np.isnan(found).any(axis=2)
-        found[lost] = np.nan
-        size = np.where(lost, np.inf, np.abs(np.where(np.isnan(found), 0.0, found)).sum(axis=2))
-        taken = np.where(np.all(lost, axis=1), -1, size.argmin(axis=1))
+            on = (sine <= PARALLEL)[:, None] & np.isfinite(positions[:, :, 1])
+            positions[:, :, 0] = np.where(on & ~np.isfinite(positions[:, :, 0]), still, positions[:, :, 0])
+        unknown = np.isnan(positions).any(axis=2)
+        positions[unknown] = np.nan
+        size = np.where(unknown, np.inf, np.abs(np.where(np.isnan(positions), 0.0, positions)).sum(axis=2))
+        taken = np.where(np.all(unknown, axis=1), -1, size.argmin(axis=1))
         singular = (sine <= math.sin(SINGULAR)) if len(self.direction) == 2 else np.zeros(len(axis), bool)
-        return found, taken.astype(np.int8), singular
+        return positions, taken.astype(np.int8), singular
 
     def allows(self, axis: Floats) -> NDArray[np.bool_]:
         """Which tool axes (n, 3) the machine can hold."""
@@ -206,8 +206,8 @@ class Kinematics(Record):
         """
         first, second = self.direction
         along = float(self.tool @ second)
-        beside = self.tool - along * second
-        a, b = float(first @ beside), float(first @ np.cross(second, beside))
+        remainder = self.tool - along * second
+        a, b = float(first @ remainder), float(first @ np.cross(second, remainder))
         return math.atan2(b, a), math.hypot(a, b), float(first @ second) * along
 
     def _reach(self) -> float:

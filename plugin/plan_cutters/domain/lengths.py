@@ -18,8 +18,8 @@ def length(text: str, share: Fraction = Fraction(1)) -> float:
     >>> length("0.1in"), length("12"), length("1/2in", Fraction(1, 2))
     (2.54, 12.0, 6.35)
     """
-    found = re.fullmatch(r"(.*?)(in|mm)?", text.strip(), re.IGNORECASE)
-    number, unit = (found[1], (found[2] or "mm").lower()) if found else (text, "mm")
+    match = re.fullmatch(r"(.*?)(in|mm)?", text.strip(), re.IGNORECASE)
+    number, unit = (match[1], (match[2] or "mm").lower()) if match else (text, "mm")
     try:
         return float(Fraction(number.rstrip(".")) * _UNITS[unit] * share)
     except (ValueError, ZeroDivisionError, OverflowError):

@@ -124,8 +124,8 @@ class Machine:
     @property
     def turning(self) -> int:
         """How many of its rotary axes turn the tool: one whose limits leave one angle does not."""
-        found = self.kinematics(np.eye(3))
-        return 0 if found is None else len(found.turning()[1])
+        kinematics = self.kinematics(np.eye(3))
+        return 0 if kinematics is None else len(kinematics.turning()[1])
 
     def kinematics(self, setup: Floats) -> Kinematics | None:
         """Its rotary axes in the part's frame; None where any tool axis is possible.
@@ -138,18 +138,18 @@ class Machine:
         if not self.turns:
             return None
         limits = [axis.limits or (-math.inf, math.inf) for axis in self.rotary]
-        found = Kinematics(
+        kinematics = Kinematics(
             np.array([axis.direction for axis in self.rotary], float).reshape(-1, 3),
             np.array(limits, float).reshape(-1, 2),
             np.array(self.tool_axis),
         )
-        return found.seen_from(np.asarray(setup).T)
+        return kinematics.seen_from(np.asarray(setup).T)
 
     def allows(self, axis: Floats, setup: Floats) -> NDArray[np.bool_]:
         """Which tool axes (n, 3) of the part it can hold, by its plain limit and its rotary axes; `setup` as for `kinematics`."""
         held = axis @ setup[2] >= self.limit_cos
-        found = self.kinematics(setup)
-        return np.asarray(held if found is None else held & found.allows(axis))
+        kinematics = self.kinematics(setup)
+        return np.asarray(held if kinematics is None else held & kinematics.allows(axis))
 
     @classmethod
     def parse(cls, text: str) -> "Machine":

@@ -26,8 +26,8 @@ def inside(cutter: Cutter, other: Cutter) -> bool:
     if any(each.shape != "end" or each.taper for each in (cutter, other)) or cutter.allowance != other.allowance:
         return False
     taller = other.corner_radius - cutter.corner_radius
-    aside = other.radius - cutter.radius
-    if taller < 0.0 or aside < taller:
+    excess = other.radius - cutter.radius
+    if taller < 0.0 or excess < taller:
         return False
     bands = _bands(other)
     looser = (cutter.clearance or 0.0) > (other.clearance or 0.0)
@@ -36,7 +36,7 @@ def inside(cutter: Cutter, other: Cutter) -> bool:
         for their_cuts, their_low, their_high, least, _ in bands:
             if their_high <= low or their_low >= high + taller:
                 continue
-            if their_low > met + SAME or most + aside > least + SAME or (not cuts and (their_cuts or looser)):
+            if their_low > met + SAME or most + excess > least + SAME or (not cuts and (their_cuts or looser)):
                 return False
             met = their_high
         if met < high + taller - SAME:
@@ -46,11 +46,11 @@ def inside(cutter: Cutter, other: Cutter) -> bool:
 
 def _bands(cutter: Cutter) -> list[tuple[bool, float, float, float, float]]:
     """From the tip up: whether it cuts, from which height to which, its least and largest radius, mm."""
-    found = [(True, 0.0, flute_length(cutter), cutter.radius, cutter.radius)]
+    bands = [(True, 0.0, flute_length(cutter), cutter.radius, cutter.radius)]
     for _, low, stage in cutter.stages:
         ends = stage.radius, stage.upper_radius
-        found.append((False, low, low + stage.length, min(ends), max(ends)))
-    return found
+        bands.append((False, low, low + stage.length, min(ends), max(ends)))
+    return bands
 
 
 def handed(cutter: Cutter, judged: Mapping[Cutter, Verdicts], n: int) -> Verdicts:

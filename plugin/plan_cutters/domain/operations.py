@@ -16,7 +16,7 @@ from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.errors import OptionError
 
-#: Plans that may be asked for.
+#: Plans that may be requested.
 WHICH = ("fewest", "fastest", "both")
 Mode = Literal["fixed", "simultaneous"]
 #: Another orientation takes this, s, where no time was given and the machine does not say how fast its rotary axes turn.
@@ -24,7 +24,7 @@ INDEX_TIME = 5.0
 IndexFrom = Literal["rates", "given", "assumed"]
 
 
-def operations_of(given: Any) -> str | None:
+def operations_of(value: Any) -> str | None:
     """One of WHICH, or None for no plan of operations.
 
     Raises
@@ -32,9 +32,9 @@ def operations_of(given: Any) -> str | None:
     OptionError
         Another word.
     """
-    if given is None or given in WHICH:
-        return given if given is None else str(given)
-    raise OptionError(f"operations: {shown(given)} is none of {', '.join(WHICH)}")
+    if value is None or value in WHICH:
+        return value if value is None else str(value)
+    raise OptionError(f"operations: {shown(value)} is none of {', '.join(WHICH)}")
 
 
 @dataclass(frozen=True, slots=True)
@@ -275,7 +275,7 @@ class OperationPlan:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Operations:
-    """The plans of operations that were asked for, with what proves and bounds them.
+    """The plans of operations that were requested, with what proves and bounds them.
 
     Attributes
     ----------
@@ -295,9 +295,9 @@ class Operations:
     reason : (n,) uint8
         Why the most wanted cutter does not reach a sample in the first setup, an index into REASONS, or NO_REASON.
     fastest : Fastest, optional
-        Where the fastest were asked for.
+        Where the fastest were requested.
     worth : tuple of Worth
-        Of each cutter, the largest first, where the fastest were asked for and several were compared.
+        Of each cutter, the largest first, where the fastest were requested and several were compared.
     index_from : str
         What the times between orientations follow from: the rates of the rotary axes, what was given, or what is assumed.
     """

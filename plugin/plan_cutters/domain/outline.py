@@ -113,7 +113,7 @@ class Outline:
 
 def outline(cutter: Cutter) -> Outline:
     """The outline of a cutter with all that stands above its flutes."""
-    found: list[Segment] = []
+    segments: list[Segment] = []
     at: Point = (0.0, 0.0)
     for part, end, centre, radius in _walk(cutter):
         # What is shorter than rounding is no side; the next one begins where the last one ended.
@@ -123,9 +123,9 @@ def outline(cutter: Cutter) -> Outline:
         if centre is not None:
             first, last = (math.atan2(h - centre[1], q - centre[0]) for q, h in (at, end))
             turn = math.remainder(last - first, 2.0 * math.pi)
-        found.append(Segment(part, at, end, centre, radius, turn))
+        segments.append(Segment(part, at, end, centre, radius, turn))
         at = end
-    return Outline(tuple(found))
+    return Outline(tuple(segments))
 
 
 _Side = tuple[AnyPart, Point, Point | None, float]
@@ -200,13 +200,13 @@ def points(outline: Outline, chord: float = 0.01) -> Floats:
     """
     if not chord > 0.0:
         raise OptionError(f"the chord of a polyline must be a positive number of mm, not {chord:g}")
-    found = [(0.0, 0.0)]
+    points = [(0.0, 0.0)]
     for segment in outline.segments:
         count = 1
         if segment.centre is not None:
             # A chord over an angle t lies within 2 r sin(t/4)^2 of its arc.
             step = 4.0 * math.asin(min(1.0, math.sqrt(chord / (2.0 * segment.radius))))
             count = math.ceil(abs(segment.turn) / min(step, _WIDEST) - SAME)
-        found += [segment.at(k / count) for k in range(1, count)]
-        found.append(segment.end)
-    return np.array(found)
+        points += [segment.at(k / count) for k in range(1, count)]
+        points.append(segment.end)
+    return np.array(points)

@@ -27,21 +27,21 @@ def over_setups(each: Sequence[Verdicts]) -> tuple[Verdicts, Ints]:
         The setup that reaches each sample, -1 for none.
     """
     n = len(each[0].verdict)
-    found, which = blank(n), np.full(n, -1, np.int32)
+    combined, which = blank(n), np.full(n, -1, np.int32)
     for k, verdicts in enumerate(each):
         rows = verdicts.reached & (which < 0)
         which[rows] = k
-        found.take(rows, verdicts)
+        combined.take(rows, verdicts)
     for verdicts in each:
         rows = (which < 0) & verdicts.not_reached
-        first = rows & ~found.not_reached
-        found.verdict[first], found.reason[first] = verdicts.verdict[first], verdicts.reason[first]
-        unsure = rows & (verdicts.verdict == UNDECIDED) & (found.verdict == INACCESSIBLE)
-        found.verdict[unsure], found.reason[unsure] = UNDECIDED, verdicts.reason[unsure]
-        more = rows & ~first & (found.reason == AXIS_LIMIT) & (verdicts.verdict == found.verdict)
-        found.reason[more] = verdicts.reason[more]
-        found.reason[rows & (verdicts.reason == FIXTURE)] = FIXTURE
-    return found.freeze(), which
+        first = rows & ~combined.not_reached
+        combined.verdict[first], combined.reason[first] = verdicts.verdict[first], verdicts.reason[first]
+        unsure = rows & (verdicts.verdict == UNDECIDED) & (combined.verdict == INACCESSIBLE)
+        combined.verdict[unsure], combined.reason[unsure] = UNDECIDED, verdicts.reason[unsure]
+        more = rows & ~first & (combined.reason == AXIS_LIMIT) & (verdicts.verdict == combined.verdict)
+        combined.reason[more] = verdicts.reason[more]
+        combined.reason[rows & (verdicts.reason == FIXTURE)] = FIXTURE
+    return combined.freeze(), which
 
 
 def positions(

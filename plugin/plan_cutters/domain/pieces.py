@@ -58,12 +58,14 @@ class Band:
         return math.atan(self.stage.slope)
 
 
-def row_of(kind: float, low: float, high: float, radius: float, slope: float, around: float, part: int) -> list[float]:
+def row_of(
+    kind: float, low: float, high: float, radius: float, slope: float, ring_radius: float, part: int
+) -> list[float]:
     if kind == ARC:
-        bottom, top = max(low, slope - around), min(high, slope + around)
-        return [kind, low, high, radius, slope, around, 1.0, bottom, top, radius + around, part]
+        bottom, top = max(low, slope - ring_radius), min(high, slope + ring_radius)
+        return [kind, low, high, radius, slope, ring_radius, 1.0, bottom, top, radius + ring_radius, part]
     wide = radius + slope * (high - low)
-    return [kind, low, high, radius, slope, around, 1.0 / math.hypot(1.0, slope), low, high, wide, part]
+    return [kind, low, high, radius, slope, ring_radius, 1.0 / math.hypot(1.0, slope), low, high, wide, part]
 
 
 def band_row(low: float, high: float, radius: float, slope: float, part: int) -> list[float]:
@@ -190,13 +192,13 @@ def _unless_higher(row: list[float], top: float) -> list[float]:
 
 def _end(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list[float]]:
     offset, corner, flank_angle = cutter.radius - cutter.corner_radius, cutter.corner_radius, cutter.taper
-    left = corner - inset
+    start = corner - inset
     # The flank's distance from the axis at the height of the corner's centre.
-    side, slope = offset + left / math.cos(flank_angle), math.tan(flank_angle) if flank_angle else 0.0
+    side, slope = offset + start / math.cos(flank_angle), math.tan(flank_angle) if flank_angle else 0.0
     rows = []
-    if left > 0.0:
-        rows.append(_unless_higher(row_of(ARC, -math.inf, math.inf, offset, corner, left, FLUTES), top))
-        low = corner - left * math.sin(flank_angle)
+    if start > 0.0:
+        rows.append(_unless_higher(row_of(ARC, -math.inf, math.inf, offset, corner, start, FLUTES), top))
+        low = corner - start * math.sin(flank_angle)
     else:
         low = inset
     radius = cutter.radius - inset if flank_angle == 0.0 else side + slope * (low - corner)
@@ -221,21 +223,21 @@ def _barrel(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[li
             rows = [row_of(ARC, -math.inf, math.inf, edge, 0.0, -inset, FLUTES)]
             return [*rows, row_of(ARC, inset * centre / cutter.arc_radius - HAIR, top, offset, centre, wide, FLUTES)]
         return [row_of(ARC, low, top, offset, centre, wide, FLUTES)]
-    joint, left = tip_angle(cutter), tip - inset
-    if left > 0.0:
-        low = tip - left * math.cos(joint)
-        ball = _unless_higher(row_of(ARC, -math.inf, math.inf, 0.0, tip, left, FLUTES), top)
+    joint, start = tip_angle(cutter), tip - inset
+    if start > 0.0:
+        low = tip - start * math.cos(joint)
+        ball = _unless_higher(row_of(ARC, -math.inf, math.inf, 0.0, tip, start, FLUTES), top)
         return [ball, row_of(ARC, low, top, offset, centre, wide, FLUTES)]
     return [row_of(ARC, inset, top, offset, centre, wide, FLUTES)]
 
 
 def _lens(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list[float]]:
     bottom, corner = cutter.arc_radius, cutter.corner_radius
-    offset, centre, left = cutter.radius - corner, lens_height(cutter), corner - inset
+    offset, centre, start = cutter.radius - corner, lens_height(cutter), corner - inset
     side = cutter.radius - inset
-    if left > 0.0:
+    if start > 0.0:
         joint = bottom - (bottom - inset) * math.cos(tip_angle(cutter))
-        rows = [_unless_higher(row_of(ARC, -math.inf, math.inf, offset, centre, left, FLUTES), top)]
+        rows = [_unless_higher(row_of(ARC, -math.inf, math.inf, offset, centre, start, FLUTES), top)]
     else:
         # The eroded bottom goes on until it meets the eroded side.
         joint = bottom - math.sqrt(max(0.0, (bottom - inset) ** 2 - side**2))
@@ -262,7 +264,7 @@ def _form(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list
         low_step, high_step = _step(points, i, -1), _step(points, i + 1, 1)
         # Grown, a side that leans reaches past its ends along its normal.
         rise = max(0.0, -mine) * math.sin(math.atan(stage.slope))
-        below, beyond = max(rise, _past(points, i, mine)), max(-rise, _past(points, i + 1, mine))
+        below, beyond = max(rise, _overlap(points, i, mine)), max(-rise, _overlap(points, i + 1, mine))
         low = w0 + mine if low_step > 0.0 else w0 - HAIR - (abs(mine) if low_step < 0.0 else below)
         high = w1 - mine if high_step > 0.0 else w1 + HAIR + (abs(mine) if high_step < 0.0 else beyond)
         if w1 == points[-1][1]:
@@ -305,7 +307,7 @@ def share(points: tuple[tuple[float, float], ...], i: int) -> float:
     return min(math.cos(0.5 * min(0.0, _turn(points, k))) for k in corners)
 
 
-def _past(points: tuple[tuple[float, float], ...], k: int, inset: float) -> float:
+def _overlap(points: tuple[tuple[float, float], ...], k: int, inset: float) -> float:
     """How far a side that is moved in runs on past a re-entrant corner, up to where the other one begins."""
     return max(0.0, inset) * math.tan(-0.5 * min(0.0, _turn(points, k)))
 

@@ -82,8 +82,8 @@ class Placement:
                 )
             across = x - (x @ z) * z
             # One that has length 1 across z up to rounding stays as it is: what is kept is kept when it is given again.
-            kept = x if abs(x @ z) <= 1e-15 else across / np.linalg.norm(across)
-            object.__setattr__(self, "x", tuple((kept + 0.0).tolist()))
+            across_x = x if abs(x @ z) <= 1e-15 else across / np.linalg.norm(across)
+            object.__setattr__(self, "x", tuple((across_x + 0.0).tolist()))
         if self.origin is not None:
             origin = numbers(self.origin, "setup origin", 3)
             if not all(abs(each) <= _FARTHEST for each in origin):
@@ -126,8 +126,8 @@ def frame_of(setup: Floats, x: Floats | None = None) -> Floats:
     Without `x`, X is as near to the part's X as can be; where the part's X points along Z, Y is that of the part.
     """
     z = np.asarray(setup, float)
-    given = np.array([1.0, 0.0, 0.0]) if x is None else np.asarray(x, float)
-    across = given - (given @ z) * z
+    reference = np.array([1.0, 0.0, 0.0]) if x is None else np.asarray(x, float)
+    across = reference - (reference @ z) * z
     if np.linalg.norm(across) < _PARALLEL:
         across = np.cross(np.array([0.0, 1.0, 0.0]), z)
     across = across / np.linalg.norm(across)

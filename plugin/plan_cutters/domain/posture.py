@@ -115,10 +115,10 @@ def along(text: str) -> tuple[float, float, float] | None:
     >>> along("-Y"), along("up")
     ((0.0, -1.0, 0.0), None)
     """
-    found = re.fullmatch(r"([+-]?)([xyz])", text.strip(), re.IGNORECASE)
-    if found is None:
+    match = re.fullmatch(r"([+-]?)([xyz])", text.strip(), re.IGNORECASE)
+    if match is None:
         return None
-    x, y, z = ((-1.0 if found[1] == "-" else 1.0) if found[2].lower() == each else 0.0 for each in "xyz")
+    x, y, z = ((-1.0 if match[1] == "-" else 1.0) if match[2].lower() == each else 0.0 for each in "xyz")
     return x, y, z
 
 

@@ -22,7 +22,7 @@ _ROUNDS = 24
 Line = tuple[float, float, float, float]
 
 
-def stages_around(
+def enclosing_segments(
     line: Floats, exact: NDArray[np.bool_], foot: float, *, tolerance: float, most: int
 ) -> tuple[tuple[Segment, ...], float]:
     """Stages that enclose lines of a half-plane.
@@ -54,19 +54,19 @@ def stages_around(
     """
     low, high = foot, float(line[:, 3].max())
     if high - low <= _SAME:
-        raise CutterError("a holder's outline spans no height along its axis: is it drawn about another axis?")
+        raise CutterError("a holder's outline spans no height along its axis: is it modelled about another axis?")
     top = _envelope(line, exact, low, high)
     keep, allowed = True, tolerance
-    found = _merged(top, allowed, keep=keep)
+    lines = _merged(top, allowed, keep=keep)
     for _ in range(_ROUNDS):
-        if len(found) <= most:
+        if len(lines) <= most:
             break
         # Too many cylinders and cones of their own: they are joined, too.
         keep = keep and len(_merged([each for each in top if each[1]], 0.0, keep=True)) < most - 1
         allowed *= 2.0
-        found = _merged(top, allowed, keep=keep)
+        lines = _merged(top, allowed, keep=keep)
     stages = [
-        Segment(max(r, _THINNEST), to - z, max(s, _THINNEST)) for z, to, r, s in found if to - z > _SAME
+        Segment(max(r, _THINNEST), to - z, max(s, _THINNEST)) for z, to, r, s in lines if to - z > _SAME
     ]  # fmt: skip
     return tuple(stages), allowed
 
@@ -82,7 +82,7 @@ def _envelope(line: Floats, exact: NDArray[np.bool_], low: float, high: float) -
         cuts.append(np.linspace(others[:, 1].min(), others[:, 3].max(), _SLICES))
     heights = np.unique(np.concatenate(cuts).clip(low, high))
     heights = heights[np.append(True, np.diff(heights) > _SAME)]
-    found: list[tuple[Line, bool]] = []
+    pieces: list[tuple[Line, bool]] = []
     for z, to in pairwise(heights.tolist()):
         mine = own[(own[:, 1] <= z + _SAME) & (own[:, 3] >= to - _SAME)]
         near = others[(others[:, 1] < to) & (others[:, 3] > z)]
@@ -97,15 +97,15 @@ def _envelope(line: Floats, exact: NDArray[np.bool_], low: float, high: float) -
             raise CutterError(
                 f"a holder's outline has a gap between the heights {z:.3g} and {to:.3g} mm: give one body"
             )
-        found.append(((z, to, float(first), float(last)), ends[0] >= ends[2] and ends[1] >= ends[3]))
-    all_round = np.array([(first, z, last, to) for (z, to, first, last), _ in found])
+        pieces.append(((z, to, float(first), float(last)), ends[0] >= ends[2] and ends[1] >= ends[3]))
+    all_round = np.array([(first, z, last, to) for (z, to, first, last), _ in pieces])
     for height, radius in line[exact & ~long][:, [1, 2]].tolist():
-        beside = all_round[(all_round[:, 1] <= height + _SAME) & (all_round[:, 3] >= height - _SAME)]
-        if height >= low and _at(beside, np.array(height)).max(initial=0.0) < radius - 1e-6:
+        adjacent = all_round[(all_round[:, 1] <= height + _SAME) & (all_round[:, 3] >= height - _SAME)]
+        if height >= low and _at(adjacent, np.array(height)).max(initial=0.0) < radius - 1e-6:
             raise CutterError(
                 f"a holder's outline ends in a disk without thickness at the height {height:.3g} mm: close it"
             )
-    return found
+    return pieces
 
 
 def _at(lines: Floats, height: Floats) -> Floats:
@@ -132,34 +132,34 @@ def _crossings(lines: Floats) -> Floats:
 
 def _merged(top: list[tuple[Line, bool]], tolerance: float, *, keep: bool) -> list[Line]:
     """Lines joined as long as one around them is nowhere farther out than the tolerance; `keep` exact ones as they are."""
-    found: list[Line] = []
+    merged: list[Line] = []
     at = 0
     while at < len(top):
         own = top[at][1] and keep
         allowed = _SAME if own else tolerance
         few, many = 1, 1
         run = next((i for i in range(at, len(top)) if (top[i][1] and keep) != own), len(top)) - at
-        best = _around([top[at][0]])[0]
+        best = _enclosing([top[at][0]])[0]
         while few < run:
             # Twice as many while that goes well, then halves in between.
             many = min(run, 2 * few)
-            line, off = _around([each for each, _ in top[at : at + many]])
+            line, off = _enclosing([each for each, _ in top[at : at + many]])
             if off > allowed:
                 break
             best, few = line, many
         while many - few > 1:
             middle = (few + many) // 2
-            line, off = _around([each for each, _ in top[at : at + middle]])
+            line, off = _enclosing([each for each, _ in top[at : at + middle]])
             if off > allowed:
                 many = middle
             else:
                 best, few = line, middle
-        found.append(best)
+        merged.append(best)
         at += few
-    return found
+    return merged
 
 
-def _around(lines: list[Line]) -> tuple[Line, float]:
+def _enclosing(lines: list[Line]) -> tuple[Line, float]:
     """The line from the first height to the last, nowhere nearer to the axis than those given, that is farther out by least."""
     z = np.array([height for low, high, _, _ in lines for height in (low, high)])
     y = np.array([radius for _, _, first, last in lines for radius in (first, last)])

@@ -103,22 +103,22 @@ def lens_height(cutter: Dimensions) -> float:
 
 def stages(cutter: Dimensions) -> tuple[tuple[Part, float, Segment], ...]:
     """List the segments above the flutes, upwards: the part, the height over the tip at which it begins, mm, and the segment."""
-    found: list[tuple[Part, float, Segment]] = []
+    parts: list[tuple[Part, float, Segment]] = []
     top = flute_length(cutter)
     for stage in cutter.necks:
-        found.append(("neck", top, stage))
+        parts.append(("neck", top, stage))
         top += stage.length
     if cutter.length - top > SAME:
         radius = cutter.shank_radius
         if radius is None:
             radius = cutter.necks[-1].upper_radius if cutter.necks else top_radius(cutter)
         part: Part = "neck" if cutter.shape == "lollipop" else "shank"
-        found.append((part, top, Segment(radius, cutter.length - top)))
+        parts.append((part, top, Segment(radius, cutter.length - top)))
     top = cutter.length
     for stage in cutter.holder.stages if cutter.holder else ():
-        found.append(("holder", top, stage))
+        parts.append(("holder", top, stage))
         top += stage.length
-    return tuple(found)
+    return tuple(parts)
 
 
 def pieces_at_most(cutter: Dimensions) -> int:
@@ -154,7 +154,7 @@ def _corners(outline: tuple[tuple[float, float], ...]) -> tuple[Mode, ...]:
         while len(hull) > 1 and _turn(hull[-2], hull[-1], (r, h)) <= 0.0:
             hull.pop()
         hull.append((r, h))
-    found = []
+    corners = []
     for i, (r, h) in enumerate(hull):
         low = 0.0
         if i > 0:
@@ -162,8 +162,8 @@ def _corners(outline: tuple[tuple[float, float], ...]) -> tuple[Mode, ...]:
         last = i + 1 == len(hull)
         high = max(low, _RIGHT) if last else math.atan2(hull[i + 1][1] - h, hull[i + 1][0] - r)
         if high >= 0.0 and high > low:
-            found.append(Mode(r, h, 0.0, max(0.0, low), high))
-    return tuple(found)
+            corners.append(Mode(r, h, 0.0, max(0.0, low), high))
+    return tuple(corners)
 
 
 def _turn(a: tuple[float, float], b: tuple[float, float], c: tuple[float, float]) -> float:
@@ -189,7 +189,7 @@ def check(cutter: Dimensions, name: str) -> None:
     # Of a lollipop it is the neck under the ball, whatever stands above.
     shank = cutter.shank_radius is not None and not (cutter.shape == "lollipop" and cutter.necks)
     if shank and cutter.length - top - cutter.neck_length <= SAME:
-        raise CutterError(f"{name}: its flutes and neck reach up to its length, which leaves no room for a shank")
+        raise CutterError(f"{name}: its flutes and neck reach up to its length, which leaves no length for a shank")
     if pieces_at_most(cutter) > MOST_PIECES:
         raise CutterError(
             f"{name}: it has {len(stages(cutter))} sections above its flutes and {len(cutter.outline)} points of an outline, "

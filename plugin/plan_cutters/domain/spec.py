@@ -73,7 +73,7 @@ def renamed(text: str, names: Mapping[str, str]) -> str:
     """
     # The longest first: an id may begin as another one does. Nor is it the beginning of another cutter's.
     ids = "|".join(re.escape(name) for name in sorted(names, key=len, reverse=True))
-    return re.sub(rf"(?<!\w)(?:{ids})(?!\w|[.:]\d|\+R)", lambda found: names[found[0]], text) if ids else text
+    return re.sub(rf"(?<!\w)(?:{ids})(?!\w|[.:]\d|\+R)", lambda match: names[match[0]], text) if ids else text
 
 
 def spelled(cutter: Dimensions) -> str:

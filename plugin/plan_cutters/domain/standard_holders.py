@@ -109,22 +109,22 @@ def chuck(text: str) -> Chuck | None:
     plain = re.sub(r"[-_/\s]+", "", text.lower())
     if not re.match(r"er[0-9]|hsk|bt[0-9]|sk[0-9]|cat|ct[0-9]|iso[0-9]|dv[0-9]|[ae][0-9]{2,3}er", plain):
         return None
-    found = _WORD.fullmatch(plain)
-    nose = NOSES.get(found["nose"]) if found else None
-    taper = _taper(found["taper"]) if found and found["taper"] else None
-    if found is None or nose is None or (found["taper"] and taper is None):
+    match = _WORD.fullmatch(plain)
+    nose = NOSES.get(match["nose"]) if match else None
+    taper = _taper(match["taper"]) if match and match["taper"] else None
+    if match is None or nose is None or (match["taper"] and taper is None):
         raise CutterError(f"no holder is called {text!r}; {_near(plain)}")
-    short = found["nose"].upper()
+    short = match["nose"].upper()
     high = _ALONE if taper is None else taper.gauge
-    if found["length"]:
-        high = length(found["length"])
+    if match["length"]:
+        high = length(match["length"])
     least = nose.length if taper is None else nose.length + taper.depth
     if not least <= high <= _LONGEST:
         what = "its nut takes" if taper is None else "its nut and its flange take"
         raise CutterError(f"holder {text!r}: {what} {least:g} mm; give a length from that to {_LONGEST:g} mm, as "
-                          f"{found['taper'] or ''}{'-' if taper else ''}{found['nose']}x100")  # fmt: skip
+                          f"{match['taper'] or ''}{'-' if taper else ''}{match['nose']}x100")  # fmt: skip
     if taper is None:
-        return Chuck(short if not found["length"] else f"{short}x{high:g}", ((nose.diameter / 2, high),), nose.bore)
+        return Chuck(short if not match["length"] else f"{short}x{high:g}", ((nose.diameter / 2, high),), nose.bore)
     body = max(nose.diameter, taper.body)
     sections = [(nose.diameter, nose.length), (body, high - least), (max(taper.flange, 0.0), taper.depth)]
     merged: list[tuple[float, float]] = []

@@ -134,30 +134,30 @@ def outline(made: Assembly, stick_out: float) -> Floats:
     height = made.mode[0, OVER_TIP] - stick_out
     corners = np.vstack([_lower_side(row, height) for row in rows])
     radii = np.unique(corners[:, [0, 2]])
-    found, inner = [], 0.0
+    segments, inner = [], 0.0
     for outer in radii[radii > 0.0].tolist():
-        beside = corners[corners[:, 2] >= outer]
-        rise = (beside[:, 3] - beside[:, 1]) / np.maximum(beside[:, 2] - beside[:, 0], SAME)
+        outside = corners[corners[:, 2] >= outer]
+        rise = (outside[:, 3] - outside[:, 1]) / np.maximum(outside[:, 2] - outside[:, 0], SAME)
         # The least of several lines lies above the chord of its ends.
-        first, last = (float((beside[:, 1] + rise * np.maximum(0.0, q - beside[:, 0])).min()) for q in (inner, outer))
-        found.append((first, max(first, last), inner, outer))
+        first, last = (float((outside[:, 1] + rise * np.maximum(0.0, q - outside[:, 0])).min()) for q in (inner, outer))
+        segments.append((first, max(first, last), inner, outer))
         inner = outer
-    return np.array(found)
+    return np.array(segments)
 
 
 def _lower_side(row: NDArray[np.float64], height: float) -> list[tuple[float, float, float, float]]:
     """The side of a piece that looks to the tip, as lines (q0, v0, q1, v1) that rise outwards; nearer to the axis it is level."""
     low, high = float(row[LOW]) + height, float(row[HIGH]) + height
     if row[KIND] == ARC:
-        radius, around, centre = float(row[RADIUS]), float(row[ROUND]), float(row[SLOPE]) + height
+        radius, ring_radius, centre = float(row[RADIUS]), float(row[ROUND]), float(row[SLOPE]) + height
         # Tangents at equal angles, from the lowest point out to the widest.
         turn = 0.5 * math.pi / _CHORDS
-        out = around / math.cos(0.5 * turn)
+        out = ring_radius / math.cos(0.5 * turn)
         angles = [0.0, *(turn * (i + 0.5) for i in range(_CHORDS)), 0.5 * math.pi]
-        radii = [around, *[out] * _CHORDS, around]
+        radii = [ring_radius, *[out] * _CHORDS, ring_radius]
         points = [(radius + r * math.sin(a), centre - r * math.cos(a)) for a, r in zip(angles, radii, strict=True)]
-        points[0] = (points[0][0], centre - around)
-        points[-1] = (radius + around, points[-1][1])
+        points[0] = (points[0][0], centre - ring_radius)
+        points[-1] = (radius + ring_radius, points[-1][1])
         return [(q0, v0, q1, v1) for (q0, v0), (q1, v1) in pairwise(points)]
     radius, slope = float(row[RADIUS]), float(row[SLOPE])
     if slope <= 0.0:

@@ -67,15 +67,15 @@ def unjudged(machine: Machine, placement: Placement | None) -> str | None:
 
 def tips(cutter: Cutter, point: Floats, normal: Floats, verdicts: Verdicts) -> Floats:
     """Tips (n, 3) of a cutter at the postures with which it touches points (n, 3) of surfaces with unit normals (n, 3)."""
-    found = np.full(point.shape, np.nan)
+    result = np.full(point.shape, np.nan)
     for mode in modes(cutter):
-        at = np.isnan(found[:, 0]) & (verdicts.tilt >= mode.low - 1e-9) & (verdicts.tilt <= mode.high + 1e-9)
+        at = np.isnan(result[:, 0]) & (verdicts.tilt >= mode.low - 1e-9) & (verdicts.tilt <= mode.high + 1e-9)
         n, f, a, tilt = normal[at], verdicts.tilt_direction[at], verdicts.axis[at], verdicts.tilt[at, None]
         centre = point[at] + (mode.radius + (cutter.allowance or 0.0)) * n
         # Across the axis, towards the contact.
         across = np.cos(tilt) * f - np.sin(tilt) * n
-        found[at] = centre - mode.offset * across - mode.height * a
-    return found
+        result[at] = centre - mode.offset * across - mode.height * a
+    return result
 
 
 def travel(machine: Machine, placement: Placement, tip: Floats, axis: Floats, length: float) -> Travel:
@@ -135,9 +135,9 @@ def _positions(machine: Machine, angle: Floats, nose: Floats) -> Floats:
     across = np.stack(ways, axis=2)
     solvable = np.isfinite(across).all(axis=(1, 2))
     solvable[solvable] = np.abs(np.linalg.det(across[solvable])) > _FLAT
-    found = np.full(nose.shape, np.nan)
-    found[solvable] = np.linalg.solve(across[solvable], (nose - base)[solvable, :, None])[:, :, 0]
-    return found
+    positions = np.full(nose.shape, np.nan)
+    positions[solvable] = np.linalg.solve(across[solvable], (nose - base)[solvable, :, None])[:, :, 0]
+    return positions
 
 
 def _beyond(machine: Machine, position: Floats) -> Floats:

@@ -91,8 +91,8 @@ class Archive:
         """One array, as its header says."""
         header = self.headers[name]
         try:
-            found = np.empty(header.shape, header.dtype)
-            view: Any = found.reshape(-1).view(np.uint8) if header.bytes else b""
+            array = np.empty(header.shape, header.dtype)
+            view: Any = array.reshape(-1).view(np.uint8) if header.bytes else b""
             with self._archive.open(f"{name}.npy") as packed:
                 packed.read(header.start)
                 place = 0
@@ -108,42 +108,42 @@ class Archive:
         except MemoryError:
             raise self.error(f"its array {name} does not fit into memory", file=self.name) from None
         except _FAULTS as fault:
-            raise self.fault(f"array {name} cannot be unpacked{_said(fault)}") from None
-        return found
+            raise self.fault(f"array {name} cannot be unpacked{_cause(fault)}") from None
+        return array
 
     def _opened(self) -> zipfile.ZipFile:
         try:
             return zipfile.ZipFile(self._file)
         except _FAULTS as fault:
-            raise self.fault(f"no archive of arrays{_said(fault)}") from None
+            raise self.fault(f"no archive of arrays{_cause(fault)}") from None
 
     def _headers(self) -> dict[str, Header]:
         members = self._archive.infolist()
         if len(members) > _MEMBERS:
             raise self.fault(f"{len(members)} arrays")
-        found: dict[str, Header] = {}
+        headers: dict[str, Header] = {}
         total = 0
         for each in members:
             name, dot, kind = each.filename.rpartition(".")
             shown = ascii(each.filename)[:60]
             if not dot or kind != "npy" or not name:
                 raise self.fault(f"{shown} is no array")
-            if name in found:
+            if name in headers:
                 raise self.fault(f"array {ascii(name)[:60]} is there twice")
             if each.flag_bits & 1 or each.compress_type not in _WAYS:
                 raise self.fault(f"{shown} is encrypted, or packed in an unknown way")
-            found[name] = self._header(each, shown)
-            if each.file_size != found[name].start + found[name].bytes:
+            headers[name] = self._header(each, shown)
+            if each.file_size != headers[name].start + headers[name].bytes:
                 raise self.fault(f"{shown} is not as long as its shape says")
             if each.file_size > _RATIO * (each.compress_size + 1):
-                raise self.fault(f"{shown} cannot unpack to the {each.file_size} bytes that it is said to have")
+                raise self.fault(f"{shown} cannot unpack to the {each.file_size} bytes that its header states")
             total += each.file_size
         if total > _most():
             raise self.error(
                 f"unpacks to {total / 1e9:.0f} GB, more than half of the memory here; sample more coarsely (--spacing)",
                 file=self.name,
             )
-        return found
+        return headers
 
     def _header(self, member: zipfile.ZipInfo, shown: str) -> Header:
         """Read what `numpy.lib.format` describes, without its readers: they make what the header says."""
@@ -158,9 +158,9 @@ class Archive:
                 if len(size) != width or length > _HEADER:
                     raise ValueError
                 text = packed.read(length)
-            said = ast.literal_eval(text.decode("latin-1").strip())
-            dtype, order, shape = said["descr"], said["fortran_order"], said["shape"]
-            if len(said) != 3 or len(text) != length or not isinstance(dtype, str) or order is not False:
+            fields = ast.literal_eval(text.decode("latin-1").strip())
+            dtype, order, shape = fields["descr"], fields["fortran_order"], fields["shape"]
+            if len(fields) != 3 or len(text) != length or not isinstance(dtype, str) or order is not False:
                 raise ValueError
             if not isinstance(shape, tuple) or len(shape) > 4:
                 raise ValueError
@@ -181,7 +181,7 @@ def _most() -> int:
         return _UNPACKED
 
 
-def _said(fault: BaseException) -> str:
+def _cause(fault: BaseException) -> str:
     """Shorten the message of a fault to one line."""
     text = " ".join(str(fault).split())[:80]
     return f": {ascii(text)[1:-1]}" if text else ""

@@ -27,12 +27,12 @@ class TwiceError(ValueError):
 
 
 def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
-    found = dict(pairs)
-    if len(found) < len(pairs):
+    members = dict(pairs)
+    if len(members) < len(pairs):
         for key, value in pairs:
-            if found[key] != value:
+            if members[key] != value:
                 raise TwiceError(f"{ascii(key)[:40]} is given twice in one object, with different values")
-    return found
+    return members
 
 
 def data_of(path: str | os.PathLike[str], noun: str, error: type[PlanError]) -> bytes:
@@ -140,15 +140,15 @@ class Content:
             return None
         try:
             with zipfile.ZipFile(io.BytesIO(self.data)) as archive:
-                found = archive.infolist()
+                entries = archive.infolist()
         except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as fault:
             raise self.error(
                 f"is a zip archive that cannot be read ({fault}); export it anew", file=self.name
             ) from None
-        if len(found) > _MEMBERS:
-            raise self.error(f"is a zip archive of {len(found)} files: no {self.noun} is", file=self.name)
-        members = {each.filename: each for each in found}
-        if len(members) < len(found):
+        if len(entries) > _MEMBERS:
+            raise self.error(f"is a zip archive of {len(entries)} files: no {self.noun} is", file=self.name)
+        members = {each.filename: each for each in entries}
+        if len(members) < len(entries):
             raise self.error("is a zip archive with two files of one name; export it anew", file=self.name)
         return members
 
@@ -184,7 +184,7 @@ def lines_of(text: str, key: str) -> list[int]:
     decode = json.JSONDecoder()
     blank = re.compile(r"[ \t\n\r,]*")
     at = re.compile(r"\s*\{").match(text)
-    place, found = at.end() if at else len(text), []
+    place, lines = at.end() if at else len(text), []
     line, seen = 1, 0
     try:
         while place < len(text):
@@ -197,10 +197,10 @@ def lines_of(text: str, key: str) -> list[int]:
             place = blank.match(text, place + 1).end()  # type: ignore[union-attr]
             while text[place] != "]":
                 line, seen = line + text.count("\n", seen, place), place
-                found.append(line)
+                lines.append(line)
                 _, place = decode.raw_decode(text, place)
                 place = blank.match(text, place).end()  # type: ignore[union-attr]
-            return found
+            return lines
     except (ValueError, AttributeError, IndexError, RecursionError):
         pass
     return []

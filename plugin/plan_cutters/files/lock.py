@@ -90,7 +90,7 @@ class Lock:
             if not _stands(handle, self.file):
                 os.close(handle)
                 return -1
-            before = {} if made else _said(self.file)
+            before = {} if made else _owner(self.file)
             if before.get("host", socket.gethostname()) != socket.gethostname():
                 raise _busy(out, self.file, alive=False)
             _discard(out, before.get("staging"))
@@ -162,18 +162,18 @@ def _stands(handle: int, file: Path) -> bool:
         return False
 
 
-def _said(file: Path) -> dict[str, object]:
+def _owner(file: Path) -> dict[str, object]:
     """Read the entry that the owner of a lock wrote; it is empty where the owner has not written yet."""
     with contextlib.suppress(OSError, ValueError, RecursionError):
         with file.open("rb") as opened:
-            found = json.loads(opened.read(_LONGEST))
-        if isinstance(found, dict):
-            return found
+            owner = json.loads(opened.read(_LONGEST))
+        if isinstance(owner, dict):
+            return owner
     return {}
 
 
 def _busy(out: Path, file: Path, *, alive: bool) -> PlanError:
-    owner, who = _said(file), "another run"
+    owner, who = _owner(file), "another run"
     if owner:
         pid, host, since = (ascii(str(owner.get(word, "?")))[1:-1][:60] for word in ("pid", "host", "since"))
         who = f"process {pid} on {host}, since {since}"

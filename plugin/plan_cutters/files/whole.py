@@ -11,17 +11,17 @@ from plan_cutters.errors import PlanError
 @contextlib.contextmanager
 def whole(path: Path) -> Iterator[Path]:
     """Give a path to write to, which takes the place of `path` when all is written."""
-    aside = path.with_name(f".{path.name}.part")
+    temporary = path.with_name(f".{path.name}.part")
     try:
-        yield aside
-        os.replace(aside, path)
+        yield temporary
+        os.replace(temporary, path)
     except OSError as error:
         with contextlib.suppress(OSError):
-            aside.unlink(missing_ok=True)
+            temporary.unlink(missing_ok=True)
         raise PlanError(f"cannot be written: {error.strerror or error}", file=str(path)) from None
 
 
 def write(path: Path, text: str) -> None:
     """Write a text file, whole or not at all."""
-    with whole(path) as aside:
-        aside.write_text(text, encoding="utf-8")
+    with whole(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")

@@ -62,12 +62,12 @@ def parse(data: bytes, file: str, text: str, noun: str, error: type[PlanError]) 
             file=file,
         )
 
-    def start(tag: str, given: dict[str, str]) -> None:
+    def start(tag: str, attributes: dict[str, str]) -> None:
         nonlocal count
         count += 1
         if len(open_) > _DEEPEST or count > _ELEMENTS:
             raise error(f"line {parser.CurrentLineNumber}: its elements are too deep or too many", file=file)
-        element = Element(tag.rpartition(":")[2], given, parser.CurrentLineNumber)
+        element = Element(tag.rpartition(":")[2], attributes, parser.CurrentLineNumber)
         open_[-1].children.append(element)
         open_.append(element)
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from plan_cutters.domain.checks import flag, number, numbers, shown
 from plan_cutters.domain.holder import Holder
-from plan_cutters.domain.revolution import stages_around
+from plan_cutters.domain.revolution import enclosing_segments
 from plan_cutters.errors import CutterError
 from plan_cutters.plan_file.numbers import mm
 
@@ -62,32 +62,32 @@ def holder(
     if not 1e-4 <= wanted <= 10.0:
         raise CutterError(f"a holder's tolerance must lie between 0.0001 and 10 mm, not {wanted:g}")
     part = turned_part(source, origin, direction)
-    around = meridian(part, origin, direction, 0.5 * wanted)
-    if around.loose and not flag(enclose, "enclose"):
-        faces = ", ".join(f"F{n}" for n in around.loose[:5]) + (" and more" if len(around.loose) > 5 else "")
+    outline = meridian(part, origin, direction, 0.5 * wanted)
+    if outline.loose and not flag(enclose, "enclose"):
+        faces = ", ".join(f"F{n}" for n in outline.loose[:5]) + (" and more" if len(outline.loose) > 5 else "")
         raise CutterError(
             f"the holder is no body of revolution about its axis ({faces}): give its axis, or enclose=True for what it sweeps "
             "when it turns"
         )
-    stages, kept = stages_around(around.line, around.exact, around.foot, tolerance=0.5 * wanted, most=_MOST)
-    notes = ["what it sweeps when it turns"] if around.loose else []
-    if kept > wanted:
-        notes.append(f"in {len(stages)} stages, about {mm(kept + around.off)} larger than drawn")
+    stages, exact = enclosing_segments(outline.line, outline.exact, outline.foot, tolerance=0.5 * wanted, most=_MOST)
+    notes = ["what it sweeps when it turns"] if outline.loose else []
+    if exact > wanted:
+        notes.append(f"in {len(stages)} stages, about {mm(exact + outline.off)} larger than drawn")
     words = " ".join(filter(None, (name, f"({', '.join(notes)})" if notes else "")))
     return Holder(stages, words)
 
 
-def _axis(given: Any) -> tuple[list[float], list[float]]:
-    if isinstance(given, str):
-        letter = given.strip().lower()
+def _axis(axis: Any) -> tuple[list[float], list[float]]:
+    if isinstance(axis, str):
+        letter = axis.strip().lower()
         sign = -1.0 if letter.startswith("-") else 1.0
         if letter.lstrip("+-") not in _AXES:
-            raise CutterError(f"a holder's axis is x, y, z, or a point and a direction, not {shown(given)}")
+            raise CutterError(f"a holder's axis is x, y, z, or a point and a direction, not {shown(axis)}")
         return [0.0, 0.0, 0.0], [sign * each for each in _AXES[letter.lstrip("+-")]]
     try:
-        origin, direction = given
+        origin, direction = axis
     except (TypeError, ValueError):
-        raise CutterError(f"a holder's axis is x, y, z, or a point and a direction, not {shown(given)}") from None
+        raise CutterError(f"a holder's axis is x, y, z, or a point and a direction, not {shown(axis)}") from None
     base, along = numbers(origin, "a point of the axis", 3), numbers(direction, "a direction of the axis", 3)
     if not (any(along) and all(map(math.isfinite, (*base, *along)))):
         raise CutterError("a holder's axis must be finite numbers, and its direction not 0,0,0")

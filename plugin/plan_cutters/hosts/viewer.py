@@ -68,13 +68,13 @@ def shown(
         group = {"check": "check faces", "ignored": "ignored faces"}.get(verdict_of(piece), "targets")
         groups[group].append(Shown(piece.shape, names.of(title), colour))
     groups["fixtures"] += [
-        Shown(_fixture(each), names.of(each.name), rgb("fixture")) for each in result.conditions.around.fixtures
+        Shown(_fixture(each), names.of(each.name), rgb("fixture")) for each in result.conditions.surroundings.fixtures
     ]
-    found = {word: tuple(each) for word, each in groups.items() if each}
+    filled = {word: tuple(each) for word, each in groups.items() if each}
     if at is not None:
         tip, axis = _posture(result, tool, at)
-        found[names.of(f"tool {tool.id}")] = tuple(_tool(tool, tip, axis, names))
-    return name, found
+        filled[names.of(f"tool {tool.id}")] = tuple(_tool(tool, tip, axis, names))
+    return name, filled
 
 
 class _Names:
@@ -92,11 +92,11 @@ class _Names:
         return name
 
 
-def _fixture(standing: Any) -> Any:
-    if isinstance(standing.source, Part):
-        place = np.column_stack([standing.fixture.rotation, standing.fixture.shift])
-        return placed(standing.source.shape, place)
-    return of_triangles(standing.shown)
+def _fixture(fixture: Any) -> Any:
+    if isinstance(fixture.source, Part):
+        place = np.column_stack([fixture.fixture.rotation, fixture.fixture.shift])
+        return placed(fixture.source.shape, place)
+    return of_triangles(fixture.shown)
 
 
 def _posture(result: Result, cutter: Cutter, at: int | WitnessEntry) -> tuple[Floats, Floats]:
@@ -132,10 +132,10 @@ def _posture(result: Result, cutter: Cutter, at: int | WitnessEntry) -> tuple[Fl
     return tip, axis
 
 
-def _row(given: Any, count: int) -> int:
-    if isinstance(given, bool) or not isinstance(given, int | np.integer) or not -count <= given < count:
-        raise OptionError(f"at must be the row of a sample, 0 to {count - 1}, or a witness, not {written(given)}")
-    return int(given) % count
+def _row(value: Any, count: int) -> int:
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or not -count <= value < count:
+        raise OptionError(f"at must be the row of a sample, 0 to {count - 1}, or a witness, not {written(value)}")
+    return int(value) % count
 
 
 def _tool(cutter: Cutter, tip: Floats, axis: Floats, names: _Names) -> Iterator[Shown]:

@@ -10,15 +10,15 @@ from plan_cutters.kernels.jit import kernel
 @kernel
 def remove(intervals, count, first, last, narrowest):
     """Take [first, last] out of sorted intervals in place, drop what is narrower than `narrowest`; the new count."""
-    kept = 0
+    written = 0
     for row in range(count):
         low, high = intervals[row, 0], intervals[row, 1]
         if last <= low or first >= high:
-            intervals[kept, 0], intervals[kept, 1] = low, high
-            kept += 1
+            intervals[written, 0], intervals[written, 1] = low, high
+            written += 1
             continue
         below, above = first - low >= narrowest, high - last >= narrowest
-        if below and above and kept == row:
+        if below and above and written == row:
             # One interval becomes two: those after it, all above `last`, move up.
             if count == len(intervals):
                 below = first - low > high - last
@@ -30,12 +30,12 @@ def remove(intervals, count, first, last, narrowest):
                 intervals[row + 1, 0] = last
                 return count + 1
         if below:
-            intervals[kept, 0], intervals[kept, 1] = low, first
-            kept += 1
+            intervals[written, 0], intervals[written, 1] = low, first
+            written += 1
         if above:
-            intervals[kept, 0], intervals[kept, 1] = last, high
-            kept += 1
-    return kept
+            intervals[written, 0], intervals[written, 1] = last, high
+            written += 1
+    return written
 
 
 @kernel
@@ -52,11 +52,11 @@ def insert(intervals, count, first, last):
 @kernel
 def join(intervals, count):
     """Join intervals, ascending, that touch; how many are left."""
-    kept = min(count, 1)
+    written = min(count, 1)
     for i in range(1, count):
-        if intervals[i, 0] <= intervals[kept - 1, 1]:
-            intervals[kept - 1, 1] = max(intervals[kept - 1, 1], intervals[i, 1])
+        if intervals[i, 0] <= intervals[written - 1, 1]:
+            intervals[written - 1, 1] = max(intervals[written - 1, 1], intervals[i, 1])
         else:
-            intervals[kept, 0], intervals[kept, 1] = intervals[i, 0], intervals[i, 1]
-            kept += 1
-    return kept
+            intervals[written, 0], intervals[written, 1] = intervals[i, 0], intervals[i, 1]
+            written += 1
+    return written

@@ -139,36 +139,36 @@ def hold(n, f, rotary, intervals, count):
         With spare rows at the end: `CROSSINGS`, and three for each crossing and interval.
     count : int
     """
-    kept, base = 0, len(intervals) - CROSSINGS
+    written, base = 0, len(intervals) - CROSSINGS
     # Those to come are put aside, for one may become several.
-    aside = base - count
+    margin = base - count
     for i in range(count - 1, -1, -1):
-        intervals[aside + i, 0], intervals[aside + i, 1] = intervals[i, 0], intervals[i, 1]
+        intervals[margin + i, 0], intervals[margin + i, 1] = intervals[i, 0], intervals[i, 1]
     for i in range(count):
-        low, high = intervals[aside + i, 0], intervals[aside + i, 1]
-        found = _crossings(n, f, low, high, rotary, intervals)
+        low, high = intervals[margin + i, 0], intervals[margin + i, 1]
+        crossing = _crossings(n, f, low, high, rotary, intervals)
         # `open`: the last interval kept ends at `last`, and goes on if what follows is held.
         last, going = low, False
-        for k in range(found + 1):
-            end = high if k == found else intervals[base + k, 0]
+        for k in range(crossing + 1):
+            end = high if k == crossing else intervals[base + k, 0]
             if _held_at(n, f, 0.5 * (last + end), rotary):
                 if going:
-                    intervals[kept - 1, 1] = end
+                    intervals[written - 1, 1] = end
                 else:
-                    intervals[kept, 0], intervals[kept, 1] = last, end
-                    kept += 1
+                    intervals[written, 0], intervals[written, 1] = last, end
+                    written += 1
                 going = True
             else:
                 # A single tilt is held where limits meet, or where fewer than two axes turn the tool.
                 if not going and _held_at(n, f, last, rotary):
-                    intervals[kept, 0], intervals[kept, 1] = last, last
-                    kept += 1
+                    intervals[written, 0], intervals[written, 1] = last, last
+                    written += 1
                 going = False
             last = end
         if not going and _held_at(n, f, high, rotary) and high > low:
-            intervals[kept, 0], intervals[kept, 1] = high, high
-            kept += 1
-    return kept
+            intervals[written, 0], intervals[written, 1] = high, high
+            written += 1
+    return written
 
 
 @kernel

@@ -247,7 +247,7 @@ def _touches(x, y, z, clear, solids, stack):
 
 
 @entry
-def near_skin(points, clear, solids, near):
+def near_shell(points, clear, solids, near):
     """Write for points (n, 3) whether a skin that encloses something comes within `clear`, mm."""
     stack = np.empty(64, np.int64)
     for row in range(len(points)):
@@ -288,7 +288,7 @@ def _apart(v, cx, cy, cz, half):
 
 
 @entry
-def mark_skin(vertex, grow, origin, size, cell):
+def mark_shell(vertex, grow, origin, size, cell):
     """Set the cells (i, j, k) to 1 that triangles, made thicker by `grow`, may pass through."""
     low, high = np.empty(3, np.int64), np.empty(3, np.int64)
     for t in range(len(vertex)):

@@ -98,7 +98,7 @@ class Scratch(NamedTuple):
     looked: Any
 
 
-class Found(NamedTuple):
+class VerdictArrays(NamedTuple):
     """A search writes these arrays (n): verdict, axis, tilt_direction, tilt, rotation, reason; see `domain.verdicts.Verdicts`."""
 
     verdict: Any

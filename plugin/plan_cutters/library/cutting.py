@@ -42,7 +42,7 @@ def corner_of(tool: Listed, radius: float, promise: str) -> float:
             return radius
         if abs(corner - radius) > slack(radius):
             raise UnfitError(
-                f'called "{tool.kind}", but {tool.said("RE")} is not half of {tool.said("DC")}: correct it, or call it bull nose'
+                f'called "{tool.kind}", but {tool.cite("RE")} is not half of {tool.cite("DC")}: correct it, or call it bull nose'
             )
     elif promise in ("bull", "slot", "face", "taper") and tool.kind != "taper":
         must_state(tool, "RE", _CORNER)
@@ -51,14 +51,14 @@ def corner_of(tool: Listed, radius: float, promise: str) -> float:
     is_ = "flat" if not corner else "ball" if corner == radius else "bull"
     if promise in ("flat", "bull", "ball") and is_ != promise:
         what = {"flat": "flat end", "bull": "bull nose", "ball": "ball end"}
-        why = tool.said("RE") if corner else f"no {tool.word('RE')}"
+        why = tool.cite("RE") if corner else f"no {tool.word('RE')}"
         tool.notes.append(f'called "{tool.kind}", but {why}: read as a {what[is_]}')
     return corner
 
 
 def note_tapered(tool: Listed) -> None:
     """Note that a mill that is called straight has a half angle."""
-    tool.notes.append(f'called "{tool.kind}", but {tool.said("TA")}: read as tapered')
+    tool.notes.append(f'called "{tool.kind}", but {tool.cite("TA")}: read as tapered')
 
 
 def _end(tool: Listed, promise: str) -> Cutter:
@@ -69,17 +69,17 @@ def _end(tool: Listed, promise: str) -> Cutter:
         if "RE" in tool.values:
             # With a corner, the axis of the tapered one stands farther from the contact: its shank does not enclose the other's.
             raise UnfitError(
-                f'called "{tool.kind}", but {tool.said("TA")}: is it straight or tapered? '
+                f'called "{tool.kind}", but {tool.cite("TA")}: is it straight or tapered? '
                 f"Leave {tool.word('TA')} out, or call it tapered mill"
             )
         note_tapered(tool)
         return _leaning(tool, math.radians(tool.values["TA"]))
     if tool.values.get("TIP", 0.0) and abs(tool.values["TIP"] - tool.values["DC"]) > slack(radius):
         raise UnfitError(
-            f"{tool.said('TIP')} is not {tool.said('DC')}, and there is no {tool.word('TA')}: a straight mill has one diameter"
+            f"{tool.cite('TIP')} is not {tool.cite('DC')}, and there is no {tool.word('TA')}: a straight mill has one diameter"
         )
     if tool.values.get("RE", 0.0) > radius + slack(radius):
-        raise UnfitError(f"{tool.said('RE')} is more than half of {tool.said('DC')}", broken=True)
+        raise UnfitError(f"{tool.cite('RE')} is more than half of {tool.cite('DC')}", broken=True)
     return Cutter(radius, flutes, corner_of(tool, radius, promise), tool.name, flutes=flutes)
 
 
@@ -88,13 +88,13 @@ def _leaning(tool: Listed, taper: float) -> Cutter:
     corner, flutes, tip = tool.values.get("RE", 0.0), tool.values["LCF"], tool.values.get("TIP")
     if tip is not None and abs(tip - tool.values["DC"]) > slack(tip):
         raise UnfitError(
-            f"{tool.said('DC')} and {tool.said('TIP')}: which of them is the diameter at its tip? Give that as "
+            f"{tool.cite('DC')} and {tool.cite('TIP')}: which of them is the diameter at its tip? Give that as "
             f"{tool.word('DC')}, and no {tool.word('TIP')}"
         )
     radius = 0.5 * tool.values["DC"] + corner * (1.0 - (1.0 - math.sin(taper)) / math.cos(taper))
     if corner > radius + slack(radius):
         raise UnfitError(
-            f"{tool.said('RE')} does not fit under a flank of {tool.said('TA')} and {tool.said('DC')}", broken=True
+            f"{tool.cite('RE')} does not fit under a flank of {tool.cite('TA')} and {tool.cite('DC')}", broken=True
         )
     if abs(corner - radius) <= slack(radius):
         radius = corner = max(radius, corner)
@@ -109,11 +109,11 @@ def _no_ball(tool: Listed, radius: float, corner: float, taper: float) -> None:
     called = tip == "taperedball"
     if not called and (tip or not corner or abs(corner - 0.5 * tool.values["DC"]) > slack(corner)):
         return
-    why = f'called "{tool.tapered}"' if called else f"{tool.said('RE')} is half of {tool.said('DC')}, as of a ball"
+    why = f'called "{tool.tapered}"' if called else f"{tool.cite('RE')} is half of {tool.cite('DC')}, as of a ball"
     ball = 2.0 * corner * (1.0 - math.sin(taper)) / math.cos(taper)
     raise UnfitError(
         f"{why}, but its tip keeps a flat {2.0 * (radius - corner) / tool.scale:.4g} wide: {tool.word('DC')} of a ball of "
-        f"{tool.said('RE')} under {tool.said('TA')} deg is {ball / tool.scale:.6g}; correct it, or say tapered_bull_nose"
+        f"{tool.cite('RE')} under {tool.cite('TA')} deg is {ball / tool.scale:.6g}; correct it, or say tapered_bull_nose"
     )
 
 
@@ -135,9 +135,11 @@ def _dovetail(tool: Listed) -> Cutter:
 
 def _face(tool: Listed) -> Cutter:
     v = tool.values
-    leans = "TA" if "TA" in v else "DCX" if v.get("DCX", 0.0) > v["DC"] + slack(v["DC"]) else ""
-    if leans:
-        raise UnfitError(f"{tool.said(leans)}: face mills with leaning edges are not read; write its outline as TOML")
+    taper_word = "TA" if "TA" in v else "DCX" if v.get("DCX", 0.0) > v["DC"] + slack(v["DC"]) else ""
+    if taper_word:
+        raise UnfitError(
+            f"{tool.cite(taper_word)}: face mills with leaning edges are not read; write its outline as TOML"
+        )
     if not tool.states("DCX"):
         must_state(tool, "TA", "the angle of its edges from the axis")
     return _end(tool, "face")
@@ -148,7 +150,7 @@ def _chamfer(tool: Listed) -> Cutter:
     v = tool.values
     if "RE" in v:
         raise UnfitError(
-            f"{tool.said('RE')}: chamfer mills with a corner radius are not read; write its outline as TOML"
+            f"{tool.cite('RE')}: chamfer mills with a corner radius are not read; write its outline as TOML"
         )
     must_state(tool, "TIP", "the diameter at its tip")
     radius, tip, slope = 0.5 * v["DC"], 0.5 * v.get("TIP", 0.0), math.tan(math.radians(v["TA"]))
@@ -163,8 +165,8 @@ def _chamfer(tool: Listed) -> Cutter:
     else:
         wide = tip + v["LCF"] * slope
         if radius - wide > slack(radius):
-            tool.notes.append(f"{tool.said('DC')} is not reached: a cone of {tool.said('TA')} deg is {2 * wide / tool.scale:.4g} "
-                              f"wide where {tool.said('LCF')} ends")  # fmt: skip
+            tool.notes.append(f"{tool.cite('DC')} is not reached: a cone of {tool.cite('TA')} deg is {2 * wide / tool.scale:.4g} "
+                              f"wide where {tool.cite('LCF')} ends")  # fmt: skip
         points.append((min(radius, wide), v["LCF"]))
     return Cutter.form([(round(r, 9), round(h, 9)) for r, h in points], length=v["LCF"], name=tool.name)
 
@@ -173,7 +175,7 @@ def agree_ball(tool: Listed) -> None:
     """Refuse a lollipop whose corner radius is not that of its ball."""
     v = tool.values
     if "RE" in v and abs(v["RE"] - 0.5 * v["DC"]) > slack(0.5 * v["DC"]):
-        raise UnfitError(f"{tool.said('RE')} is not half of {tool.said('DC')}", broken=True)
+        raise UnfitError(f"{tool.cite('RE')} is not half of {tool.cite('DC')}", broken=True)
 
 
 def _lollipop(tool: Listed) -> Cutter:
@@ -182,18 +184,18 @@ def _lollipop(tool: Listed) -> Cutter:
     agree_ball(tool)
     for key in ("TA", "TIP"):
         if key in v:
-            raise UnfitError(f"{tool.said(key)}: a lollipop has neither a cone nor a flat; write its outline as TOML")
+            raise UnfitError(f"{tool.cite(key)}: a lollipop has neither a cone nor a flat; write its outline as TOML")
     neck = 0.5 * v["DN"]
     if neck >= radius - SAME:
         raise UnfitError(
-            f"{tool.said('DN')} is no less than {tool.said('DC')}: a lollipop's neck is thinner", broken=True
+            f"{tool.cite('DN')} is no less than {tool.cite('DC')}: a lollipop's neck is thinner", broken=True
         )
     if flutes <= radius:
-        raise UnfitError(f"{tool.said('LCF')} ends below the middle of its ball, {tool.said('DC')}", broken=True)
+        raise UnfitError(f"{tool.cite('LCF')} ends below the middle of its ball, {tool.cite('DC')}", broken=True)
     cut = math.sqrt(max(0.0, radius**2 - (flutes - radius) ** 2))
     if cut > neck + slack(neck):
         tool.notes.append(
-            f"{tool.said('LCF')} cuts the ball off above its middle: so far up its neck is taken that wide"
+            f"{tool.cite('LCF')} cuts the ball off above its middle: so far up its neck is taken that wide"
         )
         neck = round(cut, 9)
     return Cutter.lollipop(radius=radius, neck_radius=neck, length=10 * radius, name=tool.name)

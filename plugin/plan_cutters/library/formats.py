@@ -12,9 +12,9 @@ from plan_cutters.files import formats
 from plan_cutters.files.formats import Foreign, Format
 from plan_cutters.library import freecad, fusion_csv, fusion_json, hsmworks, linuxcnc, toml_in
 from plan_cutters.library.files import Content
-from plan_cutters.library.raw_tool import Found
+from plan_cutters.library.raw_tool import LibraryContent
 
-Reader = Callable[[Content], Found]
+Reader = Callable[[Content], LibraryContent]
 FORMATS: tuple[Format[Reader], ...] = (
     Format("Fusion tools (zip)", (".tools",), fusion_json.is_zip, fusion_json.read_zip),
     Format("Fusion JSON", (".json",), fusion_json.is_json, fusion_json.read_json),
@@ -37,9 +37,9 @@ def _sqlite(word: bytes, *suffixes: str) -> Callable[[Content], bool]:
 
 
 def _kirimoto(content: Content) -> bool:
-    found = content.json
-    if isinstance(found, dict) and isinstance(found.get("tools"), list):
-        return any(isinstance(tool, dict) and "shaft_diam" in tool for tool in found["tools"])
+    result = content.json
+    if isinstance(result, dict) and isinstance(result.get("tools"), list):
+        return any(isinstance(tool, dict) and "shaft_diam" in tool for tool in result["tools"])
     text = "".join(content.text[:4096].split())
     if len(text) < 16 or not re.fullmatch(r"[A-Za-z0-9+/]+=*", text):
         return False

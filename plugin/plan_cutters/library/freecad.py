@@ -20,7 +20,7 @@ from plan_cutters.library.fusion_json import MOST_SECTIONS
 from plan_cutters.library.presets import Preset, take_feed
 from plan_cutters.library.raw_tool import (
     FaultError,
-    Found,
+    LibraryContent,
     Listed,
     mm,
     name_of,
@@ -71,11 +71,9 @@ _FOLDERS = (".", "Bit", "bit", "../Bit", "../bit", "../Bits", "../bits")
 
 def is_bit(content: Content) -> bool:
     """An object with `shape` and `parameter`."""
-    found = content.json
+    data = content.json
     return (
-        isinstance(found, dict)
-        and isinstance(found.get("parameter"), dict)
-        and ("shape" in found or "shape-type" in found)
+        isinstance(data, dict) and isinstance(data.get("parameter"), dict) and ("shape" in data or "shape-type" in data)
     )
 
 
@@ -93,16 +91,16 @@ def is_holder(content: Content) -> bool:
     return isinstance(content.json, dict) and isinstance(content.json.get("profile"), list)
 
 
-def read_bit(content: Content) -> Found:
+def read_bit(content: Content) -> LibraryContent:
     """A bit is a library of one."""
-    return Found([_tool(content.json, "tool 1", None)])
+    return LibraryContent([_tool(content.json, "tool 1", None)])
 
 
-def read_library(content: Content) -> Found:
+def read_library(content: Content) -> LibraryContent:
     """Read it and the bits that it lists, beside it or in a folder `Bit`."""
     if len(content.json["tools"]) > MOST_TOOLS:
         raise too_many(content.name)
-    found, lines = Found(), lines_of(content.text, "tools")
+    library, lines = LibraryContent(), lines_of(content.text, "tools")
     for i, item in enumerate(content.json["tools"]):
         line = f" (line {lines[i]})" if len(lines) == len(content.json["tools"]) else ""
         place = f"tool {i + 1}{line}"
@@ -111,11 +109,11 @@ def read_library(content: Content) -> Found:
                 raise FaultError("it has no path of a bit")
             number = whole_of(item.get("nr"), "nr")
             bit = _bit(content.path.parent, item["path"])
-            found.tools.append(_tool(bit.json, place, number))
+            library.tools.append(_tool(bit.json, place, number))
         except FaultError as fault:
             name = name_of(item.get("path")) if isinstance(item, dict) else ""
-            found.tools.append(Entry(place, None, name, unused=str(fault), broken=True))
-    return found
+            library.tools.append(Entry(place, None, name, unused=str(fault), broken=True))
+    return library
 
 
 def _bit(folder: Path, path: str) -> Content:
@@ -132,27 +130,27 @@ def _bit(folder: Path, path: str) -> Content:
             if not is_bit(bit):
                 raise FaultError(f"{name} is no FreeCAD bit")
             return bit
-    raise FaultError("path: its bit is neither beside the library nor in Bit or ../Bit; put it there")
+    raise FaultError("path: its bit is neither in the folder of the library nor in Bit or ../Bit; put it there")
 
 
-def read_holder(content: Content) -> Found:
+def read_holder(content: Content) -> LibraryContent:
     """Read an outline of (radius, height), counted from the holder's nose."""
     name = name_of(content.json.get("name")) or content.path.stem
     try:
-        return Found(holders=[_holder(content.json, name)])
+        return LibraryContent(holders=[_holder(content.json, name)])
     except (FaultError, CutterError) as fault:
-        return Found(faulty=[Entry("profile", None, name, "holder", unused=str(fault), broken=True)])
+        return LibraryContent(faulty=[Entry("profile", None, name, "holder", unused=str(fault), broken=True)])
 
 
-def _holder(given: dict[str, Any], name: str) -> Holder:
-    unit = given.get("units")
+def _holder(entry: dict[str, Any], name: str) -> Holder:
+    unit = entry.get("units")
     scale = _MM.get(unit) if isinstance(unit, str) else None
     if scale is None:
         raise FaultError(f'units is {shown(unit)}: "mm" is expected')
     points = []
-    if len(given["profile"]) > MOST_SECTIONS:
-        raise FaultError(f"profile has {len(given['profile'])} points, more than {MOST_SECTIONS}")
-    for i, point in enumerate(given["profile"], 1):
+    if len(entry["profile"]) > MOST_SECTIONS:
+        raise FaultError(f"profile has {len(entry['profile'])} points, more than {MOST_SECTIONS}")
+    for i, point in enumerate(entry["profile"], 1):
         if not isinstance(point, list) or len(point) != 2:
             raise FaultError(f"profile {i} is no pair of radius and height")
         points.append(tuple(mm(number_of(value, f"profile {i}"), scale, f"profile {i}") for value in point))
@@ -171,11 +169,11 @@ def _holder(given: dict[str, Any], name: str) -> Holder:
     return Holder(tuple(sections(rows, "profile")), name)
 
 
-def _tool(given: dict[str, Any], place: str, number: int | None) -> Listed:
-    called, drawn = (_stem(given.get(word)) for word in ("shape-type", "shape"))
-    kind = called or drawn
-    tool = Listed(place, number, name_of(given.get("name")), kind, _SORTS.get(kind.lower(), ""), "mm")
-    parameters = given["parameter"]
+def _tool(entry: dict[str, Any], place: str, number: int | None) -> Listed:
+    called, shape = (_stem(entry.get(word)) for word in ("shape-type", "shape"))
+    kind = called or shape
+    tool = Listed(place, number, name_of(entry.get("name")), kind, _SORTS.get(kind.lower(), ""), "mm")
+    parameters = entry["parameter"]
     imperial = isinstance(parameters.get("Units"), str) and parameters["Units"].lower() == "imperial"
 
     def length(value: Any, field: str) -> float:
@@ -194,9 +192,9 @@ def _tool(given: dict[str, Any], place: str, number: int | None) -> Listed:
                 both = f"{present[0]} is {shown(parameters[present[0]])}, {other} is {shown(parameters[other])}"
                 tool.faults.append(f"{both}: they mean the same")
     if tool.sort:
-        if drawn and _plain(drawn) != _plain(kind):
+        if shape and _plain(shape) != _plain(kind):
             # FreeCAD takes the drawing, and the type only where it has no such drawing.
-            tool.doubts.append(f"shape-type {shown(kind)}, but shape {shown(drawn)}: another drawing can be another tool; "
+            tool.doubts.append(f"shape-type {shown(kind)}, but shape {shown(shape)}: another drawing can be another tool; "
                                f"correct one, or write it as TOML (docs/tool_libraries.md)")  # fmt: skip
         for word in _STRANGE:
             if re.search("[1-9]", str(parameters.get(word) or "")):
@@ -219,7 +217,7 @@ def _tool(given: dict[str, Any], place: str, number: int | None) -> Listed:
             tool.doubts.append(f"{_ANGLE} {shown(angle)}: a {kind} has no cone; leave it out, or write it as TOML "
                                f"(docs/tool_libraries.md)")  # fmt: skip
     tool.words["LPR"] = "length below the holder"
-    attribute = given.get("attribute")
+    attribute = entry.get("attribute")
     if isinstance(attribute, dict):
         take_feed(tool, [Preset("", attribute.get("cutting_feedrate"))], "cutting_feedrate", _feed)
     return tool
@@ -245,28 +243,28 @@ def _corner(tool: Listed, value: Any, field: str, length: Callable[[Any, str], f
     if value in (None, "") or "DC" not in tool.values:
         return
     try:
-        found = mm(length(value, field), 1.0, field)
+        radius = mm(length(value, field), 1.0, field)
     except FaultError as fault:
         tool.faults.append(str(fault))
         return
-    rest = round(0.5 * tool.values["DC"] - found, 9)
+    rest = round(0.5 * tool.values["DC"] - radius, 9)
     if tool.sort == "chamfer mill":
-        if found:
+        if radius:
             tool.doubts.append(
-                f"{field} {found:.10g} is the radius of its corner or of the flat at its tip: give TipDiameter alone"
+                f"{field} {radius:.10g} is the radius of its corner or of the flat at its tip: give TipDiameter alone"
             )
     elif tool.states("RE"):
         corner = tool.values.get("RE", 0.0)
-        if min(abs(corner - found), abs(corner - rest)) > slack(corner):
+        if min(abs(corner - radius), abs(corner - rest)) > slack(corner):
             tool.faults.append(
-                f"{tool.said('RE')} and {field} {found:.10g} do not agree, as the radius of the corner or of the flat at the tip"
+                f"{tool.cite('RE')} and {field} {radius:.10g} do not agree, as the radius of the corner or of the flat at the tip"
             )
-    elif abs(rest - found) <= slack(found):
-        tool.values["RE"] = found
+    elif abs(rest - radius) <= slack(radius):
+        tool.values["RE"] = radius
         tool.words["RE"] = field
     else:
         other = f"whose corner then has {rest:.10g}" if rest >= 0.0 else "which is then wider than the tool"
-        tool.doubts.append(f"{field} {found:.10g} is the radius of its corner, or of the flat at its tip, {other}: "
+        tool.doubts.append(f"{field} {radius:.10g} is the radius of its corner, or of the flat at its tip, {other}: "
                            "add CornerRadius, which decides")  # fmt: skip
 
 
@@ -284,28 +282,28 @@ def _feed(value: Any, field: str) -> float:
 def _length(value: Any, field: str, imperial: bool, tool: Listed) -> float:
     """mm of a text with a unit."""
     if not isinstance(value, str):
-        found, unit = number_of(value, field), ""
+        number, unit = number_of(value, field), ""
     else:
         match = _QUANTITY.fullmatch(value)
         if not match:
             raise FaultError(f"{field} is {shown(value)}, not a length as 6.35 mm or 0.25 in")
-        found, comma = number_in(match[1], field)
+        number, comma = number_in(match[1], field)
         unit = match[2]
         if comma:
             tool.notes.append("decimal commas")
     if not unit:
-        if imperial and found:
+        if imperial and number:
             raise FaultError(f"{field} is {shown(value)} without a unit, and Units is Imperial: mm or in?")
-        if found:
+        if number:
             tool.notes.append(f"{field} without a unit: mm, as FreeCAD counts")
-        return found
+        return number
     # A capital M is a million, not a metre.
     scale = _MM.get(unit) or (_MM.get(unit.lower()) if len(unit) > 1 else None)
     if scale is None:
         raise FaultError(f"{field} is {shown(value)}: no unit of length is called {shown(unit)}")
     if scale not in (1.0,):
         tool.notes.append(f"{field} in {unit}")
-    return found * scale
+    return number * scale
 
 
 def _angle(value: Any, field: str) -> float:

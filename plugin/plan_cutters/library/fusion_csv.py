@@ -10,7 +10,17 @@ from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.library.files import MOST_TOOLS, Content, too_many
 from plan_cutters.library.fusion_json import MOST_SECTIONS
 from plan_cutters.library.presets import Preset, take_feed
-from plan_cutters.library.raw_tool import FaultError, Found, Listed, mm, name_of, number_in, sections, unit_of, whole_of
+from plan_cutters.library.raw_tool import (
+    FaultError,
+    LibraryContent,
+    Listed,
+    mm,
+    name_of,
+    number_in,
+    sections,
+    unit_of,
+    whole_of,
+)
 from plan_cutters.library.records import Entry
 
 #: Our name of each dimension, and the name in brackets of its column.
@@ -39,8 +49,8 @@ _SEPARATOR = re.compile(r"\"?sep=(.)\"?[ \t]*\r?\n", re.IGNORECASE)
 
 def _table_of(content: Content) -> str:
     text = content.text.lstrip("\ufeff \r\n")
-    said = _SEPARATOR.match(text)
-    return text[said.end() :] if said else text
+    match = _SEPARATOR.match(text)
+    return text[match.end() :] if match else text
 
 
 def is_csv(content: Content) -> bool:
@@ -49,12 +59,12 @@ def is_csv(content: Content) -> bool:
     return "(tool_type)" in first and "(tool_" in first.replace("(tool_type)", "")
 
 
-def read_csv(content: Content) -> Found:
+def read_csv(content: Content) -> LibraryContent:
     """Read it; commas, semicolons or tabs part the columns."""
     text = _table_of(content)
     first = text.partition("\n")[0]
     rows = csv.reader(io.StringIO(text), delimiter=max(",;\t", key=first.count))
-    found = Found()
+    library = LibraryContent()
     try:
         header = [(_NAME.search(cell) or [None, cell.strip()])[1] for cell in next(rows)]
         # Fusion ends its header with the version of the format, in no column.
@@ -74,12 +84,12 @@ def read_csv(content: Content) -> Found:
             place = f"row {i} (line {rows.line_num})"
             if len(row) < len(header) or any(cell.strip() for cell in row[len(header) :]):
                 why = f"it has {len(row)} columns, the header {len(header)}"
-                found.tools.append(Entry(place, unused=why, broken=True))
+                library.tools.append(Entry(place, unused=why, broken=True))
                 continue
-            found.tools.append(_tool(dict(zip(header, row, strict=False)), place))
+            library.tools.append(_tool(dict(zip(header, row, strict=False)), place))
     except csv.Error as error:
         raise LibraryError(f"line {rows.line_num}: {error}; export it anew", file=content.name) from None
-    return found
+    return library
 
 
 def _tool(row: dict[str | None, str], place: str) -> Listed:
@@ -92,10 +102,10 @@ def _tool(row: dict[str | None, str], place: str) -> Listed:
         tool.faults.append(str(fault))
 
     def number(value: str, field: str) -> float:
-        found, comma = number_in(value, field)
+        result, comma = number_in(value, field)
         if comma:
             tool.notes.append("decimal commas")
-        return found
+        return result
 
     for key, column in _COLUMNS:
         tool.take(key, row.get(column, "").strip(), column, number)

@@ -8,7 +8,17 @@ from plan_cutters.domain.holder import Holder
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.library.files import MOST_TOOLS, Content, lines_of, too_many
 from plan_cutters.library.presets import Preset, take_feed
-from plan_cutters.library.raw_tool import FaultError, Found, Listed, mm, name_of, number_of, sections, unit_of, whole_of
+from plan_cutters.library.raw_tool import (
+    FaultError,
+    LibraryContent,
+    Listed,
+    mm,
+    name_of,
+    number_of,
+    sections,
+    unit_of,
+    whole_of,
+)
 from plan_cutters.library.records import Entry
 
 #: Our name of each dimension, and the key of `geometry`.
@@ -43,7 +53,7 @@ def is_zip(content: Content) -> bool:
     return content.members is not None and _MEMBER in content.members
 
 
-def read_zip(content: Content) -> Found:
+def read_zip(content: Content) -> LibraryContent:
     """Read `.tools`."""
     inner = replace(content, data=content.unpacked(_MEMBER))
     if not is_json(inner):
@@ -53,27 +63,27 @@ def read_zip(content: Content) -> Found:
     return read_json(inner)
 
 
-def read_json(content: Content) -> Found:
+def read_json(content: Content) -> LibraryContent:
     """Read `.json`."""
     if len(content.json["data"]) > MOST_TOOLS:
         raise too_many(content.name)
-    found, lines = Found(), lines_of(content.text, "data")
+    library, lines = LibraryContent(), lines_of(content.text, "data")
     for i, item in enumerate(content.json["data"]):
         line = f" (line {lines[i]})" if len(lines) == len(content.json["data"]) and max(lines) > 1 else ""
         place = f"tool {i + 1}{line}"
         if not isinstance(item, dict):
-            found.tools.append(Entry(place, unused=f"{shown(item)} is no tool", broken=True))
+            library.tools.append(Entry(place, unused=f"{shown(item)} is no tool", broken=True))
         elif item.get("type") == "holder":
             name = name_of(item.get("description"))
             try:
-                found.holders.append(_holder(item, unit_of(item.get("unit"), "unit")[1], "segments"))
+                library.holders.append(_holder(item, unit_of(item.get("unit"), "unit")[1], "segments"))
             except (FaultError, CutterError) as fault:
-                found.faulty.append(Entry(place, None, name, "holder", unused=str(fault), broken=True))
+                library.faulty.append(Entry(place, None, name, "holder", unused=str(fault), broken=True))
         else:
-            found.tools.append(_tool(item, place))
+            library.tools.append(_tool(item, place))
     if any(isinstance(item, dict) and item.get("expressions") for item in content.json["data"]):
-        found.notes.append(EXPRESSIONS)
-    return found
+        library.notes.append(EXPRESSIONS)
+    return library
 
 
 def _tool(item: dict[str, Any], place: str) -> Listed:
@@ -104,29 +114,29 @@ def _tool(item: dict[str, Any], place: str) -> Listed:
 def _presets(item: dict[str, Any]) -> list[Preset]:
     """Its presets. They say nothing of its shape: where they cannot be read, there are none."""
     start = item.get("start-values")
-    given = start.get("presets") if isinstance(start, dict) else None
-    if not isinstance(given, list):
+    entries = start.get("presets") if isinstance(start, dict) else None
+    if not isinstance(entries, list):
         return []
-    return [Preset(name_of(each.get("name")), each.get("v_f")) for each in given if isinstance(each, dict)]
+    return [Preset(name_of(each.get("name")), each.get("v_f")) for each in entries if isinstance(each, dict)]
 
 
 def _table(item: dict[str, Any], key: str) -> dict[str, Any]:
-    found = item.get(key)
-    if found is None:
+    result = item.get(key)
+    if result is None:
         return {}
-    if not isinstance(found, dict):
-        raise FaultError(f"{key} is {shown(found)}, not an object")
-    return found
+    if not isinstance(result, dict):
+        raise FaultError(f"{key} is {shown(result)}, not an object")
+    return result
 
 
 def _sections(item: dict[str, Any], scale: float, where: str) -> Any:
-    given = item.get("segments")
-    if not isinstance(given, list) or not all(isinstance(each, dict) for each in given):
+    entries = item.get("segments")
+    if not isinstance(entries, list) or not all(isinstance(each, dict) for each in entries):
         raise FaultError(f"{where} is no list of segments")
-    if len(given) > MOST_SECTIONS:
-        raise FaultError(f"{where} has {len(given)} sections, more than {MOST_SECTIONS}")
+    if len(entries) > MOST_SECTIONS:
+        raise FaultError(f"{where} has {len(entries)} sections, more than {MOST_SECTIONS}")
     rows = []
-    for i, each in enumerate(given, 1):
+    for i, each in enumerate(entries, 1):
         values = []
         for key in ("height", "lower-diameter", "upper-diameter"):
             field = f"{where} {i} {key}"

@@ -8,7 +8,17 @@ from plan_cutters.files.xml_tree import Element
 from plan_cutters.library.files import MOST_TOOLS, Content, too_many
 from plan_cutters.library.fusion_json import EXPRESSIONS, MOST_SECTIONS
 from plan_cutters.library.presets import Preset, take_feed
-from plan_cutters.library.raw_tool import FaultError, Found, Listed, mm, name_of, number_in, sections, unit_of, whole_of
+from plan_cutters.library.raw_tool import (
+    FaultError,
+    LibraryContent,
+    Listed,
+    mm,
+    name_of,
+    number_in,
+    sections,
+    unit_of,
+    whole_of,
+)
 from plan_cutters.library.records import Entry
 
 #: Our name of each dimension, and the attribute of `body`.
@@ -33,28 +43,30 @@ def is_hsmlib(content: Content) -> bool:
     return content.head.startswith("<") and _ROOT.search(content.text, 0, 1 << 16) is not None
 
 
-def read_hsmlib(content: Content) -> Found:
+def read_hsmlib(content: Content) -> LibraryContent:
     """Read it."""
     root = content.xml()
     if root.tag != "tool-library":
         raise LibraryError(f"is XML with the root {root.tag[:40]}, not tool-library", file=content.name)
-    found, count = Found(), 0
+    library, count = LibraryContent(), 0
     for element in root.below(("tool", "holder")):
         if element.tag == "tool":
             count += 1
             if count > MOST_TOOLS:
                 raise too_many(content.name)
-            found.tools.append(_tool(element, f"tool {count} (line {element.line})"))
+            library.tools.append(_tool(element, f"tool {count} (line {element.line})"))
         elif element.tag == "holder":
             try:
                 scale = unit_of(element.given.get("unit"), "holder unit")[1]
-                found.holders.append(_holder(element, scale))
+                library.holders.append(_holder(element, scale))
             except (FaultError, CutterError) as fault:
                 name = name_of(element.given.get("description"))
-                found.faulty.append(Entry(f"line {element.line}", None, name, "holder", unused=str(fault), broken=True))
+                library.faulty.append(
+                    Entry(f"line {element.line}", None, name, "holder", unused=str(fault), broken=True)
+                )
     if any(element.first("expressions") is not None for element in root.below(("tool", "holder"))):
-        found.notes.append(EXPRESSIONS)
-    return found
+        library.notes.append(EXPRESSIONS)
+    return library
 
 
 def _tool(element: Element, place: str) -> Listed:
@@ -86,15 +98,15 @@ def _tool(element: Element, place: str) -> Listed:
 
 def _presets(element: Element) -> list[Preset]:
     """Its presets; without one, what its `motion` states."""
-    found = [
+    presets = [
         Preset(preset.given.get("name", ""), parameter.given.get("value"))
         for preset in element.below(("preset",))
         for parameter in preset.children
         if parameter.given.get("key") == "tool_feedCutting"
     ]
     motion = element.first("motion")
-    if found or motion is None or motion.given.get("feed-mode", "per-minute") != "per-minute":
-        return found
+    if presets or motion is None or motion.given.get("feed-mode", "per-minute") != "per-minute":
+        return presets
     return [Preset("", motion.given.get("cutting-feedrate"))]
 
 
@@ -111,11 +123,11 @@ def _holder(element: Element, scale: float) -> Holder:
 
 def _sections(element: Element, scale: float, where: str) -> list[Segment]:
     """Each section is a height over the one before and the diameter there; one without a height is a step."""
-    given = [child for child in element.children if child.tag == "section"]
-    if len(given) > MOST_SECTIONS:
-        raise FaultError(f"{where}s are {len(given)}, more than {MOST_SECTIONS}")
+    children = [child for child in element.children if child.tag == "section"]
+    if len(children) > MOST_SECTIONS:
+        raise FaultError(f"{where}s are {len(children)}, more than {MOST_SECTIONS}")
     rows, lower = [], None
-    for i, each in enumerate(given, 1):
+    for i, each in enumerate(children, 1):
         values = []
         for key in ("length", "diameter"):
             if key not in each.given:

@@ -89,16 +89,16 @@ def _sort(tool: Listed) -> str:
     kind = " ".join((tool.sort or tool.kind).lower().split())
     if kind in MILLS:
         return MILLS[kind]
-    said = f'type "{tool.kind}"' if tool.kind else "its type is missing"
+    text = f'type "{tool.kind}"' if tool.kind else "its type is missing"
     if not tool.kind:
-        raise UnfitError(f"{said}: add one, as flat end mill")
+        raise UnfitError(f"{text}: add one, as flat end mill")
     if kind in _OUTLINE:
         raise UnfitError(
-            f"{said}: its dimensions here do not say its outline; write it as TOML (docs/tool_libraries.md)"
+            f"{text}: its dimensions here do not say its outline; write it as TOML (docs/tool_libraries.md)"
         )
     if _OTHERS.search(kind):
-        raise UnfitError(f"{said}: not a mill that finishes surfaces")
-    raise UnfitError(f"{said} is unknown; read are {', '.join(MILLS)}")
+        raise UnfitError(f"{text}: not a mill that finishes surfaces")
+    raise UnfitError(f"{text} is unknown; read are {', '.join(MILLS)}")
 
 
 def _cutter(tool: Listed, ask: Ask) -> Cutter:
@@ -115,16 +115,16 @@ def _cutter(tool: Listed, ask: Ask) -> Cutter:
     widest = max(tool.values["DC"], 2.0 * top_radius(bare))
     if tool.values.get("DCX", 0.0) > widest + slack(widest):
         raise UnfitError(
-            f"{tool.said('DCX')} is wider than all that its other dimensions say: {widest / tool.scale:.6g}"
+            f"{tool.cite('DCX')} is wider than all that its other dimensions say: {widest / tool.scale:.6g}"
         )
     length = _stickout(tool, ask)
     if length < tool.values["LCF"] - slack(length):
-        raise UnfitError(f"the assumed stick-out of {length:g} mm is shorter than its flutes, {tool.said('LCF')}")
+        raise UnfitError(f"the assumed stick-out of {length:g} mm is shorter than its flutes, {tool.cite('LCF')}")
     if bare.shape != "lollipop":
         # What is shorter only by rounding ends where its flutes do.
         length = max(length, tool.values["LCF"])
     holder = _holder(tool, ask)
-    return _held(tool, _standing(bare, _above(tool, bare, length), length), holder)
+    return _held(tool, _with_length(bare, _above(tool, bare, length), length), holder)
 
 
 def _complete(tool: Listed, needs: tuple[str, ...], ask: Ask) -> None:
@@ -145,15 +145,15 @@ def _agree(tool: Listed) -> None:
     for low, high in (("LCF", "LPR"), ("LCF", "OAL"), ("LPR", "OAL"), ("LCF", "LN"), ("LN", "LPR"), ("LN", "OAL"), ("TIP", "DC"),
                       ("DC", "DCX")):  # fmt: skip
         if low in v and high in v and v[low] > v[high] + slack(v[high]):
-            raise UnfitError(f"{tool.said(low)} is more than {tool.said(high)}", broken=True)
+            raise UnfitError(f"{tool.cite(low)} is more than {tool.cite(high)}", broken=True)
     whole = tool.holder is not None and all(key in v for key in ("LF", "LH", "LPR"))
     if whole and abs(v["LF"] - v["LH"] - v["LPR"]) > slack(v["LF"]):
-        raise UnfitError(f"{tool.said('LF')} is not {tool.said('LH')} and {tool.said('LPR')} together", broken=True)
+        raise UnfitError(f"{tool.cite('LF')} is not {tool.cite('LH')} and {tool.cite('LPR')} together", broken=True)
     if tool.shaft and "OAL" in v and "LCF" in v:
         top = max(v["LCF"], v.get("LN", 0.0)) + math.fsum(stage.length for stage in tool.shaft)
         if top > v["OAL"] + slack(top):
             raise UnfitError(
-                f"its shaft's sections end {top / tool.scale:.10g} over its tip, more than {tool.said('OAL')}",
+                f"its shaft's sections end {top / tool.scale:.10g} over its tip, more than {tool.cite('OAL')}",
                 broken=True,
             )
 
@@ -165,7 +165,7 @@ def _stickout(tool: Listed, ask: Ask) -> float:
     assert ask.stickout is not None, "_complete asks for it"
     longest = tool.values.get("OAL")
     if longest is not None and ask.stickout > longest + slack(longest):
-        raise UnfitError(f"the assumed stick-out of {ask.stickout:g} mm is longer than the tool, {tool.said('OAL')}")
+        raise UnfitError(f"the assumed stick-out of {ask.stickout:g} mm is longer than the tool, {tool.cite('OAL')}")
     tool.notes.append(f"no {tool.word('LPR')}: the assumed stick-out of {mm(ask.stickout)} is taken")
     return ask.stickout
 
@@ -189,38 +189,38 @@ def _top(bare: Cutter, tool: Listed) -> float:
 def _above(tool: Listed, bare: Cutter, length: float) -> tuple[Segment, ...]:
     """The sections from the end of the flutes to the holder's nose."""
     v, at = tool.values, _top(bare, tool)
-    found: list[Segment] = []
+    segments: list[Segment] = []
     neck = 0.5 * v["DN"] if "DN" in v and "LN" not in v else 0.0
     if neck and tool.shaft:
-        raise UnfitError(f"{tool.word('LN')} is missing: where its shaft's sections begin over {tool.said('DN')}")
+        raise UnfitError(f"{tool.word('LN')} is missing: where its shaft's sections begin over {tool.cite('DN')}")
     shoulder = min(v.get("LN", 0.0), length) - at
     if shoulder > SAME:
         if "DN" not in v:
-            tool.notes.append(f"no {tool.word('DN')}: {tool.said('LN')} as wide as {_widest(tool, bare)}")
-        found.append(Segment(0.5 * v["DN"] if "DN" in v else _wide(bare, v["DC"]), round(shoulder, 9)))
+            tool.notes.append(f"no {tool.word('DN')}: {tool.cite('LN')} as wide as {_widest(tool, bare)}")
+        segments.append(Segment(0.5 * v["DN"] if "DN" in v else _wide(bare, v["DC"]), round(shoulder, 9)))
         at += shoulder
     shaft = up_to(tool.shaft, length - at) if length - at > SAME else ()
-    found += shaft
+    segments += shaft
     at += math.fsum(stage.length for stage in shaft)
     if length - at > SAME:
-        found.append(Segment(max(_shank(tool, at, length), neck), round(length - at, 9)))
+        segments.append(Segment(max(_shank(tool, at, length), neck), round(length - at, 9)))
         if neck:
             tool.notes.append(
-                f"how high {tool.said('DN')} reaches is not known: what stands above its flutes is no thinner"
+                f"how high {tool.cite('DN')} reaches is not known: what stands above its flutes is no thinner"
             )
         if v["DMM"] < v["DC"] - slack(v["DC"]):
-            tool.notes.append(f"{tool.said('DMM')} is thinner than {tool.said('DC')}")
+            tool.notes.append(f"{tool.cite('DMM')} is thinner than {tool.cite('DC')}")
         elif v["DMM"] < 2.0 * top_radius(bare) - slack(v["DMM"]):
             wide = 2.0 * top_radius(bare) / tool.scale
-            tool.notes.append(f"{tool.said('DMM')} is thinner than its flutes where they end, {wide:.6g}")
-    straight = joined(found)
+            tool.notes.append(f"{tool.cite('DMM')} is thinner than its flutes where they end, {wide:.6g}")
+    straight = joined(segments)
     if len(straight) <= _MOST_ABOVE:
         return straight
-    around, wider = fewer(found, _MOST_ABOVE)
+    envelope, wider = fewer(segments, _MOST_ABOVE)
     tool.notes.append(
-        f"the {len(straight)} sections of its shaft are taken as {len(around)} around them, up to {mm(wider)} wider"
+        f"the {len(straight)} sections of its shaft are taken as {len(envelope)} around them, up to {mm(wider)} wider"
     )
-    return around
+    return envelope
 
 
 def _wide(bare: Cutter, diameter: float) -> float:
@@ -270,7 +270,7 @@ def _as_stated(tool: Listed, stated: Stated, ask: Ask) -> Cutter:
     return _held(tool, made, holder)
 
 
-def _standing(bare: Cutter, above: tuple[Segment, ...], length: float) -> Cutter:
+def _with_length(bare: Cutter, above: tuple[Segment, ...], length: float) -> Cutter:
     """A cutter with what stands above its flutes: the last straight section is its shank, the others are its neck."""
     if bare.shape == "lollipop":
         plain = all(stage.radius == stage.upper_radius == bare.shank_radius for stage in above)
@@ -306,5 +306,5 @@ def _held(tool: Listed, cutter: Cutter, holder: Holder | Literal["none"]) -> Cut
 
 def _with(cutter: Cutter, holder: Holder) -> Dimensions:
     """The same dimensions with a holder, not yet checked to be a cutter."""
-    kept = {word: getattr(cutter, word) for word in Dimensions.__slots__}
-    return Dimensions(**{**kept, "holder": holder})
+    values = {word: getattr(cutter, word) for word in Dimensions.__slots__}
+    return Dimensions(**{**values, "holder": holder})

@@ -22,22 +22,22 @@ def fewer(stages: Sequence[Segment], most: int) -> tuple[tuple[Segment, ...], fl
 
 def _merged(stages: Sequence[Segment], most: int, free: float) -> tuple[tuple[Segment, ...], float]:
     # Each section with what it stands for, so that what is added is measured against the truth.
-    found = [(stage, [stage]) for stage in stages]
+    merged = [(stage, [stage]) for stage in stages]
     worst = 0.0
-    both = [_enclosing([*a, *b]) for (_, a), (_, b) in pairwise(found)]
-    while len(found) > 1:
+    both = [_enclosing([*a, *b]) for (_, a), (_, b) in pairwise(merged)]
+    while len(merged) > 1:
         i = min(range(len(both)), key=lambda k: both[k][1])
         stage, added = both[i]
-        if added > free and (most == 0 or len(found) <= most):
+        if added > free and (most == 0 or len(merged) <= most):
             break
         worst = max(worst, added)
-        found[i : i + 2] = [(stage, [*found[i][1], *found[i + 1][1]])]
+        merged[i : i + 2] = [(stage, [*merged[i][1], *merged[i + 1][1]])]
         del both[i]
         # Only what it now stands beside is new.
         for k in (i - 1, i):
             if 0 <= k < len(both):
-                both[k] = _enclosing([*found[k][1], *found[k + 1][1]])
-    return tuple(stage for stage, _ in found), worst if worst > free else 0.0
+                both[k] = _enclosing([*merged[k][1], *merged[k + 1][1]])
+    return tuple(stage for stage, _ in merged), worst if worst > free else 0.0
 
 
 def _enclosing(stages: Sequence[Segment]) -> tuple[Segment, float]:
@@ -58,15 +58,15 @@ def _enclosing(stages: Sequence[Segment]) -> tuple[Segment, float]:
 
 def up_to(stages: Sequence[Segment], length: float) -> tuple[Segment, ...]:
     """Sections from the bottom up, those beyond a height cut off there."""
-    found, at = [], 0.0
+    segments, at = [], 0.0
     for stage in stages:
-        room = length - at
-        if room <= SAME:
+        remaining = length - at
+        if remaining <= SAME:
             break
-        if stage.length <= room + SAME:
-            found.append(stage)
+        if stage.length <= remaining + SAME:
+            segments.append(stage)
         else:
-            upper = stage.radius + stage.slope * room
-            found.append(Segment(stage.radius, round(room, _DIGITS), round(upper, _DIGITS)))
+            upper = stage.radius + stage.slope * remaining
+            segments.append(Segment(stage.radius, round(remaining, _DIGITS), round(upper, _DIGITS)))
         at += stage.length
-    return tuple(found)
+    return tuple(segments)

@@ -46,12 +46,12 @@ def whole_of(value: Any, field: str) -> int | None:
     if value is None or value == "":
         return None
     try:
-        found = float(value)
-        if isinstance(value, bool) or found != int(found) or not 0 <= found < 1e9:
+        number = float(value)
+        if isinstance(value, bool) or number != int(number) or not 0 <= number < 1e9:
             raise ValueError
     except (TypeError, ValueError, OverflowError):
         raise FaultError(f"{field} is {shown(value)}, which is no tool number") from None
-    return int(found)
+    return int(number)
 
 
 #: A number written as one: no text, no truth value.
@@ -77,12 +77,12 @@ def number_in(text: str, field: str) -> tuple[float, bool]:
 
 def mm(value: float, scale: float, field: str, *, exact: bool = False) -> float:
     """A length that may be 0, mm; `exact`: one that is given in mm stays as it is."""
-    found = round(value * scale, _DIGITS) + 0.0
-    if found < 0.0:
+    rounded = round(value * scale, _DIGITS) + 0.0
+    if rounded < 0.0:
         raise FaultError(f"{field} is {value:g}: a length cannot be negative")
-    if found > _LONGEST:
+    if rounded > _LONGEST:
         raise FaultError(f"{field} is {value:g}: no tool is longer than 10 m")
-    return value if exact and scale == 1.0 else found
+    return value if exact and scale == 1.0 else rounded
 
 
 @dataclass(slots=True)
@@ -94,7 +94,7 @@ class Stated:
     attributes : dict
         Of the cutter, as in `Dimensions`: what no dimension of `Listed` says.
     straight : bool
-        No shank is asked for: what is below it goes on.
+        No shank is requested: what is below it goes on.
     """
 
     attributes: dict[str, Any] = field(default_factory=dict)
@@ -172,7 +172,7 @@ class Listed:
         """Whether the file has a dimension, be it 0."""
         return key in self.values or key in self.zeros
 
-    def said(self, key: str) -> str:
+    def cite(self, key: str) -> str:
         """A dimension as the file has it."""
         value = self.values.get(key, 0.0)
         return f"{self.word(key)} {value if key == 'TA' else value / self.scale:.10g}"
@@ -183,14 +183,14 @@ class Listed:
         if value is None or value == "":
             return
         try:
-            found = number(value, field)
+            result = number(value, field)
             if key == "TA":
-                if not 0.0 <= found < 90.0:
-                    raise FaultError(f"{field} is {found:g}: a half angle lies between 0 and 90 degrees")
+                if not 0.0 <= result < 90.0:
+                    raise FaultError(f"{field} is {result:g}: a half angle lies between 0 and 90 degrees")
             else:
-                found = mm(found, self.scale, field, exact=self.stated is not None)
-            if found:
-                self.values[key] = found
+                result = mm(result, self.scale, field, exact=self.stated is not None)
+            if result:
+                self.values[key] = result
             else:
                 self.zeros.add(key)
         except FaultError as fault:
@@ -213,7 +213,7 @@ class Listed:
 
 
 @dataclass(slots=True)
-class Found:
+class LibraryContent:
     """A reader finds these tools, holders and notes in a file."""
 
     tools: list[Listed | Entry] = field(default_factory=list)
@@ -223,7 +223,7 @@ class Found:
     faulty: list[Entry] = field(default_factory=list)
 
 
-def sections(given: Iterable[tuple[float, float, float]], what: str) -> list[Segment]:
+def sections(rows: Iterable[tuple[float, float, float]], what: str) -> list[Segment]:
     """Stages from (height, lower diameter, upper diameter), mm; those without a height are steps.
 
     Raises
@@ -231,11 +231,11 @@ def sections(given: Iterable[tuple[float, float, float]], what: str) -> list[Seg
     FaultError
         A diameter is 0.
     """
-    found = []
-    for i, (height, lower, upper) in enumerate(given, 1):
+    result = []
+    for i, (height, lower, upper) in enumerate(rows, 1):
         if height == 0.0:
             continue
         if not (lower > 0.0 and upper > 0.0):
             raise FaultError(f"{what} {i} has a diameter of 0")
-        found.append(Segment(0.5 * lower, height, 0.5 * upper))
-    return found
+        result.append(Segment(0.5 * lower, height, 0.5 * upper))
+    return result

@@ -47,10 +47,10 @@ def read_library(path: str | os.PathLike[str], *, assume_stickout: float | None 
     Traceback (most recent call last):
     plan_cutters.errors.LibraryError: none.tools: cannot be read: No such file or directory
     """
-    found = listing(path, assume_stickout=assume_stickout, holder=holder, skip_bad=skip_bad)
-    if not found:
-        raise nothing(found)
-    return found
+    listed = listing(path, assume_stickout=assume_stickout, holder=holder, skip_bad=skip_bad)
+    if not listed:
+        raise nothing(listed)
+    return listed
 
 
 def listing(path: str | os.PathLike[str], *, assume_stickout: float | None = None, holder: Holder | str | None = None,
@@ -76,12 +76,12 @@ def listing(path: str | os.PathLike[str], *, assume_stickout: float | None = Non
 
 
 def _ask(stickout: float | None, holder: Holder | str | None) -> Ask:
-    given: Holder | Literal["none"] | None
+    choice: Holder | Literal["none"] | None
     if isinstance(holder, str) and holder.strip().lower() == "none":
-        given = "none"
+        choice = "none"
     else:
-        given = None if holder is None else Holder.of(holder)
-    return Ask(None if stickout is None else positive(stickout, "assumed stick-out"), given)
+        choice = None if holder is None else Holder.of(holder)
+    return Ask(None if stickout is None else positive(stickout, "assumed stick-out"), choice)
 
 
 def _broken(library: Library, broken: list[Entry]) -> LibraryError:
@@ -106,50 +106,50 @@ def nothing(library: Library) -> LibraryError:
     first: dict[str, Entry] = {}
     for entry in library.entries:
         first.setdefault(entry.unused or "", entry)
-    said = []
+    causes = []
     for why, often in list(reasons.items())[:_NAMED]:
-        said.append(f"{first[why].label}{f' and {often - 1} more' if often > 1 else ''}: {why}")
+        causes.append(f"{first[why].label}{f' and {often - 1} more' if often > 1 else ''}: {why}")
     if len(reasons) > _NAMED:
         rest = count - sum(list(reasons.values())[:_NAMED])
-        said.append(f"{rest} more for {len(reasons) - _NAMED} other reasons")
+        causes.append(f"{rest} more for {len(reasons) - _NAMED} other reasons")
     tools = "its only tool cannot" if count == 1 else f"none of its {count} tools can"
-    return LibraryError(f"{library.format}: {tools} be used: {'; '.join(said)}", file=library.file)
+    return LibraryError(f"{library.format}: {tools} be used: {'; '.join(causes)}", file=library.file)
 
 
-def holder_of(given: Any) -> Holder | str:
+def holder_of(value: Any) -> Holder | str:
     """Read a value of `--holder`: `none`, a text as `R15L30`, or a file with a holder; `FILE#NAME` where it has several.
 
     Raises
     ------
     CutterError, LibraryError
     """
-    if not isinstance(given, str) or given.strip().lower() == "none":
-        return given.strip().lower() if isinstance(given, str) else Holder.of(given)
+    if not isinstance(value, str) or value.strip().lower() == "none":
+        return value.strip().lower() if isinstance(value, str) else Holder.of(value)
     try:
-        return Holder.parse(given)
+        return Holder.parse(value)
     except CutterError:
-        file, mark, name = given.rpartition("#")
+        file, mark, name = value.rpartition("#")
         if not mark or not is_there(file):
-            file, name = given, ""
+            file, name = value, ""
         if not is_there(file):
             if Path(file).suffix.lower() in _SUFFIXES:
                 raise LibraryError("is no file; give one with a holder, or R15L30", file=file) from None
             raise
-    found = listing(file, skip_bad=True)
-    known = {holder.id: holder for holder in found.holders}
-    for entry in found.entries:
+    listed = listing(file, skip_bad=True)
+    known = {holder.id: holder for holder in listed.holders}
+    for entry in listed.entries:
         if entry.cutter is not None and entry.cutter.holder is not None:
             known.setdefault(entry.cutter.holder.id, entry.cutter.holder)
     chosen = [holder for holder in known.values() if not name or holder.name == name]
     if len(chosen) == 1:
         return chosen[0]
     if not known:
-        faults = "; ".join(e.unused or "" for e in found.entries if e.broken and e.kind == "holder")
+        faults = "; ".join(e.unused or "" for e in listed.entries if e.broken and e.kind == "holder")
         raise LibraryError(
-            f"{found.format}: it has no holder{f' that can be read: {faults}' if faults else ''}", file=found.file
+            f"{listed.format}: it has no holder{f' that can be read: {faults}' if faults else ''}", file=listed.file
         )
     names = ", ".join(sorted({f'"{holder.name}"' for holder in known.values()}))
     raise LibraryError(
-        f"{len(chosen)} of its {len(known)} holders are meant; choose one as {found.file}#NAME: {names}",
-        file=found.file,
+        f"{len(chosen)} of its {len(known)} holders are meant; choose one as {listed.file}#NAME: {names}",
+        file=listed.file,
     )

@@ -88,11 +88,11 @@ class Library(Sequence[Cutter]):
     cutters: tuple[Cutter, ...] = field(init=False)
 
     def __post_init__(self) -> None:
-        found: dict[str, Cutter] = {}
+        cutters: dict[str, Cutter] = {}
         for entry in self.entries:
             if entry.cutter is not None:
-                found.setdefault(entry.cutter.id, entry.cutter)
-        object.__setattr__(self, "cutters", tuple(found.values()))
+                cutters.setdefault(entry.cutter.id, entry.cutter)
+        object.__setattr__(self, "cutters", tuple(cutters.values()))
 
     def __len__(self) -> int:
         return len(self.cutters)
@@ -126,12 +126,12 @@ class Library(Sequence[Cutter]):
         return tuple(dict.fromkeys(entry.name for entry in self.entries_of(cutter) if entry.name))
 
 
-def libraries_of(given: Any) -> tuple[Library, ...]:
+def libraries_of(value: Any) -> tuple[Library, ...]:
     """One library or a list of such; None is an empty list."""
-    if given is None:
+    if value is None:
         return ()
-    found = [given] if isinstance(given, Library) else items(given, "libraries", "libraries")
-    for each in found:
+    libraries = [value] if isinstance(value, Library) else items(value, "libraries", "libraries")
+    for each in libraries:
         if not isinstance(each, Library):
             raise LibraryError(f"{shown(each)} is no tool library: read_library reads a file")
-    return tuple(found)
+    return tuple(libraries)

@@ -8,13 +8,23 @@ from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from plan_cutters.domain.checks import radians_said, shown
+from plan_cutters.domain.checks import shown, stated_radians
 from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.library.files import MOST_TOOLS, Content, too_many
 from plan_cutters.library.milling import cause_of
 from plan_cutters.library.presets import Preset, take_feed
-from plan_cutters.library.raw_tool import FaultError, Found, Listed, Stated, mm, name_of, number_of, unit_of, whole_of
+from plan_cutters.library.raw_tool import (
+    FaultError,
+    LibraryContent,
+    Listed,
+    Stated,
+    mm,
+    name_of,
+    number_of,
+    unit_of,
+    whole_of,
+)
 from plan_cutters.library.records import Entry
 
 _LOOKS = re.compile(
@@ -76,7 +86,7 @@ def is_toml(content: Content) -> bool:
     return _LOOKS.search(content.text) is not None or content.path.suffix.lower() == ".toml"
 
 
-def read_toml(content: Content) -> Found:
+def read_toml(content: Content) -> LibraryContent:
     """Read it."""
     if len(content.data) > _MOST:
         # TOML is read by Python itself, some MB in a second.
@@ -84,38 +94,38 @@ def read_toml(content: Content) -> Found:
     if len(_TABLE.findall(content.text)) > MOST_TOOLS:
         raise too_many(content.name)
     try:
-        given = tomllib.loads(content.text)
+        document = tomllib.loads(content.text)
     except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
         raise LibraryError(f"is no TOML: {_syntax(error)}", file=content.name) from None
-    for key in given:
+    for key in document:
         if key not in ("unit", "tool", "holder"):
             raise LibraryError(
                 f"{shown(key)} has no meaning; a library has unit, [[tool]] and [[holder]]", file=content.name
             )
-    tools, holders = (given.get(key, []) for key in ("tool", "holder"))
+    tools, holders = (document.get(key, []) for key in ("tool", "holder"))
     for key, tables in (("tool", tools), ("holder", holders)):
         if not isinstance(tables, list):
             raise LibraryError(f"{key} is one table: write [[{key}]], with two brackets", file=content.name)
     if len(tools) > MOST_TOOLS or len(holders) > MOST_TOOLS:
         raise too_many(content.name)
-    found = Found()
+    library = LibraryContent()
     # None: the name means more than one.
     named: dict[str, Holder | None] = {}
     for i, table in enumerate(holders, 1):
         try:
             model = HolderTable.model_validate(table)
-            holder = _outlined(model, unit_of(model.unit or given.get("unit"), "unit")[1])
+            holder = _outlined(model, unit_of(model.unit or document.get("unit"), "unit")[1])
         except (ValidationError, FaultError, CutterError) as error:
-            found.faulty.append(Entry(f"holder {i}", kind="holder", unused=_why(error), broken=True))
+            library.faulty.append(Entry(f"holder {i}", kind="holder", unused=_why(error), broken=True))
             continue
-        found.holders.append(holder)
+        library.holders.append(holder)
         if holder.name:
             named[holder.name] = holder if named.get(holder.name, holder) == holder else None
     lines = [content.text.count("\n", 0, match.start()) + 1 for match in _TABLE.finditer(content.text)]
     for i, table in enumerate(tools):
         line = f" (line {lines[i]})" if len(lines) == len(tools) else ""
-        found.tools.append(_listed(table, f"tool {i + 1}{line}", given.get("unit"), named))
-    return found
+        library.tools.append(_listed(table, f"tool {i + 1}{line}", document.get("unit"), named))
+    return library
 
 
 def _syntax(error: Exception) -> str:
@@ -182,12 +192,12 @@ def _listed(table: Any, place: str, unit: Any, named: dict[str, Holder | None]) 
 
     flutes = 0.0 if model.LCF == "rest" else length(model.LCF, "LCF")
     outline = tuple((length(r, "outline"), length(z, "outline")) for z, r in model.outline)
-    given = {word: length(value, word) for word in ("allowance", "clearance")
+    limits = {word: length(value, word) for word in ("allowance", "clearance")
              if (value := getattr(model, word)) is not None}  # fmt: skip
     stated.straight = model.DMM == "same" or (model.LCF == "rest" and model.type != "form")
     stated.attributes = {"shape": "end" if model.type in _ENDS else model.type, "taper": _taper(model, tool),
                          "flutes": flutes or None, "arc_radius": length(model.PRFRAD, "PRFRAD"), "outline": outline,
-                         "arc_height": length(model.profile_height, "profile_height"), **given}  # fmt: skip
+                         "arc_height": length(model.profile_height, "profile_height"), **limits}  # fmt: skip
     needs = {"DC": True, "LCF": model.LCF != "rest" and not flutes, "TA": model.type == "taper"}
     if model.type in ("lollipop", "form"):
         needs["LCF"] = False
@@ -196,7 +206,7 @@ def _listed(table: Any, place: str, unit: Any, named: dict[str, Holder | None]) 
     if model.type == "form":
         widest = 2.0 * max((r for r, _ in outline), default=0.0)
         if widest and abs(tool.values.get("DC", widest) - widest) > 1e-3:
-            tool.faults.append(f"{tool.said('DC')} is not the largest diameter of its outline")
+            tool.faults.append(f"{tool.cite('DC')} is not the largest diameter of its outline")
         needs["DC"], needs["outline"], tool.values["DC"] = False, not widest, widest
     _neck(model, tool, length(model.LN, "LN"), needs)
     tool.needs = tuple(key for key, needed in needs.items() if needed)
@@ -208,8 +218,8 @@ def _taper(model: ToolTable, tool: Listed) -> float:
     """Half angle, rad, to the last digit; negative for a dovetail."""
     if "TA" not in tool.values:
         return 0.0
-    found = radians_said(model.TA) if isinstance(model.TA, str) else math.radians(tool.values["TA"])
-    return -found if model.type == "dovetail" else found
+    angle = stated_radians(model.TA) if isinstance(model.TA, str) else math.radians(tool.values["TA"])
+    return -angle if model.type == "dovetail" else angle
 
 
 def _neck(model: ToolTable, tool: Listed, reach: float, needs: dict[str, bool]) -> None:
@@ -229,40 +239,40 @@ def _neck(model: ToolTable, tool: Listed, reach: float, needs: dict[str, bool]) 
         tool.shaft = [Segment(0.5 * tool.values["DN"], reach)]
 
 
-def _degrees(given: Any, field: str) -> float:
+def _degrees(value: Any, field: str) -> float:
     """A half angle: degrees, or a text with its unit."""
-    if not isinstance(given, str):
-        return number_of(given, field)
-    found = math.degrees(radians_said(given))
-    if math.isnan(found):
-        raise FaultError(f"{field} is {shown(given)}: a half angle in degrees, or as 0.0873 rad")
-    return found
+    if not isinstance(value, str):
+        return number_of(value, field)
+    degrees = math.degrees(stated_radians(value))
+    if math.isnan(degrees):
+        raise FaultError(f"{field} is {shown(value)}: a half angle in degrees, or as 0.0873 rad")
+    return degrees
 
 
-def _holder(given: Any, scale: float, named: dict[str, Holder | None]) -> Holder | Literal["none"] | None:
+def _holder(value: Any, scale: float, named: dict[str, Holder | None]) -> Holder | Literal["none"] | None:
     """The holder that a tool names or describes."""
-    if given is None:
+    if value is None:
         return None
-    if isinstance(given, list):
-        return _outlined(HolderTable(points=given), scale)
-    if isinstance(given, HolderTable):
-        return _outlined(given, unit_of(given.unit, "unit")[1] if given.unit else scale)
-    if given == "none":
+    if isinstance(value, list):
+        return _outlined(HolderTable(points=value), scale)
+    if isinstance(value, HolderTable):
+        return _outlined(value, unit_of(value.unit, "unit")[1] if value.unit else scale)
+    if value == "none":
         if "none" in named:
             raise FaultError(
                 "holder 'none' means that there is none, but a [[holder]] is called so: call that otherwise"
             )
         return "none"
-    if given in named:
-        meant = named[given]
+    if value in named:
+        meant = named[value]
         if meant is None:
-            raise FaultError(f"holder {shown(given)}: several different [[holder]] are called so")
+            raise FaultError(f"holder {shown(value)}: several different [[holder]] are called so")
         return meant
     try:
-        return Holder.parse(given)
+        return Holder.parse(value)
     except CutterError:
         raise FaultError(
-            f"holder {shown(given)} is neither none, nor of the form R15L30 (mm), nor one of [[holder]]"
+            f"holder {shown(value)} is neither none, nor of the form R15L30 (mm), nor one of [[holder]]"
         ) from None
 
 

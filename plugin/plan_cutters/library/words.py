@@ -30,9 +30,9 @@ def standard() -> dict[str, Holder]:
 
 def pinned() -> list[Library]:
     """The built-in holders, each with a pin of the largest shank that it takes; a library for each, for some are alike."""
-    found = []
+    pins = []
     for word, holder in standard().items():
         bore = holder.bore or 0.0
         pin = Cutter(bore / 2.0, _PIN, name=f"{holder.name} with a pin D{bore:g}", holder=holder)
-        found.append(Library("--list-holders", "built-in holders", (Entry(word, name=pin.name, cutter=pin),)))
-    return found
+        pins.append(Library("--list-holders", "built-in holders", (Entry(word, name=pin.name, cutter=pin),)))
+    return pins

@@ -25,11 +25,11 @@ def arranged(rotary: list[Axis], added: Added, notes: list[str], who: str) -> li
     by_name = {each.name.upper(): each for each in rotary}
     part = added.part if added.order else tuple(names)
     sides: list[tuple[Carried, tuple[str, ...]]] = [("part", part), ("tool", added.tool)]
-    found = []
+    axes = []
     for side, listed in sides:
         for axis in (by_name[name] for name in listed):
             turned = chain.opposite(axis.direction) if side == "part" and added.sign == TABLE else axis.direction
-            found.append(
+            axes.append(
                 chain.axis(axis.name, axis.kind, side, turned, limits=axis.limits, point=axis.point, rate=axis.rate)
             )
-    return found
+    return axes

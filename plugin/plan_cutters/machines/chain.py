@@ -33,14 +33,14 @@ ISO = {
 _EVEN = 1e-9
 
 
-def unit(given: Any, known: dict[str, float], what: str) -> float:
+def unit(value: Any, known: dict[str, float], what: str) -> float:
     """The size of a unit, which must be said."""
-    if given is None or given == "":
+    if value is None or value == "":
         raise MachineError(f"{what} is missing: say one of {', '.join(list(known)[:5])}")
-    found = known.get(given.strip().lower()) if isinstance(given, str) else None
-    if found is None:
-        raise MachineError(f"{what} {shown(given)} is not known")
-    return found
+    result = known.get(value.strip().lower()) if isinstance(value, str) else None
+    if result is None:
+        raise MachineError(f"{what} {shown(value)} is not known")
+    return result
 
 
 def scaled(value: float, size: float) -> float:
@@ -52,11 +52,11 @@ def scaled(value: float, size: float) -> float:
 real = partial(finite, error=MachineError)
 
 
-def vector(given: Any, what: str) -> Vector:
+def vector(value: Any, what: str) -> Vector:
     """Three finite numbers of a file."""
-    if not isinstance(given, list | tuple) or len(given) != 3:
-        raise MachineError(f"{what} must be three numbers, not {shown(given)}")
-    x, y, z = (real(each, what) for each in given)
+    if not isinstance(value, list | tuple) or len(value) != 3:
+        raise MachineError(f"{what} must be three numbers, not {shown(value)}")
+    x, y, z = (real(each, what) for each in value)
     return x, y, z
 
 
@@ -74,13 +74,13 @@ def ranged(low: float | None, high: float | None, size: float) -> tuple[float, f
 
 def narrowed(limits: Sequence[tuple[float, float] | None], what: str) -> tuple[float, float] | None:
     """Give the range that all of several limits allow; None where there is no limit."""
-    given = [each for each in limits if each is not None]
-    if not given:
+    stated = [each for each in limits if each is not None]
+    if not stated:
         return None
-    for low, high in given:
+    for low, high in stated:
         if low > high:
             raise MachineError(f"{what}: its limits {low:g} to {high:g} must run upwards")
-    low, high = max(low for low, _ in given), min(high for _, high in given)
+    low, high = max(low for low, _ in stated), min(high for _, high in stated)
     if low > high:
         raise MachineError(f"{what}: its limits contradict each other, {low:g} is above {high:g}")
     return low, high
@@ -107,14 +107,14 @@ def axis(name: str, kind: Kind, carries: Carried, direction: Vector, *, limits: 
 
 def machine(name: str, axes: Sequence[Axis], notes: Sequence[str] = (), *, tool: Vector = ISO["Z"]) -> Machine:
     """A machine of these axes, from the part to the tool; what is unlimited is said aloud."""
-    said = list(notes)
+    lines = list(notes)
     free = [each.name for each in axes if each.limits is None]
     if free:
-        said.append(f"no limits in the file for {', '.join(free)}: taken as unlimited")
+        lines.append(f"no limits in the file for {', '.join(free)}: taken as unlimited")
     for each in axes:
         for i, side in enumerate(("least", "largest")):
             if each.limits is not None and math.isinf(each.limits[i]):
-                said.append(f"{each.name} has no {side} position in the file: it is taken as unlimited there")
+                lines.append(f"{each.name} has no {side} position in the file: it is taken as unlimited there")
     rotary = [each for each in axes if each.kind == "rotary"]
     if rotary and len(rotary) <= 2:
         last, iso = rotary[-1], ISO.get(rotary[-1].name[:1].upper())
@@ -123,7 +123,7 @@ def machine(name: str, axes: Sequence[Axis], notes: Sequence[str] = (), *, tool:
                 f"axis {last.name} runs along the tool, which it only turns about itself; {last.name} turns about "
                 f"{'XYZ'[iso.index(1.0)]} in ISO 841: correct its direction"
             )
-    return Machine(name[:200], axes=tuple(axes), tool_axis=tool, notes=tuple(dict.fromkeys(said)), fixed=not rotary)
+    return Machine(name[:200], axes=tuple(axes), tool_axis=tool, notes=tuple(dict.fromkeys(lines)), fixed=not rotary)
 
 
 def _dot(a: Vector, b: Vector) -> float:

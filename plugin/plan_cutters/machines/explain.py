@@ -77,12 +77,12 @@ def solutions(machine: Machine, axis: Floats) -> list[Solution]:
     kinematics = machine.kinematics(_IDENTITY)
     if kinematics is None:
         raise MachineError(f"machine {machine.name} has no rotary axes: there are no angles")
-    found, taken, _ = kinematics.positions((axis / np.linalg.norm(axis))[None])
+    positions, taken, _ = kinematics.positions((axis / np.linalg.norm(axis))[None])
     names = [each.name for each in machine.rotary]
     rows = [
-        Solution(dict(zip(names, map(float, found[0, i]), strict=True)), bool(i == taken[0]))
+        Solution(dict(zip(names, map(float, positions[0, i]), strict=True)), bool(i == taken[0]))
         for i in range(2)
-        if (i == taken[0] or names) and np.isfinite(found[0, i]).all() and taken[0] >= 0
+        if (i == taken[0] or names) and np.isfinite(positions[0, i]).all() and taken[0] >= 0
     ]
     rows.sort(key=lambda each: not each.taken)
     return rows[:1] if len(rows) == 2 and rows[0].angles == rows[1].angles else rows
@@ -95,17 +95,17 @@ def tool_axis(machine: Machine, angles: dict[str, float]) -> tuple[Floats, list[
         if name.upper() not in names:
             known = ", ".join(each.name for each in machine.rotary) or "none"
             raise MachineError(f"machine {machine.name} has no rotary axis {shown(name)}: its rotary axes are {known}")
-    given = {name.upper(): angle for name, angle in angles.items()}
+    by_name = {name.upper(): angle for name, angle in angles.items()}
     beyond = [
         axis.name
         for axis in machine.rotary
         if axis.limits is not None
-        and not axis.limits[0] - ON_LIMIT <= given.get(axis.name.upper(), 0.0) <= axis.limits[1] + ON_LIMIT
+        and not axis.limits[0] - ON_LIMIT <= by_name.get(axis.name.upper(), 0.0) <= axis.limits[1] + ON_LIMIT
     ]
     kinematics = machine.kinematics(_IDENTITY)
     if kinematics is None or not machine.rotary:
         return np.array(machine.tool_axis), beyond
-    row = np.array([[given.get(axis.name.upper(), 0.0) for axis in machine.rotary]])
+    row = np.array([[by_name.get(axis.name.upper(), 0.0) for axis in machine.rotary]])
     return np.asarray(kinematics.axis(row)[0]), beyond
 
 
@@ -128,34 +128,34 @@ def limits_text(axis: Axis) -> str:
 def summary(machine: Machine) -> list[str]:
     """Describe in plain sentences which tool axes a machine can hold."""
     rotary = machine.rotary
-    said = []
+    lines = []
     if not machine.limited:
         return ["It holds any tool axis: no limit is counted."]
     if machine.tilt_limit is not None:
-        said.append(f"The tool axis stays within {angle(math.degrees(machine.tilt_limit))} of the setup axis.")
+        lines.append(f"The tool axis stays within {angle(math.degrees(machine.tilt_limit))} of the setup axis.")
     if not machine.turns:
         pass
     elif not rotary:
-        said.append("Nothing turns the tool: it holds the setup axis alone.")
+        lines.append("Nothing turns the tool: it holds the setup axis alone.")
     elif machine.turning == 0:
-        said.append("Nothing turns the tool, for the limits leave its axes no room: it holds one tool axis.")
+        lines.append("Nothing turns the tool, for the limits leave its axes no range: it holds one tool axis.")
     elif machine.turning == 1:
-        said.append(f"Only {_turning(machine)} turns the tool against the part: the tool axes lie on one circle.")
+        lines.append(f"Only {_turning(machine)} turns the tool against the part: the tool axes lie on one circle.")
     else:
         first, second = rotary
-        said.append(
+        lines.append(
             f"{first.name} is next to the part, {second.name} next to the tool; both solutions of a tool axis are tried."
         )
-    found = share(machine)
+    result = share(machine)
     if machine.turning == 2 or not machine.turns:
-        said.append(f"It holds {percent(found.held)} of all directions (counted on {DIRECTIONS} of them).")
+        lines.append(f"It holds {percent(result.held)} of all directions (counted on {DIRECTIONS} of them).")
     cone = singular(machine)
     if cone is not None:
-        said.append(
+        lines.append(
             f"Singular: within {angle(math.degrees(cone))} of {vector_text(rotary[0].direction)}, either way, {rotary[0].name} "
-            f"turns fast; {percent(found.singular)} of all directions are held there."
+            f"turns fast; {percent(result.singular)} of all directions are held there."
         )
-    return said
+    return lines
 
 
 def _turning(machine: Machine) -> str:

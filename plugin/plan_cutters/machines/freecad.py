@@ -28,45 +28,45 @@ _MOST = 64
 
 def is_fcm(content: Content) -> bool:
     """JSON with axes of a machine."""
-    found = content.json
-    if not isinstance(found, dict):
+    data = content.json
+    if not isinstance(data, dict):
         return False
-    inner = found.get("machine", found)
+    inner = data.get("machine", data)
     return isinstance(inner, dict) and isinstance(inner.get("axes"), dict)
 
 
 def read_fcm(content: Content, added: Added) -> Machine:
     """Read it."""
     added.refuse(content.name, sign=True)
-    given = content.json.get("machine", content.json)
-    axes: dict[str, Any] = given["axes"]
+    data = content.json.get("machine", content.json)
+    axes: dict[str, Any] = data["axes"]
     if len(axes) > _MOST:
         raise MachineError(f"it lists {len(axes)} axes: no machine has as many")
-    length = chain.unit(given.get("units"), {"metric": 1.0, "imperial": 25.4}, "its units")
+    length = chain.unit(data.get("units"), {"metric": 1.0, "imperial": 25.4}, "its units")
     notes: list[str] = []
     _check_parents(axes)
-    found: list[Axis] = []
+    own_axes: list[Axis] = []
     for name, each in axes.items():
         kind = _TYPES.get(each.get("type", "")) if isinstance(each.get("type"), str) else None
         if kind is None:
             notes.append(f"{name} is of type {shown(each.get('type'))}, neither linear nor rotary: it is ignored")
             continue
-        found.append(_axis(name, each, kind, length))
-    heads = given.get("toolheads", [])
+        own_axes.append(_axis(name, each, kind, length))
+    heads = data.get("toolheads", [])
     if isinstance(heads, list) and len(heads) > 1:
         notes.append(f"it has {len(heads)} tool heads, which share its axes")
-    rotary = _ordered([each for each in found if each.kind == "rotary"], added, notes)
-    straight = [each for each in found if each.kind == "linear"]
+    rotary = _ordered([each for each in own_axes if each.kind == "rotary"], added, notes)
+    straight = [each for each in own_axes if each.kind == "linear"]
     sides: tuple[Carried, Carried] = ("part", "tool")
     part, tool = ([each for each in rotary if each.carries == side] for side in sides)
     # Linear axes stand between the rotary ones: how they follow each other does not matter.
-    axes_found = [*part, *(each for side in sides for each in straight if each.carries == side), *tool]
+    all_axes = [*part, *(each for side in sides for each in straight if each.carries == side), *tool]
     if part:
         notes.append(
             "angles of axes that carry the part are counted as the table turns, which is how FreeCAD solves for them"
         )
-    name = given.get("name")
-    return chain.machine(name if isinstance(name, str) and name else content.path.stem, axes_found, notes)
+    name = data.get("name")
+    return chain.machine(name if isinstance(name, str) and name else content.path.stem, all_axes, notes)
 
 
 def _check_parents(axes: dict[str, Any]) -> None:
@@ -86,22 +86,22 @@ def _check_parents(axes: dict[str, Any]) -> None:
             at = above.get("parent") if isinstance(above, dict) else None
 
 
-def _axis(name: str, given: dict[str, Any], kind: str, length: float) -> Axis:
-    role = given.get("role")
+def _axis(name: str, entry: dict[str, Any], kind: str, length: float) -> Axis:
+    role = entry.get("role")
     known = _ROLES.get(role) if isinstance(role, str) else None
     if known is None or known[0] != kind:
         raise MachineError(f"axis {name}: its role {shown(role)} is none of a {kind} axis (table_{kind}, head_{kind})")
     carries = known[1]
-    point, direction = _joint(given.get("joint"), name, kind)
+    point, direction = _joint(entry.get("joint"), name, kind)
     size = chain.ANGLES["deg"] if kind == "rotary" else length
-    ends = given.get("limits") or {}
+    ends = entry.get("limits") or {}
     if not isinstance(ends, dict):
         raise MachineError(f"axis {name}: its limits must be a table of min and max, not {shown(ends)}")
     low, high = (
         None if ends.get(key) is None else chain.real(ends[key], f"axis {name}: its limit {key}")
         for key in ("min", "max")
     )
-    speed = given.get("max_velocity")
+    speed = entry.get("max_velocity")
     rate = 0.0 if speed is None else chain.scaled(chain.real(speed, f"axis {name}: its max_velocity") / _MINUTE, size)
     turned = chain.opposite(direction) if kind == "rotary" and carries == "part" else direction
     place = (point[0] * length, point[1] * length, point[2] * length)
@@ -111,23 +111,23 @@ def _axis(name: str, given: dict[str, Any], kind: str, length: float) -> Axis:
     return chain.axis(name, "linear", carries, turned, limits=limits, rate=rate)
 
 
-def _joint(given: Any, name: str, kind: str) -> tuple[chain.Vector, chain.Vector]:
+def _joint(entry: Any, name: str, kind: str) -> tuple[chain.Vector, chain.Vector]:
     """Origin and direction: an object, or both in a list, of which older files of linear axes have the direction first."""
     what = f"axis {name}: its joint"
-    if isinstance(given, dict):
-        if given.get("axis") is None:
+    if isinstance(entry, dict):
+        if entry.get("axis") is None:
             raise MachineError(f"{what} has no axis, the direction")
-        return chain.vector(given.get("origin", [0, 0, 0]), f"{what} origin"), chain.vector(
-            given["axis"], f"{what} axis"
+        return chain.vector(entry.get("origin", [0, 0, 0]), f"{what} origin"), chain.vector(
+            entry["axis"], f"{what} axis"
         )
-    if isinstance(given, list) and len(given) == 2:
-        first, second = chain.vector(given[0], what), chain.vector(given[1], what)
+    if isinstance(entry, list) and len(entry) == 2:
+        first, second = chain.vector(entry[0], what), chain.vector(entry[1], what)
         if any(first) and any(second) and kind == "linear":
             raise MachineError(
                 f"{what} is two vectors, either of which may be the direction; name them origin and axis"
             )
         return (first, second) if any(second) else (second, first)
-    raise MachineError(f"{what} must be an origin and an axis, not {shown(given)}")
+    raise MachineError(f"{what} must be an origin and an axis, not {shown(entry)}")
 
 
 def _ordered(rotary: list[Axis], added: Added, notes: list[str]) -> list[Axis]:

@@ -35,26 +35,26 @@ def is_mch(content: Content) -> bool:
     return _kinematics(content.json) is not None
 
 
-def _kinematics(found: Any) -> dict[str, Any] | None:
-    inner = found.get("kinematics") if isinstance(found, dict) else None
-    given = inner.get("default", inner) if isinstance(inner, dict) else None
-    return given if isinstance(given, dict) and isinstance(given.get("parts"), list) else None
+def _kinematics(entry: Any) -> dict[str, Any] | None:
+    inner = entry.get("kinematics") if isinstance(entry, dict) else None
+    default = inner.get("default", inner) if isinstance(inner, dict) else None
+    return default if isinstance(default, dict) and isinstance(default.get("parts"), list) else None
 
 
 def read_mch(content: Content, added: Added) -> Machine:
     """Read it."""
     added.refuse(content.name, order=True)
-    given = _kinematics(content.json)
-    assert given is not None
-    units = given.get("units")
+    entry = _kinematics(content.json)
+    assert entry is not None
+    units = entry.get("units")
     if not isinstance(units, dict):
         raise MachineError("its kinematics have no units")
     length = chain.unit(units.get("length"), chain.LENGTHS, "its unit of lengths")
     angle = chain.unit(units.get("angle"), chain.ANGLES, "its unit of angles")
-    hand = (given.get("conventions") or {}).get("rotation", "right-handed")
+    hand = (entry.get("conventions") or {}).get("rotation", "right-handed")
     if hand not in ("right-handed", "left-handed"):
         raise MachineError(f"its convention of rotation {shown(hand)} is not known")
-    frames = _frames(given["parts"])
+    frames = _frames(entry["parts"])
     table, head = (_only(frames, kind) for kind in ("table", "head"))
     notes: list[str] = []
     control = _controls(content.json)
@@ -78,9 +78,9 @@ def _name(content: Content) -> str:
     return " ".join(word for word in words if isinstance(word, str) and word) or content.path.stem
 
 
-def _controls(found: Any) -> dict[str, dict[str, Any]]:
+def _controls(entry: Any) -> dict[str, dict[str, Any]]:
     """Gather the controller's settings of each part, by its id."""
-    controller = found.get("controller")
+    controller = entry.get("controller")
     inner = controller.get("default", controller) if isinstance(controller, dict) else None
     parts = inner.get("parts") if isinstance(inner, dict) else None
     return {key: each for key, each in parts.items() if isinstance(each, dict)} if isinstance(parts, dict) else {}
@@ -88,31 +88,31 @@ def _controls(found: Any) -> dict[str, dict[str, Any]]:
 
 def _frames(parts: list[Any]) -> list[Frame]:
     """All parts of the tree, those nearest to the bed first."""
-    found: list[Frame] = []
+    frames: list[Frame] = []
     waiting: list[tuple[Any, list[dict[str, Any]]]] = [(each, []) for each in parts]
     while waiting:
         each, above = waiting.pop(0)
         if not isinstance(each, dict):
             raise MachineError(f"a part of its kinematics must be a table, not {shown(each)}")
-        found.append(Frame(above, each))
-        if len(found) > _MOST:
+        frames.append(Frame(above, each))
+        if len(frames) > _MOST:
             raise MachineError(f"its kinematics have more than {_MOST} parts: no machine has")
         inner = each.get("parts", [])
         if not isinstance(inner, list):
             raise MachineError(f"part {shown(each.get('id'))}: its parts must be a list")
         waiting += [(child, [*above, each]) for child in inner]
-    return found
+    return frames
 
 
 def _only(frames: list[Frame], kind: str) -> Frame:
-    found = [frame for frame in frames if frame.end.get("type") == kind]
-    if len(found) != 1:
-        count = f"{len(found)} parts" if found else "no part"
-        ids = ", ".join(shown(frame.end.get("id")) for frame in found)
+    matches = [frame for frame in frames if frame.end.get("type") == kind]
+    if len(matches) != 1:
+        count = f"{len(matches)} parts" if matches else "no part"
+        ids = ", ".join(shown(frame.end.get("id")) for frame in matches)
         raise MachineError(
             f"its kinematics have {count} of type {kind}{f' ({ids})' if ids else ''}: machines of one are read"
         )
-    return found[0]
+    return matches[0]
 
 
 def _check_once(table: Frame, head: Frame) -> None:
@@ -125,25 +125,25 @@ def _check_once(table: Frame, head: Frame) -> None:
 class _Reading:
     """The axes of one file being read."""
 
-    def __init__(self, length: float, angle: float, left: bool, sign: str, control: dict[str, dict[str, Any]],
+    def __init__(self, length: float, angle: float, left_handed: bool, sign: str, control: dict[str, dict[str, Any]],
                  notes: list[str]) -> None:  # fmt: skip
         self.length, self.angle, self.left, self.sign, self.control, self.notes = (
-            length, angle, left, sign, control, notes,
+            length, angle, left_handed, sign, control, notes,
         )  # fmt: skip
 
     def axes(self, parts: list[dict[str, Any]], carries: Carried) -> list[Axis]:
         """The axes among the parts above a table or a head, the one next to the bed first."""
-        found = []
+        axes = []
         for part in parts:
             name = part.get("name") or part.get("display_name") or part.get("id")
             kind = part.get("type")
             if kind in ("linear", "rotary"):
-                found.append(self.axis(part, str(name), kind, carries))
+                axes.append(self.axis(part, str(name), kind, carries))
             elif kind != "static":
                 self.notes.append(
                     f"part {shown(name)} of type {shown(kind)} is neither linear nor rotary: it is ignored"
                 )
-        return found
+        return axes
 
     def axis(self, part: dict[str, Any], name: str, kind: str, carries: Carried) -> Axis:
         """One of them."""
@@ -166,9 +166,9 @@ class _Reading:
         place = (point[0] * self.length, point[1] * self.length, point[2] * self.length)
         if self.left != ((carries == "part") and self.sign != TOOL):
             direction = chain.opposite(direction)
-        found = chain.axis(name, "rotary", carries, direction, limits=limits, point=place)
-        self.check(part, found)
-        return found
+        axis = chain.axis(name, "rotary", carries, direction, limits=limits, point=place)
+        self.check(part, axis)
+        return axis
 
     def check(self, part: dict[str, Any], axis: Axis) -> None:
         """Whether the sense of a rotary axis is known, or does not matter."""
@@ -177,7 +177,7 @@ class _Reading:
         if chain.even(axis.limits, turns=True):
             if axis.carries == "part" and not self.sign:
                 self.notes.append(
-                    f"{axis.name}: whether its positive angles are those of the table or of the tool is not said; that of the "
+                    f"{axis.name}: whether its positive angles are those of the table or of the tool is not stated; that of the "
                     f"table is taken, and with its limits it allows the same either way"
                 )
         elif turned or (zero and axis.limits is not None):
@@ -186,28 +186,28 @@ class _Reading:
                                "write the machine as TOML (docs/machines.md)")  # fmt: skip
         elif axis.carries == "part" and not self.sign:
             raise MachineError(
-                f"axis {axis.name} carries the part, and whether its limits count the table's own motion is not said: say it as "
+                f"axis {axis.name} carries the part, and whether its limits count the table's own motion is not stated: use "
                 f"FILE#{TABLE}, or FILE#{TOOL} (ISO 841)"
             )
 
     def limits(self, part: dict[str, Any], name: str, size: float) -> tuple[float, float] | None:
         """Limits of a part, under any of the names that they may have."""
-        found = []
+        limits = []
         for key in _RANGES:
-            given = part.get(key)
-            if given is None:
+            result = part.get(key)
+            if result is None:
                 continue
-            if isinstance(given, list) and len(given) == 2:
-                given = dict(zip(("min", "max"), given, strict=True))
-            if not isinstance(given, dict) or not set(given) <= {"min", "max"}:
-                raise MachineError(f"axis {name}: its {key} must be min and max, not {shown(given)}")
-            found.append(self._ends(given, name, size))
-        found.append(self._ends(part, name, size))
-        return chain.narrowed(found, f"axis {name}")
+            if isinstance(result, list) and len(result) == 2:
+                result = dict(zip(("min", "max"), result, strict=True))
+            if not isinstance(result, dict) or not set(result) <= {"min", "max"}:
+                raise MachineError(f"axis {name}: its {key} must be min and max, not {shown(result)}")
+            limits.append(self._ends(result, name, size))
+        limits.append(self._ends(part, name, size))
+        return chain.narrowed(limits, f"axis {name}")
 
-    def _ends(self, given: dict[str, Any], name: str, size: float) -> tuple[float, float] | None:
+    def _ends(self, entry: dict[str, Any], name: str, size: float) -> tuple[float, float] | None:
         low, high = (
-            None if given.get(key) is None else chain.real(given[key], f"axis {name}: its {key}")
+            None if entry.get(key) is None else chain.real(entry[key], f"axis {name}: its {key}")
             for key in ("min", "max")
         )
         return chain.ranged(low, high, size)

@@ -56,10 +56,10 @@ class Ini:
 
     def one(self, section: str, key: str) -> str | None:
         """The value of a key, said once or always the same."""
-        found = list(dict.fromkeys(self.all(section, key)))
-        if len(found) > 1:
-            raise MachineError(f"[{section}]{key} is given as {shown(found[0])} and as {shown(found[1])}")
-        return found[0] if found else None
+        values = list(dict.fromkeys(self.all(section, key)))
+        if len(values) > 1:
+            raise MachineError(f"[{section}]{key} is given as {shown(values[0])} and as {shown(values[1])}")
+        return values[0] if values else None
 
     def number(self, section: str, key: str) -> float | None:
         """A finite number; what follows it must be a comment."""
@@ -79,12 +79,12 @@ def number(text: str, what: str) -> float:
     words = text.split(None, 1)
     rest = words[1].lstrip() if len(words) > 1 else ""
     try:
-        found = float(words[0]) if words and (not rest or rest[0] in "#;") else float("nan")
+        result = float(words[0]) if words and (not rest or rest[0] in "#;") else float("nan")
     except ValueError:
-        found = float("nan")
-    if found != found or found in (float("inf"), float("-inf")):
+        result = float("nan")
+    if result != result or result in (float("inf"), float("-inf")):
         raise MachineError(f"{what} is {shown(text)}, which is no number")
-    return found
+    return result
 
 
 def _pin(name: str) -> str:
@@ -146,8 +146,8 @@ class Hal:
             return None if pin.rpartition(".")[2] in self.scripts else default
         match = _FROM_INI.fullmatch(text)
         if match:
-            found = self.ini.one(match[1].upper(), match[2].upper())
-            if found is None:
+            pin_value = self.ini.one(match[1].upper(), match[2].upper())
+            if pin_value is None:
                 raise MachineError(f"{pin} is set to {shown(text)}, which the file does not have")
-            text = found
+            text = pin_value
         return {"true": 1.0, "false": 0.0}.get(text.lower()) if text.isalpha() else number(text, pin)

@@ -97,8 +97,8 @@ class _Reading:
                 f"its kinematics {shown(name)} are none of those that are read ({', '.join((TRIVIAL, *KINS))}); write the "
                 "machine as TOML (docs/machines.md)"
             )
-        given = dict(word.partition("=")[::2] for word in words[1:] if "=" in word)
-        return name, {key.lower(): value for key, value in given.items()}
+        words_by_key = dict(word.partition("=")[::2] for word in words[1:] if "=" in word)
+        return name, {key.lower(): value for key, value in words_by_key.items()}
 
     def coordinates(self) -> str:
         """Letters of the axes that the machine has."""
@@ -117,10 +117,10 @@ class _Reading:
         if not text:
             text = KINS[self.name].joints if self.name in KINS else _LETTERS
             numbered = [key for key in sections if key.startswith("AXIS")]
-            lost = [key for key in sections if int(key[-1]) >= len(text) or text[int(key[-1])] not in self.letters]
+            missing = [key for key in sections if int(key[-1]) >= len(text) or text[int(key[-1])] not in self.letters]
             # Before there were joints, axes were numbered; maxkins numbers all nine, used or not.
-            if (self.name == TRIVIAL and lost) or (self.name in KINS and len(text) < len(_LETTERS) and numbered):
-                raise MachineError(f"which axis [{(lost or numbered)[0]}] is of is not known: say so, as KINEMATICS = "
+            if (self.name == TRIVIAL and missing) or (self.name in KINS and len(text) < len(_LETTERS) and numbered):
+                raise MachineError(f"which axis [{(missing or numbered)[0]}] is of is not known: say so, as KINEMATICS = "
                                    f"{self.name} coordinates={self.letters}")  # fmt: skip
         for i, letter in enumerate(text):
             for section in (f"JOINT_{i}", f"AXIS_{i}"):
@@ -147,15 +147,15 @@ class _Reading:
         """Limits of an axis, in rad or mm: those of its joint, and where both mean the same those of the axis."""
         size = self.angle if letter in "ABC" else self.length
         sections = [f"{kind}_{i}" for i, each in enumerate(self.joints) if each == letter for kind in ("JOINT", "AXIS")]
-        given = [self.ends(section, size) for section in sections if section in self.ini.values]
+        stated = [self.ends(section, size) for section in sections if section in self.ini.values]
         own = self.ends(f"AXIS_{letter}", size)
         # Of kinematics that couple axes, those of a linear axis are of the programmed place, not of the machine's.
-        if trivial or letter in "ABC" or not any(given):
-            given.append(own)
-        found = chain.narrowed(given, f"axis {letter}")
-        if len({each for each in given if each is not None}) > 1:
+        if trivial or letter in "ABC" or not any(stated):
+            stated.append(own)
+        limits = chain.narrowed(stated, f"axis {letter}")
+        if len({each for each in stated if each is not None}) > 1:
             self.notes.append(f"{letter}: the limits of the axis and of its joints differ; what all allow is taken")
-        return found
+        return limits
 
     def ends(self, section: str, size: float) -> tuple[float, float] | None:
         return chain.ranged(self.ini.number(section, "MIN_LIMIT"), self.ini.number(section, "MAX_LIMIT"), size)
@@ -164,8 +164,8 @@ class _Reading:
         """The least of the largest speeds of an axis and its joints."""
         size = self.angle if letter in "ABC" else self.length
         sections = [f"{kind}_{i}" for i, each in enumerate(self.joints) if each == letter for kind in ("JOINT", "AXIS")]
-        found = [self.ini.number(section, "MAX_VELOCITY") for section in (f"AXIS_{letter}", *sections)]
-        speeds = [chain.scaled(each, size) for each in found if each is not None and each > 0.0]
+        rates = [self.ini.number(section, "MAX_VELOCITY") for section in (f"AXIS_{letter}", *sections)]
+        speeds = [chain.scaled(each, size) for each in rates if each is not None and each > 0.0]
         return min(speeds, default=None)
 
     def linear(self, letter: str) -> Axis:
@@ -179,8 +179,8 @@ class _Reading:
     def trivial(self) -> tuple[list[Axis], list[Axis]]:
         """Kinematics that say nothing of how axes stand on each other."""
         rotary = [self.rotary(letter, "part", False, (0.0, 0.0, 0.0)) for letter in self.letters if letter in "ABC"]
-        found = arranged(rotary, self.added, self.notes, TRIVIAL)
-        return [each for each in found if each.carries == "part"], [each for each in found if each.carries == "tool"]
+        axes = arranged(rotary, self.added, self.notes, TRIVIAL)
+        return [each for each in axes if each.carries == "part"], [each for each in axes if each.carries == "tool"]
 
     def known(self) -> tuple[list[Axis], list[Axis]]:
         """Kinematics of which the formulas are known."""
@@ -204,16 +204,16 @@ class _Reading:
     def against(self, kins: Kins, hal: Hal) -> str:
         """Letters that are counted against ISO 841."""
         pin = f"{self.name}.conventional-directions"
-        found = hal.value(pin, 0.0) if kins.pin else 0.0
-        if found is None or (kins.pin and pin not in hal.pins and pin not in hal.signal_of and hal.missing):
-            why = "something else feeds it" if found is None else f"{', '.join(hal.missing)} is not at hand"
+        result = hal.value(pin, 0.0) if kins.pin else 0.0
+        if result is None or (kins.pin and pin not in hal.pins and pin not in hal.signal_of and hal.missing):
+            why = "something else feeds it" if result is None else f"{', '.join(hal.missing)} is not at hand"
             if not all(chain.even(self.limits(letter, False), turns=True) for letter in kins.against):
-                raise MachineError(f"the sense of its angles hangs on {pin}, and {why}: put the HAL file beside it, or a line "
+                raise MachineError(f"the sense of its angles hangs on {pin}, and {why}: put the HAL file next to it, or a line "
                                    f"HALCMD = setp {pin} 0 (or 1) into [HAL]")  # fmt: skip
             self.notes.append(
                 f"the sense of its angles hangs on {pin}, and {why}: with its limits it allows the same either way"
             )
-        if found:
+        if result:
             self.notes.append(f"{pin} is set: its angles are counted as in ISO 841")
             return ""
         letters = " and ".join(kins.against)

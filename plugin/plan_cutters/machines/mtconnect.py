@@ -44,13 +44,13 @@ def read_probe(content: Content, added: Added) -> Machine:
         raise MachineError(f"{what}: give a file with one machine")
     device, components = with_axes[0]
     notes: list[str] = []
-    found: list[Axis] = []
+    own_axes: list[Axis] = []
     for component in components:
         axis = _axis(component, added, notes)
         if axis is not None:
-            found.append(axis)
-    rotary = arranged([each for each in found if each.kind == "rotary"], added, notes, "MTConnect")
-    between = [each for each in found if each.kind == "linear"]
+            own_axes.append(axis)
+    rotary = arranged([each for each in own_axes if each.kind == "rotary"], added, notes, "MTConnect")
+    between = [each for each in own_axes if each.kind == "linear"]
     if not between and not rotary:
         raise MachineError("it has no axis X, Y, Z, A, B or C")
     axes = [*(a for a in rotary if a.carries == "part"), *between, *(a for a in rotary if a.carries == "tool")]
@@ -118,16 +118,16 @@ def _along(motion: Element, iso: chain.Vector, what: str, added: Added) -> chain
     element = motion.first("Axis")
     if element is None:
         return iso
-    given = _three(element, f"{what}: its direction")
-    size = sum(v * v for v in given) ** 0.5
-    along = sum(p * q for p, q in zip(given, iso, strict=True))
+    vector = _three(element, f"{what}: its direction")
+    size = sum(v * v for v in vector) ** 0.5
+    along = sum(p * q for p, q in zip(vector, iso, strict=True))
     if size and abs(abs(along) / size - 1.0) <= _PARALLEL:
         return iso
     if added.sign:
-        return given
+        return vector
     raise MachineError(
-        f"{what} runs along ({', '.join(f'{v:g}' for v in given)}), not as its name has it in ISO 841, and whether that is the "
-        "motion of the part or of the tool is not said: say it as FILE#table or FILE#tool-relative"
+        f"{what} runs along ({', '.join(f'{v:g}' for v in vector)}), not as its name has it in ISO 841, and whether that is the "
+        "motion of the part or of the tool is not stated: say it as FILE#table or FILE#tool-relative"
     )
 
 
@@ -144,11 +144,11 @@ def _ends(element: Element, units: str, kind: str, what: str) -> tuple[float, fl
     """The least and largest value below an element."""
     values: dict[str, float | None] = {}
     for tag in ("Minimum", "Maximum"):
-        found = list(_own(element, tag))
+        ends = list(_own(element, tag))
         try:
-            values[tag] = chain.real(float(found[0].text), f"{what}: its {tag}") if found else None
+            values[tag] = chain.real(float(ends[0].text), f"{what}: its {tag}") if ends else None
         except ValueError:
-            raise MachineError(f"{what}: its {tag} {shown(found[0].text.strip())} is no number") from None
+            raise MachineError(f"{what}: its {tag} {shown(ends[0].text.strip())} is no number") from None
     if values["Minimum"] is None and values["Maximum"] is None:
         return None
     known = chain.ANGLES if kind == "rotary" else chain.LENGTHS
@@ -158,12 +158,12 @@ def _ends(element: Element, units: str, kind: str, what: str) -> tuple[float, fl
 
 
 def _limits(component: Element, kind: str, name: str) -> tuple[float, float] | None:
-    found = []
+    limits = []
     for tag in ("Specification", "ProcessSpecification", "DataItem"):
         for each in _own(component, tag):
             if each.given.get("type", "").upper() in _WHERE[kind]:
-                found.append(_ends(each, each.given.get("units", ""), kind, f"line {each.line}: axis {name}"))
-    return chain.narrowed(found, f"axis {name}")
+                limits.append(_ends(each, each.given.get("units", ""), kind, f"line {each.line}: axis {name}"))
+    return chain.narrowed(limits, f"axis {name}")
 
 
 def _rate(component: Element, kind: str) -> float | None:

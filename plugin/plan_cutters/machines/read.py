@@ -44,16 +44,16 @@ def described(path: str | os.PathLike[str], added: str = "") -> tuple[Machine, s
     content = Content.of(file)
     form = recognised(content)
     try:
-        found = form.read(content, Added.parse(added) if added else Added())
+        machine = form.read(content, Added.parse(added) if added else Added())
     except MachineError as error:
         name = content.name if error.file in (None, content.name) else f"{content.name}: {error.file}"
         raise MachineError(error.cause, file=name) from None
     except RecursionError:
         raise MachineError("it is nested too deeply", file=content.name) from None
-    return found, form.name
+    return machine, form.name
 
 
-def machine_of(given: Any) -> Machine:
+def machine_of(value: Any) -> Machine:
     """Read a value of `--machine`: `unlimited`, `tilt:DEG`, a built-in name, or a file.
 
     `FILE#C,A` gives the order of the rotary axes where the file leaves it open.
@@ -67,14 +67,14 @@ def machine_of(given: Any) -> Machine:
     >>> machine_of("trunnion-ac").rotary[0].name
     'C'
     """
-    return source_of(given)[0]
+    return source_of(value)[0]
 
 
-def source_of(given: Any) -> tuple[Machine, str]:
+def source_of(value: Any) -> tuple[Machine, str]:
     """The same, and the name of the file's format; empty for none."""
-    if not isinstance(given, str | os.PathLike) or given == "unlimited":
-        return Machine.of(given), ""
-    text = os.fspath(given)
+    if not isinstance(value, str | os.PathLike) or value == "unlimited":
+        return Machine.of(value), ""
+    text = os.fspath(value)
     if text in builtin_machines() or text.startswith("tilt:"):
         return Machine.parse(text), ""
     file, mark, added = text.rpartition("#")

@@ -26,14 +26,14 @@ class Content(content.Content):
     error: ClassVar[type[PlanError]] = OptionError
 
 
-def _direction(given: Any) -> Any:
+def _direction(value: Any) -> Any:
     """A word such as `+z` as three numbers; anything else as it is."""
-    if not isinstance(given, str):
-        return given
-    found = along(given)
-    if found is None:
+    if not isinstance(value, str):
+        return value
+    direction = along(value)
+    if direction is None:
         raise PydanticCustomError("direction", "give a direction as +z, -y or [0, 0, 1]")
-    return list(found)
+    return list(direction)
 
 
 _Direction = Annotated[Vector, BeforeValidator(_direction)]
@@ -112,18 +112,18 @@ def _placement(table: SetupTable, read: Content) -> Placement:
     return Placement(_three(z), None if table.x is None else _three(table.x), origin, clamped, fixtures, read.name)
 
 
-def _three(found: list[float]) -> tuple[float, float, float]:
-    return found[0], found[1], found[2]
+def _three(numbers: list[float]) -> tuple[float, float, float]:
+    return numbers[0], numbers[1], numbers[2]
 
 
 def _fixture(text: str, unit: str, folder: Path) -> Fixture:
-    found = Fixture.parse(text)
-    if unit != "mm" and ((found.sizes and found.unit is None) or any(found.placement[:3])):
+    fixture = Fixture.parse(text)
+    if unit != "mm" and ((fixture.sizes and fixture.unit is None) or any(fixture.placement[:3])):
         # Lengths of words are mm unless they say otherwise, placements always: beside other lengths of the file that misleads.
         raise OptionError(
-            f"{found}: in a file of other units than mm, a word must say its unit, as table:-5:mm, and a placement, "
+            f"{fixture}: in a file of other units than mm, a word must say its unit, as table:-5:mm, and a placement, "
             "which is in mm, is left out"
         )
-    if found.kind or Path(found.source).is_absolute():
-        return found
-    return Fixture(str(folder / found.source), found.placement, found.unit, found.name)
+    if fixture.kind or Path(fixture.source).is_absolute():
+        return fixture
+    return Fixture(str(folder / fixture.source), fixture.placement, fixture.unit, fixture.name)

@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from plan_cutters.domain.axis import Axis, Carried
-from plan_cutters.domain.checks import radians_said, shown
+from plan_cutters.domain.checks import shown, stated_radians
 from plan_cutters.domain.machine import Machine
 from plan_cutters.errors import MachineError
 from plan_cutters.machines.chain import ANGLES, LENGTHS, opposite, scaled
@@ -85,18 +85,18 @@ def is_toml(content: Content) -> bool:
 
 def is_json(content: Content) -> bool:
     """JSON that names the format, or has a chain."""
-    found = content.json
-    return isinstance(found, dict) and (found.get("format") == FORMAT or "part_chain" in found or "tool_chain" in found)
+    data = content.json
+    return isinstance(data, dict) and (data.get("format") == FORMAT or "part_chain" in data or "tool_chain" in data)
 
 
 def read_toml(content: Content, added: Added) -> Machine:
     """Read it."""
     try:
-        given = tomllib.loads(content.text)
+        document = tomllib.loads(content.text)
     except (tomllib.TOMLDecodeError, RecursionError, ValueError) as error:
         why = "it is nested too deeply" if isinstance(error, RecursionError) else " ".join(str(error).split())
         raise MachineError(f"is no TOML: {why}", file=content.name) from None
-    return _machine(given, content, added)
+    return _machine(document, content, added)
 
 
 def read_json(content: Content, added: Added) -> Machine:
@@ -104,10 +104,10 @@ def read_json(content: Content, added: Added) -> Machine:
     return _machine(content.json, content, added)
 
 
-def _machine(given: Any, content: Content, added: Added) -> Machine:
+def _machine(entry: Any, content: Content, added: Added) -> Machine:
     added.refuse(content.name, order=True, sign=True)
     try:
-        table = MachineTable.model_validate(given)
+        table = MachineTable.model_validate(entry)
     except ValidationError as error:
         raise MachineError(explained(error), file=content.name) from None
     length, angle = LENGTHS[table.units.length], ANGLES[table.units.angle]
@@ -148,17 +148,17 @@ def _axis(table: AxisTable, carries: Carried, sign: str, length: float, angle: f
     return Axis(table.axis, table.type, carries, turned, limits, (px, py, pz), rate)
 
 
-def _size(given: float | str, size: float, what: str, turns: bool = True) -> float:
-    if isinstance(given, str):
-        found = radians_said(given)
-        if math.isnan(found) or not turns:
+def _size(value: float | str, size: float, what: str, turns: bool = True) -> float:
+    if isinstance(value, str):
+        radians = stated_radians(value)
+        if math.isnan(radians) or not turns:
             raise MachineError(
-                f"{what} is {shown(given)}: it must be a number{', or an angle as 0.5 rad' if turns else ''}"
+                f"{what} is {shown(value)}: it must be a number{', or an angle as 0.5 rad' if turns else ''}"
             )
-        return found
-    if math.isnan(given):
+        return radians
+    if math.isnan(value):
         raise MachineError(f"{what} must be a number, not nan")
-    return scaled(given, size)
+    return scaled(value, size)
 
 
 def explained(error: ValidationError) -> str:

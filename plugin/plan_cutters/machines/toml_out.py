@@ -15,7 +15,7 @@ def plain(machine: Machine) -> dict[str, Any]:
     >>> plain(Machine("mill", fixed=True))["part_chain"]
     []
     """
-    found: dict[str, Any] = {
+    entry: dict[str, Any] = {
         "format": FORMAT,
         "version": 1,
         "name": machine.name,
@@ -25,12 +25,12 @@ def plain(machine: Machine) -> dict[str, Any]:
         "fixed": machine.fixed,
     }
     if machine.tilt_limit is not None:
-        found["tilt_limit"] = _angle(machine.tilt_limit)
+        entry["tilt_limit"] = _angle(machine.tilt_limit)
     if machine.notes:
-        found["notes"] = list(machine.notes)
-    found["part_chain"] = [_axis(each) for each in machine.axes[::-1] if each.carries == "part"]
-    found["tool_chain"] = [_axis(each) for each in machine.axes if each.carries == "tool"]
-    return found
+        entry["notes"] = list(machine.notes)
+    entry["part_chain"] = [_axis(each) for each in machine.axes[::-1] if each.carries == "part"]
+    entry["tool_chain"] = [_axis(each) for each in machine.axes if each.carries == "tool"]
+    return entry
 
 
 def to_toml(machine: Machine) -> str:
@@ -48,9 +48,9 @@ def to_toml(machine: Machine) -> str:
     tool_chain = []
     <BLANKLINE>
     """
-    found = plain(machine)
-    chains = [(name, found[name]) for name in ("part_chain", "tool_chain")]
-    lines = [f"{key} = {_toml(value)}" for key, value in found.items() if key not in dict(chains)]
+    entry = plain(machine)
+    chains = [(name, entry[name]) for name in ("part_chain", "tool_chain")]
+    lines = [f"{key} = {_toml(value)}" for key, value in entry.items() if key not in dict(chains)]
     lines += [f"{name} = []" for name, chain in chains if not chain]
     for name, chain in chains:
         for i, each in enumerate(chain):
@@ -60,15 +60,15 @@ def to_toml(machine: Machine) -> str:
 
 
 def _axis(axis: Axis) -> dict[str, Any]:
-    found: dict[str, Any] = {"axis": axis.name, "type": axis.kind, "direction": list(axis.direction)}
+    entry: dict[str, Any] = {"axis": axis.name, "type": axis.kind, "direction": list(axis.direction)}
     size = _angle if axis.kind == "rotary" else float
     if any(axis.point):
-        found["point"] = list(axis.point)
+        entry["point"] = list(axis.point)
     if axis.limits is not None:
-        found["limits"] = [None if math.isinf(end) else size(end) for end in axis.limits]
+        entry["limits"] = [None if math.isinf(end) else size(end) for end in axis.limits]
     if axis.rate is not None:
-        found["rate"] = size(axis.rate)
-    return found
+        entry["rate"] = size(axis.rate)
+    return entry
 
 
 def _angle(angle: float) -> float | str:

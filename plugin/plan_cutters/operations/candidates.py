@@ -19,7 +19,7 @@ from plan_cutters.scene.conditions import Conditions
 DIGITS = 3
 #: Sums of angles that differ by less are the same position, deg.
 _SAME_DEG = 0.01
-#: Distance of grid angles unless one is asked for, rad.
+#: Distance of grid angles unless one is requested, rad.
 STEP = math.radians(5.0)
 #: Tool axes nearer than this are one, rad.
 _SAME = math.radians(10.0**-DIGITS)
@@ -47,13 +47,13 @@ class Orientations:
     @classmethod
     def of(cls, conditions: Conditions) -> "Orientations":
         """Find those of a machine; options see to it that it has two rotary axes, or none that is named."""
-        machine, found = conditions.machine, conditions.kinematics
-        if found is None:
+        machine, kinematics = conditions.machine, conditions.kinematics
+        if kinematics is None:
             frame = frame_of(conditions.setup, conditions.x)
             free = np.full((2, 2), math.inf) * (-1.0, 1.0)
             return cls(conditions, Kinematics(frame[[2, 1]], free, frame[2]), ("azimuth", "tilt"))
         first, second = machine.rotary
-        return cls(conditions, found, (first.name, second.name))
+        return cls(conditions, kinematics, (first.name, second.name))
 
     def set_to(self, angle: Floats) -> tuple[Floats, Floats]:
         """Angles (n, 2), deg, as a control shows them, and their axes (n, 3): those alone that the machine can hold."""
@@ -84,15 +84,15 @@ class Orientations:
         """
         start = self.kinematics.swing[0]
         turns = _multiples(self.kinematics.limit[1], step)
-        found = []
+        axes = []
         for second in turns:
             arm = self.kinematics.axis(np.array([[0.0, math.radians(second)]]))[0]
             sine = float(np.linalg.norm(np.cross(arm, self.kinematics.direction[0])))
             every = max(1, int(1.0 / max(sine, 1e-9))) if sine > 1e-9 else 10**9
             first = _multiples(self.kinematics.limit[0], step)
             numbers = np.round(first / step).astype(np.int64)
-            found.append(np.column_stack([first[numbers % every == 0], np.full((numbers % every == 0).sum(), second)]))
-        angle = np.concatenate(found)
+            axes.append(np.column_stack([first[numbers % every == 0], np.full((numbers % every == 0).sum(), second)]))
+        angle = np.concatenate(axes)
         # Of the two solutions of an axis the one with the smaller second angle comes first, and stays.
         angle = angle[np.lexsort((np.abs(angle[:, 0]), np.abs(angle[:, 1] - math.degrees(start))))]
         return self.set_to(angle)
@@ -108,35 +108,35 @@ def _multiples(limit: Floats, step: float) -> Floats:
 
 def directions(samples: SurfaceSamples, setup: Floats) -> Floats:
     """Directions (n, 3) that a tool axis may well have: the part's axes, normals of planes, axes of revolved and ruled faces."""
-    found = [setup, *np.eye(3), *-np.eye(3)]
+    candidates = [setup, *np.eye(3), *-np.eye(3)]
     judged = samples.unjudged < 0
     area = np.bincount(samples.face[judged], np.nan_to_num(samples.area[judged]))
     for number in np.argsort(-area, kind="stable")[:_FACES]:
         normal = samples.normal[judged & (samples.face == number)]
         if len(normal) and np.ptp(normal, axis=0).max() <= _EVEN:
-            found.append(normal[0])
+            candidates.append(normal[0])
         elif len(normal) > 3:
             spread, axes = np.linalg.svd(normal - normal.mean(axis=0), full_matrices=False)[1:]
             if spread[2] <= _EVEN * math.sqrt(len(normal)):
-                found += [axes[2], -axes[2]]
-    return np.array(found)
+                candidates += [axes[2], -axes[2]]
+    return np.array(candidates)
 
 
 def apart(axis: Floats, least: float = _SAME, old: Floats | None = None) -> NDArray[np.int64]:
     """Which (k,) of axes (n, 3) are at least an angle, rad, from all earlier ones, and from old ones (m, 3)."""
     chord = 2.0 * math.sin(0.5 * least)
-    kept = np.ones(len(axis), bool)
+    selected = np.ones(len(axis), bool)
     if old is not None and len(old):
-        kept &= cKDTree(old).query(axis, distance_upper_bound=chord)[0] > chord
+        selected &= cKDTree(old).query(axis, distance_upper_bound=chord)[0] > chord
     tree = cKDTree(axis)
     for i in range(len(axis)):
-        if kept[i]:
+        if selected[i]:
             near = np.array(tree.query_ball_point(axis[i], chord))
-            kept[near[near > i]] = False
-    return np.flatnonzero(kept)
+            selected[near[near > i]] = False
+    return np.flatnonzero(selected)
 
 
-def beside(axis: Floats, spacing: float) -> Floats:
+def neighbours(axis: Floats, spacing: float) -> Floats:
     """Six axes (6 n, 3) at an angle, rad, about each of some axes (n, 3)."""
     other = np.where(np.abs(axis[:, 2:]) < 0.9, (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))
     u = np.cross(axis, other)
@@ -173,9 +173,9 @@ def candidates(where: Orientations, samples: SurfaceSamples, step: float | None)
     high = where.conditions.postures.tilt[1]
     normal = samples.normal[samples.unjudged < 0]
     facing = _faces_any(axis, normal, math.cos(min(high, math.pi)))
-    kept = np.flatnonzero(facing)
-    kept = kept[apart(axis[kept])]
-    return angle[kept], axis[kept]
+    selected = np.flatnonzero(facing)
+    selected = selected[apart(axis[selected])]
+    return angle[selected], axis[selected]
 
 
 def _faces_any(axis: Floats, normal: Floats, least: float) -> NDArray[np.bool_]:

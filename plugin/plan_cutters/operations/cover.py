@@ -23,7 +23,7 @@ UNIT = 1_000_000
 _TRIES, _MORE_TRIES, _SPREAD = 12, 150, 0.5
 #: Nodes of branch and bound.
 _NODES = 20_000
-#: Seconds that a proof may take unless another number is asked for, whatever its nodes.
+#: Seconds that a proof may take unless another number is requested, whatever its nodes.
 SECONDS = 30.0
 _ROUNDING = 1e-6
 
@@ -99,13 +99,18 @@ def relax(table: Table) -> Relaxed:
     rows = essential_rows(table)
     small = table[rows]
     # The weights' own problem: most weight of which no column carries more than 1.
-    found = linprog(-np.ones(len(small)), A_ub=csr_array(small.T.astype(float)), b_ub=np.ones(table.shape[1]), bounds=(0.0, None),
-                    method="highs")  # fmt: skip
-    if found.x is None:
+    solution = linprog(
+        -np.ones(len(small)),
+        A_ub=csr_array(small.T.astype(float)),
+        b_ub=np.ones(table.shape[1]),
+        bounds=(0.0, None),
+        method="highs",
+    )
+    if solution.x is None:
         return Relaxed(rows, np.ones(table.shape[1]), np.zeros(len(small)), weight, 0.0)
-    dual = np.maximum(0.0, found.x)
+    dual = np.maximum(0.0, solution.x)
     weight[rows] = whole_weights(small, dual)
-    return Relaxed(rows, np.maximum(0.0, -found.ineqlin.marginals), dual, weight, float(-found.fun))
+    return Relaxed(rows, np.maximum(0.0, -solution.ineqlin.marginals), dual, weight, float(-solution.fun))
 
 
 def fewest(
@@ -143,9 +148,9 @@ def fewest(
     if prove and len(best) > at_least:
         # A cover with one column less has none whose price, by the weights, passes what is left over.
         price = 1.0 - relaxed.dual @ small
-        kept = np.flatnonzero(price <= len(best) - 1 - relaxed.dual.sum() + _ROUNDING)
-        smaller, proven = _smaller(small[:, kept], len(best) - 1, seconds)
-        best = best if smaller is None else kept[smaller]
+        selected = np.flatnonzero(price <= len(best) - 1 - relaxed.dual.sum() + _ROUNDING)
+        smaller, proven = _smaller(small[:, selected], len(best) - 1, seconds)
+        best = best if smaller is None else selected[smaller]
         if proven is not None:
             at_least = max(at_least, min(proven, len(best)))
     return Cover(np.sort(best), at_least, relaxed.weight, bound, relaxed.value)
@@ -153,9 +158,9 @@ def fewest(
 
 def whole_weights(table: Table, weight: Floats) -> Which:
     """Weights (n,) as whole parts of `UNIT`, of which no column carries more than `UNIT`."""
-    found = np.floor(weight * UNIT).astype(np.int64)
-    load = int((found @ table.astype(np.int64)).max(initial=0))
-    return found if load <= UNIT else found * UNIT // load
+    units = np.floor(weight * UNIT).astype(np.int64)
+    load = int((units @ table.astype(np.int64)).max(initial=0))
+    return units if load <= UNIT else units * UNIT // load
 
 
 def _greedy_covers(table: Table, share: Floats, least: int, tries: int) -> Which:
@@ -166,17 +171,17 @@ def _greedy_covers(table: Table, share: Floats, least: int, tries: int) -> Which
         lead = 1.0 + (share * rng.uniform(0.5, 2.0) if attempt else 0.0) + (
             _SPREAD * rng.random(len(share)) * (share > 0.0) if attempt else 0.0
         )  # fmt: skip
-        left, chosen = np.ones(len(table), np.float32), []
+        open_samples, chosen = np.ones(len(table), np.float32), []
         gain = held.sum(axis=0)
-        while left.any():
+        while open_samples.any():
             column = int((gain * lead).argmax())
             chosen.append(column)
-            new = left * held[:, column]
-            left -= new
+            new = open_samples * held[:, column]
+            open_samples -= new
             gain -= new @ held
-        found = _without_spare(table, np.array(chosen, np.int64))
-        if best is None or len(found) < len(best):
-            best = found
+        cover = _without_spare(table, np.array(chosen, np.int64))
+        if best is None or len(cover) < len(best):
+            best = cover
             if len(best) <= least:
                 break
     assert best is not None
@@ -186,13 +191,13 @@ def _greedy_covers(table: Table, share: Floats, least: int, tries: int) -> Which
 def _without_spare(table: Table, chosen: Which) -> Which:
     """A cover without the columns that the others make up for."""
     times = table[:, chosen].sum(axis=1)
-    kept = np.ones(len(chosen), bool)
+    selected = np.ones(len(chosen), bool)
     for k in np.argsort(table[:, chosen].sum(axis=0), kind="stable").tolist():
         mine = table[:, chosen[k]]
         if (times[mine] > 1).all():
-            kept[k] = False
+            selected[k] = False
             times = times - mine
-    return chosen[kept]
+    return chosen[selected]
 
 
 def _smaller(table: Table, most: int, seconds: float) -> tuple[Which | None, int | None]:
@@ -204,16 +209,16 @@ def _smaller(table: Table, most: int, seconds: float) -> tuple[Which | None, int
         return None, most + 1
     held = csr_array(table.astype(float))
     few = csr_array(np.ones((1, table.shape[1])))
-    found = milp(
+    solution = milp(
         np.ones(table.shape[1]), integrality=np.ones(table.shape[1]), bounds=Bounds(0, 1),
         constraints=[LinearConstraint(held, 1.0, np.inf), LinearConstraint(few, 0.0, most)],
         options={"time_limit": max(0.1, seconds), "mip_rel_gap": 0.99 / (most + 1), "node_limit": _NODES},
     )  # fmt: skip
-    if found.status == 2:
+    if solution.status == 2:
         return None, most + 1
-    bound = found.mip_dual_bound
+    bound = solution.mip_dual_bound
     proven = math.ceil(bound - _ROUNDING) if bound is not None and math.isfinite(bound) else None
-    if found.x is None:
+    if solution.x is None:
         return None, proven
-    chosen = np.flatnonzero(found.x > 0.5)
+    chosen = np.flatnonzero(solution.x > 0.5)
     return (chosen if table[:, chosen].any(axis=1).all() else None), proven

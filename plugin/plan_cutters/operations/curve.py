@@ -63,25 +63,25 @@ def curve(
 
 def _order(table: NDArray[np.float32], size: Floats, most: int) -> list[int]:
     """Columns in the order of how much each serves of what those before it leave."""
-    left, order = size.astype(np.float32), list[int]()
+    open_size, order = size.astype(np.float32), list[int]()
     for _ in range(most):
-        gain = table @ left
+        gain = table @ open_size
         gain[order] = -1.0
         order.append(int(gain.argmax()))
-        left = left * (1.0 - table[order[-1]])
+        open_size = open_size * (1.0 - table[order[-1]])
     return order
 
 
 def _bound(table: NDArray[np.float32], size: Floats, order: list[int]) -> Floats:
     """The most area (k,) that one, two, three ... columns serve."""
-    most, left, have = np.full(len(order), np.inf), size.astype(np.float32), 0.0
+    most, open_size, have = np.full(len(order), np.inf), size.astype(np.float32), 0.0
     for column in [*order, -1]:
-        gain = np.sort(table @ left)[::-1][: len(order)]
-        ahead = have + np.cumsum(gain, dtype=float)
-        most[: len(ahead)] = np.minimum(most[: len(ahead)], ahead)
-        most[len(ahead) :] = np.minimum(most[len(ahead) :], ahead[-1])
+        gain = np.sort(table @ open_size)[::-1][: len(order)]
+        cumulated = have + np.cumsum(gain, dtype=float)
+        most[: len(cumulated)] = np.minimum(most[: len(cumulated)], cumulated)
+        most[len(cumulated) :] = np.minimum(most[len(cumulated) :], cumulated[-1])
         if column >= 0:
-            have += float((left * table[column]).sum())
-            left = left * (1.0 - table[column])
+            have += float((open_size * table[column]).sum())
+            open_size = open_size * (1.0 - table[column])
     # Sums of single precision are rounded up.
     return np.asarray(most * (1.0 + 1e-5))

@@ -154,16 +154,16 @@ def fastest(problem: Problem, start: Which | None = None) -> Location:
 
 def cheap(problem: Problem, start: Which | None = None) -> Which:
     """Choose operations of little cost, from a choice that serves all or from nothing."""
-    found = [_improved(problem, _grown(problem, np.zeros(0, np.int64)))]
+    covers = [_improved(problem, _grown(problem, np.zeros(0, np.int64)))]
     if start is not None and len(start):
-        found.append(_improved(problem, _grown(problem, start)))
+        covers.append(_improved(problem, _grown(problem, start)))
     for cutter in np.unique(problem.cutter).tolist():
         # Another cutter may not be worth its change, though the first steps take it.
         own = np.flatnonzero(problem.cutter == cutter)
         if len(own) < len(problem.cutter) and np.isfinite(problem.cost[:, own]).any(axis=1).all():
             part = problem.of(own)
-            found.append(own[_improved(part, _grown(part, np.zeros(0, np.int64)))])
-    return np.sort(min(found, key=problem.total))
+            covers.append(own[_improved(part, _grown(part, np.zeros(0, np.int64)))])
+    return np.sort(min(covers, key=problem.total))
 
 
 def bounded(problem: Problem, chosen: Which) -> Location:
@@ -367,10 +367,10 @@ def _bound(problem: Problem, chosen: Which) -> float:
         whole.step(most)
     open_ = list[_Ascent]()
     for base, inside in _sets(problem):
-        kept = inside[order]
-        served = np.isfinite(table[kept]).any(axis=0).all()
+        selected = inside[order]
+        served = np.isfinite(table[selected]).any(axis=0).all()
         if served and base + whole.bound < most:
-            open_.append(_Ascent(table[kept], operation, base, whole.price, reach[kept], group[kept]))
+            open_.append(_Ascent(table[selected], operation, base, whole.price, reach[selected], group[selected]))
             open_[-1].step(most)
     work = 0
     while open_:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.operations import Fewest
-from plan_cutters.operations.candidates import Orientations, apart, beside
+from plan_cutters.operations.candidates import Orientations, apart, neighbours
 from plan_cutters.operations.cover import SECONDS, UNIT, Cover, fewest, relax
 from plan_cutters.operations.probes import Probes
 
@@ -81,14 +81,14 @@ class Search:
         With `prove` the smallest, or at least a bound of it; else what is found soon. `known` is such a cover.
         """
         for _ in range(_ROUNDS):
-            found = self._cover(known, prove=False)
-            missed = self._missed(found.chosen)
-            if prove and not len(missed) and not found.closed:
-                known = found.chosen
-                found = self._cover(known, prove=True)
-                missed = self._missed(found.chosen) if len(found.chosen) < len(known) else missed
+            cover = self._cover(known, prove=False)
+            missed = self._missed(cover.chosen)
+            if prove and not len(missed) and not cover.closed:
+                known = cover.chosen
+                cover = self._cover(known, prove=True)
+                missed = self._missed(cover.chosen) if len(cover.chosen) < len(known) else missed
             if not len(missed):
-                return found
+                return cover
             self._add_rows(spread(missed, self._probes.samples.point, _MORE))
         return self._patched()
 
@@ -116,7 +116,7 @@ class Search:
         top = np.union1d(active[np.argsort(-load, kind="stable")[:_LOADED]], cover.chosen)
         for c, s in sorted({*zip(self.columns.cutter[top].tolist(), self.columns.setup[top].tolist(), strict=True)}):
             same = (self.columns.cutter == c) & (self.columns.setup == s)
-            angle, axis = orientations[s].near(beside(self.columns.axis[top[same[top]]], spacing))
+            angle, axis = orientations[s].near(neighbours(self.columns.axis[top[same[top]]], spacing))
             new = apart(axis, 0.6 * spacing, self.columns.axis[same])
             self._add_columns(columns_of(axis[new], angle[new], c, s))
 
@@ -137,15 +137,15 @@ class Search:
                 continue
             own = None if known is None else np.searchsorted(active, known)
             prove, began = prove and self._seconds > 0.0, time.monotonic()
-            found = fewest(table, own, relaxed=relaxed, prove=prove, seconds=self._seconds)
+            cover = fewest(table, own, relaxed=relaxed, prove=prove, seconds=self._seconds)
             self._seconds -= time.monotonic() - began if prove else 0.0
-            found = replace(found, chosen=active[found.chosen])
+            cover = replace(cover, chosen=active[cover.chosen])
             # The weights' bound holds for all. Branch and bound has seen those alone that are in the table whole.
-            by_weights = math.ceil(found.bound - 1e-9)
-            if not prove or by_weights >= len(found.chosen):
-                return replace(found, at_least=max(min(1, len(found.chosen)), by_weights))
-            if not self._enter(idle, load, found.bound + 2.0 - len(found.chosen) - _MARGIN):
-                return found
+            by_weights = math.ceil(cover.bound - 1e-9)
+            if not prove or by_weights >= len(cover.chosen):
+                return replace(cover, at_least=max(min(1, len(cover.chosen)), by_weights))
+            if not self._enter(idle, load, cover.bound + 2.0 - len(cover.chosen) - _MARGIN):
+                return cover
 
     def _idle(self, weight: Rows) -> tuple[Rows, Rows]:
         """Candidates that wait, and how much the weights load each."""
@@ -168,11 +168,11 @@ class Search:
 
     def _missed(self, chosen: Rows) -> Rows:
         """Samples that chosen candidates do not serve."""
-        left = np.setdiff1d(self._wanted, self.alone)
+        missing = np.setdiff1d(self._wanted, self.alone)
         order = np.argsort(-self._table[:, chosen].sum(axis=0), kind="stable")
         for column in chosen[order].tolist():
-            left = left[~self._probes.one(left, self.columns, column)]
-        return left
+            missing = missing[~self._probes.one(missing, self.columns, column)]
+        return missing
 
     def _add_rows(self, rows: Rows) -> None:
         active = np.flatnonzero(self._active)
@@ -198,11 +198,11 @@ class Search:
 
     def _patched(self) -> Cover:
         """A cover that serves all samples, without the proof: the rounds did not do."""
-        found = self._cover(None, prove=False)
-        while len(missed := self._missed(found.chosen)):
+        cover = self._cover(None, prove=False)
+        while len(missed := self._missed(cover.chosen)):
             self._add_rows(missed[:_MORE])
-            found = self._cover(None, prove=False)
-        return found
+            cover = self._cover(None, prove=False)
+        return cover
 
 
 def search_fewest(

@@ -16,7 +16,7 @@ from plan_cutters.operations.probes import Probes
 from plan_cutters.scene.conditions import Conditions
 
 #: Axes all around that are compared, and axes found far from each other.
-_AROUND, _FOUND = 200, 64
+_DIRECTIONS, _MOST_AXES = 200, 64
 
 
 def fixed_axes(
@@ -44,14 +44,14 @@ def fixed_axes(
     reached, area = verdicts.reached, np.maximum(np.nan_to_num(samples.area), 1e-12)
     probes = Probes(samples, (cutter,), (conditions,), (reached,))
 
-    def take(found: Columns, order: list[int]) -> None:
+    def take(columns: Columns, order: list[int]) -> None:
         """Let each of some axes have what it serves and none before it does, in an order."""
         for k in order:
-            left = np.flatnonzero(reached & (number < 0))
-            mine = left[probes.one(left, found, k)]
+            open_rows = np.flatnonzero(reached & (number < 0))
+            mine = open_rows[probes.one(open_rows, columns, k)]
             if len(mine):
                 number[mine] = len(axes)
-                axes.append(found.axis[k])
+                axes.append(columns.axis[k])
 
     if plan is not None:
         # Regions are those of the plan, as far as this cutter has them; then its axes serve what other cutters have there.
@@ -62,14 +62,17 @@ def fixed_axes(
             axes.append(np.asarray(plan.operations[i].axis))
         for k, i in enumerate(mine):
             number[plan.serves[:, i] & reached & (number < 0)] = k
-    left = np.flatnonzero(reached & (number < 0))
-    if len(left):
+    open_rows = np.flatnonzero(reached & (number < 0))
+    if len(open_rows):
         search = Search(
-            probes, _first(samples, verdicts, conditions, left), left, lambda bare: _columns(verdicts.axis[bare])
+            probes,
+            _first(samples, verdicts, conditions, open_rows),
+            open_rows,
+            lambda bare: _columns(verdicts.axis[bare]),
         )
         cover = search.solve(prove=False)
         chosen = search.columns.of(cover.chosen)
-        size = area[left] @ probes.table(left, chosen)
+        size = area[open_rows] @ probes.table(open_rows, chosen)
         take(chosen, np.argsort(-size, kind="stable").tolist())
     return np.array(axes).reshape(-1, 3), number
 
@@ -81,10 +84,10 @@ def _columns(axis: Floats) -> Columns:
 
 def _first(samples: SurfaceSamples, verdicts: Verdicts, conditions: Conditions, rows: Rows) -> Columns:
     """Axes to compare: the part's, some all around, and of those found some far from each other."""
-    turn = np.arange(_AROUND) * (math.pi * (3.0 - math.sqrt(5.0)))
-    height = 1.0 - (2.0 * np.arange(_AROUND) + 1.0) / _AROUND
+    turn = np.arange(_DIRECTIONS) * (math.pi * (3.0 - math.sqrt(5.0)))
+    height = 1.0 - (2.0 * np.arange(_DIRECTIONS) + 1.0) / _DIRECTIONS
     wide = np.sqrt(1.0 - height**2)
-    around = np.column_stack([wide * np.cos(turn), wide * np.sin(turn), height])
-    found = verdicts.axis[spread(rows, verdicts.axis, _FOUND)]
-    every = np.concatenate([directions(samples, conditions.setup), found, around])
+    circle = np.column_stack([wide * np.cos(turn), wide * np.sin(turn), height])
+    axes = verdicts.axis[spread(rows, verdicts.axis, _MOST_AXES)]
+    every = np.concatenate([directions(samples, conditions.setup), axes, circle])
     return _columns(every[conditions.machine.allows(every, frame_of(conditions.setup, conditions.x))])

@@ -85,16 +85,16 @@ class Positions:
         facing = np.flatnonzero(flat @ maps.normal[row] >= most)
         rows = np.full(len(facing), row)
         free[facing] = (holding(maps, rows, *postures_of(maps, rows, flat[facing])) >= 0).all(axis=1)
-        found = free.reshape(self.axis.shape[:2])
+        free_axes = free.reshape(self.axis.shape[:2])
         node = np.arange(begin, end)
         turned = maps.rotations[_turns_of(maps, row)]
-        lean = tilt_direction(maps.normal[row], maps.direction_max[row], turned)
+        direction = tilt_direction(maps.normal[row], maps.direction_max[row], turned)
         for part in (0.1, 0.5, 0.9):
             tilt = (1.0 - part) * maps.free[node, 0] + part * maps.free[node, 1]
-            self._mark(found, np.cos(tilt)[:, None] * maps.normal[row] + np.sin(tilt)[:, None] * lean)
-        return found
+            self._mark(free_axes, np.cos(tilt)[:, None] * maps.normal[row] + np.sin(tilt)[:, None] * direction)
+        return free_axes
 
-    def _mark(self, found: Bits, axis: Floats) -> None:
+    def _mark(self, bits: Bits, axis: Floats) -> None:
         """Mark the positions next to both solutions of tool axes (p, 3), in every turn within the limits."""
         angle = np.degrees(self.kinematics.angles(axis)).reshape(-1, 2)
         angle = angle[np.isfinite(angle).all(axis=1)]
@@ -111,7 +111,7 @@ class Positions:
                     inside &= (mine[:, k] >= low[k] - 1e-6) & (mine[:, k] <= high[k] + 1e-6)
                     at = np.clip(at, 0, len(grid) - 1)
                 number.append(at)
-            found[number[0][inside], number[1][inside]] = 1
+            bits[number[0][inside], number[1][inside]] = 1
 
     def forces(self, bits: Sequence[Bits], step: int, *, cone: bool) -> bool:
         """Whether a line of samples cannot be followed with steps, of so many angles of the grid at most.
@@ -157,7 +157,7 @@ def forced_steps(
         Samples with a posture. Where a line has none, it ends, and another one begins behind.
     """
     grid, known = Positions.of(kinematics), dict[int, Bits]()
-    found = []
+    steps = []
     for along in DIRECTIONS:
         lines = _lines(samples, reached, along)
         whole = sum(map(len, lines))
@@ -170,31 +170,31 @@ def forced_steps(
         bits = [[known[row] for row in line.tolist()] for line in some]
         least, line = _largest(grid, bits, cone=False)
         turning, _ = _largest(grid, bits, cone=True)
-        found.append(ForcedStepEntry(along=along, deg=least * RESOLUTION, turning_deg=turning * RESOLUTION,
+        steps.append(ForcedStepEntry(along=along, deg=least * RESOLUTION, turning_deg=turning * RESOLUTION,
                                      face=f"F{samples.face[some[line][0]]}", looked_at=len(some), lines=len(lines)))  # fmt: skip
-    return found
+    return steps
 
 
 def _lines(samples: SurfaceSamples, reached: NDArray[np.bool_], along: Literal["u", "v"]) -> list[Line]:
     """Runs of at least two samples along lines of the grids."""
-    found = []
+    lines = []
     for grid in samples.grids:
         for line in grid.index.T if along == "u" else grid.index:
             there = (line >= 0) & reached[np.maximum(line, 0)]
             runs = np.split(line.astype(np.int64), np.flatnonzero(there[1:] != there[:-1]) + 1)
-            found += [run for run in runs if len(run) > 1 and run[0] >= 0 and reached[run[0]]]
-    return found
+            lines += [run for run in runs if len(run) > 1 and run[0] >= 0 and reached[run[0]]]
+    return lines
 
 
 def _largest(grid: Positions, lines: Sequence[Sequence[Bits]], *, cone: bool) -> tuple[int, int]:
     """The largest step that one of some lines forces, in angles of the grid, and that line's number."""
     low, high = 0, max(len(grid.first), len(grid.second))
-    left, worst = list(range(len(lines))), 0
+    open_lines, worst = list(range(len(lines))), 0
     while low < high:
         middle = (low + high) // 2
-        forced = [k for k in left if grid.forces(lines[k], middle, cone=cone)]
+        forced = [k for k in open_lines if grid.forces(lines[k], middle, cone=cone)]
         if forced:
-            low, left, worst = middle + 1, forced, forced[0]
+            low, open_lines, worst = middle + 1, forced, forced[0]
         else:
             high = middle
     return low, worst

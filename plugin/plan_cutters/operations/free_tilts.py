@@ -56,7 +56,7 @@ def holding(maps: PostureMaps, row: Rows, tilt: Floats, rotation: Floats) -> Row
         beyond = (place < -0.5) | (place > k - 0.5)
         low = np.clip(np.floor(place), 0, k - 1).astype(np.int64)
         high = np.clip(np.ceil(place), 0, k - 1).astype(np.int64)
-    found = np.full((len(row), 2), -1, np.int64)
+    result = np.full((len(row), 2), -1, np.int64)
     for side, turned in enumerate((low, high)):
         cell = row * k + turned
         start, count = maps.offset[cell], maps.offset[cell + 1] - maps.offset[cell]
@@ -64,5 +64,5 @@ def holding(maps: PostureMaps, row: Rows, tilt: Floats, rotation: Floats) -> Row
             there = np.flatnonzero((count > i) & ~beyond)
             at = start[there] + i
             inside = (maps.free[at, 0] <= tilt[there] + _ROUNDING) & (tilt[there] <= maps.free[at, 1] + _ROUNDING)
-            found[there[inside], side] = at[inside]
-    return found
+            result[there[inside], side] = at[inside]
+    return result

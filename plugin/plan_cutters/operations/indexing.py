@@ -59,7 +59,7 @@ class Indexing:
 
     def together(self, columns: Columns) -> float:
         """Time, s, of all columns: each cutter in each setup begins with the rotary axes at zero."""
-        found = 0.0
+        seconds = 0.0
         for c, s in {*zip(columns.cutter.tolist(), columns.setup.tolist(), strict=True)}:
             mine = columns.of(np.flatnonzero((columns.cutter == c) & (columns.setup == s)))
             others = [
@@ -68,17 +68,17 @@ class Indexing:
             both = [
                 [angle] if other is None else [angle, other] for angle, other in zip(mine.angle, others, strict=True)
             ]
-            found += float(self.times(s, both).sum())
-        return found
+            seconds += float(self.times(s, both).sum())
+        return seconds
 
     def from_zero(self, columns: Columns) -> Floats:
         """Time (m,), s, that the axes take at least from zero to each column, in any order of any choice; 0 without rates.
 
         Whole turns count for nothing, and neither do the digits that a control leaves out.
         """
-        rate, found = self.rate, np.zeros(len(columns))
+        rate, seconds = self.rate, np.zeros(len(columns))
         if rate is None:
-            return found
+            return seconds
         for s in np.unique(columns.setup).tolist():
             mine, moved = np.flatnonzero(columns.setup == s), self.orientations[s].kinematics
             angle, _, singular = moved.positions(columns.axis[mine])
@@ -86,8 +86,8 @@ class Indexing:
             turn = np.maximum(0.0, turn - math.radians(10.0**-DIGITS))
             # What is near to the first axis may be held with any angle of it.
             turn[singular, :, 0] = 0.0
-            found[mine] = np.nan_to_num((turn / rate).max(axis=2), nan=math.inf).min(axis=1)
-        return np.where(np.isfinite(found), found, 0.0)
+            seconds[mine] = np.nan_to_num((turn / rate).max(axis=2), nan=math.inf).min(axis=1)
+        return np.where(np.isfinite(seconds), seconds, 0.0)
 
 
 def index_times(positions: Sequence[Floats | Sequence[Floats]], limit: Floats, rate: Floats) -> Floats:
@@ -113,10 +113,10 @@ def index_times(positions: Sequence[Floats | Sequence[Floats]], limit: Floats, r
     step = np.where(endless, np.minimum(step % (2.0 * math.pi), -step % (2.0 * math.pi)), step)
     seconds = (step / rate).max(axis=2)
     order = _best_order(seconds, owner) if len(turned) <= MOST else _nearest(seconds, owner)
-    found, before = np.zeros(len(turned)), 0
+    times, before = np.zeros(len(turned)), 0
     for place in order:
-        found[owner[place]], before = seconds[before, place + 1], place + 1
-    return found
+        times[owner[place]], before = seconds[before, place + 1], place + 1
+    return times
 
 
 def _start(limit: Floats) -> Floats:
@@ -126,7 +126,7 @@ def _start(limit: Floats) -> Floats:
 
 def _turns(solutions: Floats, limit: Floats, endless: NDArray[np.bool_]) -> Floats:
     """Solutions (s, 2) with all turns of theirs (t, 2) within limits, up to one turn from zero."""
-    whole, found = 2.0 * math.pi, list[tuple[float, ...]]()
+    whole, turns = 2.0 * math.pi, list[tuple[float, ...]]()
     for each in solutions.tolist():
         ways = []
         for k, angle in enumerate(each):
@@ -134,8 +134,8 @@ def _turns(solutions: Floats, limit: Floats, endless: NDArray[np.bool_]) -> Floa
             low, high = limit[k]
             near = [a for a in shifted if low - 1e-9 <= a <= high + 1e-9 and (a == angle or abs(a) <= whole + 1e-9)]
             ways.append(near or [angle])
-        found += product(*ways)
-    return np.array(found)
+        turns += product(*ways)
+    return np.array(turns)
 
 
 def _best_order(seconds: Floats, owner: NDArray[np.int64]) -> list[int]:
@@ -164,11 +164,11 @@ def _best_order(seconds: Floats, owner: NDArray[np.int64]) -> list[int]:
 
 
 def _nearest(seconds: Floats, owner: NDArray[np.int64]) -> list[int]:
-    order, left, before = list[int](), set(owner.tolist()), 0
-    while left:
-        ways = np.where(np.isin(owner, list(left)), seconds[before, 1:], np.inf)
+    order, unvisited, before = list[int](), set(owner.tolist()), 0
+    while unvisited:
+        ways = np.where(np.isin(owner, list(unvisited)), seconds[before, 1:], np.inf)
         place = int(ways.argmin())
         order.append(place)
-        left.discard(int(owner[place]))
+        unvisited.discard(int(owner[place]))
         before = place + 1
     return order

@@ -44,7 +44,7 @@ def labelled(cost: Floats, edge: Ints, border: Floats) -> Ints:
     at[rows] = np.arange(len(rows))
     inner = (at[edge] >= 0).all(axis=1)
     pair, weight, price = at[edge[inner]], border[inner], cost[rows]
-    found = price.argmin(axis=1)
+    cheapest = price.argmin(axis=1)
     # Costs as whole numbers: the largest that a cut can need stays below _MOST.
     largest = float(price[np.isfinite(price)].max()) + float(
         np.bincount(pair.ravel(), np.repeat(weight, 2)).max(initial=0.0)
@@ -54,18 +54,18 @@ def labelled(cost: Floats, edge: Ints, border: Floats) -> Ints:
         np.where(np.isfinite(price), np.rint(price * scale), _MOST).astype(np.int64),
         np.rint(weight * scale).astype(np.int64),
     )
-    least = _energy(units, pair, sides, found)
+    least = _energy(units, pair, sides, cheapest)
     for _ in range(_ROUNDS):
         before = least
         for operation in range(price.shape[1]):
-            tried = _expanded(units, pair, sides, found, operation)
+            tried = _expanded(units, pair, sides, cheapest, operation)
             energy = _energy(units, pair, sides, tried)
             if energy < least:
-                found, least = tried, energy
+                cheapest, least = tried, energy
         if least == before:
             break
-    label[rows] = found
-    assert np.isfinite(cost[rows, found]).all(), "an operation that does not serve a sample was chosen"
+    label[rows] = cheapest
+    assert np.isfinite(cost[rows, cheapest]).all(), "an operation that does not serve a sample was chosen"
     return label
 
 
@@ -105,12 +105,12 @@ def _expanded(
     size = np.concatenate([change[up], -change[down], np.minimum(both, _MOST)]).astype(np.int32)
     graph = coo_array((size, (tail, head)), shape=(n + 2, n + 2)).tocsr()
     flow = maximum_flow(graph, source, sink).flow
-    left = (graph - flow).tocsr()
-    left.data[left.data < 0] = 0
-    left.eliminate_zeros()
-    kept = breadth_first_order(left, source, return_predecessors=False)
+    residual = (graph - flow).tocsr()
+    residual.data[residual.data < 0] = 0
+    residual.eliminate_zeros()
+    connected_nodes = breadth_first_order(residual, source, return_predecessors=False)
     changed = np.ones(n + 2, bool)
-    changed[kept] = False
+    changed[connected_nodes] = False
     changed = changed[:n] & ~forbidden
     return np.where(changed, operation, label)
 
@@ -120,10 +120,10 @@ def pieces(label: Ints, edge: Ints) -> Ints:
     same = (label[edge[:, 0]] == label[edge[:, 1]]) & (label[edge[:, 0]] >= 0)
     a, b = edge[same].T
     graph = coo_array((np.ones(len(a), np.int8), (a, b)), shape=(len(label), len(label)))
-    found = connected_components(graph, directed=False)[1]
+    components = connected_components(graph, directed=False)[1]
     number = np.full(len(label), -1, np.int32)
     mine = label >= 0
-    number[mine] = np.unique(found[mine], return_inverse=True)[1]
+    number[mine] = np.unique(components[mine], return_inverse=True)[1]
     return number
 
 
@@ -153,9 +153,9 @@ def joined(label: Ints, serves: NDArray[np.bool_], edge: Ints, area: Floats, lea
                 break
             rows = np.flatnonzero(number == piece)
             touching = edge[(number[edge] == piece).sum(axis=1) == 1]
-            beside = label[touching[number[touching] != piece]]
-            beside = np.unique(beside[beside >= 0])
-            able = beside[serves[np.ix_(rows, beside)].all(axis=0)]
+            adjacent = label[touching[number[touching] != piece]]
+            adjacent = np.unique(adjacent[adjacent >= 0])
+            able = adjacent[serves[np.ix_(rows, adjacent)].all(axis=0)]
             if len(able):
                 most = [int((label[touching[number[touching] != piece]] == each).sum()) for each in able]
                 label[rows] = able[int(np.argmax(most))]

@@ -50,8 +50,8 @@ def motion(maps: PostureMaps, ready: Prepared) -> MotionEntry | str:
     edge = samples.neighbours[ready.finished[samples.neighbours].all(axis=1)].astype(np.int64)
     loose, strict = components(mine, edge)
     sample = cells_of(mine) // len(mine.rotations)
-    kept = ready.finished[sample]
-    touched = np.unique(np.column_stack([loose[kept], sample[kept]]), axis=0)
+    finished = ready.finished[sample]
+    touched = np.unique(np.column_stack([loose[finished], sample[finished]]), axis=0)
     reached = np.zeros(len(samples), bool)
     reached[touched[:, 1]] = True
     size = np.asarray(np.bincount(touched[:, 0], area[touched[:, 1]], int(loose.max(initial=-1)) + 1), float)
@@ -63,7 +63,7 @@ def motion(maps: PostureMaps, ready: Prepared) -> MotionEntry | str:
     return MotionEntry(
         cutter=maps.cutter,
         components=len(np.unique(touched[:, 0])),
-        components_strict=len(np.unique(strict[kept])),
+        components_strict=len(np.unique(strict[finished])),
         largest_share=min(1.0, float(size[largest]) / whole) if largest >= 0 and whole > 0.0 else 0.0,
         needed=needed,
         needed_at_least=at_least,
@@ -88,11 +88,11 @@ def components(maps: PostureMaps, edge: Rows) -> tuple[Ints, Ints]:
     """
     own = np.concatenate([np.zeros((0, 2), np.int64), *_turned(maps)])
     loose, strict = [own], [own]
-    for node, beside in _moved(maps, edge):
-        there = beside >= 0
-        loose += [np.column_stack([node[there[:, k]], beside[there[:, k], k]]) for k in range(2)]
+    for node, neighbour in _moved(maps, edge):
+        there = neighbour >= 0
+        loose += [np.column_stack([node[there[:, k]], neighbour[there[:, k], k]]) for k in range(2)]
         both = there.all(axis=1)
-        strict += [np.column_stack([node[both], beside[both, k]]) for k in range(2)]
+        strict += [np.column_stack([node[both], neighbour[both, k]]) for k in range(2)]
     return _labels(loose, len(maps.free)), _labels(strict, len(maps.free))
 
 
@@ -110,14 +110,14 @@ def _turned(maps: PostureMaps) -> Iterator[Rows]:
     k, start = len(maps.rotations), maps.offset[:-1]
     count = np.diff(maps.offset)
     cell = np.arange(len(count))
-    beside = cell - cell % k + (cell + 1) % k
+    neighbours = cell - cell % k + (cell + 1) % k
     if not full_turn(maps):
-        cell, beside = cell[cell % k < k - 1], beside[cell % k < k - 1]
+        cell, neighbours = cell[cell % k < k - 1], neighbours[cell % k < k - 1]
     most = int(count.max(initial=0))
     for i in range(most):
         for j in range(most):
-            both = (count[cell] > i) & (count[beside] > j)
-            one, other = start[cell[both]] + i, start[beside[both]] + j
+            both = (count[cell] > i) & (count[neighbours] > j)
+            one, other = start[cell[both]] + i, start[neighbours[both]] + j
             low = np.maximum(maps.free[one, 0], maps.free[other, 0])
             meet = low <= np.minimum(maps.free[one, 1], maps.free[other, 1])
             yield np.column_stack([one[meet], other[meet]])
@@ -137,12 +137,12 @@ def _moved(maps: PostureMaps, edge: Rows) -> Iterator[tuple[Rows, Rows]]:
         number = (last - first)[piece[:, 0]]
         node = np.repeat(first[piece[:, 0]], number) + _ranks(number)
         to = np.repeat(piece[:, 1], number)
-        lean = tilt_direction(
+        tilt_directions = tilt_direction(
             maps.normal[cell[node] // k], maps.direction_max[cell[node] // k], maps.rotations[cell[node] % k]
         )
         for part in (0.1, 0.5, 0.9):
             tilt = (1.0 - part) * maps.free[node, 0] + part * maps.free[node, 1]
-            axis = np.cos(tilt)[:, None] * maps.normal[cell[node] // k] + np.sin(tilt)[:, None] * lean
+            axis = np.cos(tilt)[:, None] * maps.normal[cell[node] // k] + np.sin(tilt)[:, None] * tilt_directions
             # As axes: the directions from which rotations count differ from sample to sample.
             yield node, holding(maps, to, *postures_of(maps, to, axis))
 
@@ -161,21 +161,21 @@ def _needed(touched: Rows, size: Floats) -> tuple[int, int]:
         of.setdefault(component, set()).add(sample)
     order = sorted(of, key=lambda each: -size[each])
     # A component that touches nothing but what another one touches is not needed.
-    kept = list[int]()
+    needed = list[int]()
     for each in order:
-        if not any(of[each] <= of[other] for other in kept[:_COMPARED]):
-            kept.append(each)
-    place = {component: k for k, component in enumerate(kept)}
+        if not any(of[each] <= of[other] for other in needed[:_COMPARED]):
+            needed.append(each)
+    place = {component: k for k, component in enumerate(needed)}
     rows: dict[int, list[int]] = {}
-    for component in kept:
+    for component in needed:
         for sample in of[component]:
             rows.setdefault(sample, []).append(place[component])
     patterns = sorted({tuple(each) for each in rows.values()})
-    if len(patterns) * len(kept) > _TABLE:
+    if len(patterns) * len(needed) > _TABLE:
         alone = len({each for each in patterns if len(each) == 1})
-        return len(kept), max(1, alone)
-    table = np.zeros((len(patterns), len(kept)), bool)
+        return len(needed), max(1, alone)
+    table = np.zeros((len(patterns), len(needed)), bool)
     for i, pattern in enumerate(patterns):
         table[i, list(pattern)] = True
-    found = fewest(table)
-    return len(found.chosen), found.at_least
+    cover = fewest(table)
+    return len(cover.chosen), cover.at_least

@@ -80,10 +80,10 @@ class Cells:
         sides = [
             (i, j, k) for i in range(12) for j in range(i) for k in range(j) if near[i, j] and near[j, k] and near[i, k]
         ]
-        found = cls(point[np.array(sides)])
+        cells = cls(point[np.array(sides)])
         for _ in range(halvings):
-            found = found.parted()
-        return found
+            cells = cells.parted()
+        return cells
 
     @property
     def middle(self) -> Floats:
@@ -140,7 +140,7 @@ class OpenCells:
         """Find which cells are open, (cells, cutters with setups, rows); `before`: what is known of larger cells around them."""
         probes = self.probes
         pairs = [(c, s) for s in range(len(probes.setups)) for c in range(len(probes.cutters))]
-        found = np.ones((len(cells), len(pairs), len(self.rows)), bool) if before is None else before.copy()
+        open_table = np.ones((len(cells), len(pairs), len(self.rows)), bool) if before is None else before.copy()
         middle, radius = cells.middle, float(cells.radius.max(initial=0.0))
         cosine = np.clip(middle @ probes.samples.normal[self.rows].T, -1.0, 1.0)
         tilt = np.arccos(cosine)
@@ -150,11 +150,11 @@ class OpenCells:
             reached = (tilt + radius >= low - _ROUNDING) & (tilt - radius <= high + _ROUNDING)
             limit = math.acos(max(-1.0, conditions.machine.limit_cos))
             held = np.arccos(np.clip(middle @ conditions.setup, -1.0, 1.0)) - radius <= limit + _ROUNDING
-            found[:, k] &= reached & held[:, None] & probes.outside[s][self.rows]
-            for i in np.flatnonzero(found[:, k].any(axis=1)).tolist():
-                mine = np.flatnonzero(found[i, k])
-                found[i, k, mine] = self._free(c, s, middle[i], radius, mine, tilt[i, mine])
-        return found
+            open_table[:, k] &= reached & held[:, None] & probes.outside[s][self.rows]
+            for i in np.flatnonzero(open_table[:, k].any(axis=1)).tolist():
+                mine = np.flatnonzero(open_table[i, k])
+                open_table[i, k, mine] = self._free(c, s, middle[i], radius, mine, tilt[i, mine])
+        return open_table
 
     def _free(self, c: int, s: int, axis: Floats, radius: float, mine: Rows, tilt: Floats) -> NDArray[np.bool_]:
         """At which samples (of `rows`, those of numbers `mine`) no body proves that all axes of a cell are blocked."""
@@ -163,21 +163,21 @@ class OpenCells:
 
         conditions = self.probes.setups[s]
         # What is enclosed is not asked for: only what a triangle blocks counts.
-        solids, contacts = sheet(conditions.around.certain.tree), contacts_of(self.probes.samples)
+        solids, contacts = sheet(conditions.surroundings.certain.tree), contacts_of(self.probes.samples)
         free = np.zeros(len(mine), bool)
         for number, mode in enumerate(self._modes[c][s]):
             touching = (tilt + radius >= mode[TILT_FROM] - _ROUNDING) & (tilt - radius <= mode[TILT_TO] + _ROUNDING)
             turn = _turn(tilt, radius, float(mode[OFFSET_OF]))
             free |= touching & ~np.isfinite(turn)
             for psi in np.unique(turn[touching & np.isfinite(turn)]).tolist():
-                left = np.flatnonzero(touching & (turn == psi) & ~free)
+                open_rows = np.flatnonzero(touching & (turn == psi) & ~free)
                 for tool in self._bodies(c, s, number, psi):
-                    lean = np.full(len(left), -1, np.int8)
+                    decided = np.full(len(open_rows), -1, np.int8)
                     self.made += served(
-                        self.rows[mine[left]], axis, contacts, -1.0, math.pi + 1.0, tool, solids, 0, lean
+                        self.rows[mine[open_rows]], axis, contacts, -1.0, math.pi + 1.0, tool, solids, 0, decided
                     )
-                    left = left[lean >= 0]
-                free[left] = True
+                    open_rows = open_rows[decided >= 0]
+                free[open_rows] = True
         return free
 
     def _bodies(self, c: int, s: int, mode: int, turn: float) -> list[Tool]:
@@ -229,24 +229,24 @@ def bodies(cutter: Cutter, conditions: Conditions, mode: int, turn: float) -> li
     if not len(rows):
         return []
     low, high = float(rows[:, BOTTOM].min()), float(rows[:, TOP].max())
-    kept = []
+    result = []
     for first, last in pairwise(_layers(low, high, cutter.radius)):
         inside = (rows[:, TOP] > first) & (rows[:, BOTTOM] < last)
         wide = float(rows[inside][:, [RADIUS, WIDE]].max(initial=0.0))
         more = turn * math.hypot(offset + wide, max(abs(first), abs(last)))
         smaller = assembly(cutter, conditions.tolerance + error + more, error + more, kind="inner")
-        kept += [row for each in smaller.piece[mode] if solid(row := _cut_off(each, first, last))]
+        result += [row for each in smaller.piece[mode] if solid(row := _cut_off(each, first, last))]
     anywhere = whole.mode[mode : mode + 1].copy()
     anywhere[0, [TILT_FROM, TILT_TO]] = -1.0, 4.0
     return [
         Tool(
-            np.array(kept[k : k + _PIECES], float).reshape(1, -1, COLUMNS),
+            np.array(result[k : k + _PIECES], float).reshape(1, -1, COLUMNS),
             anywhere,
             whole.reach,
             whole.inner,
             whole.end,
         )
-        for k in range(0, len(kept), _PIECES)
+        for k in range(0, len(result), _PIECES)
     ]
 
 
@@ -298,13 +298,13 @@ def apart(normal: Floats, tilt: float) -> Rows:
     return np.sort(np.array(best, np.int64))
 
 
-def over_all_axes(probes: Probes, found: Fewest, wanted: Rows) -> tuple[int, float]:
+def over_all_axes(probes: Probes, fewest: Fewest, wanted: Rows) -> tuple[int, float]:
     """Bound how many orientations are needed, whatever their axes.
 
     Parameters
     ----------
     probes : Probes
-    found : Fewest
+    fewest : Fewest
         The fewest among candidates; its weights say which samples are looked at.
     wanted : (n,) int64
         Samples to serve.
@@ -315,18 +315,18 @@ def over_all_axes(probes: Probes, found: Fewest, wanted: Rows) -> tuple[int, flo
     cells : float
         Radius of the smallest cells that were looked at, rad; nan where none was needed.
     """
-    wanted = np.setdiff1d(wanted, found.alone)
+    wanted = np.setdiff1d(wanted, fewest.alone)
     least = 0 if not len(wanted) else 1
-    if len(found.chosen) <= least:
+    if len(fewest.chosen) <= least:
         return least, math.nan
     most = _largest_tilt(probes)
     alone = wanted[apart(probes.samples.normal[wanted], most)]
     least = max(least, len(alone))
-    if least >= len(found.chosen):
+    if least >= len(fewest.chosen):
         return least, math.nan
-    heavy = np.argsort(-found.weight, kind="stable")[:_ROWS]
-    rows = np.union1d(found.rows[heavy[found.weight[heavy] > 0]], alone)
-    by_cells, radius = _by_cells(OpenCells(probes, rows), len(found.chosen))
+    heaviest = np.argsort(-fewest.weight, kind="stable")[:_ROWS]
+    rows = np.union1d(fewest.rows[heaviest[fewest.weight[heaviest] > 0]], alone)
+    by_cells, radius = _by_cells(OpenCells(probes, rows), len(fewest.chosen))
     return max(least, by_cells), radius
 
 
@@ -354,11 +354,11 @@ def _by_cells(cells_at: OpenCells, most: int) -> tuple[int, float]:
         if not len(used):
             break
         small = cells.of(used).parted()
-        kept = np.setdiff1d(np.arange(len(cells)), used)
+        remaining = np.setdiff1d(np.arange(len(cells)), used)
         # Cells of about one size share their bodies.
         parts = [_same_size(cells_at, small, np.repeat(open_[used], 4, axis=0))]
-        open_ = np.concatenate([open_[kept], *parts])
-        cells = Cells(np.concatenate([cells.corner[kept], small.corner]))
+        open_ = np.concatenate([open_[remaining], *parts])
+        cells = Cells(np.concatenate([cells.corner[remaining], small.corner]))
         finest = min(finest, float(small.radius.max()))
     if least < most:
         least = max(least, fewest(_columns(open_)[0], prove=False).at_least)
@@ -367,12 +367,12 @@ def _by_cells(cells_at: OpenCells, most: int) -> tuple[int, float]:
 
 def _same_size(cells_at: OpenCells, cells: Cells, before: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """The table of cells of several sizes, size by size."""
-    found = np.empty_like(before)
+    reordered = np.empty_like(before)
     size = np.round(np.log2(cells.radius / _LEAST)).astype(np.int64)
     for each in np.unique(size).tolist():
         mine = np.flatnonzero(size == each)
-        found[mine] = cells_at.table(cells.of(mine), before[mine])
-    return found
+        reordered[mine] = cells_at.table(cells.of(mine), before[mine])
+    return reordered
 
 
 def _columns(open_: NDArray[np.bool_]) -> tuple[NDArray[np.bool_], NDArray[np.int64]]:
@@ -389,6 +389,6 @@ def _tight(
     load = (open_ @ weight).max(axis=1)
     tight = load >= (1.0 - 1e-4) * UNIT
     tight[used] = True
-    found = np.flatnonzero(tight & (radius > 2.0 * _LEAST))
-    order = np.lexsort((-load[found], ~np.isin(found, used), -np.round(radius[found], 2)))
-    return np.sort(found[order[:_PARTED]])
+    looser = np.flatnonzero(tight & (radius > 2.0 * _LEAST))
+    order = np.lexsort((-load[looser], ~np.isin(looser, used), -np.round(radius[looser], 2)))
+    return np.sort(looser[order[:_PARTED]])

@@ -22,7 +22,7 @@ from plan_cutters.operations.fewest import FINEST, Search, search_fewest
 from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.over_all_axes import over_all_axes
 from plan_cutters.operations.plans import (
-    CRUMB,
+    MINOR_AREA,
     Task,
     best_area,
     considered,
@@ -68,7 +68,7 @@ def plan_operations(
     Raises
     ------
     OptionError
-        Times are asked for, and a cutter has no feed.
+        Times are requested, and a cutter has no feed.
     """
     options = ready.options
     task = _task(ready, everywhere, least)
@@ -90,7 +90,7 @@ def plan_operations(
     small = tuple(note for each in different for note in small_pieces(each, ready.samples, options.overlap))
     moving = max(sum(len(each.rows) for each in plan.operations if each.mode == "simultaneous") for plan in plans)
     if options.most_operations is None and moving > len(fewest.alone):
-        small += (f"Orientations that add less than {percent(CRUMB)} of the area each are left out of the plans; "
+        small += (f"Orientations that add less than {percent(MINOR_AREA)} of the area each are left out of the plans; "
                   "--most-operations with a large number takes all.",)  # fmt: skip
     return Operations(options.operations or "", task.cutters, tuple(plans), fewest, steps, task.orientations[0].names,
                       task.probes.made, task.paths.feed, everywhere[0][task.cutters[0]].reason, timed, worth=worth,
@@ -100,19 +100,19 @@ def plan_operations(
 def _plans(
     task: Task, search: Search, few: Columns
 ) -> tuple[list[OperationPlan], Fastest | None, tuple[Worth, ...]]:  # fmt: skip
-    """Make the plans that were asked for: the fastest is the one of all plans found here that takes the least time."""
+    """Make the plans that were requested: the fastest is the one of all plans found here that takes the least time."""
     which = task.ready.options.operations
     fewest = _capped(task, "fewest", _quicker(task, search, few))
     if which == "fewest":
         return [fewest], None, ()
     columns, problem, area, chosen = _fastest(task, search, few)
-    found = [_capped(task, "fastest", columns.of(each)) for each in (chosen, *with_and_without(problem, chosen))]
-    habit = [_capped(task, "largest first", _by_habit(task, search, few))] if len(task.cutters) > 1 else []
-    found += [fewest, *habit]
-    fastest = replace(min(found, key=lambda plan: np.nan_to_num(plan.total, nan=np.inf)), name="fastest")
+    plans = [_capped(task, "fastest", columns.of(each)) for each in (chosen, *with_and_without(problem, chosen))]
+    largest_first = [_capped(task, "largest first", _largest_first(task, search, few))] if len(task.cutters) > 1 else []
+    plans += [fewest, *largest_first]
+    fastest = replace(min(plans, key=lambda plan: np.nan_to_num(plan.total, nan=np.inf)), name="fastest")
     at_best = float(problem.cost.min(axis=1, initial=np.inf).sum())
     timed = Fastest(fastest.total, bounded(problem, chosen).bound, at_best, area, len(problem.cost), len(columns))
-    return [*([fewest] if which == "both" else []), fastest, *habit], timed, worths(task, found)
+    return [*([fewest] if which == "both" else []), fastest, *largest_first], timed, worths(task, plans)
 
 
 def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], least: LeastSet | None) -> Task:
@@ -120,7 +120,7 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
     cutters = considered(ready.cutters, [run.cutter for run in least.runs] if least else [], _CUTTERS)
     open_ = ready.machinable
     reached = np.logical_or.reduce(
-        [open_[s] & found[cutter].reached for s, found in enumerate(everywhere) for cutter in cutters]
+        [open_[s] & verdicts[cutter].reached for s, verdicts in enumerate(everywhere) for cutter in cutters]
     )
     probes = Probes(ready.samples, cutters, ready.setups, open_)
     paths = Paths(options.scallop, options.stepover, feeds(options, cutters))
@@ -136,51 +136,51 @@ def feeds(options: Options, cutters: Sequence[Cutter]) -> Mapping[Cutter, float]
     Raises
     ------
     OptionError
-        Times are asked for, and a cutter has no feed.
+        Times are requested, and a cutter has no feed.
     """
     if options.feed is not None:
         return dict.fromkeys(cutters, options.feed)
     sources = options.sources
     stated = {cutter: feed_of([entry for _, entry in sources.get(cutter.id, ())]) for cutter in cutters}
-    found = {cutter: feed for cutter, feed in stated.items() if feed is not None}
-    without = [cutter.id for cutter in cutters if cutter not in found]
+    result = {cutter: feed for cutter, feed in stated.items() if feed is not None}
+    without = [cutter.id for cutter in cutters if cutter not in result]
     if without and options.operations in ("fastest", "both"):
         who = f"{', '.join(without)} {'has' if len(without) == 1 else 'have'} none"
         raise OptionError(f"the fastest operations need a feed, and {who}: give --feed MM/MIN, or ask for the fewest")
-    return None if without else found
+    return None if without else result
 
 
 def _first(task: Task) -> Columns:
     """The first candidates of all cutters and setups."""
-    found = columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
+    columns = columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
     for s, where in enumerate(task.orientations):
         angle, axis = candidates(where, task.ready.samples, task.ready.options.index_step)
         for c in range(len(task.cutters)):
-            found = found.and_(columns_of(axis, angle, c, s))
-    return found
+            columns = columns.and_(columns_of(axis, angle, c, s))
+    return columns
 
 
 def _stored(task: Task, rows: Rows) -> Columns:
     """Columns of the postures that were found for samples, rounded as a control shows them."""
-    found = columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
+    columns = columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
     if task.ready.options.index_step is not None:
-        return found
+        return columns
     for s, verdicts in enumerate(task.everywhere):
         for c, cutter in enumerate(task.cutters):
             mine = rows[verdicts[cutter].reached[rows]]
             angle, axis = task.orientations[s].near(verdicts[cutter].axis[mine])
-            kept = apart(axis)
-            found = found.and_(columns_of(axis[kept], angle[kept], c, s))
-    return found
+            distinct = apart(axis)
+            columns = columns.and_(columns_of(axis[distinct], angle[distinct], c, s))
+    return columns
 
 
 def _capped(task: Task, name: str, columns: Columns) -> OperationPlan:
     most = task.ready.options.most_operations
     timed = most is None and name != "fewest"
-    kept = worth_their_turn(task, columns) if timed else best_area(task, columns, most)
-    columns = kept if len(kept) < len(columns) else columns
-    habit = name == "largest first"
-    return plan_with(task, name, columns, (lambda serves: allowed(task, columns, serves)) if habit else None)
+    selected = worth_their_turn(task, columns) if timed else best_area(task, columns, most)
+    columns = selected if len(selected) < len(columns) else columns
+    is_largest_first = name == "largest first"
+    return plan_with(task, name, columns, (lambda serves: allowed(task, columns, serves)) if is_largest_first else None)
 
 
 def _even(task: Task, search: Search) -> tuple[Columns, Rows, NDArray[np.bool_], Floats]:
@@ -224,10 +224,10 @@ def _checked(
         known = np.flatnonzero(np.isin(columns.key, fewest.key))
         chosen, rounds = choose(problem, known), rounds - 1
         served = task.probes.kept(task.rows, columns.of(chosen)).any(axis=1)
-        left = np.setdiff1d(task.rows[~served], search.alone)
-        if not len(left):
+        not_served = np.setdiff1d(task.rows[~served], search.alone)
+        if not len(not_served):
             return columns, problem, area, chosen, known, True
-        search.require(left[:: max(1, len(left) // 120)])
+        search.require(not_served[:: max(1, len(not_served) // 120)])
         if not rounds:
             return columns, problem, area, chosen, known, False
 
@@ -249,7 +249,7 @@ def _fastest(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Prob
     return columns, problem, area, chosen if whole else np.union1d(chosen, known)
 
 
-def _by_habit(task: Task, search: Search, fewest: Columns) -> Columns:
+def _largest_first(task: Task, search: Search, fewest: Columns) -> Columns:
     """Columns of the habit to let the largest cutter go first; what they leave goes with the fewest."""
     order = by_size(task)
     columns, _, _, chosen, known, whole = _checked(task, search, fewest, lambda p, _: largest_first(p, order), _TRIES)

@@ -21,14 +21,14 @@ from plan_cutters.operations.timing import Paths, Problems, costs_of, widths
 from plan_cutters.operations.workplanes import workplanes
 from plan_cutters.plan_file.numbers import area as size
 from plan_cutters.scene.clearance import least_clearance
-from plan_cutters.scene.fixed_axis import held_at, standing
+from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at
 from plan_cutters.scene.preparation import Prepared
 
 Rows = NDArray[np.int64]
 #: Pieces of an operation smaller than so many squares of the overlap are joined to another operation, if one serves them.
 _SMALL = 4.0
 #: An orientation that adds less of the area is not worth its turn.
-CRUMB = 0.001
+MINOR_AREA = 0.001
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -100,15 +100,17 @@ def plan_with(
             speed[number == k] = task.paths.feed[operation.cutter] / 60.0
     with np.errstate(divide="ignore", invalid="ignore"):
         seconds = area / (strip * speed)
-    lean = np.full((n, 3), np.nan)
+    tilt_direction = np.full((n, 3), np.nan)
     for k, operation in enumerate(operations):
         held = _held(task, operation)
-        lean[operation.rows] = held.tilt_direction[operation.rows]
+        tilt_direction[operation.rows] = held.tilt_direction[operation.rows]
         operations[k] = replace(operation, clearance=_clearance(task, operation, held))
     region = regions_of(number, edge, area)
     planes = workplanes(operations, task.ready, task.indexing)
     cutting, other = float(seconds[number >= 0].sum()), _other(task, operations, planes)
-    return OperationPlan(name, tuple(operations), number, table, strip, seconds, region, planes, lean, cutting, other)
+    return OperationPlan(
+        name, tuple(operations), number, table, strip, seconds, region, planes, tilt_direction, cutting, other
+    )
 
 
 def _other(task: Task, operations: Sequence[Operation], planes: Sequence[Workplane | None]) -> float:
@@ -129,7 +131,7 @@ def _fixed(
     used = np.flatnonzero(np.bincount(label[mine], minlength=len(columns)))
     order = sorted(used.tolist(), key=lambda k: (-size[k], columns.setup[k], *columns.axis[k].tolist()))
     times = serves[:, order].sum(axis=1)
-    found = [
+    operations = [
         Operation(
             f"op{i}", "fixed", task.cutters[columns.cutter[k]], int(columns.setup[k]), columns.axis[k], columns.angle[k],
             task.orientations[columns.setup[k]].other(columns.axis[k], columns.angle[k]), np.flatnonzero(label == k),
@@ -137,14 +139,14 @@ def _fixed(
         )
         for i, k in enumerate(order, 1)
     ]  # fmt: skip
-    return found, order
+    return operations, order
 
 
 def _simultaneous(
     task: Task, before: int, number: NDArray[np.int32], table: NDArray[np.bool_], strip: Floats
 ) -> tuple[NDArray[np.int32], NDArray[np.bool_], Floats, list[Operation]]:
     """Give what no fixed operation takes to simultaneous ones: number, what serves, strips and operations."""
-    samples, paths, found = task.ready.samples, task.paths, list[Operation]()
+    samples, paths, operations = task.ready.samples, task.paths, list[Operation]()
     rest = task.rows[number[task.rows] < 0]
     for s, verdicts in enumerate(task.everywhere):
         for cutter in task.cutters:
@@ -152,15 +154,15 @@ def _simultaneous(
             if not len(mine):
                 continue
             rest = np.setdiff1d(rest, mine)
-            number[mine] = before + len(found)
+            number[mine] = before + len(operations)
             strip[mine] = strips(cutter, samples, verdicts[cutter].axis, paths.scallop, paths.stepover).width[mine]
             column = np.zeros((len(samples), 1), bool)
             column[mine] = True
             table = np.concatenate([table, column], axis=1)
-            found.append(
-                Operation(f"op{before + len(found) + 1}", "simultaneous", cutter, s, None, None, None, mine, mine)
+            operations.append(
+                Operation(f"op{before + len(operations) + 1}", "simultaneous", cutter, s, None, None, None, mine, mine)
             )
-    return number, table, strip, found
+    return number, table, strip, operations
 
 
 def _held(task: Task, operation: Operation) -> Verdicts:
@@ -177,9 +179,9 @@ def _held(task: Task, operation: Operation) -> Verdicts:
 
 def _clearance(task: Task, operation: Operation, held: Verdicts) -> float | None:
     """The least clearance of postures of an operation; None where nothing is known."""
-    samples = standing(task.ready.samples, held)
-    found = least_clearance(samples, operation.cutter, held, task.ready.setups[operation.setup])
-    return found if math.isfinite(found) else None
+    samples = at_fixed_axis(task.ready.samples, held)
+    clearance = least_clearance(samples, operation.cutter, held, task.ready.setups[operation.setup])
+    return clearance if math.isfinite(clearance) else None
 
 
 def small_pieces(plan: OperationPlan, samples: SurfaceSamples, overlap: float) -> tuple[str, ...]:
@@ -201,7 +203,7 @@ def best_area(task: Task, columns: Columns, most: int | None) -> Columns:
     """
     area, cost = _costs(task, columns)
     serves, now, picked = np.isfinite(cost), np.full(len(cost), np.inf), list[int]()
-    least = CRUMB * float(area @ serves.any(axis=1))
+    least = MINOR_AREA * float(area @ serves.any(axis=1))
     for _ in range(len(columns) if most is None else min(most, len(columns))):
         gain = np.where(np.isfinite(now), 0.0, area) @ serves
         if most is None and picked and gain.max() < least:
@@ -228,21 +230,21 @@ def worth_their_turn(task: Task, columns: Columns) -> Columns:
 
     The one that saves least goes first; what it served goes with the others.
     """
-    (area, cost), left = _costs(task, columns), np.arange(len(columns))
-    least = CRUMB * float(area @ np.isfinite(cost).any(axis=1))
+    (area, cost), columns_left = _costs(task, columns), np.arange(len(columns))
+    least = MINOR_AREA * float(area @ np.isfinite(cost).any(axis=1))
     turn = task.indexing.together(columns) / max(1, len(columns))
-    while len(left) > 1:
-        own = cost[:, left]
+    while len(columns_left) > 1:
+        own = cost[:, columns_left]
         first, second = np.partition(own, 1, axis=1)[:, :2].T
         alone, best = np.isfinite(first) & ~np.isfinite(second), own.argmin(axis=1)
-        size = np.bincount(best[alone], area[alone], len(left))
+        size = np.bincount(best[alone], area[alone], len(columns_left))
         both = np.isfinite(second)
-        saved = np.bincount(best[both], second[both] - first[both], len(left))
-        crumbs = np.flatnonzero((size < least) & (saved < turn))
-        if not len(crumbs):
+        saved = np.bincount(best[both], second[both] - first[both], len(columns_left))
+        minor = np.flatnonzero((size < least) & (saved < turn))
+        if not len(minor):
             break
-        left = np.delete(left, crumbs[saved[crumbs].argmin()])
-    return columns.of(left)
+        columns_left = np.delete(columns_left, minor[saved[minor].argmin()])
+    return columns.of(columns_left)
 
 
 def orientations_of(ready: Prepared) -> tuple[Orientations, ...]:

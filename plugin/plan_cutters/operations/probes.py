@@ -42,18 +42,18 @@ class Probes:
 
     def table(self, rows: Rows, columns: Columns) -> NDArray[np.bool_]:
         """Where each column serves: (rows, columns)."""
-        found = np.zeros((len(columns), len(rows)), bool)
+        table = np.zeros((len(columns), len(rows)), bool)
         for c, s in {*zip(columns.cutter.tolist(), columns.setup.tolist(), strict=True)}:
             mine = np.flatnonzero((columns.cutter == c) & (columns.setup == s))
             open_ = np.flatnonzero(self.outside[s][rows])
             if len(open_):
                 free, made = served_by(rows[open_], columns.axis[mine], self.samples, self.cutters[c], self.setups[s])
-                found[np.ix_(mine, open_)] = free
+                table[np.ix_(mine, open_)] = free
                 self.made += made
-        return found.T
+        return table.T
 
     def kept(self, rows: Rows, columns: Columns) -> NDArray[np.bool_]:
-        """As `table`, for columns that are asked for again and again at the same rows."""
+        """As `table`, for columns that are requested again and again at the same rows."""
         if not np.array_equal(rows, self._kept_rows):
             self._kept, self._kept_rows = {}, rows
         keys = columns.key.tolist()

@@ -10,11 +10,11 @@ from plan_cutters.domain.operations import Operation, OperationPlan
 from plan_cutters.scene.fixed_axis import held_at
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.stages.between import between
+from plan_cutters.stages.face_cells import Fixed
+from plan_cutters.stages.margin import margin
 from plan_cutters.stages.nodes import tensors
-from plan_cutters.stages.room import room
-from plan_cutters.stages.site import Fixed
 
-#: The work of a plan unless a budget was asked for: boxes in any case, and for each sample.
+#: The work of a plan unless a budget was requested: boxes in any case, and for each sample.
 _WORK_LEAST, _WORK_SAMPLE = 2e7, 2500.0
 #: Contacts for each sample, where that is more than a plan may add between samples.
 _CONTACTS = 4
@@ -27,7 +27,7 @@ def proved(ready: Prepared, plan: OperationPlan) -> OperationPlan:
 
     Of the operations of the plan with the same cutter and setup that serve a sample, its cell is tried with the one that has
     most room to the gouging bound, and then with the others, before it is cut into four: its area is proved if one does,
-    and counts for the operation of its sample. Where no area between samples was asked for, nothing is looked at and nothing is
+    and counts for the operation of its sample. Where no area between samples was requested, nothing is looked at and nothing is
     written.
 
     Parameters
@@ -67,22 +67,26 @@ def _proved(ready: Prepared, plan: OperationPlan, group: list[int], budget: int,
     axes, serves = np.array([each.axis for each in chosen]), plan.serves[:, group]
     first = np.where(number < 0, -1, _roomiest(ready, axes, serves, chosen[0]))
     conditions = ready.setups[chosen[0].setup]
-    found = between(
+    proved = between(
         samples, held_at(axes, first, samples, chosen[0].cutter, conditions), chosen[0].cutter, ready.scene.part,
-        ready.scene.orientation, conditions, budget=budget, most=most, beside=ready.inside_bodies,
+        ready.scene.orientation, conditions, budget=budget, most=most, covered_samples=ready.inside_bodies,
         fixed=Fixed(axes, serves),
     )  # fmt: skip
-    cells = found.cells
+    cells = proved.cells
     by_sample = np.bincount(cells.sample, cells.area, len(samples))
     result = []
     for i, each in enumerate(chosen):
         mine = number == i
-        around = float(found.around[mine].sum())
+        surrounding_area = float(proved.surrounding_area[mine].sum())
         own = (cells.axis == axes[i]).all(axis=1)
         piece = np.unique(cells.piece[own], return_inverse=True)[1]
         size = np.sort(np.bincount(piece, cells.area[own]))[::-1]
         # Rounded down: a share of 1 means all of it.
-        share = np.floor(1e6 * min(1.0, float(by_sample[mine].sum()) / around + 1e-9)) / 1e6 if around > 0.0 else 0.0
+        share = (
+            np.floor(1e6 * min(1.0, float(by_sample[mine].sum()) / surrounding_area + 1e-9)) / 1e6
+            if surrounding_area > 0.0
+            else 0.0
+        )
         count = int((np.cumsum(size) < _MOST_OF * size.sum()).sum()) + 1 if len(size) else 0
         result.append(replace(each, proved=float(share), approaches=count))
     return result
@@ -92,7 +96,7 @@ def _roomiest(ready: Prepared, axes: Floats, serves: NDArray[np.bool_], like: Op
     """Of axes (k, 3) that serve samples (n, k) the one with most room for the contact to move; -1 where none serves."""
     samples, conditions = ready.samples, ready.setups[like.setup]
     tensor = tensors(samples.normal, samples.direction_max, samples.curvature)
-    left = np.array([room(np.broadcast_to(axis, samples.normal.shape), samples.normal, tensor, like.cutter, conditions)
+    remaining = np.array([margin(np.broadcast_to(axis, samples.normal.shape), samples.normal, tensor, like.cutter, conditions)
                      for axis in axes]).T  # fmt: skip
-    left = np.where(serves, np.nan_to_num(left, nan=-np.inf, neginf=-1e300), -np.inf)
-    return np.where(serves.any(axis=1), left.argmax(axis=1), -1).astype(np.int32)
+    remaining = np.where(serves, np.nan_to_num(remaining, nan=-np.inf, neginf=-1e300), -np.inf)
+    return np.where(serves.any(axis=1), remaining.argmax(axis=1), -1).astype(np.int32)

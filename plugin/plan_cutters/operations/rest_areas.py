@@ -38,22 +38,22 @@ def largest_first(problem: Problem, order: Sequence[int]) -> Rows:
     (k,) int64
         Candidates, ascending, that serve all samples.
     """
-    left, found = np.ones(len(problem.cost), bool), list[int]()
+    open_columns, picked = np.ones(len(problem.cost), bool), list[int]()
     for place, cutter in enumerate(order):
         own = np.flatnonzero(problem.cutter == cutter)
         later = np.flatnonzero(np.isin(problem.cutter, order[place + 1 :]))
-        mine = left & np.isfinite(problem.cost[:, own]).any(axis=1)
+        mine = open_columns & np.isfinite(problem.cost[:, own]).any(axis=1)
         if not mine.any():
             continue
         part = problem.of(own, mine)
         again = np.asarray(np.isfinite(problem.cost[np.ix_(mine, later)]).any(axis=1))
-        chosen = own[_without_crumbs(part, cheap(part), again)]
-        left &= ~np.isfinite(problem.cost[:, chosen]).any(axis=1)
-        found += chosen.tolist()
-    return np.sort(np.array(found, np.int64))
+        chosen = own[_without_minor_areas(part, cheap(part), again)]
+        open_columns &= ~np.isfinite(problem.cost[:, chosen]).any(axis=1)
+        picked += chosen.tolist()
+    return np.sort(np.array(picked, np.int64))
 
 
-def _without_crumbs(problem: Problem, chosen: Rows, again: NDArray[np.bool_]) -> Rows:
+def _without_minor_areas(problem: Problem, chosen: Rows, again: NDArray[np.bool_]) -> Rows:
     """A choice without candidates that cut less than they cost: `again` (n,) are samples that something else serves later."""
     while len(chosen):
         cost = problem.cost[:, chosen]
@@ -61,10 +61,10 @@ def _without_crumbs(problem: Problem, chosen: Rows, again: NDArray[np.bool_]) ->
         there = serves.any(axis=1)
         cuts = np.bincount(cost.argmin(axis=1)[there], cost[there].min(axis=1), len(chosen))
         needed = serves[(serves.sum(axis=1) == 1) & ~again].any(axis=0)
-        crumbs = np.flatnonzero((cuts < problem.costs.operation) & ~needed)
-        if not len(crumbs):
+        minor = np.flatnonzero((cuts < problem.costs.operation) & ~needed)
+        if not len(minor):
             break
-        chosen = np.delete(chosen, crumbs[cuts[crumbs].argmin()])
+        chosen = np.delete(chosen, minor[cuts[minor].argmin()])
     return chosen
 
 
@@ -87,12 +87,12 @@ def worths(task: Task, plans: Sequence[OperationPlan]) -> tuple[Worth, ...]:
     if len(task.cutters) < 2 or not plans:
         return ()
     reached = [_reached(task, c)[task.rows] for c in range(len(task.cutters))]
-    found = []
+    result = []
     for c in by_size(task):
         others = np.logical_or.reduce([mine for k, mine in enumerate(reached) if k != c])
         saves, change = _saves(plans, task.cutters[c], task.ready.options.change_time)
-        found.append(Worth(task.cutters[c], task.rows[reached[c] & ~others], saves, change))
-    return tuple(found)
+        result.append(Worth(task.cutters[c], task.rows[reached[c] & ~others], saves, change))
+    return tuple(result)
 
 
 def _saves(plans: Sequence[OperationPlan], cutter: Cutter, change: float) -> tuple[float | None, float]:

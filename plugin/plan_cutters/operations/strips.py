@@ -43,7 +43,7 @@ class Strips(Record):
 
     width: Floats
     feed: Floats
-    room: Floats
+    free_width: Floats
 
 
 def strips(cutter: Cutter, samples: SurfaceSamples, axis: Floats, scallop: float, stepover: float) -> Strips:
@@ -86,16 +86,16 @@ def strips_at(
     trace = relative[:, 0, 0] + relative[:, 1, 1]
     # Where D is not positive the curvatures match within the tolerance: the strip is as wide as is allowed.
     matched = (det <= 0.0) | (largest <= 0.0) | (trace <= 0.0)
-    room = np.where(matched, np.inf, largest)
+    free_width = np.where(matched, np.inf, largest)
     most = stepover * 2.0 * cutter.radius
     with np.errstate(invalid="ignore"):
-        width = 2.0 * np.sqrt(2.0 * scallop * room)
+        width = 2.0 * np.sqrt(2.0 * scallop * free_width)
         bent = ((width > _WIDE * cutter.radius) | (offset == 0.0)) & np.isfinite(width)
         width[bent] = _section(width[bent], curvature[bent], offset[bent], radius[bent], sine[bent], scallop)
         width = np.minimum(most, width)
     feed = e[:, :1] * t - e[:, 1:] * f
     known = np.isfinite(radius) & np.isfinite(axis).all(axis=1)
-    return Strips(np.where(known, width, np.nan), feed, np.where(known, room, np.nan))
+    return Strips(np.where(known, width, np.nan), feed, np.where(known, free_width, np.nan))
 
 
 def _touching(cutter: Cutter, tilt: Floats) -> tuple[Floats, Floats]:
@@ -124,16 +124,16 @@ def _section(width: Floats, curvature: Floats, offset: Floats, radius: Floats, s
     """
     # The ellipse of the largest half width: w^2 = w2^2 - (w2 / 2)^4 / a^2, until its sides are reached.
     half = np.maximum(np.abs(radius + offset), radius)
-    found = np.where(
+    section = np.where(
         width >= math.sqrt(8.0) * half,
         2.0 * half,
         width * np.sqrt(np.maximum(0.0, 1.0 - (0.25 * width / half) ** 2)),
     )
     ball = offset == 0.0
-    found[ball] = _circles(radius[ball], curvature[ball, 0], scallop)
+    section[ball] = _circles(radius[ball], curvature[ball, 0], scallop)
     bull = (offset > 0.0) & (radius > 0.0) & (np.abs(curvature).max(axis=1, initial=0.0) <= _PLANE)
-    found[bull] = _parallel(offset[bull], sine[bull], radius[bull], scallop)
-    return np.asarray(found)
+    section[bull] = _parallel(offset[bull], sine[bull], radius[bull], scallop)
+    return np.asarray(section)
 
 
 def _circles(radius: Floats, curvature: Floats, scallop: float) -> Floats:
@@ -197,5 +197,5 @@ def _product(relative: Floats, inverse: Floats) -> tuple[Floats, Floats]:
     turned = np.empty_like(relative)
     turned[:, 0, 0], turned[:, 1, 1] = relative[:, 1, 1], relative[:, 0, 0]
     turned[:, 0, 1], turned[:, 1, 0] = -relative[:, 0, 1], -relative[:, 1, 0]
-    found = (turned @ inverse) / det[:, None, None]
-    return np.asarray(0.5 * (found + found.transpose(0, 2, 1))), det
+    product = (turned @ inverse) / det[:, None, None]
+    return np.asarray(0.5 * (product + product.transpose(0, 2, 1))), det

@@ -49,18 +49,18 @@ def widths(
 
     With `where` (rows, columns) it is nan elsewhere, too.
     """
-    found = np.full((len(rows), len(columns)), np.nan)
-    asked = np.ones(found.shape, bool) if where is None else where
+    result = np.full((len(rows), len(columns)), np.nan)
+    wanted = np.ones(result.shape, bool) if where is None else where
     for c, cutter in enumerate(cutters):
-        row, column = np.nonzero(asked & (columns.cutter == c))
+        row, column = np.nonzero(wanted & (columns.cutter == c))
         for part in np.array_split(np.arange(len(row)), max(1, math.ceil(len(row) / _AT_ONCE))):
             i, k = row[part], column[part]
             at = rows[i]
-            found[i, k] = strips_at(
+            result[i, k] = strips_at(
                 cutter, samples.normal[at], samples.direction_max[at], samples.curvature[at], columns.axis[k], paths.scallop,
                 paths.stepover,
             ).width  # fmt: skip
-    return found
+    return result
 
 
 def costs_of(
@@ -71,8 +71,8 @@ def costs_of(
     if paths.feed is not None:
         speed = np.array([paths.feed[cutters[c]] / 60.0 for c in columns.cutter.tolist()])
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = area[:, None] / (width * speed)
-    return np.where(serves & np.isfinite(found), found, np.inf)
+        costs = area[:, None] / (width * speed)
+    return np.where(serves & np.isfinite(costs), costs, np.inf)
 
 
 def shared_area(samples: SurfaceSamples, all_rows: Rows, rows: Rows) -> Floats:
@@ -128,8 +128,8 @@ class Problems:
             there = np.searchsorted(active, self._active)
             width[: len(self._rows), there], known[: len(self._rows), there] = self._width, self._known
         new = table & ~known
-        found = widths(columns, rows, self._samples, self._cutters, self._paths, new)
-        width[new] = found[new]
+        result = widths(columns, rows, self._samples, self._cutters, self._paths, new)
+        width[new] = result[new]
         self._rows, self._active, self._width, self._known = rows, active, width, known | new
         cost = costs_of(columns, width, table, area, self._cutters, self._paths)
         turning = None

@@ -65,15 +65,20 @@ class ChangeEntry(Frozen):
     beyond: float | tuple[float, ...] | tuple[str, ...] | None = Field(
         description="a step less, which was tried and fails"
     )
-    left: int = Field(description="samples that stay lost with the best value tried, of those looked at")
-    looked: int = Field(description="samples that are lost now on which values were tried")
+    left: int = Field(description="samples that stay unreached with the best value tried, of those looked at")
+    looked: int = Field(description="samples that are not reached now on which values were tried")
     verified: int = Field(description="target samples that were judged with `asked`")
     cutter: str | None = Field(description="id of the cutter with it, where that is another one")
     why: str
-    lost_before: float | None = Field(default=None, description="share of the finished area that is lost now, 0 to 1")
-    lost_after: float | None = Field(default=None, description="and with `asked`; null where nothing is asked or known")
+    lost_before: float | None = Field(
+        default=None, description="share of the finished area that is not reached now, 0 to 1"
+    )
+    lost_after: float | None = Field(
+        default=None, description="and with `asked`; null where nothing is requested or known"
+    )
     option: str | None = Field(
-        default=None, description="what to say on the command line; null where nothing is asked, or no option says it"
+        default=None,
+        description="what to write on the command line; null where nothing is requested, or no option says it",
     )
     doubted: bool = Field(
         default=False, description="it would help, unless a face that is missing from the obstacles is in the way"
@@ -105,31 +110,33 @@ class StepEntry(Frozen):
     """A step is a thing to do next; its gain is judged on every sample, not estimated."""
 
     changes: list[MoveEntry] = Field(description="one, or two")
-    lost_before: float = Field(description="share of the finished area that is lost now, 0 to 1")
-    lost_after: float = Field(description="and that stays lost; of an area that is left to other means, 0")
+    lost_before: float = Field(description="share of the finished area that is not reached now, 0 to 1")
+    lost_after: float = Field(description="and that stays unreached; of an area that is left to other means, 0")
     gained: int = Field(description="samples that it frees")
-    left: int = Field(description="samples that stay lost")
-    cutters: list[str] = Field(description="ids of those that do it together, what becomes of the mended one first")
+    left: int = Field(description="samples that stay unreached")
+    cutters: list[str] = Field(description="ids of those that do it together, the changed one first")
     setups: list[Vector] = Field(description="setup axes in which they do")
     option: str | None = Field(
-        description="what to say on the command line, --cutter beside what is said there, all else in place of its like; null "
+        description="what to write on the command line, --cutter is added to what stands there, all else replaces its like; null "
         "where no option says it"
     )
     why: str
-    remains: list[LostAreaEntry] = Field(description="the largest areas that stay lost")
+    remains: list[LostAreaEntry] = Field(description="the largest areas that stay unreached")
 
 
 class MendEntry(Frozen):
     """A what-if answer gives the changes that would make a cutter finish the part, those that help first, and the next steps."""
 
     lost: int = Field(description="samples that are inaccessible or undecided now")
-    buried: int = Field(description="those of them that lie within another body: nothing is asked about them")
+    buried: int = Field(description="those of them that lie within another body: no change is looked for")
     why: str
     changes: list[ChangeEntry]
-    lost_share: float = Field(default=0.0, description="of the finished area that is lost now in all setups, 0 to 1")
+    lost_share: float = Field(
+        default=0.0, description="of the finished area that is not reached now in all setups, 0 to 1"
+    )
     steps: list[StepEntry] = Field(
         default=[],
-        description="by what stays lost, the least first; of those alike what asks least; an area to leave out last",
+        description="by what stays unreached, the least first; of those alike what asks least; an area to leave out last",
     )
     lost_areas: list[LostAreaEntry] = Field(default=[], description="the largest first")
     more_lost_areas: int = Field(default=0, description="that are not listed")

@@ -52,7 +52,7 @@ class Region(Frozen):
     )
     samples: int
     area_mm2: float
-    low: Vector = Field(description="corner of the box around its samples")
+    low: Vector = Field(description="corner of the bounding box of its samples")
     high: Vector
     faces: list[RegionFace]
     found: AxisFound

@@ -26,7 +26,7 @@ class Effective(Frozen):
     holder: str | None = Field(default=None, description="of the cutters that were given without one")
     allowance_mm: float = Field(default=0.0, description="stock left on the surface, unless a cutter says otherwise")
     holder_clearance_mm: float = Field(
-        default=0.0, description="room asked of neck, shank and holder, where a cutter says none"
+        default=0.0, description="clearance required of neck, shank and holder, where a cutter says none"
     )
     unit: str | None = Field(default=None, description="length unit taken instead of the file's")
     fixtures: list[str] = Field(default=[], description="as on a command line: file or word, placement, unit")
@@ -39,15 +39,17 @@ class Effective(Frozen):
         default=[], description="of these; empty if only axes were given"
     )
     faces: str
-    ignore: list[str] = Field(default=[], description="faces that are neither targets nor obstacles, as asked for")
+    ignore: list[str] = Field(default=[], description="faces that are neither targets nor obstacles, as requested")
     target_faces: list[str]
     grid: int | None = Field(description="samples a side and face; null where sampled by spacing")
-    spacing_mm: float | None = Field(description="largest spacing asked for; null where sampled by grid")
-    sampled_by: Literal["default", "spacing", "grid"] = Field(default="default", description="what said how densely")
+    spacing_mm: float | None = Field(description="largest spacing requested; null where sampled by grid")
+    sampled_by: Literal["default", "spacing", "grid"] = Field(
+        default="default", description="the option that set the density"
+    )
     tilt_deg: tuple[float, float]
     rotation_deg: tuple[float, float]
     rotation_step_deg: float
-    tolerance_mm: float = Field(description="the gouge tolerance that was kept, raised where a budget binds")
+    tolerance_mm: float = Field(description="the gouge tolerance that was met, raised where a budget binds")
     local_tolerance: list[LocalTolerance] = Field(
         default=[], description="faces that obstacle triangles follow less closely than all others, the loosest first"
     )
@@ -64,9 +66,9 @@ class Effective(Frozen):
     area_budget: int = Field(description="contacts that may be added between the samples")
     posture_maps: bool
     map_budget: int | None = Field(default=None, description="samples to map, at most; null: what some minutes allow")
-    answers: list[str] = Field(default=[], description="what was asked for after the plan")
-    length_over_radius: float = Field(default=10.0, description="of the ends whose largest radius is asked for")
-    operations: str | None = Field(default=None, description="plan of operations asked for: fewest, fastest or both")
+    answers: list[str] = Field(default=[], description="what was requested after the plan")
+    length_over_radius: float = Field(default=10.0, description="of the ends whose largest radius is requested")
+    operations: str | None = Field(default=None, description="plan of operations requested: fewest, fastest or both")
     feed_mm_min: float | None = Field(default=None, description="of all cutters; null: of the libraries' presets")
     scallop_mm: float = 0.01
     stepover: float = Field(default=0.75, description="widest distance of passes, in diameters")

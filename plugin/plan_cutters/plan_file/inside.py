@@ -17,7 +17,7 @@ class CoveringBody(Frozen):
     samples: int
     area_mm2: float
     how: Literal["overlaps", "stands_on", "touches_or_overlaps"] = Field(
-        description="stands_on: the skins touch and the volumes do not intersect, as a clamp drawn as a solid"
+        description="stands_on: the shells touch and the volumes do not intersect, as a clamp modelled as a solid"
     )
     largest: bool = Field(default=False, description="no other body is larger")
     option: str = Field(description="of the command, which leaves the body out")

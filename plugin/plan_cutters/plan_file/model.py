@@ -66,7 +66,7 @@ class FaceEntry(Frozen):
     area_mm2: float
     centre_mm: Vector | None = Field(
         default=None,
-        description="middle of a box around it, by which it is known again in another plan; null where it has no finite size, "
+        description="middle of its bounding box, by which it is known again in another plan; null where it has no finite size, "
         "and in older files",
     )
     component: str = Field(description="names of the instances in the file down to the product that it belongs to")
@@ -84,7 +84,7 @@ class MissingEntry(Frozen):
     """A face that is in the way only as a guess, or not at all: while there is one, no cutter is feasible beyond doubt."""
 
     face: str | None = Field(description="null: it is only in the file")
-    entity: str | None = Field(description="what the file calls it, where it was lost in reading")
+    entity: str | None = Field(description="what the file calls it, where it could not be read")
     name: str
     why: str
     stand_in: Literal["triangles", "box", "edges", "none"] = Field(
@@ -107,7 +107,9 @@ class WitnessEntry(Frozen):
         description="how deep the part reaches into the cutter at the best posture, or may do"
     )
     inside_bodies: bool = Field(default=False, description="it lies inside another body of the part")
-    samples: int = Field(default=1, description="of its face that are lost for its reason, inside the same body if any")
+    samples: int = Field(
+        default=1, description="of its face that are not reached for its reason, inside the same body if any"
+    )
 
 
 class AreaEntry(Frozen):
@@ -206,7 +208,7 @@ class CutterEntry(VerdictCounts):
     stages: list[SegmentEntry] = Field(default=[], description="from the flutes up")
     touches_deg: list[tuple[float, float]] = Field(default=[], description="tilts at which the cutting part can touch")
     allowance_mm: float = 0.0
-    clearance_mm: float = Field(default=0.0, description="room asked of neck, shank and holder")
+    clearance_mm: float = Field(default=0.0, description="clearance required of neck, shank and holder")
     slack_mm: float = Field(
         default=0.0,
         description="how far from what counts a point may be and still count, where a shape is held in a larger one",
@@ -224,7 +226,7 @@ class CutterEntry(VerdictCounts):
     undecided_by_reason: dict[str, int]
     axis_limit_with: dict[str, int] = Field(
         default={},
-        description="samples lost to the axis limit at which something else is in the way within the limit, by that reason",
+        description="samples that the axis limit forbids, at which something else is in the way within the limit, by that reason",
     )
     faces: dict[str, FaceVerdicts]
     area_share: AreaShare = Field(
@@ -234,12 +236,12 @@ class CutterEntry(VerdictCounts):
     )
     witnesses: list[WitnessEntry] = Field(description="for each face and reason, the deepest that was tried first")
     witnesses_untried: int = Field(default=0, description="those without a depth: others of larger area took all tries")
-    area: AreaEntry | None = Field(default=None, description="of the selected cutter; null where it was not asked for")
+    area: AreaEntry | None = Field(default=None, description="of the selected cutter; null where it was not requested")
     setups: list[SetupReach] = Field(
-        default=[], description="where several setups were asked for: what it reaches in each, the plan's own first"
+        default=[], description="where several setups were requested: what it reaches in each, the plan's own first"
     )
     lost_in_all: int | None = Field(
-        default=None, description="samples that it reaches in none of these setups; null where one was asked for"
+        default=None, description="samples that it reaches in none of these setups; null where one was requested"
     )
     beyond_setup: int = Field(
         default=0,
@@ -254,9 +256,9 @@ class CutterEntry(VerdictCounts):
     travel: TravelEntry | None = Field(
         default=None, description="null where linear travel is not judged: see the notes"
     )
-    least_stick_out: StickOutEntry | None = Field(default=None, description="null where it was not asked for")
+    least_stick_out: StickOutEntry | None = Field(default=None, description="null where it was not requested")
     mend: MendEntry | None = Field(
-        default=None, description="what would make it feasible; null where it is, or where that was not asked for"
+        default=None, description="what would make it feasible; null where it is, or where that was not requested"
     )
     seconds: float = Field(default=0.0, exclude=True, description="dummy tests and search; not written")
 
@@ -337,7 +339,7 @@ class Plan(Frozen):
     )
     selected_over_setups: str | None = Field(
         default=None,
-        description="where several setups were asked for: the first cutter that reaches every judged sample in one or another",
+        description="where several setups were requested: the first cutter that reaches every judged sample in one or another",
     )
     selected_for_setup: str | None = Field(
         default=None,
@@ -345,20 +347,20 @@ class Plan(Frozen):
         "where a cutter is selected, where none does, or where nothing is within the limit",
     )
     selection: Selection
-    setup_proposal: SetupProposal | None = Field(default=None, description="null unless asked for (--setup auto)")
+    setup_proposal: SetupProposal | None = Field(default=None, description="null unless requested (--setup auto)")
     setups: list[SetupEntry] = Field(
         default=[], description="this setup axis first; empty where any tool axis is possible"
     )
     largest_radius: list[RadiusEntry] = Field(
         default=[],
-        description="of bare flat and ball ends, whatever cutters there are; empty where it was not asked for",
+        description="of bare flat and ball ends, whatever cutters there are; empty where it was not requested",
     )
     least_set: LeastSetEntry | None = Field(
         default=None,
         description="which of the given cutters and setups reach together all that any of them reaches; null where there "
         "is one of each",
     )
-    operations: OperationsEntry | None = Field(default=None, description="null unless asked for (--operations)")
+    operations: OperationsEntry | None = Field(default=None, description="null unless requested (--operations)")
     not_mended: list[str] = Field(
         default=[],
         description="ids of cutters that fail and were left out of `mend`, as others come nearer: mend-all has them",
@@ -368,6 +370,8 @@ class Plan(Frozen):
     legend: dict[str, str] = Field(description="colour of each verdict in the STEP and GLB files, sRGB")
     legend_words: dict[str, str] = Field(default={}, description="what those colours mean, in words for people")
     split: dict[str, SplitEntry] = Field(default={}, description="faces of mixed verdicts: how the models show them")
-    files: dict[str, FileEntry] = Field(default={}, description="what was written beside this file, by format")
-    not_written: dict[str, str] = Field(default={}, description="formats asked for whose file is missing, and why")
+    files: dict[str, FileEntry] = Field(
+        default={}, description="what was written into the folder of this file, by format"
+    )
+    not_written: dict[str, str] = Field(default={}, description="requested formats whose file is missing, and why")
     run: Run

@@ -195,8 +195,8 @@ def ranges(faces: Iterable[int]) -> str:
             runs[-1].append(number)
         else:
             runs.append([number])
-    told = [f"{run[0]}-{run[-1]}" if len(run) > 2 else ",".join(map(str, run)) for run in runs]
-    return f"F{','.join(told)}" if told else ""
+    texts = [f"{run[0]}-{run[-1]}" if len(run) > 2 else ",".join(map(str, run)) for run in runs]
+    return f"F{','.join(texts)}" if texts else ""
 
 
 def capital(text: str) -> str:

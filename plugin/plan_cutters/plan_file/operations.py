@@ -24,7 +24,7 @@ class OperationRegion(Frozen):
     samples: int
     area_mm2: float
     faces: list[OperationFace] = Field(description="the one with the most of it first")
-    low: Vector = Field(description="corner of the box around its samples")
+    low: Vector = Field(description="corner of the bounding box of its samples")
     high: Vector
     rows: Runs = Field(description="its samples: first and last of runs of rows of samples.npz and axes.csv, from 0")
 
@@ -66,7 +66,7 @@ class OperationEntry(Frozen):
     )
     clearance_mm: float | None = Field(
         default=None,
-        description="least at any of its samples, as in axes.csv: what does not cut keeps so far from all that is around; 100: "
+        description="least at any of its samples, as in axes.csv: what does not cut keeps so far from its surroundings; 100: "
         "that or more; null: not known",
     )
     faces: list[OperationFace] = Field(description="the one with the most of it first")
@@ -232,12 +232,12 @@ class OperationsEntry(Frozen):
     rotary: tuple[str, str] = Field(description="names of the angles")
     plans: list[OperationPlanEntry]
     fewest: FewestEntry
-    fastest: FastestEntry | None = Field(description="null unless the fastest were asked for")
+    fastest: FastestEntry | None = Field(description="null unless the fastest were requested")
     cutters: list[CutterUse] = Field(
-        description="the largest first; empty unless the fastest were asked for and several cutters were compared"
+        description="the largest first; empty unless the fastest were requested and several cutters were compared"
     )
     curve: list[CurveStepEntry]
     assumed: AssumedEntry
-    motion: MotionEntry | None = Field(description="null unless posture maps were asked for, too")
+    motion: MotionEntry | None = Field(description="null unless posture maps were requested, too")
     probes: int = Field(description="how many times a tool was put down")
     notes: list[str]

@@ -39,7 +39,7 @@ class MapOutput(Frozen):
     part: str
     face: str
     point: Vector = Field(description="the nearest point of the part")
-    off_mm: float = Field(description="from the point that was asked for")
+    off_mm: float = Field(description="from the requested point")
     normal: Vector
     direction_max: Vector
     curvature: tuple[float, float] = Field(description="largest and smallest, 1/mm, concave positive")
@@ -171,8 +171,8 @@ class MachineOutput(Frozen):
     share_of_directions: float | None = Field(description="that it can hold")
     singular_cone_deg: float | None
     singular_share: float | None
-    angles: AnglesOutput | None = Field(default=None, description="only where asked for (--angles)")
-    axis: ToolAxisOutput | None = Field(default=None, description="only where asked for (--axis)")
+    angles: AnglesOutput | None = Field(default=None, description="only where requested (--angles)")
+    axis: ToolAxisOutput | None = Field(default=None, description="only where requested (--axis)")
 
 
 class MachinesOutput(Frozen):

@@ -13,7 +13,7 @@ class SetupEntry(Frozen):
     within: int = Field(description="samples")
     share: float = Field(description="of the judged samples' area, 0 to 1")
     reached: int | None = Field(
-        default=None, description="samples that some cutter reaches in it; null where it was not asked for"
+        default=None, description="samples that some cutter reaches in it; null where it was not requested"
     )
     reached_share: float | None = Field(default=None, description="of the judged samples' area, 0 to 1")
 

@@ -106,10 +106,10 @@ def unreached(counts: VerdictCounts, share: AreaShare) -> str:
 
 def reached_share(counts: VerdictCounts, share: AreaShare) -> float | None:
     """Share of an area that is reached: 1 only where all is, 0 only where nothing is; None where it is not known."""
-    there, found = _there(counts, share), sum(getattr(share, word) for word in _REACHED)
-    if not there or not math.isfinite(found):
+    there, reached = _there(counts, share), sum(getattr(share, word) for word in _REACHED)
+    if not there or not math.isfinite(reached):
         return None
-    return exact(found, some=bool(there & set(_REACHED)), whole=there <= set(_REACHED))
+    return exact(reached, some=bool(there & set(_REACHED)), whole=there <= set(_REACHED))
 
 
 def _there(counts: VerdictCounts, share: AreaShare) -> set[str]:

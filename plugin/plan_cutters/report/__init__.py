@@ -9,9 +9,9 @@ from plan_cutters.report.folder import (
     PLAN,
     Staging,
     file_name,
-    left_over,
     read_formats,
+    stale_files,
     write_all,
 )
 
-__all__ = ["DEFAULT_FORMATS", "FORMATS", "PLAN", "Staging", "file_name", "left_over", "read_formats", "write_all"]
+__all__ = ["DEFAULT_FORMATS", "FORMATS", "PLAN", "Staging", "file_name", "read_formats", "stale_files", "write_all"]

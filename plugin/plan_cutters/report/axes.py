@@ -51,12 +51,12 @@ def columns(result: Judged, cutter_id: str | None = None) -> list[Column]:
     samples, name = result.samples, cutter_id or result.shown
     verdicts, cutter = result.reaches[name], result.judged(name)
     near = result.clearances if name == result.shown else result.clearances_of(name)
-    around = result.conditions.around
+    surroundings = result.conditions.surroundings
     n = len(samples)
     rotation = np.degrees(rotations_of(samples.normal, samples.direction_max, verdicts.tilt_direction))
     rotation[~verdicts.reached] = np.nan
-    faces = {number: around.called(number) for number in np.unique(near.face).tolist() if number}
-    found = [
+    faces = {number: surroundings.called(number) for number in np.unique(near.face).tolist() if number}
+    table = [
         Column("sample", np.arange(n, dtype=np.int32)),
         Column("face", samples.face, words={f: f"F{f}" for f in np.unique(samples.face).tolist()}),
         Column("point_mm", samples.point, _MM),
@@ -76,8 +76,8 @@ def columns(result: Judged, cutter_id: str | None = None) -> list[Column]:
     ]
     if name in result.served_in:
         setups = range(len(result.elsewhere) + 1)
-        found.append(Column("setup", result.served_in[name], words={-1: "", **{k: str(k) for k in setups}}))
-    return found + _machine(result, name)
+        table.append(Column("setup", result.served_in[name], words={-1: "", **{k: str(k) for k in setups}}))
+    return table + _machine(result, name)
 
 
 def _machine(result: Judged, name: str) -> list[Column]:
@@ -89,14 +89,14 @@ def _machine(result: Judged, name: str) -> list[Column]:
     moved = result.travels.get(name)
     first, rows = np.maximum(taken, 0).astype(np.int64), np.arange(len(taken))
     both = [np.where((taken >= 0)[:, None], np.degrees(angles[rows, way]), np.nan) for way in (first, 1 - first)]
-    found = [
+    table = [
         Column(f"{axis.name}{word}_deg", np.ascontiguousarray(each[:, k]), _DEG)
         for word, each in zip(("", "_other"), both, strict=True)
         for k, axis in enumerate(machine.rotary)
     ]
     if moved is not None:
-        found += [
+        table += [
             Column(f"{axis.name}_mm", np.ascontiguousarray(moved.position[:, k]), _MM)
             for k, axis in enumerate(machine.linear)
         ]
-    return found
+    return table

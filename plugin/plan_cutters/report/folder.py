@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from plan_cutters.plan_file.model import FileEntry, Plan
 
 PLAN = "plan.json"
-#: Written where posture maps or operations were asked for.
-_BESIDE = {
+#: Written where posture maps or operations were requested.
+_SIDE_FILES = {
     "postures",
     "operations",
     "operations_csv",
@@ -32,7 +32,7 @@ _BESIDE = {
     "largest_first_step",
     "largest_first_glb",
 }
-FORMATS = ("json", *(f for f in WRITERS if f not in _BESIDE))
+FORMATS = ("json", *(f for f in WRITERS if f not in _SIDE_FILES))
 #: What is written unless asked otherwise (`docs/decisions/0017-formats-on-request.md`).
 DEFAULT_FORMATS = ("json", "html", "step", "glb", "npz")
 
@@ -102,7 +102,7 @@ class Staging:
         self._lock.release()
 
 
-class Onlooker(Protocol):
+class ProgressListener(Protocol):
     """An onlooker is called as the writing goes on."""
 
     def safe(self, plan: "Plan") -> None:
@@ -122,7 +122,7 @@ def write_all(
     staging: Staging | None = None,
     *,
     step_schema: str = "ap242",
-    onlooker: Onlooker | None = None,
+    listener: ProgressListener | None = None,
     clock: "Clock | None" = None,
 ) -> "Plan":
     """Write the formats asked for into the folder `out`, each file whole or not at all.
@@ -140,7 +140,7 @@ def write_all(
         One made before the work began.
     step_schema : str
         `ap242`, `ap214` or `ap203`.
-    onlooker : Onlooker, optional
+    listener : Onlooker, optional
     clock : Clock, optional
         The one that ran while the plan was made; default one that goes on from there.
 
@@ -176,7 +176,7 @@ def write_all(
         document: Plan = result.plan
         files: dict[str, FileEntry] = {}
         missing = dict.fromkeys(later, PENDING)
-        making = Making(result, staging.folder, step_schema, clock, onlooker.begins if onlooker else lambda what: None)
+        making = Making(result, staging.folder, step_schema, clock, listener.begins if listener else lambda what: None)
 
         def put() -> "Plan":
             plan = document.model_copy(
@@ -210,21 +210,21 @@ def write_all(
         for entry in files.values():
             staging.publish(entry.name)
         show()
-        if onlooker:
+        if listener:
             with clock.stage("show", shown=False):
-                onlooker.safe(document)
+                listener.safe(document)
         split = 0
         with closing(making.files(later)) as each:
             for name, make in each:
-                if onlooker:
-                    onlooker.begins(name)
+                if listener:
+                    listener.begins(name)
                 try:
                     with clock.stage(name, shown=False):
                         files[name] = make()
                 except Exception as error:
                     missing[name] = _cause(error)
-                    if onlooker:
-                        onlooker.failed(name, error)
+                    if listener:
+                        listener.failed(name, error)
                 else:
                     del missing[name]
                 if len(making.splits) > split:
@@ -295,7 +295,7 @@ def ended(out: Path, cause: str) -> tuple[str, ...]:
         lock.release()
 
 
-def left_over(out: Path, plan: "Plan", formats: Collection[str]) -> list[str]:
+def stale_files(out: Path, plan: "Plan", formats: Collection[str]) -> list[str]:
     """Files in the output that have names of ours, but are not of this plan."""
     mine = {entry.name for entry in plan.files.values()} | ({PLAN} if "json" in formats else set())
     return [name for name in (PLAN, *_names()) if name not in mine and (out / name).is_file()]

@@ -94,13 +94,13 @@ class Making:
         """
         from cad_io.kernel.side_process import SideProcess
 
-        asked = {about: [name for name in mine if name in formats] for about, mine in _MODELS.items()}
-        models = {self._place(about): mine for about, mine in asked.items() if mine}
+        by_model = {about: [name for name in mine if name in formats] for about, mine in _MODELS.items()}
+        models = {self._place(about): mine for about, mine in by_model.items() if mine}
         each = [name for mine in models.values() for name in mine]
         with ExitStack() as copies:
 
-            def begun(make: Callable[[str], "FileEntry"], name: str, beside: bool) -> "SideProcess[FileEntry]":
-                worth = beside and name in formats and self._several
+            def begun(make: Callable[[str], "FileEntry"], name: str, separate: bool) -> "SideProcess[FileEntry]":
+                worth = separate and name in formats and self._several
                 return copies.enter_context(SideProcess(partial(make, name), _COPY, worth=worth))
 
             page = begun(self.file, "html", bool(models))

@@ -34,15 +34,15 @@ def frame(result: Judged, of: str, cutter: str | None) -> "DataFrame":
         import pandas
     except ImportError:
         raise PlanError("tables need the package pandas: pip install pandas") from None
-    found = pandas.DataFrame(_TABLES[of](result, result.judged(cutter).id))
+    table = pandas.DataFrame(_TABLES[of](result, result.judged(cutter).id))
     # A column of words knows them all, and keeps their order.
     for name, words in _words(result).items():
-        if name in found:
-            others = [word for word in found[name].dropna().unique() if word not in words]
-            found[name] = pandas.Categorical(found[name], categories=[*words, *others])
-    if "feasible" in found:
-        found["feasible"] = found["feasible"].astype("boolean")  # which knows "not decided"
-    return found
+        if name in table:
+            others = [word for word in table[name].dropna().unique() if word not in words]
+            table[name] = pandas.Categorical(table[name], categories=[*words, *others])
+    if "feasible" in table:
+        table["feasible"] = table["feasible"].astype("boolean")  # which knows "not decided"
+    return table
 
 
 def _samples(result: Judged, cutter: str) -> dict[str, Any]:
@@ -75,12 +75,12 @@ def _face(face: FaceEntry, cutter: CutterEntry) -> dict[str, Any]:
     about = {"face": face.id, "name": face.name, "component": face.component, "surface": face.surface, "shape": face.shape,
              "target": face.target, "ignored": face.ignored, "area_mm2": face.area_mm2, "samples": face.samples,
              "unjudged_why": face.unjudged, "cutter": cutter.id}  # fmt: skip
-    found = cutter.faces.get(face.id)
-    if found is None:
+    entry = cutter.faces.get(face.id)
+    if entry is None:
         return {**about, **_verdicts(VerdictCounts(), None), "reason": None, "depth_mm": np.nan, "obstacle": None}
     deep = [w for w in cutter.witnesses if w.face == face.id and not w.inside_bodies and w.depth_mm is not None]
     worst = max(deep, key=lambda w: w.depth_mm or 0.0, default=None)
-    return {**about, **_verdicts(found, found.area_share), "reason": _main(found.area_share),
+    return {**about, **_verdicts(entry, entry.area_share), "reason": _main(entry.area_share),
             "depth_mm": worst.depth_mm if worst else np.nan, "obstacle": worst.obstacle_face if worst else None}  # fmt: skip
 
 

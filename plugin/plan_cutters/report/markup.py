@@ -25,7 +25,7 @@ def plain(value: Any) -> Any:
 def embedded(value: Any) -> str:
     """JSON that may stand in a page: nothing in it ends the element or begins another one; null where a number is not finite."""
     text = json.dumps(finite(value), ensure_ascii=True, separators=(",", ":"), allow_nan=False)
-    return re.sub("[<>&]", lambda found: f"\\u{ord(found[0]):04x}", text)
+    return re.sub("[<>&]", lambda match: f"\\u{ord(match[0]):04x}", text)
 
 
 def finite(value: Any) -> Any:

@@ -31,7 +31,7 @@ _LABEL = {
     UNJUDGED: LABELS.index("unjudged"),
 }
 
-#: STEP application protocols that can be asked for, and the kernel's names of them.
+#: STEP application protocols that can be requested, and the kernel's names of them.
 SCHEMAS = {"ap242": "AP242DIS", "ap214": "AP214IS", "ap203": "AP203"}
 
 
@@ -120,8 +120,8 @@ def rungs(split: Any) -> dict[str, SplitEntry]:
         shown[number] = SplitEntry(rung="whole", why=why)
     for number in split.joined.keys() | split.dropped.keys():
         entry = shown.get(number) or SplitEntry(rung="contour", why=None)
-        told = {"joined": split.joined.get(number, 0), "dropped": split.dropped.get(number, 0)}
-        shown[number] = entry.model_copy(update=told)
+        tallies = {"joined": split.joined.get(number, 0), "dropped": split.dropped.get(number, 0)}
+        shown[number] = entry.model_copy(update=tallies)
     return {f"F{number}": shown[number] for number in sorted(shown)}
 
 
@@ -161,7 +161,7 @@ def write_styled_step(result: Judged, split: Any, path: Path, style: Callable[[A
         Product(
             each.name, each.source.shape, np.column_stack([each.fixture.rotation, each.fixture.shift]), rgb("fixture")
         )
-        for each in result.conditions.around.fixtures
+        for each in result.conditions.surroundings.fixtures
         if isinstance(each.source, Part)
     ]
     write_cad(split, path, style, product=product(result), tree=part.tree, layers=part.layers, schema=SCHEMAS[schema],
@@ -184,11 +184,11 @@ def face_facts(result: Judged, entry: FaceEntry) -> dict[str, Any]:
     }
 
 
-def drawn_fixtures(result: Judged) -> list[Drawn]:
+def fixture_meshes(result: Judged) -> list[Drawn]:
     """The fixtures of a result, as triangles with their facts."""
     return [
         Drawn(each.name, each.shown, rgb("fixture"), entry.model_dump(mode="json"))
-        for each, entry in zip(result.conditions.around.fixtures, result.plan.fixtures, strict=False)
+        for each, entry in zip(result.conditions.surroundings.fixtures, result.plan.fixtures, strict=False)
     ]
 
 
@@ -224,7 +224,7 @@ def write_glb(result: Judged, split: Any, path: Path, *, merged: bool = False) -
             "cutter": shown.id,
         },
         merged=merged,
-        others=drawn_fixtures(result),
+        others=fixture_meshes(result),
     )
 
 

@@ -47,7 +47,7 @@ def text_of(plan: Plan) -> str:
     headline = story.headline
     lines = [
         f"{headline.title}. {headline.about} {headline.why}".replace("  ", " "),
-        *_told(story),
+        *_lines(story),
         "",
         *_table(story),
         "",
@@ -112,7 +112,7 @@ def _in_notebook() -> bool:
     return getattr(shell, "kernel", None) is not None
 
 
-def _told(story: Story) -> list[str]:
+def _lines(story: Story) -> list[str]:
     """What is said beside the headline: surface that is none, the scope, and all doubts."""
     doubts = [f"{line.mark} {line.text}" for lines in story.doubts.values() for line in lines]
     return [*story.inside, *story.proposal, *story.in_short, *story.scope, *story.between, *doubts]
@@ -159,7 +159,7 @@ def _rendered(
         for each in story.cutters
     ]
     return _TEMPLATE.render(
-        chip=_CHIPS[story.headline.good], headline=story.headline, told=_told(story), columns=list(_COLUMNS.values()),
+        chip=_CHIPS[story.headline.good], headline=story.headline, told=_lines(story), columns=list(_COLUMNS.values()),
         cutters=cutters, taken=story.taken, shown=story.names[result.shown], picture=picture, page=page, open=opened,
         file=result.plan.part.file, height=int(height), missing=missing or [],
     )  # fmt: skip

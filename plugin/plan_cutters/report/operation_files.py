@@ -19,10 +19,10 @@ def write_operations(result: Judged, _split: object, path: Path) -> None:
     serves it; `lean` (n, 3), where the tool leans, on a floor the side of its bottom that touches. `candidate_cutter` and
     `candidate_setup` (m,) are indices into the plan's cutters and setups, `candidate_angle` (m, 2) is in degrees.
     """
-    found = result.answers.operations
-    assert found is not None, "written where operations were asked for"
-    few, ids = found.fewest, [entry.id for entry in result.cutters]
-    number = np.array([ids.index(cutter.id) for cutter in found.cutters], np.int32)
+    operations = result.answers.operations
+    assert operations is not None, "written where operations were requested"
+    few, ids = operations.fewest, [entry.id for entry in result.cutters]
+    number = np.array([ids.index(cutter.id) for cutter in operations.cutters], np.int32)
     arrays: dict[str, Any] = {
         "candidate_cutter": number[few.columns.cutter],
         "candidate_setup": few.columns.setup,
@@ -30,7 +30,7 @@ def write_operations(result: Judged, _split: object, path: Path) -> None:
         "candidate_axis": few.columns.axis,
         "chosen": few.chosen,
     }
-    for k, plan in enumerate(found.plans):
+    for k, plan in enumerate(operations.plans):
         behind = f"_{plan.name.replace(' ', '_')}" if k else ""
         arrays |= {f"{word}{behind}": each for word, each in _columns(plan).items()}
     write_arrays(arrays, path)
@@ -52,7 +52,7 @@ def _columns(plan: OperationPlan) -> dict[str, Any]:
 def write_operations_csv(result: Judged, _split: object, path: Path) -> None:
     """Write `operations.csv`: a header line, then a line for each operation of each plan; numbers have a point."""
     entry = result.plan.operations
-    assert entry is not None, "written where operations were asked for"
+    assert entry is not None, "written where operations were requested"
     first, second = entry.rotary
     with path.open("w", encoding="utf-8", newline="") as file:
         rows = csv.writer(file, lineterminator="\r\n")

@@ -18,9 +18,9 @@ from plan_cutters.document.fixtures import fixture_entry
 from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry
 from plan_cutters.plan_file.palette import LABELS, MEANING, parts, rgb
 from plan_cutters.report.models import (
-    drawn_fixtures,
     face_facts,
     face_labels,
+    fixture_meshes,
     verdict_labels,
     write_styled_step,
 )
@@ -34,15 +34,15 @@ def split_operations(result: Judged, number: int) -> Any:
     piece of its own, also one of a single sample: what is around it may be an operation that does not serve it.
     """
     operations = result.answers.operations
-    assert operations is not None, "models of operations are written where these were asked for"
+    assert operations is not None, "models of operations are written where these were requested"
     plan = operations.plans[number]
     first = len(plan.operations)
     label = np.where(plan.label >= 0, plan.label, first + verdict_labels(result)).astype(np.int32)
 
     def of_face(rows: NDArray[np.int64]) -> int:
         """The one label of a face, or that it is of several."""
-        found = np.unique(label[rows])
-        return int(found[0]) if len(found) == 1 else first + LABELS.index("mixed")
+        labels = np.unique(label[rows])
+        return int(labels[0]) if len(labels) == 1 else first + LABELS.index("mixed")
 
     return split_by_turns(result.part, face_labels(result, label, of_face, first))
 
@@ -67,13 +67,13 @@ def write_operations_glb(result: Judged, split: Any, path: Path, *, number: int 
         return {**face_facts(result, entries[face]), "plan": plan.name, "operations": here}
 
     def facts(piece: Any) -> dict[str, Any]:
-        found = _operation(piece, plan)
-        if found is None:
+        operation = _operation(piece, plan)
+        if operation is None:
             word = _word(piece, plan)
             return {"face": f"F{piece.face}", "plan": plan.name, "operation": None, "verdict": word, "meaning": MEANING[word],
                     "cutter": result.shown}  # fmt: skip
-        known = found.model_dump(mode="json", include={"mode", "cutter", "setup", "axis", "angles_deg", "seconds"})
-        return {"face": f"F{piece.face}", "plan": plan.name, "operation": found.id, **known}
+        known = operation.model_dump(mode="json", include={"mode", "cutter", "setup", "axis", "angles_deg", "seconds"})
+        return {"face": f"F{piece.face}", "plan": plan.name, "operation": operation.id, **known}
 
     write_gltf(split, path, _styles(result, plan), extras=extras, piece_extras=facts, others=_fixtures(result))
 
@@ -100,7 +100,7 @@ def write_largest_first_glb(result: Judged, split: Any, path: Path) -> None:
 
 def _place(result: Judged, name: str) -> int:
     operations = result.plan.operations
-    assert operations is not None, "models of operations are written where these were asked for"
+    assert operations is not None, "models of operations are written where these were requested"
     return [str(each.name) for each in operations.plans].index(name)
 
 
@@ -108,18 +108,18 @@ def _fixtures(result: Judged) -> list[Drawn]:
     """The fixtures, those of each setup below a node of their own where setups differ in them."""
     ready = result.ready
     if ready.alike:
-        return drawn_fixtures(result)
-    found = []
+        return fixture_meshes(result)
+    fixtures = []
     for k, conditions in enumerate(ready.setups):
-        for each in conditions.around.fixtures:
+        for each in conditions.surroundings.fixtures:
             facts = fixture_entry(each).model_copy(update={"setups": [k]}).model_dump(mode="json")
-            found.append(Drawn(each.name, each.shown, rgb("fixture"), facts, f"fixtures of setup {k + 1}"))
-    return found
+            fixtures.append(Drawn(each.name, each.shown, rgb("fixture"), facts, f"fixtures of setup {k + 1}"))
+    return fixtures
 
 
 def _entry(result: Judged, number: int) -> OperationPlanEntry:
     operations = result.plan.operations
-    assert operations is not None, "models of operations are written where these were asked for"
+    assert operations is not None, "models of operations are written where these were requested"
     return operations.plans[number]
 
 
@@ -137,9 +137,9 @@ def _styles(result: Judged, plan: OperationPlanEntry) -> Callable[[Any], Style]:
     faces = result.part.faces
 
     def style(piece: Any) -> Style:
-        info, found = faces[piece.face - 1], _operation(piece, plan)
-        if found is not None:
-            return Style(f"F{piece.face}_{found.id} {info.name}".strip(), parts(found.colour))
+        info, operation = faces[piece.face - 1], _operation(piece, plan)
+        if operation is not None:
+            return Style(f"F{piece.face}_{operation.id} {info.name}".strip(), parts(operation.colour))
         word = _word(piece, plan)
         own = info.colour if word in ("check", "ignored") else None
         return Style(f"F{piece.face}_{word} {info.name}".strip(), own or rgb(word))

@@ -24,7 +24,7 @@ from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.runs import runs
 from plan_cutters.report.protocol import Judged
 from plan_cutters.scene.clearance import clearances
-from plan_cutters.scene.fixed_axis import held_at, standing
+from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at
 
 #: Tilts from which ranges are looked for are so far apart, deg.
 _STEP = 1.0
@@ -46,7 +46,7 @@ def axis_regions(result: Judged) -> AxisRegions:
     operations = result.answers.operations
     axes, number = fixed_axes(samples, cutter, verdicts, conditions, operations.plans[0] if operations else None)
     held = held_at(axes, number, samples, cutter, conditions)
-    near = clearances(standing(samples, held), cutter, held, conditions).distance
+    near = clearances(at_fixed_axis(samples, held), cutter, held, conditions).distance
     label = pieces(number, samples.neighbours)
     free = None if result.maps is None else _Free(result.maps.held(conditions))
     parts = [np.flatnonzero(label == k) for k in range(label.max(initial=-1) + 1)]
@@ -57,12 +57,20 @@ def axis_regions(result: Judged) -> AxisRegions:
         least = float(near[rows].min()) if np.isfinite(near[rows]).all() else None
         regions.append(
             Region(
-                id=i, axis=int(number[rows[0]]), tilt_deg=_span(tilt), clearance_mm=least, samples=len(rows),
-                area_mm2=float(samples.area[rows].sum()), low=vector(point.min(axis=0)), high=vector(point.max(axis=0)),
-                faces=_faces(rows, samples), found=_found(rows, samples, verdicts), free=None if free is None else free.of(rows),
+                id=i,
+                axis=int(number[rows[0]]),
+                tilt_deg=_span(tilt),
+                clearance_mm=least,
+                samples=len(rows),
+                area_mm2=float(samples.area[rows].sum()),
+                low=vector(point.min(axis=0)),
+                high=vector(point.max(axis=0)),
+                faces=_faces(rows, samples),
+                found=_axis_of_region(rows, samples, verdicts),
+                free=None if free is None else free.of(rows),
                 rows=runs(rows),
             )
-        )  # fmt: skip
+        )
     whole = float(samples.area.sum())
     angles = _rotary(result, axes)
     fixed = []
@@ -105,7 +113,7 @@ def _faces(rows: NDArray[np.int64], samples: Any) -> list[RegionFace]:
     ]
 
 
-def _found(rows: NDArray[np.int64], samples: Any, verdicts: Any) -> AxisFound:
+def _axis_of_region(rows: NDArray[np.int64], samples: Any, verdicts: Any) -> AxisFound:
     axis, area = verdicts.axis[rows], np.maximum(samples.area[rows], 1e-12)
     mean = (axis * area[:, None]).sum(axis=0)
     length = float(np.linalg.norm(mean))

@@ -16,9 +16,9 @@ def write_csv(result: Judged, _split: object, path: Path) -> None:
     Lines end as RFC 4180 has it, numbers have a point, units stand at the end of the names. `docs/cam_outputs.md` has the
     columns.
     """
-    found = columns(result)
-    cells = [text for column in found for text in _cells(column)]
-    names = ["cutter", *(name for column in found for name in column.names)]
+    table = columns(result)
+    cells = [text for column in table for text in _cells(column)]
+    names = ["cutter", *(name for column in table for name in column.names)]
     with path.open("w", encoding="utf-8", newline="") as file:
         rows = csv.writer(file, lineterminator="\r\n")
         rows.writerow(names)

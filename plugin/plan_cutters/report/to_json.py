@@ -40,8 +40,8 @@ def schemas() -> dict[str, str]:
 
     draft = {"$schema": "https://json-schema.org/draft/2020-12/schema"}
     others = {name: {**draft, **kind.model_json_schema(mode="serialization")} for name, kind in OUTPUTS.items()}
-    found = {"plan": schema(), **others}
-    return {f"{name}.schema.json": json.dumps(each, indent=2) + "\n" for name, each in found.items()}
+    result = {"plan": schema(), **others}
+    return {f"{name}.schema.json": json.dumps(each, indent=2) + "\n" for name, each in result.items()}
 
 
 def write_plan(plan: "Plan", path: Path) -> None:
@@ -50,12 +50,12 @@ def write_plan(plan: "Plan", path: Path) -> None:
 
 
 def _write(text: str, path: Path) -> None:
-    aside = path.with_name(f".{path.name}.part")
+    temporary = path.with_name(f".{path.name}.part")
     try:
-        aside.write_text(text, encoding="utf-8")
-        os.replace(aside, path)
+        temporary.write_text(text, encoding="utf-8")
+        os.replace(temporary, path)
     except OSError as error:
-        aside.unlink(missing_ok=True)
+        temporary.unlink(missing_ok=True)
         raise PlanError(f"cannot write the plan ({error.strerror})", file=str(path)) from None
 
 

@@ -20,7 +20,7 @@ def write_npz(result: Judged, _split: object, path: Path) -> None:
     With a machine of rotary axes, also their positions at the posture found, in degrees: both solutions, axis by axis from the
     part to the tool, nan where one is beyond a limit, and which of them is to be taken, -1 where there is none. Where linear
     travel is judged, also the positions of the linear axes, mm, in the machine's order, for the solution to be taken. Where they
-    were asked for, its least stick-outs, too, and the largest radii with `flat` and `ball` as suffix.
+    were requested, its least stick-outs, too, and the largest radii with `flat` and `ball` as suffix.
     """
     samples = result.samples
     arrays = {
@@ -47,12 +47,12 @@ def write_npz(result: Judged, _split: object, path: Path) -> None:
     if result.elsewhere:
         arrays["setups"] = np.array([result.scene.setup, *(axis for axis, _ in result.elsewhere)])
         for name, verdicts in result.here.items():
-            each = [verdicts, *(found[name] for _, found in result.elsewhere)]
+            each = [verdicts, *(verdicts_there[name] for _, verdicts_there in result.elsewhere)]
             arrays[f"setup_{name}"] = result.served_in[name]
             arrays[f"reached_in_{name}"] = np.stack([one.reached for one in each], axis=1)
-    for name, found in result.answers.stick_outs.items():
-        if found.each is not None:
-            arrays[f"stick_out_{name}"] = found.each
+    for name, stick_out in result.answers.stick_outs.items():
+        if stick_out.each is not None:
+            arrays[f"stick_out_{name}"] = stick_out.each
     for radii in result.answers.radius_maps:
         arrays[f"radius_{radii.shape}"] = radii.radius
         arrays[f"radius_beyond_{radii.shape}"] = radii.beyond

@@ -37,8 +37,8 @@ def write_vtk(result: Judged, _split: object, path: Path) -> None:
     What the codes mean stands in the field data, as texts: `verdicts`, `reasons`, `classes`, `parts`, `fixtures`,
     `cutter`, `part`.
     """
-    found = {column.name: column.values for column in columns(result)}
-    point = found.pop("point_mm")
+    arrays = {column.name: column.values for column in columns(result)}
+    point = arrays.pop("point_mm")
     n = len(point)
     about = {
         "cutter": [result.shown],
@@ -47,7 +47,7 @@ def write_vtk(result: Judged, _split: object, path: Path) -> None:
         "reasons": [f"{code} {word}" for code, word in enumerate(REASONS)],
         "classes": [f"{code} {word}" for code, word in sorted(CLASSES.items())],
         "parts": [f"{code} {word}" for code, word in sorted(part_words().items())],
-        "fixtures": [f"{each.number} {each.name}" for each in result.conditions.around.fixtures],
+        "fixtures": [f"{each.number} {each.name}" for each in result.conditions.surroundings.fixtures],
     }
     text = [
         '<?xml version="1.0"?>',
@@ -59,7 +59,7 @@ def write_vtk(result: Judged, _split: object, path: Path) -> None:
         "</FieldData>",
         f'<Piece NumberOfPoints="{n}" NumberOfVerts="{n}" NumberOfLines="0" NumberOfStrips="0" NumberOfPolys="0">',
         '<PointData Scalars="verdict" Vectors="axis" Normals="normal">',
-        *(_array(name, values) for name, values in found.items()),
+        *(_array(name, values) for name, values in arrays.items()),
         "</PointData>",
         "<CellData></CellData>",
         "<Points>",

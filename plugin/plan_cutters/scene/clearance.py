@@ -51,18 +51,18 @@ def clearances_over(
 
     A fixture that stands in another setup than the first has no number: its `face` is 0.
     """
-    if served_in is None or all(each.around is setups[0].around for each in setups):
+    if served_in is None or all(each.surroundings is setups[0].surroundings for each in setups):
         return clearances(samples, cutter, verdicts, setups[0])
     n = len(samples)
-    found = Clearances(np.full(n, np.nan), np.full(n, -1, np.int8), np.zeros(n, np.int32))
+    result = Clearances(np.full(n, np.nan), np.full(n, -1, np.int8), np.zeros(n, np.int32))
     for k, conditions in enumerate(setups):
         mine = served_in == k
         verdict = np.where(mine, verdicts.verdict, UNJUDGED).astype(np.uint8)
         there = clearances(samples, cutter, replace(verdicts, verdict=verdict), conditions)
         for name in ("distance", "part", "face"):
             value = getattr(there, name)
-            getattr(found, name)[mine] = (np.maximum(value, 0) if name == "face" and k else value)[mine]
-    return found
+            getattr(result, name)[mine] = (np.maximum(value, 0) if name == "face" and k else value)[mine]
+    return result
 
 
 def clearances(samples: SurfaceSamples, cutter: Cutter, verdicts: Verdicts, conditions: Conditions) -> Clearances:
@@ -83,28 +83,28 @@ def clearances(samples: SurfaceSamples, cutter: Cutter, verdicts: Verdicts, cond
         that is no longer than it is wide.
     """
     n, obstacles, steps = len(samples), conditions.obstacles, rungs(cutter)
-    found = Clearances(np.full(n, np.nan), np.full(n, -1, np.int8), np.zeros(n, np.int32))
+    result = Clearances(np.full(n, np.nan), np.full(n, -1, np.int8), np.zeros(n, np.int32))
     rows = np.flatnonzero(verdicts.reached)
     if _unknown(cutter, conditions) or not len(rows):
-        return found
+        return result
     triangle, which = np.full(n, -1, np.int32), np.full(n, -1, np.int32)
     free, not_reached = np.full(n, -1), np.full(n, len(steps))
     nearest, part = np.full(n, -1, np.int32), np.full(n, -1, np.int8)
-    while len(left := rows[not_reached[rows] - free[rows] > 1]):
-        middle = (free[left] + not_reached[left]) // 2
+    while len(open_rows := rows[not_reached[rows] - free[rows] > 1]):
+        middle = (free[open_rows] + not_reached[open_rows]) // 2
         for rung in np.unique(middle).tolist():
-            mine = left[middle == rung]
+            mine = open_rows[middle == rung]
             made = _probed(samples, verdicts, mine, cutter, float(steps[rung]), conditions, triangle, which)
             clear = triangle[mine] == -1
             free[mine[clear]], not_reached[mine[~clear]] = rung, rung
             met = mine[triangle[mine] >= 0]
             nearest[met], part[met] = triangle[met], made.piece[0, which[met], PART]
     # Even the tool itself may be met, within the tolerance: a barrel touches with its flank.
-    found.distance[rows] = np.where(free[rows] >= 0, steps[np.maximum(free[rows], 0)], 0.0)
-    found.part[rows] = part[rows]
+    result.distance[rows] = np.where(free[rows] >= 0, steps[np.maximum(free[rows], 0)], 0.0)
+    result.part[rows] = part[rows]
     met = rows[nearest[rows] >= 0]
-    found.face[met] = obstacles.faces[nearest[met]]
-    return found
+    result.face[met] = obstacles.faces[nearest[met]]
+    return result
 
 
 def least_clearance(samples: SurfaceSamples, cutter: Cutter, verdicts: Verdicts, conditions: Conditions) -> float:
@@ -113,17 +113,17 @@ def least_clearance(samples: SurfaceSamples, cutter: Cutter, verdicts: Verdicts,
     What keeps clear of something once is not looked at again while another posture does not.
     """
     n, steps = len(samples), rungs(cutter)
-    left = np.flatnonzero(verdicts.reached)
-    if _unknown(cutter, conditions) or not len(left):
+    reached = np.flatnonzero(verdicts.reached)
+    if _unknown(cutter, conditions) or not len(reached):
         return float("nan")
     triangle, which = np.full(n, -1, np.int32), np.full(n, -1, np.int32)
     free, not_free = -1, len(steps)
     while not_free - free > 1:
         middle = (free + not_free) // 2
-        _probed(samples, verdicts, left, cutter, float(steps[middle]), conditions, triangle, which)
-        met = left[triangle[left] != -1]
+        _probed(samples, verdicts, reached, cutter, float(steps[middle]), conditions, triangle, which)
+        met = reached[triangle[reached] != -1]
         if len(met):
-            left, not_free = met, middle
+            reached, not_free = met, middle
         else:
             free = middle
     return float(steps[free]) if free >= 0 else 0.0
@@ -131,7 +131,7 @@ def least_clearance(samples: SurfaceSamples, cutter: Cutter, verdicts: Verdicts,
 
 def _unknown(cutter: Cutter, conditions: Conditions) -> bool:
     """Whether nothing can be said: an obstacle is only guessed, or nothing of the tool is above its working height."""
-    return conditions.around.doubtful or not grown(cutter, 0.0).piece.shape[1]
+    return conditions.surroundings.doubtful or not grown(cutter, 0.0).piece.shape[1]
 
 
 def _probed(

@@ -14,7 +14,7 @@ from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import VerdictBuffer, blank
-from plan_cutters.kernels.rows import Contacts, Found, Ranges, Rotary, Tool
+from plan_cutters.kernels.rows import Contacts, Ranges, Rotary, Tool, VerdictArrays
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.scene.threads import Progress, in_chunks
@@ -44,7 +44,7 @@ class Conditions(Record):
     machine: Machine
     setup: Floats
     postures: PostureRange
-    around: Surroundings
+    surroundings: Surroundings
     tolerance: float
     jobs: int
     x: Floats | None = None
@@ -52,7 +52,7 @@ class Conditions(Record):
     @property
     def obstacles(self) -> Obstacles:
         """Everything that may be in the way."""
-        return self.around.possible
+        return self.surroundings.possible
 
     def judges(self, cutter: Cutter) -> bool:
         """Whether the tolerance that is kept is fine enough to say anything about a cutter."""
@@ -86,7 +86,7 @@ class Conditions(Record):
         return self.machine.kinematics(frame_of(self.setup, self.x))
 
     def upright(self, normal: Floats) -> NDArray[np.bool_]:
-        """At which normals (n, 3) the machine can hold the axis along the normal, and tilt 0 was asked for."""
+        """At which normals (n, 3) the machine can hold the axis along the normal, and tilt 0 was requested."""
         return self.machine.allows(normal, frame_of(self.setup, self.x)) & self.postures.upright
 
 
@@ -108,14 +108,15 @@ def rotations_of(normal: Floats, direction_max: Floats, tilt_direction: Floats) 
     return np.asarray(np.remainder(np.arctan2(across, (tilt_direction * direction_max).sum(axis=-1)), 2.0 * np.pi))
 
 
-def rotary_of(found: Kinematics | None) -> Rotary:
+def rotary_of(kinematics: Kinematics | None) -> Rotary:
     """Rotary axes as kernels take them."""
-    if found is None:
+    if kinematics is None:
         return Rotary(np.zeros((0, 4)), np.zeros((0, 3)), np.zeros((0, 2)), np.zeros(3), np.zeros(3), np.zeros((0, 3)))
-    found, _ = found.turning()
-    swing = found.swing if len(found.direction) == 2 else (0.0, 1.0, 0.0)
+    kinematics, _ = kinematics.turning()
+    swing = kinematics.swing if len(kinematics.direction) == 2 else (0.0, 1.0, 0.0)
     circle, direction, limit, tool, aim = map(
-        np.ascontiguousarray, (found.circles(), found.direction, found.limit, found.tool, found.aims())
+        np.ascontiguousarray,
+        (kinematics.circles(), kinematics.direction, kinematics.limit, kinematics.tool, kinematics.aims()),
     )
     return Rotary(circle, direction, limit, tool, np.array(swing), aim)
 
@@ -141,9 +142,9 @@ def tool_of(made: Assembly) -> Tool:
     return Tool(made.piece, made.mode, made.reach, made.inner, made.end)
 
 
-def found_of(verdicts: VerdictBuffer) -> Found:
+def verdict_arrays_of(verdicts: VerdictBuffer) -> VerdictArrays:
     """Where kernels write what they find."""
-    return Found(
+    return VerdictArrays(
         verdicts.verdict, verdicts.axis, verdicts.tilt_direction, verdicts.tilt, verdicts.rotation, verdicts.reason
     )
 
@@ -192,12 +193,12 @@ def search_postures(
     from plan_cutters.kernels.search.search import search
 
     require_finite(contacts, rows)
-    ranges, around = conditions.ranges._replace(strict=strict), conditions.around
-    possible, certain = around.possible.solids, around.certain.solids
-    tools, found = (tool_of(outer_tool), tool_of(inner_tool)), found_of(verdicts)
+    ranges, surroundings = conditions.ranges._replace(strict=strict), conditions.surroundings
+    possible, certain = surroundings.possible.solids, surroundings.certain.solids
+    tools, buffer = (tool_of(outer_tool), tool_of(inner_tool)), verdict_arrays_of(verdicts)
 
     def searched(piece: NDArray[np.int64]) -> int:
-        return int(search(piece, contacts, ranges, *tools, possible, certain, found))
+        return int(search(piece, contacts, ranges, *tools, possible, certain, buffer))
 
     looked = in_chunks(searched, rows, conditions.jobs, progress, fixed=fixed)
     if work is not None:
@@ -208,10 +209,10 @@ def warm(contacts: Contacts, cutter: Cutter, conditions: Conditions) -> None:
     """Load or compile every kernel, so that stage times are those of the work."""
     from plan_cutters.kernels.search import search
 
-    none, found = np.zeros(0, np.int64), found_of(blank(0))
+    none, verdicts = np.zeros(0, np.int64), verdict_arrays_of(blank(0))
     outer_tool, inner_tool = conditions.outer_tool(cutter), conditions.inner_tool(cutter)
     search.dummy_clear(
         none, contacts, outer_tool.dummy, tool_of(outer_tool), conditions.obstacles.solids, np.zeros(0, bool)
     )
     search.search(none, contacts, conditions.ranges, tool_of(outer_tool), tool_of(inner_tool), conditions.obstacles.solids,
-                  conditions.around.certain.solids, found)  # fmt: skip
+                  conditions.surroundings.certain.solids, verdicts)  # fmt: skip

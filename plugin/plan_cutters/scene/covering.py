@@ -58,44 +58,44 @@ class Covering(Record):
 
 def coverings(ready: Prepared) -> tuple[Covering, ...]:
     """The bodies of a part that samples lie inside of, those with the largest area first."""
-    inside, around, samples = ready.inside_bodies, ready.conditions.around, ready.samples
-    rows = np.flatnonzero(inside & ~np.isin(samples.face, around.on_bodies))
-    found = []
-    sizes = [_volume(ready, body) for body in around.bodies]
+    inside, surroundings, samples = ready.inside_bodies, ready.conditions.surroundings, ready.samples
+    rows = np.flatnonzero(inside & ~np.isin(samples.face, surroundings.on_bodies))
+    result = []
+    sizes = [_volume(ready, body) for body in surroundings.bodies]
     for index in np.unique(ready.inside[rows]).tolist():
         mine = rows[ready.inside[rows] == index]
-        own = sorted(number for number in around.bodies[index].faces if number > 0)
-        others = {n for i, body in enumerate(around.bodies) if i != index for n in body.faces}
-        how, largest = _how(ready, around.bodies[index], mine), sizes[index] >= max(sizes)
-        found.append(Covering(index, mine, how, tuple(own), largest, *_named(ready.scene.part, own, others)))
-    return tuple(sorted(found, key=lambda each: (-float(samples.area[each.rows].sum()), each.index)))
+        own = sorted(number for number in surroundings.bodies[index].faces if number > 0)
+        others = {n for i, body in enumerate(surroundings.bodies) if i != index for n in body.faces}
+        how, largest = _how(ready, surroundings.bodies[index], mine), sizes[index] >= max(sizes)
+        result.append(Covering(index, mine, how, tuple(own), largest, *_named(ready.scene.part, own, others)))
+    return tuple(sorted(result, key=lambda each: (-float(samples.area[each.rows].sum()), each.index)))
 
 
 def sheets(ready: Prepared) -> NDArray[np.int64]:
     """Samples inside bodies that are those of construction sheets lying on one."""
-    return np.flatnonzero(ready.inside_bodies & np.isin(ready.samples.face, ready.conditions.around.on_bodies))
+    return np.flatnonzero(ready.inside_bodies & np.isin(ready.samples.face, ready.conditions.surroundings.on_bodies))
 
 
 def _how(ready: Prepared, body: Body, rows: NDArray[np.int64]) -> How:
     """Whether a body lies over contacts or only against them."""
-    from plan_cutters.kernels.material import near_skin
+    from plan_cutters.kernels.material import near_shell
 
-    certain = ready.conditions.around.certain
+    certain = ready.conditions.surroundings.certain
     _, deep = certain.depths(ready.conditions.tolerance)
-    point, skin = np.ascontiguousarray(ready.samples.point[rows]), certain.skin_of(body)
+    point, shell = np.ascontiguousarray(ready.samples.point[rows]), certain.skin_of(body)
     on = np.zeros(len(rows), bool)
     # Where a body overlaps, a few of them tell.
     few = np.arange(len(point)) % (1 + len(point) // _FEW) == 0
     for some in (point[few], point[~few]):
-        if balls_inside(some, _DEEP * deep, skin, ready.options.jobs).any():
+        if balls_inside(some, _DEEP * deep, shell, ready.options.jobs).any():
             return "overlaps"
-    near_skin(point, _ON * deep, skin.solids, on)
+    near_shell(point, _ON * deep, shell.solids, on)
     return "stands_on" if on.all() else "touches_or_overlaps"
 
 
 def _volume(ready: Prepared, body: Body) -> float:
     """Volume that a body's triangles enclose, mm3."""
-    certain = ready.conditions.around.certain
+    certain = ready.conditions.surroundings.certain
     triangles, mine = certain.triangles, certain.rows_of(body.faces)
     sign = weights(replace(triangles, vertex=triangles.vertex[mine], face=triangles.face[mine]), [body])
     a, b, c = np.moveaxis(triangles.vertex[mine], 1, 0)

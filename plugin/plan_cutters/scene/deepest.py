@@ -120,13 +120,13 @@ def deepest(
         triangle = met(depth)
     if triangle < 0:
         return None
-    found = triangle
-    while found >= 0:
-        triangle, reached = found, depth
+    deepest_triangle = triangle
+    while deepest_triangle >= 0:
+        triangle, reached = deepest_triangle, depth
         point = deepest_on(obstacles.tree.vertex[triangle], partial(beyond, depth=reached))
         depth = max(depth_of(point, reached), reached)
-        found = met(depth * (1.0 + _EXACT) + 1e-9) if depth < most else -1
-        depth = depth * (1.0 + _EXACT) + 1e-9 if found >= 0 else depth
+        deepest_triangle = met(depth * (1.0 + _EXACT) + 1e-9) if depth < most else -1
+        depth = depth * (1.0 + _EXACT) + 1e-9 if deepest_triangle >= 0 else depth
     face = obstacles.face(triangle)
     if part is not None and 0 < face <= len(part.faces):
         corner = obstacles.tree.vertex[triangle]
@@ -152,7 +152,7 @@ def _foot(
     width = size / trim.scale
     for _ in range(_ROUNDS_ON):
         u, v = best[0] + width[0] * line, best[1] + width[1] * line
-        inside = trim.inside_grid(u, v, beside=False)  # the kernel is slow, and a chord error does not matter here
+        inside = trim.inside_grid(u, v, border=False)  # the kernel is slow, and a chord error does not matter here
         at = np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1)[inside]
         if len(at):
             points = surface.values(at[:, 0].copy(), at[:, 1].copy())

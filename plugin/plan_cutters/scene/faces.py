@@ -85,24 +85,24 @@ def choose(
     Raises
     ------
     OptionError
-        A choice has no meaning, nothing is left, or a face is asked for by its number and ignored.
+        A choice has no meaning, nothing is left, or a face is requested by its number and ignored.
     """
-    asked = _word(part, part.picked or DEFAULT if faces is None else faces, "--faces")
-    targets = select_faces(part.faces, asked, tree=part.tree, ignored=ignored, blends=part.blends)
+    requested = _word(part, part.picked or DEFAULT if faces is None else faces, "--faces")
+    targets = select_faces(part.faces, requested, tree=part.tree, ignored=ignored, blends=part.blends)
     remarks = []
-    if _finished(asked) and _none_sculptured(part.faces[n - 1] for n in targets):
+    if _finished(requested) and _none_sculptured(part.faces[n - 1] for n in targets):
         remarks.append(notes.faces_none_sculptured(len(targets)))
     if ignored:
         remarks.append(notes.faces_ignored([f"F{n}" for n in sorted(ignored)]))
     held = clamped_faces(part, placed).intersection(*[clamped_faces(part, each) for each in others])
     if placed is not None and held:
-        left = tuple(n for n in targets if n not in held)
-        if not left:
+        remaining = tuple(n for n in targets if n not in held)
+        if not remaining:
             raise OptionError(f"{placed.where} {_brief(', '.join(placed.clamped))} leaves no target face")
         if clamped := [f"F{n}" for n in targets if n in held]:
             remarks.append(notes.faces_clamped(clamped))
-        targets = left
-    return Chosen(targets, tuple(sorted(ignored)), asked, ignore, tuple(remarks), part.blends)
+        targets = remaining
+    return Chosen(targets, tuple(sorted(ignored)), requested, ignore, tuple(remarks), part.blends)
 
 
 def clamped_faces(part: "Part", placed: Placement | None) -> frozenset[int]:
@@ -129,7 +129,7 @@ def ignored_faces(part: "Part", words: Sequence[str]) -> frozenset[int]:
     return frozenset().union(*(_selected(part.faces, text, part.tree, "--ignore", part.blends) for text in words))
 
 
-def face_numbers(part: "Part", given: Any) -> tuple[int, ...]:
+def face_numbers(part: "Part", value: Any) -> tuple[int, ...]:
     """Numbers of faces, ascending, from a number, a face's name, the words of `--faces`, or objects of a kernel or CAD host.
 
     Raises
@@ -137,7 +137,7 @@ def face_numbers(part: "Part", given: Any) -> tuple[int, ...]:
     OptionError
         It selects no face of the part.
     """
-    text = _word(part, given, "faces")
+    text = _word(part, value, "faces")
     if named := tuple(f.number for f in part.faces if f.name and f.name == text):
         return named
     return tuple(sorted(_selected(part.faces, text, part.tree, "faces", part.blends)))
@@ -170,16 +170,16 @@ def select_faces(
         The text is not of that form, selects nothing, or names an ignored face by its number.
     """
     out = frozenset(ignored)
-    left = [f for f in faces if f.number not in out]
-    # What has no surface may have been sculptured: it is asked for, but alone it would hide all others.
-    if _finished(text) and _none_sculptured(left):
-        chosen = [f.number for f in left]
+    remaining = [f for f in faces if f.number not in out]
+    # What has no surface may have been sculptured: it is requested, but alone it would hide all others.
+    if _finished(text) and _none_sculptured(remaining):
+        chosen = [f.number for f in remaining]
     else:
-        found = _selected(faces, text, tree, "--faces", blends)
-        both = out & found
+        selected = _selected(faces, text, tree, "--faces", blends)
+        both = out & selected
         if both and _NUMBERS.fullmatch(text.strip()):
             raise OptionError(f"--faces {_brief(text)}: F{min(both)} is ignored (--ignore): it cannot be a target")
-        chosen = sorted(found - out)
+        chosen = sorted(selected - out)
     if not chosen:
         raise OptionError(f"--faces {_brief(text)}: --ignore leaves none of these faces")
     return tuple(chosen)
@@ -243,25 +243,25 @@ def _selected(
         words = {word.strip() for word in plain.split(",")} & set(_KINDS)
         chosen = _numbered(plain, len(faces), where).union(*(kinds[word] for word in words))
     # All but what a mistyped name selects would be everything.
-    found = bool(chosen) or plain in _KINDS or _finished(plain)
+    known_word = bool(chosen) or plain in _KINDS or _finished(plain)
     if word != plain:
         chosen = every - chosen
-    if not (found and chosen):
+    if not (known_word and chosen):
         raise OptionError(f"{where} selects no face of this part")
     return chosen
 
 
 def _numbered(word: str, count: int, where: str) -> set[int]:
     """Numbers in a list of numbers and ranges, none beyond `count`."""
-    found: set[int] = set()
+    numbers: set[int] = set()
     for item, first, last, ends in _ends(word):
         for end, number in zip(ends, (first, last), strict=True):
             if not 1 <= number <= count:
                 raise OptionError(f"{where}: there is no face F{_brief(end)}; the part has F1 to F{count}")
         if first > last:
             raise OptionError(f"{where}: {_brief(item)} runs backwards")
-        found.update(range(first, last + 1))
-    return found
+        numbers.update(range(first, last + 1))
+    return numbers
 
 
 def _ends(word: str) -> Iterator[tuple[str, int, int, tuple[str, str]]]:
@@ -278,12 +278,12 @@ def _of_component(tree: "Sequence[Node]", name: str, where: str) -> set[int]:
     from cad_io.kernel.assembly import component_of, faces_of
 
     known = sorted({path for path in component_of(tree).values() if path})
-    found = faces_of(tree, name.strip("/")) if name.strip("/") else set()
-    if not found and known:
+    numbers = faces_of(tree, name.strip("/")) if name.strip("/") else set()
+    if not numbers and known:
         raise OptionError(f"{where}: no component is called so; the part has {listed(list(known))}")
-    if not found:
+    if not numbers:
         raise OptionError(f"{where}: the components of this part have no names")
-    return found
+    return numbers
 
 
 def _brief(text: str) -> str:
@@ -292,25 +292,25 @@ def _brief(text: str) -> str:
     return line if len(line) <= _LONGEST else f"{line[:_LONGEST]}..."
 
 
-def _words(part: "Part", given: Any, option: str) -> list[str]:
+def _words(part: "Part", value: Any, option: str) -> list[str]:
     """Each of several choices as text."""
-    if isinstance(given, list | tuple) and all(isinstance(each, str) for each in given):
-        return list(given)
-    return [] if given is None else [_word(part, given, option)]
+    if isinstance(value, list | tuple) and all(isinstance(each, str) for each in value):
+        return list(value)
+    return [] if value is None else [_word(part, value, option)]
 
 
-def _word(part: "Part", given: Any, option: str) -> str:
+def _word(part: "Part", value: Any, option: str) -> str:
     """A choice as text: objects as the numbers of their faces."""
     from cad_io.errors import CadIoError
     from cad_io.read.objects import face_numbers
 
-    if isinstance(given, str):
-        return given
-    many = given if isinstance(given, Sequence) and not isinstance(given, bytes) else (given,)
+    if isinstance(value, str):
+        return value
+    many = value if isinstance(value, Sequence) and not isinstance(value, bytes) else (value,)
     if many and all(isinstance(each, Integral) and not isinstance(each, bool) for each in many):
         return ",".join(f"F{n}" for n in sorted({int(n) for n in many}))
-    choice(given, option)
+    choice(value, option)
     try:
-        return ",".join(f"F{n}" for n in face_numbers(part, given))
+        return ",".join(f"F{n}" for n in face_numbers(part, value))
     except CadIoError as error:
         raise OptionError(f"{option}: {error.cause}") from None

@@ -40,24 +40,24 @@ def served_by(
     made : int
         How many times the tool was put down.
     """
-    lean, made = _tested(rows, axes, samples, cutter, conditions)
-    return lean >= 0, made
+    column, made = _tested(rows, axes, samples, cutter, conditions)
+    return column >= 0, made
 
 
 def _tested(
     rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, cutter: Cutter, conditions: Conditions
 ) -> tuple[NDArray[np.int8], int]:
     """How a cutter stands at samples with axes (k, m), in the numbers of the kernel, and how many times it was put down."""
-    from plan_cutters.kernels.search.fixed_axis import LEANS, served
+    from plan_cutters.kernels.search.fixed_axis import DIRECTIONS, served
 
     low, high = conditions.postures.tilt
-    lean = np.full((len(axes), len(rows)), -1, np.int8)
+    column = np.full((len(axes), len(rows)), -1, np.int8)
     held = np.flatnonzero(conditions.machine.allows(axes, frame_of(conditions.setup, conditions.x)))
     if not len(held) or not len(rows):
-        return lean, 0
+        return column, 0
     tool, solids, contacts = tool_of(conditions.outer_tool(cutter)), conditions.obstacles.solids, contacts_of(samples)
-    all_around = conditions.postures.rotation[1] - conditions.postures.rotation[0] > 2.0 * np.pi - _END
-    ways = LEANS if all_around else 0
+    full_turn = conditions.postures.rotation[1] - conditions.postures.rotation[0] > 2.0 * np.pi - _END
+    ways = DIRECTIONS if full_turn else 0
 
     def tested(piece: NDArray[np.int64]) -> int:
         """Test a piece of a table of axes by blocks of rows."""
@@ -65,31 +65,31 @@ def _tested(
         count = 0
         for k, part in zip(held[which].tolist(), block.tolist(), strict=True):
             ends = slice(part * _BLOCK, (part + 1) * _BLOCK)
-            count += served(rows[ends], axes[k], contacts, low - _END, high + _END, tool, solids, ways, lean[k, ends])
+            count += served(rows[ends], axes[k], contacts, low - _END, high + _END, tool, solids, ways, column[k, ends])
         return count
 
     blocks = -(-len(rows) // _BLOCK)
     most = max(1, _AT_ONCE // min(_BLOCK, len(rows)))
     made = in_chunks(tested, np.arange(len(held) * blocks), conditions.jobs, chunk=most)
-    if not all_around:
+    if not full_turn:
         for k in held.tolist():
-            found = np.flatnonzero(lean[k] >= 0)
-            turned = _turned(rows[found], axes[k], samples, conditions)
-            lean[k, found[~turned]] = -1
-    return lean, made
+            touched = np.flatnonzero(column[k] >= 0)
+            turned = _turned(rows[touched], axes[k], samples, conditions)
+            column[k, touched[~turned]] = -1
+    return column, made
 
 
 def _turned(
     rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, conditions: Conditions
 ) -> NDArray[np.bool_]:
-    """At which samples (m,) an axis leans as the rotations that were asked for let it."""
+    """At which samples (m,) an axis leans as the rotations that were requested let it."""
     first, last = conditions.postures.rotation
-    turn = rotations_of(samples.normal[rows], samples.direction_max[rows], lean_of(rows, axis, samples))
+    turn = rotations_of(samples.normal[rows], samples.direction_max[rows], tilt_direction_of(rows, axis, samples))
     beyond = np.remainder(turn - first + _END, 2.0 * np.pi)
     return np.asarray((beyond <= last - first + 2.0 * _END) | (samples.normal[rows] @ axis > 1.0 - _SAME**2))
 
 
-def lean_of(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples) -> Floats:
+def tilt_direction_of(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples) -> Floats:
     """Return the unit tilt directions (m, 3) of one axis at samples; `direction_max` where it is the normal."""
     normal = samples.normal[rows]
     tilt_direction = axis - (normal @ axis)[:, None] * normal
@@ -107,9 +107,9 @@ def held_at(
     Where the axis is the normal, or nearly so (`kernels.search.fixed_axis.FLAT`), and the cutter is free upright alone, with its
     bottom across the axis, the tilt is 0 and the tilt direction is where it leans: about `standing` samples.
     """
-    from plan_cutters.kernels.search.fixed_axis import LEANS
+    from plan_cutters.kernels.search.fixed_axis import DIRECTIONS
 
-    found = blank(len(number))
+    verdicts = blank(len(number))
     for k, axis in enumerate(axes):
         rows = np.flatnonzero(number == k)
         ways = _tested(rows, axis[None], samples, cutter, conditions)[0][0].astype(np.int64)
@@ -117,17 +117,17 @@ def held_at(
         across = np.linalg.norm(np.cross(samples.normal[rows], axis), axis=1)
         first = samples.direction_max[rows] - (samples.direction_max[rows] @ axis)[:, None] * axis
         first /= np.maximum(np.linalg.norm(first, axis=1), 1e-300)[:, None]
-        turn = (2.0 * np.pi / LEANS) * (ways - 1)[:, None]
+        turn = (2.0 * np.pi / DIRECTIONS) * (ways - 1)[:, None]
         about = np.cos(turn) * first + np.sin(turn) * np.cross(axis, first)
         flat = ways > 0
-        found.axis[rows] = axis
-        found.tilt_direction[rows] = np.where(flat[:, None], about, lean_of(rows, axis, samples))
-        found.tilt[rows] = np.where(flat, 0.0, np.arctan2(across, cosine))
-        found.verdict[rows] = ACCESSIBLE
-    return found.freeze()
+        verdicts.axis[rows] = axis
+        verdicts.tilt_direction[rows] = np.where(flat[:, None], about, tilt_direction_of(rows, axis, samples))
+        verdicts.tilt[rows] = np.where(flat, 0.0, np.arctan2(across, cosine))
+        verdicts.verdict[rows] = ACCESSIBLE
+    return verdicts.freeze()
 
 
-def standing(samples: SurfaceSamples, held: Verdicts) -> SurfaceSamples:
+def at_fixed_axis(samples: SurfaceSamples, held: Verdicts) -> SurfaceSamples:
     """Samples with the axis for their normal where the cutter stands upright."""
     upright = (held.tilt == 0.0)[:, None] & np.isfinite(held.axis)
     return replace(samples, normal=np.where(upright, held.axis, samples.normal))

@@ -18,7 +18,7 @@ from cad_io.errors import ReadError
 from cad_io.part.bodies import Body
 from cad_io.read.mesh import Mesh, is_mesh, read_mesh
 from cad_io.read.read import TIMEOUT
-from cad_io.tessellate.stand_ins import StandIn
+from cad_io.tessellate.proxies import StandIn
 from plan_cutters.domain.fixture import CAD, MESH, Fixture
 from plan_cutters.domain.placement import axis_words, frame_of
 from plan_cutters.errors import UnjudgeableError
@@ -34,7 +34,7 @@ _SHOWN = 0.1
 _SIDES = 720
 
 #: What was read of each fixture's source, whatever its place; and its triangles, by the chord error asked for, too.
-Kept = MutableMapping[Any, Any]
+FixtureCache = MutableMapping[Any, Any]
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -47,7 +47,7 @@ class _Body(Record):
     notes: tuple[str, ...] = ()
 
 
-def read(fixture: Fixture, kept: Kept, *, timeout: float = TIMEOUT) -> Part | Mesh | None:
+def read(fixture: Fixture, cache: FixtureCache, *, timeout: float = TIMEOUT) -> Part | Mesh | None:
     """Read the source of a fixture; the result is None where words describe the fixture.
 
     Raises
@@ -59,18 +59,18 @@ def read(fixture: Fixture, kept: Kept, *, timeout: float = TIMEOUT) -> Part | Me
         return None
     source = fixture.source
     key = (source if isinstance(source, str) else id(source), fixture.unit)
-    if key not in kept:
+    if key not in cache:
         # An object is kept with it: another one must not come to have its number.
-        kept[key] = _read(fixture, timeout), source
-    found: Part | Mesh = kept[key][0]
-    return found
+        cache[key] = _read(fixture, timeout), source
+    content: Part | Mesh = cache[key][0]
+    return content
 
 
-def packable(fixture: Fixture, kept: Kept) -> Fixture:
+def packable(fixture: Fixture, cache: FixtureCache) -> Fixture:
     """The same fixture without a kernel's shape, which cannot be pickled: with the part that was made of it."""
     if isinstance(fixture.source, str | Part):
         return fixture
-    source = read(fixture, kept)
+    source = read(fixture, cache)
     return replace(fixture, source=source, unit=None) if isinstance(source, Part) else fixture
 
 
@@ -92,19 +92,24 @@ def _read(fixture: Fixture, timeout: float) -> Part | Mesh:
 
 
 def joined(
-    around: Surroundings, fixtures: Sequence[Fixture], chord: float, kept: Kept, setup: Sequence[float] = (0.0, 0.0, 1.0),
-    own: Sequence[Fixture] = (), own_setup: Sequence[float] = (0.0, 0.0, 1.0),
-) -> Surroundings:  # fmt: skip
+    surroundings: Surroundings,
+    fixtures: Sequence[Fixture],
+    chord: float,
+    cache: FixtureCache,
+    setup: Sequence[float] = (0.0, 0.0, 1.0),
+    own: Sequence[Fixture] = (),
+    own_setup: Sequence[float] = (0.0, 0.0, 1.0),
+) -> Surroundings:
     """Add the fixtures to the surroundings of a part.
 
     Parameters
     ----------
-    around : Surroundings
+    surroundings : Surroundings
         Of the part alone.
     fixtures : sequence of Fixture
     chord : float
         Chord error to ask for, mm.
-    kept : mapping, changed
+    cache : mapping, changed
         Fixtures that are known, by their sources: they are not read again.
     setup : sequence of float
         Unit setup axis, across which tables lie.
@@ -118,34 +123,36 @@ def joined(
     """
     placed = [(each, setup) for each in fixtures] + [(each, own_setup) for each in own]
     if not placed:
-        return around
-    vertex = around.possible.triangles.vertex
+        return surroundings
+    vertex = surroundings.possible.triangles.vertex
     near = np.array([vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))])
-    standing, bodies = [], []
+    placed_fixtures, bodies = [], []
     for number, (fixture, across) in enumerate(placed, 1):
-        bed = _bed(fixture, around, across, near) if fixture.kind == "table" else None
-        body = _body(fixture, chord, kept) if bed is None else _solid(bed(TABLE), 0.0)
+        bed = _bed(fixture, surroundings, across, near) if fixture.kind == "table" else None
+        body = _body(fixture, chord, cache) if bed is None else _solid(bed(TABLE), 0.0)
         shown = None if bed is None else bed(_SHOWN * float(np.ptp(near, axis=0).max()))
-        standing.append(_standing(-number, packable(fixture, kept), body, read(fixture, kept), shown, across))
+        placed_fixtures.append(_placed(-number, packable(fixture, cache), body, read(fixture, cache), shown, across))
         bodies.append(body)
-    possible = _together(around.possible, standing, [body.possible for body in bodies], near)
+    possible = _together(surroundings.possible, placed_fixtures, [body.possible for body in bodies], near)
     certain = possible
-    if around.certain is not around.possible or any(body.certain is not body.possible for body in bodies):
-        certain = _together(around.certain, standing, [body.certain for body in bodies], near)
-    return replace(around, possible=possible, certain=certain, fixtures=tuple(standing), alone=around)
+    if surroundings.certain is not surroundings.possible or any(body.certain is not body.possible for body in bodies):
+        certain = _together(surroundings.certain, placed_fixtures, [body.certain for body in bodies], near)
+    return replace(
+        surroundings, possible=possible, certain=certain, fixtures=tuple(placed_fixtures), alone=surroundings
+    )
 
 
-def _standing(
-    number: int, fixture: Fixture, body: _Body, source: Part | Mesh | None, drawn: Floats | None, setup: Sequence[float]
+def _placed(
+    number: int, fixture: Fixture, body: _Body, source: Part | Mesh | None, extruded: Floats | None, setup: Sequence[float]
 ) -> PlacedFixture:  # fmt: skip
-    """A fixture in its place; `drawn`: triangles in its own frame that models show instead of all."""
+    """A fixture in its place; `extruded`: triangles in its own frame that models show instead of all."""
     vertex = fixture.placed(body.certain.triangles.vertex)
     whole = Obstacles(replace(body.certain.triangles, vertex=vertex), body.certain.weight)
     enclosing = Body((number,), (1,), True, np.zeros((0, 3, 3)))
     notes = list(body.notes)
     if isinstance(source, Mesh) and not fixture.chord_error:
         notes.append("how far it is from what it stands for is not known: it counts as exact")
-    shown = whole.triangles.vertex if drawn is None else fixture.placed(drawn)
+    shown = whole.triangles.vertex if extruded is None else fixture.placed(extruded)
     if fixture.follows_setup and (not fixture.sizes or tuple(setup) != (0.0, 0.0, 1.0)):
         high = float((vertex @ np.asarray(setup, float)).max())
         notes.append(f"its top is {mm(high)} from the part's origin along the setup axis {axis_words(setup)}")
@@ -154,13 +161,13 @@ def _standing(
 
 
 def _together(
-    own: Obstacles, standing: Sequence[PlacedFixture], bodies: Sequence[Obstacles], near: Floats
+    own: Obstacles, placed_fixtures: Sequence[PlacedFixture], bodies: Sequence[Obstacles], near: Floats
 ) -> Obstacles:
     """One set of obstacles, with one tree."""
     vertex, face, weight = [own.triangles.vertex], [own.triangles.face], [own.weight]
     boxes, gaps, errors = [own.open_boxes], [own.gap], [own.triangles.chord_error]
     measured = list(own.triangles.measured)
-    for each, body in zip(standing, bodies, strict=True):
+    for each, body in zip(placed_fixtures, bodies, strict=True):
         vertex.append(each.fixture.placed(body.triangles.vertex))
         face.append(np.full(len(body.triangles), each.number, np.int32))
         weight.append(body.weight)
@@ -180,45 +187,47 @@ def _together(
     return Obstacles(triangles, np.concatenate(weight), np.concatenate(boxes), max(gaps), near)
 
 
-def _body(fixture: Fixture, chord: float, kept: Kept) -> _Body:
+def _body(fixture: Fixture, chord: float, cache: FixtureCache) -> _Body:
     """A fixture in its own frame, as close to what it stands for as is asked."""
-    source = read(fixture, kept)
+    source = read(fixture, cache)
     if isinstance(source, Mesh):
         return _of_mesh(source, fixture.chord_error)
     key = (fixture.source if isinstance(fixture.source, str) else id(fixture.source), fixture.unit, chord)
-    if key not in kept:
-        kept[key] = _word(fixture, chord) if source is None else _of_part(source, fixture, chord)
-    found: _Body = kept[key]
-    return found
+    if key not in cache:
+        cache[key] = _word(fixture, chord) if source is None else _of_part(source, fixture, chord)
+    body: _Body = cache[key]
+    return body
 
 
 def _of_part(part: Part, fixture: Fixture, chord: float) -> _Body:
     try:
-        around = surroundings(part, chord)
+        boundary = surroundings(part, chord)
     except UnjudgeableError as error:
         raise UnjudgeableError(error.cause, file=f"{fixture}") from None
-    missing: list[tuple[str, str, StandIn]] = [(f"F{number}", why, how) for number, why, how in around.missing]
+    missing: list[tuple[str, str, StandIn]] = [(f"F{number}", why, how) for number, why, how in boundary.missing]
     missing += [
-        (str(each.entity or each.name), each.why, "none" if each.box is None else "box") for each in around.lost
+        (str(each.entity or each.name), each.why, "none" if each.box is None else "box") for each in boundary.lost
     ]
-    notes = [] if around.certain.weight.any() else ["encloses nothing: only its surface is in the way"]
-    return _Body(around.possible, around.certain, tuple(missing), (*part.warnings, *notes))
+    notes = [] if boundary.certain.weight.any() else ["encloses nothing: only its surface is in the way"]
+    return _Body(boundary.possible, boundary.certain, tuple(missing), (*part.warnings, *notes))
 
 
 def _of_mesh(mesh: Mesh, error: float) -> _Body:
-    found, notes = mesh.skins, list(mesh.notes)
-    if found.open and found.closed:
-        notes.append(f"{found.open} of its {found.open + found.closed} skins are not watertight: of these, only the surface "
+    shells, notes = mesh.shells, list(mesh.notes)
+    if shells.open and shells.closed:
+        notes.append(f"{shells.open} of its {shells.open + shells.closed} skins are not watertight: of these, only the surface "
                      "is in the way, not what may lie within")  # fmt: skip
-    elif found.open:
+    elif shells.open:
         notes.append("is not watertight and encloses nothing: only its surface is in the way, not what may lie within")
-    if found.turned:
-        notes.append(f"{found.turned} of its skins run the wrong way round: what lies within counts as material")
-    whole = Obstacles(_triangles(mesh.vertex, error), found.weight)
+    if shells.turned:
+        notes.append(f"{shells.turned} of its skins run the wrong way round: what lies within counts as material")
+    whole = Obstacles(_triangles(mesh.vertex, error), shells.weight)
     return _Body(whole, whole, (), tuple(notes))
 
 
-def _bed(fixture: Fixture, around: Surroundings, setup: Sequence[float], near: Floats) -> Callable[[float], Floats]:
+def _bed(
+    fixture: Fixture, surroundings: Surroundings, setup: Sequence[float], near: Floats
+) -> Callable[[float], Floats]:
     """A table in its own frame, as a slab that goes so far beyond the part as is asked, mm, and is as thick.
 
     It lies across the setup axis; if it is turned by angles, across its own z. Without a height it lies right below the part.
@@ -233,8 +242,8 @@ def _bed(fixture: Fixture, around: Surroundings, setup: Sequence[float], near: F
         (top,) = fixture.sizes
     else:
         # What surely is the part: what only stands for something missing may reach lower than anything does.
-        part = around.certain.triangles.vertex
-        part = part if len(part) else around.possible.triangles.vertex
+        part = surroundings.certain.triangles.vertex
+        part = part if len(part) else surroundings.possible.triangles.vertex
         # Its shift comes on top, as for any fixture.
         top = float(heights(part + fixture.shift)[..., 2].min())
     corners = np.array([[near[i, 0], near[j, 1], near[k, 2]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])

@@ -52,7 +52,7 @@ class Ground(Record):
             ready.samples, uv=np.zeros((0, 2)), area=np.zeros(0), neighbours=np.zeros((0, 2), np.int32), reasons=(),
             grids=(), empty=(), face_gaps=(),
         )  # fmt: skip
-        conditions = replace(ready.conditions, jobs=1, around=_bare(ready.conditions.around))
+        conditions = replace(ready.conditions, jobs=1, surroundings=_bare(ready.conditions.surroundings))
         return cls(samples, ready.surface_class, ready.inside, ready.shut, ready.clamped, conditions)
 
     def block(self, first: int, last: int) -> "Ground":
@@ -64,7 +64,7 @@ class Ground(Record):
                       self.conditions)  # fmt: skip
 
 
-def _bare(around: Surroundings) -> Surroundings:
+def _bare(surroundings: Surroundings) -> Surroundings:
     """The same obstacles without what is told of them."""
-    alone = None if around.alone is None else _bare(around.alone)
-    return replace(around, missing=(), on_bodies=(), lost=(), fixtures=(), alone=alone)
+    alone = None if surroundings.alone is None else _bare(surroundings.alone)
+    return replace(surroundings, missing=(), on_bodies=(), lost=(), fixtures=(), alone=alone)

@@ -83,14 +83,14 @@ def inside_material(
         if not hollow.any():
             rows = rows[result[rows] < 0]
         if len(rows):
-            found = balls_inside(point[rows], _BALL * deep, certain.skin_of(body), jobs)
+            inside = balls_inside(point[rows], _BALL * deep, certain.skin_of(body), jobs)
             if hollow[index]:
                 # In a corner of a void a ball is not all within it, but what lies on its wall looks into it.
-                found |= np.isin(samples.face[rows], body.faces)
-                void[rows[found]] = index
-            layers[rows[found]] += -1 if hollow[index] else 1
+                inside |= np.isin(samples.face[rows], body.faces)
+                void[rows[inside]] = index
+            layers[rows[inside]] += -1 if hollow[index] else 1
             if not hollow[index]:
-                result[rows[found & (result[rows] < 0)]] = index
+                result[rows[inside & (result[rows] < 0)]] = index
     empty = (result >= 0) & (layers <= 0) & (void >= 0)
     result[empty] = void[empty]
     return result
@@ -122,15 +122,15 @@ def balls_inside(points: Floats, radius: float, obstacles: Obstacles, jobs: int)
     """Whether balls about points (n, 3), `radius` in mm, lie wholly inside what the obstacles enclose: (n,)."""
     from plan_cutters.kernels.material import far_inside
 
-    found, solids = np.zeros(len(points), bool), obstacles.solids
+    inside, solids = np.zeros(len(points), bool), obstacles.solids
 
     def work(rows: NDArray[np.int64]) -> None:
         mine = np.zeros(len(rows), bool)
         far_inside(np.ascontiguousarray(points[rows]), radius, solids, mine)
-        found[rows] = mine
+        inside[rows] = mine
 
     in_chunks(work, np.arange(len(points)), jobs)
-    return found
+    return inside
 
 
 def voids(bodies: Sequence[Body], orientation: Orientation) -> NDArray[np.bool_]:
@@ -204,10 +204,10 @@ def _met(point: Floats, normal: Floats, certain: Obstacles) -> NDArray[np.int64]
         with np.errstate(all="ignore"):
             ends = np.stack([(-half - start) / step, (half - start) / step])
         # Along a side of the box, the ray is between its ends all the way, or never.
-        beside = step == 0.0
-        low = np.where(beside, -np.inf, ends.min(axis=0)).max(axis=1)
-        high = np.where(beside, np.inf, ends.max(axis=0)).min(axis=1)
-        hit = ~(beside & (np.abs(start) > half)).any(axis=1) & (high >= np.maximum(low, 0.0) - 1e-9)
+        adjacent = step == 0.0
+        low = np.where(adjacent, -np.inf, ends.min(axis=0)).max(axis=1)
+        high = np.where(adjacent, np.inf, ends.max(axis=0)).min(axis=1)
+        hit = ~(adjacent & (np.abs(start) > half)).any(axis=1) & (high >= np.maximum(low, 0.0) - 1e-9)
         node = node[hit]
         if level < tree.depth:
             node = np.concatenate([2 * node + 1, 2 * node + 2])

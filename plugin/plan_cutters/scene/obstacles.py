@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 #: Cells along the longest side of the grid that tells what is surely outside.
 _CELLS = 64
 #: Among fixtures, the grid goes this much of the part's longest side beyond it.
-_AROUND = 0.5
+_MARGIN = 0.5
 #: Share of the tolerance that the obstacles' chord error may take, and what is asked of the tessellation.
-CHORD_SHARE, CHORD_ASKED = 0.25, 0.2
+CHORD_SHARE, CHORD_REQUESTED = 0.25, 0.2
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -117,14 +117,14 @@ class Obstacles(Record):
     def _cells(self) -> tuple[NDArray[np.uint8], Floats, float, bool]:
         """Cells (i, j, k), 1 where one is surely outside; the grid's origin (3,), the size of a cell, mm, and whether nothing
         lies beyond the grid."""
-        from plan_cutters.kernels.material import mark_skin
+        from plan_cutters.kernels.material import mark_shell
 
         vertex, (low, high, grow) = self.tree.vertex, self._extent
         extent = float((high - low).max())
         whole = True
         if self.near is not None:
             extent = float(np.ptp(self.near, axis=0).max())
-            first, last = self.near[0] - _AROUND * extent, self.near[1] + _AROUND * extent
+            first, last = self.near[0] - _MARGIN * extent, self.near[1] + _MARGIN * extent
             whole = bool((low >= first).all() and (high <= last).all())
             low, high = np.maximum(low, first), np.minimum(high, last)
         if not grow < extent / 8:
@@ -136,7 +136,7 @@ class Obstacles(Record):
         if self.near is not None:
             # Of a large one that stands askew, the kernel would look at every cell of the box around it.
             vertex = divided(vertex, low - grow - 2.0 * size, high + grow + 2.0 * size, 8.0 * size)
-        mark_skin(vertex, grow, origin, size, cell)
+        mark_shell(vertex, grow, origin, size, cell)
         # What is connected with the corner, past every skin, is outside.
         region, _ = ndimage.label(cell == 0)
         outside = region == region[0, 0, 0] if whole else self._open_air(region, origin, size)
@@ -161,10 +161,10 @@ class Obstacles(Record):
             replace(self.triangles, vertex=self.triangles.vertex[mine], face=self.triangles.face[mine]),
             self.weight[mine],
         )
-        found = np.zeros(len(point))
+        distance = np.zeros(len(point))
         if fixtures.weight.any():
-            windings(np.ascontiguousarray(point), fixtures._everywhere, found)
-        return np.isin(region, numbers[(numbers > 0) & (found < MAYBE_INSIDE)])
+            windings(np.ascontiguousarray(point), fixtures._everywhere, distance)
+        return np.isin(region, numbers[(numbers > 0) & (distance < MAYBE_INSIDE)])
 
     @property
     def _everywhere(self) -> "Solids":
@@ -289,9 +289,9 @@ def halved(vertex: Floats, side: Floats) -> Floats:
     return np.concatenate([np.stack([a, middle, c], axis=1), np.stack([middle, b, c], axis=1)])
 
 
-def weights(triangles: Triangles, found: Sequence[Body]) -> NDArray[np.int8]:
+def weights(triangles: Triangles, bodies: Sequence[Body]) -> NDArray[np.int8]:
     """Weights (n,) of triangles from the faces and signs of bodies."""
-    by_face = np.zeros(1 + max([int(triangles.face.max(initial=0)), *(max(body.faces) for body in found)]), np.int8)
-    for body in found:
+    by_face = np.zeros(1 + max([int(triangles.face.max(initial=0)), *(max(body.faces) for body in bodies)]), np.int8)
+    for body in bodies:
         np.add.at(by_face, list(body.faces), np.array(body.sign, np.int8))
     return by_face[triangles.face]

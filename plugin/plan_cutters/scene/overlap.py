@@ -30,7 +30,7 @@ class Overlap(Record):
     point: Floats
 
 
-def refuse_overlaps(around: Surroundings, tolerance: float) -> None:
+def refuse_overlaps(surroundings: Surroundings, tolerance: float) -> None:
     """Refuse fixtures that stand in the part.
 
     Raises
@@ -38,16 +38,18 @@ def refuse_overlaps(around: Surroundings, tolerance: float) -> None:
     FixtureError
         It names the fixture, the depth and the place.
     """
-    part = (around.alone or around).certain
-    for each in around.fixtures:
-        found = overlap(part, each, tolerance)
-        if found is not None:
-            x, y, z = (f"{value + 0.0:.4g}" for value in np.round(found.point, 6))
-            raise FixtureError(f"{each.name} and the part stand {found.depth:.3g} mm deep in each other at {x},{y},{z} mm: check "
-                               "its placement and its unit")  # fmt: skip
+    part = (surroundings.alone or surroundings).certain
+    for each in surroundings.fixtures:
+        result = overlap(part, each, tolerance)
+        if result is not None:
+            x, y, z = (f"{value + 0.0:.4g}" for value in np.round(result.point, 6))
+            raise FixtureError(
+                f"{each.name} and the part stand {result.depth:.3g} mm deep in each other at {x},{y},{z} mm: check "
+                "its placement and its unit"
+            )
 
 
-def overlap(part: Obstacles, standing: PlacedFixture, tolerance: float) -> Overlap | None:
+def overlap(part: Obstacles, placed: PlacedFixture, tolerance: float) -> Overlap | None:
     """How deep a fixture stands in a part, or the part in it; None where they touch at most.
 
     Only what is closed has an inside: two surfaces that enclose nothing are not compared.
@@ -56,19 +58,21 @@ def overlap(part: Obstacles, standing: PlacedFixture, tolerance: float) -> Overl
     ----------
     part : Obstacles
         The part alone, with what it surely encloses.
-    standing : Standing
+    placed : Standing
     tolerance : float
         Depth that is no fault, mm, beside the chord errors of both.
     """
-    fixture = standing.obstacles
+    fixture = placed.obstacles
     deep = tolerance + part.triangles.chord_error + fixture.triangles.chord_error
     ends = [(o.triangles.vertex.min(axis=(0, 1)), o.triangles.vertex.max(axis=(0, 1))) for o in (part, fixture)]
     low, high = np.max([a for a, _ in ends], axis=0), np.min([b for _, b in ends], axis=0)
     if (high - low < 0).any():
         return None
     apart = max(_APART * float(np.linalg.norm(high - low)), deep)
-    found = [_deepest(_points(one, low, high, apart), other, deep) for one, other in ((fixture, part), (part, fixture))]
-    return max((each for each in found if each is not None), key=lambda each: each.depth, default=None)
+    overlaps = [
+        _deepest(_points(one, low, high, apart), other, deep) for one, other in ((fixture, part), (part, fixture))
+    ]
+    return max((each for each in overlaps if each is not None), key=lambda each: each.depth, default=None)
 
 
 def _points(obstacles: Obstacles, low: Floats, high: Floats, apart: float) -> Floats:
@@ -90,10 +94,10 @@ def _deepest(points: Floats, solid: Obstacles, least: float) -> Overlap | None:
 
     if not solid.weight.any():
         return None
-    left, low, point = within(np.ascontiguousarray(points), least), least, None
-    while len(left):
+    remaining, low, point = within(np.ascontiguousarray(points), least), least, None
+    while len(remaining):
         # Of some, the deepest; then only what is deeper.
-        few = left[:: 1 + len(left) // _FEW]
+        few = remaining[:: 1 + len(remaining) // _FEW]
         while len(deeper := within(few, 2.0 * low)):
             few, low = deeper, 2.0 * low
         high = 2.0 * low
@@ -102,5 +106,5 @@ def _deepest(points: Floats, solid: Obstacles, least: float) -> Overlap | None:
             deeper = within(few, middle)
             few, low, high = (deeper, middle, high) if len(deeper) else (few, low, middle)
         point = few[0]
-        left, low = within(left, high), high
+        remaining, low = within(remaining, high), high
     return None if point is None else Overlap(low, point)

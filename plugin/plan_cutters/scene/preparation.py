@@ -86,9 +86,9 @@ class Prepared(Record):
     @property
     def axes(self) -> tuple[tuple[Axis, Axis | None], ...]:
         """Give the setup axis and, where it is known, the direction along the machine's X, of each requested setup."""
-        options, given = self.options, (self.scene.setup, *self.options.other_setups)
+        options, axes = self.options, (self.scene.setup, *self.options.other_setups)
         places = (options.placement, *(options.other_placements or (None,) * len(options.other_setups)))
-        return tuple((axis, None if place is None else place.x) for axis, place in zip(given, places, strict=True))
+        return tuple((axis, None if place is None else place.x) for axis, place in zip(axes, places, strict=True))
 
     @property
     def setups(self) -> tuple[Conditions, ...]:
@@ -112,7 +112,7 @@ class Prepared(Record):
         """The body that each sample (n,) lies within, -1 for none; of a clamped face, one more than there are."""
         if self.held is None or not self.held.any():
             return self.inside
-        return np.where(self.held & (self.inside < 0), len(self.conditions.around.enclosing), self.inside).astype(
+        return np.where(self.held & (self.inside < 0), len(self.conditions.surroundings.enclosing), self.inside).astype(
             np.int32
         )
 
@@ -131,7 +131,8 @@ class Prepared(Record):
     def alike(self) -> bool:
         """Whether the part stands among the same obstacles in all setups, held at the same faces."""
         return not self.clamped.any() and not any(
-            each.conditions.around is not self.conditions.around or each.clamped.any() for each in self.others
+            each.conditions.surroundings is not self.conditions.surroundings or each.clamped.any()
+            for each in self.others
         )
 
     @property

@@ -14,7 +14,7 @@ import numpy as np
 
 from cad_io import Part, files
 from cad_io.part.orient import orient
-from cad_io.read.references import beside, fingerprint_of
+from cad_io.read.references import fingerprint_of, in_folder_of
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
@@ -49,7 +49,7 @@ def question(ready: Prepared, cutter: Cutter) -> dict[str, Any]:
     cutter : Cutter
         As it was judged.
     """
-    options, scene, chosen, around = ready.options, ready.scene, ready.chosen, ready.conditions.around
+    options, scene, chosen, surroundings = ready.options, ready.scene, ready.chosen, ready.conditions.surroundings
     part = scene.part
     return {
         "method": METHOD,
@@ -65,11 +65,12 @@ def question(ready: Prepared, cutter: Cutter) -> dict[str, Any]:
         "x": None if options.placement is None or options.placement.x is None else list(options.placement.x),
         "sides_follow_setup": _sides_follow(scene),
         "fixtures": [
-            _fixture(each.fixture, None if each.source is None else _bytes(each.source)) for each in around.fixtures
+            _fixture(each.fixture, None if each.source is None else _bytes(each.source))
+            for each in surroundings.fixtures
         ],
         "tolerance": scene.asked,
         "tolerance_kept": ready.conditions.tolerance,
-        "chord_error": around.certain.triangles.chord_error,
+        "chord_error": surroundings.certain.triangles.chord_error,
         "tool": json.loads(json.dumps(dataclasses.asdict(cutter))),
         "allowance": options.allowance,
         "holder_clearance": options.holder_clearance,
@@ -79,12 +80,12 @@ def question(ready: Prepared, cutter: Cutter) -> dict[str, Any]:
         "rotation_step": options.postures.step,
         "grid": options.grid,
         "spacing": options.spacing,
-        "missing": list(around.doubts),
+        "missing": list(surroundings.doubts),
         "unjudged_faces": [f.id for f in part.faces if f.number in chosen.targets and f.unjudged],
     }
 
 
-def refuse_others(about: Mapping[str, Any], options: Options, given: Collection[str], cutter: str) -> None:
+def refuse_others(about: Mapping[str, Any], options: Options, stated: Collection[str], cutter: str) -> None:
     """Refuse what posture maps cannot answer; what is not given means what they were made with.
 
     Parameters
@@ -92,8 +93,8 @@ def refuse_others(about: Mapping[str, Any], options: Options, given: Collection[
     about : mapping
         What `question` wrote.
     options : Options
-    given : collection of str
-        The options that were asked for by their names: the others are left at their defaults.
+    stated : collection of str
+        The options that were requested by their names: the others are left at their defaults.
     cutter : str
         Id of the one that the maps are of.
 
@@ -109,7 +110,7 @@ def refuse_others(about: Mapping[str, Any], options: Options, given: Collection[
     if options.propose:
         raise OptionError("posture maps do not answer the setup auto: leave it out, or plan the part with it")
     try:
-        for word in sorted(given):
+        for word in sorted(stated):
             if word in ANSWERED or word in IRRELEVANT:
                 continue
             if word not in _SAME:
@@ -117,16 +118,16 @@ def refuse_others(about: Mapping[str, Any], options: Options, given: Collection[
             if fault := _SAME[word](about, options):
                 raise OptionError(f"these maps are of {fault}: plan again")
         _places(about, options)
-        if ({"cutters", "libraries"} & set(given)) and cutter not in (ids := _ids(about, options, given)):
+        if ({"cutters", "libraries"} & set(stated)) and cutter not in (ids := _ids(about, options, stated)):
             raise OptionError(
-                f"these maps are of cutter {cutter}, which was not asked for ({', '.join(ids[:3])}): plan again"
+                f"these maps are of cutter {cutter}, which was not requested ({', '.join(ids[:3])}): plan again"
             )
     except (KeyError, TypeError, ValueError, AttributeError):
         # The file was checked as arrays, not as words.
         raise OptionError(_UNSAID) from None
 
 
-def turns_of(about: Mapping[str, Any], rotations: Any, options: Options, given: Collection[str]) -> Any:
+def turns_of(about: Mapping[str, Any], rotations: Any, options: Options, stated: Collection[str]) -> Any:
     """Which of the maps' rotations (k,) a plan with these options would look at; all where none of them was given.
 
     Raises
@@ -134,7 +135,7 @@ def turns_of(about: Mapping[str, Any], rotations: Any, options: Options, given: 
     OptionError
         It would look at others.
     """
-    words = {"rotation", "rotation_step"} & set(given)
+    words = {"rotation", "rotation_step"} & set(stated)
     if not words:
         return np.arange(len(rotations))
     try:
@@ -143,12 +144,12 @@ def turns_of(about: Mapping[str, Any], rotations: Any, options: Options, given: 
         wanted = PostureRange(rotation=ends, step=step).rotations
     except (KeyError, TypeError):
         raise OptionError(_UNSAID) from None
-    found = np.abs(np.remainder(wanted[:, None] - rotations + math.pi, 2.0 * math.pi) - math.pi) <= _TOLERATED
-    if not found.any(axis=1).all():
-        missing = float(np.degrees(wanted[~found.any(axis=1)][0]))
-        raise OptionError(f"these maps have no rotation of {missing:.6g} deg, which was asked for with "
+    matches = np.abs(np.remainder(wanted[:, None] - rotations + math.pi, 2.0 * math.pi) - math.pi) <= _TOLERATED
+    if not matches.any(axis=1).all():
+        missing = float(np.degrees(wanted[~matches.any(axis=1)][0]))
+        raise OptionError(f"these maps have no rotation of {missing:.6g} deg, which was requested with "
                           f"{' and '.join(_called(each) for each in sorted(words))}: plan again")  # fmt: skip
-    return np.flatnonzero(found.any(axis=0))
+    return np.flatnonzero(matches.any(axis=0))
 
 
 def require_side(about: Mapping[str, Any], setup: Any) -> None:
@@ -176,10 +177,10 @@ def setup_of(about: Mapping[str, Any]) -> Placement:
 
 def words_of(about: Mapping[str, Any], key: str) -> tuple[str, ...]:
     """Texts that are stored under a key; none where there is none."""
-    found = about.get(key, ())
-    if not isinstance(found, list | tuple) or not all(isinstance(each, str) for each in found):
+    words = about.get(key, ())
+    if not isinstance(words, list | tuple) or not all(isinstance(each, str) for each in words):
         raise OptionError(_UNSAID)
-    return tuple(found)
+    return tuple(words)
 
 
 def checksum(part: Any) -> str:
@@ -193,7 +194,7 @@ def checksum(part: Any) -> str:
     if isinstance(part, Part):
         return part.fingerprint
     try:
-        return fingerprint_of(files.content(part), beside(part))
+        return fingerprint_of(files.content(part), in_folder_of(part))
     except (OSError, ValueError, TypeError) as error:
         raise OptionError(f"cannot be read: {getattr(error, 'strerror', None) or error}", file=str(part)) from None
 
@@ -223,31 +224,37 @@ def _fixture(fixture: Fixture, bytes_of: str | None) -> dict[str, Any]:
     return made | {"sha256": bytes_of, "unit": fixture.unit}
 
 
-def _asked_fixture(fixture: Fixture) -> dict[str, Any]:
-    source, found = fixture.source, None
+def _requested_fixture(fixture: Fixture) -> dict[str, Any]:
+    source, file = fixture.source, None
     if isinstance(source, str) and not fixture.kind:
-        found = checksum(source)
+        file = checksum(source)
     elif not isinstance(source, str):
-        found = _bytes(source)
-    return _fixture(fixture, found)
+        file = _bytes(source)
+    return _fixture(fixture, file)
 
 
 def _fixtures(about: Mapping[str, Any], options: Options) -> str:
-    stored, asked = about["fixtures"], [_asked_fixture(each) for each in options.fixtures]
+    stored, requested = about["fixtures"], [_requested_fixture(each) for each in options.fixtures]
     key: Callable[[Any], str] = lambda each: json.dumps(each, sort_keys=True)  # noqa: E731
     # What has no bytes, as an object of a CAD host, is the same as nothing else.
-    known = all(each.get("kind") or each.get("sha256") for each in (*stored, *asked))
-    if known and sorted(map(key, stored)) == sorted(map(key, asked)):
+    known = all(each.get("kind") or each.get("sha256") for each in (*stored, *requested))
+    if known and sorted(map(key, stored)) == sorted(map(key, requested)):
         return ""
-    return f"other fixtures ({len(stored)}, {len(asked)} asked for)"
+    return f"other fixtures ({len(stored)}, {len(requested)} requested)"
 
 
 def _selection(word: str, numbers: str) -> Callable[[Mapping[str, Any], Options], str]:
     """Compares words for faces, and lists of their numbers."""
 
     def differs(about: Mapping[str, Any], options: Options) -> str:
-        stored, asked = about[word], getattr(options, word)
-        texts = [asked] if isinstance(asked, str) else list(asked) if isinstance(asked, list | tuple) else [asked]
+        stored, requested = about[word], getattr(options, word)
+        texts = (
+            [requested]
+            if isinstance(requested, str)
+            else list(requested)
+            if isinstance(requested, list | tuple)
+            else [requested]
+        )
         before = [stored] if isinstance(stored, str) else list(stored)
         if all(isinstance(each, str) for each in texts):
             if sorted(_plain(each) for each in texts) == sorted(_plain(each) for each in before):
@@ -257,8 +264,8 @@ def _selection(word: str, numbers: str) -> Callable[[Mapping[str, Any], Options]
             listed = [{each} if type(each) is int else None for each in texts]
         if all(each is not None for each in listed) and set().union(*listed) == set(about[numbers]):  # type: ignore[arg-type]
             return ""
-        said = ", ".join(str(each) for each in texts)
-        return f"{word} {', '.join(before) or 'none'}, not {ascii(said)[1:-1][:60] or 'none'}"
+        text = ", ".join(str(each) for each in texts)
+        return f"{word} {', '.join(before) or 'none'}, not {ascii(text)[1:-1][:60] or 'none'}"
 
     return differs
 
@@ -269,30 +276,30 @@ def _plain(text: str) -> str:
 
 def _listed(text: str) -> set[int] | None:
     """Numbers of a text such as F1,F3-5; None for other words."""
-    found: set[int] = set()
+    numbers: set[int] = set()
     for item in _plain(text).split(","):
         ends = [end.lstrip("Ff") for end in item.split("-")]
         if not 1 <= len(ends) <= 2 or not all(end.isdecimal() and len(end) < 6 for end in ends):
             return None
-        found.update(range(int(ends[0]), int(ends[-1]) + 1))
-    return found
+        numbers.update(range(int(ends[0]), int(ends[-1]) + 1))
+    return numbers
 
 
 def _number(word: str, unit: str = "") -> Callable[[Mapping[str, Any], Options], str]:
     def differs(about: Mapping[str, Any], options: Options) -> str:
-        stored, asked = about[word], getattr(options, word)
-        if stored == asked:
+        stored, requested = about[word], getattr(options, word)
+        if stored == requested:
             return ""
-        said = ["as stated" if each is None and word == "unit" else "by default" if each is None else
-                f"{each:g}{unit}" if isinstance(each, float) else str(each) for each in (stored, asked)]  # fmt: skip
-        return f"{word.replace('_', ' ')} {said[0]}, not {said[1]}"
+        texts = ["as stated" if each is None and word == "unit" else "by default" if each is None else
+                f"{each:g}{unit}" if isinstance(each, float) else str(each) for each in (stored, requested)]  # fmt: skip
+        return f"{word.replace('_', ' ')} {texts[0]}, not {texts[1]}"
 
     return differs
 
 
 def _holder(about: Mapping[str, Any], options: Options) -> str:
-    asked = None if options.holder is None else json.loads(json.dumps(dataclasses.asdict(options.holder)))
-    return "" if about["holder"] == asked else "another holder"
+    requested = None if options.holder is None else json.loads(json.dumps(dataclasses.asdict(options.holder)))
+    return "" if about["holder"] == requested else "another holder"
 
 
 #: By option: why an answer to it is none of these maps', or an empty text. Of cutters, see `_ids`.
@@ -325,12 +332,12 @@ def _places(about: Mapping[str, Any], options: Options) -> None:
             raise OptionError(f"these maps are of {fault}: plan again")
 
 
-def _ids(about: Mapping[str, Any], options: Options, given: Collection[str]) -> list[str]:
+def _ids(about: Mapping[str, Any], options: Options, stated: Collection[str]) -> list[str]:
     """Ids of the cutters asked for, with the allowance, clearance and holder that the maps were made with, where not given."""
-    kept = {word: about[word] for word in ("allowance", "holder_clearance") if word not in given}
-    if "holder" not in given and about["holder"] is not None:
-        kept["holder"] = _made(about["holder"])
-    return [each.id for each in dataclasses.replace(options, **kept).judged]
+    stored = {word: about[word] for word in ("allowance", "holder_clearance") if word not in stated}
+    if "holder" not in stated and about["holder"] is not None:
+        stored["holder"] = _made(about["holder"])
+    return [each.id for each in dataclasses.replace(options, **stored).judged]
 
 
 def _made(words: Mapping[str, Any]) -> Holder:

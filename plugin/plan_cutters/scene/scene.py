@@ -20,8 +20,8 @@ from plan_cutters.errors import OptionError
 from plan_cutters.option_types import SceneOptions
 from plan_cutters.options import MOST_TOLERANCE, Options
 from plan_cutters.scene.faces import ignored_faces, ignored_words
-from plan_cutters.scene.fixtures import Kept, joined, packable, read
-from plan_cutters.scene.obstacles import CHORD_ASKED
+from plan_cutters.scene.fixtures import FixtureCache, joined, packable, read
+from plan_cutters.scene.obstacles import CHORD_REQUESTED
 from plan_cutters.scene.overlap import refuse_overlaps
 from plan_cutters.scene.surroundings import Surroundings, surroundings
 
@@ -33,7 +33,7 @@ _DEFAULTS = {word: getattr(Options(), word) for word in get_type_hints(SceneOpti
 class _Memory:
     """A scene has read and made this: it is not done twice. `alone` are the surroundings without fixtures."""
 
-    sources: Kept = field(default_factory=dict)
+    sources: FixtureCache = field(default_factory=dict)
     alone: Surroundings | None = None
     around: Surroundings | None = None
 
@@ -56,7 +56,7 @@ class Scene(Record):
     ignored : tuple of int
         Their numbers, ascending.
     asked : float
-        The gouge tolerance that was asked for, mm.
+        The gouge tolerance that was requested, mm.
     fixtures : tuple of Fixture
         What holds the part: obstacles, never targets.
     """
@@ -101,25 +101,25 @@ class Scene(Record):
         """
         if unknown := sorted(set(options) - set(_DEFAULTS)):
             raise OptionError(f"a scene has no option {unknown[0]}; it has {', '.join(_DEFAULTS)}")
-        given: dict[str, Any] = {**_DEFAULTS, **options}
-        tolerance, flip = number(given["tolerance"], "tolerance"), flag(given["flip"], "flip")
+        result: dict[str, Any] = {**_DEFAULTS, **options}
+        tolerance, flip = number(result["tolerance"], "tolerance"), flag(result["flip"], "flip")
         if not 0 < tolerance <= MOST_TOLERANCE:
             raise OptionError(f"tolerance {tolerance:g} must lie between 0 and {MOST_TOLERANCE:g} mm")
-        if isinstance(given["setup"], Placement) or plane_of(given["setup"]) is not None:
+        if isinstance(result["setup"], Placement) or plane_of(result["setup"]) is not None:
             raise OptionError("a scene keeps the setup axis alone, and a placement or plane says more: give its z here, and "
                               "itself to plan")  # fmt: skip
-        setup: Any = tuple(unit(given["setup"], "setup axis").tolist())
-        fixtures = Fixture.each_of(given["fixtures"])
+        setup: Any = tuple(unit(result["setup"], "setup axis").tolist())
+        fixtures = Fixture.each_of(result["fixtures"])
         if isinstance(part, Scene):
-            ignore = ignored_words(part.part, given["ignore"])
-            asked = {"setup": setup, "flip": flip, "tolerance": tolerance, "ignore": ignore}
+            ignore = ignored_words(part.part, result["ignore"])
+            request = {"setup": setup, "flip": flip, "tolerance": tolerance, "ignore": ignore}
             for word in [each for each in options if each != "fixtures"]:
                 own = part.options[word]
-                if not (np.allclose(own, setup, atol=1e-12) if word == "setup" else own == asked[word]):
+                if not (np.allclose(own, setup, atol=1e-12) if word == "setup" else own == request[word]):
                     raise OptionError(f"the scene was made with {word}={own!r}: give another one there")
             return part.clamped(fixtures) if "fixtures" in options else part
         whole = part if isinstance(part, Part) else read_part(part)
-        words = ignored_words(whole, given["ignore"])
+        words = ignored_words(whole, result["ignore"])
         ignored = tuple(sorted(ignored_faces(whole, words)))
         return cls(whole, orient(whole, towards=setup, flip=flip), setup, flip, words, ignored, tolerance,
                    fixtures)  # fmt: skip
@@ -182,13 +182,13 @@ class Scene(Record):
         FixtureError
             A fixture stands in the part.
         """
-        memory, chord = self._memory, CHORD_ASKED * self.asked
+        memory, chord = self._memory, CHORD_REQUESTED * self.asked
         if memory.around is None:
             if memory.alone is None:
                 memory.alone = surroundings(self.part, chord, ignored=self.ignored, jobs=jobs, at=at)
-            around = joined(memory.alone, self.fixtures, chord, memory.sources, self.setup)
-            refuse_overlaps(around, around.tolerance(self.asked))
-            memory.around = around
+            obstacles = joined(memory.alone, self.fixtures, chord, memory.sources, self.setup)
+            refuse_overlaps(obstacles, obstacles.tolerance(self.asked))
+            memory.around = obstacles
         return memory.around
 
     def surround_in(
@@ -208,14 +208,14 @@ class Scene(Record):
         FixtureError
             A fixture stands in the part.
         """
-        memory, chord = self._memory, CHORD_ASKED * self.asked
+        memory, chord = self._memory, CHORD_REQUESTED * self.asked
         mine = tuple(Fixture.each_of([*shared, *own]))
         alone = memory.alone
         if alone is None or (mine == self.fixtures and not (setup != self.setup and any(f.follows_setup for f in own))):
             return self.surround()
-        around = joined(alone, mine[: len(shared)], chord, memory.sources, self.setup, mine[len(shared) :], setup)
-        refuse_overlaps(around, around.tolerance(self.asked))
-        return around
+        surroundings = joined(alone, mine[: len(shared)], chord, memory.sources, self.setup, mine[len(shared) :], setup)
+        refuse_overlaps(surroundings, surroundings.tolerance(self.asked))
+        return surroundings
 
     def turned_to(self, setup: tuple[float, float, float]) -> "Scene":
         """The same part in another setup, the sides of its faces as they are, without fixtures: it is not tessellated again."""
@@ -228,7 +228,7 @@ class Scene(Record):
 
         The table touches the part at its lowest point: nothing is to be refused.
         """
-        memory, chord = self._memory, CHORD_ASKED * self.asked
+        memory, chord = self._memory, CHORD_REQUESTED * self.asked
         if memory.alone is None:
             memory.alone = surroundings(self.part, chord, ignored=self.ignored)
         return joined(memory.alone, Fixture.each_of("table"), chord, memory.sources, setup)

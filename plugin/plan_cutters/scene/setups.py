@@ -36,17 +36,17 @@ def conditions_of(scene: Scene, options: Options) -> list[Conditions]:
     first, shared = scene.surround(), options.shared_fixtures
     axes = (scene.setup, *options.other_setups)
     own = [() if place is None else place.fixtures for place in places(options)]
-    around: list[Surroundings] = [first]
+    each_setup: list[Surroundings] = [first]
     for axis, mine in zip(axes[1:], own[1:], strict=True):
-        around.append(scene.surround_in(axis, shared, mine))
-        if doubts := [each for each in around[-1].doubts if each not in first.doubts]:
+        each_setup.append(scene.surround_in(axis, shared, mine))
+        if doubts := [each for each in each_setup[-1].doubts if each not in first.doubts]:
             # What is missing there would have to be told of each setup by itself.
             raise FixtureError(f"setup {axis_words(axis)}: {doubts[0]}; give a fixture that can be read whole, or make this "
                                "setup the first")  # fmt: skip
-    tolerance = max(each.tolerance(scene.asked) for each in around)
+    tolerance = max(each.tolerance(scene.asked) for each in each_setup)
     return [
         Conditions(options.machine, np.array(axis), options.postures, each, tolerance, options.jobs, _x(place))
-        for axis, each, place in zip(axes, around, places(options), strict=True)
+        for axis, each, place in zip(axes, each_setup, places(options), strict=True)
     ]
 
 
@@ -60,9 +60,15 @@ def with_setups(ready: Prepared, conditions: list[Conditions]) -> Prepared:
     others = []
     for each, clamped in zip(conditions[1:], held[1:], strict=True):
         inside = ready.inside
-        if each.around is not ready.conditions.around:
-            inside = inside_material(ready.samples, ready.scene.orientation, each.around.enclosing, each.around.certain,
-                                     each.tolerance, each.jobs)  # fmt: skip
+        if each.surroundings is not ready.conditions.surroundings:
+            inside = inside_material(
+                ready.samples,
+                ready.scene.orientation,
+                each.surroundings.enclosing,
+                each.surroundings.certain,
+                each.tolerance,
+                each.jobs,
+            )
         others.append(OtherSetup(each, inside, clamped))
     return replace(ready, held=held[0], others=tuple(others))
 
@@ -81,5 +87,5 @@ def notes_of_setups(ready: Prepared) -> Iterator[Note]:
         held = sorted(clamped_faces(ready.scene.part, place) & set(ready.chosen.targets))
         if held:
             yield notes.faces_clamped_there([f"F{number}" for number in held], axis_words(axis))
-        if not conditions.around.fixtures:
+        if not conditions.surroundings.fixtures:
             yield notes.setup_without_fixtures(axis_words(axis))

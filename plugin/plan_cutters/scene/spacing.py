@@ -72,10 +72,10 @@ def sampled(
 
 def _most() -> int:
     """Samples that may be taken here."""
-    said = os.environ.get(MOST, "") or str(MOST_SAMPLES)
-    if not said.isdecimal():
-        raise OptionError(f"{MOST} in the environment must be a whole number, not {said!r}")
-    return min(MOST_SAMPLES, int(said))
+    stated = os.environ.get(MOST, "") or str(MOST_SAMPLES)
+    if not stated.isdecimal():
+        raise OptionError(f"{MOST} in the environment must be a whole number, not {stated!r}")
+    return min(MOST_SAMPLES, int(stated))
 
 
 def affordable(part: Part, faces: Sequence[int], options: Options) -> None:

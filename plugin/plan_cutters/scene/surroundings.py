@@ -12,7 +12,7 @@ from cad_io.part.bodies import Body, bodies
 from cad_io.part.boxes import face_box
 from cad_io.read.mesh import Mesh
 from cad_io.tessellate import tessellate
-from cad_io.tessellate.stand_ins import StandIn, stand_ins
+from cad_io.tessellate.proxies import StandIn, stand_ins
 from cad_io.tessellate.triangles import At
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.errors import UnjudgeableError
@@ -120,9 +120,9 @@ class Surroundings(Record):
         """List the bodies that enclose a volume: those of the part, then those of fixtures."""
         return (*self.bodies, *(each.body for each in self.fixtures if each.body is not None))
 
-    def tolerance(self, asked: float) -> float:
+    def tolerance(self, requested: float) -> float:
         """Give the gouge tolerance that is kept, mm: the one asked for or, where triangles cannot be that close, more."""
-        return max(asked, self.certain.triangles.chord_error / CHORD_SHARE)
+        return max(requested, self.certain.triangles.chord_error / CHORD_SHARE)
 
     def called(self, face: int) -> str:
         """The name of a face number: `F12`, or `fixture:vise`."""
@@ -173,20 +173,20 @@ def surroundings(
         causes = "; ".join(sorted({why for _, why in triangles.missing}))
         raise UnjudgeableError(f"no face has triangles that could be in the way: {causes or 'all are left out'}",
                                file=part.file)  # fmt: skip
-    found = bodies(part, without=ignored)
+    result = bodies(part, without=ignored)
     loose = dict(triangles.loose)
     close = triangles.without(loose)
     # A skin without its loose faces has holes: what it encloses is then a guess.
-    sure = [b for b in found if b.closed and loose.keys().isdisjoint(b.faces)]
+    sure = [b for b in result if b.closed and loose.keys().isdisjoint(b.faces)]
     certain = Obstacles(close, weights(close, sure), gap=part.looseness)
     stand = stand_ins(part, triangles.missing, chord)
     missing = tuple((n, why, stand.how[n]) for n, why in triangles.missing if stand.how[n] != "edges")
-    lost = tuple(each for each in part.lost if each.face is None)
-    lying = _on_bodies(certain, found)
-    everything = weights(triangles, found)
-    caps = np.concatenate([np.zeros((0, 3, 3)), *(body.cap for body in found)])
+    unread = tuple(each for each in part.lost if each.face is None)
+    lying = _on_bodies(certain, result)
+    everything = weights(triangles, result)
+    caps = np.concatenate([np.zeros((0, 3, 3)), *(body.cap for body in result)])
     if not len(stand.vertex) and not len(caps) and not loose and (everything == certain.weight).all():
-        return Surroundings(certain, certain, found, missing, lying, lost)
+        return Surroundings(certain, certain, result, missing, lying, unread)
     # A surface that triangles do not follow closely may be anywhere within their error, and is for certain nowhere.
     rows = rows_by_face(triangles.face)
     shells = [(n, _shell(part, n, triangles.vertex[rows.get(n, [])], error)) for n, error in loose.items()]
@@ -197,12 +197,12 @@ def surroundings(
         vertex=np.concatenate([triangles.vertex, stand.vertex, caps, shell]),
         face=np.concatenate([triangles.face, stand.face, np.zeros(len(caps), np.int32), of_shell]),
     )
-    open_boxes = [_box(triangles, body) for body in found if not body.closed]
+    open_boxes = [_box(triangles, body) for body in result if not body.closed]
     filled = np.ones(len(caps) + len(shell), np.int8)
     possible = Obstacles(all_triangles, np.concatenate([everything, stand.weight, filled]),
                        np.array([box for box in open_boxes if np.isfinite(box).all()]).reshape(-1, 2, 3),
                        part.looseness)  # fmt: skip
-    return Surroundings(possible, certain, found, missing, lying, lost)
+    return Surroundings(possible, certain, result, missing, lying, unread)
 
 
 def _shell(part: Part, number: int, vertex: Floats, error: float) -> Floats:
@@ -213,12 +213,12 @@ def _shell(part: Part, number: int, vertex: Floats, error: float) -> Floats:
     return thickened(vertex, error)
 
 
-def _on_bodies(certain: Obstacles, found: Sequence[Body]) -> tuple[int, ...]:
+def _on_bodies(certain: Obstacles, bodies: Sequence[Body]) -> tuple[int, ...]:
     """Numbers of faces of no body, most of whose triangles' middles lie on the skin of one."""
-    from plan_cutters.kernels.material import near_skin
+    from plan_cutters.kernels.material import near_shell
 
     triangles = certain.triangles
-    own = {number for body in found for number in body.faces}
+    own = {number for body in bodies for number in body.faces}
     if not certain.weight.any():
         return ()
     close = 2.0 * triangles.chord_error + 1e-9 * float(np.abs(triangles.vertex).max())
@@ -229,7 +229,7 @@ def _on_bodies(certain: Obstacles, found: Sequence[Body]) -> tuple[int, ...]:
         middle = triangles.vertex[rows].mean(axis=1)
         middle = np.ascontiguousarray(middle[:: 1 + len(middle) // _LOOKED_AT])
         near = np.zeros(len(middle), bool)
-        near_skin(middle, close, certain.solids, near)
+        near_shell(middle, close, certain.solids, near)
         if near.mean() > 0.5:
             lying.append(number)
     return tuple(lying)

@@ -41,7 +41,7 @@ def in_chunks(
     """Call `work` on consecutive pieces of `rows`, `chunk` rows each, `jobs` at a time; the sum of what it returns.
 
     `fixed`: where pieces end follows from the rows' own numbers, so that a row is in the company of the same ones whatever
-    others are asked for (`with_company`).
+    others are requested (`with_company`).
 
     An interrupt or an error drops the pieces that have not begun and is raised once those under way end.
     """

@@ -72,7 +72,9 @@ def access(
     within = np.zeros(n, bool) if inside is None else judged & (inside >= 0)
     verdicts.verdict[within], verdicts.reason[within] = INACCESSIBLE, INSIDE
     # On a face that may be anywhere within so many tolerances each posture is in doubt, and a search tries them all.
-    loose = [number for number, error in conditions.around.loose.items() if error > _HOPELESS * conditions.tolerance]
+    loose = [
+        number for number, error in conditions.surroundings.loose.items() if error > _HOPELESS * conditions.tolerance
+    ]
     if loose:
         doubtful = judged & ~within & np.isin(samples.face, loose)
         verdicts.verdict[doubtful], verdicts.reason[doubtful] = UNDECIDED, TOLERANCE
@@ -92,10 +94,10 @@ def access(
     search_postures(
         contacts, np.flatnonzero(wanted), outer_tool, inner_tool, conditions, verdicts, progress, fixed=True, work=work
     )
-    if conditions.around.alone is not None:
-        searched = wanted | (inside >= len(conditions.around.bodies) if inside is not None else False)
+    if conditions.surroundings.alone is not None:
+        searched = wanted | (inside >= len(conditions.surroundings.bodies) if inside is not None else False)
         handed = judged & (verdicts.reason == FIXTURE)
-        bare = replace(conditions, around=conditions.around.alone)
+        bare = replace(conditions, surroundings=conditions.surroundings.alone)
         _for_fixtures(contacts, np.flatnonzero((searched & verdicts.not_reached) | handed), cutter, bare, verdicts)
     return verdicts.freeze()
 
@@ -107,9 +109,9 @@ def _for_fixtures(
     rows = rows[~np.isin(verdicts.reason[rows], (AXIS_LIMIT, LOCAL_GOUGE))]
     if not len(rows):
         return
-    found = blank(len(verdicts.verdict))
-    search_postures(contacts, rows, bare.outer_tool(cutter), bare.inner_tool(cutter), bare, found, fixed=True)
-    verdicts.reason[rows] = np.where(found.reached[rows], FIXTURE, found.reason[rows])
+    result = blank(len(verdicts.verdict))
+    search_postures(contacts, rows, bare.outer_tool(cutter), bare.inner_tool(cutter), bare, result, fixed=True)
+    verdicts.reason[rows] = np.where(result.reached[rows], FIXTURE, result.reason[rows])
 
 
 def _first_reasons(
@@ -118,5 +120,9 @@ def _first_reasons(
     """Where the axis limit, or curvature at the contact, leaves this cutter nothing, the reason is its own."""
     from plan_cutters.kernels.search.search import first_reason
 
-    ranges, tool, certain = conditions.ranges, tool_of(conditions.inner_tool(cutter)), conditions.around.certain.solids
+    ranges, tool, certain = (
+        conditions.ranges,
+        tool_of(conditions.inner_tool(cutter)),
+        conditions.surroundings.certain.solids,
+    )
     in_chunks(lambda piece: first_reason(piece, contacts, ranges, tool, certain, reason), rows, conditions.jobs)

@@ -20,7 +20,7 @@ from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.cells import CellContacts, Field, laid
 from plan_cutters.stages.connected import connected
-from plan_cutters.stages.site import Fixed, Site, best
+from plan_cutters.stages.face_cells import FaceCells, Fixed, best
 
 #: Least gain, as a share of the target area for each contact, for which cells are cut into four.
 LEAST_GAIN = 1e-7
@@ -93,7 +93,7 @@ class Between(Record):
     dropped: int
     unknown: tuple[int, ...]
     cells: Cells
-    around: Floats
+    surrounding_area: Floats
 
     @property
     def share(self) -> float:
@@ -118,7 +118,7 @@ def between(
     budget: int,
     most: float = np.inf,
     work: Work | None = None,
-    beside: NDArray[np.bool_] | None = None,
+    covered_samples: NDArray[np.bool_] | None = None,
     fixed: Fixed | None = None,
     own: NDArray[np.bool_] | None = None,
 ) -> Between:
@@ -140,7 +140,7 @@ def between(
         Most work to do, counted as `Work` does.
     work : Work, optional
         Where it is counted.
-    beside : (n,) bool, optional
+    covered_samples : (n,) bool, optional
         Samples that are no surface of the finished part: cells about them are left out where all around them are such, too.
     fixed : Fixed, optional
         Each cell keeps the axis of its sample, or takes one of these that serve the sample: no other posture is searched.
@@ -152,64 +152,71 @@ def between(
     areas = {number: part.faces[number - 1].area for number in targets}
     unknown = tuple(number for number, area in areas.items() if not area > 0)
     whole = sum(area for area in areas.values() if area > 0)
-    beside = np.zeros(len(samples), bool) if beside is None else beside
+    covered_samples = np.zeros(len(samples), bool) if covered_samples is None else covered_samples
     own = np.ones(len(samples) + 1, bool) if own is None else own
-    counted, short = own[:-1] & ~beside, 0
-    looked, left = int((counted & (samples.unjudged < 0)).sum()), int(counted.sum())
+    counted, short = own[:-1] & ~covered_samples, 0
+    looked, unlooked = int((counted & (samples.unjudged < 0)).sum()), int(counted.sum())
     work = Work() if work is None else work
     upto = work.looked + most
-    sites, nodes, strips = list[Site](), list[CellContacts](), list[CellContacts]()
+    faces, nodes, strips = list[FaceCells](), list[CellContacts](), list[CellContacts]()
     for grid in samples.grids:
         trim = part.trim(grid.face)
         if trim is None or not trim.closed:
             continue  # which part of the surface it uses is not known well enough
         field, mine, bare = laid(part, orientation, samples, grid, verdicts, conditions)
         on_grid = grid.index[grid.index >= 0]
-        left -= int(counted[on_grid].sum())
-        if beside[on_grid].any():
-            deep = _covered(field, grid, beside)
+        unlooked -= int(counted[on_grid].sum())
+        if covered_samples[on_grid].any():
+            deep = _covered(field, grid, covered_samples)
             for cells in (mine, bare):
                 whole -= float(cells.area[deep[tuple(cells.home.T)]].sum())
             mine, bare = (cells.of(~deep[tuple(cells.home.T)]) for cells in (mine, bare))
         # Row -1, of no sample, is the last.
         mine, bare = (cells.of(own[cells.sample]) for cells in (mine, bare))
-        sites.append(Site(field, cutter, conditions, work, fixed))
+        faces.append(FaceCells(field, cutter, conditions, work, fixed))
         nodes.append(mine)
         strips.append(bare)
-    around = _about(nodes, len(samples)) + _about(strips, len(samples))
+    surrounding_area = _about(nodes, len(samples)) + _about(strips, len(samples))
     # The strips come first, the largest ones where the budget is short.
     chosen = best(np.concatenate([np.zeros(0), *(each.area for each in strips)]), budget)
     short += int((~chosen).sum())
     budget -= int(chosen.sum())
     ends = np.cumsum([len(each) for each in strips])
     laid_out = [
-        CellContacts.joined(mine, bare.of(kept))
-        for mine, bare, kept in zip(nodes, strips, np.split(chosen, ends[:-1]), strict=True)
+        CellContacts.joined(mine, bare.of(own_chosen))
+        for mine, bare, own_chosen in zip(nodes, strips, np.split(chosen, ends[:-1]), strict=True)
     ]
     looked -= sum(len(mine) for mine in nodes)
     # Faces with the largest cells first: there each contact may gain most.
     gains = [float(cells.area.sum()) / max(1, len(cells)) for cells in laid_out]
-    for i in sorted(range(len(sites)), key=lambda i: -gains[i]):
-        looked += sites[i].begin(laid_out[i], upto)
+    for i in sorted(range(len(faces)), key=lambda i: -gains[i]):
+        looked += faces[i].begin(laid_out[i], upto)
     # A fair share of the rest for each face, by how many of its cells are open and worth it.
     least = LEAST_GAIN * whole
-    wanted = [site.worthy(least) for site in sites]
+    wanted = [face_cells.worthy(least) for face_cells in faces]
     behind = sum(wanted)
-    for site, share in zip(sites, wanted, strict=True):
+    for face_cells, share in zip(faces, wanted, strict=True):
         # What one face leaves of the work goes to those after it.
         until = work.looked + max(0.0, upto - work.looked) * share / behind if share else 0.0
-        looked += site.refine(budget * share // max(1, sum(wanted)), least, until)
+        looked += face_cells.refine(budget * share // max(1, sum(wanted)), least, until)
         behind -= share
-    left += int((~chosen).sum()) + sum(site.left for site in sites)
+    unlooked += int((~chosen).sum()) + sum(face_cells.left for face_cells in faces)
     return Between(
-        sum(site.served for site in sites), whole, looked, left, short + sum(site.short for site in sites),
-        sum(site.dropped for site in sites), unknown, _cells(sites), around,
-    )  # fmt: skip
+        sum(face_cells.served for face_cells in faces),
+        whole,
+        looked,
+        unlooked,
+        short + sum(face_cells.short for face_cells in faces),
+        sum(face_cells.dropped for face_cells in faces),
+        unknown,
+        _cells(faces),
+        surrounding_area,
+    )
 
 
 def in_each(
     samples: SurfaceSamples, verdicts: Verdicts, which: Ints, cutter: Cutter, part: Part, orientation: Orientation,
-    setups: Sequence[Conditions], *, budget: int, most: float = np.inf, beside: NDArray[np.bool_] | None = None,
+    setups: Sequence[Conditions], *, budget: int, most: float = np.inf, covered_samples: NDArray[np.bool_] | None = None,
 ) -> Between:  # fmt: skip
     """The same over setups that hold the part differently: each cell among the obstacles of the setup that serves its sample.
 
@@ -223,15 +230,15 @@ def in_each(
         The first one first.
     """
     place = np.append(np.maximum(which, 0), 0)
-    found = []
+    cells = []
     for k, conditions in enumerate(setups):
         own = place == k
         part_of_all = float(own[:-1].sum()) / max(1, len(samples))
-        found.append(between(
+        cells.append(between(
             samples, verdicts, cutter, part, orientation, conditions, budget=int(budget * part_of_all), most=most * part_of_all,
-            beside=beside, own=own,
+            covered_samples=covered_samples, own=own,
         ) if own.any() else None)  # fmt: skip
-    return _joined([each for each in found if each is not None])
+    return _joined([each for each in cells if each is not None])
 
 
 def _joined(each: Sequence[Between]) -> Between:
@@ -244,7 +251,7 @@ def _joined(each: Sequence[Between]) -> Between:
     return Between(
         sum(one.served for one in each), each[0].whole, sum(one.contacts for one in each), sum(one.left for one in each),
         sum(one.short for one in each), sum(one.dropped for one in each), each[0].unknown,
-        Cells(*map(np.concatenate, columns)), np.sum([one.around for one in each], axis=0),
+        Cells(*map(np.concatenate, columns)), np.sum([one.surrounding_area for one in each], axis=0),
     )  # fmt: skip
 
 
@@ -256,30 +263,32 @@ def _about(cells: Sequence[CellContacts], count: int) -> Floats:
     return np.asarray(np.bincount(sample[known], area[known], count), float)
 
 
-def _covered(field: Field, grid: FaceGrid, beside: NDArray[np.bool_]) -> NDArray[np.bool_]:
+def _covered(field: Field, grid: FaceGrid, covered_samples: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """Tiles (nu, nv) of a face about whose node, and about those around it, nothing is surface of the finished part."""
     rows = np.unique(grid.index[grid.index >= 0])
     on = (field.index >= 0) & (field.index < len(rows))
-    covered = on & beside[rows[np.where(on, field.index, 0)]]
+    covered = on & covered_samples[rows[np.where(on, field.index, 0)]]
     square = np.ones((3, 3), bool)
     return np.asarray(
         ndimage.binary_erosion(covered | ~on, square, border_value=1) & ndimage.binary_dilation(covered, square)
     )
 
 
-def _cells(sites: Sequence[Site]) -> Cells:
+def _cells(faces: Sequence[FaceCells]) -> Cells:
     """The served cells of all faces."""
     none, wide, last = np.zeros(0), np.zeros((0, 3)), 0
     pieces = [Cells(none.astype(np.int32), wide[:, :2], wide[:, :2], wide, wide, none.astype(bool), none, none.astype(np.int64),
                     none.astype(np.int64))]  # fmt: skip
-    for site in sites:
-        if not site.found:
+    for face_cells in faces:
+        if not face_cells.found:
             continue
-        each = CellContacts(*(np.concatenate([getattr(c, n) for c in site.found]) for n in CellContacts.__slots__))
-        level = np.repeat(np.array(site.levels, np.int64), [len(c) for c in site.found])
-        piece = last + connected(site.field, each, level)
+        each = CellContacts(
+            *(np.concatenate([getattr(c, n) for c in face_cells.found]) for n in CellContacts.__slots__)
+        )
+        level = np.repeat(np.array(face_cells.levels, np.int64), [len(c) for c in face_cells.found])
+        piece = last + connected(face_cells.field, each, level)
         last += len(each)
-        pieces.append(Cells(np.full(len(each), site.field.number, np.int32), each.middle, each.span, each.axis, each.side,
+        pieces.append(Cells(np.full(len(each), face_cells.field.number, np.int32), each.middle, each.span, each.axis, each.side,
                             each.whole, each.area, each.sample, piece))  # fmt: skip
     columns = ([getattr(cells, name) for cells in pieces] for name in Cells.__slots__)
     return Cells(*map(np.concatenate, columns))

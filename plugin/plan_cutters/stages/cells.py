@@ -23,7 +23,7 @@ Indices = NDArray[np.int64]
 
 #: Where a box is looked at to tell how large it is, and how curvature changes in it.
 _ROUND = np.array([(0, 0), (0.5, 0), (1, 0), (1, 0.5), (1, 1), (0.5, 1), (0, 1), (0, 0.5)])
-_BESIDE = ((-1, 0), (1, 0), (0, -1), (0, 1), (-1, -1), (-1, 1), (1, -1), (1, 1))
+_NEIGHBOURS = ((-1, 0), (1, 0), (0, -1), (0, 1), (-1, -1), (-1, 1), (1, -1), (1, 1))
 
 
 @dataclass(slots=True)
@@ -95,15 +95,15 @@ class Field:
     point: Floats
     normal: Floats
     tensor: Floats
-    wobble: Floats = field(default_factory=lambda: np.zeros(0))
+    variation: Floats = field(default_factory=lambda: np.zeros(0))
     radius: Floats = field(default_factory=lambda: np.zeros(0))
 
     @property
     def about(self) -> Floats:
         """Put the nodes into the form that kernels take (`kernels.area.zone.Nodes`)."""
         upper = self.tensor.reshape(-1, 9)[:, [0, 1, 2, 4, 5, 8]]
-        largest, spread = steepest(self.tensor, self.wobble)
-        return np.column_stack([self.point, self.normal, upper, self.wobble, self.radius, largest, spread])
+        largest, spread = steepest(self.tensor, self.variation)
+        return np.column_stack([self.point, self.normal, upper, self.variation, self.radius, largest, spread])
 
     def at(self, uv: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """Points, normals, larger principal directions and curvatures at parameters (n, 2)."""
@@ -159,7 +159,7 @@ def laid(
     index[node_u < 0], index[:, node_v < 0] = -1, -1
     field = Field(part, orientation, grid.face, trim, [(u, v)], index, np.array([grid.closed_u, grid.closed_v]),
                   samples.point[rows], samples.normal[rows], tensor)  # fmt: skip
-    field.wobble, field.radius = from_neighbours(field.point, tensor, grid, local)
+    field.variation, field.radius = from_neighbours(field.point, tensor, grid, local)
     tile = np.argwhere(np.ones(index.shape, bool))
     clip = clipped(trim, u, v, tile)
     chosen = np.flatnonzero(clip.area > 0)
@@ -180,15 +180,15 @@ def laid(
     )  # fmt: skip
     bare = node < 0
     geometry = field.at(clip.middle[bare])
-    beside = _beside(index, tile[bare], rows, reach)
+    neighbours = _neighbours(index, tile[bare], rows, reach)
     axis, side = (
-        np.where((beside < 0)[:, None], np.nan, column[beside]) for column in (reach.axis, reach.tilt_direction)
+        np.where((neighbours < 0)[:, None], np.nan, column[neighbours]) for column in (reach.axis, reach.tilt_direction)
     )
-    flat = (reach.verdict[beside] == INTERFERENCE_FREE) & (beside >= 0)
+    flat = (reach.verdict[neighbours] == INTERFERENCE_FREE) & (neighbours >= 0)
     strips = CellContacts(
         *geometry, _started(axis, flat, geometry[1], conditions), flat, np.zeros(len(flat)),
         tile[bare].astype(np.int32), tile[bare], middle[bare], span[bare], clip.whole[bare], np.full(len(flat), np.nan),
-        area[bare], np.zeros(len(flat), bool), side, beside,
+        area[bare], np.zeros(len(flat), bool), side, neighbours,
     )  # fmt: skip
     _add_nodes(field, strips, clip.low[bare], clip.high[bare])
     return field, contacts, strips
@@ -210,11 +210,11 @@ def quartered(contacts: CellContacts, field: Field, level: int, conditions: Cond
                    np.ones(len(tile), bool))  # fmt: skip
     cut = np.flatnonzero(~contacts.whole[parent])
     if len(cut):
-        for column, found in zip(clip, clipped(field.trim, *lines, tile[cut]), strict=True):
-            column[cut] = found
-    kept = np.flatnonzero(clip.area > 0)
-    tile, parent, middle, span = tile[kept], parent[kept], middle[kept], span[kept]
-    clip = clip.at(kept)
+        for column, result in zip(clip, clipped(field.trim, *lines, tile[cut]), strict=True):
+            column[cut] = result
+    nonempty = np.flatnonzero(clip.area > 0)
+    tile, parent, middle, span = tile[nonempty], parent[nonempty], middle[nonempty], span[nonempty]
+    clip = clip.at(nonempty)
     weight = field.weight(clip)
     whole = np.bincount(parent, weight, len(contacts))[parent]
     geometry = field.at(clip.middle)
@@ -268,17 +268,17 @@ def _started(axis: Floats, flat: NDArray[np.bool_], normal: Floats, conditions: 
     return np.where(flat[:, None], own, axis)
 
 
-def _beside(index: Ints, tile: Indices, rows: NDArray[np.intp], reach: Verdicts) -> Indices:
+def _neighbours(index: Ints, tile: Indices, rows: NDArray[np.intp], reach: Verdicts) -> Indices:
     """Row (n,) of a sample in the next tile that has an axis; -1 where there is none."""
-    found = np.full(len(tile), -1, np.int64)
+    neighbours = np.full(len(tile), -1, np.int64)
     known = np.isfinite(reach.axis[rows, 0])
-    for step in _BESIDE:
+    for step in _NEIGHBOURS:
         i, j = (tile + step).T
         on = (i >= 0) & (j >= 0) & (i < index.shape[0]) & (j < index.shape[1])
         node = np.where(on, index[np.where(on, i, 0), np.where(on, j, 0)], -1)
-        new = (found < 0) & (node >= 0) & known[np.maximum(node, 0)]
-        found[new] = rows[node[new]]
-    return found
+        new = (neighbours < 0) & (node >= 0) & known[np.maximum(node, 0)]
+        neighbours[new] = rows[node[new]]
+    return neighbours
 
 
 def _bare_nodes(field: Field, node: Ints, clip: Clipped) -> None:
@@ -286,16 +286,16 @@ def _bare_nodes(field: Field, node: Ints, clip: Clipped) -> None:
     alone = np.flatnonzero((node >= 0) & np.isnan(field.radius[node]))
     if len(alone):
         rows = node[alone]
-        reach, wobble = field.around(clip.low[alone], clip.high[alone], field.point[rows], field.tensor[rows])
+        reach, variation = field.around(clip.low[alone], clip.high[alone], field.point[rows], field.tensor[rows])
         field.radius[rows] = 0.0
         np.maximum.at(field.radius, rows, reach)
-        np.maximum.at(field.wobble, rows, wobble)
+        np.maximum.at(field.variation, rows, variation)
 
 
 def _add_nodes(field: Field, strips: CellContacts, low: Floats, high: Floats) -> None:
     """Make nodes of contacts on their own, and write how far their cells reach."""
     tensor = tensors(strips.normal, strips.direction_max, strips.curvature)
-    radius, wobble = field.around(low, high, strips.point, tensor) if len(strips) else (np.zeros(0), np.zeros(0))
+    radius, variation = field.around(low, high, strips.point, tensor) if len(strips) else (np.zeros(0), np.zeros(0))
     field.index[strips.tile[:, 0], strips.tile[:, 1]] = len(field.point) + np.arange(len(strips))
     strips.patch[:] = radius
     field.point, field.normal = (
@@ -303,4 +303,4 @@ def _add_nodes(field: Field, strips: CellContacts, low: Floats, high: Floats) ->
         np.concatenate([field.normal, strips.normal]),
     )
     field.tensor = np.concatenate([field.tensor, tensor])
-    field.wobble, field.radius = np.concatenate([field.wobble, wobble]), np.concatenate([field.radius, radius])
+    field.variation, field.radius = np.concatenate([field.variation, variation]), np.concatenate([field.radius, radius])

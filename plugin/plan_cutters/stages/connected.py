@@ -53,9 +53,9 @@ def connected(field: Field, cells: CellContacts, level: Indices) -> Indices:
     a, b = pair[_alike(cells, pair)].T
     both, one = cells.whole[a] & cells.whole[b], cells.whole[a] != cells.whole[b]
     # Of a cell that is cut, the first whole neighbour.
-    cut, beside = np.where(cells.whole[a[one]], b[one], a[one]), np.where(cells.whole[a[one]], a[one], b[one])
+    cut, neighbours = np.where(cells.whole[a[one]], b[one], a[one]), np.where(cells.whole[a[one]], a[one], b[one])
     cut, first = np.unique(cut, return_index=True)
-    tail, head = np.concatenate([a[both], cut]), np.concatenate([b[both], beside[first]])
+    tail, head = np.concatenate([a[both], cut]), np.concatenate([b[both], neighbours[first]])
     graph = coo_array((np.ones(len(tail), np.int8), (tail, head)), shape=(m, m))
     return np.asarray(connected_components(graph, directed=False)[1], np.int64)
 

@@ -41,7 +41,7 @@ def decompose(
     allowed = convex & conditions.upright(samples.normal)
     if inside is not None:
         allowed &= inside < 0
-    asked = np.flatnonzero(allowed) if rows is None else rows[allowed[rows]]
+    selected = np.flatnonzero(allowed) if rows is None else rows[allowed[rows]]
     outer_tool = conditions.outer_tool(cutter)
     if not len(outer_tool.dummy):
         return interference_free
@@ -51,7 +51,7 @@ def decompose(
         return int(dummy_clear(piece, contacts, *shape, solids, interference_free))
 
     # In fixed pieces, so that the work counted does not depend on how samples are divided, either.
-    looked = in_chunks(tested, asked, conditions.jobs, fixed=True)
+    looked = in_chunks(tested, selected, conditions.jobs, fixed=True)
     if work is not None:
         work.add(looked)
     return interference_free

@@ -75,8 +75,8 @@ def arrays_of(path: str | os.PathLike[str]) -> dict[str, Any]:
         if missing := [name for name in names.values() if name not in archive.headers]:
             raise archive.fault(f"array {ascii(missing[0])[1:-1][:60]} is missing")
         _shapes({word: archive.headers[name] for word, name in names.items()}, archive.fault, names)
-        found: dict[str, Any] = {word: archive.read(name) for word, name in names.items()}
-    return found | {"tilt": about["tilt"], "tolerance": about["tolerance"], "cutter": cutter, "part": about["part"],
+        arrays: dict[str, Any] = {word: archive.read(name) for word, name in names.items()}
+    return arrays | {"tilt": about["tilt"], "tolerance": about["tolerance"], "cutter": cutter, "part": about["part"],
                     "about": about["question"]}  # fmt: skip
 
 

@@ -19,11 +19,11 @@ def tensors(normal: Floats, direction_max: Floats, curvature: Floats) -> Floats:
     return np.asarray(high * e1 * e1.transpose(0, 2, 1) + low * e2 * e2.transpose(0, 2, 1))
 
 
-def steepest(tensor: Floats, wobble: Floats) -> tuple[Floats, Floats]:
+def steepest(tensor: Floats, variation: Floats) -> tuple[Floats, Floats]:
     """Most that a principal curvature (n,) and the difference of two (n,) may be where tensors differ by a wobble, 1/mm."""
     trace = np.einsum("nii->n", tensor)
     spread = np.sqrt(np.maximum(0.0, 2.0 * np.einsum("nij,nij->n", tensor, tensor) - trace * trace))
-    return 0.5 * (np.abs(trace) + spread) + wobble, spread + 2.0 * wobble
+    return 0.5 * (np.abs(trace) + spread) + variation, spread + 2.0 * variation
 
 
 def from_neighbours(
@@ -52,9 +52,9 @@ def from_neighbours(
         differs = np.linalg.norm(_next(bend, axis, closed) - bend, axis=2)
         differs[~(on & (_next(on.astype(float), axis, closed) == 1))] = 0.0
         differs_by += np.maximum(differs, np.roll(differs, 1, axis))
-    wobble, radius = np.full(len(point), np.nan), np.full(len(point), np.nan)
-    wobble[index[on]], radius[index[on]] = 0.5 * WILDER * differs_by[on], _radius(at, grid)[on]
-    return wobble, radius
+    variation, radius = np.full(len(point), np.nan), np.full(len(point), np.nan)
+    variation[index[on]], radius[index[on]] = 0.5 * WILDER * differs_by[on], _radius(at, grid)[on]
+    return variation, radius
 
 
 def _next(field: Floats, axis: int, closed: bool) -> Floats:
@@ -67,15 +67,15 @@ def _next(field: Floats, axis: int, closed: bool) -> Floats:
 
 def _radius(point: Floats, grid: FaceGrid) -> Floats:
     """Half the largest distance to the diagonal neighbours; beyond an end of the face, as on this side of it."""
-    ahead_u, ahead_v = _next(point, 0, grid.closed_u), _next(point, 1, grid.closed_v)
+    next_u, next_v = _next(point, 0, grid.closed_u), _next(point, 1, grid.closed_v)
     sides = []
-    for axis, ahead in ((0, ahead_u), (1, ahead_v)):
-        gap = np.linalg.norm(ahead - point, axis=2)
+    for axis, following in ((0, next_u), (1, next_v)):
+        gap = np.linalg.norm(following - point, axis=2)
         sides.append(np.fmax(gap, np.roll(gap, 1, axis)))
     straight = np.hypot(*sides)
-    both = _next(ahead_u, 1, grid.closed_v)
+    both = _next(next_u, 1, grid.closed_v)
     down = np.linalg.norm(both - point, axis=2)
-    up = np.linalg.norm(ahead_u - ahead_v, axis=2)
+    up = np.linalg.norm(next_u - next_v, axis=2)
     corners = [down, np.roll(down, (1, 1), (0, 1)), np.roll(up, 1, 0), np.roll(up, 1, 1)]
     longest = np.fmax(straight, np.fmax.reduce(corners))
     return np.asarray(0.5 * WIDER * np.where(np.isfinite(straight), longest, np.nan))

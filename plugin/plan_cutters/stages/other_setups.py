@@ -38,7 +38,7 @@ def in_setup(
     conditions, known = there.conditions, blank(len(ready.samples))
     machine = conditions.machine
     # Among other fixtures, nothing is known of a posture.
-    rows = np.flatnonzero(verdicts.reached & (conditions.around is ready.conditions.around))
+    rows = np.flatnonzero(verdicts.reached & (conditions.surroundings is ready.conditions.surroundings))
     # Where fewer than two axes turn the tool, rotations are numbered by the axes that there are in a setup.
     few = machine.turns and machine.turning < 2
     rows = rows[:0] if few else rows[machine.allows(verdicts.axis[rows], frame_of(conditions.setup, conditions.x))]

@@ -25,7 +25,7 @@ from plan_cutters.scene.surroundings import Surroundings
 #: Ends that move by no more, rad, have settled.
 SETTLED = np.radians(0.01)
 #: Parts that one rotation may fall into before the rest is called undecided.
-_ROOM = 20_000
+_MOST_INTERVALS = 20_000
 #: Pieces of obstacles cut at the border between rear gouging and collision are no larger than this share of R.
 _BORDER = 0.02
 
@@ -118,7 +118,7 @@ class Ask(Record):
 
 
 def posture_map_of(
-    ask: Ask, around: Surroundings, tools: tuple[Assembly, Assembly], narrowest: float, tolerance: float
+    ask: Ask, surroundings: Surroundings, tools: tuple[Assembly, Assembly], narrowest: float, tolerance: float
 ) -> PostureMap:  # fmt: skip
     """The map; `tools` as `Conditions.outer_tool` and `Conditions.inner_tool` make them."""
     from plan_cutters.kernels.maps.free_tilts import FORBIDDEN, OPEN, UNSURE
@@ -127,12 +127,12 @@ def posture_map_of(
     contact, cutter, (low, high) = ask.contact, ask.cutter, ask.tilt
     p, n, e1 = contact.point[0], contact.normal[0], contact.direction_max[0]
     ranges = ranges_of(ask.machine, ask.setup, PostureRange(ask.tilt), ask.x)
-    whole, (outer_tool, inner_tool) = around.possible, tools
+    whole, (outer_tool, inner_tool) = surroundings.possible, tools
     near, far = _rear(whole.triangles, p, n, cutter.radius)
     alone = {"rear_gouge": (near, outer_tool.only(FLUTES)), "collision": (far, outer_tool.only(FLUTES)),
              "neck": (whole, outer_tool.only(NECK)), "shank": (whole, outer_tool.only(SHANK)),
              "holder": (whole, outer_tool.only(HOLDER))}  # fmt: skip
-    free, undecided, axis, buried, no_contact = [], [], [], [], []
+    free, undecided, axis, inside_bodies, no_contact = [], [], [], [], []
     apart: dict[str, list[Floats]] = {word: [] for word in alone}
     gouge = np.empty((len(ask.rotations), 2))
     touching = join(common(outer_tool.mode[:, [TILT_FROM, TILT_TO]], np.array([[low, high]])))
@@ -151,34 +151,34 @@ def posture_map_of(
         # With a tolerance the triangles decide what curvature forbids, too.
         for first, last in common(allowed, touching if tolerance > 0 else bounds).tolist():
             pieces.append(_parts(whole, outer_tool, p, n, f, first, last, narrowest))
-            if around.certain is not whole:
-                sure.append(_parts(around.certain, inner_tool, p, n, f, first, last, narrowest))
-        found = np.concatenate(pieces)
-        open_tilts, unsure = _merged(found, OPEN), _merged(found, UNSURE)
-        if around.certain is not whole:
+            if surroundings.certain is not whole:
+                sure.append(_parts(surroundings.certain, inner_tool, p, n, f, first, last, narrowest))
+        intervals = np.concatenate(pieces)
+        open_tilts, unsure = _merged(intervals, OPEN), _merged(intervals, UNSURE)
+        if surroundings.certain is not whole:
             # What is not free for all that may be there, but is not surely blocked either.
             blocked = _merged(np.concatenate(sure), FORBIDDEN)
-            rest = found[found[:, 2] != OPEN].copy()
+            rest = intervals[intervals[:, 2] != OPEN].copy()
             unsure = without(_merged(np.column_stack([rest[:, :2], np.full(len(rest), UNSURE)]), UNSURE), blocked)
         within, sunk = np.zeros((2, len(open_tilts)), bool)
         if len(open_tilts):
             every = np.ones((len(open_tilts), 1))
             frame = (outer_tool, every * p, every * n, every * f, open_tilts.mean(axis=1))
             within = whole.holds(*frame)
-            sunk = within & around.certain.holds(*frame, certain=True)
+            sunk = within & surroundings.certain.holds(*frame, certain=True)
         free.append(open_tilts[~within])
-        buried.append(open_tilts[sunk])
+        inside_bodies.append(open_tilts[sunk])
         # Within what is only perhaps a body.
         perhaps = open_tilts[within & ~sunk]
         undecided.append(unsure if not len(perhaps) else join(np.concatenate([unsure, perhaps])))
-        assert set(found[:, 2]) <= {OPEN, FORBIDDEN, UNSURE}
+        assert set(intervals[:, 2]) <= {OPEN, FORBIDDEN, UNSURE}
     return PostureMap(
         rotations=ask.rotations, free=tuple(free), undecided=tuple(undecided), local_gouge=gouge[:, 0],
-        local_gouge_most=gouge[:, 1], axis_limit=tuple(axis), no_contact=tuple(no_contact), buried=tuple(buried), point=p,
+        local_gouge_most=gouge[:, 1], axis_limit=tuple(axis), no_contact=tuple(no_contact), buried=tuple(inside_bodies), point=p,
         normal=n,
         **{word: tuple(each) for word, each in apart.items()},
         direction_max=e1, curvature=contact.curvature[0], tolerance=tolerance,
-        certified=tolerance > 0 and not around.doubtful, missing=around.doubts,
+        certified=tolerance > 0 and not surroundings.doubtful, missing=surroundings.doubts,
         chord_error=whole.triangles.chord_error, settled=tolerance > 0,
     )  # fmt: skip
 
@@ -187,12 +187,12 @@ def _gouge_bounds(curvature: Floats, rotation: float, tool: Assembly) -> Floats:
     """Tilts (k, 2) at which a tool touches and local gouging allows it."""
     from plan_cutters.kernels.maps.points import local_gouge_range
 
-    found = []
+    bounds = []
     for offset, radius, low, high, _ in tool.mode.tolist():
         least, most = local_gouge_range(float(curvature[0]), float(curvature[1]), rotation, offset, radius)
         if max(least, low) <= min(most, high):
-            found.append((max(least, low), min(most, high)))
-    return join(np.array(found).reshape(-1, 2))
+            bounds.append((max(least, low), min(most, high)))
+    return join(np.array(bounds).reshape(-1, 2))
 
 
 def _parts(
@@ -210,15 +210,24 @@ def _parts(
 
     if obstacles is None or not tool.piece.shape[1]:
         return np.array([[first, last, OPEN]])
-    found = [np.zeros((0, 3))]
+    parts = [np.zeros((0, 3))]
     for mode, (_, _, low, high, _) in enumerate(tool.mode.tolist()):
         if max(first, low) <= min(last, high):
-            found.append(
+            parts.append(
                 free_tilts(
-                    p, n, f, max(first, low), min(last, high), tool_of(tool), mode, narrowest, obstacles.tree, _ROOM
+                    p,
+                    n,
+                    f,
+                    max(first, low),
+                    min(last, high),
+                    tool_of(tool),
+                    mode,
+                    narrowest,
+                    obstacles.tree,
+                    _MOST_INTERVALS,
                 )
             )
-    return np.concatenate(found)
+    return np.concatenate(parts)
 
 
 def _merged(parts: Floats, kind: int) -> Floats:

@@ -23,8 +23,8 @@ from plan_cutters.domain.verdicts import INACCESSIBLE, INTERFERENCE_FREE, REASON
 from plan_cutters.errors import OptionError
 from plan_cutters.kernels.rows import Ranges
 from plan_cutters.option_types import ANGLES, PlanOptions
-from plan_cutters.options import Options, machine_given
-from plan_cutters.scene.conditions import Conditions, contacts_of, found_of, require_finite, rotary_of, tool_of
+from plan_cutters.options import Options, machine_option
+from plan_cutters.scene.conditions import Conditions, contacts_of, require_finite, rotary_of, tool_of, verdict_arrays_of
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.question import checksum, refuse_others, require_side, setup_of, turns_of, words_of
 from plan_cutters.scene.threads import Progress, in_chunks
@@ -36,7 +36,7 @@ NARROWEST = np.radians(0.1)
 #: Ends of ranges this close to those of the maps are these, rad.
 _END = 1e-9
 #: Free intervals that one rotation may have; more count as undecided.
-_ROOM = 8
+_MOST_INTERVALS = 8
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -101,9 +101,9 @@ class PostureMaps(Record):
         for each in fields(self):
             column = getattr(self, each.name)
             if isinstance(column, np.ndarray) and column.flags.writeable:
-                kept = column.copy()
-                kept.flags.writeable = False
-                object.__setattr__(self, each.name, kept)
+                frozen = column.copy()
+                frozen.flags.writeable = False
+                object.__setattr__(self, each.name, frozen)
 
     def within(
         self, machine: Machine | str | os.PathLike[str] | None = None,
@@ -140,22 +140,22 @@ class PostureMaps(Record):
             A range lies beyond that of the maps; the machine has fewer than two rotary axes, so that it needs other rotations;
             or the setup would turn the side of open faces.
         """
-        asked = in_radians(
+        bounds = in_radians(
             {"tilt": tilt, "rotation": rotation, "tilt_deg": tilt_deg, "rotation_deg": rotation_deg}, ANGLES
         )
-        tilt, rotation = asked["tilt"], asked["rotation"]
+        tilt, rotation = bounds["tilt"], bounds["rotation"]
         low, high = self.tilt if tilt is None else pair(tilt, "tilt range")
         if not self.tilt[0] - _END <= low <= high <= self.tilt[1] + _END:
-            raise OptionError("the tilts asked for lie beyond those of the posture maps")
+            raise OptionError("the requested tilts lie beyond those of the posture maps")
         turns = np.arange(len(self.rotations))
         if rotation is not None:
             first, last = pair(rotation, "rotation range")
             turns = turns[(self.rotations >= first - _END) & (self.rotations <= last + _END)]
         if not len(turns):
-            raise OptionError("the posture maps have none of the rotations asked for")
+            raise OptionError("the posture maps have none of the requested rotations")
         own: Any = plane_of(setup) or (setup, None)
         z, across = own
-        return self._laid(machine_given(machine), Placement(z, across if x is None else x), turns, (low, high), jobs)
+        return self._laid(machine_option(machine), Placement(z, across if x is None else x), turns, (low, high), jobs)
 
     def asked(self, part: str | os.PathLike[str] | Part | None = None, **options: Unpack[PlanOptions]) -> Verdicts:
         """Find the verdicts of a plan with these options, as far as the maps tell.
@@ -178,21 +178,23 @@ class PostureMaps(Record):
             The maps are of another part, or do not answer an option, which it names.
         """
         words = in_radians(options, ANGLES)
-        asked, given = Options.of(words), set(words)
+        requested, stated = Options.of(words), set(words)
         if part is not None and (not self.part or checksum(part) != self.part):
             name = getattr(part, "file", None) if isinstance(part, Part) else os.fspath(part)
             raise OptionError(f"these maps are of another part than {Path(name or 'this one').name}: plan again")
-        refuse_others(self.about, asked, given, self.cutter)
-        low, high = asked.tilt if "tilt" in given else self.tilt
+        refuse_others(self.about, requested, stated, self.cutter)
+        low, high = requested.tilt if "tilt" in stated else self.tilt
         if not self.tilt[0] - _END <= low <= high <= self.tilt[1] + _END:
             ends = ":".join(f"{np.degrees(end):.6g}" for end in self.tilt)
             raise OptionError(f"these maps are of tilts {ends} deg, not "
                               f"{np.degrees(low):.6g}:{np.degrees(high):.6g}: plan again")  # fmt: skip
-        turns = turns_of(self.about, self.rotations, asked, given)
-        place = asked.placement or Placement(asked.setup)
-        if not {"setup", "placement"} & given:
+        turns = turns_of(self.about, self.rotations, requested, stated)
+        place = requested.placement or Placement(requested.setup)
+        if not {"setup", "placement"} & stated:
             place = setup_of(self.about)
-        return self._laid(asked.machine, place, turns, (max(low, self.tilt[0]), min(high, self.tilt[1])), asked.jobs)
+        return self._laid(
+            requested.machine, place, turns, (max(low, self.tilt[0]), min(high, self.tilt[1])), requested.jobs
+        )
 
     @property
     def missing(self) -> tuple[str, ...]:
@@ -202,8 +204,8 @@ class PostureMaps(Record):
     @property
     def unmapped(self) -> int:
         """Judged samples that were left out: they are undecided at every tilt."""
-        found = self.about.get("unmapped", 0)
-        return found if type(found) is int else 0
+        unmapped = self.about.get("unmapped", 0)
+        return unmapped if type(unmapped) is int else 0
 
     @property
     def finished(self) -> NDArray[np.bool_]:
@@ -226,13 +228,13 @@ class PostureMaps(Record):
         rotary = rotary_of(machine.kinematics(frame))
         ranges = Ranges(np.cos(self.rotations), np.sin(self.rotations), low, high, axis, machine.limit_cos, rotary)
         verdicts = blank(len(self.verdict))
-        found = found_of(verdicts)
+        result = verdict_arrays_of(verdicts)
         judged = self.verdict != UNJUDGED
         not_reached = judged & (self.verdict == INACCESSIBLE)
         verdicts.verdict[not_reached], verdicts.reason[not_reached] = INACCESSIBLE, self.reason[not_reached]
         rows = np.flatnonzero(judged & ~not_reached)
         maps = self.normal, self.direction_max, ranges, turns, self.offset, self.free, self.undecided
-        in_chunks(lambda piece: mask(piece, *maps, found), rows, jobs)
+        in_chunks(lambda piece: mask(piece, *maps, result), rows, jobs)
         upright = self.verdict == INTERFERENCE_FREE
         if low <= _END and upright.any():
             upright[upright] = machine.allows(self.normal[upright], frame)
@@ -262,10 +264,10 @@ class PostureMaps(Record):
         maps = self.normal, self.direction_max, ranges, self.offset, self.free, place
         in_chunks(lambda piece: held_free(piece, *maps, np.zeros((0, 2))), rows, conditions.jobs)
         offset = np.concatenate([[0], np.cumsum(place)])
-        kept = np.empty((offset[-1], 2))
+        tilts = np.empty((offset[-1], 2))
         place[:] = offset[:-1]
-        in_chunks(lambda piece: held_free(piece, *maps, kept), rows if len(kept) else rows[:0], conditions.jobs)
-        return replace(self, offset=offset, free=kept)
+        in_chunks(lambda piece: held_free(piece, *maps, tilts), rows if len(tilts) else rows[:0], conditions.jobs)
+        return replace(self, offset=offset, free=tilts)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str]) -> "PostureMaps":
@@ -319,7 +321,7 @@ def posture_maps(
 
     conditions = conditions.machineless
     rotations, ranges, outer_tool = conditions.postures.rotations, conditions.ranges, conditions.outer_tool(cutter)
-    possible, certain, tool = conditions.obstacles, conditions.around.certain, tool_of(outer_tool)
+    possible, certain, tool = conditions.obstacles, conditions.surroundings.certain, tool_of(outer_tool)
     contacts = contacts_of(samples)
     n, k = len(samples), len(rotations)
     count = np.zeros((n, k), np.int32)
@@ -327,10 +329,10 @@ def posture_maps(
     free: dict[int, Floats] = {}
 
     def mapped(rows: NDArray[np.int64], obstacles: Obstacles) -> tuple[Floats, NDArray[np.int32], Floats, int]:
-        part = np.empty((len(rows), k, _ROOM, 2))
+        part = np.empty((len(rows), k, _MOST_INTERVALS, 2))
         mine, unsure = np.empty((len(rows), k), np.int32), np.empty((len(rows), k))
         tree, wide = obstacles.tree, obstacles.wide_tree
-        looked = free_map(rows, contacts, ranges, tool, NARROWEST, tree, wide, _ROOM, part, mine, unsure)
+        looked = free_map(rows, contacts, ranges, tool, NARROWEST, tree, wide, _MOST_INTERVALS, part, mine, unsure)
         if obstacles.solids.cell.size:
             _leave_bodies(
                 samples, rows, outer_tool, rotations, obstacles, part, mine, certain=obstacles is not possible
@@ -345,15 +347,15 @@ def posture_maps(
             perhaps, few, more, _ = mapped(rows, certain)
             unsure = np.maximum(unsure, _width(perhaps, few) + more - _width(part, mine))
         count[rows], undecided[rows] = mine, unsure
-        free[int(rows[0])] = part[np.arange(_ROOM) < mine[..., None]]
+        free[int(rows[0])] = part[np.arange(_MOST_INTERVALS) < mine[..., None]]
 
     judged = np.flatnonzero(samples.unjudged < 0)
     require_finite(contacts, judged)
     rows = chosen(judged, most, lambda piece: mapped(piece, possible)[3], conditions.jobs)
     in_chunks(work, rows, conditions.jobs, progress)
-    left = np.setdiff1d(judged, rows)
-    undecided[left] = conditions.postures.tilt[1] - conditions.postures.tilt[0]
-    known = {**(about or {}), **({"unmapped": len(left)} if len(left) else {})}
+    remaining = np.setdiff1d(judged, rows)
+    undecided[remaining] = conditions.postures.tilt[1] - conditions.postures.tilt[0]
+    known = {**(about or {}), **({"unmapped": len(remaining)} if len(remaining) else {})}
     pieces = [free[first] for first in sorted(free)]
     offset = np.concatenate([[0], np.cumsum(count.ravel(), dtype=np.int64)])
     return PostureMaps(rotations, offset, np.concatenate([np.zeros((0, 2)), *pieces]), undecided, samples.normal,
@@ -364,7 +366,7 @@ def posture_maps(
 def _width(part: Floats, count: NDArray[np.int32]) -> Floats:
     """Width (m, k) of intervals (m, k, room, 2), of each cell so many, rad."""
     # What lies beyond the count was never written.
-    there = np.arange(_ROOM) < count[..., None]
+    there = np.arange(_MOST_INTERVALS) < count[..., None]
     return np.asarray(np.subtract(part[..., 1], part[..., 0], out=np.zeros(there.shape), where=there).sum(axis=-1))
 
 
@@ -376,13 +378,13 @@ def _leave_bodies(
 
     Between the ends of an interval the cutter touches no skin, so it lies within a body all along or nowhere.
     """
-    at = np.argwhere(np.arange(_ROOM) < count[..., None])
+    at = np.argwhere(np.arange(_MOST_INTERVALS) < count[..., None])
     row, turn = rows[at[:, 0]], rotations[at[:, 1]]
     tilt = part[at[:, 0], at[:, 1], at[:, 2]].mean(axis=1)
     normal = samples.normal[row]
-    leans = tilt_direction(normal, samples.direction_max[row], turn)
-    inside = obstacles.holds(outer_tool, samples.point[row], normal, leans, tilt, certain=certain)
+    tilt_directions = tilt_direction(normal, samples.direction_max[row], turn)
+    inside = obstacles.holds(outer_tool, samples.point[row], normal, tilt_directions, tilt, certain=certain)
     for i, j in np.unique(at[inside, :2], axis=0).tolist():
         mine = (at[:, 0] == i) & (at[:, 1] == j)
-        kept = part[i, j, : count[i, j]][~inside[mine]]
-        part[i, j, : len(kept)], count[i, j] = kept, len(kept)
+        outside = part[i, j, : count[i, j]][~inside[mine]]
+        part[i, j, : len(outside)], count[i, j] = outside, len(outside)

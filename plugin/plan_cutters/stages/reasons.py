@@ -86,24 +86,24 @@ class Reasons:
         first, n = self.conditions[0], len(verdicts.verdict)
         before, reason, besides = verdicts.reason, verdicts.reason.copy(), np.full(n, NO_REASON, np.uint8)
         rows = np.flatnonzero(verdicts.not_reached & self.asked & ~np.isin(before, (INSIDE, TOLERANCE)))
-        limited, less, alone = first.machine.limited, list(_less(cutter)), first.around.alone
-        held = any(each.around.alone is not None for each in self.conditions) or not self._alike
+        limited, less, alone = first.machine.limited, list(_less(cutter)), first.surroundings.alone
+        held = any(each.surroundings.alone is not None for each in self.conditions) or not self._alike
         if not len(rows) or not (limited or less or held):
             return Explained(verdicts, besides)
         # Flutes by themselves, without limits and fixtures: what they do not reach nothing else frees, and is done with.
-        bare = replace(first.machineless, around=alone or first.around)
-        found = self._search("flutes", less[-1][1] if less else cutter, rows, bare)
-        shut = rows[~found.reached[rows] & np.isin(before[rows], (AXIS_LIMIT, FIXTURE, *_PARTS))]
-        reason[shut] = found.reason[shut]
-        rows = rows[found.reached[rows]]
+        bare = replace(first.machineless, surroundings=alone or first.surroundings)
+        searched = self._search("flutes", less[-1][1] if less else cutter, rows, bare)
+        shut = rows[~searched.reached[rows] & np.isin(before[rows], (AXIS_LIMIT, FIXTURE, *_PARTS))]
+        reason[shut] = searched.reason[shut]
+        rows = rows[searched.reached[rows]]
         tell(1, 3)
         if limited:
             if less or held:
-                found = self._search("unlimited", cutter, rows, first.machineless)
-            free = found.reached[rows] if self._alike else self._anywhere(cutter, rows, limited=False)
+                searched = self._search("unlimited", cutter, rows, first.machineless)
+            free = searched.reached[rows] if self._alike else self._anywhere(cutter, rows, limited=False)
             reason[rows[free]] = AXIS_LIMIT
             # Where the limit leaves nothing by itself, and so does something without it, both take part.
-            other = np.where(free, before[rows], found.reason[rows])
+            other = np.where(free, before[rows], searched.reason[rows])
             besides[rows] = np.where(
                 (free & (other != AXIS_LIMIT)) | (before[rows] == AXIS_LIMIT) & ~free, other, NO_REASON
             )
@@ -129,8 +129,8 @@ class Reasons:
     @property
     def _alike(self) -> bool:
         """Whether all setups have the same obstacles, and leave the same samples."""
-        first, mine = self.conditions[0].around, self.machinable[0]
-        return all(each.around is first for each in self.conditions) and not any(
+        first, mine = self.conditions[0].surroundings, self.machinable[0]
+        return all(each.surroundings is first for each in self.conditions) and not any(
             (mine != each).any() for each in self.machinable
         )
 
@@ -139,30 +139,32 @@ class Reasons:
         served = np.zeros(len(rows), bool)
         for k, conditions in enumerate(self.conditions):
             open_ = self.machinable[k][rows] & ~served
-            found = self._search(f"setup {k}" if limited else f"unlimited {k}", cutter, rows[open_],
+            verdicts = self._search(f"setup {k}" if limited else f"unlimited {k}", cutter, rows[open_],
                                  conditions if limited else conditions.machineless)  # fmt: skip
-            served |= open_ & found.reached[rows]
+            served |= open_ & verdicts.reached[rows]
         return served
 
     def _search(self, under: str, cutter: Cutter, rows: NDArray[np.int64], conditions: Conditions) -> Verdicts:
         """Search for postures of some samples, but where what was found for other cutters `under` the same tells."""
-        found, known = blank(len(self.asked)), self._known.setdefault(under, {})
+        verdicts, known = blank(len(self.asked)), self._known.setdefault(under, {})
         for other, earlier in known.items():
             # As `nesting.handed`, but of the samples that were looked at.
             if cutter == other:
                 mine = rows[earlier.verdict[rows] != UNJUDGED]
             elif inside(cutter, other):
-                mine = rows[earlier.reached[rows] & (found.verdict[rows] == UNJUDGED)]
+                mine = rows[earlier.reached[rows] & (verdicts.verdict[rows] == UNJUDGED)]
             elif inside(other, cutter):
-                mine = rows[(earlier.verdict[rows] == INACCESSIBLE) & (found.verdict[rows] == UNJUDGED)]
+                mine = rows[(earlier.verdict[rows] == INACCESSIBLE) & (verdicts.verdict[rows] == UNJUDGED)]
             else:
                 continue
-            found.take(mine, earlier)
-        left = rows[found.verdict[rows] == UNJUDGED]
-        if len(left):
+            verdicts.take(mine, earlier)
+        open_rows = rows[verdicts.verdict[rows] == UNJUDGED]
+        if len(open_rows):
             outer_tool, inner_tool = conditions.outer_tool(cutter), conditions.inner_tool(cutter)
-            search_postures(contacts_of(self.samples), left, outer_tool, inner_tool, conditions, found, fixed=True)
-        known[cutter] = found.freeze()
+            search_postures(
+                contacts_of(self.samples), open_rows, outer_tool, inner_tool, conditions, verdicts, fixed=True
+            )
+        known[cutter] = verdicts.freeze()
         return known[cutter]
 
 

@@ -17,13 +17,13 @@ from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import INSIDE, REASONS, TOLERANCE, Verdicts, Witness, blank
 from plan_cutters.kernels.rows import Contacts
-from plan_cutters.scene.conditions import Conditions, found_of, rotations_of, tool_of
+from plan_cutters.scene.conditions import Conditions, rotations_of, tool_of, verdict_arrays_of
 from plan_cutters.scene.deepest import deepest, deepest_of
 from plan_cutters.scene.inside_material import cover
 from plan_cutters.scene.threads import in_chunks
 
 #: Witnesses kept for each group, samples tried in each to find them, and in all.
-_KEPT, _TRIED, _TRIED_IN_ALL = 2, 6, 60
+_MOST, _TRIED, _TRIED_IN_ALL = 2, 6, 60
 #: Depths are found to this share of themselves.
 _PRECISION = 0.02
 #: Depths are looked for down to this share of the tolerance.
@@ -70,17 +70,17 @@ def witnesses(
             looked[row] = _witness(samples, row, verdicts, cutter, alone, part)
 
     in_chunks(work, np.array([row for rows in picked.values() for row in rows], np.int64), conditions.jobs, chunk=1)
-    found: list[Witness] = []
+    result: list[Witness] = []
     for i, group in enumerate(groups):
         if i in picked:
-            kept = _kept([looked[row] for row in picked[i]], samples.point)
+            picked_rows = _selected([looked[row] for row in picked[i]], samples.point)
         else:
             row = far_apart(samples.point, group.rows, 1)[0]
             plain = Witness(row, REASONS[group.reason], untried=group.searched)
             within = group.body >= 0 or group.reason == INSIDE
-            kept = [_covered(samples, plain, group.body, conditions) if within else plain]
-        found += [replace(each, samples=len(group.rows)) for each in kept]
-    return tuple(found)
+            picked_rows = [_covered(samples, plain, group.body, conditions) if within else plain]
+        result += [replace(each, samples=len(group.rows)) for each in picked_rows]
+    return tuple(result)
 
 
 def _groups(samples: SurfaceSamples, verdicts: Verdicts, inside: Ints | None) -> Iterator[_Group]:
@@ -122,14 +122,14 @@ def far_apart(point: Floats, rows: NDArray[np.int64], most: int) -> list[int]:
     return [int(rows[k]) for k in chosen]
 
 
-def _kept(looked: Sequence[Witness], point: Floats) -> list[Witness]:
+def _selected(looked: Sequence[Witness], point: Floats) -> list[Witness]:
     """The deepest, then those with a depth, first with another obstacle, and of these the farthest from it."""
     ranked = sorted(looked, key=lambda w: (-(w.depth or 0.0), w.sample))
     first = ranked[0]
     others = sorted(ranked[1:], key=lambda w: (
         w.depth is None, w.obstacle_face == first.obstacle_face,
         -float(np.linalg.norm(point[w.sample] - point[first.sample])), w.sample))  # fmt: skip
-    return [ranked[0], *others[: _KEPT - 1]]
+    return [ranked[0], *others[: _MOST - 1]]
 
 
 def _witness(
@@ -137,20 +137,20 @@ def _witness(
 ) -> Witness:
     """Find the posture of least depth by halving the depth that is let pass, and measure it on the surface."""
     reason = REASONS[verdicts.reason[row]]
-    found = _least_depth(samples, row, cutter, replace(conditions, around=conditions.around.skins))
-    if found is None:
+    least_depth = _least_depth(samples, row, cutter, replace(conditions, surroundings=conditions.surroundings.skins))
+    if least_depth is None:
         return Witness(row, reason)
     obstacles, at, outer_tool = conditions.obstacles, slice(row, row + 1), conditions.outer_tool(cutter)
-    best = found[0]
+    best = least_depth[0]
     if obstacles.holds(outer_tool, samples.point[at], samples.normal[at], best.tilt_direction, best.tilt)[0]:
         # Its axis lies within material: one that does not says more, if there is any.
-        found = _least_depth(samples, row, cutter, conditions) or found
-    best, low, high = found
+        least_depth = _least_depth(samples, row, cutter, conditions) or least_depth
+    best, low, high = least_depth
     there = cutter, samples.point[row], samples.normal[row], best, low
     met = deepest(part, obstacles, *there)
     if reason == "fixture":
         # The part may be as much in the way there: what is named is what would free the sample.
-        own = [(each.number, deepest(None, each.obstacles, *there)) for each in conditions.around.fixtures]
+        own = [(each.number, deepest(None, each.obstacles, *there)) for each in conditions.surroundings.fixtures]
         met = max((replace(it, face=n) for n, it in own if it is not None), key=lambda it: it.depth, default=met)
     return Witness(
         sample=row,
@@ -185,7 +185,7 @@ def _least_depth(
             if not np.isnan(high):
                 depth = float(np.sqrt(low * high))
             tool = tool_of(assembly(cutter, depth, depth))
-            if posture(contact, ranges, tool, narrowest, start, turns, solids, found_of(best)):
+            if posture(contact, ranges, tool, narrowest, start, turns, solids, verdict_arrays_of(best)):
                 start, high = (int(best.rotation[0]), float(best.tilt[0])), depth
             elif not np.isnan(high):
                 low = depth
@@ -196,9 +196,9 @@ def _least_depth(
 
 def _covered(samples: SurfaceSamples, plain: Witness, body: int, conditions: Conditions) -> Witness:
     """Add the obstacle to the witness of a sample inside material: the point where the way out along the normal leaves it."""
-    around = conditions.around
-    if body >= len(around.enclosing):
+    surroundings = conditions.surroundings
+    if body >= len(surroundings.enclosing):
         return plain  # on a clamped face
-    within = around.enclosing[body] if body >= 0 else None
-    way_out = cover(samples.point[plain.sample], samples.normal[plain.sample], around.certain, within)
+    within = surroundings.enclosing[body] if body >= 0 else None
+    way_out = cover(samples.point[plain.sample], samples.normal[plain.sample], surroundings.certain, within)
     return plain if way_out is None else replace(plain, obstacle_face=way_out.face, obstacle_point=way_out.point)

@@ -365,7 +365,7 @@ def test_iges_that_was_cut_off_is_refused(tmp_path):
     (tmp_path / "cut.igs").write_text("".join(lines[: len(lines) * 7 // 10]))
     fails(tmp_path / "cut.igs", "cut off")
     (tmp_path / "holes.igs").write_text("".join(lines[:20] + lines[30:]))
-    fails(tmp_path / "holes.igs", "lost lines")
+    fails(tmp_path / "holes.igs", "missing lines")
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import pytest
 
 from cad_io import ReadError, read_part
 from cad_io.files import WITHIN, noted
-from cad_io.read.references import beside, fingerprint_of, followed, names
+from cad_io.read.references import fingerprint_of, followed, in_folder_of, names
 from tests.support.step_references import BALL, BOX, write_assembly
 
 
@@ -37,19 +37,19 @@ def test_all_files_of_an_assembly_are_read_and_known(whole):
     assert {name for name, _ in part.references} == {BOX, BALL}
     assert {os.path.basename(name) for name in files} == {whole.name, BOX, BALL}
     assert None not in files.values()
-    assert part.fingerprint == fingerprint_of(whole.read_bytes(), beside(whole)) != part.sha256
+    assert part.fingerprint == fingerprint_of(whole.read_bytes(), in_folder_of(whole)) != part.sha256
     again = pickle.loads(pickle.dumps(part))
     assert (again.references, again.fingerprint) == (part.references, part.fingerprint)
     assert part.without({1: "hangs"}).references == part.references
 
 
 def test_another_content_of_a_file_that_is_referred_to_is_another_fingerprint(whole):
-    before = fingerprint_of(whole.read_bytes(), beside(whole))
+    before = fingerprint_of(whole.read_bytes(), in_folder_of(whole))
     other = whole.with_name(BALL)
     other.write_bytes(other.read_bytes() + b" ")
-    changed = fingerprint_of(whole.read_bytes(), beside(whole))
+    changed = fingerprint_of(whole.read_bytes(), in_folder_of(whole))
     other.unlink()
-    assert len({before, changed, fingerprint_of(whole.read_bytes(), beside(whole))}) == 3
+    assert len({before, changed, fingerprint_of(whole.read_bytes(), in_folder_of(whole))}) == 3
 
 
 def empty(path):
@@ -118,7 +118,7 @@ def test_a_document_beside_the_shape_costs_nothing(whole):
 def test_where_no_shape_is_left_the_missing_file_is_named(whole):
     for name in (BOX, BALL):
         whole.with_name(name).unlink()
-    with pytest.raises(ReadError, match=f"holds no shape.*{BOX}.*put it beside the file"):
+    with pytest.raises(ReadError, match=f"holds no shape.*{BOX}.*put it into the folder of the file"):
         read_part(whole)
 
 

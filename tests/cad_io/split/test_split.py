@@ -307,7 +307,7 @@ def test_an_invalid_neighbour_is_the_fault_of_the_face_that_cuts_its_edge(monkey
     monkeypatch.setattr(attempt, "wrong_whole", lambda before, after: "forced")
     found = split(part, [first])
     assert list(found.whole) == [1]
-    assert "beside it is not valid" in found.whole[1]
+    assert "next to it is not valid" in found.whole[1]
     assert len(others) == face_count(found.shape)
 
 

@@ -183,5 +183,5 @@ def test_triangles_do_not_depend_on_the_number_of_threads(budget):
 def test_a_face_without_room_is_laid_in_a_second_pass(monkeypatch):
     """The same triangles, whether they were kept as they were counted or not."""
     kept = tessellate(read_part(ring()), 0.02)
-    monkeypatch.setattr(module, "_ROOM", 100)
+    monkeypatch.setattr(module, "_LARGEST", 100)
     assert tessellate(read_part(ring()), 0.02) == kept

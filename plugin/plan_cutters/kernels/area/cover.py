@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.area.moved_cutter import BODIES, Workspace, drawn_out, first_in_the_way, grown
+from plan_cutters.kernels.area.moved_cutter import BODIES, Workspace, extruded, first_in_the_way, grown
 from plan_cutters.kernels.area.near import LIFT, MOST_TURN, STRETCH, extent, halvings, spared, too_steep
 from plan_cutters.kernels.area.zone import EXTENTS, Nose, begin, distance_of, held_below, look_round, seen
 from plan_cutters.kernels.codes import BOTTOM, COLUMNS, NEVER, TOP, WIDE
@@ -84,33 +84,33 @@ def _motion(row, patches, nodes, frame, sine, h, turn, offset, rise):
             k_ff += patches.tensor[row, k, m] * frame.f[k] * frame.f[m]
             k_ft += patches.tensor[row, k, m] * frame.f[k] * frame.t[m]
             k_tt += patches.tensor[row, k, m] * frame.t[k] * frame.t[m]
-    wobble = nodes.about[nodes.index[home[0], home[1]], 12]
-    rest = 2.0 * wobble * h + turn * turn
+    variation = nodes.about[nodes.index[home[0], home[1]], 12]
+    rest = 2.0 * variation * h + turn * turn
     if offset == 0.0:
         return k_ff, k_tt, k_ft, 0.0, 0.0, rest
-    beside = (2.0 * wobble * h + 0.5 * turn * turn + turn * turn / (sine - turn)) / (sine - turn)
-    psi = min(turn / (sine - turn), (abs(k_tt) + abs(k_ft)) * h / sine + beside)
-    return k_ff, k_tt, k_ft, psi, beside, rest
+    lateral = (2.0 * variation * h + 0.5 * turn * turn + turn * turn / (sine - turn)) / (sine - turn)
+    psi = min(turn / (sine - turn), (abs(k_tt) + abs(k_ft)) * h / sine + lateral)
+    return k_ff, k_tt, k_ft, psi, lateral, rest
 
 
 @kernel
-def _outlook(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, workspace):
-    """Return the `outlook` of `cover` for a contact, and the triangle in the way, -1 if none; `blocker` is tested first.
+def _cell_status(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, workspace):
+    """Return the `status` of `cover` for a contact, and the triangle in the way, -1 if none; `blocker` is tested first.
 
     An axis near the normal that does not serve with a lean of a known side may serve about itself (lemma B11), and on a plane
     across it all on one side (B12). On a plane along the axis it shifts (B15).
     """
     first = _ABOUT if patches.flat[row] else _LEANING
-    best, found = _by(first, row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, workspace)
+    best, result = _by(first, row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, workspace)
     if first == _LEANING:
         for rule in (_ABOUT, _LEVEL):
             if best == 0:
                 break
             if rule == _ABOUT and not sweeping.tool.mode[0, 0] > 0.0:
                 continue
-            outlook, met = _by(rule, row, patches, nodes, face, sweeping, tree, triangle_face, found, body, workspace)
-            best, found = min(best, outlook), met if met >= 0 else found
-    return best, found
+            status, met = _by(rule, row, patches, nodes, face, sweeping, tree, triangle_face, result, body, workspace)
+            best, result = min(best, status), met if met >= 0 else result
+    return best, result
 
 
 @kernel
@@ -134,14 +134,14 @@ def _by(rule, row, patches, nodes, face, sweeping, tree, triangle_face, blocker,
     cosine = dot(a, n)
     for k in range(3):
         f[k] = a[k] - cosine * n[k]
-    lean = np.sqrt(dot(f, f))
-    sine = lean
+    steepness = np.sqrt(dot(f, f))
+    sine = steepness
     upright, along = rule != _LEANING, rule == _LEVEL and abs(cosine) <= _ALONG
     if rule == _LEVEL and not along:
         side = patches.side[row]
         length = np.sqrt(dot(side, side))
         # A side that is not known, or does not lie in the plane, is none.
-        if not (lean <= _ALONG and cosine > 0.0 and abs(length - 1.0) <= 1e-6 and abs(dot(side, n)) <= 1e-6):
+        if not (steepness <= _ALONG and cosine > 0.0 and abs(length - 1.0) <= 1e-6 and abs(dot(side, n)) <= 1e-6):
             return NEVER, -1
         for k in range(3):
             f[k] = side[k]
@@ -162,7 +162,9 @@ def _by(rule, row, patches, nodes, face, sweeping, tree, triangle_face, blocker,
         upright
         and not flat
         and not along
-        and not (mode == 0 and low <= 0.0 and cosine > 0.0 and lean <= _NEAR * MOST_TURN and len(sweeping.dummy) > 0)
+        and not (
+            mode == 0 and low <= 0.0 and cosine > 0.0 and steepness <= _NEAR * MOST_TURN and len(sweeping.dummy) > 0
+        )
     ):
         return NEVER, -1
     nose = Nose(offset, rise, np.cos(sweeping.widening[mode]), np.sin(sweeping.widening[mode]), low, high)
@@ -180,7 +182,7 @@ def _by(rule, row, patches, nodes, face, sweeping, tree, triangle_face, blocker,
     if rule == _LEVEL:
         # What a cutter that stands exactly enters of a plane that leans this little.
         depth -= (_longest(tool.piece[mode]) if along else 2.0 * offset) * (2.0 * _ALONG)
-    full, turn, lift, k_ff, k_tt, k_ft, psi, beside, rest = np.inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+    full, turn, lift, k_ff, k_tt, k_ft, psi, lateral, rest = np.inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
     # Bounds do not get smaller with distance: what does not hold nearby needs no look farther out.
     for last in (0, _HALF_WAY, EXTENTS - 1):
         if full == np.inf:
@@ -191,7 +193,7 @@ def _by(rule, row, patches, nodes, face, sweeping, tree, triangle_face, blocker,
         turn, lift = STRETCH * most[0, 3] * h, LIFT * most[0, 3] * h * h
         if upright and not flat:
             # In a smaller patch normals turn less: there the lean is no nearer to them.
-            if rule == _ABOUT and not lean <= _NEAR * turn + _ALONG:
+            if rule == _ABOUT and not steepness <= _NEAR * turn + _ALONG:
                 return NEVER, -1
             if rule == _LEVEL and not turn <= _ALONG:
                 return 1, -1
@@ -200,7 +202,7 @@ def _by(rule, row, patches, nodes, face, sweeping, tree, triangle_face, blocker,
         if not turn <= MOST_TURN or too_steep(pose, turn, upright, nose):
             return halvings(most, h, pose, upright, nose, depth, chord, near), -1
         if not upright:
-            k_ff, k_tt, k_ft, psi, beside, rest = _motion(row, patches, nodes, frame, sine, h, turn, offset, rise)
+            k_ff, k_tt, k_ft, psi, lateral, rest = _motion(row, patches, nodes, frame, sine, h, turn, offset, rise)
         held = extent(most, last, full, h, pose, upright, psi, turn, nose, depth, chord, near)
         if held < 0:
             return halvings(most, h, pose, upright, nose, depth, chord, near), -1
@@ -219,28 +221,33 @@ def _by(rule, row, patches, nodes, face, sweeping, tree, triangle_face, blocker,
         for k in range(BODY):
             workspace.bodies[0, k] = body[k]
         # What the contact and the centre of curvature move across the axis, and along it.
-        grown(sweeping.dummy, workspace.pieces[0], h + rise * turn, lift + h * lean + rise * turn * (lean + turn))
+        grown(
+            sweeping.dummy,
+            workspace.pieces[0],
+            h + rise * turn,
+            lift + h * steepness + rise * turn * (steepness + turn),
+        )
     elif rule == _LEVEL:
         body[OFFSET] = offset
         grow = lift + (h + rise + 2.0 * offset) * 2.0 * _ALONG
-        drawn_out(body, tool.piece[mode], frame, h, pose, (1.0, 0.0, 0.0, 1.0, 0.0), grow, workspace, 18)
+        extruded(body, tool.piece[mode], frame, h, pose, (1.0, 0.0, 0.0, 1.0, 0.0), grow, workspace, 18)
     else:
         body[OFFSET] = offset
         grow = 0.5 * abs(offset) * psi * psi + lift + rise * rest
         # The centre of curvature wanders less than the contact on a concave surface, and turns with the normal.
         lever = rise + (offset / sine if sine > 0.0 else 0.0)
-        slides = (1.0 - rise * k_ff, rise * abs(k_ft), lever * k_ft, abs(1.0 - lever * k_tt), abs(offset) * beside)
-        drawn_out(body, tool.piece[mode], frame, h, pose, slides, grow, workspace, 18)
+        slides = (1.0 - rise * k_ff, rise * abs(k_ft), lever * k_ft, abs(1.0 - lever * k_tt), abs(offset) * lateral)
+        extruded(body, tool.piece[mode], frame, h, pose, slides, grow, workspace, 18)
     exempt = sweeping.flutes if upright else sweeping.nose[mode]
     near[6], near[7], near[8] = turn, lift, depth
-    found = first_in_the_way(
+    hit = first_in_the_way(
         blocker, exempt, sweeping.flutes, rule == _ABOUT, frame, face, tree, triangle_face, workspace
     )
-    return 0 if found < 0 else 1, found
+    return 0 if hit < 0 else 1, hit
 
 
 @entry
-def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, outlook):
+def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, status):
     """Decide for contacts on one face whether their axis serves every contact within a patch about them.
 
     Parameters
@@ -254,7 +261,7 @@ def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, outlook):
     tree : Tree
     triangle_face : (t,) int32
         Face numbers of its triangles.
-    outlook : (n,) uint8, written
+    status : (n,) uint8, written
         0: it does. 1 to MOST_HALVINGS: not known; how often the patch must be halved until it may, a guess that tells what to
         try first. NEVER: it serves no smaller patch, either, down to a quarter of its size, as far as the nodes tell.
 
@@ -268,9 +275,9 @@ def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, outlook):
                            seen(), hit.scratch())  # fmt: skip
     body, blocker = np.empty(BODY), -1
     for row in rows:
-        outlook[row], found = _outlook(
+        status[row], blocking = _cell_status(
             row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, workspace
         )
         # What was in the way of one contact is likely in the way of the next.
-        blocker = found if found >= 0 else blocker
+        blocker = blocking if blocking >= 0 else blocker
     return workspace.scratch.looked[0] + workspace.seen.looked[0] // _NODES

@@ -12,7 +12,7 @@ from plan_cutters.kernels.codes import ARC, BOTTOM, COLUMNS, HIGH, KIND, LOW, RA
 from plan_cutters.kernels.jit import kernel
 from plan_cutters.kernels.rows import Scratch
 from plan_cutters.kernels.tool import hit
-from plan_cutters.kernels.tool.extrusion import drawn_hit
+from plan_cutters.kernels.tool.extrusion import extruded_hit
 from plan_cutters.kernels.tool.hit import BODY, HALF, P
 
 #: Bodies of a patch: the whole, and pieces of it along the tilt direction, 2, 6 and 18.
@@ -57,7 +57,7 @@ def grown(piece, out, radial, axial):
 
 
 @kernel
-def drawn_out(body, piece, frame, h, pose, slides, grow, workspace, finest):
+def extruded(body, piece, frame, h, pose, slides, grow, workspace, finest):
     """Write the bodies of a contact that wanders by no more than h: the whole, then 2, 6 and 18 parts along f.
 
     Each holds all moved cutters of its part (lemma B10).
@@ -66,7 +66,7 @@ def drawn_out(body, piece, frame, h, pose, slides, grow, workspace, finest):
     much farther it may move across it. `grow` is the bound of any other motion. `body` is the body without wandering.
     """
     sine, cosine = pose
-    forth, back, slide, across, beside = slides
+    forth, back, slide, across, sideways = slides
     at = 0
     for count in (1, 2, 6, 18):
         if count > finest:
@@ -78,7 +78,7 @@ def drawn_out(body, piece, frame, h, pose, slides, grow, workspace, finest):
                 workspace.bodies[at, k] = body[k]
             for k in range(3):
                 workspace.bodies[at, P + k] += shift * (forth * frame.f[k] - slide * frame.t[k])
-            workspace.bodies[at, HALF] = h * across + wide * abs(slide) + beside
+            workspace.bodies[at, HALF] = h * across + wide * abs(slide) + sideways
             along = wide * abs(forth) + h * back
             grown(piece, workspace.pieces[at], along * abs(cosine) + grow, along * sine + grow)
             at += 1
@@ -90,15 +90,15 @@ def _reaches(vertex, i, mask, workspace):
     bodies, pieces, scratch = workspace.bodies, workspace.pieces, workspace.scratch
     for half in range(2):
         scratch.looked[0] += _TRIANGLE
-        if not drawn_hit(vertex, i, bodies[1 + half], pieces[1 + half], mask, scratch):
+        if not extruded_hit(vertex, i, bodies[1 + half], pieces[1 + half], mask, scratch):
             continue
         for sixth in range(3 * half, 3 * half + 3):
             scratch.looked[0] += _TRIANGLE
-            if not drawn_hit(vertex, i, bodies[3 + sixth], pieces[3 + sixth], mask, scratch):
+            if not extruded_hit(vertex, i, bodies[3 + sixth], pieces[3 + sixth], mask, scratch):
                 continue
             for last in range(3 * sixth, 3 * sixth + 3):
                 scratch.looked[0] += _TRIANGLE
-                if drawn_hit(vertex, i, bodies[9 + last], pieces[9 + last], mask, scratch):
+                if extruded_hit(vertex, i, bodies[9 + last], pieces[9 + last], mask, scratch):
                     return True
     return False
 
@@ -120,7 +120,7 @@ def _blocks(i, mask, nose, flutes, whole, frame, face, tree, triangle_face, work
     """Whether triangle i reaches into a piece of the moved cutter; into its nose only if it is not near."""
     vertex = tree.vertex
     workspace.scratch.looked[0] += _TRIANGLE
-    hit = drawn_hit(vertex, i, workspace.bodies[0], workspace.pieces[0], mask, workspace.scratch)
+    hit = extruded_hit(vertex, i, workspace.bodies[0], workspace.pieces[0], mask, workspace.scratch)
     if hit & nose and near_by(vertex, triangle_face, i, frame, face, workspace.near):
         hit &= ~nose
     if hit & flutes and _below(vertex, i, frame, workspace.near):

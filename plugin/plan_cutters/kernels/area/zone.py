@@ -96,8 +96,8 @@ def held_below(pose, turn, k_ff, k_ft, k_tt, extent, nose):
         if not (radius * along < 1.0 and radius * across < 1.0):
             continue
         along, across = along / (1.0 - radius * along), across / (1.0 - radius * across)
-        left = least - offset * across
-        if offset > 0.0 and not left >= 0.5 * along * extent * (cosine + turn):
+        remainder = least - offset * across
+        if offset > 0.0 and not remainder >= 0.5 * along * extent * (cosine + turn):
             continue
         if nose.offset < 0.0 or side_cos >= 0.5 * (along * extent * side_sin + across * widen_sin * (extent + offset)):
             return True

@@ -6,14 +6,14 @@ from plan_cutters.kernels.jit import entry
 
 
 @entry
-def draw(corner, light, owner, depth, seen, shade):
+def draw(corner, brightness, owner, depth, seen, shade):
     """Draw triangles over what an image has; where two are equally near, the first one stays.
 
     Parameters
     ----------
     corner : (n, 3, 3) float64
         Corners in pixels: x to the right, y downwards, and nearness. The centre of pixel (i, j) is at x = j, y = i.
-    light : (n, 3) float64
+    brightness : (n, 3) float64
         Brightness at the corners.
     owner : (n,) int32
         What each triangle belongs to.
@@ -32,12 +32,12 @@ def draw(corner, light, owner, depth, seen, shade):
         area = (x1 - x0) * (y2 - y0) - (x2 - x0) * (y1 - y0)
         if area == 0.0:
             continue
-        left = max(0, int(np.ceil(min(x0, min(x1, x2)))))
+        first_column = max(0, int(np.ceil(min(x0, min(x1, x2)))))
         right = min(width - 1, int(np.floor(max(x0, max(x1, x2)))))
         top = max(0, int(np.ceil(min(y0, min(y1, y2)))))
         bottom = min(height - 1, int(np.floor(max(y0, max(y1, y2)))))
         for i in range(top, bottom + 1):
-            for j in range(left, right + 1):
+            for j in range(first_column, right + 1):
                 a = ((x1 - j) * (y2 - i) - (x2 - j) * (y1 - i)) / area
                 b = ((x2 - j) * (y0 - i) - (x0 - j) * (y2 - i)) / area
                 c = 1.0 - a - b
@@ -46,4 +46,4 @@ def draw(corner, light, owner, depth, seen, shade):
                 near = a * z0 + b * z1 + c * z2
                 if near > depth[i, j]:
                     depth[i, j], seen[i, j] = near, owner[t]
-                    shade[i, j] = a * light[t, 0] + b * light[t, 1] + c * light[t, 2]
+                    shade[i, j] = a * brightness[t, 0] + b * brightness[t, 1] + c * brightness[t, 2]

@@ -16,7 +16,7 @@ Q0, F0, Q1, F1, GROWN, SIDE, THERE, BOUNDS = 0, 1, 2, 3, 4, 5, 6, 7
 #: What is known of a piece (lemma M4): nothing nearer to the line of turning or farther from it is ever in it, nothing so far
 #: beside it along that line, nothing as low over the centre's tangent plane; its radius at height 0, were it to go on, and its
 #: slope if it widens.
-NEAR, FAR, BESIDE, FLOOR, AXIS, WIDENS, KNOWN = 0, 1, 2, 3, 4, 5, 6
+NEAR, FAR, LATERAL, FLOOR, AXIS, WIDENS, KNOWN = 0, 1, 2, 3, 4, 5, 6
 #: A plane must part by more than this, mm: rounding is far less.
 HAIR = 1e-9
 #: Parts that the tilts of a mode are cut into to know how low a piece can come.
@@ -121,7 +121,7 @@ def turning_of(piece, offset, low, high):
     offset : float
         mm.
     low, high : float
-        Tilts that may be asked for, rad.
+        Tilts that may be requested, rad.
 
     Returns
     -------
@@ -135,11 +135,11 @@ def turning_of(piece, offset, low, high):
         radius, floor = piece[k, RADIUS], piece[k, LOW]
         bottom, top = piece[k, BOTTOM], piece[k, TOP]
         known[k, NEAR] = max(0.0, max(bottom, -top))
-        known[k, BESIDE] = max(piece[k, WIDE], radius)
-        known[k, AXIS], known[k, WIDENS] = known[k, BESIDE], 0.0
+        known[k, LATERAL] = max(piece[k, WIDE], radius)
+        known[k, AXIS], known[k, WIDENS] = known[k, LATERAL], 0.0
         if piece[k, KIND] == CONE and piece[k, SLOPE] > 0.0:
             known[k, AXIS], known[k, WIDENS] = radius - piece[k, SLOPE] * floor, piece[k, SLOPE]
-        known[k, FAR] = np.hypot(max(abs(bottom), abs(top)), abs(offset) + known[k, BESIDE])
+        known[k, FAR] = np.hypot(max(abs(bottom), abs(top)), abs(offset) + known[k, LATERAL])
         # The eight sides want a cutter that touches with its rim, and tilts up to 90 deg.
         if piece[k, KIND] == CYLINDER and 0.0 <= floor <= offset - radius + 1e-12 and high <= 0.5 * np.pi + 1e-9:
             eight |= 1 << k

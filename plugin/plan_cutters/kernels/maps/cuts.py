@@ -7,7 +7,7 @@ import numpy as np
 from plan_cutters.kernels.codes import HIGH, LOW, RADIUS
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.linear.lanes import LANES
-from plan_cutters.kernels.maps.bounds import BESIDE, FAR, FLOOR, NEAR
+from plan_cutters.kernels.maps.bounds import FAR, FLOOR, LATERAL, NEAR
 from plan_cutters.kernels.maps.intervals import (
     CF,
     CL,
@@ -101,7 +101,7 @@ def take_point(x, y, z, interval, count, turning, k, arcs):
         )  # fmt: skip
         return _take(interval, count, left, right), True
     away = x * x + z * z
-    if abs(y) >= known[k, BESIDE] or z <= known[k, FLOOR] or away >= known[k, FAR] ** 2 or away <= known[k, NEAR] ** 2:
+    if abs(y) >= known[k, LATERAL] or z <= known[k, FLOOR] or away >= known[k, FAR] ** 2 or away <= known[k, NEAR] ** 2:
         return count, False
     cut = False
     for i in range(forbidden(z, x + offset, y, 0.0, offset, piece, k, arcs)):

@@ -88,10 +88,10 @@ def _leaf(leaf, which, vertex, frame, turn, interval, count, turning, mask, narr
 
 
 @kernel
-def _reaching(view, block, cosine, sine, interval, count, turning, mask, margin, left, workspace):
+def _reaching(view, block, cosine, sine, interval, count, turning, mask, margin, remaining, workspace):
     """Write for each box of a block the pieces of a mask that it may reach into in some interval."""
     for lane in range(LANES):
-        left[lane] = 0
+        remaining[lane] = 0
     turned = False
     for k in range(len(turning.piece)):
         if not (mask >> k) & 1:
@@ -99,7 +99,7 @@ def _reaching(view, block, cosine, sine, interval, count, turning, mask, margin,
         if (turning.eight >> k) & 1:
             _boxes_pass(view, block, cosine, sine, interval, count, flutes(turning, k), margin)
             for lane in range(LANES):
-                left[lane] |= 0 if margin[lane] >= 0.0 else 1 << k
+                remaining[lane] |= 0 if margin[lane] >= 0.0 else 1 << k
             continue
         if not turned:
             turn_boxes(view, block, cosine, sine, workspace.turned)
@@ -108,7 +108,7 @@ def _reaching(view, block, cosine, sine, interval, count, turning, mask, margin,
             all_ends(workspace.end, interval[g, CF], interval[g, SF], interval[g, CL], interval[g, SL])
             if not boxes_clear(workspace.turned, workspace.end, turning, k, workspace.clear):
                 for lane in range(LANES):
-                    left[lane] |= 0 if workspace.clear[lane] > 0.0 else 1 << k
+                    remaining[lane] |= 0 if workspace.clear[lane] > 0.0 else 1 << k
 
 
 class _View(NamedTuple):
@@ -149,7 +149,7 @@ def _rotation(frame, e1, e2, turn, rotation, interval, count, turning, whole, lo
     view, leaves, below, home, tally = seen.boxes, seen.leaves, seen.below, seen.home, seen.tally
     known, queue, ahead = seen.known, seen.queue, seen.ahead
     place = seen.place
-    margin, inside, which, left = seen.margin, seen.inside, seen.which, seen.left
+    margin, inside, which, remaining = seen.margin, seen.inside, seen.which, seen.left
     triangles, levels = len(vertex), len(offset) - 1
     for k in range(LANES):
         _see_triangle(leaves[_LEAVES + 2], k, vertex, known[rotation, k], p, e1, e2, n)
@@ -173,10 +173,10 @@ def _rotation(frame, e1, e2, turn, rotation, interval, count, turning, whole, lo
                 slot = _SEEN
                 _see(view, slot, blocks, offset[level] + block, p, e1, e2, n, seen.reach)
                 _rising(view, below, slot, LANES, low)
-            _reaching(view, slot, cosine, sine, interval, count, turning, mask, margin, left, workspace)
+            _reaching(view, slot, cosine, sine, interval, count, turning, mask, margin, remaining, workspace)
             for lane in range(LANES):
                 inner = below[slot, lane]
-                if left[lane] == 0 or inner == _NONE or count == 0:
+                if remaining[lane] == 0 or inner == _NONE or count == 0:
                     continue
                 box = 8 * block + lane
                 if level == levels - 1:
@@ -192,7 +192,7 @@ def _rotation(frame, e1, e2, turn, rotation, interval, count, turning, whole, lo
                     for k in range(LANES):
                         which[k] = begin + k
                     count, cut = _leaf(
-                        leaves[inner], which, vertex, frame, turn, interval, count, turning, left[lane], narrowest, inside,
+                        leaves[inner], which, vertex, frame, turn, interval, count, turning, remaining[lane], narrowest, inside,
                         workspace,
                     )  # fmt: skip
                     if cut >= 0:
@@ -206,7 +206,7 @@ def _rotation(frame, e1, e2, turn, rotation, interval, count, turning, whole, lo
                 x, y, z = view[slot, 13, lane], view[slot, 14, lane], view[slot, 15, lane]
                 x, y = cosine * x + sine * y, cosine * y - sine * x
                 for k in range(len(turning.piece)):
-                    if (left[lane] >> k) & 1:
+                    if (remaining[lane] >> k) & 1:
                         count, _ = take_point(x, y, z, interval, count, turning, k, workspace.arcs)
                 if inner == _UNSEEN and tally[0] < _SEEN:
                     inner = tally[0]
@@ -223,7 +223,7 @@ def _rotation(frame, e1, e2, turn, rotation, interval, count, turning, whole, lo
                             interval[g, LAST] - interval[g, FIRST] + interval[g, UF] + interval[g, UL]
                         )
                     return 0
-                ahead[coming, 0], ahead[coming, 1], ahead[coming, 2] = inner, box, left[lane]
+                ahead[coming, 0], ahead[coming, 1], ahead[coming, 2] = inner, box, remaining[lane]
                 coming += 1
         queue, ahead = ahead, queue
         waiting = coming

@@ -9,7 +9,7 @@ from plan_cutters.kernels.linear.vectors import cross, tilt_frame
 
 
 @entry
-def mask(rows, normal, direction_max, ranges, turns, offset, free, undecided, found):
+def mask(rows, normal, direction_max, ranges, turns, offset, free, undecided, hits):
     """Decide samples by their free tilts: the first rotation with any that the machine holds serves.
 
     Parameters
@@ -19,10 +19,10 @@ def mask(rows, normal, direction_max, ranges, turns, offset, free, undecided, fo
     ranges : Ranges
         Of as many rotations as the maps have, and the tilts asked for.
     turns : (t,) int64
-        Rotations that are asked for.
+        Rotations that are requested.
     offset, free, undecided
         As in `PostureMaps`.
-    found : Found, written
+    hits : Found, written
         ACCESSIBLE with the middle of the widest interval; UNDECIDED where only tilts that are not decided may be left; else
         INACCESSIBLE.
     """
@@ -50,27 +50,28 @@ def mask(rows, normal, direction_max, ranges, turns, offset, free, undecided, fo
             if widest >= 0.0:
                 verdict = ACCESSIBLE
                 c, s = np.cos(tilt), np.sin(tilt)
-                found.tilt[row], found.rotation[row] = tilt, rotation
+                hits.tilt[row], hits.rotation[row] = tilt, rotation
                 for k in range(3):
-                    found.tilt_direction[row, k] = f[k]
-                    found.axis[row, k] = c * n[k] + s * f[k]
+                    hits.tilt_direction[row, k] = f[k]
+                    hits.axis[row, k] = c * n[k] + s * f[k]
                 break
             if unsure:
                 verdict = UNDECIDED
-        found.verdict[row] = verdict
+        hits.verdict[row] = verdict
 
 
 @entry
-def held_free(rows, normal, direction_max, ranges, offset, free, place, kept):
-    """Keep the free tilts that the machine can hold, at every rotation of the maps: count the intervals, or write them to `kept`.
+def held_free(rows, normal, direction_max, ranges, offset, free, place, held_intervals):
+    """Keep the free tilts that the machine can hold, at every rotation of the maps: count the intervals, or write
+    them to `held_intervals`.
 
     Parameters
     ----------
     rows, normal, direction_max, ranges, offset, free
         As for `mask`.
     place : (n * k,) int64
-        How many intervals each sample has at each rotation, written; where they begin in `kept`, read if that has rows.
-    kept : (m, 2) float64, written
+        How many intervals each sample has at each rotation, written; where they begin in `held_intervals`, read if that has rows.
+    held_intervals : (m, 2) float64, written
         Without rows: nothing but `place` is written.
     """
     intervals, e2, f, t = np.empty((64, 2)), np.empty(3), np.empty(3), np.empty(3)
@@ -81,7 +82,7 @@ def held_free(rows, normal, direction_max, ranges, offset, free, place, kept):
         for rotation in range(count):
             cell = row * count + rotation
             at = place[cell]
-            if len(kept) == 0:
+            if len(held_intervals) == 0:
                 place[cell] = at = 0
             if offset[cell] == offset[cell + 1]:
                 continue
@@ -92,8 +93,8 @@ def held_free(rows, normal, direction_max, ranges, offset, free, place, kept):
                     low, high = max(free[i, 0], intervals[k, 0]), min(free[i, 1], intervals[k, 1])
                     if low > high:
                         continue
-                    if len(kept) == 0:
+                    if len(held_intervals) == 0:
                         place[cell] += 1
                     else:
-                        kept[at, 0], kept[at, 1] = low, high
+                        held_intervals[at, 0], held_intervals[at, 1] = low, high
                         at += 1

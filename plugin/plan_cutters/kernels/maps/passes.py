@@ -19,21 +19,21 @@ _SLABS = 8
 @kernel
 def _clip(source, count, target, a, b, level):
     """Keep the part of a polygon of rows (x, y, z) with `a x + b z >= level`."""
-    kept = 0
+    written = 0
     for i in range(count):
         j = i + 1 if i + 1 < count else 0
         here = a * source[i, 0] + b * source[i, 2] - level
         there = a * source[j, 0] + b * source[j, 2] - level
         if here >= 0.0:
             for k in range(3):
-                target[kept, k] = source[i, k]
-            kept += 1
+                target[written, k] = source[i, k]
+            written += 1
         if (here > 0.0 and there < 0.0) or (here < 0.0 and there > 0.0):
             part = here / (here - there)
             for k in range(3):
-                target[kept, k] = source[i, k] + part * (source[j, k] - source[i, k])
-            kept += 1
-    return kept
+                target[written, k] = source[i, k] + part * (source[j, k] - source[i, k])
+            written += 1
+    return written
 
 
 @kernel
@@ -266,10 +266,10 @@ def _boxes_pass(view, block, cosine, sine, interval, count, tool, margin):
             other = begins + share * rim - over - abs(nx * f0 + nz * z0 - d * t0)
             other -= abs(nx * f1 + nz * z1 - d * t1) + abs(nx * f2 + nz * z2 - d * t2)
             under = max(under, min(own, other))
-            ahead = x - abs(f0) - abs(f1) - abs(f2)
-            beside = abs(y) - wide
-            best = max(beside - shrunk, level - top)
-            best = max(best, min(rim - front, max(ahead, max(low - top, bottom))))
+            start = x - abs(f0) - abs(f1) - abs(f2)
+            lateral = abs(y) - wide
+            best = max(lateral - shrunk, level - top)
+            best = max(best, min(rim - front, max(start, max(low - top, bottom))))
             best = max(best, under)
             best = max(best, bottom - high)
             best = max(best, behind - 2.0 * radius + rim)
@@ -317,8 +317,8 @@ def _triangles_pass(seen, cosine, sine, interval, count, tool, margin):
             d = share * slope
             own = min(own, begins + share * rim - max(h0 - d * y0, max(h1 - d * y1, h2 - d * y2)))
             under = max(under, own)
-            beside = max(min(y0, min(y1, y2)), -max(y0, max(y1, y2)))
-            best = max(beside - shrunk, low - highest)
+            lateral = max(min(y0, min(y1, y2)), -max(y0, max(y1, y2)))
+            best = max(lateral - shrunk, low - highest)
             best = max(best, level - top)
             best = max(best, min(rim - front, max(min(x0, min(x1, x2)), max(low - top, bottom))))
             best = max(best, under)

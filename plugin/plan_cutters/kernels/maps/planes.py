@@ -14,9 +14,9 @@ from plan_cutters.kernels.jit import kernel
 from plan_cutters.kernels.linear.lanes import LANES
 from plan_cutters.kernels.maps.bounds import (
     AXIS,
-    BESIDE,
     FAR,
     HAIR,
+    LATERAL,
     NEAR,
     THERE,
     WIDENS,
@@ -196,11 +196,11 @@ def boxes_clear(box, end, turning, k, clear):
     so.
     """
     known, bound, offset = turning.known, turning.bound, turning.offset
-    beside, base, slope, near, far = known[k, BESIDE], known[k, AXIS], known[k, WIDENS], known[k, NEAR], known[k, FAR]
+    lateral, base, slope, near, far = known[k, LATERAL], known[k, AXIS], known[k, WIDENS], known[k, NEAR], known[k, FAR]
     for lane in range(len(clear)):
         # No point is higher over the centre than far from the line of turning.
-        aside = min(beside, base + slope * box[FARTHEST, lane])
-        out = max(abs(box[AT + 1, lane]) - box[EXTENT, lane] - aside, box[NEAREST, lane] - far)
+        sideways = min(lateral, base + slope * box[FARTHEST, lane])
+        out = max(abs(box[AT + 1, lane]) - box[EXTENT, lane] - sideways, box[NEAREST, lane] - far)
         clear[lane] = 1.0 if max(out, near - box[FARTHEST, lane]) > HAIR else 0.0
     for j in range(2 * k, 2 * k + 2):
         if bound[j, THERE] > 0.0 and not _all(clear):
@@ -275,11 +275,11 @@ def _triangles_apart(seen, end, bound, j, offset, which, clear):
 def triangles_clear(seen, end, turning, k, clear):
     """`boxes_clear` for triangles as `turn_triangles` gives them."""
     known, bound, offset = turning.known, turning.bound, turning.offset
-    beside, base, slope, near, far = known[k, BESIDE], known[k, AXIS], known[k, WIDENS], known[k, NEAR], known[k, FAR]
+    lateral, base, slope, near, far = known[k, LATERAL], known[k, AXIS], known[k, WIDENS], known[k, NEAR], known[k, FAR]
     for lane in range(len(clear)):
         y0, y1, y2 = seen[1, lane], seen[4, lane], seen[7, lane]
-        aside = min(beside, base + slope * seen[10, lane])
-        out = max(min(y0, min(y1, y2)), -max(y0, max(y1, y2))) - aside
+        sideways = min(lateral, base + slope * seen[10, lane])
+        out = max(min(y0, min(y1, y2)), -max(y0, max(y1, y2))) - sideways
         out = max(out, seen[9, lane] - far)
         clear[lane] = 1.0 if max(out, near - seen[10, lane]) > HAIR else 0.0
     for j in range(2 * k, 2 * k + 2):

@@ -15,11 +15,11 @@ _UPRIGHT = 1e-12
 #: Tilts at which the bottom of a tool may as well lie across its axis, through the contact, rad: no control holds smaller ones.
 FLAT = 1e-4
 #: Directions in which a tool that stands upright lies on its contact, besides that of its tilt.
-LEANS = 36
+DIRECTIONS = 36
 
 
 @kernel
-def _stands(row, axis, contacts, low, high, tool, solids, leans, body, sides, workspace, hint):
+def _stands(row, axis, contacts, low, high, tool, solids, directions, body, sides, workspace, hint):
     """Return how the tool stands free at a contact with an axis, as `served` writes it, and the triangle in its way last."""
     n, e1 = contacts.normal[row], contacts.direction_max[row]
     f, t, x, y = sides[0], sides[1], sides[2], sides[3]
@@ -49,8 +49,8 @@ def _stands(row, axis, contacts, low, high, tool, solids, leans, body, sides, wo
     for k in range(3):
         x[k] /= length
     cross(axis, x, y)
-    for number in range(leans):
-        turn = 2.0 * np.pi * number / LEANS
+    for number in range(directions):
+        turn = 2.0 * np.pi * number / DIRECTIONS
         for k in range(3):
             f[k] = np.cos(turn) * x[k] + np.sin(turn) * y[k]
         cross(axis, f, t)
@@ -71,7 +71,7 @@ def _is_free(body, mode, tool, solids, workspace, hint):
 
 
 @entry
-def served(rows, axis, contacts, low, high, tool, solids, leans, lean):
+def served(rows, axis, contacts, low, high, tool, solids, directions, tilt_direction):
     """Test one axis at contacts, as a search tests the postures that it finds.
 
     Parameters
@@ -87,9 +87,9 @@ def served(rows, axis, contacts, low, high, tool, solids, leans, lean):
         Smaller by what does not matter.
     solids : Solids
         All that may be in the way.
-    leans : int
+    directions : int
         Directions that are tried where the axis is the normal, of `LEANS`; 0: none but one.
-    lean : (m,) int8, written
+    tilt_direction : (m,) int8, written
         -1: the tool does not touch there at that tilt, a triangle reaches into it, or it lies in a body. 0: it is free as it
         leans by its tilt, or towards `direction_max` if it has none. k > 0: it is free with its bottom across the axis, leaning
         to where k - 1 of `LEANS` parts of a turn about the axis bring `direction_max`.
@@ -103,10 +103,10 @@ def served(rows, axis, contacts, low, high, tool, solids, leans, lean):
     workspace = scratch()
     least, count, hint = np.cos(min(high, np.pi)) - 1e-9, 0, -1
     for i in range(len(rows)):
-        lean[i] = -1
+        tilt_direction[i] = -1
         if dot(axis, contacts.normal[rows[i]]) >= least:
             count += 1
-            lean[i], hint = _stands(
-                rows[i], axis, contacts, low, high, tool, solids, leans, body, sides, workspace, hint
+            tilt_direction[i], hint = _stands(
+                rows[i], axis, contacts, low, high, tool, solids, directions, body, sides, workspace, hint
             )
     return count

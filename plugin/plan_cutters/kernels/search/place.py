@@ -177,7 +177,7 @@ def straight(contacts, row, cosine, sine, tool, mode):
 
 
 @kernel
-def kept_straight(least, most, intervals, count):
+def clip_straight(least, most, intervals, count):
     """Leave of intervals what `straight` gives; the new count."""
     if np.isnan(least):
         return 0
@@ -203,7 +203,7 @@ def allowed(contacts, row, ranges, rotation, tool, mode, bent, workspace):
     width, before = permitted(contacts, row, ranges, tool, mode, workspace.f, intervals)
     tally[AXIS_LIMIT] += width + before * NARROWEST
     if not bent:
-        count = kept_straight(least, most, intervals, before)
+        count = clip_straight(least, most, intervals, before)
     elif np.isnan(least):
         count = before
     else:
@@ -225,8 +225,8 @@ def forbid_point(x, y, z, tool, mode, narrowest, intervals, count, workspace):
     offset, height = tool.mode[mode, OFFSET_OF], z - tool.mode[mode, RISE]
     piece = tool.piece[mode]
     for k in range(len(piece)):
-        found = forbidden(height, x + offset, y, 0.0, offset, piece, k, workspace.arcs)
-        for i in range(found):
+        blocked = forbidden(height, x + offset, y, 0.0, offset, piece, k, workspace.arcs)
+        for i in range(blocked):
             count = forbid(
                 intervals,
                 count,

@@ -55,7 +55,7 @@ def _look(contacts, row, ranges, side, level, starts, turns, workspaces):
 
 
 @kernel
-def _largest(contacts, row, ranges, outer, inner, guess, last, freed, workspaces, found):
+def _largest(contacts, row, ranges, outer, inner, guess, last, freed, workspaces, results):
     """The number of the largest tool that finds a posture, -1 for none, and the verdict on the next; then where the searches
     of both sides ended.
     """
@@ -69,18 +69,18 @@ def _largest(contacts, row, ranges, outer, inner, guess, last, freed, workspaces
             turn, _, freed = _look(contacts, row, ranges, inner, level, freed, turns, workspaces)
             if turn < 0:
                 beyond = level
-                found.reason[row] = _reason(workspaces[0].tally, workspaces[1].tally)
+                results.reason[row] = _reason(workspaces[0].tally, workspaces[1].tally)
             else:
                 free = level
         if rotation < 0 and level < beyond:
             rotation, tilt, last = _look(contacts, row, ranges, outer, level, last, turns, workspaces)
             if rotation < 0:
-                found.reason[row] = _reason(workspaces[0].tally, workspaces[1].tally)
+                results.reason[row] = _reason(workspaces[0].tally, workspaces[1].tally)
         if rotation < 0:
             high = level
         else:
             low = level
-            _write(found, row, contacts, ranges, rotation, tilt)
+            _write(results, row, contacts, ranges, rotation, tilt)
         if low < 0:
             level = max(high - stride, 0)
         elif high == count:
@@ -92,7 +92,7 @@ def _largest(contacts, row, ranges, outer, inner, guess, last, freed, workspaces
 
 
 @entry
-def largest(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, found, level, beyond):
+def largest(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, results, level, beyond):
     """Find the largest tool that reaches each sample.
 
     Parameters
@@ -105,7 +105,7 @@ def largest(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, f
         The outer and the inner tools; each lies within the next.
     possible, certain : Solids
         As `search.search` takes them.
-    found : Found, written
+    results : Found, written
         The posture of the largest tool that has one, and the reason why the next one has none.
     level : (n,) int64, written
         The number of the largest tool that has a posture, -1 where none has.
@@ -123,7 +123,9 @@ def largest(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, f
     )
     guess, last, freed = len(outer_tool.reach) // 2, START, START
     for row in rows:
-        low, verdict, last, freed = _largest(contacts, row, ranges, outer, inner, guess, last, freed, workspaces, found)
+        low, verdict, last, freed = _largest(
+            contacts, row, ranges, outer, inner, guess, last, freed, workspaces, results
+        )
         level[row], guess = low, max(low, 0)
         if low + 1 < len(outer_tool.reach):
             beyond[row] = verdict

@@ -32,7 +32,7 @@ from plan_cutters.kernels.limits import turn_of
 from plan_cutters.kernels.linear.vectors import cross, dot, perpendicular, tilt_frame
 from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
 from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.search.place import inside, kept_straight, mode_at, permitted, search_workspace, straight
+from plan_cutters.kernels.search.place import clip_straight, inside, mode_at, permitted, search_workspace, straight
 from plan_cutters.kernels.search.sweep import Side, both, memory, sweep, sweep_both
 from plan_cutters.kernels.tool.hit import BODY, scratch, stand, tree_hit
 
@@ -65,20 +65,20 @@ def _reason(tally, bent):
 
 
 @kernel
-def _write(found, row, contacts, ranges, rotation, tilt):
+def _write(results, row, contacts, ranges, rotation, tilt):
     """Write a posture."""
     n, e1 = contacts.normal[row], contacts.direction_max[row]
     turn_cos, turn_sin = turn_of(n, e1, ranges, rotation)
     cosine, sine = np.cos(tilt), np.sin(tilt)
-    found.tilt[row], found.rotation[row] = tilt, rotation
+    results.tilt[row], results.rotation[row] = tilt, rotation
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3
-        found.tilt_direction[row, k] = turn_cos * e1[k] + turn_sin * (n[i] * e1[j] - n[j] * e1[i])
-        found.axis[row, k] = cosine * n[k] + sine * found.tilt_direction[row, k]
+        results.tilt_direction[row, k] = turn_cos * e1[k] + turn_sin * (n[i] * e1[j] - n[j] * e1[i])
+        results.axis[row, k] = cosine * n[k] + sine * results.tilt_direction[row, k]
 
 
 @entry
-def search(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, found):
+def search(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, results):
     """Decide the samples `rows`, one after the other, each starting from the posture of the one before.
 
     Parameters
@@ -91,7 +91,7 @@ def search(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, fo
         The outer and the inner tool.
     possible, certain : Solids
         The possible obstacles, to call a posture safe; the certain ones, to call a sample inaccessible.
-    found : Found, written
+    results : Found, written
 
     Returns
     -------
@@ -116,19 +116,19 @@ def search(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, fo
                 rotation, tilt, last = sweep_both(contacts, row, ranges, outer, last, rotations, workspaces)
                 missed = rotation < 0
             if rotation < 0:
-                found.reason[row] = _reason(workspaces[0].tally, workspaces[1].tally)
+                results.reason[row] = _reason(workspaces[0].tally, workspaces[1].tally)
             if sure or not missed:
                 break
         if missed:
-            found.verdict[row] = INACCESSIBLE if sure else UNDECIDED
+            results.verdict[row] = INACCESSIBLE if sure else UNDECIDED
         else:
-            found.verdict[row] = ACCESSIBLE
-            _write(found, row, contacts, ranges, rotation, tilt)
+            results.verdict[row] = ACCESSIBLE
+            _write(results, row, contacts, ranges, rotation, tilt)
     return workspaces[0].scratch.looked[0] + workspaces[1].scratch.looked[0]
 
 
 @entry
-def until_not_reached(rows, at, contacts, ranges, tool, solids, patient, found):
+def until_not_reached(rows, at, contacts, ranges, tool, solids, patient, results):
     """Look for postures of the samples `rows` from the `at`-th on, at which a tool is in nothing's way; where it ended.
 
     Unless it is `patient`, behind the first sample that has none; such samples are written as UNDECIDED, for nothing was asked
@@ -143,17 +143,17 @@ def until_not_reached(rows, at, contacts, ranges, tool, solids, patient, found):
         at += 1
         rotation, tilt, last = sweep_both(contacts, row, ranges, side, last, rotations, workspaces)
         if rotation >= 0:
-            found.verdict[row] = ACCESSIBLE
-            _write(found, row, contacts, ranges, rotation, tilt)
+            results.verdict[row] = ACCESSIBLE
+            _write(results, row, contacts, ranges, rotation, tilt)
         else:
-            found.verdict[row] = UNDECIDED
+            results.verdict[row] = UNDECIDED
             if not patient:
                 return at
     return at
 
 
 @entry
-def posture(contacts, ranges, tool, narrowest, start, turns, solids, found):
+def posture(contacts, ranges, tool, narrowest, start, turns, solids, results):
     """Look for a posture of the first contact at which a tool is in nothing's way; whether there is one.
 
     Parameters
@@ -169,14 +169,14 @@ def posture(contacts, ranges, tool, narrowest, start, turns, solids, found):
         How many rotations to look at.
     solids : Solids
         All that may be in the way.
-    found : Found, written
+    results : Found, written
         The posture.
     """
     pasts, workspaces = both(len(ranges.rotation_cos), len(tool.mode))
     side = Side(tool, solids, MAYBE_INSIDE, narrowest, pasts)
     rotation, tilt, _ = sweep_both(contacts, 0, ranges, side, (start, start), turns, workspaces)
     if rotation >= 0:
-        _write(found, 0, contacts, ranges, rotation, tilt)
+        _write(results, 0, contacts, ranges, rotation, tilt)
     return rotation >= 0
 
 
@@ -189,30 +189,40 @@ def first_reason(rows, contacts, ranges, inner_tool, certain, reason):
     rotations, modes = len(ranges.rotation_cos), len(inner_tool.mode)
     intervals = np.empty((64, 2))
     f, t, e2 = np.empty(3), np.empty(3), np.empty(3)
-    past, (workspace, other) = memory(rotations, modes, True), (search_workspace(), search_workspace())
+    obstacle_cache, (workspace, other) = memory(rotations, modes, True), (search_workspace(), search_workspace())
     for row in rows:
         n, e1 = contacts.normal[row], contacts.direction_max[row]
         cross(n, e1, e2)
-        axis_left, curvature_left = False, False
+        axis_remains, curvature_remains = False, False
         for rotation in range(rotations):
             cosine, sine = turn_of(n, e1, ranges, rotation)
             tilt_frame(e1, e2, cosine, sine, f, t)
             for mode in range(modes):
                 _, count = permitted(contacts, row, ranges, inner_tool, mode, f, intervals)
-                axis_left = axis_left or count > 0
+                axis_remains = axis_remains or count > 0
                 least, most = straight(contacts, row, cosine, sine, inner_tool, mode)
-                count = kept_straight(least, most, intervals, count)
-                curvature_left = curvature_left or count > 0
-            if curvature_left:
+                count = clip_straight(least, most, intervals, count)
+                curvature_remains = curvature_remains or count > 0
+            if curvature_remains:
                 break
-        if not axis_left:
+        if not axis_remains:
             reason[row] = AXIS_LIMIT
-        elif not curvature_left:
+        elif not curvature_remains:
             # As `search` would have told it.
             start = START[1]
             sweep(
-                contacts, row, ranges, inner_tool, certain, SURELY_INSIDE, _NO_INTERVAL, start, rotations, past, workspace
-            )  # fmt: skip
+                contacts,
+                row,
+                ranges,
+                inner_tool,
+                certain,
+                SURELY_INSIDE,
+                _NO_INTERVAL,
+                start,
+                rotations,
+                obstacle_cache,
+                workspace,
+            )
             other.tally[:] = 0.0
             other.tally[AXIS_LIMIT] = 1.0
             reason[row] = _reason(other.tally, workspace.tally)

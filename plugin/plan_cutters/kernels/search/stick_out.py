@@ -84,10 +84,10 @@ def _sloped(tri, row):
                 t = ((1.0 if at % 2 else -1.0) * np.sqrt(root) - b) / a
             elif at == 5:
                 rise = ew / slope
-                left = a - rise * rise
-                if left <= 0.0:
+                square = a - rise * rise
+                if square <= 0.0:
                     continue
-                t = (rise * np.sqrt(max(0.0, a * c - b * b) / left) - b) / a
+                t = (rise * np.sqrt(max(0.0, a * c - b * b) / square) - b) / a
             if 0.0 <= t <= 1.0:
                 q = np.sqrt(max(0.0, c + t * (2.0 * b + t * a)))
                 if q <= q1 * (1.0 + 1e-12):

@@ -31,7 +31,7 @@ from plan_cutters.kernels.search.place import (
 from plan_cutters.kernels.tool.hit import deep_hit
 
 #: Points remembered for each rotation, and of those that the tree gave last.
-_KEPT, _POOL = 64, 128
+_CACHED, _POOL = 64, 128
 #: Boxes in whose time a rotation is gone through, of a tool that touches in one way, about.
 ROTATION = 16
 
@@ -73,40 +73,44 @@ class Side(NamedTuple):
 def memory(rotations, modes, bent):
     """Make an empty obstacle cache."""
     return Memory(
-        np.empty((rotations * modes, _KEPT, 3)), np.zeros(rotations * modes, np.int64), np.full((3, _POOL), np.inf),
+        np.empty((rotations * modes, _CACHED, 3)), np.zeros(rotations * modes, np.int64), np.full((3, _POOL), np.inf),
         np.empty((3, _POOL)), np.empty(_POOL), np.empty(_POOL, np.int64), np.zeros(1, np.int64), bent,
     )  # fmt: skip
 
 
 @kernel
-def _see(past, slot, p, e1, e2, n):
+def _see(obstacle_cache, slot, p, e1, e2, n):
     """Write a point of the pool as seen from the contact."""
-    x, y, z = past.pool[0, slot] - p[0], past.pool[1, slot] - p[1], past.pool[2, slot] - p[2]
-    past.seen[0, slot] = x * e1[0] + y * e1[1] + z * e1[2]
-    past.seen[1, slot] = x * e2[0] + y * e2[1] + z * e2[2]
-    past.seen[2, slot] = x * n[0] + y * n[1] + z * n[2]
+    x, y, z = (
+        obstacle_cache.pool[0, slot] - p[0],
+        obstacle_cache.pool[1, slot] - p[1],
+        obstacle_cache.pool[2, slot] - p[2],
+    )
+    obstacle_cache.seen[0, slot] = x * e1[0] + y * e1[1] + z * e1[2]
+    obstacle_cache.seen[1, slot] = x * e2[0] + y * e2[1] + z * e2[2]
+    obstacle_cache.seen[2, slot] = x * n[0] + y * n[1] + z * n[2]
 
 
 @kernel
-def _deepest(past, count, turn, tilt, tool, mode):
+def _deepest(obstacle_cache, count, turn, tilt, tool, mode):
     """The piece and the point of the pool that is deepest in the tool at a posture, in the tool's frame; -1 if none is in it.
 
     Piece by piece and without a branch among points, so that the compiler uses the lanes of the processor.
     """
-    seen, depth, which, (cosine, sine) = past.seen, past.depth, past.which, turn
+    seen, depth, which, (cosine, sine) = obstacle_cache.seen, obstacle_cache.depth, obstacle_cache.which, turn
     up, out, offset, rise = np.cos(tilt), np.sin(tilt), tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE]
     for i in range(count):
         depth[i] = 0.0
     for k in range(tool.piece.shape[1]):
         low, high, radius = tool.piece[mode, k, LOW], tool.piece[mode, k, HIGH], tool.piece[mode, k, RADIUS]
-        slope, around, scale = tool.piece[mode, k, SLOPE], tool.piece[mode, k, ROUND], tool.piece[mode, k, SCALE]
+        slope, ring_radius, scale = tool.piece[mode, k, SLOPE], tool.piece[mode, k, ROUND], tool.piece[mode, k, SCALE]
         if tool.piece[mode, k, KIND] == ARC:
             for i in range(count):
                 x, z = cosine * seen[0, i] + sine * seen[1, i], seen[2, i] - rise
                 y = cosine * seen[1, i] - sine * seen[0, i]
                 height, px = up * z + out * x, offset + up * x - out * z
                 r = max(0.0, np.sqrt(px * px + y * y) - radius)
-                deep = around - np.sqrt(r * r + (height - slope) * (height - slope))
+                deep = ring_radius - np.sqrt(r * r + (height - slope) * (height - slope))
                 deep = min(min(height - low, high - height), deep)
                 which[i] = k if deep > depth[i] else which[i]
                 depth[i] = max(depth[i], deep)
@@ -119,33 +123,46 @@ def _deepest(past, count, turn, tilt, tool, mode):
                 deep = min(min(height - low, high - height), deep)
                 which[i] = k if deep > depth[i] else which[i]
                 depth[i] = max(depth[i], deep)
-    best, found = 0.0, -1
+    best, deepest = 0.0, -1
     for i in range(count):
         if depth[i] > best:
-            best, found = depth[i], i
-    if found < 0:
+            best, deepest = depth[i], i
+    if deepest < 0:
         return -1, 0.0, 0.0, 0.0
-    x, z = cosine * seen[0, found] + sine * seen[1, found], seen[2, found] - rise
-    y = cosine * seen[1, found] - sine * seen[0, found]
-    return which[found], up * z + out * x, offset + up * x - out * z, y
+    x, z = cosine * seen[0, deepest] + sine * seen[1, deepest], seen[2, deepest] - rise
+    y = cosine * seen[1, deepest] - sine * seen[0, deepest]
+    return which[deepest], up * z + out * x, offset + up * x - out * z, y
 
 
 @kernel
 def _rotation(
-    contacts, row, ranges, rotation, tool, mode, solids, within, narrowest, wish, frame, past, pooled, workspace
+    contacts,
+    row,
+    ranges,
+    rotation,
+    tool,
+    mode,
+    solids,
+    within,
+    narrowest,
+    wish,
+    frame,
+    obstacle_cache,
+    pooled,
+    workspace,
 ):
     """`sweep` at one rotation and mode: (a tilt, -1 for none; how many points of the pool are seen from this contact)."""
     p, n, e1, e2, f, t = frame.p, frame.n, contacts.direction_max[row], workspace.e2, workspace.f, workspace.t
     intervals, body, tally = workspace.intervals, workspace.body, workspace.tally
     turn, place = turn_of(n, e1, ranges, rotation), rotation * len(tool.mode) + mode
-    count = allowed(contacts, row, ranges, rotation, tool, mode, past.bent, workspace)
-    known, kept = past.count[place], 0
+    count = allowed(contacts, row, ranges, rotation, tool, mode, obstacle_cache.bent, workspace)
+    known, written = obstacle_cache.count[place], 0
     for i in range(known):
         if count == 0:
             break
         x, y, z = 0.0, 0.0, 0.0
         for k in range(3):
-            offset = past.point[place, i, k] - p[k]
+            offset = obstacle_cache.point[place, i, k] - p[k]
             x += offset * f[k]
             y += offset * t[k]
             z += offset * n[k]
@@ -153,49 +170,50 @@ def _rotation(
         count = forbid_point(x, y, z, tool, mode, narrowest, intervals, count, workspace)
         if booked(tally) > before:
             for k in range(3):
-                past.point[place, kept, k] = past.point[place, i, k]
-            kept += 1
+                obstacle_cache.point[place, written, k] = obstacle_cache.point[place, i, k]
+            written += 1
     while count > 0:
         tilt, wish = next_tilt(intervals, count, wish), -1.0
         # Mostly the first posture of all is free, as it was at the sample before: then the pool is not looked at.
         which = -1
         if pooled >= 0:
-            which, height, px, py = _deepest(past, pooled, turn, tilt, tool, mode)
+            which, height, px, py = _deepest(obstacle_cache, pooled, turn, tilt, tool, mode)
         new = which < 0
         if new:
             put(body, frame, tilt, tool, mode)
             triangle, which, height, px, py = deep_hit(solids.tree, body, tool.piece[mode], workspace.scratch)
             if triangle < 0:
                 if inside(body, tool, mode, solids, workspace.scratch.stack) < within:
-                    past.count[place] = kept
+                    obstacle_cache.count[place] = written
                     return tilt, pooled
                 half = max(turned(frame, tilt, tool, mode, solids.tree, body, workspace.scratch), 0.5 * narrowest)
                 count = forbid(intervals, count, tilt - half, tilt + half, narrowest, INSIDE, tally)
                 continue
         count, x, y, z = forbid_probed(which, height, px, py, tilt, tool, mode, narrowest, intervals, count, workspace)
-        if kept < _KEPT:
+        if written < _CACHED:
             for k in range(3):
-                past.point[place, kept, k] = p[k] + x * f[k] + y * t[k] + z * n[k]
-            kept += 1
+                obstacle_cache.point[place, written, k] = p[k] + x * f[k] + y * t[k] + z * n[k]
+            written += 1
         if new:
-            slot = past.given[0] % _POOL
+            slot = obstacle_cache.given[0] % _POOL
             for k in range(3):
-                past.pool[k, slot] = p[k] + x * f[k] + y * t[k] + z * n[k]
-            past.given[0] += 1
+                obstacle_cache.pool[k, slot] = p[k] + x * f[k] + y * t[k] + z * n[k]
+            obstacle_cache.given[0] += 1
             if pooled < 0:
-                for i in range(min(past.given[0], _POOL)):
-                    _see(past, i, p, e1, e2, n)
+                for i in range(min(obstacle_cache.given[0], _POOL)):
+                    _see(obstacle_cache, i, p, e1, e2, n)
             else:
-                _see(past, slot, p, e1, e2, n)
-            pooled = min(past.given[0], _POOL)
-    past.count[place] = kept
+                _see(obstacle_cache, slot, p, e1, e2, n)
+            pooled = min(obstacle_cache.given[0], _POOL)
+    obstacle_cache.count[place] = written
     return -1.0, pooled
 
 
 @kernel
-def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, past, workspace):
-    """Look for a posture of one sample at all rotations, those next to the first looked at first, among the tilts that `past` is
-    about.
+def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, obstacle_cache, workspace):
+    """Look for a posture of one sample at all rotations, those next to the first looked at first.
+
+    It looks among the tilts that `obstacle_cache` is about.
 
     Parameters
     ----------
@@ -215,7 +233,7 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, 
         Rotation to begin with, and the tilt that is tried first at each.
     turns : int
         How many rotations to look at.
-    past : Memory, read and written
+    obstacle_cache : Memory, read and written
     workspace : Workspace
         Forbidden tilts are booked in its tally, by reason.
 
@@ -249,7 +267,7 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, 
                 narrowest,
                 start[1],
                 frame,
-                past,
+                obstacle_cache,
                 pooled,
                 workspace,
             )

@@ -78,15 +78,15 @@ def local_gouge(kappa_max, kappa_min, cosine, sine, offset, radius):
         if margin <= 0.0:
             return np.nan, np.nan
         across += mixed * mixed * radius / margin
-        left = 1.0 - radius * across
+        remainder = 1.0 - radius * across
         if offset < 0.0:
-            if left >= 0.0:
+            if remainder >= 0.0:
                 return 0.0, np.pi
-            bound = offset * across / left
+            bound = offset * across / remainder
             return 0.0, np.arcsin(bound) if bound < 1.0 else np.pi
-        if left <= 0.0:
+        if remainder <= 0.0:
             return (0.0, np.pi) if across <= 0.0 else (np.nan, np.nan)
-        across /= left
+        across /= remainder
     bound = offset * across
     if bound <= ROUNDING:
         return 0.0, np.pi

@@ -50,7 +50,7 @@ def _shadow_distance(polygon, count, half):
 
 
 @kernel
-def drawn_hit(vertex, i, body, piece, mask, workspace):
+def extruded_hit(vertex, i, body, piece, mask, workspace):
     """Those of the pieces of a mask, drawn out as the body says, into which triangle i reaches.
 
     Parameters
@@ -71,13 +71,13 @@ def drawn_hit(vertex, i, body, piece, mask, workspace):
     for k in range(len(piece)):
         if not (mask >> k) & 1 or most <= piece[k, BOTTOM] or least >= piece[k, TOP]:
             continue
-        if _drawn(corner, least, most, half, piece, k, workspace):
+        if _extruded(corner, least, most, half, piece, k, workspace):
             hit |= 1 << k
     return hit
 
 
 @kernel
-def _drawn(corner, least, most, half, piece, k, workspace):
+def _extruded(corner, least, most, half, piece, k, workspace):
     """Whether a triangle of rows (height, x, y) reaches into a piece that is drawn out."""
     # What holds the piece: as wide as it ever is.
     where, count = clipped(corner, 3, least, most, piece[k, BOTTOM], piece[k, TOP], workspace.polygon, workspace.spare)

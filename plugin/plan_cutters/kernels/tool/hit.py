@@ -79,18 +79,18 @@ def _thin_apart(box, i, body, piece, k, grow, dx, dy, dz):
     mx, my, mz = box[i, SIDES + 6], box[i, SIDES + 7], box[i, SIDES + 8]
     along = mx * body[A] + my * body[A + 1] + mz * body[A + 2]
     side = mx * body[X] + my * body[X + 1] + mz * body[X + 2]
-    aside = mx * body[Y] + my * body[Y + 1] + mz * body[Y + 2]
+    sideways = mx * body[Y] + my * body[Y + 1] + mz * body[Y + 2]
     apart = mx * dx + my * dy + mz * dz + body[OFFSET] * side
     across = np.sqrt(max(0.0, 1.0 - along * along))
     if piece[k, KIND] == CYLINDER:
         low, high = piece[k, LOW] - grow, piece[k, HIGH] + grow
         apart = abs(apart - 0.5 * (low + high) * along)
-        extent = 0.5 * (high - low) * abs(along) + (piece[k, RADIUS] + grow) * across + body[HALF] * abs(aside)
+        extent = 0.5 * (high - low) * abs(along) + (piece[k, RADIUS] + grow) * across + body[HALF] * abs(sideways)
         return apart > extent + box[i, HALVES + 2] + 1e-9
     if apart < 0.5 * (piece[k, BOTTOM] + piece[k, TOP]) * along:
         apart, along = -apart, -along
     # Widened, a piece with square edges goes as far as in any direction along the axis and across it together.
-    extent = support(piece, k, along, across) + grow * (abs(along) + across) + body[HALF] * abs(aside)
+    extent = support(piece, k, along, across) + grow * (abs(along) + across) + body[HALF] * abs(sideways)
     return apart > extent + box[i, HALVES + 2] + 1e-9
 
 
@@ -118,9 +118,9 @@ def alive(box, i, body, piece, mask, rate):
     if rate > 0.0:
         widening = rate * (np.sqrt(height * height + across * across) + diagonal)
     across += body[OFFSET]
-    aside = dx * body[Y] + dy * body[Y + 1] + dz * body[Y + 2]
-    aside -= min(body[HALF], max(-body[HALF], aside))
-    square = across * across + aside * aside
+    sideways = dx * body[Y] + dy * body[Y + 1] + dz * body[Y + 2]
+    sideways -= min(body[HALF], max(-body[HALF], sideways))
+    square = across * across + sideways * sideways
     extent = -1.0
     for k in range(len(piece)):
         if not (mask >> k) & 1:
@@ -144,14 +144,14 @@ def alive(box, i, body, piece, mask, rate):
                     mask ^= gone
                     continue
                 distance = np.sqrt(square)
-                ux, uy = across / distance, aside / distance
+                ux, uy = across / distance, sideways / distance
                 wide = half_width(
                     box, i, ux * body[X] + uy * body[Y], ux * body[X + 1] + uy * body[Y + 1], ux * body[X + 2] + uy * body[Y + 2]
                 )  # fmt: skip
                 if distance - wide > radius:
                     mask ^= gone
                     continue
-        elif _beyond(box, i, body, piece, k, grow, height, across, aside, square):
+        elif _beyond(box, i, body, piece, k, grow, height, across, sideways, square):
             mask ^= gone
             continue
         if _thin_apart(box, i, body, piece, k, grow, dx, dy, dz):
@@ -160,7 +160,7 @@ def alive(box, i, body, piece, mask, rate):
 
 
 @kernel
-def _beyond(box, i, body, piece, k, grow, height, across, aside, square):
+def _beyond(box, i, body, piece, k, grow, height, across, sideways, square):
     """Whether box i lies beyond a cone or an arc: a convex function is no less than its tangent at the box's centre."""
     q = np.sqrt(square)
     if piece[k, KIND] == ARC:
@@ -179,7 +179,7 @@ def _beyond(box, i, body, piece, k, grow, height, across, aside, square):
         return True
     ux, uy = 1.0, 0.0
     if q > 0.0:
-        ux, uy = out * across / q, out * aside / q
+        ux, uy = out * across / q, out * sideways / q
     elif out > 0.0:
         # On the axis a cone has no tangent but its own height's.
         return False
@@ -222,7 +222,7 @@ def triangle_hit(vertex, i, body, piece, mask, rate, scratch):
     body : (14,) float64
     piece : (k, COLUMNS) float64
     mask : int
-        A bit for each piece that is asked for.
+        A bit for each piece that is requested.
     rate : float
     scratch : Scratch
 
@@ -361,8 +361,8 @@ def _depth_of(box, i, body, piece, mask):
     dx, dy, dz = box[i, CENTRE] - body[P], box[i, CENTRE + 1] - body[P + 1], box[i, CENTRE + 2] - body[P + 2]
     height = dx * body[A] + dy * body[A + 1] + dz * body[A + 2]
     across = dx * body[X] + dy * body[X + 1] + dz * body[X + 2] + body[OFFSET]
-    aside = dx * body[Y] + dy * body[Y + 1] + dz * body[Y + 2]
-    square, best = across * across + aside * aside, -np.inf
+    sideways = dx * body[Y] + dy * body[Y + 1] + dz * body[Y + 2]
+    square, best = across * across + sideways * sideways, -np.inf
     for k in range(len(piece)):
         if (mask >> k) & 1:
             best = max(best, inset(piece, k, height, square))
@@ -384,9 +384,9 @@ def deep_hit(tree, body, piece, scratch):
             continue
         if node < first:
             deeper = _depth_of(box, 2 * node + 1, body, piece, mask) >= _depth_of(box, 2 * node + 2, body, piece, mask)
-            left = 1 if deeper else 0
-            stack[top], masks[top] = 2 * node + 1 + left, mask
-            stack[top + 1], masks[top + 1] = 2 * node + 2 - left, mask
+            deeper_left = 1 if deeper else 0
+            stack[top], masks[top] = 2 * node + 1 + deeper_left, mask
+            stack[top + 1], masks[top + 1] = 2 * node + 2 - deeper_left, mask
             top += 2
             continue
         leaf = node - first

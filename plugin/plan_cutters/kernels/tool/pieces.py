@@ -70,21 +70,21 @@ def support(piece, k, along, across):
 @kernel
 def cut(source, count, target, level, keep):
     """Keep the part of a polygon with `keep * (height - level) >= 0` (Sutherland and Hodgman, one side)."""
-    kept = 0
+    written = 0
     for i in range(count):
         j = i + 1 if i + 1 < count else 0
         here, there = keep * (source[i, 0] - level), keep * (source[j, 0] - level)
         if here >= 0.0:
             for k in range(3):
-                target[kept, k] = source[i, k]
-            kept += 1
+                target[written, k] = source[i, k]
+            written += 1
         if (here > 0.0 and there < 0.0) or (here < 0.0 and there > 0.0):
             part = here / (here - there)
-            target[kept, 0] = level
+            target[written, 0] = level
             for k in range(1, 3):
-                target[kept, k] = source[i, k] + part * (source[j, k] - source[i, k])
-            kept += 1
-    return kept
+                target[written, k] = source[i, k] + part * (source[j, k] - source[i, k])
+            written += 1
+    return written
 
 
 @kernel
@@ -127,8 +127,8 @@ def nearest(polygon, count):
     if not inside:
         return height, px, py, best
     # The axis goes through the polygon: find the crossing in the fan of triangles about its first corner.
-    found, at = _on_axis(polygon, count, area)
-    if found:
+    hit, at = _on_axis(polygon, count, area)
+    if hit:
         return at, 0.0, 0.0, 0.0
     return height, px, py, best
 
@@ -158,7 +158,7 @@ def _in_cone(polygon, count, piece, k, grow):
     for i in range(count):
         j = i + 1 if i + 1 < count else 0
         area += polygon[i, 1] * polygon[j, 2] - polygon[j, 1] * polygon[i, 2]
-    around = abs(area) > 0.0
+    has_area = abs(area) > 0.0
     for i in range(count):
         j = i + 1 if i + 1 < count else 0
         w, x, y = polygon[i, 0], polygon[i, 1], polygon[i, 2]
@@ -168,20 +168,20 @@ def _in_cone(polygon, count, piece, k, grow):
         ew, ex, ey = polygon[j, 0] - w, polygon[j, 1] - x, polygon[j, 2] - y
         turn = x * ey - y * ex
         if turn * area < 0.0:
-            around = False
+            has_area = False
         square, rise = ex * ex + ey * ey, slope * ew
-        left = square - rise * rise
-        if left <= 0.0:
+        remainder = square - rise * rise
+        if remainder <= 0.0:
             continue
-        part = (rise * abs(turn) / np.sqrt(left) - (x * ex + y * ey)) / square
+        part = (rise * abs(turn) / np.sqrt(remainder) - (x * ex + y * ey)) / square
         if 0.0 < part < 1.0:
             bound += part * rise
             x, y = x + part * ex, y + part * ey
             if bound > 0.0 and x * x + y * y < bound * bound:
                 return True, w + part * ew, x, y
-    if around:
-        found, w = _on_axis(polygon, count, area)
-        if found and base + slope * w > 0.0:
+    if has_area:
+        hit, w = _on_axis(polygon, count, area)
+        if hit and base + slope * w > 0.0:
             return True, w, 0.0, 0.0
     return False, 0.0, 0.0, 0.0
 
@@ -269,8 +269,8 @@ def _in_arc(polygon, count, piece, k, grow):
     Its corners, the least point over its plane, its sides: over a plane a convex function has its least at one point, and if that
     is not in the polygon, on a side. A plane that is far enough from the disk (the circle's far side) parts the two.
     """
-    radius, centre, around = piece[k, RADIUS], piece[k, SLOPE], piece[k, ROUND] + grow
-    square = around * around
+    radius, centre, ring_radius = piece[k, RADIUS], piece[k, SLOPE], piece[k, ROUND] + grow
+    square = ring_radius * ring_radius
     for i in range(count):
         q = np.sqrt(polygon[i, 1] ** 2 + polygon[i, 2] ** 2) - radius
         value = (polygon[i, 0] - centre) ** 2
@@ -314,7 +314,7 @@ def _in_arc(polygon, count, piece, k, grow):
             far = away / reach if reach > 0.0 else 0.0
             w, x, y = 0.0, far * ux, far * uy
         elif radius + rest * reach >= 0.0:
-            if least - radius * reach >= around:
+            if least - radius * reach >= ring_radius:
                 return False, 0.0, 0.0, 0.0
             out = radius + rest * reach
             w, x, y = rest * sign * nw / size, out * ux, out * uy

@@ -20,7 +20,7 @@ _STEPS, _LEAST = 24, 1e-6
 
 @kernel
 def _put(out, count, first, last):
-    """Enter tilts, and those a turn away, as far as a tilt can be asked for."""
+    """Enter tilts, and those a turn away, as far as a tilt can be requested."""
     for turn in range(-1, 2):
         low, high = first + 2.0 * np.pi * turn, last + 2.0 * np.pi * turn
         if high >= 0.0 and low <= np.pi and count < len(out):
@@ -67,17 +67,17 @@ def _cylinder(out, count, zero, d, y, offset, radius, floor, ceiling):
 
 
 @kernel
-def _own_arc(out, count, zero, d, y, radius, around, floor, ceiling):
+def _own_arc(out, count, zero, d, y, radius, ring_radius, floor, ceiling):
     """Write the tilts that a revolved arc forbids, whose circle of centres goes through the centre of tilting; the new count.
 
     `radius` may have any sign.
     """
     for up in (1.0, -1.0):
         if radius == 0.0:
-            if d * d + y * y < around * around:
+            if d * d + y * y < ring_radius * ring_radius:
                 count = _half(out, count, zero, -1.0, 1.0, d, floor, ceiling, up)
             continue
-        level = (d * d + y * y - around * around) / (2.0 * radius)
+        level = (d * d + y * y - ring_radius * ring_radius) / (2.0 * radius)
         if radius < 0.0:
             if level > 0.0:
                 last = (radius - (y * y - level * level) / (2.0 * level)) / d
@@ -90,7 +90,7 @@ def _own_arc(out, count, zero, d, y, radius, around, floor, ceiling):
             # Within the disk only its thickness counts.
             r = np.sqrt(square)
             low, high = (radius - r) / d, min((radius + r) / d, first)
-            side = np.sqrt(max(0.0, 1.0 - (around / d) ** 2)) if d > around else 0.0
+            side = np.sqrt(max(0.0, 1.0 - (ring_radius / d) ** 2)) if d > ring_radius else 0.0
             if side == 0.0:
                 count = _half(out, count, zero, low, high, d, floor, ceiling, up)
             else:
@@ -132,9 +132,9 @@ def forbidden(height, px, py, tilt, offset, piece, k, out):
     if kind == CONE:
         # The cylinder within it.
         return _cylinder(out, 0, zero, d, py, offset, min(radius, piece[k, WIDE]), low, high)
-    centre, around = piece[k, SLOPE], piece[k, ROUND]
+    centre, ring_radius = piece[k, SLOPE], piece[k, ROUND]
     if centre == 0.0 and radius == offset:
-        return _own_arc(out, 0, zero, d, py, radius, around, low, high)
+        return _own_arc(out, 0, zero, d, py, radius, ring_radius, low, high)
     if radius > 0.0:
         return _cylinder(out, 0, zero, d, py, offset, radius, piece[k, BOTTOM], piece[k, TOP])
     return 0

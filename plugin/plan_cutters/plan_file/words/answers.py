@@ -11,7 +11,7 @@ from plan_cutters.plan_file.words.cutters import reason
 from plan_cutters.plan_file.words.headline import every
 from plan_cutters.plan_file.words.line import Line
 from plan_cutters.plan_file.words.names import named
-from plan_cutters.plan_file.words.next_steps import cures, is_left_out, remaining, step_told
+from plan_cutters.plan_file.words.next_steps import cures, is_excluded, remaining, step_text
 
 #: Steps that are said of a cutter.
 _STEPS = 5
@@ -32,48 +32,52 @@ _THINGS = {
 
 def answers(plan: Plan) -> list[Line]:
     """A line or two for each answer, cutters called as everywhere; what is to be typed is as it must be typed."""
-    found = (*_stick_outs(plan), *_radii(plan), *_mends(plan))
-    return [line._replace(text=capital(named(plan, line.text))) for line in found]
+    lines = (*_stick_outs(plan), *_radii(plan), *_mends(plan))
+    return [line._replace(text=capital(named(plan, line.text))) for line in lines]
 
 
-def limit(found: StickOutEntry) -> str:
+def limit(stick_out: StickOutEntry) -> str:
     """Say in a sentence which obstacle or part of the tool limits a stick-out."""
-    if found.least_mm is None:
-        return f"It was not looked for: {found.limited_by}."
-    if found.limited_by == "floor" or found.face is None:
+    if stick_out.least_mm is None:
+        return f"It was not looked for: {stick_out.limited_by}."
+    if stick_out.limited_by == "floor" or stick_out.face is None:
         return "Its flutes and neck are that long."
-    met = found.obstacle_face or "the part"
-    return f"Held shorter, its holder meets {met} when the tool stands at ({place(found.point)}) on {found.face}."
+    met = stick_out.obstacle_face or "the part"
+    return (
+        f"Held shorter, its holder meets {met} when the tool stands at ({place(stick_out.point)}) on {stick_out.face}."
+    )
 
 
 def _stick_outs(plan: Plan) -> Iterator[Line]:
     short = []
     for c in plan.cutters:
-        found = c.least_stick_out
-        if found is None:
+        stick_out = c.least_stick_out
+        if stick_out is None:
             continue
-        if found.least_mm is None:
-            yield Line(f"The least stick-out of {c.id} was not looked for: {found.limited_by}.")
-        elif found.limited_by == "floor":
-            short.append(f"{c.id} {up(found.least_mm)} (judged with {found.longest_mm:g} mm)")
-        elif found.longest_mm - found.least_mm < SAME:
+        if stick_out.least_mm is None:
+            yield Line(f"The least stick-out of {c.id} was not looked for: {stick_out.limited_by}.")
+        elif stick_out.limited_by == "floor":
+            short.append(f"{c.id} {up(stick_out.least_mm)} (judged with {stick_out.longest_mm:g} mm)")
+        elif stick_out.longest_mm - stick_out.least_mm < SAME:
             yield Line(
-                f"{c.id} cannot be held shorter than the {found.longest_mm:g} mm that were judged. {limit(found)}"
+                f"{c.id} cannot be held shorter than the {stick_out.longest_mm:g} mm that were judged. {limit(stick_out)}"
             )
         else:
-            yield Line(f"{c.id} can be held shorter: {up(found.least_mm)} of its {found.longest_mm:g} mm stick-out are enough "
-                       f"for all that it reaches now. {limit(found)}")  # fmt: skip
+            yield Line(
+                f"{c.id} can be held shorter: {up(stick_out.least_mm)} of its {stick_out.longest_mm:g} mm stick-out are enough "
+                f"for all that it reaches now. {limit(stick_out)}"
+            )
     if short:
         yield Line("These can be held as short as their flutes and necks allow, and still reach all that they reach: "
                    f"{', '.join(short)}.")  # fmt: skip
 
 
-def narrowest(found: RadiusEntry) -> str:
+def narrowest(radius: RadiusEntry) -> str:
     """Where the largest radius is the least, and why."""
-    if found.bottleneck_point is None:
+    if radius.bottleneck_point is None:
         return ""
-    why = f"({reason(found.reason)})" if found.reason else "(no larger end was tried)"
-    return f"({place(found.bottleneck_point)}) on {found.bottleneck_face} {why}"
+    why = f"({reason(radius.reason)})" if radius.reason else "(no larger end was tried)"
+    return f"({place(radius.bottleneck_point)}) on {radius.bottleneck_face} {why}"
 
 
 def _radii(plan: Plan) -> Iterator[Line]:
@@ -93,10 +97,10 @@ def _radii(plan: Plan) -> Iterator[Line]:
         yield Line("Stick-outs and largest radii hold unless a face is in the way that is missing from the obstacles.")
 
 
-def change(found: ChangeEntry) -> tuple[str, str]:
+def change(change: ChangeEntry) -> tuple[str, str]:
     """Say which thing is changed, and whether that helps: subject and rest of a sentence."""
-    subject = _THINGS.get(found.thing, found.thing.replace("_", " "))
-    return subject, f"{'helps: ' * bool(found.helps)}{'may help: ' * found.doubted}{found.why}."
+    subject = _THINGS.get(change.thing, change.thing.replace("_", " "))
+    return subject, f"{'helps: ' * bool(change.helps)}{'may help: ' * change.doubted}{change.why}."
 
 
 def _mends(plan: Plan) -> Iterator[Line]:
@@ -115,9 +119,9 @@ def _mends(plan: Plan) -> Iterator[Line]:
             yield Line(f"Nothing sure would make {c.id} finish: {c.mend.why}.")
         if unsure:
             yield Line(f"  Not decided: {unsure}.")
-    if left := len(plan.not_mended):
-        which = "cutter that leaves more was" if left == 1 else "cutters that leave more were"
-        yield Line(f"{left} more {which} not asked about: --answers mend-all.")
+    if omitted := len(plan.not_mended):
+        which = "cutter that leaves more was" if omitted == 1 else "cutters that leave more were"
+        yield Line(f"{omitted} more {which} not asked about: --answers mend-all.")
 
 
 def _unsure(changes: Sequence[ChangeEntry]) -> str:
@@ -130,22 +134,22 @@ def _unsure(changes: Sequence[ChangeEntry]) -> str:
     return "; ".join(f"{', '.join(things)} ({cause})" if things else cause for cause, things in by_cause.items())
 
 
-def _next(c: CutterEntry, mend: MendEntry) -> Iterator[Line]:
+def _next(c: CutterEntry, what_if: MendEntry) -> Iterator[Line]:
     """Steps for a cutter, the best first, with the option that each takes."""
-    if not mend.steps:
+    if not what_if.steps:
         return
-    unsure = " (if nothing is in the way that is missing from the obstacles)" if mend.unsure else ""
-    yield Line(f"What next for {c.id}, which leaves {some(mend.lost_share)} of the area{unsure}:")
-    steps = [step for step in mend.steps if not is_left_out(step)]
+    unsure = " (if nothing is in the way that is missing from the obstacles)" if what_if.unsure else ""
+    yield Line(f"What next for {c.id}, which leaves {some(what_if.lost_share)} of the area{unsure}:")
+    steps = [step for step in what_if.steps if not is_excluded(step)]
     for k, step in enumerate(steps[:_STEPS], 1):
         typed = f" [{'add ' * step.option.startswith('--cutter')}{step.option}]" if step.option else ""
-        yield Line(f"  {k}. {step_told(step)}.", typed=typed)
+        yield Line(f"  {k}. {step_text(step)}.", typed=typed)
     if len(steps) > _STEPS:
         yield Line(f"  and {len(steps) - _STEPS} more in plan.json.")
     if not steps:
         yield Line("  No step was found that frees any of it.")
-    if rest := remaining(mend):
+    if rest := remaining(what_if):
         yield Line(f"  After step 1 stays: {rest}.")
-    for step in mend.steps:
-        if is_left_out(step):
+    for step in what_if.steps:
+        if is_excluded(step):
             yield Line(f"  Else: {step.why}.")

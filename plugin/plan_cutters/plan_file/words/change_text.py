@@ -23,43 +23,41 @@ _FACES = 5
 _ORDER = {2: "second", 3: "third", 4: "fourth"}
 
 
-def tolerance(asked: float, now: float) -> str:
-    return f"a tolerance of {mm(asked)} instead of {mm(now)}"
+def tolerance(requested: float, now: float) -> str:
+    return f"a tolerance of {mm(requested)} instead of {mm(now)}"
 
 
-def tilt_range(asked: Range, now: Range) -> str:
-    return (
-        f"tilts from {angle(asked[0])} to {angle(asked[1])} in the search instead of {angle(now[0])} to {angle(now[1])}"
-    )
+def tilt_range(wanted: Range, now: Range) -> str:
+    return f"tilts from {angle(wanted[0])} to {angle(wanted[1])} in the search instead of {angle(now[0])} to {angle(now[1])}"
 
 
-def tilt_limit(asked: float, now: float | None, machine: str) -> str:
+def tilt_limit(requested: float, now: float | None, machine: str) -> str:
     """Name a machine that tilts further; `now` is None where rotary axes limit it, not an angle."""
     instead = f"every way instead of {machine}" if now is None else f"instead of {angle(now)}"
-    return f"a machine that tilts by {angle(asked)} {instead}"
+    return f"a machine that tilts by {angle(requested)} {instead}"
 
 
-def stick_out(asked: float, now: Cutter) -> str:
+def stick_out(requested: float, now: Cutter) -> str:
     how = notation(now.name)
-    return f"a stick-out of {how.mm(asked)} instead of {how.mm(now.length)}"
+    return f"a stick-out of {how.mm(requested)} instead of {how.mm(now.length)}"
 
 
-def radius(asked: float, now: Cutter) -> str:
+def radius(requested: float, now: Cutter) -> str:
     """Name a radius as the present cutter was given: by its diameter, if that was."""
     how = notation(now.name)
-    return f"{how.size(asked)} instead of {how.size(now.radius).rpartition(' of ')[2]}"
+    return f"{how.size(requested)} instead of {how.size(now.radius).rpartition(' of ')[2]}"
 
 
-def corner_radius(asked: float, now: Cutter) -> str:
+def corner_radius(requested: float, now: Cutter) -> str:
     """Name a corner radius; that of 0 is a flat end, and that of the whole radius a ball end."""
     how, ends = notation(now.name), {now.radius: "a ball end", 0.0: "a flat end"}
-    wanted = ends.get(asked, f"a corner radius of {how.mm(asked)}")
+    wanted = ends.get(requested, f"a corner radius of {how.mm(requested)}")
     return f"{wanted} instead of {ends.get(now.corner_radius, how.mm(now.corner_radius))}"
 
 
-def holder(asked: Holder, now: Cutter) -> str:
+def holder(requested: Holder, now: Cutter) -> str:
     how = notation(now.name)
-    return f"a slimmer holder, {asked.called(how)} instead of {now.holder.called(how) if now.holder else 'none'}"
+    return f"a slimmer holder, {requested.called(how)} instead of {now.holder.called(how) if now.holder else 'none'}"
 
 
 def rest(cutter: str) -> str:
@@ -94,18 +92,18 @@ def faces(ids: Sequence[str], area: float, share: float) -> str:
     return f"{which} left out of what is to be finished: {size(area)}, {percent(share)} of the target area"
 
 
-def patch(found: Patch) -> str:
+def patch(area: Patch) -> str:
     """An area that is lost, with its place.
 
     >>> patch(Patch(57.2, 0.01, 9, ("F31",), (12.0, 3.0, -8.04), 4.13))
     '57.2 mm² of F31, about (12, 3, -8.04), 4.1 mm across'
     """
-    wide = f", {mm(float(f'{found.across:.2g}'))} across" if found.across else ""
-    where = ", ".join(f"{round(x, 4) + 0.0:.3g}" for x in found.place)
-    return f"{size(found.area)} of {listed(found.faces, _FACES)}, about ({where}){wide}"
+    wide = f", {mm(float(f'{area.across:.2g}'))} across" if area.across else ""
+    where = ", ".join(f"{round(x, 4) + 0.0:.3g}" for x in area.place)
+    return f"{size(area.area)} of {listed(area.faces, _FACES)}, about ({where}){wide}"
 
 
-def left_out(areas: Sequence[Patch], area: float) -> str:
+def excluded_areas(areas: Sequence[Patch], area: float) -> str:
     """Say which connected areas are left to other means, and how much they are in all, mm2."""
     if len(areas) == 1:
         return f"{patch(areas[0])} left to other means"
@@ -114,8 +112,8 @@ def left_out(areas: Sequence[Patch], area: float) -> str:
 
 def reasons(codes: NDArray[np.uint8], of: int | None = None) -> str:
     """Say how many samples, of how many, are not reached, and why."""
-    found = [(int((codes == code).sum()), REASONS[code]) for code in np.unique(codes).tolist()]
-    ranked = sorted(found, key=lambda each: (-each[0], each[1]))
+    counted = [(int((codes == code).sum()), REASONS[code]) for code in np.unique(codes).tolist()]
+    ranked = sorted(counted, key=lambda each: (-each[0], each[1]))
     if len(ranked) == 1:
         return f"{samples(len(codes), of)} lost to {WORDS[ranked[0][1]].noun}"
     whole = ", ".join(f"{count:,} to {WORDS[reason].noun}" for count, reason in ranked)

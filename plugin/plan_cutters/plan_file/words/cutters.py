@@ -10,7 +10,7 @@ from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters.plan_file.shares import VERDICTS, AreaShare, part_of, reached, unreached
 from plan_cutters.plan_file.words.headline import area, between, every
 from plan_cutters.plan_file.words.names import described, named
-from plan_cutters.plan_file.words.next_steps import cures, first_step, step_told
+from plan_cutters.plan_file.words.next_steps import cures, first_step, step_text
 
 #: Faces that are named on which a cutter leaves something.
 _FACES = 3
@@ -72,7 +72,7 @@ def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:
     """All that is told of a cutter."""
     main = REASONS.get(main_reason(c.area_share))
     faces, failing = worst_faces(plan, c)
-    loss = capital(named(plan, left(plan, c))) if c.not_reached else ""
+    loss = capital(named(plan, remaining_text(plan, c))) if c.not_reached else ""
     return CutterStory(
         id=c.id,
         name=name,
@@ -120,7 +120,7 @@ def _next(plan: Plan, c: CutterEntry) -> str:
     if c.mend is None:
         return ""
     if (step := first_step(c)) is not None:
-        return f"Next: {named(plan, step_told(step))}."
+        return f"Next: {named(plan, step_text(step))}."
     helping = [named(plan, change.why) for change in cures(c.mend) if change.helps]
     if helping:
         return f"It would finish with {'; or with '.join(helping)}."
@@ -129,19 +129,19 @@ def _next(plan: Plan, c: CutterEntry) -> str:
 
 def reasons(c: CutterEntry) -> list[str]:
     """Why a cutter loses what it loses, with shares of the area: the reason with the largest one first."""
-    found = []
+    lines = []
     for code, share in sorted(c.area_share.lost_by.items(), key=lambda item: -item[1]):
         besides = f" (with {_besides(c)})" if code == "axis_limit" and c.axis_limit_with else ""
-        found.append(f"{reason(code)} {percent(share, some=True, whole=False)}{besides}")
-    return found
+        lines.append(f"{reason(code)} {percent(share, some=True, whole=False)}{besides}")
+    return lines
 
 
-def left(plan: Plan, c: CutterEntry) -> str:
+def remaining_text(plan: Plan, c: CutterEntry) -> str:
     """Say how much a cutter does not reach, why, on which faces, and the worst place."""
     why = ", ".join(reasons(c))
     if c.undecided:
         why += f"; of it {percent(c.area_share.undecided, some=True, whole=False)} is undecided"
-    failing = _by_area_left(plan, c)
+    failing = _by_remaining_area(plan, c)
     deep = [w for w in c.witnesses if w.depth_mm is not None and not w.inside_bodies]
     where = ""
     if deep:
@@ -169,19 +169,19 @@ def spot(witness: WitnessEntry) -> str:
     """A witness in a sentence."""
     if witness.reason == "tolerance":
         return "The tolerance is too coarse to say anything about this cutter."
-    said, best, obstacle = capital(reason(witness.reason)), witness.best_posture, called(witness.obstacle_face)
+    text, best, obstacle = capital(reason(witness.reason)), witness.best_posture, called(witness.obstacle_face)
     unsure = witness.verdict == "undecided"
-    said += ", undecided" * unsure
+    text += ", undecided" * unsure
     if witness.depth_mm is not None and best is not None:
         there = f"tilt {angle(best.tilt)}, rotation {angle(best.rotation)}"
         if unsure:
             what = obstacle or "the part"
-            return f"{said}. At the best posture found ({there}) {what} may reach {mm(witness.depth_mm)} into the tool."
+            return f"{text}. At the best posture found ({there}) {what} may reach {mm(witness.depth_mm)} into the tool."
         where = f" in {obstacle}" if obstacle else ""
-        return f"{said}. The best posture found ({there}) is still {mm(witness.depth_mm)} too deep{where}."
+        return f"{text}. The best posture found ({there}) is still {mm(witness.depth_mm)} too deep{where}."
     if obstacle:
-        return f"{said}. {capital(obstacle)} {'may be' if unsure else 'is'} in the way."
-    return f"{said}. No posture is {'sure' if unsure else 'left'}."
+        return f"{text}. {capital(obstacle)} {'may be' if unsure else 'is'} in the way."
+    return f"{text}. No posture is {'sure' if unsure else 'left'}."
 
 
 def ranked_spots(witnesses: Sequence[WitnessEntry]) -> list[WitnessEntry]:
@@ -197,8 +197,8 @@ def ranked_spots(witnesses: Sequence[WitnessEntry]) -> list[WitnessEntry]:
 
 def worst_faces(plan: Plan, c: CutterEntry, most: int = 5) -> tuple[list[WorstFace], int]:
     """The faces of which a cutter loses the largest area, and how many there are in all."""
-    faces, ranked = {face.id: face for face in plan.faces}, _by_area_left(plan, c)
-    return [_worst(faces[name], c, _area_left(faces[name], c)) for name in ranked[:most]], len(ranked)
+    faces, ranked = {face.id: face for face in plan.faces}, _by_remaining_area(plan, c)
+    return [_worst(faces[name], c, _remaining_area(faces[name], c)) for name in ranked[:most]], len(ranked)
 
 
 def worst_face_text(face: WorstFace) -> str:
@@ -208,21 +208,21 @@ def worst_face_text(face: WorstFace) -> str:
     return f"{face.id}: {face.area} mm² lost, {face.share} of the face, mainly {face.reason}{deep}{way}"
 
 
-def _by_area_left(plan: Plan, c: CutterEntry) -> list[str]:
+def _by_remaining_area(plan: Plan, c: CutterEntry) -> list[str]:
     """Ids of the faces on which a cutter leaves something, the one with the largest area of it first."""
 
     def rank(face: FaceEntry) -> tuple[float, float]:
-        area = _area_left(face, c)
+        area = _remaining_area(face, c)
         return -area if math.isfinite(area) else 0.0, -c.faces[face.id].area_share.not_reached
 
     failing = [face for face in plan.faces if face.id in c.faces and c.faces[face.id].not_reached]
     return [face.id for face in sorted(failing, key=rank)]
 
 
-def _area_left(face: FaceEntry, c: CutterEntry) -> float:
+def _remaining_area(face: FaceEntry, c: CutterEntry) -> float:
     """Area of a face that a cutter leaves, mm2; not a number where the face's is not known."""
-    found = c.faces[face.id]
-    return found.area_share.not_reached * (1.0 - found.inside_share) * face.area_mm2
+    face_entry = c.faces[face.id]
+    return face_entry.area_share.not_reached * (1.0 - face_entry.inside_share) * face.area_mm2
 
 
 def _worst(face: FaceEntry, c: CutterEntry, lot: float) -> WorstFace:

@@ -6,7 +6,7 @@ from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import leaves
 from plan_cutters.plan_file.numbers import angle, capital, count, figure, mm, percent, place
 from plan_cutters.plan_file.shares import unreached
-from plan_cutters.plan_file.words.cutters import left
+from plan_cutters.plan_file.words.cutters import remaining_text
 from plan_cutters.plan_file.words.headline import area
 from plan_cutters.plan_file.words.names import named
 from plan_cutters.plan_file.words.notes import machine
@@ -23,7 +23,7 @@ def scene(plan: Plan) -> str:
             f"{count(plan.samples.count, 'sample')}, at most {mm(plan.samples.max_gap_mm)} apart. {machine(plan)}")  # fmt: skip
 
 
-def drawn(plan: Plan) -> str:
+def rendered(plan: Plan) -> str:
     """Say whose verdicts a drawing of the part shows, and under which conditions they were found."""
     taken = "is selected" if plan.selected else "is shown because it leaves the least area; none is selected"
     return (f"This cutter {taken}. Part {_size(plan)}. Machine {plan.effective.machine}, setup axis "
@@ -51,7 +51,7 @@ def others(plan: Plan, *, every: bool = False) -> list[str]:
     if not every and len(larger) > _OTHERS:
         taken = plan.selected_over_setups or plan.selected_for_setup
         near = sorted(larger, key=lambda c: (c.id != taken, leaves(c)))[:_OTHERS]
-    lines = [capital(named(plan, left(plan, c))) for c in larger if c in near]
+    lines = [capital(named(plan, remaining_text(plan, c))) for c in larger if c in near]
     if rest := [c for c in larger if c not in near]:
         ends = [of(rest, key=leaves) for of in (min, max)]
         least, most = (unreached(c, c.area_share) for c in ends)

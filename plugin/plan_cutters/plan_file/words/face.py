@@ -10,7 +10,7 @@ from plan_cutters.plan_file.numbers import count, mm, percent
 from plan_cutters.plan_file.shares import FaceVerdicts, part_of, unreached
 from plan_cutters.plan_file.words.cutters import called, reason
 from plan_cutters.plan_file.words.names import named
-from plan_cutters.plan_file.words.next_steps import effect, is_left_out
+from plan_cutters.plan_file.words.next_steps import effect, is_excluded
 
 
 class InTheWay(NamedTuple):
@@ -30,15 +30,15 @@ def in_the_way(witnesses: Sequence[WitnessEntry]) -> list[InTheWay]:
         if w.obstacle_face and w.depth_mm is not None:
             key = w.obstacle_face, w.reason
             depths[key] = max(w.depth_mm, depths.get(key, w.depth_mm))
-    found = [InTheWay(face or "", code, depths.get((face or "", code)), n) for (face, code), n in places.items()]
-    return sorted(found, key=lambda each: (-each.places, -(each.depth_mm or 0.0), each.face))
+    places_hit = [InTheWay(face or "", code, depths.get((face or "", code)), n) for (face, code), n in places.items()]
+    return sorted(places_hit, key=lambda each: (-each.places, -(each.depth_mm or 0.0), each.face))
 
 
-def helping(mend: MendEntry) -> list[StepEntry | ChangeEntry]:
+def helping(what_if: MendEntry) -> list[StepEntry | ChangeEntry]:
     """Changes that gain something: the steps, then changes of one thing that no step says."""
-    steps = [step for step in mend.steps if not is_left_out(step) and step.gained]
+    steps = [step for step in what_if.steps if not is_excluded(step) and step.gained]
     known = {step.why for step in steps}
-    changes = [c for c in mend.changes if (c.helps or c.doubted) and c.asked is not None and c.why not in known]
+    changes = [c for c in what_if.changes if (c.helps or c.doubted) and c.asked is not None and c.why not in known]
     return [*steps, *changes]
 
 
@@ -72,8 +72,8 @@ def face_text(plan: Plan, cutter: CutterEntry, face: FaceEntry, unhelped: str) -
     if way := in_the_way(mine):
         deep = f", up to {mm(way[0].depth_mm)} deep in the tool" if way[0].depth_mm is not None else ""
         text += f" At the best posture {called(way[0].face)} is in the way{deep}."
-    found = helping(cutter.mend) if cutter.mend else []
-    text += f" What would help: {_gain(found[0])}." if found else f" What would help is not known: {unhelped}."
+    changes = helping(cutter.mend) if cutter.mend else []
+    text += f" What would help: {_gain(changes[0])}." if changes else f" What would help is not known: {unhelped}."
     return named(plan, text + doubt)
 
 

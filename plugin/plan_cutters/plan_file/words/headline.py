@@ -81,14 +81,14 @@ def every(plan: Plan) -> str:
 
 def could_not(plan: Plan) -> str:
     """Say what part could not be judged, in a sentence that follows others; empty where all could be judged."""
-    found, number = [], plan.samples.unjudged
+    lines, number = [], plan.samples.unjudged
     if number:
         faces = [f.id for f in plan.faces if f.target and f.unjudged and f.samples]
         on = f" on {listed(faces)}" if faces else ""
-        found.append(f"{number:,} of {count(plan.samples.count, 'sample')}{on} could not be judged")
+        lines.append(f"{number:,} of {count(plan.samples.count, 'sample')}{on} could not be judged")
     if empty := not_sampled(plan):
-        found.append(f"{listed(empty)} could not be sampled")
-    return f" {', and '.join(found)}." if found else ""
+        lines.append(f"{listed(empty)} could not be sampled")
+    return f" {', and '.join(lines)}." if lines else ""
 
 
 def not_sampled(plan: Plan) -> list[str]:
@@ -106,15 +106,15 @@ def between(plan: Plan, c: CutterEntry) -> str:
     return "" if c.area is None else _between(c.area, area(plan))
 
 
-def _between(found: AreaEntry, of: str) -> str:
-    if found.feasible:
+def _between(area: AreaEntry, of: str) -> str:
+    if area.feasible:
         return "Between the samples, too, all of the area is proved safe with the tool axes found."
-    if found.share == 1.0 and found.left_out:
+    if area.share == 1.0 and area.left_out:
         return (f"Between the samples, all area that is known is proved safe with the tool axes found; that of "
-                f"{listed(found.left_out)} is not known.")  # fmt: skip
-    nothing = found.share <= 0.0
-    share = "nothing" if nothing else f"{some(found.share)} of {of}"
-    rest = "area" if nothing else some(1.0 - found.share)
+                f"{listed(area.left_out)} is not known.")  # fmt: skip
+    nothing = area.share <= 0.0
+    share = "nothing" if nothing else f"{some(area.share)} of {of}"
+    rest = "area" if nothing else some(1.0 - area.share)
     return (f"Between the samples, {share} is proved safe with the tool axis kept as it was found. The {'other ' * (not nothing)}"
             f"{rest} is not proved, which does not mean unsafe: the tool axis has to turn there from one sample to the next, or "
             "the samples are too far apart. Check it in simulation, or ask for more (--spacing, --area-budget).")  # fmt: skip

@@ -9,31 +9,31 @@ from plan_cutters.plan_file.numbers import figure, listed, percent
 
 def inside(plan: Plan, most: int = 5) -> list[str]:
     """Say how much lies inside other bodies of the part, then name the bodies that a planner must look at."""
-    found = plan.inside_other_bodies
-    if not found.samples:
+    entry = plan.inside_other_bodies
+    if not entry.samples:
         return []
-    share = percent(found.share, some=True, whole=found.samples == plan.samples.count)
-    lines = [f"{share} of the target area ({found.samples:,} of {plan.samples.count:,} samples) lies inside other bodies of the "
+    share = percent(entry.share, some=True, whole=entry.samples == plan.samples.count)
+    lines = [f"{share} of the target area ({entry.samples:,} of {plan.samples.count:,} samples) lies inside other bodies of the "
              "part: it is no surface of the finished part, and what follows is about the rest."]  # fmt: skip
-    standing = sorted((each for each in found.bodies if each.how != "overlaps"), key=lambda each: each.largest)
-    lines += [_standing(each) for each in standing[:most]]
-    lines += _more(standing[most:], "body covers", "bodies cover")
-    over = [each for each in found.bodies if each.how == "overlaps"]
+    buried_bodies = sorted((each for each in entry.bodies if each.how != "overlaps"), key=lambda each: each.largest)
+    lines += [_body_text(each) for each in buried_bodies[:most]]
+    lines += _more(buried_bodies[most:], "body covers", "bodies cover")
+    over = [each for each in entry.bodies if each.how == "overlaps"]
     if over:
         each = "; ".join(
             f"{_called(b)} covers {figure(b.area_mm2)} mm2 of {listed(b.faces, 4)}" for b in over[: most - 2]
         )
         rest = len(over) - (most - 2)
         lines.append(f"Bodies overlap: {each}{f'; {rest} more in plan.json' if rest > 0 else ''}.")
-    if found.sheets is not None:
-        sheets, area = found.sheets, figure(found.sheets.area_mm2)
+    if entry.sheets is not None:
+        sheets, area = entry.sheets, figure(entry.sheets.area_mm2)
         what = "is a construction sheet" if len(sheets.faces) == 1 else "are construction sheets"
         lines.append(f"{listed(sheets.faces)} {what} on the skin of a body: {area} mm2 face into it. {sheets.option} leaves such "
                      "sheets out.")  # fmt: skip
     return lines
 
 
-def _standing(body: CoveringBody) -> str:
+def _body_text(body: CoveringBody) -> str:
     on, area = listed(body.faces, 4), figure(body.area_mm2)
     verb = "stands on" if body.how == "stands_on" else "touches or overlaps"
     if body.largest:

@@ -19,41 +19,41 @@ def whatever_the_axes(few: FewestEntry) -> Iterator[str]:
         yield f"Whatever the axes, no fewer than {few.at_least_any} orientations do."
 
 
-def motion(found: MotionEntry | None) -> Iterator[str]:
+def motion(motion: MotionEntry | None) -> Iterator[str]:
     """Say what the joined postures let expect: an estimate, and called one."""
-    if found is None:
+    if motion is None:
         return
-    if not found.components:
-        yield f"Of motion nothing can be estimated: {found.cutter} has no free posture in the maps."
+    if not motion.components:
+        yield f"Of motion nothing can be estimated: {motion.cutter} has no free posture in the maps."
         return
-    yield f"Simultaneous motion with {found.cutter}, an estimate: {_parts(found)}."
-    if found.components_strict > found.components:
-        yield f"  By strict joins there are {found.components_strict} parts: some ways are narrower than the maps tell."
-    for each in found.forced_steps:
-        yield from _step(found, each)
+    yield f"Simultaneous motion with {motion.cutter}, an estimate: {_parts(motion)}."
+    if motion.components_strict > motion.components:
+        yield f"  By strict joins there are {motion.components_strict} parts: some ways are narrower than the maps tell."
+    for each in motion.forced_steps:
+        yield from _step(motion, each)
 
 
-def _parts(found: MotionEntry) -> str:
-    if found.components == 1:
+def _parts(motion: MotionEntry) -> str:
+    if motion.components == 1:
         return "all its postures hang together"
-    outside = f", {found.outside} samples lie outside of it" if found.outside else ""
-    least = "" if found.needed == found.needed_at_least else f", at least {found.needed_at_least},"
+    outside = f", {motion.outside} samples lie outside of it" if motion.outside else ""
+    least = "" if motion.needed == motion.needed_at_least else f", at least {motion.needed_at_least},"
     needed = (
-        "one touches" if found.needed == 1 else f"{found.needed} of them{least} together touch"
+        "one touches" if motion.needed == 1 else f"{motion.needed} of them{least} together touch"
     ) + " all that is reached"
-    largest = f"the largest touches {some(found.largest_share)} of the area{outside}"
-    return f"its postures fall into {found.components} parts; {largest}; {needed}"
+    largest = f"the largest touches {some(motion.largest_share)} of the area{outside}"
+    return f"its postures fall into {motion.components} parts; {largest}; {needed}"
 
 
-def _step(found: MotionEntry, each: ForcedStepEntry) -> Iterator[str]:
+def _step(motion: MotionEntry, each: ForcedStepEntry) -> Iterator[str]:
     """A large step of the rotary axes, and turns of the first one near its own direction."""
     lines = f"grid lines along {each.along}"
     if each.looked_at < each.lines:
         lines = f"{each.looked_at} of {each.lines} {lines}"
-    exact = f"(to {found.resolution_deg:g} deg)"
+    exact = f"(to {motion.resolution_deg:g} deg)"
     if each.deg >= _LARGE:
         yield (f"  On {lines} a rotary axis must turn by {each.deg:g} deg {exact} from one sample to the next, whatever the "
                f"postures: {each.face}.")  # fmt: skip
-    if each.turning_deg >= max(_LARGE, each.deg + found.resolution_deg):
+    if each.turning_deg >= max(_LARGE, each.deg + motion.resolution_deg):
         yield (f"  On {lines} the first rotary axis turns by {each.turning_deg:g} deg {exact} between two samples where the tool "
                "stands along it.")  # fmt: skip

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
 #: Numbers in the tool changer that are named of one cutter.
 _PLACES = 3
 #: What the drawer's names end in.
-_DRAWER = ", built-in"
+_BUILT_IN_MARK = ", built-in"
 _END, _BALL, _BULL = "flat end", "ball end", "bull nose"
 
 
@@ -49,11 +49,11 @@ def called(cutter: "Cutter | CutterEntry") -> str:
         return f"{length / 25.4:.{digits}g}in" if inches else f"{length:.{digits}g}"
 
     across = size(2.0 * cutter.radius)
-    name = cutter.name.removesuffix(_DRAWER).strip()
+    name = cutter.name.removesuffix(_BUILT_IN_MARK).strip()
     if name and not is_spec(name):
         # Where the name says the diameter itself, it need not be said again.
-        said = re.search(rf"(?<![\d.,]){re.escape(across)}(?![\d]|[.,]\d)", name)
-        return name if said else f"{name} D{across}"
+        match = re.search(rf"(?<![\d.,]){re.escape(across)}(?![\d]|[.,]\d)", name)
+        return name if match else f"{name} D{across}"
     what = kind(cutter)
     corner = f" rc{size(cutter.corner_radius, 4)}" if cutter.corner_radius and what not in (_BALL, "lollipop") else ""
     taper = math.degrees(cutter.taper) if isinstance(cutter, Cutter) else cutter.taper_deg
@@ -84,11 +84,11 @@ def _numbers(plan: "Plan") -> dict[str, list[str]]:
             if source.number is not None:
                 mine.setdefault(source.number, set()).add(c.id)
     others = {tool.number for library in plan.libraries for tool in library.unused}
-    found: dict[str, list[str]] = {}
+    by_name: dict[str, list[str]] = {}
     for c in plan.cutters:
         each = dict.fromkeys(s.number for s in c.sources if s.number is not None)
-        found[c.id] = [f"T{number}" for number in each if len(mine[number]) == 1 and number not in others]
-    return found
+        by_name[c.id] = [f"T{number}" for number in each if len(mine[number]) == 1 and number not in others]
+    return by_name
 
 
 def described(entry: "CutterEntry", name: str) -> str:
@@ -96,13 +96,13 @@ def described(entry: "CutterEntry", name: str) -> str:
     from plan_cutters.domain.spec import notation
 
     what = called_plainly(entry)
-    said = f"{'' if what in name else f'{what}, '}{_word(entry)}, "
+    text = f"{'' if what in name else f'{what}, '}{_word(entry)}, "
     length = notation(entry.name).mm(round(entry.length, 6))
     holder = [stage for stage in entry.stages if stage.part == "holder"]
     if not holder:
-        return f"{said}judged without a holder, {length} up from its tip"
+        return f"{text}judged without a holder, {length} up from its tip"
     widest = 2.0 * max(max(stage.radius_mm, stage.upper_radius_mm) for stage in holder)
-    return f"{said}{length} out of its holder{f' {entry.holder}' if entry.holder else ''}, up to D{widest:.4g} wide"
+    return f"{text}{length} out of its holder{f' {entry.holder}' if entry.holder else ''}, up to D{widest:.4g} wide"
 
 
 def _word(entry: "CutterEntry") -> str:

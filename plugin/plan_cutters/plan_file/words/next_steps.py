@@ -15,35 +15,35 @@ def together(plan: Plan) -> str:
 
     Empty where the plan does not say, or where one cutter in one setup reaches everything.
     """
-    found = plan.least_set
-    if found is None or (len(found.runs) < 2 and not found.left):
+    least = plan.least_set
+    if least is None or (len(least.runs) < 2 and not least.left):
         return ""
-    if not found.runs:
+    if not least.runs:
         return "No cutter given reaches any of the area"
-    several = len({run.setup for run in found.runs}) > 1
+    several = len({run.setup for run in least.runs}) > 1
     judged = not plan.samples.unjudged and not not_sampled(plan)
-    whole = percent(found.share, some=True, whole=judged and not found.left)
-    if len(found.runs) == 1:
-        said = f"{_run(found.runs[0], several)} alone reaches all that any cutter given reaches, {whole} of the area"
+    whole = percent(least.share, some=True, whole=judged and not least.left)
+    if len(least.runs) == 1:
+        text = f"{_run(least.runs[0], several)} alone reaches all that any cutter given reaches, {whole} of the area"
     else:
-        named, last = found.runs[:-1][:_RUNS], found.runs[-1]
+        named, last = least.runs[:-1][:_RUNS], least.runs[-1]
         each = [f"{_run(run, several)} for {percent(run.share, some=True, whole=False)}" for run in named]
         each[0] += " of the area"
-        more = len(found.runs) - 1 - len(named)
+        more = len(least.runs) - 1 - len(named)
         if more:
             each.append(
-                f"{more} more cutters for {percent(sum(r.share for r in found.runs[_RUNS:-1]), some=True, whole=False)}"
+                f"{more} more cutters for {percent(sum(r.share for r in least.runs[_RUNS:-1]), some=True, whole=False)}"
             )
         every = "all of it" if judged else "all of it that could be judged"
-        said = f"{', '.join(each)} and {_run(last, several)} for the rest reach {whole if found.left else every}"
-    if found.left:
+        text = f"{', '.join(each)} and {_run(last, several)} for the rest reach {whole if least.left else every}"
+    if least.left:
         other = "the other" if judged else "another"
-        said += f"; nothing given reaches {other} {percent(found.left_share, some=True, whole=False)}"
-    if not found.proven:
-        said += " (a smaller set may do: the search ended before the proof)"
-    if found.doubtful:
-        said += ", unless something is in the way that is missing from the obstacles"
-    return said
+        text += f"; nothing given reaches {other} {percent(least.left_share, some=True, whole=False)}"
+    if not least.proven:
+        text += " (a smaller set may do: the search ended before the proof)"
+    if least.doubtful:
+        text += ", unless something is in the way that is missing from the obstacles"
+    return text
 
 
 def _run(run: RunEntry, several: bool) -> str:
@@ -66,36 +66,38 @@ def effect(step: StepEntry) -> str:
     return f"lost {before.removesuffix(' %')} to {after} of the area ({many}){end}"
 
 
-def is_left_out(step: StepEntry) -> bool:
+def is_excluded(step: StepEntry) -> bool:
     """Whether a step changes nothing but leaves what is not reached to other means."""
     return any(change.thing == "area" for change in step.changes)
 
 
-def step_told(step: StepEntry) -> str:
+def step_text(step: StepEntry) -> str:
     """A step and its effect, without its stop."""
-    if is_left_out(step):
+    if is_excluded(step):
         return step.why
     return f"{step.why}: {effect(step)}"
 
 
 def first_step(entry: CutterEntry) -> StepEntry | None:
     """The best step of a cutter; None where there is none but to leave it."""
-    return next((step for step in (entry.mend.steps if entry.mend else []) if not is_left_out(step)), None)
+    return next((step for step in (entry.mend.steps if entry.mend else []) if not is_excluded(step)), None)
 
 
-def cures(mend: MendEntry) -> list[ChangeEntry]:
+def cures(what_if: MendEntry) -> list[ChangeEntry]:
     """Changes of one thing of which it is known or open that they let a cutter finish.
 
     Whole faces to leave out say nothing more where steps name the area that is left.
     """
     return [
-        change for change in mend.changes if change.helps is not False and not (change.thing == "faces" and mend.steps)
+        change
+        for change in what_if.changes
+        if change.helps is not False and not (change.thing == "faces" and what_if.steps)
     ]
 
 
-def remaining(mend: MendEntry) -> str:
+def remaining(what_if: MendEntry) -> str:
     """Say in a clause which areas are still not reached after the best step; empty where there are none."""
-    best = next((step for step in mend.steps if not is_left_out(step)), None)
+    best = next((step for step in what_if.steps if not is_excluded(step)), None)
     if best is None or not best.remains:
         return ""
     return "; ".join(each.why for each in best.remains)

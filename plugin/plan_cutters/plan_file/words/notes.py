@@ -11,7 +11,7 @@ from plan_cutters.plan_file.words.line import Line
 from plan_cutters.plan_file.words.names import named
 
 #: Notes that say what the first lines say in other words; those of the area between samples, where it was looked at.
-_SAID_ABOVE: frozenset[NoteCode | None] = frozenset({"samples_apart", "area_proved", "area_left", "setup_proposed"})
+_STATED_ABOVE: frozenset[NoteCode | None] = frozenset({"samples_apart", "area_proved", "area_left", "setup_proposed"})
 #: What stands for an obstacle that is not known.
 _STAND_IN = {
     "none": "nothing stands for it",
@@ -27,7 +27,7 @@ def notes(plan: Plan) -> Iterator[Line]:
     """The notes of the plan."""
     # Older plans have no codes: all of their notes are shown.
     for code, text in zip_longest(plan.note_codes, plan.notes):
-        yield Line(named(plan, text), "Note:", minor=code in _SAID_ABOVE)
+        yield Line(named(plan, text), "Note:", minor=code in _STATED_ABOVE)
 
 
 def warnings(plan: Plan) -> Iterator[Line]:
@@ -52,14 +52,14 @@ def missing(plan: Plan) -> Iterator[Line]:
 
 def side(plan: Plan) -> Line:
     """How the side of the material was found, how sure that is, and what is open."""
-    found, sewing = plan.part.orientation, plan.part.sewing
-    sure = " (sure)" if found.confident else "" if "guess" in found.method else " (a guess)"
-    text = f"{found.method}{sure}."
+    orientation, sewing = plan.part.orientation, plan.part.sewing
+    sure = " (sure)" if orientation.confident else "" if "guess" in orientation.method else " (a guess)"
+    text = f"{orientation.method}{sure}."
     if sewing and sewing.tolerance_mm is not None:
         text += f" Faces were joined at {sewing.tolerance_mm:.3g} mm."
     if sewing and sewing.open_edges:
         text += f" Open edges: {sewing.open_edges}, {sewing.open_length_mm:.4g} mm long."
-    return Line(text, "Side of the material:", minor=found.confident)
+    return Line(text, "Side of the material:", minor=orientation.confident)
 
 
 def libraries(plan: Plan) -> Iterator[Line]:
@@ -80,8 +80,8 @@ def library_lines(library: LibraryEntry) -> Iterator[Line]:
     for tool in library.unused:
         places.setdefault(tool.why, []).append(f'{tool.place} "{tool.name}"' if tool.name else tool.place)
     for why, each in places.items():
-        left = f" and {len(each) - _TOOLS} more" if len(each) > _TOOLS else ""
-        yield Line(f"  Not used: {', '.join(each[:_TOOLS])}{left}: {why}.", minor=True)
+        omitted = f" and {len(each) - _TOOLS} more" if len(each) > _TOOLS else ""
+        yield Line(f"  Not used: {', '.join(each[:_TOOLS])}{omitted}: {why}.", minor=True)
 
 
 def machine(plan: Plan) -> str:
@@ -130,8 +130,8 @@ def travel(plan: Plan, best: CutterEntry) -> Iterator[Line]:
         yield Line(named(plan, f"Beyond the travel: at {entry.outside} of {entry.judged} samples reached by {best.id} the "
                          f"posture found needs more than the machine's: {each}."))  # fmt: skip
     elif entry.judged:
-        said = f"Within the travel: all {entry.judged} postures found for {best.id} whose positions are known."
-        yield Line(named(plan, said), minor=True)
+        text = f"Within the travel: all {entry.judged} postures found for {best.id} whose positions are known."
+        yield Line(named(plan, text), minor=True)
     if entry.unknown:
-        said = f"Travel of {best.id} is not known at {entry.unknown} samples: linear axes are in one plane there."
-        yield Line(named(plan, said))
+        text = f"Travel of {best.id} is not known at {entry.unknown} samples: linear axes are in one plane there."
+        yield Line(named(plan, text))

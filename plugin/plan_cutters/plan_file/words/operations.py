@@ -26,34 +26,34 @@ _KNEE, _LITTLE = 0.97, 0.005
 
 
 def operations(plan: Plan) -> list[Line]:
-    """Lines about the operations, cutters called as everywhere; none where they were not asked for."""
-    found = plan.operations
-    if found is None:
+    """Lines about the operations, cutters called as everywhere; none where they were not requested."""
+    operations = plan.operations
+    if operations is None:
         return []
-    lines = [*_rest(found), *_fewest(found)]
-    if any(each.operations for each in found.plans):
+    lines = [*_rest(operations), *_fewest(operations)]
+    if any(each.operations for each in operations.plans):
         lines += [
-            *(line for each in found.plans for line in _plan(found, each)),
-            *_fastest(found),
-            *_assumed(found),
-            *_habit(found),
-            *(line for use in found.cutters for line in _worth(found, use)),
+            *(line for each in operations.plans for line in _plan(operations, each)),
+            *_fastest(operations),
+            *_assumed(operations),
+            *_largest_first(operations),
+            *(line for use in operations.cutters for line in _worth(operations, use)),
         ]
-    return [Line(named(plan, text)) for text in (*lines, *motion(found.motion), *found.notes)]
+    return [Line(named(plan, text)) for text in (*lines, *motion(operations.motion), *operations.notes)]
 
 
 def in_short(plan: Plan) -> list[str]:
-    """Say what no operation finishes, and how many orientations finish the rest; nothing where operations were not asked for."""
-    found = plan.operations
-    return [] if found is None else [named(plan, text) for text in (*_rest(found), next(_fewest(found)))]
+    """Say what no operation finishes, and how many orientations finish the rest; nothing where operations were not requested."""
+    operations = plan.operations
+    return [] if operations is None else [named(plan, text) for text in (*_rest(operations), next(_fewest(operations)))]
 
 
-def _rest(found: OperationsEntry) -> Iterator[str]:
-    rest = found.plans[0].rest
+def _rest(operations: OperationsEntry) -> Iterator[str]:
+    rest = operations.plans[0].rest
     if rest.samples:
         yield f"No operation finishes {some(rest.share)} of the area: no cutter of the plan reaches it."
-    # Where fewer orientations were asked for than all needs, others may reach what is left to simultaneous motion.
-    first, most = found.plans[0], found.fewest.found
+    # Where fewer orientations were requested than all needs, others may reach what is left to simultaneous motion.
+    first, most = operations.plans[0], operations.fewest.found
     for each in first.operations:
         if each.mode == "simultaneous" and first.orientations < most:
             yield (f"Simultaneous motion finishes {some(each.share)} of the area, with {each.cutter}: {_faces(each)}. "
@@ -62,14 +62,14 @@ def _rest(found: OperationsEntry) -> Iterator[str]:
             yield f"Only simultaneous motion reaches {some(each.share)} of the area, with {each.cutter}: {_faces(each)}."
 
 
-def _fewest(found: OperationsEntry) -> Iterator[str]:
-    few = found.fewest
+def _fewest(operations: OperationsEntry) -> Iterator[str]:
+    few = operations.fewest
     if not few.found:
         yield "There is nothing that a fixed orientation reaches."
         return
     yield f"{_times(few.found)} everything that is reached{_proved(few)}"
     yield from whatever_the_axes(few)
-    part = next((step for step in found.curve if step.share >= _KNEE * found.curve[-1].share), None)
+    part = next((step for step in operations.curve if step.share >= _KNEE * operations.curve[-1].share), None)
     if part is not None and part.orientations < few.found:
         end = (
             ""
@@ -79,12 +79,12 @@ def _fewest(found: OperationsEntry) -> Iterator[str]:
         yield f"{part.orientations} of them finish{'es' * (part.orientations == 1)} {some(part.share)} of the area{end}."
 
 
-def _times(found: int) -> str:
-    return f"{_count(found)} {'finishes' if found == 1 else 'finish'}"
+def _times(number: int) -> str:
+    return f"{_count(number)} {'finishes' if number == 1 else 'finish'}"
 
 
-def _count(found: int) -> str:
-    return f"{found} fixed orientation{'s' * (found != 1)}"
+def _count(number: int) -> str:
+    return f"{number} fixed orientation{'s' * (number != 1)}"
 
 
 def _proved(few: FewestEntry) -> str:
@@ -98,8 +98,8 @@ def _proved(few: FewestEntry) -> str:
     return f"; among {near} at least {few.at_least} are needed."
 
 
-def _plan(found: OperationsEntry, plan: OperationPlanEntry) -> Iterator[str]:
-    first = found.plans[0]
+def _plan(operations: OperationsEntry, plan: OperationPlanEntry) -> Iterator[str]:
+    first = operations.plans[0]
     if plan is not first and _choice(plan) == _choice(first):
         yield f"The {plan.name} plan is the same."
         return
@@ -113,7 +113,7 @@ def _plan(found: OperationsEntry, plan: OperationPlanEntry) -> Iterator[str]:
     if len(small) > _SMALL:
         yield f"  So are {len(small) - _SMALL} more, each for less than {some(_LITTLE)}."
     for each in plan.operations[:_LISTED]:
-        yield f"  {_listed(each, _setups(found))}"
+        yield f"  {_listed(each, _setups(operations))}"
     if len(plan.operations) > _LISTED:
         yield f"  and {len(plan.operations) - _LISTED} more in plan.json."
     if plan.proved_share is not None and plan.proved_share < 1.0:
@@ -146,18 +146,22 @@ def _little(each: OperationEntry) -> str:
     return f"{some(each.share)} of the area{took}"
 
 
-def _fastest(found: OperationsEntry) -> Iterator[str]:
+def _fastest(operations: OperationsEntry) -> Iterator[str]:
     """How the times of fixed orientations compare with simultaneous motion and with the best choice."""
-    timed = found.fastest
+    timed = operations.fastest
     if timed is None:
         return
-    for plan in found.plans:
-        again = plan is not found.plans[0] and _choice(plan) == _choice(found.plans[0])
+    for plan in operations.plans:
+        again = plan is not operations.plans[0] and _choice(plan) == _choice(operations.plans[0])
         if plan.ratio_at_most is not None and plan.name != "largest first" and not again:
             cutting = sum(each.seconds or 0.0 for each in plan.operations if each.mode == "fixed")
             times = f"at most {_factor(plan.ratio_at_most)} times as long as five axes at once"
             yield f"3+2 ({plan.name}) takes {duration(cutting)} of cutting, {times}."
-    some_of = f" of {found.fewest.samples}" if timed.samples < found.fewest.samples - found.fewest.alone else ""
+    some_of = (
+        f" of {operations.fewest.samples}"
+        if timed.samples < operations.fewest.samples - operations.fewest.alone
+        else ""
+    )
     near = f"the best of {timed.candidates} candidates, by {timed.samples}{some_of} samples"
     if timed.gap is None:
         yield "How far the fastest plan is above the best is not known: a width of a pass is not known."
@@ -167,37 +171,41 @@ def _fastest(found: OperationsEntry) -> Iterator[str]:
         yield f"The fastest plan is at most {bound(timed.gap)} above {near}."
 
 
-def _assumed(found: OperationsEntry) -> Iterator[str]:
+def _assumed(operations: OperationsEntry) -> Iterator[str]:
     """That nobody knows how long an orientation takes, where it counts."""
-    if found.fastest is not None and found.assumed.index_from == "assumed" and found.plans[0].orientations > 1:
-        guess = f"Each orientation counts {found.assumed.index_s:g} s, which is a guess"
+    if (
+        operations.fastest is not None
+        and operations.assumed.index_from == "assumed"
+        and operations.plans[0].orientations > 1
+    ):
+        guess = f"Each orientation counts {operations.assumed.index_s:g} s, which is a guess"
         yield f"{guess}: the machine does not say how fast its rotary axes turn; --index-time tells it."
 
 
-def _habit(found: OperationsEntry) -> Iterator[str]:
+def _largest_first(operations: OperationsEntry) -> Iterator[str]:
     """What it costs to let the largest cutter go first."""
-    totals = {plan.name: plan.seconds for plan in found.plans}
-    habit, fastest = totals.get("largest first"), totals.get("fastest")
-    if habit is None or fastest is None:
+    totals = {plan.name: plan.seconds for plan in operations.plans}
+    largest_first, fastest = totals.get("largest first"), totals.get("fastest")
+    if largest_first is None or fastest is None:
         return
-    if habit - fastest >= 1.0:
-        yield f"Largest cutter first costs {duration(habit - fastest)} more than the fastest plan."
+    if largest_first - fastest >= 1.0:
+        yield f"Largest cutter first costs {duration(largest_first - fastest)} more than the fastest plan."
     else:
         yield "Largest cutter first is as fast as the fastest plan."
     for name in ("largest first", "fastest"):
-        taken = [(use.id, use.takes_mm2[name]) for use in found.cutters if use.takes_mm2.get(name, 0.0) > 0.0]
+        taken = [(use.id, use.takes_mm2[name]) for use in operations.cutters if use.takes_mm2.get(name, 0.0) > 0.0]
         whole = sum(area for _, area in taken)
         shares = [f"{share_text(area / whole)} with {cutter}" for cutter, area in taken]
         if len(shares) > 1:
             yield f"Of what is cut, the {name} plan cuts {_joined(shares)}."
 
 
-def _worth(found: OperationsEntry, use: CutterUse) -> Iterator[str]:
+def _worth(operations: OperationsEntry, use: CutterUse) -> Iterator[str]:
     """What a cutter saves, and what its change costs."""
     if use.only_mm2 > 0.0:
         yield f"Only {use.id} reaches {figure(use.only_mm2)} mm2."
         return
-    used = any(use.id == each.cutter for plan in found.plans if plan.name == "fastest" for each in plan.operations)
+    used = any(use.id == each.cutter for plan in operations.plans if plan.name == "fastest" for each in plan.operations)
     if use.saves_seconds is None:
         yield f"{use.id} is needed: no plan was found without it."
     elif use.saves_seconds < 1.0:
@@ -209,9 +217,9 @@ def _worth(found: OperationsEntry, use: CutterUse) -> Iterator[str]:
         yield f"{use.id} {verb} {duration(use.saves_seconds)} and {cost} a change of {duration(use.change_seconds)}."
 
 
-def _setups(found: OperationsEntry) -> bool:
+def _setups(operations: OperationsEntry) -> bool:
     """Whether operations are in more than one setup: then each says in which."""
-    return len({each.setup for plan in found.plans for each in plan.operations}) > 1
+    return len({each.setup for plan in operations.plans for each in plan.operations}) > 1
 
 
 def _listed(each: OperationEntry, setups: bool) -> str:
@@ -222,7 +230,7 @@ def _listed(each: OperationEntry, setups: bool) -> str:
     )
 
 
-class Told(NamedTuple):
+class OperationText(NamedTuple):
     """An operation as a row of a table, with angles in degrees and the setup where there are several, and as a sentence."""
 
     entry: OperationEntry
@@ -233,19 +241,21 @@ class Told(NamedTuple):
     sentence: str
 
 
-def told(plan: Plan, each: OperationEntry) -> Told:
+def operation_text(plan: Plan, each: OperationEntry) -> OperationText:
     """Put one operation into words; `took` is its cutting time or, without a feed, its cut length."""
     length = "" if each.cut_length_mm is None else f"{each.cut_length_mm / 1000.0:.3g} m"
     took = length if each.seconds is None else duration(each.seconds)
     setups = plan.operations is not None and _setups(plan.operations)
     where = f"setup {each.setup + 1}" if setups else ""
-    return Told(each, where, _turned(each).removesuffix(" deg"), took, _faces(each), named(plan, _listed(each, setups)))
+    return OperationText(
+        each, where, _turned(each).removesuffix(" deg"), took, _faces(each), named(plan, _listed(each, setups))
+    )
 
 
 def of_the_whole(lines: Iterable[Line], above: Iterable[str] = ()) -> list[Line]:
     """Those lines that are about plans, not about one operation, and do not stand above: what is indented stands in a list."""
-    said = set(above)
-    return [line for line in lines if not line.text.startswith(" ") and line.text not in said]
+    mentioned = set(above)
+    return [line for line in lines if not line.text.startswith(" ") and line.text not in mentioned]
 
 
 def _turned(each: OperationEntry) -> str:

@@ -7,19 +7,19 @@ from plan_cutters.plan_file.setups import ProposedSetup
 
 
 def proposal(plan: Plan) -> tuple[str, ...]:
-    """Which setups were proposed, and whether their plan holds what was promised; nothing where none was asked for."""
-    found = plan.setup_proposal
-    if found is None:
+    """Which setups were proposed, and whether their plan holds what was promised; nothing where none was requested."""
+    entry = plan.setup_proposal
+    if entry is None:
         return ()
-    one = len(found.setups) == 1
-    where = [f"{_stands(each)}, with {axis_words(each.axis)}" for each in found.setups]
+    one = len(entry.setups) == 1
+    where = [f"{_stands(each)}, with {axis_words(each.axis)}" for each in entry.setups]
     where[0] += " of the part along the spindle"
-    told = where[0] if one else "; ".join(f"{k} {each}" for k, each in enumerate(where, 1))
-    share = percent(found.found)
-    lines = [f"Proposed {'setup' if one else 'setups'}: {told}. Over a table and nothing else that holds the part, "
+    text = where[0] if one else "; ".join(f"{k} {each}" for k, each in enumerate(where, 1))
+    share = percent(entry.found)
+    lines = [f"Proposed {'setup' if one else 'setups'}: {text}. Over a table and nothing else that holds the part, "
              f"{'it reaches' if one else 'they reach'} {share} of the area to machine."]  # fmt: skip
-    if not found.held:
-        lines.append(f"The proposal does not hold: the plan reaches {some(found.kept)} of what the search promised, and no other "
+    if not entry.held:
+        lines.append(f"The proposal does not hold: the plan reaches {some(entry.kept)} of what the search promised, and no other "
                      "proposal did better. Name a setup with its fixtures.")  # fmt: skip
     return tuple(lines)
 

@@ -16,7 +16,7 @@ def judged(plan: Plan) -> str:
     part, scope = plan.part.file or "the part", plan.scope
     if scope is None or not scope.not_judged:
         return part
-    return f"{_asked(plan, scope)} of {part} ({_share(scope)} of the area)"
+    return f"{_requested(plan, scope)} of {part} ({_share(scope)} of the area)"
 
 
 def not_judged(plan: Plan) -> list[str]:
@@ -32,7 +32,7 @@ def not_judged(plan: Plan) -> list[str]:
     return [f"{what} {'were' if many else 'was'} not judged, only {'obstacles' if many else 'an obstacle'}: {why}."]
 
 
-def _asked(plan: Plan, scope: Scope) -> str:
+def _requested(plan: Plan, scope: Scope) -> str:
     words = {word.strip() for word in plan.effective.faces.split(",")}
     if words <= _BY_KIND:
         return f"the {_listed(scope.judged_by_kind).removeprefix('1 ')}"
@@ -50,8 +50,8 @@ def _listed(kinds: dict[str, int]) -> str:
         _counted(others, f"{simple} face"),
         _counted(blends, "fillet"),
     ]
-    said = [text for text in each if text]
-    return " and ".join([", ".join(said[:-1]), said[-1]]) if len(said) > 1 else said[0]
+    texts = [text for text in each if text]
+    return " and ".join([", ".join(texts[:-1]), texts[-1]]) if len(texts) > 1 else texts[0]
 
 
 def _counted(number: int, word: str) -> str:

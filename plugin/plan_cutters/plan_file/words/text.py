@@ -41,17 +41,17 @@ def sentences(story: Story) -> Iterator[str]:
 
 
 def _verdict(plan: Plan, cutter: CutterEntry) -> VerdictText:
-    found = cutter_chip(plan, cutter)
-    return VerdictText(tone=TONES[found], word=found.word)
+    chip = cutter_chip(plan, cutter)
+    return VerdictText(tone=TONES[chip], word=chip.word)
 
 
 def _lines(texts: list[str]) -> list[str]:
     """As many whole texts as there is room for; the last line says how many more there are."""
-    found: list[str] = []
+    lines: list[str] = []
     for place, text in enumerate(texts):
         mine = textwrap.wrap(text, WIDTH, break_on_hyphens=False)
         last = place == len(texts) - 1
-        if len(found) + len(mine) > MOST - (not last):
-            return [*found, f"{count(len(texts) - place, 'more sentence')} in the review page."]
-        found += mine
-    return found
+        if len(lines) + len(mine) > MOST - (not last):
+            return [*lines, f"{count(len(texts) - place, 'more sentence')} in the review page."]
+        lines += mine
+    return lines

@@ -30,25 +30,27 @@ def _where(plan: Plan, entry: CutterEntry) -> str:
     """Faces with their own undecided shares, the largest undecided area first."""
 
     def area(name: str) -> float:
-        found = entry.faces[name]
-        mm2 = found.area_share.undecided * (1.0 - found.inside_share) * sizes[name]
+        face_entry = entry.faces[name]
+        mm2 = face_entry.area_share.undecided * (1.0 - face_entry.inside_share) * sizes[name]
         return mm2 if math.isfinite(mm2) else 0.0
 
     sizes = {face.id: face.area_mm2 for face in plan.faces}
-    faces = sorted((name for name, found in entry.faces.items() if found.undecided), key=lambda name: -area(name))
+    faces = sorted(
+        (name for name, face_entry in entry.faces.items() if face_entry.undecided), key=lambda name: -area(name)
+    )
     each = [f"{part_of(entry.faces[f], entry.faces[f].area_share, ['undecided'])} of {f}" for f in faces]
     return listed(each, _FACES)
 
 
 def _causes(plan: Plan, entry: CutterEntry) -> Iterator[str]:
     """Say each cause that there may be. Which of several left a sample undecided is known only for the tolerance."""
-    kept, raised = plan.effective.tolerance_mm, "tolerance_raised" in plan.note_codes
+    tolerance, raised = plan.effective.tolerance_mm, "tolerance_raised" in plan.note_codes
     # Of a cutter that is too small, all samples; else those on faces that triangles do not follow.
     coarse = entry.undecided_by_reason.get("tolerance", 0)
     if coarse and coarse >= plan.samples.judged:
         way = ("No smaller --tolerance can be kept: rebuild in CAD what triangles cannot follow, or judge a larger cutter"
                if raised else "A smaller --tolerance decides it")  # fmt: skip
-        yield f"The tolerance, {mm(kept)}, is too coarse for this cutter. {way}."
+        yield f"The tolerance, {mm(tolerance)}, is too coarse for this cutter. {way}."
         return
     loose, missing = plan.effective.local_tolerance, plan.missing
     if loose:
@@ -58,15 +60,15 @@ def _causes(plan: Plan, entry: CutterEntry) -> Iterator[str]:
         yield (f"Triangles follow {names} only within {mm(loose[0].chord_error_mm)}{of}: what only {it} may forbid stays "
                "undecided until the model is rebuilt there in CAD.")  # fmt: skip
     if missing:
-        lost = list(dict.fromkeys(each.face or each.name or "a face" for each in missing))
-        yield (f"Obstacles are missing or only guessed ({listed(lost, _FACES)}): what they may forbid stays undecided until "
+        unread = list(dict.fromkeys(each.face or each.name or "a face" for each in missing))
+        yield (f"Obstacles are missing or only guessed ({listed(unread, _FACES)}): what they may forbid stays undecided until "
                "the file is repaired.")  # fmt: skip
     if coarse == entry.undecided:
         return
-    finer = f"--tolerance {kept / _FINER:.3g}"
+    finer = f"--tolerance {tolerance / _FINER:.3g}"
     if raised:
-        yield f"The tolerance had to be raised to {mm(kept)}: what is this narrow stays undecided."
+        yield f"The tolerance had to be raised to {mm(tolerance)}: what is this narrow stays undecided."
     elif loose or missing:
         yield f"What is left is too narrow for the tolerance; {finer} looks more closely."
     else:
-        yield f"The cutter there is within the tolerance, {mm(kept)}, of what is free; {finer} looks more closely."
+        yield f"The cutter there is within the tolerance, {mm(tolerance)}, of what is free; {finer} looks more closely."

@@ -18,7 +18,7 @@ from plan_cutters.domain.posture import unit
 from plan_cutters.plan_file.numbers import mm
 from plan_cutters.plan_file.palette import LABELS, label, rgb
 from plan_cutters.plan_file.shares import VERDICTS, part_of
-from plan_cutters.plan_file.words.details import drawn
+from plan_cutters.plan_file.words.details import rendered
 from plan_cutters.plan_file.words.names import short_names
 from plan_cutters.report.drawing.sheet import DPI, Look, figure, fitting, legend, printable, save, standard, write
 from plan_cutters.report.drawing.view import Body, View, averaged, borders, fitted, frame_towards, view
@@ -36,7 +36,7 @@ _BACKGROUND, _LINE = 1.0, 0.15
 #: How much colour a fixture gives to what is behind it.
 _GLASS = 0.14
 #: Faces that are no targets are paler than in the models, and shaded less: who does not see green tells it from their grey.
-_BESIDE, _PALE, _SOFT = ("check", "ignored"), np.full(3, 0.87), 0.45
+_PLAIN, _PALE, _SOFT = ("check", "ignored"), np.full(3, 0.87), 0.45
 #: The verdicts of the legend, in its order.
 _LEGEND = (*VERDICTS, "inside_bodies", "mixed", "check", "fixture")
 #: The second channel: what patterns stand for. As matplotlib writes hatches.
@@ -81,24 +81,24 @@ def write_png(result: Judged, split: Any, path: Path) -> None:
             # From above a long part lies across the sheet.
             frame = np.array([frame[1], -frame[0], frame[2]])
         scale, middle = fitted(frame, near, *_PIXELS)
-        drawn = [view(frame, body, scale, middle, *_PIXELS) for body in (part, *fixtures)]
-        _put(_window(sheet, place, frame, scale, words), drawn, pieces)
+        views = [view(frame, body, scale, middle, *_PIXELS) for body in (part, *fixtures)]
+        _put(_window(sheet, place, frame, scale, words), views, pieces)
     _words(sheet, result, set(verdict.tolist()), bool(fixtures))
     save(sheet, path)
 
 
 def _colours(verdict: Ints, own: list[tuple[float, float, float] | None]) -> Floats:
     """Of the verdicts; faces that are no target keep a pale shade of their own colour."""
-    found = np.array([_PALE if LABELS[code] in _BESIDE else rgb(LABELS[code]) for code in verdict.tolist()])
+    colours = np.array([_PALE if LABELS[code] in _PLAIN else rgb(LABELS[code]) for code in verdict.tolist()])
     for k, colour in enumerate(own):
-        if colour is not None and LABELS[verdict[k]] in _BESIDE:
-            found[k] = 0.75 * _PALE + 0.25 * np.array(colour)
-    return found
+        if colour is not None and LABELS[verdict[k]] in _PLAIN:
+            colours[k] = 0.75 * _PALE + 0.25 * np.array(colour)
+    return colours
 
 
 def _fixtures(result: Judged) -> list[Body]:
     """All fixtures as one body, or none. Glass has no shade: they need no normals."""
-    shown = [each.shown for each in result.conditions.around.fixtures if len(each.shown)]
+    shown = [each.shown for each in result.conditions.surroundings.fixtures if len(each.shown)]
     corner = np.concatenate([np.empty((0, 3, 3)), *shown])
     return [Body(corner, np.zeros_like(corner), np.zeros(len(corner), np.int32))] if shown else []
 
@@ -107,8 +107,8 @@ def _near(part: Body, fixtures: list[Body]) -> Floats:
     """Give the points (n, 3) that must fill the views: the part, and its fixtures as far as half its size around it."""
     points = part.corner.reshape(-1, 3)
     low, high = points.min(axis=0), points.max(axis=0)
-    room = 0.5 * float(np.linalg.norm(high - low))
-    others = [np.clip(body.corner.reshape(-1, 3), low - room, high + room) for body in fixtures]
+    half = 0.5 * float(np.linalg.norm(high - low))
+    others = [np.clip(body.corner.reshape(-1, 3), low - half, high + half) for body in fixtures]
     return np.concatenate([points, *others])
 
 
@@ -140,8 +140,8 @@ def _not_reached_seen(part: Body, pieces: _Pieces, viewer: Floats, up: Floats) -
         return 0.0
     frame = frame_towards(viewer, up)
     scale, middle = fitted(frame, part.corner.reshape(-1, 3), *_SMALL)
-    drawn = view(frame, part, scale, middle, *_SMALL, finer=1)
-    shown = pieces.verdict[drawn.seen[drawn.seen >= 0]]
+    result = view(frame, part, scale, middle, *_SMALL, finer=1)
+    shown = pieces.verdict[result.seen[result.seen >= 0]]
     return round(float(np.isin(shown, not_reached).sum()) / scale**2, 6)
 
 
@@ -157,12 +157,12 @@ def _codes(words: Sequence[str]) -> list[int]:
     return [LABELS.index(word) for word in words]
 
 
-def _put(axes: Any, drawn: list[View], pieces: _Pieces) -> None:
+def _put(axes: Any, views: list[View], pieces: _Pieces) -> None:
     """The part, and over it patterns and fixtures."""
-    part = drawn[0]
+    part = views[0]
     hit, piece = part.seen >= 0, np.maximum(part.seen, 0)
     verdict = np.where(hit, pieces.verdict[piece], -1)
-    shade = np.where(np.isin(verdict, _codes(_BESIDE)), 1.0 - _SOFT * (1.0 - part.shade), part.shade)
+    shade = np.where(np.isin(verdict, _codes(_PLAIN)), 1.0 - _SOFT * (1.0 - part.shade), part.shade)
     image = np.where(hit[:, :, None], pieces.colour[piece] * shade[:, :, None], _BACKGROUND)
     # Lines between faces, between verdicts, and around the part.
     image[borders(np.where(hit, pieces.face[piece], -1) * len(LABELS) + verdict)] = _LINE
@@ -172,7 +172,7 @@ def _put(axes: Any, drawn: list[View], pieces: _Pieces) -> None:
     )
     for word, hatch in _HATCHES.items():
         _lay(axes, verdict == LABELS.index(word), (0.0, 0.0, 0.0, 0.0), hatch, "#000000AA")
-    for body in drawn[1:]:
+    for body in views[1:]:
         over = (body.seen >= 0) & (body.depth > part.depth)
         _lay(axes, over, (*rgb("fixture"), _GLASS), _HATCHES["fixture"], rgb("fixture"), 0.6)
 
@@ -219,21 +219,21 @@ def _words(sheet: Any, result: Judged, there: set[int], fixtures: bool) -> None:
     shares = entry.area_share.model_dump()
     part = Path(plan.part.file).name if plan.part.file else "part"
     name = short_names(plan)[entry.id]
-    room = _SHEET[0] - 2.0 * 0.18
-    head = fitting(f"{printable(part, 60)}: {printable(name, 60)}", 12, room)
+    width = _SHEET[0] - 2.0 * 0.18
+    head = fitting(f"{printable(part, 60)}: {printable(name, 60)}", 12, width)
     write(sheet, head[:1], (0.18, _SHEET[1] - 0.16), 12)
-    under = printable(drawn(plan), 400)
-    write(sheet, fitting(under, 8.5, room), (0.18, _SHEET[1] - 0.48), 8.5)
+    under = printable(rendered(plan), 400)
+    write(sheet, fitting(under, 8.5, width), (0.18, _SHEET[1] - 0.48), 8.5)
     looks = []
     for word in _LEGEND:
         share, glass = shares.get(word), word == "fixture"
         if not (fixtures if glass else LABELS.index(word) in there or share):
             continue
-        said = (
+        text = (
             label(word)
             if share is None
             else f"{label(word)}: {part_of(entry, entry.area_share, [word])} of the target area"
         )
-        colour = (*rgb(word), _GLASS) if glass else tuple(_PALE) if word in _BESIDE else rgb(word)
-        looks.append(Look(said, colour, _HATCHES.get(word, ""), rgb(word) if glass else "#222222"))
+        colour = (*rgb(word), _GLASS) if glass else tuple(_PALE) if word in _PLAIN else rgb(word)
+        looks.append(Look(text, colour, _HATCHES.get(word, ""), rgb(word) if glass else "#222222"))
     legend(sheet, looks, loc="lower left", bbox_to_anchor=(0.1 / _SHEET[0], 0.02), ncols=3, columnspacing=2.0)

@@ -19,8 +19,8 @@ _TITLE, _NOTE, _TITLE_LINE, _NOTE_LINE = 11, 8, 0.23, 0.168
 
 
 def _look(code: str) -> Look:
-    found = REASONS.get(code, NO_CONTACT)
-    return Look(found.name, found.colour, found.hatch)
+    look = REASONS.get(code, NO_CONTACT)
+    return Look(look.name, look.colour, look.hatch)
 
 
 #: In this order each counts for what is forbidden: the first one that does is drawn.
@@ -35,48 +35,50 @@ _LOOKS = {
 }
 
 
-def forbidden(found: Any, low: float, high: float) -> dict[str, list[Floats]]:
+def forbidden(posture_map: Any, low: float, high: float) -> dict[str, list[Floats]]:
     """Find the tilts that each cause forbids in a posture map: intervals (k, 2) at each rotation, rad.
 
     No tilt is counted twice: it belongs to the first cause that forbids it.
 
     Parameters
     ----------
-    found : PostureMap
+    posture_map : PostureMap
     low, high : float
-        The tilts that were asked for, rad.
+        The tilts that were requested, rad.
     """
     shares: dict[str, list[Floats]] = {code: [] for code in (*CAUSES, "undecided", "other")}
     whole = np.array([[low, high]])
-    for i in range(len(found.rotations)):
-        left = without(without(whole, found.free[i]), found.undecided[i])
-        shares["undecided"].append(found.undecided[i])
+    for i in range(len(posture_map.rotations)):
+        remaining = without(without(whole, posture_map.free[i]), posture_map.undecided[i])
+        shares["undecided"].append(posture_map.undecided[i])
         for cause in CAUSES:
-            mine = _gouged(found, i, low, high) if cause == "local_gouge" else getattr(found, cause)[i]
-            rest = without(left, mine)
-            shares[cause].append(without(left, rest))
-            left = rest
-        shares["other"].append(left)
+            mine = _gouged(posture_map, i, low, high) if cause == "local_gouge" else getattr(posture_map, cause)[i]
+            rest = without(remaining, mine)
+            shares[cause].append(without(remaining, rest))
+            remaining = rest
+        shares["other"].append(remaining)
     return shares
 
 
-def _gouged(found: Any, i: int, low: float, high: float) -> Floats:
+def _gouged(posture_map: Any, i: int, low: float, high: float) -> Floats:
     """Tilts (k, 2) that local gouging alone forbids at a rotation."""
-    least, most = found.local_gouge[i], found.local_gouge_most[i]
+    least, most = posture_map.local_gouge[i], posture_map.local_gouge_most[i]
     if np.isnan(least):
         return np.array([[low, high]])
     return complement(np.array([[least, most]]), low, high)
 
 
-def draw_map(found: Any, tilt: tuple[float, float], title: str, notes: Sequence[str], paths: Sequence[Path]) -> None:
+def draw_map(
+    posture_map: Any, tilt: tuple[float, float], title: str, notes: Sequence[str], paths: Sequence[Path]
+) -> None:
     """Draw a posture map, once for each path: PNG or SVG by its ending.
 
     Parameters
     ----------
-    found : PostureMap
+    posture_map : PostureMap
         At rotations that ascend evenly.
     tilt : (float, float)
-        The tilts that were asked for, rad.
+        The tilts that were requested, rad.
     title : str
     notes : sequence of str
         Lines beneath the picture.
@@ -87,16 +89,16 @@ def draw_map(found: Any, tilt: tuple[float, float], title: str, notes: Sequence[
     from matplotlib.collections import PolyCollection
 
     low, high = np.degrees(tilt)
-    turns = np.degrees(found.rotations)
+    turns = np.degrees(posture_map.rotations)
     step = float(np.diff(turns).min()) if len(turns) > 1 else 10.0
     whole = len(turns) > 1 and abs(turns[-1] + step - turns[0] - 360.0) < 1e-6
     # A full turn ends with its first rotation.
     places = [*enumerate(turns.tolist()), *([(0, float(turns[0]) + 360.0)] if whole else [])]
     left, right = (places[0][1], places[-1][1]) if whole else (places[0][1] - 0.5 * step, places[-1][1] + 0.5 * step)
-    shares = {"free": found.free, **forbidden(found, *tilt)}
-    room = _WIDTH - 2.0 * _SIDE
-    head = fitting(title, _TITLE, room)
-    below = [line for note in notes for line in fitting(note, _NOTE, room)]
+    shares = {"free": posture_map.free, **forbidden(posture_map, *tilt)}
+    width = _WIDTH - 2.0 * _SIDE
+    head = fitting(title, _TITLE, width)
+    below = [line for note in notes for line in fitting(note, _NOTE, width)]
     # The plot keeps its size: the sheet grows with what is written above and below.
     foot, top = 0.8 + _NOTE_LINE * len(below), 0.25 + _TITLE_LINE * len(head)
     high_sheet = foot + _PLOT[2] + top

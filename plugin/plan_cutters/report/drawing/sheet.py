@@ -98,19 +98,19 @@ def fitting(text: str, size: float, width: float) -> list[str]:
             warnings.filterwarnings("ignore", "Glyph")
             return float(text_to_path.get_text_width_height_descent(line, font, ismath=False)[0]) * _ON_DOTS / 72.0
 
-    found = [""]
+    lines = [""]
     for word in re.findall(r"\s*\S+", text):
-        if wide(found[-1] + word) <= width:
-            found[-1] += word
+        if wide(lines[-1] + word) <= width:
+            lines[-1] += word
             continue
         rest = word.lstrip()
-        if found[-1]:
-            found.append("")
+        if lines[-1]:
+            lines.append("")
         for letter in rest if wide(rest) > width else [rest]:
-            if found[-1] and wide(found[-1] + letter) > width:
-                found.append("")
-            found[-1] += letter
-    return found
+            if lines[-1] and wide(lines[-1] + letter) > width:
+                lines.append("")
+            lines[-1] += letter
+    return lines
 
 
 def save(sheet: Any, path: Path) -> None:

@@ -64,21 +64,21 @@ def draw(cutter: Cutter, *, name: str = "") -> str:
     notes, spans = notes_of(cutter, line), spans_of(cutter)
     facts = facts_of(cutter)
     sheet = Sheet(title, description(cutter, notes, spans, facts))
-    beside = max(width_of(words) for note in notes for words in note.lines)
+    widest = max(width_of(words) for note in notes for words in note.lines)
     high = _PAGE[1] - 2 * _MARGIN - _ABOVE - _BELOW - _block_height(_NAMES, _IDS, len(facts))
-    room = _PAGE[0] - 2 * _MARGIN - 2 * _GAP - _LEADER
-    scale = _scale(line, spans, room - beside, high)
+    available = _PAGE[0] - 2 * _MARGIN - 2 * _GAP - _LEADER
+    scale = _scale(line, spans, available - widest, high)
     if _zoom(cutter, line, scale):
-        beside = max(beside, _DETAIL[0] + 12.0)
-        scale = _scale(line, spans, room - beside, high)
+        widest = max(widest, _DETAIL[0] + 12.0)
+        scale = _scale(line, spans, available - widest, high)
     zoom = _zoom(cutter, line, scale)
     enlarged = _DETAIL[1] + 2 * LINE if zoom else 0.0
     columns = _columns(spans, scale)
     wide, tall = scale * line.widest, scale * line.height
     right = _MARGIN + len(columns) * _COLUMN + _GAP + 2 * wide + _GAP + _LEADER
-    width = max(_LEAST, right + beside + _MARGIN)
+    width = max(_LEAST, right + widest + _MARGIN)
     # A sheet is no narrower than its title: the view stands in its middle.
-    right = 0.5 * (width + right - beside - _MARGIN)
+    right = 0.5 * (width + right - widest - _MARGIN)
     top = _MARGIN + _ABOVE
     bottom = top + max(tall + _BELOW, sum(map(_height, notes)) + enlarged)
     view = _View(right - _LEADER - _GAP - wide, top + tall, scale)
@@ -112,12 +112,12 @@ def _columns(spans: list[Span], scale: float) -> list[list[tuple[Span, str]]]:
     columns: list[list[tuple[Span, str]]] = []
     taken: list[list[Point]] = []
     for span in sorted(spans, key=lambda each: each.high - each.low):
-        room, words = scale * (span.high - span.low), span.words
-        if span.name in _NOTED and width_of(words) > room:
+        column_width, words = scale * (span.high - span.low), span.words
+        if span.name in _NOTED and width_of(words) > column_width:
             words = span.number
-            if max(width_of(words), 3.0 * ARROW) > room:
+            if max(width_of(words), 3.0 * ARROW) > column_width:
                 continue
-        middle, half = 0.5 * scale * (span.low + span.high), 0.5 * max(room, width_of(words) + 1.0)
+        middle, half = 0.5 * scale * (span.low + span.high), 0.5 * max(column_width, width_of(words) + 1.0)
         mine = (middle - half, middle + half)
         for column, others in zip(columns, taken, strict=True):
             if all(mine[1] <= low + 1e-6 or mine[0] >= high - 1e-6 for low, high in others):
@@ -160,12 +160,12 @@ def _assembly(sheet: Sheet, line: Outline, view: _View) -> None:
 
 def _edges(line: Outline) -> list[Point]:
     """Heights and radii of the circles along which the outline has an edge: seen from the side they are lines across."""
-    found = []
+    edges = []
     for below, above in zip(line.segments[:-1], line.segments[1:], strict=True):
         (a, b), (c, d) = below.direction(1.0), above.direction(0.0)
         if abs(a * d - b * c) > _SMOOTH:
-            found.append((below.end[1], below.end[0]))
-    return found
+            edges.append((below.end[1], below.end[0]))
+    return edges
 
 
 def _lengths(sheet: Sheet, columns: list[list[tuple[Span, str]]], line: Outline, view: _View) -> None:
@@ -195,11 +195,11 @@ def _across(sheet: Sheet, cutter: Cutter, view: _View) -> None:
     sheet.text(view.x, y + 3.6, across(cutter.radius), anchor="middle")
 
 
-def _leaders(sheet: Sheet, notes: list[Note], view: _View, wide: float, room: tuple[float, float, float]) -> None:
+def _leaders(sheet: Sheet, notes: list[Note], view: _View, wide: float, margins: tuple[float, float, float]) -> None:
     """Notes right of the view, each at the height of what it is about as nearly as the others let it."""
     from scipy.optimize import isotonic_regression
 
-    x, top, bottom = room
+    x, top, bottom = margins
     notes = sorted(notes, key=lambda note: -note.at[1])
     sizes = [_height(note) for note in notes]
     before = [sum(sizes[:i]) for i in range(len(notes))]
@@ -223,8 +223,8 @@ def _zoom(cutter: Cutter, line: Outline, scale: float) -> float:
         return 0.0
     least = min(features, key=lambda s: s.length)
     high = flute_length(cutter) if cutter.shape == "form" else least.end[1]
-    found = standard(min(_DETAIL[0] / cutter.radius, (_DETAIL[1] - _LABELS) / high))
-    return found if scale * min(2.0 * cutter.radius, least.length) < _SMALL and found > scale else 0.0
+    zoom = standard(min(_DETAIL[0] / cutter.radius, (_DETAIL[1] - _LABELS) / high))
+    return zoom if scale * min(2.0 * cutter.radius, least.length) < _SMALL and zoom > scale else 0.0
 
 
 def _detail(sheet: Sheet, cutter: Cutter, line: Outline, view: _View, zoom: float, place: Point) -> None:
@@ -239,9 +239,9 @@ def _detail(sheet: Sheet, cutter: Cutter, line: Outline, view: _View, zoom: floa
     sheet.lines(((x, y - 1.0), (x, y + tall + 3.0)), "axis")
     sheet.text(x, y - 2.5, f"A ({_words(zoom)})", bold=True)
     seen = view((0.5 * cutter.radius, 0.5 * tall / zoom))
-    around = max(2.2, math.dist(seen, (view.x, view.y)))
-    sheet.circle(seen, around, "mark")
-    sheet.text(seen[0] + 0.75 * around + 0.6, seen[1] + 0.75 * around + 2.5, "A", bold=True)
+    radius = max(2.2, math.dist(seen, (view.x, view.y)))
+    sheet.circle(seen, radius, "mark")
+    sheet.text(seen[0] + 0.75 * radius + 0.6, seen[1] + 0.75 * radius + 2.5, "A", bold=True)
     for segment in line.of("flutes"):
         # The highest of some points of an arc that can be seen.
         points = [share for share in (0.5, 0.25, 0.1) if segment.at(share)[1] <= 0.9 * tall / zoom]
@@ -260,10 +260,10 @@ def _block_height(names: int, ids: int, facts: int) -> float:
 def _block(sheet: Sheet, names: tuple[str, str], facts: list[str], parts: tuple[AnyPart, ...], scale: float, top: float,
            width: float) -> float:  # fmt: skip
     """The title block: name, id, scale, what is true of the whole, and which fill is which part; returns where it ends."""
-    left, room = _MARGIN, width - 2 * _MARGIN
+    left, available = _MARGIN, width - 2 * _MARGIN
     title, id_ = names
-    lines = wrapped(title, room, 3.6, _NAMES, bold=True)
-    ids = wrapped(id_, room, _FINE, _IDS) if id_ != title else []
+    lines = wrapped(title, available, 3.6, _NAMES, bold=True)
+    ids = wrapped(id_, available, _FINE, _IDS) if id_ != title else []
     y = top + 2.0
     for words in lines:
         y += 4.5
@@ -276,7 +276,7 @@ def _block(sheet: Sheet, names: tuple[str, str], facts: list[str], parts: tuple[
     scale_words = f"scale {_words(scale)}, in mm"
     for i, words in enumerate(facts):
         y += LINE
-        fact = wrapped(words, room - (width_of(scale_words) + 4.0 if i == 0 else 0.0), FONT, 1)
+        fact = wrapped(words, available - (width_of(scale_words) + 4.0 if i == 0 else 0.0), FONT, 1)
         sheet.text(left, y, "".join(fact))
         if i == 0:
             sheet.text(width - _MARGIN, y, scale_words, anchor="end", bold=True)

@@ -44,15 +44,15 @@ def across(radius: float, upper: float | None = None) -> str:
 def notes_of(cutter: Cutter, line: Outline) -> list[Note]:
     """Write a note on each part and segment, from the tip upwards."""
     flutes = max((s for s in line.of("flutes") if s.end[1] > s.start[1]), key=lambda s: s.end[1] - s.start[1])
-    found = [Note(flutes.at(0.5), _cutting(cutter))]
+    notes = [Note(flutes.at(0.5), _cutting(cutter))]
     holder = 0
     for part, low, stage in stages(cutter):
         holder += part == "holder"
         which = f"holder {holder}" if part == "holder" and cutter.holder and len(cutter.holder.stages) > 1 else part
         middle = 0.5 * (stage.radius + stage.upper_radius), low + 0.5 * stage.length
         words = f"{which} {across(stage.radius, stage.upper_radius)} × {length(stage.length)}"
-        found.append(Note(middle, [words]))
-    return found
+        notes.append(Note(middle, [words]))
+    return notes
 
 
 def _cutting(cutter: Cutter) -> list[str]:
@@ -84,15 +84,15 @@ def _cutting(cutter: Cutter) -> list[str]:
 
 
 def spans_of(cutter: Cutter) -> list[Span]:
-    top, found = flute_length(cutter), []
+    top, spans = flute_length(cutter), []
     if stages(cutter):
-        found.append(Span(0.0, top, "flutes"))
-    found += [Span(low, low + stage.length, part) for part, low, stage in stages(cutter) if part != "holder"]
-    found.append(Span(0.0, cutter.length, "stick-out" if cutter.holder else "length"))
+        spans.append(Span(0.0, top, "flutes"))
+    spans += [Span(low, low + stage.length, part) for part, low, stage in stages(cutter) if part != "holder"]
+    spans.append(Span(0.0, cutter.length, "stick-out" if cutter.holder else "length"))
     if cutter.holder:
         end = cutter.length + sum(stage.length for stage in cutter.holder.stages)
-        found += [Span(cutter.length, end, "holder"), Span(0.0, end, "overall")]
-    return found
+        spans += [Span(cutter.length, end, "holder"), Span(0.0, end, "overall")]
+    return spans
 
 
 def facts_of(cutter: Cutter) -> list[str]:
@@ -100,16 +100,16 @@ def facts_of(cutter: Cutter) -> list[str]:
     holder = "no holder"
     if cutter.holder:
         holder = f"holder: {printable(cutter.holder.name)}" if cutter.holder.name else "a holder without a name"
-    found = [holder]
+    facts = [holder]
     if cutter.allowance:
-        found.append(f"allowance {length(cutter.allowance)} on the surface, not drawn")
+        facts.append(f"allowance {length(cutter.allowance)} on the surface, not shown")
     if cutter.clearance:
-        found.append(f"clearance {length(cutter.clearance)} of neck, shank and holder, not drawn")
-    return found
+        facts.append(f"clearance {length(cutter.clearance)} of neck, shank and holder, not shown")
+    return facts
 
 
 def description(cutter: Cutter, notes: list[Note], spans: list[Span], facts: list[str]) -> str:
     """All of it in words, for whoever sees no picture; nothing is left out here."""
     form = "; ".join(f"{across(r)} at height {length(h)}" for r, h in cutter.outline)
-    said = [f"Tool assembly {cutter.id}, in mm, from the tip up", *(", ".join(note.lines) for note in notes)]
-    return "; ".join([*said, *(span.words for span in spans), *facts, *([form] if form else [])]) + "."
+    lines = [f"Tool assembly {cutter.id}, in mm, from the tip up", *(", ".join(note.lines) for note in notes)]
+    return "; ".join([*lines, *(span.words for span in spans), *facts, *([form] if form else [])]) + "."

@@ -124,10 +124,10 @@ class Sheet:
         self.path(path, "edge", fill=f"url(#{id_})", kind=kind)
 
     def path(self, path: str, pen: str, *, fill: str = "", kind: str = "") -> None:
-        found = self._add(self._lines, "path", {"d": path, **_PENS[pen]})
-        found.attrib |= {"class": kind} if kind else {}
-        found.attrib |= {"fill": fill} if fill else {}
-        found.attrib |= {"clip-path": f"url(#{self._clip})"} if self._clip else {}
+        element = self._add(self._lines, "path", {"d": path, **_PENS[pen]})
+        element.attrib |= {"class": kind} if kind else {}
+        element.attrib |= {"fill": fill} if fill else {}
+        element.attrib |= {"clip-path": f"url(#{self._clip})"} if self._clip else {}
 
     def lines(self, points: Iterable[Point], pen: str) -> None:
         """Straight lines from point to point."""
@@ -140,13 +140,13 @@ class Sheet:
     def text(self, x: float, y: float, words: str, *, size: float = FONT, anchor: str = "start", bold: bool = False,
              upright: bool = False) -> None:  # fmt: skip
         """Words at their base line; upright ones are read from the right. Lines under them are kept off by a white rim."""
-        given = {"x": _mm(x), "y": _mm(y), "font-size": _mm(size), "text-anchor": anchor, "stroke": "#fff",
+        attributes = {"x": _mm(x), "y": _mm(y), "font-size": _mm(size), "text-anchor": anchor, "stroke": "#fff",
                  "stroke-width": "0.7", "stroke-linejoin": "round", "paint-order": "stroke"}  # fmt: skip
         if bold:
-            given["font-weight"] = "bold"
+            attributes["font-weight"] = "bold"
         if upright:
-            given["transform"] = f"rotate(-90 {_mm(x)} {_mm(y)})"
-        self._add(self._texts, "text", given).text = words
+            attributes["transform"] = f"rotate(-90 {_mm(x)} {_mm(y)})"
+        self._add(self._texts, "text", attributes).text = words
 
     def arrow(self, tip: Point, tail: Point) -> None:
         """A filled arrow head whose tip points away from `tail`."""

@@ -48,8 +48,8 @@ def fitted(frame: Floats, points: Floats, width: int, height: int) -> tuple[floa
     flat = points @ frame[:2].T
     low, high = flat.min(axis=0), flat.max(axis=0)
     size = np.maximum(high - low, 1e-9)
-    room = (1.0 - 2.0 * np.array(_MARGIN)) * np.array([width, height])
-    return float((room / size).min()), 0.5 * (low + high)
+    available = (1.0 - 2.0 * np.array(_MARGIN)) * np.array([width, height])
+    return float((available / size).min()), 0.5 * (low + high)
 
 
 def view(frame: Floats, body: Body, scale: float, middle: Floats, width: int, height: int, finer: int = FINER) -> View:
@@ -74,18 +74,18 @@ def view(frame: Floats, body: Body, scale: float, middle: Floats, width: int, he
     turned = np.where(turned[:, :, 2:] < 0.0, -turned, turned)
     bright = _DARKEST + (1.0 - _DARKEST) * np.clip(turned @ (_LIGHT / np.linalg.norm(_LIGHT)), 0.0, 1.0)
     shape = size[1], size[0]
-    found = View(np.full(shape, -1, np.int32), np.zeros(shape), np.full(shape, -np.inf))
-    draw(np.ascontiguousarray(corner), np.ascontiguousarray(bright), np.ascontiguousarray(body.owner, np.int32), found.depth,
-         found.seen, found.shade)  # fmt: skip
-    return found
+    result = View(np.full(shape, -1, np.int32), np.zeros(shape), np.full(shape, -np.inf))
+    draw(np.ascontiguousarray(corner), np.ascontiguousarray(bright), np.ascontiguousarray(body.owner, np.int32), result.depth,
+         result.seen, result.shade)  # fmt: skip
+    return result
 
 
 def borders(codes: Ints) -> NDArray[np.bool_]:
     """Pixels (h, w) whose right or lower neighbour has another code."""
-    found = np.zeros(codes.shape, bool)
-    found[:, :-1] |= codes[:, :-1] != codes[:, 1:]
-    found[:-1] |= codes[:-1] != codes[1:]
-    return found
+    result = np.zeros(codes.shape, bool)
+    result[:, :-1] |= codes[:, :-1] != codes[:, 1:]
+    result[:-1] |= codes[:-1] != codes[1:]
+    return result
 
 
 def averaged(image: NDArray[Any]) -> Floats:

@@ -9,7 +9,7 @@ from cad_io.arrays import Floats
 from plan_cutters.plan_file.numbers import mm
 from plan_cutters.report.page.atlas import Atlas
 from plan_cutters.report.page.encode import COARSE, FINE, Stored, halves, octahedral, placed, turned, unfolded
-from plan_cutters.report.page.facts import tilt_and_lean
+from plan_cutters.report.page.facts import tilt_and_direction
 from plan_cutters.report.page.stored_maps import stored
 from plan_cutters.report.page.surface import Surface
 from plan_cutters.report.protocol import Judged
@@ -19,7 +19,7 @@ Arrays = dict[str, Stored]
 NO_SETUP = 255
 
 
-def drawn_arrays(surface: Surface, atlas: Atlas, low: Floats, high: Floats) -> Arrays:
+def mesh_arrays(surface: Surface, atlas: Atlas, low: Floats, high: Floats) -> Arrays:
     """The mesh, and which sample stands where on it."""
     return {
         "mesh.position": Stored.of(placed(surface.point, low, high)),
@@ -34,7 +34,7 @@ def sample_arrays(result: Judged, low: Floats, high: Floats) -> Arrays:
     """The samples, and what each cutter reaches of them."""
     samples, normal = result.samples, octahedral(result.samples.normal, FINE)
     number = np.uint16 if samples.face.max(initial=0) < 1 << 16 else np.uint32
-    found: dict[str, NDArray[Any]] = {
+    arrays: dict[str, NDArray[Any]] = {
         "sample.point": placed(np.nan_to_num(samples.point), low, high),
         "sample.normal": normal,
         "sample.direction": turned(samples.direction_max, unfolded(normal, FINE)),
@@ -44,38 +44,40 @@ def sample_arrays(result: Judged, low: Floats, high: Floats) -> Arrays:
         "sample.area": halves(samples.area),
     }
     if result.inside_bodies.any():
-        found["sample.inside"] = result.inside_bodies.astype(np.uint8)
+        arrays["sample.inside"] = result.inside_bodies.astype(np.uint8)
     for name, which in result.served_in.items():
-        found[f"setup.{name}"] = np.where(which < 0, NO_SETUP, which).astype(np.uint8)
+        arrays[f"setup.{name}"] = np.where(which < 0, NO_SETUP, which).astype(np.uint8)
     for name, reach in result.reaches.items():
-        found |= {f"verdict.{name}": reach.verdict, f"reason.{name}": reach.reason}
-    return {name: Stored.of(array) for name, array in found.items()}
+        arrays |= {f"verdict.{name}": reach.verdict, f"reason.{name}": reach.reason}
+    return {name: Stored.of(array) for name, array in arrays.items()}
 
 
 def posture_arrays(result: Judged, name: str) -> Arrays:
     """The postures found for a cutter."""
-    tilt, tilt_direction = tilt_and_lean(result.samples, result.reaches[name])
+    tilt, tilt_direction = tilt_and_direction(result.samples, result.reaches[name])
     return {f"tilt.{name}": Stored.of(tilt), f"lean.{name}": Stored.of(tilt_direction)}
 
 
 def scalar_arrays(result: Judged) -> tuple[Arrays, list[dict[str, Any]]]:
     """Values at samples, and what the page is told of them."""
-    curvature, found = result.samples.curvature, {}
-    told = [
+    curvature, scalars = result.samples.curvature, {}
+    legends = [
         _scalar("curvature_max", "largest curvature", "1/mm", curvature[:, 0], array="sample.curvature", column=0),
         _scalar("curvature_min", "smallest curvature", "1/mm", curvature[:, 1], array="sample.curvature", column=1),
     ]
     for each in result.answers.radius_maps:
         key = f"largest_{each.shape}"
         # What is told must not be more than what reaches.
-        found[f"scalar.{key}"] = Stored.of(halves(each.radius, "down"))
-        told.append(_scalar(key, f"largest {each.shape} end (radius, up to {mm(each.most)} tried)", "mm", each.radius))
+        scalars[f"scalar.{key}"] = Stored.of(halves(each.radius, "down"))
+        legends.append(
+            _scalar(key, f"largest {each.shape} end (radius, up to {mm(each.most)} tried)", "mm", each.radius)
+        )
     for name, stick_out in result.answers.stick_outs.items():
         if stick_out.each is not None:
             key = f"stick_out.{name}"
-            found[f"scalar.{key}"] = Stored.of(halves(stick_out.each, "up"))
-            told.append(_scalar(key, "least stick-out", "mm", stick_out.each, cutter=name))
-    return found, told
+            scalars[f"scalar.{key}"] = Stored.of(halves(stick_out.each, "up"))
+            legends.append(_scalar(key, "least stick-out", "mm", stick_out.each, cutter=name))
+    return scalars, legends
 
 
 def _scalar(
@@ -90,5 +92,5 @@ def _scalar(
 
 def map_arrays(maps: Any, rows: NDArray[np.int64], of: NDArray[np.int64]) -> Arrays:
     """Some posture maps: see `stored`."""
-    found = stored(maps, rows, of)
-    return {f"maps.{word}": Stored.of(getattr(found, word)) for word in ("row", "count", "end", "undecided")}
+    result = stored(maps, rows, of)
+    return {f"maps.{word}": Stored.of(getattr(result, word)) for word in ("row", "count", "end", "undecided")}

@@ -131,9 +131,9 @@ def turned(direction: Floats, normal: Floats) -> NDArray[np.int16]:
 def halves(array: Floats, toward: str = "nearest") -> NDArray[np.float16]:
     """16-bit floats, the nearest ones or none that is larger (`down`) or less (`up`); what is too large as the largest one."""
     most = np.finfo(np.float16).max
-    found = np.clip(array, -float(most), float(most)).astype(np.float16)
+    clipped = np.clip(array, -float(most), float(most)).astype(np.float16)
     if toward == "down":
-        return np.where(found > array, np.nextafter(found, -most), found)
+        return np.where(clipped > array, np.nextafter(clipped, -most), clipped)
     if toward == "up":
-        return np.where(found < np.minimum(array, float(most)), np.nextafter(found, most), found)
-    return found
+        return np.where(clipped < np.minimum(array, float(most)), np.nextafter(clipped, most), clipped)
+    return clipped

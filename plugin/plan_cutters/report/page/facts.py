@@ -29,25 +29,27 @@ class Spot:
 
 def spots_of(result: Judged) -> tuple[list[Spot], dict[str, int]]:
     """The worst spots, those of the cutter that is shown first; and by cutter how many more the plan has."""
-    found, more = [], {}
+    spots, more = [], {}
     for entry in sorted(result.plan.cutters, key=lambda c: c.id != result.shown):
         most = _SPOTS if entry.id == result.shown else _OTHER_SPOTS
         ranked = ranked_spots(entry.witnesses)
-        found += [Spot(entry.id, row_of(result.samples, w), w) for w in ranked[:most]]
+        spots += [Spot(entry.id, row_of(result.samples, w), w) for w in ranked[:most]]
         if len(ranked) > most:
             more[entry.id] = len(ranked) - most
-    return found, more
+    return spots, more
 
 
-def turned_by(samples: Any, lean: Any) -> NDArray[np.int16]:
+def turned_by(samples: Any, tilt_direction: Any) -> NDArray[np.int16]:
     """Angles (n,) from `direction_max` to directions (n, 3) about the normal, in hundredths of degrees; 0 where there is none."""
-    known = np.isfinite(lean).all(axis=1)
-    lean, first, normal = (np.nan_to_num(a) for a in (lean, samples.direction_max, samples.normal))
-    angle = np.degrees(np.arctan2((lean * np.cross(normal, first)).sum(axis=1), (lean * first).sum(axis=1)))
+    known = np.isfinite(tilt_direction).all(axis=1)
+    tilt_direction, first, normal = (np.nan_to_num(a) for a in (tilt_direction, samples.direction_max, samples.normal))
+    angle = np.degrees(
+        np.arctan2((tilt_direction * np.cross(normal, first)).sum(axis=1), (tilt_direction * first).sum(axis=1))
+    )
     return np.where(known, np.round(100 * angle), 0).astype(np.int16)
 
 
-def tilt_and_lean(samples: Any, reach: Verdicts) -> tuple[NDArray[np.uint16], NDArray[np.int16]]:
+def tilt_and_direction(samples: Any, reach: Verdicts) -> tuple[NDArray[np.uint16], NDArray[np.int16]]:
     """Postures found: tilts (n,), NO_TILT where there is none, and angles (n,) from `direction_max` to the lean, in hundredths of
     degrees."""
     known = np.isfinite(reach.tilt) & reach.reached

@@ -65,8 +65,8 @@ def meta_of(
         "atlas": [atlas.index.shape[1], atlas.index.shape[0]],
         "faces": [_face(entry, surface) for entry in plan.faces],
         "fixtures": [
-            {"name": standing.name, "start": surface.fixtures[i][0], "count": surface.fixtures[i][1], "setups": setups}
-            for i, (standing, setups) in enumerate(fixtures_of(result))
+            {"name": fixture.name, "start": surface.fixtures[i][0], "count": surface.fixtures[i][1], "setups": setups}
+            for i, (fixture, setups) in enumerate(fixtures_of(result))
         ],
         "cutters": [
             _cutter(names[entry.id], entry, result.judged(entry.id), counts(result.reaches[entry.id].verdict))
@@ -86,8 +86,8 @@ def _kinematics(axes: Kinematics) -> dict[str, Any]:
 def _face(entry: Any, surface: Surface) -> dict[str, Any]:
     number = int(entry.id[1:])
     start, count = surface.faces.get(number, (0, 0))
-    told = ("id", "name", "component", "surface", "target", "ignored", "area_mm2")
-    return {"number": number, **_of(entry, *told), "start": start, "count": count}
+    words = ("id", "name", "component", "surface", "target", "ignored", "area_mm2")
+    return {"number": number, **_of(entry, *words), "start": start, "count": count}
 
 
 def _of(record: Any, *words: str) -> dict[str, Any]:
@@ -95,14 +95,14 @@ def _of(record: Any, *words: str) -> dict[str, Any]:
     return {word: getattr(record, word) for word in words}
 
 
-def _cutter(name: str, entry: CutterEntry, cutter: Cutter, found: dict[str, Any]) -> dict[str, Any]:
+def _cutter(name: str, entry: CutterEntry, cutter: Cutter, data: dict[str, Any]) -> dict[str, Any]:
     return {
         "name": name,
         **_of(entry, "id", "feasible", "radius", "corner_radius", "allowance_mm", "clearance_mm", "touches_deg"),
         "modes": [_mode(mode) for mode in modes(cutter)],
         "outline": _outline(cutter),
         "shares": {word: getattr(entry.area_share, word) for word in VERDICTS},
-        "counts": found,
+        "counts": data,
         "by_reason": {name: n for name, n in entry.by_reason.items() if n},
         "undecided_by_reason": {name: n for name, n in entry.undecided_by_reason.items() if n},
     }
@@ -115,13 +115,13 @@ def _mode(mode: Any) -> dict[str, float]:
 
 def _outline(cutter: Cutter) -> list[dict[str, Any]]:
     """The polyline of each part of a tool, from the tip up."""
-    whole, found = outline(cutter), []
+    whole, rows = outline(cutter), []
     for part in whole.parts:
         segments = whole.of(part)
         line = points(Outline(segments), _CHORD)
         line[0] = segments[0].start
-        found.append({"part": part, "points": line.round(4).tolist()})
-    return found
+        rows.append({"part": part, "points": line.round(4).tolist()})
+    return rows
 
 
 def _spot(spot: Spot) -> dict[str, Any]:

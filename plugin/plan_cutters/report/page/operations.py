@@ -14,7 +14,7 @@ from plan_cutters.plan_file.numbers import bound, percent
 from plan_cutters.plan_file.operations import CurveStepEntry, OperationEntry, OperationPlanEntry
 from plan_cutters.plan_file.palette import OPERATIONS, operation_colour
 from plan_cutters.plan_file.words.line import Line
-from plan_cutters.plan_file.words.operations import Told, of_the_whole, share_text, told
+from plan_cutters.plan_file.words.operations import OperationText, of_the_whole, operation_text, share_text
 from plan_cutters.plan_file.words.story import Story
 from plan_cutters.report.page.arrays import Arrays
 from plan_cutters.report.page.encode import Stored
@@ -37,8 +37,8 @@ def key(plan: OperationPlan | OperationPlanEntry) -> str:
 
 def operation_arrays(result: Judged) -> Arrays:
     """For each plan the operation of each sample, counted from 1, 0 is none; and where its tool leans."""
-    found, arrays = result.answers.operations, Arrays()
-    for plan in found.plans if found else ():
+    operations, arrays = result.answers.operations, Arrays()
+    for plan in operations.plans if operations else ():
         arrays[f"operation.{key(plan)}"] = Stored.of(_numbers(plan))
         arrays[f"operation_lean.{key(plan)}"] = Stored.of(turned_by(result.samples, plan.lean))
     return arrays
@@ -50,9 +50,9 @@ def _numbers(plan: OperationPlan) -> Any:
 
 
 def operations_of(result: Judged) -> dict[str, Any] | None:
-    """Collect what the script needs of the operations beside the tables; None where they were not asked for."""
-    found, entry = result.answers.operations, result.plan.operations
-    if found is None or entry is None:
+    """Collect what the script needs of the operations beside the tables; None where they were not requested."""
+    operations, entry = result.answers.operations, result.plan.operations
+    if operations is None or entry is None:
         return None
     return {
         "plans": [
@@ -66,14 +66,14 @@ def operations_of(result: Judged) -> dict[str, Any] | None:
                     for k, (one, row) in enumerate(zip(each.operations, _shown_at(mine, result.samples), strict=True))
                 ],
             }
-            for mine, each in zip(found.plans, entry.plans, strict=True)
+            for mine, each in zip(operations.plans, entry.plans, strict=True)
         ]
     }
 
 
 def _operation(plan: Plan, entry: OperationEntry, number: int, row: int) -> dict[str, Any]:
     pattern = _PATTERNS[number // len(OPERATIONS) % len(_PATTERNS)]
-    words = told(plan, entry)
+    words = operation_text(plan, entry)
     return {
         "cutter": entry.cutter, "setup": entry.setup, "axis": entry.axis, "colour": operation_colour(number), "pattern": pattern,
         "label": entry.id, "turned": words.turned, "text": words.sentence, "sample": row,
@@ -89,14 +89,14 @@ def _shown_at(plan: OperationPlan, samples: SurfaceSamples) -> list[int]:
     same = edge[label[edge[:, 0]] == label[edge[:, 1]]]
     graph = coo_array((np.ones(len(same), np.int8), tuple(same.T)), shape=(len(label), len(label)))
     piece = connected_components(graph, directed=False)[1]
-    area, found = np.nan_to_num(samples.area), []
+    area, samples_shown = np.nan_to_num(samples.area), []
     for k in range(len(plan.operations)):
         rows = np.flatnonzero(label == k)
         size = np.bincount(piece[rows], area[rows])
         rows = rows[piece[rows] == size.argmax()] if size.any() else rows
         middle = samples.point[rows].mean(axis=0)
-        found.append(int(rows[np.linalg.norm(samples.point[rows] - middle, axis=1).argmin()]))
-    return found
+        samples_shown.append(int(rows[np.linalg.norm(samples.point[rows] - middle, axis=1).argmin()]))
+    return samples_shown
 
 
 class Curve(NamedTuple):
@@ -114,27 +114,29 @@ class OperationTables(NamedTuple):
     """These are what the template shows of the operations."""
 
     lines: list[Line]
-    plans: list[tuple[OperationPlanEntry, str, list[Told], bool]]
+    plans: list[tuple[OperationPlanEntry, str, list[OperationText], bool]]
     steps: list[tuple[int, str, str]]
     curve: Curve | None
 
 
 def tables(plan: Plan, story: Story) -> OperationTables | None:
-    """Sentences, rows of tables and the curve; None where operations were not asked for."""
-    found = plan.operations
-    if found is None:
+    """Sentences, rows of tables and the curve; None where operations were not requested."""
+    operations = plan.operations
+    if operations is None:
         return None
     plans = [
         (
             each,
             key(each),
-            [told(plan, one) for one in each.operations],
+            [operation_text(plan, one) for one in each.operations],
             all(o.seconds is not None for o in each.operations),
         )
-        for each in found.plans
+        for each in operations.plans
     ]
-    steps = [(s.orientations, share_text(s.share), "" if s.at_most is None else bound(s.at_most)) for s in found.curve]
-    return OperationTables(of_the_whole(story.operations, story.in_short), plans, steps, curve(found.curve))
+    steps = [
+        (s.orientations, share_text(s.share), "" if s.at_most is None else bound(s.at_most)) for s in operations.curve
+    ]
+    return OperationTables(of_the_whole(story.operations, story.in_short), plans, steps, curve(operations.curve))
 
 
 def curve(steps: Sequence[CurveStepEntry]) -> Curve | None:

@@ -46,14 +46,14 @@ def stored(maps: Any, rows: NDArray[np.int64], of: NDArray[np.int64]) -> StoredM
     tilt = np.degrees(maps.free[at]) / END
     low = np.ceil(tilt[:, 0] - _ROUNDING).astype(np.int64)
     high = np.floor(tilt[:, 1] + _ROUNDING).astype(np.int64)
-    kept = low <= high
+    valid = low <= high
     # What is too narrow for a step is not shown free; it counts as undecided.
     unsure = np.degrees(maps.undecided[of].astype(float)).reshape(-1)
-    np.add.at(unsure, owner[~kept], END * (tilt[~kept, 1] - tilt[~kept, 0]))
+    np.add.at(unsure, owner[~valid], END * (tilt[~valid, 1] - tilt[~valid, 0]))
     halves = np.minimum(255, np.ceil(unsure / UNDECIDED - _ROUNDING))
     return StoredMaps(
         rows[of].astype(np.uint32),
-        np.bincount(owner[kept], minlength=len(first)).reshape(-1, k).astype(np.uint8),
-        np.stack([low[kept], high[kept]], axis=1).astype(np.uint16),
+        np.bincount(owner[valid], minlength=len(first)).reshape(-1, k).astype(np.uint8),
+        np.stack([low[valid], high[valid]], axis=1).astype(np.uint16),
         halves.reshape(-1, k).astype(np.uint8),
     )

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from cad_io.write.render_mesh import Drawn, Mesh
-from plan_cutters.document.fixtures import standing_in
+from cad_io.write.render_mesh import Mesh, RenderMesh
+from plan_cutters.document.fixtures import fixtures_in
 from plan_cutters.report.page.atlas import NOWHERE, Atlas, placed_in
 from plan_cutters.report.protocol import Judged
 from plan_cutters.scene.surroundings import PlacedFixture
@@ -33,21 +33,21 @@ class Surface:
     fixtures: dict[int, Range]
 
 
-def surface_of(result: Judged, drawn: Drawn, atlas: Atlas) -> Surface:
+def surface_of(result: Judged, render_mesh: RenderMesh, atlas: Atlas) -> Surface:
     """Put the meshes of faces and fixtures together."""
     start = 0
     meshes: list[Mesh] = []
     places: list[NDArray[np.uint16]] = []
     faces: dict[int, Range] = {}
     fixtures: dict[int, Range] = {}
-    for number in sorted(drawn.meshes):
-        mesh, place = placed_in(atlas, result.samples, number, drawn.meshes[number], drawn.periods[number])
+    for number in sorted(render_mesh.meshes):
+        mesh, place = placed_in(atlas, result.samples, number, render_mesh.meshes[number], render_mesh.periods[number])
         faces[number] = (start, len(mesh.triangle))
         start += len(mesh.triangle)
         meshes.append(mesh)
         places.append(place)
-    for i, (standing, _) in enumerate(fixtures_of(result)):
-        mesh = _facets(standing.shown)
+    for i, (fixture, _) in enumerate(fixtures_of(result)):
+        mesh = _facets(fixture.shown)
         fixtures[i] = (start, len(mesh.triangle))
         start += len(mesh.triangle)
         meshes.append(mesh)
@@ -65,7 +65,7 @@ def surface_of(result: Judged, drawn: Drawn, atlas: Atlas) -> Surface:
 
 def fixtures_of(result: Judged) -> list[tuple[PlacedFixture, list[int]]]:
     """The fixtures of all setups, those of the first one first, each with the setups in which it stands."""
-    return standing_in([each.around for each in result.ready.setups])
+    return fixtures_in([each.surroundings for each in result.ready.setups])
 
 
 def _facets(corner: Floats) -> Mesh:

@@ -11,7 +11,7 @@ from plan_cutters.plan_file.shares import VERDICTS, reached
 from plan_cutters.plan_file.words import answers, cutters, headline
 from plan_cutters.plan_file.words.chip import CHIPS, chip
 from plan_cutters.plan_file.words.names import named
-from plan_cutters.plan_file.words.next_steps import step_told
+from plan_cutters.plan_file.words.next_steps import step_text
 from plan_cutters.plan_file.words.story import Story, story_of
 from plan_cutters.report.page import operations
 from plan_cutters.report.page.facts import Spot
@@ -22,7 +22,7 @@ _FACES, _CUTTERS = 1000, 40
 
 
 class Drawing(NamedTuple):
-    """How the part is drawn: chord error that was asked for, mm, and numbers of faces that are not."""
+    """How the part is drawn: chord error that was requested, mm, and numbers of faces that are not."""
 
     chord: float
     missing: tuple[int, ...]
@@ -38,14 +38,14 @@ _VERDICTS = {
 }
 
 
-def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing, left: list[str]) -> dict[str, Any]:
-    """Everything that the template shows; `more`: spots by cutter that are not listed; `left`: what the data has not."""
+def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing, omitted: list[str]) -> dict[str, Any]:
+    """Everything that the template shows; `more`: spots by cutter that are not listed; `omitted`: what the data has not."""
     plan, story = result.plan, story_of(result.plan)
     shown = next(c for c in plan.cutters if c.id == story.shown)
-    told = zip(story.cutters, plan.cutters, strict=True)
+    rows = zip(story.cutters, plan.cutters, strict=True)
     first = sorted(story.cutters, key=lambda c: c.id != story.shown)
     faces = _faces(plan, shown)
-    lost_by = {word for c in plan.cutters for word in c.area_share.lost_by}
+    reasons = {word for c in plan.cutters for word in c.area_share.lost_by}
     return {
         "w": numbers,
         "plan": plan,
@@ -53,7 +53,7 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
         "why": _why(plan, story, shown),
         "names": story.names,
         "named": lambda text: named(plan, text),
-        "step_told": step_told,
+        "step_told": step_text,
         "limit": answers.limit,
         "narrowest": answers.narrowest,
         "told": answers.change,
@@ -62,15 +62,15 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
         "chips": CHIPS,
         "feasible": cutters.FEASIBLE,
         "order": {True: 0, None: 1, False: 2},
-        "cutters": [(c, entry, _bars(plan, entry)) for c, entry in sorted(told, key=lambda each: each[1] is not shown)],
+        "cutters": [(c, entry, _bars(plan, entry)) for c, entry in sorted(rows, key=lambda each: each[1] is not shown)],
         "label": label,
         "failing": [c for c in first if c.failing][:_CUTTERS],
         "verdicts": _VERDICTS,
-        "reasons": [REASONS[word] for word in plan.reasons if word in lost_by and word in REASONS],
+        "reasons": [REASONS[word] for word in plan.reasons if word in reasons and word in REASONS],
         "spots": [
-            (c, found)
+            (c, witnesses)
             for c in first
-            if (found := [(k, s.witness, cutters.spot(s.witness)) for k, s in enumerate(spots) if s.cutter == c.id])
+            if (witnesses := [(k, s.witness, cutters.spot(s.witness)) for k, s in enumerate(spots) if s.cutter == c.id])
         ],
         "more": more,
         "faces": faces[:_FACES],
@@ -79,7 +79,7 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
         "asked": bool(plan.largest_radius) or any(c.least_stick_out or c.mend for c in plan.cutters),
         "effective": _effective(plan),
         "drawing": drawing,
-        "left": left,
+        "left": omitted,
         "empty": headline.not_sampled(plan),
         "operations": operations.tables(plan, story),
     }

@@ -9,7 +9,7 @@ import numpy as np
 from markupsafe import Markup
 from numpy.typing import NDArray
 
-from cad_io.write.render_mesh import drawn
+from cad_io.write.render_mesh import render_mesh
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.report.markup import embedded, policy, template
 from plan_cutters.report.page import arrays, tables
@@ -35,7 +35,7 @@ _SURELY = 3.0
 _HERE = Path(__file__).parent
 
 
-class Left(NamedTuple):
+class Omitted(NamedTuple):
     """Sentences on what is left out of a page to keep its size: about cutters that are not shown, and about maps."""
 
     others: str
@@ -85,47 +85,47 @@ def page(
         UTF-8; the same for the same plan.
     """
     chord = _chord(result.plan, triangles)
-    faces = drawn(result.part, result.scene.orientation.sign, most=triangles, deflection=chord)
+    faces = render_mesh(result.part, result.scene.orientation.sign, most=triangles, deflection=chord)
     atlas = atlas_of(result.samples)
     surface = surface_of(result, faces, atlas)
     box = box_of(surface, result.samples)
     spots, more = spots_of(result)
-    scalars, told = arrays.scalar_arrays(result)
+    scalars, legends = arrays.scalar_arrays(result)
     base = {
-        **arrays.drawn_arrays(surface, atlas, *box),
+        **arrays.mesh_arrays(surface, atlas, *box),
         **arrays.sample_arrays(result, *box),
         **arrays.posture_arrays(result, result.shown),
         **scalars,
         **operation_arrays(result),
     }
     others = _together(arrays.posture_arrays(result, name) for name in result.reaches if name != result.shown)
-    meta = {**meta_of(result, surface, atlas, box, spots), "drawn_chord_mm": faces.deflection, "scalars": told}
+    meta = {**meta_of(result, surface, atlas, box, spots), "drawn_chord_mm": faces.deflection, "scalars": legends}
     about = Drawing(faces.deflection, faces.missing)
 
     where = np.arange(len(result.samples)) if rows is None else rows
     largest = largest or (LARGEST if maps is not None and rows is None else LARGEST_WITHOUT)
-    found, stride, left = _maps(maps, where, 1), 1, Left("", "")
+    map_data, stride, remaining = _maps(maps, where, 1), 1, Omitted("", "")
 
     def made() -> bytes:
-        entries, data = joined({**base, **others, **found})
+        entries, data = joined({**base, **others, **map_data})
         for each in meta["cutters"]:
             each["has_posture"] = f"tilt.{each['id']}" in entries
-        told = None
+        map_meta = None
         if maps is not None:
-            told = {"cutter": maps.cutter, "count": len(where[::stride]) if found else 0, "of": len(result.samples),
-                    "step_deg": round(result.plan.effective.rotation_step_deg, 9), "why": left.maps or None}  # fmt: skip
-        shown = tables.of(result, spots, more, about, [why for why in left if why])
-        return _rendered({**meta, "maps": told, "arrays": entries}, data, shown)
+            map_meta = {"cutter": maps.cutter, "count": len(where[::stride]) if map_data else 0, "of": len(result.samples),
+                    "step_deg": round(result.plan.effective.rotation_step_deg, 9), "why": remaining.maps or None}  # fmt: skip
+        shown = tables.of(result, spots, more, about, [why for why in remaining if why])
+        return _rendered({**meta, "maps": map_meta, "arrays": entries}, data, shown)
 
     data = made()
     if len(data) > largest and others:
-        others, left = {}, left._replace(others=_OTHERS)
+        others, remaining = {}, remaining._replace(others=_OTHERS)
         data = made()
-    while len(data) > largest and found:
-        room = largest - len(data) + size_of(found)
-        stride = max(stride + 1, math.ceil(stride * size_of(found) / max(room, 1)))
-        found = _maps(maps, where, stride) if stride <= _WIDEST_STRIDE else {}
-        left = left._replace(maps=_why(stride, largest) if found else _NO_MAPS.format(largest / 1e6))
+    while len(data) > largest and map_data:
+        available = largest - len(data) + size_of(map_data)
+        stride = max(stride + 1, math.ceil(stride * size_of(map_data) / max(available, 1)))
+        map_data = _maps(maps, where, stride) if stride <= _WIDEST_STRIDE else {}
+        remaining = remaining._replace(maps=_why(stride, largest) if map_data else _NO_MAPS.format(largest / 1e6))
         data = made()
     return data
 

@@ -22,13 +22,13 @@ from cad_io.split.net import LOOSER, Net, along, distance
 from cad_io.split.surface_edge import DEVIATION
 from cad_io.surface import Surface
 
-_SITES, _MOST_SITES = 257, 5000
+_POINTS, _MOST_POINTS = 257, 5000
 _STEPS = 20
 #: What the curve may leave its nearest places by, mm: some times what a drawn curve may.
 _OFF = 10 * DEVIATION
 
 
-def mend(net: Net, key: int) -> None:
+def repair(net: Net, key: int) -> None:
     """Draw the parameter curves of an edge anew where they do not follow it. The edge is changed in place; seams are left.
 
     Parameters
@@ -46,7 +46,7 @@ def mend(net: Net, key: int) -> None:
         old, first, last = parameter_curve(used, face)
         if old is None or (first, last) != (edge.first, edge.last):
             continue
-        surface, places = net.surface(face), np.linspace(first, last, 4 * _SITES)
+        surface, places = net.surface(face), np.linspace(first, last, 4 * _POINTS)
         allowed = BRep_Tool.Tolerance_s(edge.edge)
         if distance(along(edge.curve, places), old, surface, places).max() <= allowed + _OFF:
             continue
@@ -76,8 +76,8 @@ def _followed(curve: Any, old: Any, surface: Surface, first: float, last: float)
     """Cubic in the parameter plane that follows a curve in space, with the ends of the old one; None if there is none."""
     from scipy.interpolate import make_interp_spline  # half a second to load
 
-    t = np.linspace(first, last, _SITES)
-    while len(t) < _MOST_SITES:
+    t = np.linspace(first, last, _POINTS)
+    while len(t) < _MOST_POINTS:
         uv = _nearest(curve, old, surface, t)
         if not np.isfinite(uv).all():
             return None
@@ -99,8 +99,8 @@ def _nearest(curve: Any, old: Any, surface: Surface, t: Floats) -> Floats:
     adaptor, (low_u, high_u, low_v, high_v) = surface.adaptor, domain(surface.adaptor)
     ranges = ((adaptor.IsUPeriodic(), low_u, high_u), (adaptor.IsVPeriodic(), low_v, high_v))
     for _ in range(_STEPS):
-        found = surface.first(*uv.T)
-        gap, slopes = space - found[:, 0], found[:, 1:]
+        nearest = surface.first(*uv.T)
+        gap, slopes = space - nearest[:, 0], nearest[:, 1:]
         matrix = slopes @ slopes.transpose(0, 2, 1)
         size = matrix[:, 0, 0] * matrix[:, 1, 1] - matrix[:, 0, 1] ** 2
         pull = (slopes @ gap[:, :, None])[:, :, 0]

@@ -16,9 +16,9 @@ from plan_cutters.errors import OptionError
 AUTO = "auto"
 
 
-def is_auto(given: Any) -> bool:
+def is_auto(value: Any) -> bool:
     """Whether a setup is the word that asks for a proposal."""
-    return isinstance(given, str) and given.strip().lower() == AUTO
+    return isinstance(value, str) and value.strip().lower() == AUTO
 
 
 def same_fixture(one: Fixture, other: Fixture) -> bool:
@@ -36,7 +36,7 @@ def without(fixtures: Sequence[Fixture], others: Sequence[Fixture]) -> tuple[Fix
     return tuple(each for each in fixtures if not any(same_fixture(each, other) for other in others))
 
 
-def setups_given(
+def setups_requested(
     setup: Any, placement: Placement | None, others: Any, other_placements: Any, fixtures: Any, *, propose: bool
 ) -> dict[str, Any]:
     """Give the values of the options about setups by their names.
@@ -73,40 +73,40 @@ def setups_given(
             "setup auto puts a table under the part in each setup: leave out the fixtures, or name the setup"
         )
     shared = without(common, () if placed is None else placed.fixtures)
-    found = [_own(_setup(each, place), shared) for each, place in zip(listed, places, strict=True)]
-    known = any(place is not None for _, place in found)
+    setups = [_own(_setup(each, place), shared) for each, place in zip(listed, places, strict=True)]
+    known = any(place is not None for _, place in setups)
     return {"setup": axis, "placement": placed, "fixtures": common, "propose": propose,
-            "other_setups": tuple(each for each, _ in found),
-            "other_placements": tuple(place for _, place in found) if known else ()}  # fmt: skip
+            "other_setups": tuple(each for each, _ in setups),
+            "other_placements": tuple(place for _, place in setups) if known else ()}  # fmt: skip
 
 
 def _own(
-    found: tuple[tuple[float, float, float], Placement | None], shared: Sequence[Fixture]
+    placed: tuple[tuple[float, float, float], Placement | None], shared: Sequence[Fixture]
 ) -> tuple[tuple[float, float, float], Placement | None]:
     """A setup without those fixtures that stand in all setups; a table that lies across its own axis is another one."""
-    axis, place = found
+    axis, place = placed
     if place is None:
-        return found
-    kept = tuple(each for each in place.fixtures if each.follows_setup or without((each,), shared))
-    return axis, replace(place, fixtures=kept)
+        return placed
+    own = tuple(each for each in place.fixtures if each.follows_setup or without((each,), shared))
+    return axis, replace(place, fixtures=own)
 
 
-def _setup(given: Any, placed: Placement | None) -> tuple[tuple[float, float, float], Placement | None]:
+def _setup(value: Any, placed: Placement | None) -> tuple[tuple[float, float, float], Placement | None]:
     """A setup axis, and what more is known of the setup.
 
     A word as `+z` is an axis, another text or path a setup file; a host's plane says where the machine's X points, too.
     """
-    if isinstance(given, os.PathLike) or (isinstance(given, str) and along(given) is None):
+    if isinstance(value, os.PathLike) or (isinstance(value, str) and along(value) is None):
         from plan_cutters.machines.setups import read_setup
 
-        given = read_setup(given)
-    if (plane := plane_of(given)) is not None:
+        value = read_setup(value)
+    if (plane := plane_of(value)) is not None:
         if placed is not None:
             raise OptionError("a plane and a placement were given for one setup: give one of them")
-        given = Placement(*plane)
-    if isinstance(given, Placement):
-        return given.z, given
-    x, y, z = unit(given, "setup axis").tolist()
+        value = Placement(*plane)
+    if isinstance(value, Placement):
+        return value.z, value
+    x, y, z = unit(value, "setup axis").tolist()
     if placed is None:
         return (x, y, z), None
     if not isinstance(placed, Placement):

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters.batch import cluster
-from plan_cutters.batch.handing import Offer
-from plan_cutters.batch.rows import LARGE, Rows
+from plan_cutters.batch.distributed_judge import LARGE, DistributedJudge
+from plan_cutters.batch.job_input import Offer
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.errors import PlanError
@@ -20,7 +20,7 @@ from plan_cutters.scene.work import Work
 from plan_cutters.stages.judge import judge
 
 
-class Lent:
+class SharedCluster:
     """Judge as `stages.judge.judge` does; large parts by the workers of the batch, as soon as there is one to judge.
 
     Parameters
@@ -32,7 +32,7 @@ class Lent:
 
     def __init__(self, offer: Offer, large: int = LARGE) -> None:
         self._offer, self._large = offer, large
-        self._rows: Rows | None = None
+        self._rows: DistributedJudge | None = None
         self._open = contextlib.ExitStack()
         self._asked = False
 
@@ -63,7 +63,7 @@ class Lent:
             stack.callback(Lock(Path(self._offer.turn)).release)
             client: Any = stack.enter_context(cluster.opened(self._offer.scheduler))
             Path(self._offer.said).touch()
-            self._rows = Rows(client, large=self._large)
+            self._rows = DistributedJudge(client, large=self._large)
             self._open = stack.pop_all()
 
     def close(self) -> None:

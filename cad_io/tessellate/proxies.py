@@ -71,8 +71,8 @@ def stand_ins(part: Part, missing: Sequence[tuple[int, str]], chord: float) -> S
         made, sign = np.zeros((0, 3, 3)), 0
         if reason == NO_AREA and len(edges := _edges(part, number, chord)):
             how[number], made = "edges", edges
-        elif (found := _own_triangles(part, number)) is not None:
-            how[number], own[number] = "triangles", found
+        elif (triangles := _own_triangles(part, number)) is not None:
+            how[number], own[number] = "triangles", triangles
         elif np.isfinite(box := face_box(part.face(number), tight=False)).all():
             how[number], sign = "box", 1
             made = (box[0] + _CORNERS * (box[1] - box[0]))[_SIDES]
@@ -109,8 +109,8 @@ def _own_triangles(part: Part, number: int) -> Floats | None:
     move = place.Transformation()
     node = np.array([mesh.Node(i + 1).Transformed(move).Coord() for i in range(mesh.NbNodes())])
     corner = np.array([mesh.Triangle(i + 1).Get() for i in range(mesh.NbTriangles())]) - 1
-    found = np.asarray(node[corner])
-    return found if np.isfinite(found).all() else None
+    points = np.asarray(node[corner])
+    return points if np.isfinite(points).all() else None
 
 
 def _enclosing(vertex: Floats) -> tuple[NDArray[np.int8], Floats]:
@@ -139,15 +139,15 @@ def _enclosing(vertex: Floats) -> tuple[NDArray[np.int8], Floats]:
     agree = np.where(tail[one] == tail[other], -1, 1)
     links = coo_array((np.ones(len(one), np.int8), (one // 3, other // 3)), shape=(count, count)).tocsr()
     way = dict(zip(zip((one // 3).tolist(), (other // 3).tolist(), strict=True), agree.tolist(), strict=True))
-    skin_of = connected_components(links, directed=False)[1]
+    shell_of = connected_components(links, directed=False)[1]
     caps = [np.zeros((0, 3, 3))]
-    for skin in np.unique(skin_of[counted]).tolist():
-        rows, before = breadth_first_order(links, int(np.argmax((skin_of == skin) & counted)), directed=False)
+    for shell in np.unique(shell_of[counted]).tolist():
+        rows, before = breadth_first_order(links, int(np.argmax((shell_of == shell) & counted)), directed=False)
         for here in rows.tolist():
             back = int(before[here])
             weight[here] = 1 if back < 0 else weight[back] * way.get((back, here), way.get((here, back), 0))
         # How often the skin runs along each of its edges, one way less the other.
-        mine = order[skin_of[order // 3] == skin]
+        mine = order[shell_of[order // 3] == shell]
         edges, which = np.unique(key[mine], return_inverse=True)
         net = np.bincount(
             which, weights=weight[mine // 3] * np.where(tail[mine] < head[mine], 1, -1), minlength=len(edges)
@@ -175,7 +175,7 @@ def _edges(part: Part, number: int, chord: float) -> Floats:
     # An area may be zero because one part of the border runs the wrong way round: here none is counted as negative.
     u0, u1, v0, v1 = trim.box
     grid = np.linspace(0.0, 1.0, _GRID)
-    share = trim.inside_grid(u0 + grid * (u1 - u0), v0 + grid * (v1 - v0), beside=False).mean()
+    share = trim.inside_grid(u0 + grid * (u1 - u0), v0 + grid * (v1 - v0), border=False).mean()
     if share * (u1 - u0) * (v1 - v0) * trim.scale.prod() > _SLIVER * float(np.dot(part.size, part.size)):
         return pieces[0]
     for edge in edges_of(part.face(number)):

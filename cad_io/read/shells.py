@@ -20,7 +20,7 @@ _SAME = 1e-6
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Skins(Record):
+class Shells(Record):
     """This record tells which triangles of a mesh enclose something."""
 
     #: (n,); of each triangle: 1 where its normal points out of what its skin encloses, -1 where it points in, 0 where the skin
@@ -33,23 +33,23 @@ class Skins(Record):
     turned: int
 
 
-def skins(vertex: Floats) -> Skins:
+def shells(vertex: Floats) -> Shells:
     """The skins of triangles with corners (n, 3, 3)."""
     points, corner = np.unique(vertex.reshape(-1, 3), axis=0, return_inverse=True)
-    found = _skins(vertex, corner.reshape(-1, 3))
-    if not found.open:
-        return found
+    shells = _shells(vertex, corner.reshape(-1, 3))
+    if not shells.open:
+        return shells
     # Corners that differ in their last digits alone.
     near = cKDTree(points).query_pairs(_SAME * float(np.ptp(points, axis=0).max()), output_type="ndarray")
     if not len(near):
-        return found
+        return shells
     graph = coo_array((np.ones(len(near), np.int8), (near[:, 0], near[:, 1])), shape=(len(points),) * 2)
     _, joined = connected_components(graph, directed=False)
-    again = _skins(vertex, joined[corner.reshape(-1, 3)])
-    return again if again.open < found.open else found
+    again = _shells(vertex, joined[corner.reshape(-1, 3)])
+    return again if again.open < shells.open else shells
 
 
-def _skins(vertex: Floats, corner: NDArray[np.int64]) -> Skins:
+def _shells(vertex: Floats, corner: NDArray[np.int64]) -> Shells:
     n = len(corner)
     ends = np.stack([corner, np.roll(corner, -1, axis=1)], axis=2).reshape(-1, 2)
     owner, real = np.repeat(np.arange(n), 3), ends[:, 0] != ends[:, 1]
@@ -61,36 +61,36 @@ def _skins(vertex: Floats, corner: NDArray[np.int64]) -> Skins:
     # Triangles and edges in one graph: what is connected is a skin.
     graph = coo_array((np.ones(len(owner), np.int8), (owner, n + edge)), shape=(n + edges, n + edges))
     count, label = connected_components(graph, directed=False)
-    skin, of_edge = label[:n], label[n:]
+    shell, of_edge = label[:n], label[n:]
     closed = np.ones(count, bool)
     closed[of_edge[np.bincount(edge, way, edges) != 0]] = False
     # A triangle that is but a point has no edge and encloses nothing.
-    closed[skin[np.bincount(owner, minlength=n) == 0]] = False
+    closed[shell[np.bincount(owner, minlength=n) == 0]] = False
     pairs = np.ones(count, bool)
     pairs[of_edge[np.bincount(edge, minlength=edges) != 2]] = False
-    sense, mended = _put_right(edge, owner, way, pairs[of_edge] & ~closed[of_edge], n)
+    sense, corrected = _put_right(edge, owner, way, pairs[of_edge] & ~closed[of_edge], n)
     fixed = np.zeros(count, bool)
-    fixed[skin[mended]] = True
-    weight = np.where((closed | fixed)[skin], sense, 0)
+    fixed[shell[corrected]] = True
+    weight = np.where((closed | fixed)[shell], sense, 0)
     centre = vertex.mean(axis=(0, 1))
     a, b, c = np.moveaxis(vertex - centre, 1, 0)
-    volume = np.bincount(skin, weight * (np.cross(a, b) * c).sum(axis=1), count)
+    volume = np.bincount(shell, weight * (np.cross(a, b) * c).sum(axis=1), count)
     inward = volume < 0
-    weight = np.where(inward[skin], -weight, weight).astype(np.int8)
-    present = np.unique(skin)
+    weight = np.where(inward[shell], -weight, weight).astype(np.int8)
+    present = np.unique(shell)
     shut = (closed | fixed)[present]
-    return Skins(weight, int(shut.sum()), int((~shut).sum()), int((shut & (fixed | inward)[present]).sum()))
+    return Shells(weight, int(shut.sum()), int((~shut).sum()), int((shut & (fixed | inward)[present]).sum()))
 
 
 def _put_right(
-    edge: NDArray[np.int64], owner: NDArray[np.int64], way: NDArray[np.int64], asked: NDArray[np.bool_], n: int
+    edge: NDArray[np.int64], owner: NDArray[np.int64], way: NDArray[np.int64], requested: NDArray[np.bool_], n: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Senses (n,) in which triangles run the same way round as their neighbours, and those of skins that have such senses.
 
-    `asked` (edges,): those of the skins to put right, each of two triangles.
+    `requested` (edges,): those of the skins to put right, each of two triangles.
     """
     sense = np.ones(n, np.int64)
-    rows = np.flatnonzero(asked[edge])
+    rows = np.flatnonzero(requested[edge])
     if not len(rows):
         return sense, rows
     rows = rows[np.argsort(edge[rows], kind="stable")]

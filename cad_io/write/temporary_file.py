@@ -10,7 +10,7 @@ from cad_io.errors import WriteError
 
 
 @contextmanager
-def aside(path: str | Path) -> Iterator[Path]:
+def temporary_file(path: str | Path) -> Iterator[Path]:
     """A path in the same folder to write to; renamed to `path` when the block ends well, removed when it does not.
 
     Raises

@@ -55,8 +55,8 @@ def holds_part() -> bool:
 
 def part() -> "Part":
     """The part that was handed: this loads the CAD kernel."""
-    found: Part = pickle.loads(_content()["part"])
-    return found
+    result: Part = pickle.loads(_content()["part"])
+    return result
 
 
 def offer() -> Offer | None:
@@ -66,8 +66,8 @@ def offer() -> Offer | None:
 
 def key() -> bytes | None:
     """The key of kept verdicts that was handed to this process; None where there is none."""
-    found: bytes | None = _content()["key"] if FILE in os.environ else None
-    return found
+    result: bytes | None = _content()["key"] if FILE in os.environ else None
+    return result
 
 
 @functools.cache

@@ -21,42 +21,45 @@ _FINISHES = {True: "finishes", False: "fails", None: "not sure"}
 _MOST = 6
 
 
-def headline(found: PlanDifference) -> str:
+def headline(difference: PlanDifference) -> str:
     """One sentence on two plans."""
-    if found.same:
-        return f"{found.name}: nothing changed."
-    told = [
-        *_counted(found, "lost"),
-        *_counted(found, "won"),
+    if difference.same:
+        return f"{difference.name}: nothing changed."
+    parts = [
+        *_counted(difference, "lost"),
+        *_counted(difference, "won"),
     ]
-    said = "; ".join(told) if told else "nothing lost and nothing won"
-    doubt = "" if found.comparable else "not comparable; "
-    return f"{found.name}: {doubt}{said}."
+    text = "; ".join(parts) if parts else "nothing lost and nothing won"
+    doubt = "" if difference.comparable else "not comparable; "
+    return f"{difference.name}: {doubt}{text}."
 
 
-def mark_of(found: PlanDifference) -> str:
+def mark_of(difference: PlanDifference) -> str:
     """A few words for what became of a part."""
-    words = [word for word in ("lost", "won") if getattr(found, word)] or ["nothing lost"]
-    return " and ".join(words) + ("" if found.comparable else ", not comparable")
+    words = [word for word in ("lost", "won") if getattr(difference, word)] or ["nothing lost"]
+    return " and ".join(words) + ("" if difference.comparable else ", not comparable")
 
 
-def choice(found: PlanDifference) -> str:
+def choice(difference: PlanDifference) -> str:
     """Which cutter is to be taken, where another one was."""
-    old, new = found.selected
+    old, new = difference.selected
     return "" if old == new else f"The cutter to take was {old or 'none'} and is {new or 'none'}."
 
 
-def known(found: PlanDifference) -> str:
+def known(difference: PlanDifference) -> str:
     """How faces were known again, where numbers did not say."""
-    if found.same:
+    if difference.same:
         return ""
-    how = {name: number for name, number in found.matched.items() if name != "same file"}
-    sides = (("old", [f for f in found.faces if f.new is None]), ("new", [f for f in found.faces if f.old is None]))
+    how = {name: number for name, number in difference.matched.items() if name != "same file"}
+    sides = (
+        ("old", [f for f in difference.faces if f.new is None]),
+        ("new", [f for f in difference.faces if f.old is None]),
+    )
     alone = [f"{count(len(faces), 'face')} of the {word} plan alone" for word, faces in sides if faces]
     if not how and not alone:
         return ""
-    said = ", ".join(f"{number} by {name}" for name, number in how.items())
-    return f"Faces known again: {'; '.join([said or 'all by number', *alone])}."
+    text = ", ".join(f"{number} by {name}" for name, number in how.items())
+    return f"Faces known again: {'; '.join([text or 'all by number', *alone])}."
 
 
 def change(each: Change) -> str:
@@ -64,17 +67,17 @@ def change(each: Change) -> str:
     return f"{each.what}: {each.old} -> {each.new}"
 
 
-def face_rows(found: PlanDifference) -> Iterator[tuple[str, ...]]:
+def face_rows(difference: PlanDifference) -> Iterator[tuple[str, ...]]:
     """A row of FACES for each face whose answer differs."""
-    for f in found.faces:
+    for f in difference.faces:
         name = f" {f.name}" if f.name else ""
         size = "not known" if f.area_mm2 is None else area(f.area_mm2)
         yield mark(f), f"{called(f.old, f.new)}{name}", f.kind, size, _reach(f.was, "-"), _reach(f.now, "-")
 
 
-def cutter_rows(found: PlanDifference) -> Iterator[tuple[str, ...]]:
+def cutter_rows(difference: PlanDifference) -> Iterator[tuple[str, ...]]:
     """A row of CUTTERS for each cutter whose answer or form differs."""
-    for c in found.cutters:
+    for c in difference.cutters:
         changed = ", ".join(change(each) for each in c.changes)
         yield mark(c), c.name, _state(c.was), _state(c.now), _faces(c.faces_lost), _faces(c.faces_won), changed
 
@@ -97,24 +100,24 @@ def called(old: str | None, new: str | None) -> str:
     return (new or old or "") if old is None or new is None or old == new else f"{old} -> {new}"
 
 
-def apart(found: Comparison) -> Iterator[str]:
+def apart(comparison: Comparison) -> Iterator[str]:
     """Lines on plans that were not compared."""
-    yield from (f"{name}: only in {found.old}; it counts as lost." for name in found.only_old)
-    yield from (f"{name}: only in {found.new}; it counts as won." for name in found.only_new)
-    yield from (f"{line}." for line in found.unread)
+    yield from (f"{name}: only in {comparison.old}; it counts as lost." for name in comparison.only_old)
+    yield from (f"{name}: only in {comparison.new}; it counts as won." for name in comparison.only_new)
+    yield from (f"{line}." for line in comparison.unread)
 
 
-def verdict(found: Comparison) -> str:
+def verdict(comparison: Comparison) -> str:
     """One sentence on the whole."""
-    if not found.comparable:
-        return "Not comparable: what is said above may have other causes than the part."
-    if found.lost:
+    if not comparison.comparable:
+        return "Not comparable: the differences above may have other causes than the part."
+    if comparison.lost:
         return "Something was lost."
-    return "Nothing was lost." if found.won else "Nothing was lost or won."
+    return "Nothing was lost." if comparison.won else "Nothing was lost or won."
 
 
-def _counted(found: PlanDifference, word: str) -> Iterator[str]:
-    for what, entries in (("face", found.faces), ("cutter", found.cutters)):
+def _counted(difference: PlanDifference, word: str) -> Iterator[str]:
+    for what, entries in (("face", difference.faces), ("cutter", difference.cutters)):
         number = sum(getattr(each, word) for each in entries)
         if number:
             yield f"{count(number, what)} {word}"

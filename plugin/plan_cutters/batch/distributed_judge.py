@@ -32,7 +32,7 @@ _AWAY = "the scheduler went away: start it, or leave --cluster out"
 #: Before the parts that wait: whoever judges in rows is in the midst of a part.
 _FIRST = 1
 #: Grounds that a worker keeps unpacked, the last ones, by their tokens.
-_KEPT = 2
+_CACHED = 2
 _grounds: dict[str, Ground] = {}
 _unpacking = threading.Lock()
 
@@ -40,7 +40,7 @@ _unpacking = threading.Lock()
 Block = tuple[int, int]
 
 
-class Rows:
+class DistributedJudge:
     """Judge as `stages.judge.judge` does, by the workers of a Dask cluster; the verdicts are the same, bit for bit.
 
     A block begins and ends with a piece of rows that are searched one after the other (`threads.CHUNK`), so that each sample has
@@ -84,14 +84,14 @@ class Rows:
             return judge(ready, cutter, rows, known, progress=progress, work=work)
         self._take(ready)
         blocks = list(self._blocks(n))
-        found: dict[Block, tuple[Verdicts, int]] = {}
+        results: dict[Block, tuple[Verdicts, int]] = {}
         for _ in range(_ROUNDS):
-            left = [each for each in blocks if each not in found]
-            for block, judged in self._asked(left, cutter, known):
-                found[block] = judged
+            missing = [each for each in blocks if each not in results]
+            for block, judged in self._asked(missing, cutter, known):
+                results[block] = judged
                 if progress is not None:
-                    progress(len(found), len(blocks))
-            if len(found) == len(blocks):
+                    progress(len(results), len(blocks))
+            if len(results) == len(blocks):
                 break
             # What the workers held of the ground is lost with them.
             self._there = None
@@ -102,8 +102,8 @@ class Rows:
                 "the cluster loses its workers again and again: look into their logs; their memory may be too small"
             )
         if work is not None:
-            work.add(sum(looked for _, looked in found.values()))
-        return _joined(found, n)
+            work.add(sum(looked for _, looked in results.values()))
+        return _joined(results, n)
 
     def close(self) -> None:
         """Let the workers drop what they keep."""
@@ -143,15 +143,15 @@ class Rows:
             with config.set({"distributed.admin.large-graph-warning-threshold": "1TB"}):
                 self._there = self._client.submit(bytes, self._packed, key=f"ground-{secrets.token_hex(8)}", pure=False)
         token = secrets.token_hex(4)
-        asked = {}
+        requests = {}
         try:
             for first, last in blocks:
                 future = self._client.submit(
                     judged_block, self._token, self._there, first, last, cutter, _part(known, first, last), made_by(),
                     key=f"judge {cutter.id}-{token}-{first}", pure=False, priority=_FIRST,
                 )  # fmt: skip
-                asked[future] = first, last
-            for future in as_completed(list(asked), loop=self._client.loop):
+                requests[future] = first, last
+            for future in as_completed(list(requests), loop=self._client.loop):
                 if future.cancelled() or future.status == "lost":
                     continue
                 try:
@@ -161,10 +161,10 @@ class Rows:
                                     "their logs; their memory may be too small") from None  # fmt: skip
                 if isinstance(judged, str):
                     raise PlanError(judged)
-                yield asked.pop(future), judged
+                yield requests.pop(future), judged
         finally:
-            if asked:
-                self._client.cancel(list(asked))
+            if requests:
+                self._client.cancel(list(requests))
 
     def _require_scheduler(self) -> None:
         if self._client.status != "running":
@@ -200,10 +200,10 @@ def judged_block(
                 "machines")  # fmt: skip
     with _unpacking:
         if token not in _grounds:
-            while len(_grounds) >= _KEPT:
+            while len(_grounds) >= _CACHED:
                 del _grounds[next(iter(_grounds))]
             ground: Ground = pickle.loads(packed)
-            ground.conditions.around.build(1)
+            ground.conditions.surroundings.build(1)
             _grounds[token] = ground
         block = _grounds[token].block(first, last)
     work = Work()
@@ -217,9 +217,9 @@ def _part(known: Verdicts | None, first: int, last: int) -> Verdicts | None:
     return known.of(np.arange(first, last))
 
 
-def _joined(found: Mapping[Block, tuple[Verdicts, int]], n: int) -> Verdicts:
+def _joined(results: Mapping[Block, tuple[Verdicts, int]], n: int) -> Verdicts:
     """The verdicts of all blocks, in the order of the samples."""
-    parts = [found[block][0] for block in sorted(found)]
+    parts = [results[block][0] for block in sorted(results)]
     whole = Verdicts(*(np.concatenate([getattr(part, each.name) for part in parts]) for each in fields(Verdicts)))
     if len(whole.verdict) != n:
         raise ValueError(f"workers judged {len(whole.verdict)} of {n} samples")

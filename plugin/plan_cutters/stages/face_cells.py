@@ -16,13 +16,13 @@ from plan_cutters.scene.conditions import Conditions, search_postures, tool_of
 from plan_cutters.scene.threads import CHUNK, in_chunks
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.cells import CellContacts, Field, quartered, tensors
-from plan_cutters.stages.room import roomiest
+from plan_cutters.stages.margin import roomiest
 
 #: Times that a cell is cut into four, at most.
 LEVELS = 6
 #: Room to the local gouging bound, in sines of tilt, that is asked of other postures, in turn: the smaller a cell, the
 #: less is of use.
-_ROOM = ((0.5,), (0.5, 0.2), (0.5, 0.2), (0.5, 0.2, 0.05))
+_MARGINS = ((0.5,), (0.5, 0.2), (0.5, 0.2), (0.5, 0.2, 0.05))
 #: A lean with a smaller sine has no direction.
 _UPRIGHT = 1e-9
 #: Cells are cut together as long as they are worth no less than the best one by this factor.
@@ -37,7 +37,7 @@ _CONTACT, _ROUND = 110, 11_000
 _JUDGED = 4000
 
 #: As `kernels.area.cover` writes them: how often a cell must be halved, `NEVER`, 0: it is served.
-Outlook = NDArray[np.uint8]
+CellStatus = NDArray[np.uint8]
 #: Of a contact at which no posture is known.
 _UNTOLD = 2
 
@@ -59,7 +59,7 @@ class Fixed:
 
 
 @dataclass(slots=True)
-class Site:
+class FaceCells:
     """A face and its cells.
 
     Attributes
@@ -94,7 +94,7 @@ class Site:
     fixed: Fixed | None = None
     found: list[CellContacts] = dataclasses_field(default_factory=list)
     levels: list[int] = dataclasses_field(default_factory=list)
-    pools: list[tuple[CellContacts, Outlook]] = dataclasses_field(default_factory=list)
+    pools: list[tuple[CellContacts, CellStatus]] = dataclasses_field(default_factory=list)
     unseen: int = 0
     short: int = 0
     dropped: int = 0
@@ -139,25 +139,25 @@ class Site:
         """
         began = self.work.looked
         self.work.add(_ROUND + _CONTACT * len(contacts))
-        outlook = _served(contacts, self, _ROOM[min(level, len(_ROOM) - 1)], upto)
+        status = _served(contacts, self, _MARGINS[min(level, len(_MARGINS) - 1)], upto)
         self.seen, self.spent = self.seen + len(contacts), self.spent + self.work.looked - began
-        good = outlook == 0
+        good = status == 0
         self.found.append(contacts.of(good))
         self.levels.append(level)
         if level == len(self.pools):
-            self.pools.append((contacts.of(np.zeros(0, np.intp)), outlook[:0]))
+            self.pools.append((contacts.of(np.zeros(0, np.intp)), status[:0]))
         before, known = self.pools[level]
-        self.pools[level] = CellContacts.joined(before, contacts.of(~good)), np.concatenate([known, outlook[~good]])
+        self.pools[level] = CellContacts.joined(before, contacts.of(~good)), np.concatenate([known, status[~good]])
         return float(contacts.area[good].sum())
 
     def worth(self, level: int) -> Floats:
         """Area (n,) to be gained for each contact that is spent on an open cell, mm2, if all goes well."""
         if level >= min(len(self.pools), LEVELS):
             return np.zeros(0)
-        contacts, outlook = self.pools[level]
+        contacts, status = self.pools[level]
         # Cutting once takes 4 contacts, twice 4 + 16, and so on.
-        spent = (4.0 ** (np.minimum(outlook, LEVELS).astype(float) + 1.0) - 4.0) / 3.0
-        return np.where(outlook == NEVER, 0.0, contacts.area / np.maximum(spent, 4.0))
+        spent = (4.0 ** (np.minimum(status, LEVELS).astype(float) + 1.0) - 4.0) / 3.0
+        return np.where(status == NEVER, 0.0, contacts.area / np.maximum(spent, 4.0))
 
     def worthy(self, least: float) -> int:
         """Open cells at which more than a least area may be gained for each contact."""
@@ -165,8 +165,8 @@ class Site:
 
     def _taken(self, level: int, rows: NDArray[np.intp]) -> CellContacts:
         """Take open cells out of a pool."""
-        contacts, outlook = self.pools[level]
-        self.pools[level] = contacts.of(np.delete(np.arange(len(contacts)), rows)), np.delete(outlook, rows)
+        contacts, status = self.pools[level]
+        self.pools[level] = contacts.of(np.delete(np.arange(len(contacts)), rows)), np.delete(status, rows)
         return contacts.of(rows)
 
     def refine(self, budget: int, least: float, upto: float = np.inf) -> int:
@@ -177,13 +177,13 @@ class Site:
         """
         looked, poor, rounds = 0, False, list[tuple[int, float]]()
         while budget >= 4 and not poor:
-            left = self._enough(upto)
-            if left < 4.0:
+            unlooked = self._enough(upto)
+            if unlooked < 4.0:
                 break
             worth = [self.worth(level) for level in range(LEVELS)]
             every = np.concatenate(worth)
             alike = every >= max(_ALIKE * every.max(initial=0.0), np.nextafter(least, np.inf))
-            chosen = best(np.where(alike, every, 0.0), min(int(min(budget, left, _BATCH)) // 4, int(alike.sum())))
+            chosen = best(np.where(alike, every, 0.0), min(int(min(budget, unlooked, _BATCH)) // 4, int(alike.sum())))
             if not chosen.any():
                 break
             gained, count = 0.0, 0
@@ -217,83 +217,100 @@ def _poor(rounds: Sequence[tuple[int, float]], least: float) -> bool:
     return False
 
 
-def _served(contacts: CellContacts, site: Site, rooms: Sequence[float], upto: float) -> Outlook:
+def _served(contacts: CellContacts, face_cells: FaceCells, rooms: Sequence[float], upto: float) -> CellStatus:
     """Outlook of contacts whose posture, or another one, serves their cell (0) or may serve parts of it.
 
     Of the postures found on the way, the one with the best outlook is kept.
     """
-    cutter, conditions = site.cutter, site.conditions
-    outlook = np.full(len(contacts), _UNTOLD, np.uint8)
+    cutter, conditions = face_cells.cutter, face_cells.conditions
+    status = np.full(len(contacts), _UNTOLD, np.uint8)
     tensor = tensors(contacts.normal, contacts.direction_max, contacts.curvature)
     known = np.isfinite(contacts.axis).all(axis=1) & _whole(contacts)
     rows = np.flatnonzero(known)
-    outlook[rows] = _cover(contacts, tensor, contacts.axis, contacts.flat, site, rows)
-    if site.fixed is not None:
-        outlook[~known] = NEVER
-        _among(site.fixed, contacts, tensor, outlook, site, upto)
-        return outlook
+    status[rows] = _cover(contacts, tensor, contacts.axis, contacts.flat, face_cells, rows)
+    if face_cells.fixed is not None:
+        status[~known] = NEVER
+        _among(face_cells.fixed, contacts, tensor, status, face_cells, upto)
+        return status
     outer_tool, bends = conditions.outer_tool(cutter), 1.0 / cutter.radius
     leant = np.zeros(len(contacts), bool)
     if not (outer_tool.mode[:, OFFSET_OF] > 0.0).any():
         # A ball gouges at every tilt or at none.
         bends = 0.0
     elif len(outer_tool.mode) == 1:  # room is that of one end: a lens or barrel would be laid on another one
-        leant = _lean_more(contacts, tensor, outlook, np.flatnonzero((outlook > 0) & known), site, upto)
-    for room in rooms:
-        if site.work.looked >= upto:
+        leant = _tilt_more(contacts, tensor, status, np.flatnonzero((status > 0) & known), face_cells, upto)
+    for margin in rooms:
+        if face_cells.work.looked >= upto:
             break
         # Where there is no posture there is none with more room.
-        open_rows = np.flatnonzero((outlook > 0) & _whole(contacts) & ~contacts.not_reached & ~leant)
+        open_rows = np.flatnonzero((status > 0) & _whole(contacts) & ~contacts.not_reached & ~leant)
         # A posture with room to the local gouging bound: the search is told that the surface is more concave.
-        curved = contacts.curvature + room * bends
+        curved = contacts.curvature + margin * bends
         at = Contacts(contacts.point, contacts.normal, contacts.direction_max, curved)
-        found = blank(len(contacts))
-        search_postures(at, open_rows, outer_tool, outer_tool, conditions, found, strict=bends > 0.0, work=site.work)
-        rows = open_rows[found.reached[open_rows]]
+        verdicts = blank(len(contacts))
+        search_postures(
+            at, open_rows, outer_tool, outer_tool, conditions, verdicts, strict=bends > 0.0, work=face_cells.work
+        )
+        rows = open_rows[verdicts.reached[open_rows]]
         if len(rows):
-            new = _cover(contacts, tensor, found.axis, np.zeros(len(contacts), bool), site, rows, found.tilt_direction)
-            better = (new <= outlook[rows]) | ~known[rows]
+            new = _cover(
+                contacts,
+                tensor,
+                verdicts.axis,
+                np.zeros(len(contacts), bool),
+                face_cells,
+                rows,
+                verdicts.tilt_direction,
+            )
+            better = (new <= status[rows]) | ~known[rows]
             rows, new = rows[better], new[better]
-            contacts.axis[rows], contacts.flat[rows], outlook[rows], known[rows] = found.axis[rows], False, new, True
-            contacts.side[rows] = found.tilt_direction[rows]
-    return outlook
+            contacts.axis[rows], contacts.flat[rows], status[rows], known[rows] = verdicts.axis[rows], False, new, True
+            contacts.side[rows] = verdicts.tilt_direction[rows]
+    return status
 
 
-def _lean_more(
-    contacts: CellContacts, tensor: Floats, outlook: Outlook, rows: NDArray[np.intp], site: Site, upto: float
+def _tilt_more(
+    contacts: CellContacts,
+    tensor: Floats,
+    status: CellStatus,
+    rows: NDArray[np.intp],
+    face_cells: FaceCells,
+    upto: float,
 ) -> NDArray[np.bool_]:
     """Try one posture more on cells that their own does not serve, with most room for the contact to move.
 
     Returns those that keep it: their parts may be served by it, and there is none with more room.
     """
     leant = np.zeros(len(contacts), bool)
-    first, last = site.conditions.postures.rotation
+    first, last = face_cells.conditions.postures.rotation
     # Where rotations are limited the search knows which there are.
-    if not len(rows) or site.work.looked >= upto or last - first <= 2.0 * np.pi - 1e-9:
+    if not len(rows) or face_cells.work.looked >= upto or last - first <= 2.0 * np.pi - 1e-9:
         return leant
     axes, side = contacts.axis.copy(), contacts.side.copy()
     some = contacts.of(rows)
     axes[rows], side[rows] = roomiest(
-        some.normal, some.direction_max, tensor[rows], some.axis, site.cutter, site.conditions
+        some.normal, some.direction_max, tensor[rows], some.axis, face_cells.cutter, face_cells.conditions
     )
     rows = rows[(axes[rows] != contacts.axis[rows]).any(axis=1)]
-    rows = rows[_free(contacts, axes, side, site, rows)]
-    new = _cover(contacts, tensor, axes, np.zeros(len(axes), bool), site, rows, side)
-    better = new <= outlook[rows]
+    rows = rows[_free(contacts, axes, side, face_cells, rows)]
+    new = _cover(contacts, tensor, axes, np.zeros(len(axes), bool), face_cells, rows, side)
+    better = new <= status[rows]
     rows, new = rows[better], new[better]
-    contacts.axis[rows], contacts.side[rows], contacts.flat[rows], outlook[rows] = axes[rows], side[rows], False, new
+    contacts.axis[rows], contacts.side[rows], contacts.flat[rows], status[rows] = axes[rows], side[rows], False, new
     leant[rows] = new != NEVER
     return leant
 
 
-def _free(contacts: CellContacts, axes: Floats, side: Floats, site: Site, rows: NDArray[np.int64]) -> NDArray[np.bool_]:
+def _free(
+    contacts: CellContacts, axes: Floats, side: Floats, face_cells: FaceCells, rows: NDArray[np.int64]
+) -> NDArray[np.bool_]:
     """At which rows of contacts the cutter meets nothing with axes that lean to a side."""
     from plan_cutters.kernels.search.search import probe
 
-    conditions, obstacles = site.conditions, site.conditions.obstacles
+    conditions, obstacles = face_cells.conditions, face_cells.conditions.obstacles
     met, which = np.zeros(len(contacts), np.int32), np.zeros(len(contacts), np.int32)
-    tool = tool_of(conditions.outer_tool(site.cutter))
-    site.work.add(_PROBE * len(rows))
+    tool = tool_of(conditions.outer_tool(face_cells.cutter))
+    face_cells.work.add(_PROBE * len(rows))
 
     def probed(piece: NDArray[np.int64]) -> None:
         probe(piece, contacts.point, contacts.normal, axes, side, tool, obstacles.tree, met, which)
@@ -302,48 +319,55 @@ def _free(contacts: CellContacts, axes: Floats, side: Floats, site: Site, rows: 
     return np.asarray(met[rows] == -1)
 
 
-def _among(fixed: Fixed, contacts: CellContacts, tensor: Floats, outlook: Outlook, site: Site, upto: float) -> None:
+def _among(
+    fixed: Fixed, contacts: CellContacts, tensor: Floats, status: CellStatus, face_cells: FaceCells, upto: float
+) -> None:
     """Try fixed axes in turn on cells that their own does not serve; the one with the best outlook is kept."""
     able = (contacts.sample >= 0)[:, None] & fixed.serves[contacts.sample]
     own = contacts.axis.copy()
     for k, axis in enumerate(fixed.axis):
-        if site.work.looked >= upto:
+        if face_cells.work.looked >= upto:
             return
         rows = np.flatnonzero(
-            (outlook > 0) & able[:, k] & np.isfinite(own[:, 0]) & (own != axis).any(axis=1) & _whole(contacts)
+            (status > 0) & able[:, k] & np.isfinite(own[:, 0]) & (own != axis).any(axis=1) & _whole(contacts)
         )
         if not len(rows):
             continue
         tried, side = np.broadcast_to(axis, own.shape), contacts.direction_max
-        new = _cover(contacts, tensor, np.ascontiguousarray(tried), np.zeros(len(own), bool), site, rows, side)
-        better = new < outlook[rows]
+        new = _cover(contacts, tensor, np.ascontiguousarray(tried), np.zeros(len(own), bool), face_cells, rows, side)
+        better = new < status[rows]
         rows = rows[better]
-        contacts.axis[rows], contacts.side[rows], outlook[rows] = axis, side[rows], new[better]
+        contacts.axis[rows], contacts.side[rows], status[rows] = axis, side[rows], new[better]
 
 
 def _cover(
-    contacts: CellContacts, tensor: Floats, axes: Floats, flats: NDArray[np.bool_], site: Site, rows: NDArray[np.int64],
+    contacts: CellContacts,
+    tensor: Floats,
+    axes: Floats,
+    flats: NDArray[np.bool_],
+    face_cells: FaceCells,
+    rows: NDArray[np.int64],
     sides: Floats | None = None,
-) -> Outlook:  # fmt: skip
+) -> CellStatus:
     """Outlook (m,) of rows of contacts with tensors and axes; on the sides that they have, or others."""
     from plan_cutters.kernels.area.cover import Patches, Sweeping, cover
     from plan_cutters.kernels.area.zone import Nodes
 
-    field, cutter, conditions = site.field, site.cutter, site.conditions
+    field, cutter, conditions = face_cells.field, face_cells.cutter, face_cells.conditions
     sides = contacts.side if sides is None else sides
     obstacles, outer_tool = conditions.obstacles, conditions.outer_tool(cutter)
     patches = Patches(contacts.point, contacts.normal, tensor, axes, flats, sides, contacts.patch, contacts.home)
-    nodes, outlook = Nodes(field.index, field.closed, site.about), np.zeros(len(contacts), np.uint8)
+    nodes, status = Nodes(field.index, field.closed, face_cells.about), np.zeros(len(contacts), np.uint8)
     chord = obstacles.triangles.chord_error
     sweeping = Sweeping(tool_of(outer_tool), outer_tool.dummy, *outer_tool.noses(cutter.taper, cutter.shape), outer_tool.flutes,
                         conditions.tolerance - chord, chord)  # fmt: skip
 
     def covered(piece: NDArray[np.int64]) -> int:
-        return int(cover(piece, patches, nodes, field.number, sweeping, obstacles.tree, obstacles.faces, outlook))
+        return int(cover(piece, patches, nodes, field.number, sweeping, obstacles.tree, obstacles.faces, status))
 
-    site.work.add(in_chunks(covered, rows, conditions.jobs))
+    face_cells.work.add(in_chunks(covered, rows, conditions.jobs))
     # A cell that is served touches no skin with any of its cutters: within a body are all of them or none.
-    mine = rows[outlook[rows] == 0]
+    mine = rows[status[rows] == 0]
     axis, normal = axes[mine], contacts.normal[mine]
     upright = (axis * normal).sum(axis=1)
     across = axis - upright[:, None] * normal
@@ -351,8 +375,8 @@ def _cover(
     flat = flats[mine] | (sine < _UPRIGHT)
     tilt_direction = np.where(flat[:, None], sides[mine], across / np.where(flat, 1.0, sine)[:, None])
     tilt = np.where(flat, 0.0, np.arctan2(sine, upright))
-    outlook[mine[conditions.obstacles.holds(outer_tool, contacts.point[mine], normal, tilt_direction, tilt)]] = NEVER
-    return outlook[rows]
+    status[mine[conditions.obstacles.holds(outer_tool, contacts.point[mine], normal, tilt_direction, tilt)]] = NEVER
+    return status[rows]
 
 
 def _whole(contacts: CellContacts) -> NDArray[np.bool_]:

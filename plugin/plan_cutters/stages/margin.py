@@ -18,7 +18,7 @@ _TILTS, _ROTATIONS = np.radians([20.0, 30.0, 40.0, 50.0, 60.0, 70.0]), 12
 _WORTH = 3.0
 
 
-def room(axis: Floats, normal: Floats, tensor: Floats, cutter: Cutter, conditions: Conditions) -> NDArray[np.float64]:
+def margin(axis: Floats, normal: Floats, tensor: Floats, cutter: Cutter, conditions: Conditions) -> NDArray[np.float64]:
     """Room (n,) to the local gouging bound across the lean, in sines of the tilt of a flat end; -inf where it does not touch.
 
     Parameters
@@ -36,8 +36,8 @@ def room(axis: Floats, normal: Floats, tensor: Floats, cutter: Cutter, condition
     sine = np.linalg.norm(across, axis=1)
     t = across / np.maximum(sine, 1e-12)[:, None]
     bend = np.einsum("ni,nij,nj->n", t, tensor.reshape(-1, 3, 3), t)
-    left = sine / (mode[OFFSET_OF] + mode[RISE] * sine) - bend
-    return np.asarray(np.where(cosine > -1e-9, cutter.radius * left, -np.inf))
+    remainder = sine / (mode[OFFSET_OF] + mode[RISE] * sine) - bend
+    return np.asarray(np.where(cosine > -1e-9, cutter.radius * remainder, -np.inf))
 
 
 def roomiest(
@@ -64,10 +64,10 @@ def roomiest(
     best, side, most = axis.copy(), direction.copy(), np.full(len(axis), -np.inf)
     for tilt in (each for each in _TILTS if low <= each <= high):
         for turn in np.arange(_ROTATIONS) * (2.0 * np.pi / _ROTATIONS):
-            lean = np.cos(turn) * direction + np.sin(turn) * other
-            tried = np.cos(tilt) * normal + np.sin(tilt) * lean
-            worth = (tried * axis).sum(axis=1) + _WORTH * room(tried, normal, tensor, cutter, conditions)
+            result = np.cos(turn) * direction + np.sin(turn) * other
+            tried = np.cos(tilt) * normal + np.sin(tilt) * result
+            worth = (tried * axis).sum(axis=1) + _WORTH * margin(tried, normal, tensor, cutter, conditions)
             better = np.flatnonzero(worth > most)
             better = better[conditions.machine.allows(tried[better], frame)]
-            best[better], side[better], most[better] = tried[better], lean[better], worth[better]
+            best[better], side[better], most[better] = tried[better], result[better], worth[better]
     return best, side

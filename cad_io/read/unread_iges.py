@@ -24,7 +24,7 @@ def fell_apart(model: Model) -> bool:
     )
 
 
-def lost_of_iges(
+def unread_of_iges(
     model: Model, faults: Sequence[Fault], shapes: Sequence[TopoDS_Face], *, split: bool
 ) -> list[LostFace]:
     """Faces without a shape, and those that had trouble and cannot show that they are whole.
@@ -49,7 +49,7 @@ def lost_of_iges(
             if n and _is_face(model.entities[n]):
                 felt.setdefault(n, []).append(fault)
     gone = [n for n, entity in model.entities.items() if _is_face(entity) and n not in results]
-    lost = [_lost(model, n, "the CAD kernel could not make it", felt.get(n, [])) for n in gone]
+    unread = [_unread(model, n, "the CAD kernel could not make it", felt.get(n, [])) for n in gone]
     numbers: dict[int, int] = {}
     if felt and (made := model.makers(dict(enumerate(shapes, 1)))) is not None:
         numbers = {entity: n for n, entity in made.items() if _is_face(model.entities[entity])}
@@ -58,12 +58,12 @@ def lost_of_iges(
         missed = [n for n, entity in model.entities.items() if _is_face(entity) and n in results and n not in numbers]
         if len(unknown) == len(missed):
             numbers.update(zip(missed, unknown, strict=True))
-    for entity, told in felt.items():
-        if entity in numbers and (why := _altered(model, entity, told, shapes[numbers[entity] - 1])):
-            lost.append(_lost(model, entity, why, told, numbers[entity]))
-        elif told and entity not in numbers and entity in results:
-            lost.append(_lost(model, entity, "it may not be as written", told))
-    return lost
+    for entity, fault_list in felt.items():
+        if entity in numbers and (why := _altered(model, entity, fault_list, shapes[numbers[entity] - 1])):
+            unread.append(_unread(model, entity, why, fault_list, numbers[entity]))
+        elif fault_list and entity not in numbers and entity in results:
+            unread.append(_unread(model, entity, "it may not be as written", fault_list))
+    return unread
 
 
 def _altered(model: Model, number: int, felt: Sequence[Fault], shape: TopoDS_Face) -> str:
@@ -80,18 +80,18 @@ def _altered(model: Model, number: int, felt: Sequence[Fault], shape: TopoDS_Fac
 
 def _edges(model: Model, number: int) -> int:
     """Edges that the loops of a face name; 0 for faces of other kinds."""
-    face, found = model.entities[number], set()
+    face, edges = model.entities[number], set()
     for i in range(face.NbLoops() if face.TypeNumber() == _FACE else 0):
         loop = face.Loop(i + 1)
         if loop is not None and loop.TypeNumber() == _LOOP:
-            found |= {(model.number(loop.Edge(k)), loop.ListIndex(k)) for k in range(1, loop.NbEdges() + 1)
+            edges |= {(model.number(loop.Edge(k)), loop.ListIndex(k)) for k in range(1, loop.NbEdges() + 1)
                       if loop.EdgeType(k) == 0}  # fmt: skip
-    return len(found)
+    return len(edges)
 
 
-def _lost(model: Model, number: int, why: str, felt: Sequence[Fault], face: int | None = None) -> LostFace:
-    said = f"{why} ({_ident(felt[0].number)}: {felt[0].short})" if felt else why
-    return LostFace(_ident(number), name_of(model.entities[number]), said, face)
+def _unread(model: Model, number: int, why: str, felt: Sequence[Fault], face: int | None = None) -> LostFace:
+    text = f"{why} ({_ident(felt[0].number)}: {felt[0].short})" if felt else why
+    return LostFace(_ident(number), name_of(model.entities[number]), text, face)
 
 
 def _ident(number: int) -> str:
