@@ -72,7 +72,7 @@ def holder(
     stages, exact = enclosing_segments(outline.line, outline.exact, outline.foot, tolerance=0.5 * wanted, most=_MOST)
     notes = ["what it sweeps when it turns"] if outline.loose else []
     if exact > wanted:
-        notes.append(f"in {len(stages)} stages, about {mm(exact + outline.off)} larger than drawn")
+        notes.append(f"in {len(stages)} stages, about {mm(exact + outline.off)} larger than modelled")
     words = " ".join(filter(None, (name, f"({', '.join(notes)})" if notes else "")))
     return Holder(stages, words)
 

@@ -109,10 +109,10 @@ def side_by_setup(faces: Sequence[str]) -> Note:
     )
 
 
-def tolerance_raised(asked_mm: float, kept_mm: float) -> Note:
+def tolerance_raised(requested_mm: float, kept_mm: float) -> Note:
     return Note(
         "tolerance_raised",
-        f"The tolerance was raised from {mm(asked_mm)} to {mm(kept_mm)}: the obstacle triangles could not be made to "
+        f"The tolerance was raised from {mm(requested_mm)} to {mm(kept_mm)}: the obstacle triangles could not be made to "
         "follow the surface more closely.",
     )
 

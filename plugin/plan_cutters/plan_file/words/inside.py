@@ -15,9 +15,9 @@ def inside(plan: Plan, most: int = 5) -> list[str]:
     share = percent(entry.share, some=True, whole=entry.samples == plan.samples.count)
     lines = [f"{share} of the target area ({entry.samples:,} of {plan.samples.count:,} samples) lies inside other bodies of the "
              "part: it is no surface of the finished part, and what follows is about the rest."]  # fmt: skip
-    buried_bodies = sorted((each for each in entry.bodies if each.how != "overlaps"), key=lambda each: each.largest)
-    lines += [_body_text(each) for each in buried_bodies[:most]]
-    lines += _more(buried_bodies[most:], "body covers", "bodies cover")
+    covering_bodies = sorted((each for each in entry.bodies if each.how != "overlaps"), key=lambda each: each.largest)
+    lines += [_body_text(each) for each in covering_bodies[:most]]
+    lines += _more(covering_bodies[most:], "body covers", "bodies cover")
     over = [each for each in entry.bodies if each.how == "overlaps"]
     if over:
         each = "; ".join(
