@@ -242,7 +242,12 @@ def stood(rng, tilt, radius, length, s):
     )
 
 
+#: Its plane holds the axis, and it is 1e4 times as long as wide: within the heights of the tool it is 100 mm away.
+NEEDLE = (0.5, 3.0, 0.01, np.array([[0.0, 0, 0], [1e4 * math.cos(2), 1e4 * math.sin(2), 1], [0, 0, -1]]))
+
+
 @given(triangles_by_the_body(), st.sampled_from([0.0, RIGHT, 0.4]), st.integers(0, 5))
+@example(NEEDLE, 0.0, 0)
 @settings(max_examples=400, deadline=None)
 def test_a_triangle_hits_where_its_deepest_point_is_inside(case, tilt, seed):
     radius, length, s, local = case

@@ -9,7 +9,7 @@ import numpy as np
 from plan_cutters.kernels.codes import BOTTOM, CYLINDER, HIGH, KIND, LOW, RADIUS, TOP, WIDE
 from plan_cutters.kernels.jit import kernel
 from plan_cutters.kernels.tool.hit import HALF, into_frame
-from plan_cutters.kernels.tool.pieces import clipped, polygon_hit
+from plan_cutters.kernels.tool.pieces import clipped, polygon_hit, shadow_area
 
 
 @kernel
@@ -22,10 +22,7 @@ def _to_segment(px, py, half):
 @kernel
 def _shadow_distance(polygon, count, half):
     """Squared distance between the shadow of a convex polygon and the segment (0, -half) (0, half)."""
-    area = 0.0
-    for i in range(count):
-        j = i + 1 if i + 1 < count else 0
-        area += polygon[i, 1] * polygon[j, 2] - polygon[j, 1] * polygon[i, 2]
+    area = shadow_area(polygon, count)
     inside = abs(area) > 0.0
     best = np.inf
     for i in range(count):

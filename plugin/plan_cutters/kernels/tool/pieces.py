@@ -26,6 +26,8 @@ from plan_cutters.kernels.jit import kernel
 
 #: Polygons thinner than this share of their length have no normal.
 _NEEDLE = 1e-10
+#: A shadow whose area is less than this share of the square of its farthest corner's distance has none.
+_FLAT = 1e-13
 #: Halvings of a line within which a point well inside a piece is looked for.
 _HALVINGS = 6
 
@@ -101,12 +103,23 @@ def clipped(corner, count, least, most, low, high, polygon, spare):
 
 
 @kernel
-def nearest(polygon, count):
-    """Point of a convex polygon whose shadow is nearest to the axis: (height, x, y, squared distance)."""
-    area = 0.0
+def shadow_area(polygon, count):
+    """Twice the signed area of a polygon's shadow; 0 where it is rounding, as of a polygon whose plane holds the axis.
+
+    Then the signs of turns say nothing. An axis that goes through such a shadow passes its sides within rounding.
+    """
+    area, longest = 0.0, 0.0
     for i in range(count):
         j = i + 1 if i + 1 < count else 0
         area += polygon[i, 1] * polygon[j, 2] - polygon[j, 1] * polygon[i, 2]
+        longest = max(longest, polygon[i, 1] * polygon[i, 1] + polygon[i, 2] * polygon[i, 2])
+    return area if abs(area) > _FLAT * longest else 0.0
+
+
+@kernel
+def nearest(polygon, count):
+    """Point of a convex polygon whose shadow is nearest to the axis: (height, x, y, squared distance)."""
+    area = shadow_area(polygon, count)
     inside = abs(area) > 0.0
     best, height, px, py = np.inf, polygon[0, 0], polygon[0, 1], polygon[0, 2]
     for i in range(count):
@@ -154,10 +167,7 @@ def _in_cone(polygon, count, piece, k, grow):
     """
     slope = piece[k, SLOPE]
     base = piece[k, RADIUS] - slope * piece[k, LOW] + grow / piece[k, SCALE]
-    area = 0.0
-    for i in range(count):
-        j = i + 1 if i + 1 < count else 0
-        area += polygon[i, 1] * polygon[j, 2] - polygon[j, 1] * polygon[i, 2]
+    area = shadow_area(polygon, count)
     has_area = abs(area) > 0.0
     for i in range(count):
         j = i + 1 if i + 1 < count else 0
