@@ -7,6 +7,7 @@ What has been imported stays to the end: the collector of garbage passes over it
 """
 
 import gc
+import signal
 from pathlib import Path
 
 import pytest
@@ -26,6 +27,16 @@ LAST = ("document", "domain", "library")
 
 def pytest_sessionstart():
     gc.disable()
+
+
+@pytest.fixture(autouse=True)
+def _signals():
+    """A command that runs in this process ignores signals at its end; children of later tests would, too."""
+    numbers = (signal.SIGINT, signal.SIGTERM)
+    before = {number: signal.getsignal(number) for number in numbers}
+    yield
+    for number, handler in before.items():
+        signal.signal(number, handler)
 
 
 @pytest.hookimpl(wrapper=True)
