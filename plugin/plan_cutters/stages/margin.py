@@ -64,10 +64,10 @@ def roomiest(
     best, side, most = axis.copy(), direction.copy(), np.full(len(axis), -np.inf)
     for tilt in (each for each in _TILTS if low <= each <= high):
         for turn in np.arange(_ROTATIONS) * (2.0 * np.pi / _ROTATIONS):
-            result = np.cos(turn) * direction + np.sin(turn) * other
-            tried = np.cos(tilt) * normal + np.sin(tilt) * result
+            tilt_direction = np.cos(turn) * direction + np.sin(turn) * other
+            tried = np.cos(tilt) * normal + np.sin(tilt) * tilt_direction
             worth = (tried * axis).sum(axis=1) + _WORTH * margin(tried, normal, tensor, cutter, conditions)
             better = np.flatnonzero(worth > most)
             better = better[conditions.machine.allows(tried[better], frame)]
-            best[better], side[better], most[better] = tried[better], result[better], worth[better]
+            best[better], side[better], most[better] = tried[better], tilt_direction[better], worth[better]
     return best, side
