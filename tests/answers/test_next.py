@@ -404,7 +404,7 @@ def test_a_set_is_a_sentence():
         "R6L60 in setup 0,0,1 for 60 % of the area and R6L60 in setup 0,0,-1 for the rest reach all of it"
     )
     assert "before the proof" in of([("A", 0.6, up), ("B", 0.4, up)], 1.0, proven=False)
-    assert "missing from the obstacles" in of([("A", 0.6, up), ("B", 0.4, up)], 1.0, doubtful=True)
+    assert "unless a missing obstacle is in the way" in of([("A", 0.6, up), ("B", 0.4, up)], 1.0, doubtful=True)
     assert of([("A", 1.0, up)], 1.0) == ""
     # What could not be judged is not reached.
     assert of([("A", 0.6, up), ("B", 0.3, up)], 0.9, unjudged=3) == (

@@ -107,5 +107,5 @@ def _doubted(change: Change) -> Change:
     """Where faces are missing from what is in the way, nothing is sure to help."""
     if not change.helps:
         return change
-    why = f"{change.why}, unless a face is in the way that is missing from the obstacles"
+    why = f"{change.why}, unless a missing obstacle is in the way"
     return replace(change, helps=None, doubted=True, why=why)

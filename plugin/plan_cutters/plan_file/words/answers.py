@@ -94,7 +94,7 @@ def _radii(plan: Plan) -> Iterator[Line]:
         half = f"{down(times * middle)} or more" if middle else f"less than {times * each.least_mm:.3g} mm"
         yield Line(f"{whole}; half of the area takes {half}. The narrowest place is {narrowest(each)}.")
     if plan.missing and (plan.largest_radius or any(c.least_stick_out for c in plan.cutters)):
-        yield Line("Stick-outs and largest radii hold unless a face is in the way that is missing from the obstacles.")
+        yield Line("Stick-outs and largest radii hold provided that no missing obstacle is in the way.")
 
 
 def change(change: ChangeEntry) -> tuple[str, str]:
@@ -138,7 +138,7 @@ def _next(c: CutterEntry, what_if: MendEntry) -> Iterator[Line]:
     """Steps for a cutter, the best first, with the option that each takes."""
     if not what_if.steps:
         return
-    unsure = " (if nothing is in the way that is missing from the obstacles)" if what_if.unsure else ""
+    unsure = " (provided that no missing obstacle is in the way)" if what_if.unsure else ""
     yield Line(f"What next for {c.id}, which leaves {some(what_if.lost_share)} of the area{unsure}:")
     steps = [step for step in what_if.steps if not is_excluded(step)]
     for k, step in enumerate(steps[:_STEPS], 1):
@@ -152,4 +152,4 @@ def _next(c: CutterEntry, what_if: MendEntry) -> Iterator[Line]:
         yield Line(f"  After step 1 stays: {rest}.")
     for step in what_if.steps:
         if is_excluded(step):
-            yield Line(f"  Else: {step.why}.")
+            yield Line(f"  Or {step.why}.")

@@ -104,10 +104,10 @@ def patch(area: Patch) -> str:
 
 
 def excluded_areas(areas: Sequence[Patch], area: float) -> str:
-    """Say which connected areas are left to other means, and how much they are in all, mm2."""
+    """Say which connected areas to leave to another process, and how much they are in all, mm2."""
     if len(areas) == 1:
-        return f"{patch(areas[0])} left to other means"
-    return f"{size(area)} in {len(areas):,} places left to other means, the largest {patch(areas[0])}"
+        return f"leave {patch(areas[0])} to another process"
+    return f"leave {size(area)} in {len(areas):,} places to another process, the largest {patch(areas[0])}"
 
 
 def reasons(codes: NDArray[np.uint8], of: int | None = None) -> str:

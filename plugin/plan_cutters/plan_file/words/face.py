@@ -104,7 +104,7 @@ def posture_text(
     """Say how many of the postures at a point are free, or what forbids the most of them; shares are 0 to 1."""
     place = f"At the point, on {face}, "
     if free > 0.0:
-        sure = "" if certified else ", if nothing is in the way that is missing from the obstacles,"
+        sure = "" if certified else ", provided that no missing obstacle is in the way,"
         return f"{place}{percent(free)} of the postures{sure} are free."
     if undecided > 0.0:
         return f"{place}no posture is surely free; {percent(undecided)} are undecided."

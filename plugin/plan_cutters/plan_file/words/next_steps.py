@@ -42,7 +42,7 @@ def together(plan: Plan) -> str:
     if not least.proven:
         text += " (a smaller set may do: the search ended before the proof)"
     if least.doubtful:
-        text += ", unless something is in the way that is missing from the obstacles"
+        text += ", unless a missing obstacle is in the way"
     return text
 
 
