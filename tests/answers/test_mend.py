@@ -290,7 +290,7 @@ def test_a_finer_tolerance_decides_what_the_triangles_leave_open():
 def test_a_setup_axis_that_leaves_samples_undecided_alone_is_undecided():
     """From the side the limit of the axis blocks; from above only the triangles of the post are in doubt."""
     options = {"faces": "F1", "tolerance": 0.5, "grid": 2, "area_budget": 0} | UPRIGHT
-    around = Scene.of(beside_a_post(5.0), tolerance=0.5).surroundings
+    around = Scene.of(beside_a_post(5.0), tolerance=0.5).surround()
     part = beside_a_post(0.5 * around.certain.triangles.chord_error)
     cutter = Cutter.ball(radius=3, length=25, holder="R15L20")
     ready = prepare(part, Options(cutters=(cutter,), setup=(1, 0, 0), machine="tilt:3", **options))

@@ -397,7 +397,7 @@ def test_a_set_is_a_sentence():
         return together(SimpleNamespace(least_set=found, samples=samples, faces=[]))
 
     up, down = (0, 0, 1), (0, 0, -1)
-    assert of([("R6L60", 0.81, up), ("R1L12", 0.182, up)], 0.992, omitted=9) == (
+    assert of([("R6L60", 0.81, up), ("R1L12", 0.182, up)], 0.992, left=9) == (
         "R6L60 for 81 % of the area and R1L12 for the rest reach 99.2 %; nothing given reaches the other 0.8 %"
     )
     assert of([("R6L60", 0.6, up), ("R6L60", 0.4, down)], 1.0) == (
@@ -410,7 +410,7 @@ def test_a_set_is_a_sentence():
     assert of([("A", 0.6, up), ("B", 0.3, up)], 0.9, unjudged=3) == (
         "A for 60 % of the area and B for the rest reach all of it that could be judged"
     )
-    assert of([("A", 0.6, up), ("B", 0.3, up)], 0.9, omitted=2, unjudged=3).endswith(
+    assert of([("A", 0.6, up), ("B", 0.3, up)], 0.9, left=2, unjudged=3).endswith(
         "; nothing given reaches another 10 %"
     )
 
