@@ -133,7 +133,7 @@ def test_names_in_files_stay_names(results, tmp_path):
 @pytest.mark.parametrize(
     ("spoil", "said"),
     [
-        (lambda page: page.unlink(), b"there is no review.html beside the plan"),
+        (lambda page: page.unlink(), b"there is no review.html in the folder of the plan"),
         (lambda page: page.write_bytes(page.read_bytes() + b" "), b"is not the one that was written with the plan"),
     ],
 )

@@ -64,7 +64,7 @@ def section(difference: PlanDifference) -> Iterator[str]:
 def page_link(path: str, address: str = "") -> str:
     """A link to the page of two plans, or to an address that has it.
 
-    >>> beside("compared/a b/review.html")
+    >>> page_link("compared/a b/review.html")
     '[Both plans side by side](compared/a%20b/review.html)'
     """
     within = f": {escaped(path)} there" if address else ""
