@@ -135,7 +135,7 @@ def test_leans_too_small_to_know_their_side_serve_no_cell_beside_a_wall():
             assert deepest(found, geometry, whole, cutter, dense(whole, 0.4), 400, np.random.default_rng(0)) < 0.01
         # Farther than a diameter from the wall, at x = 9, it does not matter on which side the cutter stands.
         near = geometry(1, found.cells.uv)[0][:, 0] > 9.0 - 2.0 * cutter.radius
-        assert low > 0.4 or found.cells.area[near].sum() < 0.05 * found.surroundings.sum()
+        assert low > 0.4 or found.cells.area[near].sum() < 0.05 * found.surrounding_area.sum()
 
 
 def test_axes_between_samples_keep_the_machines_limit():

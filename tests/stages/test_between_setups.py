@@ -69,5 +69,5 @@ def test_cells_are_counted_once_and_the_plan_says_their_share(both, found):
     assert 0.5 < entry.area.share < 1.0
     assert found.whole == pytest.approx(600.0)
     assert found.cells.area.sum() == pytest.approx(found.served)
-    assert found.surroundings.sum() <= found.whole * (1 + 1e-9)
-    assert found.served <= found.surroundings.sum() * (1 + 1e-9)
+    assert found.surrounding_area.sum() <= found.whole * (1 + 1e-9)
+    assert found.served <= found.surrounding_area.sum() * (1 + 1e-9)
