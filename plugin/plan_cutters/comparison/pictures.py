@@ -5,6 +5,7 @@ import hashlib
 import json
 import re
 import zlib
+from html.parser import HTMLParser
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -14,7 +15,6 @@ from plan_cutters.plan_file.model import Plan
 _OMITTED = re.compile(
     r"(tilt|lean|maps|scalar|operation|operation_lean|setup|reason)\.|sample\.(point|normal|direction|curvature)$"
 )
-_ELEMENT = r'<script type="{}" id="{}">([^<]*)</script>'
 _FORMAT = 1
 _AGAIN = "plan the part again with --formats json,html"
 
@@ -68,10 +68,8 @@ def _none(why: str) -> Picture:
 
 def _picture(text: str) -> Picture | None:
     """The picture that a page holds; None where its data have another form."""
-    meta_text, stream = (
-        _element(text, kind, name) for kind, name in (("application/json", "meta"), ("text/plain", "data"))
-    )
-    meta = json.loads(meta_text)
+    elements = _Elements(text).texts
+    meta, stream = json.loads(elements["meta"]), elements["data"]
     if meta["format"] != _FORMAT:
         return None
     whole = {name: entry for name, entry in meta["arrays"].items() if not _OMITTED.match(name)}
@@ -101,9 +99,22 @@ def _picture(text: str) -> Picture | None:
     return Picture(reduced, data, "")
 
 
-def _element(text: str, kind: str, name: str) -> str:
-    """What an element of the page says: nothing that the page writes into it begins another one."""
-    match = re.search(_ELEMENT.format(re.escape(kind), name), text)
-    if match is None:
-        raise LookupError(name)
-    return match[1]
+class _Elements(HTMLParser):
+    """Texts of the script elements of a page, by their ids: what the page draws stands in two of them."""
+
+    def __init__(self, page: str) -> None:
+        super().__init__()
+        self.texts: dict[str, str] = {}
+        self._open: str | None = None
+        self.feed(page)
+        self.close()
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self._open = dict(attrs).get("id") if tag == "script" else None
+
+    def handle_data(self, data: str) -> None:
+        if self._open:
+            self.texts[self._open] = self.texts.get(self._open, "") + data
+
+    def handle_endtag(self, tag: str) -> None:
+        self._open = None
