@@ -106,8 +106,8 @@ def patch(area: Patch) -> str:
 def excluded_areas(areas: Sequence[Patch], area: float) -> str:
     """Say which connected areas to leave to another process, and how much they are in all, mm2."""
     if len(areas) == 1:
-        return f"leave {patch(areas[0])} to another process"
-    return f"leave {size(area)} in {len(areas):,} places to another process, the largest {patch(areas[0])}"
+        return f"leave to another process: {patch(areas[0])}"
+    return f"leave to another process: {size(area)} in {len(areas):,} places, the largest {patch(areas[0])}"
 
 
 def reasons(codes: NDArray[np.uint8], of: int | None = None) -> str:

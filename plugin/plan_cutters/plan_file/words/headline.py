@@ -63,7 +63,7 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
         if len(entries) == 1
         else f"Of {len(entries)} cutters, {name} comes nearest: it"
     )
-    much = f"{unreached(best, best.area_share)} of {area(plan)} ({best.not_reached} of {plan.samples.finished} samples)"
+    much = f"{unreached(best, best.area_share)} of {area(plan)} ({best.not_reached:,} of {plan.samples.finished:,} samples)"
     ask = "" if "mend" in plan.effective.answers else " Ask what would help: --answers mend."
     if best.blocked == 0:
         why = f"{which} leaves {much} undecided: neither safe nor blocked to the tolerance."
