@@ -34,7 +34,7 @@ _OF_STREAMS = frozenset({errno.EPIPE, errno.ENOSPC, errno.EIO, errno.EBADF, errn
 
 
 #: Between a number and its unit, where no line may end; it stands for the blank while lines are made.
-_NUMBER, _GLUE = re.compile(r"(?<=\d) (?=(?:%|mm|deg|mm2)(?!\w))"), "\ue000"
+_NUMBER, _GLUE = re.compile(r"(?<=\d) (?=(?:%|mm[²2]?|deg)(?!\w))"), "\ue000"
 
 
 class ReaderGone(Exception):

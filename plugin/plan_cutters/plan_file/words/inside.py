@@ -4,7 +4,8 @@ from collections.abc import Sequence
 
 from plan_cutters.plan_file.inside import CoveringBody
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import figure, listed, percent
+from plan_cutters.plan_file.numbers import area as size
+from plan_cutters.plan_file.numbers import listed, percent
 
 
 def inside(plan: Plan, most: int = 5) -> list[str]:
@@ -20,26 +21,24 @@ def inside(plan: Plan, most: int = 5) -> list[str]:
     lines += _more(covering_bodies[most:], "body covers", "bodies cover")
     over = [each for each in entry.bodies if each.how == "overlaps"]
     if over:
-        each = "; ".join(
-            f"{_called(b)} covers {figure(b.area_mm2)} mm2 of {listed(b.faces, 4)}" for b in over[: most - 2]
-        )
+        each = "; ".join(f"{_called(b)} covers {size(b.area_mm2)} of {listed(b.faces, 4)}" for b in over[: most - 2])
         rest = len(over) - (most - 2)
         lines.append(f"Bodies overlap: {each}{f'; {rest} more in plan.json' if rest > 0 else ''}.")
     if entry.sheets is not None:
-        sheets, area = entry.sheets, figure(entry.sheets.area_mm2)
+        sheets, area = entry.sheets, size(entry.sheets.area_mm2)
         what = "is a construction sheet" if len(sheets.faces) == 1 else "are construction sheets"
-        lines.append(f"{listed(sheets.faces)} {what} on the skin of a body: {area} mm2 face into it. {sheets.option} leaves such "
+        lines.append(f"{listed(sheets.faces)} {what} on the skin of a body: {area} face into it. {sheets.option} leaves such "
                      "sheets out.")  # fmt: skip
     return lines
 
 
 def _body_text(body: CoveringBody) -> str:
-    on, area = listed(body.faces, 4), figure(body.area_mm2)
+    on, area = listed(body.faces, 4), size(body.area_mm2)
     verb = "stands on" if body.how == "stands_on" else "touches or overlaps"
     if body.largest:
         touch = "touches" if len(body.faces) == 1 else "touch"
-        return f"{_called(body, first=True)} covers {area} mm2 of {on}, which {touch} it."
-    return (f"{_called(body, first=True)} {verb} {on} and covers {area} mm2 there. It stays in the way, and what lies under "
+        return f"{_called(body, first=True)} covers {area} of {on}, which {touch} it."
+    return (f"{_called(body, first=True)} {verb} {on} and covers {area} there. It stays in the way, and what lies under "
             f"it is not planned. To plan that, as for another clamping, leave the body out (nothing is then checked against it): "
             f"{body.option}.")  # fmt: skip
 
@@ -53,5 +52,5 @@ def _called(body: CoveringBody, *, first: bool = False) -> str:
 def _more(bodies: Sequence[CoveringBody], one: str, many: str) -> list[str]:
     if not bodies:
         return []
-    area = figure(sum(each.area_mm2 for each in bodies))
-    return [f"{len(bodies)} more {one if len(bodies) == 1 else many} {area} mm2: see plan.json."]
+    area = size(sum(each.area_mm2 for each in bodies))
+    return [f"{len(bodies)} more {one if len(bodies) == 1 else many} {area}: see plan.json."]

@@ -32,8 +32,10 @@ def text_of(plan: Plan) -> TextEntry:
 
 def sentences(story: Story) -> Iterator[str]:
     """All that people read of a plan unless they ask for more, below the headline; what makes it unsure comes first."""
+    # It comes first, for what follows is about the rest.
+    yield from story.inside
     yield from (story.headline.about, story.headline.why)
-    yield from (*story.inside, *story.proposal, *story.in_short, *story.scope, *story.between)
+    yield from (*story.proposal, *story.in_short, *story.scope, *story.between)
     yield from (f"{line.mark} {line.text}" for lines in story.doubts.values() for line in lines)
     yield from (each.sentence for each in story.cutters)
     more = (*story.setups, *story.operations, *story.answers, *story.notes)
