@@ -31,7 +31,7 @@ from plan_cutters.plan_file.answers import StepEntry
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import leaves
 from plan_cutters.plan_file.reasons import REASONS
-from plan_cutters.plan_file.shares import FaceVerdicts
+from plan_cutters.plan_file.shares import FaceVerdicts, by_share
 from plan_cutters.plan_file.words.cutters import main_reason, reason
 from plan_cutters.plan_file.words.face import face_text, helping, in_the_way, posture_text, sample_text
 from plan_cutters.plan_file.words.names import named
@@ -96,10 +96,6 @@ def _missing(plan: Plan) -> list[Missing]:
     return [Missing.model_validate(each) for each in plan.missing]
 
 
-def _by_share(lost_by: Mapping[str, float]) -> list[tuple[str, float]]:
-    return sorted(lost_by.items(), key=lambda item: (-item[1], item[0]))
-
-
 def _cutter(plan: Plan, c: CutterEntry, text: str, most: int) -> CutterAnswer:
     by_face = sorted((-v.area_share.not_reached, name) for name, v in c.faces.items() if v.not_reached)
     faces, more = first(
@@ -113,7 +109,7 @@ def _cutter(plan: Plan, c: CutterEntry, text: str, most: int) -> CutterAnswer:
     share = c.area_share
     return CutterAnswer(
         id=c.id, name=c.name, text=text, feasible=c.feasible, seen=c.seen, reached=share.reached,
-        inaccessible=share.inaccessible, undecided=share.undecided, lost_by=dict(_by_share(share.lost_by)), faces=faces,
+        inaccessible=share.inaccessible, undecided=share.undecided, lost_by=dict(by_share(share.lost_by)), faces=faces,
         more_faces=more, next=steps[0] if steps else None,
     )  # fmt: skip
 
@@ -162,7 +158,7 @@ def explained(
     texts = [face_text(plan, cutter, entry, unhelped)]
     if postures is not None:
         free = postures.free_share or float(any(row.free for row in postures.rotations))
-        texts.insert(0, posture_text(postures.face, free, postures.undecided_share, _by_share(postures.forbidden),
+        texts.insert(0, posture_text(postures.face, free, postures.undecided_share, by_share(postures.forbidden),
                                      certified=postures.certified))  # fmt: skip
     if sample is not None:
         texts.insert(0, sample_text(sample.distance_mm, sample.verdict, sample.reason))
@@ -180,7 +176,7 @@ def explained(
         reached=False if counts.blocked else None if unsure else True, lost_share=counts.area_share.not_reached,
         counts={"reached": counts.reached, "inaccessible": counts.blocked, "undecided": counts.undecided,
                 "unjudged": counts.unjudged, "inside_bodies": counts.inside_bodies},
-        reasons=[_reason(code, part) for code, part in _by_share(counts.area_share.lost_by)], help_is_about=about,
+        reasons=[_reason(code, part) for code, part in by_share(counts.area_share.lost_by)], help_is_about=about,
         no_help=unhelped, postures=postures, sample=sample, **cut,
     )  # fmt: skip
 

@@ -2,11 +2,11 @@
 
 from plan_cutters.batch.row import PartRow, Status
 from plan_cutters.plan_file.model import CutterEntry, Plan
-from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.shares import reached_share
 from plan_cutters.plan_file.words.cutters import main_reason
 from plan_cutters.plan_file.words.headline import headline
 from plan_cutters.plan_file.words.names import short_names
+from plan_cutters.plan_file.words.scope import headline_cutter
 from plan_cutters.report.folder import file_name
 
 
@@ -42,8 +42,7 @@ def row_of(
         Its cutter is the one that the headline names: the cutter to take, else the one that leaves least.
     """
     names = short_names(plan)
-    taken = plan.selected or plan.selected_over_setups or plan.selected_for_setup
-    cutter = next((c for c in plan.cutters if c.id == taken), None) or (nearest(plan.cutters) if plan.cutters else None)
+    cutter = headline_cutter(plan) if plan.cutters else None
     written = {form: f"{folder}/{file_name(form)}" for form in plan.files} if folder else {}
     return PartRow(
         name=name,

@@ -1,7 +1,7 @@
 """How much of a surface has each verdict: by samples, and by the area that they stand for."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from pydantic import Field
 
@@ -84,6 +84,11 @@ class FaceVerdicts(VerdictCounts):
         description="of the face's area, without what of it lies inside other bodies; 0 where all does",
     )
     inside_share: float = Field(default=0.0, description="of the face's area that lies inside other bodies of the part")
+
+
+def by_share(shares: Mapping[str, float]) -> list[tuple[str, float]]:
+    """Reasons with their shares, the one with the largest share first."""
+    return sorted(shares.items(), key=lambda item: (-item[1], item[0]))
 
 
 def part_of(counts: VerdictCounts, share: AreaShare, words: Iterable[str]) -> str:

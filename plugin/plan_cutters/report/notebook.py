@@ -13,6 +13,7 @@ from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.shares import VERDICTS
 from plan_cutters.plan_file.words.cutters import FEASIBLE
 from plan_cutters.plan_file.words.story import Story, story_of
+from plan_cutters.plan_file.words.text import further, of_the_plan
 from plan_cutters.report.markup import plain, template
 from plan_cutters.report.page.write import LARGEST_WITHOUT, page
 from plan_cutters.report.protocol import Judged
@@ -53,8 +54,7 @@ def text_of(plan: Plan) -> str:
         "",
     ]
     lines += [each.left for each in story.cutters if each.left]
-    more = (*story.setups, *story.operations, *story.answers, *story.notes)
-    lines += [f"{line.mark} {line.text}{line.typed}".lstrip() for line in more if not line.minor]
+    lines += further(story)
     return "\n".join(plain(line).rstrip() for line in lines).strip() + "\n"
 
 
@@ -114,8 +114,7 @@ def _in_notebook() -> bool:
 
 def _lines(story: Story) -> list[str]:
     """What is said beside the headline: surface that is none, the scope, and all doubts."""
-    doubts = [f"{line.mark} {line.text}" for lines in story.doubts.values() for line in lines]
-    return [*story.inside, *story.proposal, *story.in_short, *story.scope, *story.between, *doubts]
+    return [*story.inside, *of_the_plan(story)]
 
 
 def _table(story: Story) -> list[str]:

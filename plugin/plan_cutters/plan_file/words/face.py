@@ -7,7 +7,7 @@ from typing import NamedTuple
 from plan_cutters.plan_file.answers import ChangeEntry, MendEntry, StepEntry
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan, WitnessEntry
 from plan_cutters.plan_file.numbers import count, mm, percent
-from plan_cutters.plan_file.shares import FaceVerdicts, part_of, unreached
+from plan_cutters.plan_file.shares import FaceVerdicts, by_share, part_of, unreached
 from plan_cutters.plan_file.words.cutters import called, reason
 from plan_cutters.plan_file.words.names import named
 from plan_cutters.plan_file.words.next_steps import effect, is_excluded
@@ -79,8 +79,7 @@ def face_text(plan: Plan, cutter: CutterEntry, face: FaceEntry, unhelped: str) -
 
 def _loss(cutter: CutterEntry, face: FaceEntry, verdicts: FaceVerdicts) -> str:
     share = verdicts.area_share
-    ranked = sorted(share.lost_by.items(), key=lambda item: (-item[1], item[0]))
-    why = ", ".join(f"{reason(code)} {percent(part, some=True, whole=False)}" for code, part in ranked)
+    why = ", ".join(f"{reason(code)} {percent(part, some=True, whole=False)}" for code, part in by_share(share.lost_by))
     text = (f"{cutter.id} does not reach {unreached(verdicts, share)} of {face.id} ({count(verdicts.not_reached, 'sample')}): "
             f"{why or 'no reason is known'}.")  # fmt: skip
     if verdicts.undecided:

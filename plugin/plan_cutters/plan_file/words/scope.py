@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from plan_cutters.plan_file.model import Plan
+from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.numbers import percent
 from plan_cutters.plan_file.scope import Scope
@@ -17,6 +17,12 @@ def judged(plan: Plan) -> str:
     if scope is None or not scope.not_judged:
         return part
     return f"{_requested(plan, scope)} of {part} ({_share(scope)} of the area)"
+
+
+def headline_cutter(plan: Plan) -> CutterEntry:
+    """The cutter that the headline is about: the one to take, else the one that leaves the least area."""
+    taken = plan.selected or plan.selected_over_setups or plan.selected_for_setup
+    return next((c for c in plan.cutters if c.id == taken), None) or nearest(plan.cutters)
 
 
 def not_judged(plan: Plan) -> list[str]:
@@ -65,8 +71,7 @@ def _share(scope: Scope) -> str:
 
 def not_seen(plan: Plan, names: Mapping[str, str]) -> list[str]:
     """Whether more lies between the samples than the cutter to take, or the one that comes nearest, is wide; in a sentence."""
-    taken = plan.selected or plan.selected_over_setups or plan.selected_for_setup
-    entry = next((c for c in plan.cutters if c.id == taken), None) or nearest(plan.cutters)
+    entry = headline_cutter(plan)
     if entry.seen:
         return []
     widest = max(plan.faces, key=lambda f: f.gap_mm or 0.0)

@@ -35,11 +35,21 @@ def sentences(story: Story) -> Iterator[str]:
     # It comes first, for what follows is about the rest.
     yield from story.inside
     yield from (story.headline.about, story.headline.why)
-    yield from (*story.proposal, *story.in_short, *story.scope, *story.between)
-    yield from (f"{line.mark} {line.text}" for lines in story.doubts.values() for line in lines)
+    yield from of_the_plan(story)
     yield from (each.sentence for each in story.cutters)
-    more = (*story.setups, *story.operations, *story.answers, *story.notes)
-    yield from (f"{line.mark} {line.text}{line.typed}" for line in more if not line.minor)
+    yield from further(story)
+
+
+def of_the_plan(story: Story) -> list[str]:
+    """Sentences on the plan as a whole: its setups and orientations, its scope, and all doubts."""
+    doubts = [f"{line.mark} {line.text}" for lines in story.doubts.values() for line in lines]
+    return [*story.proposal, *story.in_short, *story.scope, *story.between, *doubts]
+
+
+def further(story: Story) -> list[str]:
+    """Lines that follow those on the cutters: setups, operations, answers and notes, but for the minor ones."""
+    lines = (*story.setups, *story.operations, *story.answers, *story.notes)
+    return [f"{line.mark} {line.text}{line.typed}".lstrip() for line in lines if not line.minor]
 
 
 def _verdict(plan: Plan, cutter: CutterEntry) -> VerdictText:

@@ -4,9 +4,9 @@ import math
 from collections.abc import Iterator, Mapping
 
 from plan_cutters.plan_file.model import CutterEntry, Plan
-from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.numbers import capital, count, listed, mm, percent
 from plan_cutters.plan_file.shares import part_of
+from plan_cutters.plan_file.words.scope import headline_cutter
 
 #: Faces that are named one by one.
 _FACES = 3
@@ -16,8 +16,7 @@ _FINER = 2.0
 
 def undecided(plan: Plan, names: Mapping[str, str]) -> list[str]:
     """Two sentences, how much and where, and why with what would decide it; none where no sample is undecided."""
-    taken = plan.selected or plan.selected_over_setups or plan.selected_for_setup
-    entry = next((c for c in plan.cutters if c.id == taken), None) or nearest(plan.cutters)
+    entry = headline_cutter(plan)
     if not entry.undecided:
         return []
     share = part_of(entry, entry.area_share, ["undecided"])
