@@ -1,35 +1,39 @@
 #!/bin/sh
-# Make .venv and install plan-cutters into it, with CadQuery and build123d for scripts; `sh setup.sh dev` adds what the tests and
-# linters need, `sh setup.sh alone` leaves the two hosts out, two thirds of all bytes.
+# Make .venv and install plan-cutters into it, with CadQuery and build123d for scripts, clusters and pictures; `sh setup.sh dev` adds
+# what the tests and linters need, `sh setup.sh alone` leaves the two hosts out, two thirds of all bytes.
 # Packages of the system are installed only where one is missing, and only after a line that says which one and why.
 set -eu
 cd "$(dirname "$0")"
+
+say() {
+    echo "setup.sh: $*" >&2
+}
 
 # outside WHY PACKAGE...: install Debian packages, the only step outside this folder.
 outside() {
     why=$1
     shift
     if ! command -v apt-get >/dev/null; then
-        echo "setup.sh: missing: $* ($why). Install them with the package manager of this system." >&2
+        say "missing: $* ($why). Install them with the package manager of this system."
         return 1
     fi
     sudo=""
     [ "$(id -u)" = 0 ] || sudo="sudo"
-    echo "setup.sh: installing $* outside .venv, with $sudo apt-get: $why" >&2
+    say "installing $* outside .venv, with $sudo apt-get: $why"
     $sudo apt-get update -qq && $sudo apt-get install -y -qq --no-install-recommends "$@" >/dev/null
 }
 
-dev=""
+dev="" hosts=yes
 case "$*" in
-    "") extra="batch,cadquery,build123d" ;;
-    dev) extra="dev" dev=yes ;;
-    alone) extra="batch" ;;
-    *) echo "setup.sh: unknown words $*: give dev or alone, or nothing" >&2 && exit 2 ;;
+    "") extra="batch,build123d,cadquery,pictures" what="plan-cutters with CadQuery and build123d, about 2 GB" ;;
+    dev) extra="dev" dev=yes what="plan-cutters with all that tests and linters need, about 3 GB" ;;
+    alone) extra="batch,pictures" hosts="" what="plan-cutters alone, about 750 MB" ;;
+    *) say "unknown words $*: give dev or alone, or nothing" && exit 2 ;;
 esac
-late=""
-if [ ! -x .venv/bin/python ]; then
+python=.venv/bin/python
+if [ ! -x $python ]; then
+    say "making .venv"
     python3 -m venv .venv
-    late=--no-compile
 fi
 # For the tests, into node_modules and page/node_modules: the Khronos validator of GLB files, and what the review page is built with.
 # They come while Python's packages do.
@@ -37,25 +41,43 @@ if [ -n "$dev" ]; then
     { npm install --silent --no-audit --no-fund --no-package-lock && npm ci --prefix page --silent --no-audit --no-fund; } &
     node=$!
 fi
-.venv/bin/python -m pip install --quiet --disable-pip-version-check $late --editable ".[$extra]"
-# Editors and type checkers do not run the import hook that pip installs for two roots: they read paths.
-printf '%s\n' "$PWD/plugin" "$PWD" >"$(.venv/bin/python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/plan_cutters_sources.pth"
-# Pip makes byte code on one core: in a new .venv all of them do, but not of tests of others, a fifth of it all. A file that is
-# no Python of this version is no mistake of ours.
-[ -z "$late" ] || .venv/bin/python -m compileall -qq -j 0 -x '/tests?/' .venv/lib/python3*/site-packages || true
-if ! .venv/bin/python -c "import OCP" 2>/dev/null; then
-    outside "the CAD kernel links libGL and libX11, although nothing is drawn" libgl1 libx11-6
-    .venv/bin/python -c "import OCP"
+# uv loads packages side by side, and writes no byte code: Python makes that of what runs, when it first runs.
+if [ ! -x .venv/bin/uv ]; then
+    say "installing uv, which installs the rest"
+    $python -m pip install --quiet --disable-pip-version-check --no-compile "uv>=0.8"
 fi
-# Both flavours of the kernel install the same files, in any order: CadQuery needs those of the full one.
-full=$(.venv/bin/python -m pip freeze --all --disable-pip-version-check | grep "^cadquery-ocp==" || true)
-if [ -n "$full" ] && ! .venv/bin/python -c "import OCP.IVtkOCC" 2>/dev/null; then
-    .venv/bin/python -m pip install --quiet --disable-pip-version-check --force-reinstall --no-deps "$full"
+# uv does not read what pip was told about the place that packages come from.
+index=$($python -m pip config get global.index-url 2>/dev/null || true)
+[ -z "$index" ] || export UV_DEFAULT_INDEX="${UV_DEFAULT_INDEX:-$index}"
+uv() {
+    command=$1
+    shift
+    .venv/bin/uv pip "$command" --quiet --python $python "$@"
+}
+# Two flavours of the kernel have the same files. CadQuery needs the one with a bridge to VTK: beside it the other is left out.
+: >.venv/overrides.txt
+if [ -n "$hosts" ]; then
+    echo "cadquery-ocp-novtk; sys_platform == 'never'" >.venv/overrides.txt
+    uv uninstall cadquery-ocp-novtk 2>/dev/null
+fi
+say "installing $what"
+uv install --overrides .venv/overrides.txt --editable ".[$extra]"
+# Editors and type checkers do not run the import hook that an editable install has for two roots: they read paths.
+printf '%s\n' "$PWD/plugin" "$PWD" >"$($python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/plan_cutters_sources.pth"
+# Whichever flavour was written or taken away last: the files are those of the full one where that is installed.
+full=$(.venv/bin/uv pip freeze --quiet --python $python | grep "^cadquery-ocp==" || true)
+if [ -n "$full" ] && ! [ -e "$($python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')"/OCP/IVtkOCC* ]; then
+    uv install --no-deps --reinstall-package cadquery-ocp "$full"
+fi
+if ! $python -c "import OCP" 2>/dev/null; then
+    outside "the CAD kernel links libGL and libX11, although nothing is drawn" libgl1 libx11-6
+    $python -c "import OCP"
 fi
 if [ -n "$dev" ]; then
+    say "waiting for the packages of the page"
     wait "$node"
     if ! command -v chromium >/dev/null; then
         outside "the tests of the review page need a browser" chromium ||
-            echo "setup.sh: no chromium could be installed: tests of the review page will be skipped" >&2
+            say "no chromium could be installed: tests of the review page will be skipped"
     fi
 fi

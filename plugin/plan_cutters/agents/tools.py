@@ -40,6 +40,7 @@ from plan_cutters.errors import CutterError
 from plan_cutters.plan_file.load import plan_of
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.numbers import percent
+from plan_cutters.report.formats import draws_pictures
 
 #: How long lists may be, until the answer is short enough.
 _LENGTHS = (60, 30, 12, 5, 2, 0)
@@ -79,7 +80,7 @@ class Call:
             *self.permissions.map(question),
             *([f"--cutter={spec}"] if spec else []),
             "--json=-",
-            f"--out={self.cwd / 'map.png'}",
+            *([f"--out={self.cwd / 'map.png'}"] if question.picture or draws_pictures() else []),
         ]
         ended = await self._run(["map", *words])
         return ended.output, ended.code

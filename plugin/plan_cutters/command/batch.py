@@ -16,7 +16,7 @@ from plan_cutters.command.option_groups import CODES, options
 from plan_cutters.command.request import BatchRequest, takes
 from plan_cutters.command.values import File, Words
 from plan_cutters.files.terminal_text import clean
-from plan_cutters.report.folder import DEFAULT_FORMATS
+from plan_cutters.report.folder import DEFAULT_FORMATS, with_pictures
 
 if TYPE_CHECKING:
     from plan_cutters.batch.job import Fault, Job, Settings
@@ -36,7 +36,6 @@ _OF_A_PART = {
     "Plan of operations",
 }
 #: The picture is what the table shows of a part.
-_FORMATS = (*DEFAULT_FORMATS, "png")
 
 _many = heading("Many parts")
 
@@ -64,7 +63,7 @@ _many = heading("Many parts")
     "step_schema", "quiet",
     out={"required": True, "help": "Folder or URL for the table of all parts, and the folder NAME-plan of each."},
     formats={"help": "As of a single plan; json is always among them, for the table is made of it.  "
-             f"[default: {','.join(_FORMATS)}]"},
+             f"[default: {','.join(DEFAULT_FORMATS)}, and png where the extra pictures is installed]"},
 )  # fmt: skip
 @options(
     "answers", "length_over_radius", "operations", "feed", "scallop", "stepover", "index_step", "index_time", "change_time",
@@ -225,6 +224,11 @@ def _relative_to(word: str, folder: str) -> str:
     return f"{there}{at}{rest}" if folder and file and not os.path.isabs(file) and os.path.exists(there) else word
 
 
+@functools.cache
+def _formats() -> tuple[str, ...]:
+    return with_pictures(DEFAULT_FORMATS, _progress_line)
+
+
 def _settings(request: BatchRequest) -> "Settings":
     """The settings of parts, from the words of the command line: what is wrong with them is said before anything is begun."""
     from cad_io.files import noted
@@ -236,6 +240,6 @@ def _settings(request: BatchRequest) -> "Settings":
     with noted() as files:
         requested = options_of(replace(request, jobs=request.jobs or 1))
     look_at(requested)
-    formats = _FORMATS if request.formats is None else read_formats(request.formats)
+    formats = _formats() if request.formats is None else read_formats(request.formats)
     return Settings(requested, tuple(dict.fromkeys(("json", *formats))), request.step_schema, request.read_timeout,
                     tuple(filter(None, files.values())))  # fmt: skip

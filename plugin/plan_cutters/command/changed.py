@@ -24,6 +24,7 @@ from plan_cutters.command.values import Folder
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.files.temporary import require_temporary
 from plan_cutters.files.whole import whole
+from plan_cutters.report.folder import with_pictures
 
 if TYPE_CHECKING:
     from plan_cutters.batch.content import Content
@@ -36,7 +37,6 @@ RULES = ("none", "lost", "unreachable", "not-comparable")
 #: Options of a plan that this command gives itself.
 _OURS = ("-o", "--out", "--formats", "--json", "--quiet", "--postures", "--check-operations", "--help", "-h",
          "--version")  # fmt: skip
-_FORMATS = ("json", "html", "png")
 _PLANNED = (0, 1, 4)
 
 _commits, _output, _rules = heading("Commits"), heading("Output"), heading("Rule")
@@ -106,8 +106,9 @@ class PartRequest:
         with noted() as files:
             options = options_of(requested)
         look_at(options)
-        settings = Settings(options, _FORMATS, requested.step_schema, read=tuple(filter(None, files.values())))
-        handed_on = ["--formats", ",".join(_FORMATS), *(["--debug"] if requested.debug else [])]
+        formats = with_pictures(("json", "html"), lambda line: error(f"{_SELF}: {line}"))
+        settings = Settings(options, formats, requested.step_schema, read=tuple(filter(None, files.values())))
+        handed_on = ["--formats", ",".join(formats), *(["--debug"] if requested.debug else [])]
         for name in ("step_schema", "read_timeout", "timeout", "memory", "cluster", "verdicts", "verdicts_key"):
             if (value := getattr(requested, name)) is not None:
                 here = name in ("cluster", "verdicts", "verdicts_key") and "://" not in value

@@ -88,6 +88,7 @@ def command(request: MapRequest) -> int:
     """
     from cad_io.read.sniff import kind
     from plan_cutters.errors import OptionError
+    from plan_cutters.report.formats import NO_PICTURES, draws_pictures
 
     part = request.part
     report("part", part)
@@ -96,10 +97,13 @@ def command(request: MapRequest) -> int:
         raise OptionError("--within must be a distance in mm that is not negative")
     if request.json_out not in (None, "-"):
         raise OptionError("--json takes -, for standard output")
-    outs = [Path(out) for out in request.out] or [Path(f"{Path(part).stem}-map.{kind}") for kind in ("png", "svg")]
+    kinds = ("png", "svg") if draws_pictures() else ()
+    outs = [Path(out) for out in request.out] or [Path(f"{Path(part).stem}-map.{kind}") for kind in kinds]
     for out in outs:
         if out.suffix.lower() not in (".png", ".svg"):
             raise OptionError(f"-o {out}: pictures are written as .png or .svg")
+        if not kinds:
+            raise OptionError(f"-o {out}: {NO_PICTURES}")
         if not out.absolute().parent.is_dir():
             raise OptionError("cannot be written: there is no such folder", file=str(out))
     kind(part)
@@ -133,7 +137,8 @@ def command(request: MapRequest) -> int:
     )  # fmt: skip
     face = int(locate(scene.part, scene.orientation, foot.tolist(), ignore=scene.ignored).face[0])
     about = _about(result, f"F{face}", off, cutter, request)
-    _draw(result, options.tilt, about, outs)
+    if outs:
+        _draw(result, options.tilt, about, outs)
     if request.json_out == "-":
         hand_out(json.dumps(_facts(result, f"F{face}", off, cutter, request), indent=2) + "\n")
     elif not request.quiet:
@@ -280,7 +285,8 @@ def _table(result: "PostureMap", about: list[str], outs: Sequence[Path], console
     """The free intervals for people."""
     from rich.table import Table
 
-    names = " and ".join(clean(str(out)) for out in outs)
+    from plan_cutters.report.formats import NO_PICTURES
+
     for line in about:
         console.print(clean(line), soft_wrap=True)
     table = Table("Rotation", "Free tilts (deg)", "Undecided", "Local gouge below")
@@ -296,7 +302,8 @@ def _table(result: "PostureMap", about: list[str], outs: Sequence[Path], console
             below,
         )
     console.print(table)
-    console.print(f"Pictures in {names}.", soft_wrap=True)
+    names = " and ".join(clean(str(out)) for out in outs)
+    console.print(f"Pictures in {names}." if outs else f"No picture: {NO_PICTURES}", soft_wrap=True)
 
 
 def _spans(intervals: "Floats", inward: bool = True) -> str:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Protocol
 from cad_io.errors import CadIoError
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.files.lock import Lock
-from plan_cutters.report.formats import LATER, WRITERS, sha256
+from plan_cutters.report.formats import LATER, NO_PICTURES, WRITERS, draws_pictures, sha256
 from plan_cutters.report.protocol import Judged
 
 if TYPE_CHECKING:
@@ -37,12 +37,22 @@ FORMATS = ("json", *(f for f in WRITERS if f not in _SIDE_FILES))
 DEFAULT_FORMATS = ("json", "html", "step", "glb", "npz")
 
 
+def with_pictures(formats: Sequence[str], hint: Callable[[str], None]) -> tuple[str, ...]:
+    """Default formats and the picture of the part; without it, and with a word in `hint`, where pictures cannot be drawn."""
+    if draws_pictures():
+        return (*formats, "png")
+    hint(f"no pictures of parts: {NO_PICTURES}")
+    return tuple(formats)
+
+
 def read_formats(text: str) -> tuple[str, ...]:
-    """Read a list such as `json,glb`; OptionError for what is not built in."""
+    """Read a list such as `json,glb`; OptionError for what is not built in, or needs a package that is not installed."""
     wanted = tuple(dict.fromkeys(w.strip() for w in text.split(",") if w.strip()))
     for word in wanted:
         if word not in FORMATS:
             raise OptionError(f"format {word!r} is not built in; give some of {','.join(FORMATS)}")
+    if "png" in wanted and not draws_pictures():
+        raise OptionError(f"format png: {NO_PICTURES}")
     if not wanted:
         raise OptionError(f"no format given; give some of {','.join(FORMATS)}")
     return wanted

@@ -5,6 +5,7 @@ from collections.abc import Callable, Generator, Sequence
 from contextlib import ExitStack
 from functools import partial
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -49,6 +50,15 @@ _MODELS = {
 LATER = ("html", "csv", "vtk", "regions", *(name for models in _MODELS.values() for name in models))
 #: Processor time that a copy may take for a file, s: behind it, the file is made here.
 _COPY = 300.0
+
+
+#: What is said where a picture was to be drawn and Matplotlib is not installed.
+NO_PICTURES = 'pictures need Matplotlib: pip install "plan-cutters[pictures]"'
+
+
+def draws_pictures() -> bool:
+    """Whether Matplotlib is installed, which draws the part and posture maps."""
+    return find_spec("matplotlib") is not None
 
 
 class Making:

@@ -1,7 +1,6 @@
 """Sheets that pictures are drawn on: matplotlib without a screen, and the same bytes for the same sheet.
 
-Matplotlib is loaded here alone, and only when something is drawn. The package VTK, which the CAD kernel's binding depends on,
-depends on it: it is there wherever the kernel is.
+Matplotlib is loaded in this room alone, and only when something is drawn: the extra `pictures` brings it.
 """
 
 import math
