@@ -56,22 +56,26 @@ uv() {
 }
 # Two flavours of the kernel have the same files. CadQuery needs the one with a bridge to VTK: beside it the other is left out.
 : >.venv/overrides.txt
+again=""
 if [ -n "$hosts" ]; then
     echo "cadquery-ocp-novtk; sys_platform == 'never'" >.venv/overrides.txt
-    uv uninstall cadquery-ocp-novtk 2>/dev/null
+    if uv show cadquery-ocp-novtk >/dev/null 2>&1; then
+        uv uninstall cadquery-ocp-novtk
+        again="--reinstall-package cadquery-ocp"
+    fi
 fi
 say "installing $what"
-uv install --overrides .venv/overrides.txt --editable ".[$extra]"
+uv install $again --overrides .venv/overrides.txt --editable ".[$extra]"
 # Editors and type checkers do not run the import hook that an editable install has for two roots: they read paths.
 printf '%s\n' "$PWD/plugin" "$PWD" >"$($python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')/plan_cutters_sources.pth"
-# Whichever flavour was written or taken away last: the files are those of the full one where that is installed.
-full=$(.venv/bin/uv pip freeze --quiet --python $python | grep "^cadquery-ocp==" || true)
-if [ -n "$full" ] && ! [ -e "$($python -c 'import sysconfig; print(sysconfig.get_path("purelib"))')"/OCP/IVtkOCC* ]; then
-    uv install --no-deps --reinstall-package cadquery-ocp "$full"
-fi
 if ! $python -c "import OCP" 2>/dev/null; then
     outside "the CAD kernel links libGL and libX11, although nothing is drawn" libgl1 libx11-6
     $python -c "import OCP"
+fi
+# Written last, the smaller flavour has taken the place of the full one that CadQuery needs.
+full=$(.venv/bin/uv pip freeze --quiet --python $python | grep "^cadquery-ocp==" || true)
+if [ -n "$full" ] && ! $python -c "from OCP.IVtkOCC import IVtkOCC_Shape" 2>/dev/null; then
+    uv install --no-deps --reinstall-package cadquery-ocp "$full"
 fi
 if [ -n "$dev" ]; then
     say "waiting for the packages of the page"
