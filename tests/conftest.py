@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from tests.support.nightly import LIST, rules, waits
 from tests.support.skips import strict
 
 # A machine that is busy with something else is no fault; what else holds here, as in CI, stays.
@@ -55,8 +56,12 @@ def pytest_collection_finish():
     gc.enable()
 
 
+@pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(items):
+    late = rules(LIST.read_text())
     for item in items:
+        if waits(late, item.nodeid.removeprefix("tests/")):
+            item.add_marker(pytest.mark.slow)
         for value in item.callspec.params.values() if hasattr(item, "callspec") else ():
             if isinstance(value, Path) and not value.exists():
                 item.add_marker(pytest.mark.skip(reason=f"the real file {value.name} is not at hand (shared/data/cad)"))

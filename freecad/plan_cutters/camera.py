@@ -80,10 +80,11 @@ def placed(point, towards, up, width, perspective):
     turn = App.Rotation(App.Vector(), up, towards, "ZYX")
     angle = math.radians(45)
     away = width / 2 / math.tan(angle / 2) if perspective else 10 * width
-    eye = point + towards * away
+    eye, axis = point + towards * away, turn.Axis
     lines = [
         "#Inventor V2.1 ascii", "", "PerspectiveCamera {" if perspective else "OrthographicCamera {",
-        "  viewportMapping ADJUST_CAMERA", f"  position {_numbers(*eye)}", f"  orientation {_numbers(*turn.Axis, turn.Angle)}",
+        "  viewportMapping ADJUST_CAMERA", f"  position {_numbers(*eye)}",
+        f"  orientation {_numbers(axis.x, axis.y, axis.z, turn.Angle)}",
         "  aspectRatio 1", f"  focalDistance {_numbers(away)}",
         f"  heightAngle {_numbers(angle)}" if perspective else f"  height {_numbers(width)}", "}", "",
     ]  # fmt: skip

@@ -24,7 +24,7 @@ def chosen_group():
     """The plan that is selected in the active document, else its newest."""
     document = App.ActiveDocument
     groups = objects.plans(document) if document else []
-    if not groups:
+    if document is None or not groups:
         raise model.Refused("no plan is shown in this document: plan first")
     selected = {each.Name for each in Gui.Selection.getSelection(document.Name)}
     for group in groups:

@@ -75,9 +75,14 @@ def container_placement(thing) -> Any:
     return container_placement(parent).multiply(parent.Placement)
 
 
+def plain_shape(thing) -> Any:
+    """The shape of an object or link as FreeCAD keeps it. Asked so, FreeCAD gives no matrix with it."""
+    return Part.getShape(thing)
+
+
 def shape_of(thing) -> Any:
     """The shape of an object or link where it stands in the document; its faces keep their numbers."""
-    shape = Part.getShape(thing).copy(False)
+    shape = plain_shape(thing).copy(False)
     shape.Placement = container_placement(thing).multiply(shape.Placement)
     return shape
 

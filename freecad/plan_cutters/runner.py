@@ -83,7 +83,7 @@ class Process:
         named = [place for place, line in enumerate(lines) if line.startswith("plan-cutters")]
         text = " ".join(lines[named[-1] :] if named else lines[-1:])
         text = re.sub(r"^plan-cutters[\w ]*: ", "", text)
-        return text or f"the program ended with code {self.popen.returncode} and said nothing"
+        return text or f"the program ended with code {self.popen.returncode} and wrote nothing"
 
     def output(self) -> str:
         """Its standard output."""

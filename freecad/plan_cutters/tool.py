@@ -84,7 +84,8 @@ def _flutes(cutter: dict[str, Any]):
     middle = radius - corner
     foot = at(middle + corner * math.cos(taper), corner - corner * math.sin(taper))
     end = at(foot.x + (top - foot.z) * math.tan(taper), top)
-    sides, here = [], at(0, 0)
+    sides: list[Any] = []
+    here = at(0, 0)
     if middle > 1e-9:
         sides.append(Part.LineSegment(here, at(middle, 0)))
         here = at(middle, 0)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 
 import FreeCAD as App
-import Part
 
 from . import host, objects
 
@@ -55,7 +54,7 @@ class Watch:
         for name in json.loads(getattr(group, objects.JOB))["fingerprints"]:
             thing = group.Document.getObject(name)
             if thing is not None:
-                shape = Part.getShape(thing)
+                shape = host.plain_shape(thing)
                 now += [name, shape.isNull() or shape.hashCode(), str(host.container_placement(thing))]
         moved, self._seen[key] = self._seen.get(key) != tuple(now), tuple(now)
         return moved

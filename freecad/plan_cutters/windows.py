@@ -49,7 +49,7 @@ def words(text: str = "", name: str = "") -> Any:
     return label
 
 
-def button(text: str, work: Callable[..., None], hint: str = "", pressed: bool = False) -> Any:
+def button(text: str, work: Callable[..., object], hint: str = "", pressed: bool = False) -> Any:
     """A button; `pressed` makes one that stays down."""
     made = QtGui.QPushButton(text)
     made.setToolTip(hint)

@@ -97,7 +97,9 @@ def session():
 
     # Cancelled, and a program that is not there.
     before = sorted(each.Name for each in document.Objects)
-    temporary = set(glob.glob(os.path.join(tempfile.gettempdir(), "plan-cutters-*")))
+    # Machine code stays, where the folder of the sources cannot hold it.
+    temporary = {*glob.glob(os.path.join(tempfile.gettempdir(), "plan-cutters-*")),
+                 os.path.join(tempfile.gettempdir(), f"plan-cutters-{os.getuid()}")}
     left = lambda: len(set(glob.glob(os.path.join(tempfile.gettempdir(), "plan-cutters-*"))) - temporary)
     one.clicked(panel._PLAN)
     pump(lambda: not one.bar.isHidden() and one.status.text() == "Starting", 20)

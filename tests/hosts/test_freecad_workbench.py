@@ -65,7 +65,9 @@ def ended(job, then=None):
     return state, told[0], run
 
 def left():
-    return sorted(name for name in os.listdir(os.environ["TMPDIR"]) if name.startswith("plan-cutters-"))
+    # Machine code stays, where the folder of the sources cannot hold it.
+    kept = f"plan-cutters-{os.getuid()}"
+    return sorted(name for name in os.listdir(os.environ["TMPDIR"]) if name.startswith("plan-cutters-") and name != kept)
 """
 
 PLANNED = (

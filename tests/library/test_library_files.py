@@ -48,7 +48,7 @@ HTML = "<!DOCTYPE html>\n<html><head><title>Sign in</title></head><body></body><
         ("a.json", "[" * 200_000, "nested too deeply"),
         ("a.json", '{"data": [{"geometry": {"DC": 6, "DC": 8}}]}', "'DC' is given twice"),
         ("a.hsmlib", "<?xml version='1.0' encoding='martian'?><tool-library/>", "no well-formed XML"),
-        ("a.tbl", "T1 D6 D8\n", "a letter twice"),
+        ("a.tbl", "; ours\n\nT1  P1 D+6.0 Z+12 ;6 mm\n", "a LinuxCNC tool table, .* no flute length, stick-out"),
         ("a.json", '{"data": {"DC": 6}}', "neither a Fusion library"),
         ("a.json", "[1, 2]", "neither a Fusion library"),
         ("a.json", '{"data": []}', "Fusion JSON: lists no tools"),
@@ -198,7 +198,7 @@ def test_a_tool_of_hsmworks_without_or_with_a_wrong_body(tmp_path, line):
     refused(path, r"tool 1 \(line 2\)")
 
 
-@given(st.sampled_from(["json", "tools", "csv", "hsmlib", "toml", "fctb", "tbl"]), st.data())
+@given(st.sampled_from(["json", "tools", "csv", "hsmlib", "toml", "fctb"]), st.data())
 @settings(max_examples=150, deadline=None)
 def test_damaged_files_end_in_one_line(tmp_path_factory, suffix, data):
     """Whatever bytes are lost, doubled or replaced: cutters, or an error of the package."""
@@ -209,7 +209,7 @@ def test_damaged_files_end_in_one_line(tmp_path_factory, suffix, data):
     elif suffix == "fctb":
         whole = write_bit(path).read_bytes()
     else:
-        whole = (to_toml(builtin()[:3]) if suffix == "toml" else "T1 P1 D6.0 ;a\nT2 P2 D+8\n").encode()
+        whole = to_toml(builtin()[:3]).encode()
     for _ in range(data.draw(st.integers(1, 3))):
         at = data.draw(st.integers(0, len(whole)))
         new = data.draw(
@@ -238,7 +238,7 @@ def names():
     "name", names() or [pytest.param("", marks=pytest.mark.skip(reason="shared/data/tools is not at hand"))]
 )
 def test_every_real_file_is_read_or_refused_by_name(name):
-    foreign = {".km": "Kiri:Moto", ".vtdb": "Vectric", ".ctr": "DeskProto"}
+    foreign = {".tbl": "LinuxCNC tool table", ".km": "Kiri:Moto", ".vtdb": "Vectric", ".ctr": "DeskProto"}
     path = REAL / name
     if path.suffix in foreign:
         refused(path, f"is a {foreign[path.suffix]}.*, which is not read")
@@ -266,14 +266,12 @@ def _cheap(kind):
         return "a.fctl", b'{"tools":[{"path":"a"}' + b",{}" * many + b"]}"
     if kind == "csv":
         return "a.csv", b"(tool_type),(tool_diameter),(tool_unit)\n" + b"x\n" * many
-    if kind == "tbl":
-        return "a.tbl", b"T1\n" * (many + 1)
     if kind == "hsmlib":
         return "a.hsmlib", b"<tool-library>" + b"<tool/>" * many + b"</tool-library>"
     return "a.toml", b"[[tool]]\n" * many
 
 
-@pytest.mark.parametrize("kind", ["json", "fctl", "csv", "tbl", "hsmlib", "toml"])
+@pytest.mark.parametrize("kind", ["json", "fctl", "csv", "hsmlib", "toml"])
 def test_more_tools_than_memory_are_refused(tmp_path, kind):
     name, content = _cheap(kind)
     (tmp_path / name).write_bytes(content)

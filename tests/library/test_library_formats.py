@@ -450,23 +450,6 @@ def test_holders_are_found_by_file_and_name(tmp_path):
             holder_of(str(path))
 
 
-def test_a_tool_table_asks_for_the_rest(tmp_path):
-    path = tmp_path / "a.tbl"
-    path.write_bytes("; ours\n\nT1  P1 D+6.0 Z+12 ;6 mm Schaftfräser\nT2 P2 Z3\n".encode("latin-1"))
-    with pytest.raises(LibraryError, match="none of its 2 tools can be used") as error:
-        read_library(path, assume_stickout=40, holder="R15L30")
-    assert "LPR (stick-out)" in str(error.value)
-    library = listing(path)
-    assert [(entry.place, entry.number, entry.broken) for entry in library.entries] == [
-        ("line 3", 1, False), ("line 4", 2, False)]  # fmt: skip
-    assert library.entries[0].name == "6 mm Schaftfräser"
-    assert "D 6, in the machine's unit" in library.entries[0].notes
-    assert any("Windows-1252" in note for note in library.notes)
-    path.write_text("T1 D6\nT2 Dsix\n")
-    with pytest.raises(LibraryError, match="line 2"):
-        read_library(path)
-
-
 def test_a_library_is_a_list_of_cutters(tmp_path):
     library = read_library(write_json(tmp_path / "a.json", [fusion(), fusion(LB=50)]))
     assert isinstance(library[0], Cutter)

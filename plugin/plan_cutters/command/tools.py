@@ -68,7 +68,7 @@ _cutters, _output = heading("Cutters"), heading("Output")
 def command(request: ToolsRequest) -> int:
     """List the tools in FILE as they are understood, and say why some cannot be judged.
 
-    It reads Fusion .tools, .json and CSV, HSMWorks .hsmlib, FreeCAD .fctl, .fctb and .fcholder, LinuxCNC .tbl, and TOML.
+    It reads Fusion .tools, .json and CSV, HSMWorks .hsmlib, FreeCAD .fctl, .fctb and .fcholder, and TOML.
     """
     from plan_cutters.library.read import holder_of, listing, nothing
     from plan_cutters.library.words import of_words

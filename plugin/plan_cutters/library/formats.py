@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 from plan_cutters.files import formats
 from plan_cutters.files.formats import Foreign, Format
-from plan_cutters.library import freecad, fusion_csv, fusion_json, hsmworks, linuxcnc, toml_in
+from plan_cutters.library import freecad, fusion_csv, fusion_json, hsmworks, toml_in
 from plan_cutters.library.files import Content
 from plan_cutters.library.raw_tool import LibraryContent
 
@@ -24,10 +24,10 @@ FORMATS: tuple[Format[Reader], ...] = (
     Format("FreeCAD bit", (".fctb",), freecad.is_bit, freecad.read_bit),
     Format("FreeCAD holder", (".fcholder",), freecad.is_holder, freecad.read_holder),
     Format("plan-cutters TOML", (".toml",), toml_in.is_toml, toml_in.read_toml),
-    Format("LinuxCNC tool table", (".tbl",), linuxcnc.is_table, linuxcnc.read_table),
 )
 
 _SQLITE = b"SQLite format 3\0"
+_TOOL = re.compile(r"^\s*T\s*[+-]?\d+(?:\s+[A-Z]\s*[+-]?[\d.,]+)*\s*(?:;.*)?$", re.IGNORECASE)
 _TOML = "write the tools as TOML (docs/tool_libraries.md)"
 _FUSION = "export from a program that writes Fusion .tools, .json or CSV, or HSMWorks .hsmlib, or " + _TOML
 
@@ -61,11 +61,19 @@ def _page(content: Content) -> bool:
     return content.head.startswith("<") and re.search(r"<(!doctype\s+html|html|head|body)\b", content.head) is not None
 
 
+def _table(content: Content) -> bool:
+    """Whether the first line that is no comment has T and a number, then letters with numbers."""
+    lines = (line for line in content.text.splitlines() if line.strip() and not line.lstrip().startswith(";"))
+    return _TOOL.match(next(lines, "")) is not None
+
+
 def _estlcam(content: Content) -> bool:
     return "estlcam" in content.head or (content.path.suffix.lower() == ".tl" and content.head.startswith("<"))
 
 
 FOREIGN = (
+    Foreign("a LinuxCNC tool table", _table,
+            f"it has diameters alone, no flute length, stick-out or holder; {_TOML}"),
     Foreign("a Vectric tool database", _sqlite(b"tool_geometry", ".vtdb"),
             f"it has no shank, stick-out or holder; {_TOML}"),
     Foreign("a Mastercam tool database", _sqlite(b"TlTool", ".tooldb"), _FUSION),

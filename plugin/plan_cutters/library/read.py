@@ -25,7 +25,7 @@ def read_library(path: str | os.PathLike[str], *, assume_stickout: float | None 
     Parameters
     ----------
     path : path
-        Fusion `.json`, `.tools` or CSV, HSMWorks `.hsmlib`, FreeCAD `.fctl` or `.fctb`, LinuxCNC `.tbl`, our own TOML. What the
+        Fusion `.json`, `.tools` or CSV, HSMWorks `.hsmlib`, FreeCAD `.fctl` or `.fctb`, our own TOML. What the
         file holds decides.
     assume_stickout : float, optional
         mm, of tools that state none.
