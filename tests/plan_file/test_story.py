@@ -19,8 +19,8 @@ from plan_cutters.plan_file.answers import ChangeEntry, MendEntry, RadiusEntry, 
 from plan_cutters.plan_file.model import WitnessEntry
 from plan_cutters.plan_file.notes import NoteCode
 from plan_cutters.plan_file.palette import MEANING, PALETTE, label
+from plan_cutters.plan_file.part_info import Scope
 from plan_cutters.plan_file.reasons import NO_CONTACT, REASONS
-from plan_cutters.plan_file.scope import Scope
 from plan_cutters.plan_file.words import notes
 from plan_cutters.plan_file.words.answers import answers
 from plan_cutters.plan_file.words.next_steps import effect

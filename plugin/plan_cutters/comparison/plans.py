@@ -16,9 +16,8 @@ from plan_cutters.comparison.states import (
     reached_whole,
     unreachable,
 )
-from plan_cutters.plan_file.fixtures import FixtureEntry
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
-from plan_cutters.plan_file.part_info import PartInfo
+from plan_cutters.plan_file.part_info import FixtureEntry, PartInfo
 from plan_cutters.plan_file.words.names import called
 
 #: Shares of an area that differ by no more are the same: samples of a changed part lie in other places.

@@ -31,8 +31,7 @@ from plan_cutters.plan_file.model import (
     WitnessEntry,
 )
 from plan_cutters.plan_file.numbers import listed
-from plan_cutters.plan_file.part_info import OrientationInfo, PartInfo, SewingInfo
-from plan_cutters.plan_file.scope import Scope
+from plan_cutters.plan_file.part_info import OrientationInfo, PartInfo, Scope, SewingInfo
 from plan_cutters.scene.faces import Chosen
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.surroundings import Surroundings

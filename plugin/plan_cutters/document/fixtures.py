@@ -5,7 +5,7 @@ from pathlib import Path
 
 from cad_io import Part
 from cad_io.read.mesh import Mesh
-from plan_cutters.plan_file.fixtures import FixtureEntry, ReferenceEntry
+from plan_cutters.plan_file.part_info import FixtureEntry, ReferenceEntry
 from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
 
 

@@ -32,9 +32,9 @@ from plan_cutters.plan_file.operations import (
     OperationsEntry,
     RestEntry,
     WorkplaneEntry,
+    runs,
 )
 from plan_cutters.plan_file.palette import operation_colour
-from plan_cutters.plan_file.runs import runs
 
 #: Areas differ by less, as a share, where they are of the same samples.
 _SAME_AREA = 1e-3

@@ -9,12 +9,10 @@ from pydantic import Field
 
 from plan_cutters.plan_file.answers import LeastSetEntry, MendEntry, RadiusEntry, StickOutEntry
 from plan_cutters.plan_file.effective import Effective
-from plan_cutters.plan_file.fixtures import FixtureEntry
 from plan_cutters.plan_file.frozen import Frozen, Posture, Vector
 from plan_cutters.plan_file.inside import InsideEntry
 from plan_cutters.plan_file.operations import OperationsEntry
-from plan_cutters.plan_file.part_info import PartInfo
-from plan_cutters.plan_file.scope import Scope
+from plan_cutters.plan_file.part_info import FixtureEntry, PartInfo, Scope
 from plan_cutters.plan_file.setups import SetupEntry, SetupProposal, SetupReach
 from plan_cutters.plan_file.shares import AreaShare, FaceVerdicts, VerdictCounts
 from plan_cutters.plan_file.split import SplitEntry

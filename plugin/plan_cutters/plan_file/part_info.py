@@ -1,9 +1,35 @@
-"""The part as the plan names it: its file, its size, which side is material, and what is odd about it."""
+"""The part as the plan names it: its file, its faces in and out of scope, what is odd about it, and what stands beside it."""
 
 from pydantic import Field
 
-from plan_cutters.plan_file.fixtures import ReferenceEntry
 from plan_cutters.plan_file.frozen import Frozen, Vector
+
+
+class ReferenceEntry(Frozen):
+    """A file that a CAD file refers to."""
+
+    file: str = Field(
+        description="path from the folder of the file that refers to it, or of the one that refers to that"
+    )
+    sha256: str | None = Field(description="null: it is not there")
+
+
+class FixtureEntry(Frozen):
+    """A body that is in the way and no part of what is machined."""
+
+    name: str = Field(description="as `obstacle_face` has it: fixture:NAME")
+    file: str | None = Field(description="null for words and objects")
+    sha256: str | None
+    references: list[ReferenceEntry] = Field(default=[], description="files that the file refers to")
+    unit: str | None = Field(description="of lengths in the file; null: as the file says")
+    placement: tuple[float, float, float, float, float, float] = Field(
+        description="x, y, z, mm, and turns about the part's fixed x, then y, then z axis, deg, which come before the shift"
+    )
+    triangles: int
+    chord_error_mm: float = Field(description="how far they are from what they stand for; of a mesh, as stated")
+    watertight: bool = Field(description="it encloses something; else only its surface is in the way")
+    notes: list[str]
+    setups: list[int] = Field(default=[0], description="setups in which it stands, counted from 0 for the first")
 
 
 class OrientationInfo(Frozen):
@@ -32,3 +58,14 @@ class PartInfo(Frozen):
     orientation: OrientationInfo
     sewing: SewingInfo | None = Field(default=None, description="null where every face belongs to a solid")
     warnings: list[str]
+
+
+class Scope(Frozen):
+    """Faces that were judged, and those that were not: these are obstacles, unless they are ignored."""
+
+    judged: int = Field(description="target faces")
+    judged_mm2: float = Field(description="their area, as far as it is known")
+    not_judged: int = Field(description="faces that are obstacles only")
+    not_judged_mm2: float = Field(description="their area, as far as it is known")
+    judged_by_kind: dict[str, int] = Field(description="as `faces[].kind`")
+    not_judged_by_kind: dict[str, int]

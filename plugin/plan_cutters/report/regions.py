@@ -21,7 +21,7 @@ from plan_cutters.plan_file.axis_regions import (
     Span,
 )
 from plan_cutters.plan_file.frozen import vector
-from plan_cutters.plan_file.runs import runs
+from plan_cutters.plan_file.operations import runs
 from plan_cutters.report.protocol import Judged
 from plan_cutters.scene.clearance import clearances
 from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at

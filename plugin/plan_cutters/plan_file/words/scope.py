@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.numbers import percent
-from plan_cutters.plan_file.scope import Scope
+from plan_cutters.plan_file.part_info import Scope
 
 #: Choices that name kinds of faces, not faces.
 _BY_KIND = frozenset({"sculptured", "blends", "all"})
