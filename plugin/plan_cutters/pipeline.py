@@ -36,7 +36,7 @@ from plan_cutters.plan_file.notes import maps_partial
 from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.proposal import plan_proposed
 from plan_cutters.result import Result
-from plan_cutters.scene.conditions import contacts_of, warm
+from plan_cutters.scene.conditions import Context, contacts_of, warm
 from plan_cutters.scene.faces import choose
 from plan_cutters.scene.inside_material import inside_bodies, inside_material
 from plan_cutters.scene.preparation import Prepared
@@ -161,9 +161,9 @@ def run(
         cutter = next(c for c in ready.cutters if c.id == result.shown)
         verdicts = reported[cutter].here
         if ready.conditions.machine.limited:
-            verdicts = judge(replace(ready, conditions=ready.conditions.machineless), cutter)
+            verdicts = judge(replace(ready, conditions=ready.conditions.without_machine()), cutter)
         maps = posture_maps(
-            ready.samples, cutter, ready.conditions, verdicts, part=ready.scene.part.fingerprint, progress=tell,
+            ready.samples, Context.of(cutter, ready.conditions), verdicts, part=ready.scene.part.fingerprint, progress=tell,
             inside=ready.inside_bodies, about=question(ready, cutter), most=options.map_budget,
         )  # fmt: skip
     document = result.plan
@@ -246,7 +246,7 @@ def prepare(
             one.surroundings.build(options.jobs)
     with clock.stage("compile"):
         compiling("search.search")
-        warm(contacts_of(samples), cutters[0], conditions)
+        warm(contacts_of(samples), Context.of(cutters[0], conditions))
     with clock.stage("bodies"):
         within = inside_material(
             samples, scene.orientation, surroundings.enclosing, surroundings.certain, conditions.tolerance, options.jobs
@@ -326,8 +326,8 @@ def _judged(
         explained, which = by_cutter[cutter]
         verdicts = explained.verdicts
         with clock.stage(cutter.id, shown=False):
-            slack, part = ready.conditions.outer_tool(cutter).slack, ready.scene.part
-            witness_list = witnesses(samples, verdicts, cutter, ready.conditions, inside=ready.shut, part=part)
+            context, part = Context.of(cutter, ready.conditions), ready.scene.part
+            witness_list = witnesses(samples, verdicts, context, inside=ready.shut, part=part)
             marched = march_differs(samples, convex, ready.region, mine.interference_free)
             entry = cutter_entry(
                 cutter,
@@ -338,7 +338,7 @@ def _judged(
                 seconds[cutter],
                 part=part,
                 surroundings=surroundings,
-                slack=slack,
+                slack=context.outer_tool.slack,
                 inside=inside,
                 besides=explained.besides,
             )
@@ -380,8 +380,9 @@ def assemble(
             # Where all setups hold the part alike, what is free in one of them is free in all.
             setups = ready.setups[:1] if ready.alike else ready.setups
             which = np.minimum(judged[cutter].which, len(setups) - 1)
-            served = in_each(ready.samples, judged[cutter].verdicts, which, cutter, ready.scene.part, ready.scene.orientation,
-                             setups, budget=budget, most=most, covered_samples=ready.inside_bodies)  # fmt: skip
+            contexts = [Context.of(cutter, each) for each in setups]
+            served = in_each(ready.samples, judged[cutter].verdicts, which, contexts, ready.scene.part, ready.scene.orientation,
+                             budget=budget, most=most, covered_samples=ready.inside_bodies)  # fmt: skip
         area = AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
                          short=served.short, dropped=served.dropped, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
         entries = [

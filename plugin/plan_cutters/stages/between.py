@@ -14,9 +14,8 @@ from scipy import ndimage
 
 from cad_io.arrays import FaceGrid, Floats, Ints, Orientation, Record, SurfaceSamples
 from cad_io.part import Part
-from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.cells import CellContacts, Field, laid
 from plan_cutters.stages.connected import connected
@@ -110,10 +109,9 @@ class Between(Record):
 def between(
     samples: SurfaceSamples,
     verdicts: Verdicts,
-    cutter: Cutter,
+    context: Context,
     part: Part,
     orientation: Orientation,
-    conditions: Conditions,
     *,
     budget: int,
     most: float = np.inf,
@@ -130,10 +128,9 @@ def between(
         The faces in them, `empty` ones included, are the target.
     verdicts : Verdicts
         Of the cutter.
-    cutter : Cutter
+    context : Context
     part : Part
     orientation : Orientation
-    conditions : Conditions
     budget : int
         Most contacts to add to the samples.
     most : float
@@ -163,7 +160,7 @@ def between(
         trim = part.trim(grid.face)
         if trim is None or not trim.closed:
             continue  # which part of the surface it uses is not known well enough
-        field, mine, bare = laid(part, orientation, samples, grid, verdicts, conditions)
+        field, mine, bare = laid(part, orientation, samples, grid, verdicts, context.conditions)
         on_grid = grid.index[grid.index >= 0]
         unlooked -= int(counted[on_grid].sum())
         if covered_samples[on_grid].any():
@@ -173,7 +170,7 @@ def between(
             mine, bare = (cells.of(~deep[tuple(cells.home.T)]) for cells in (mine, bare))
         # Row -1, of no sample, is the last.
         mine, bare = (cells.of(own[cells.sample]) for cells in (mine, bare))
-        faces.append(FaceCells(field, cutter, conditions, work, fixed))
+        faces.append(FaceCells(field, context, work, fixed))
         nodes.append(mine)
         strips.append(bare)
     surrounding_area = _about(nodes, len(samples)) + _about(strips, len(samples))
@@ -215,27 +212,27 @@ def between(
 
 
 def in_each(
-    samples: SurfaceSamples, verdicts: Verdicts, which: Ints, cutter: Cutter, part: Part, orientation: Orientation,
-    setups: Sequence[Conditions], *, budget: int, most: float = np.inf, covered_samples: NDArray[np.bool_] | None = None,
+    samples: SurfaceSamples, verdicts: Verdicts, which: Ints, contexts: Sequence[Context], part: Part,
+    orientation: Orientation, *, budget: int, most: float = np.inf, covered_samples: NDArray[np.bool_] | None = None,
 ) -> Between:  # fmt: skip
     """The same over setups that hold the part differently: each cell among the obstacles of the setup that serves its sample.
 
     Parameters
     ----------
-    samples, verdicts, cutter, part, orientation, budget, most, beside
+    samples, verdicts, part, orientation, budget, most, covered_samples
         As for `between`; the verdicts are those over all setups.
     which : (n,) int32
         The setup that serves each sample, -1 for none: its cells go with the first setup, as those about no sample do.
-    setups : sequence of Conditions
-        The first one first.
+    contexts : sequence of Context
+        Of the cutter in each setup, the first one first.
     """
     place = np.append(np.maximum(which, 0), 0)
     cells = []
-    for k, conditions in enumerate(setups):
+    for k, context in enumerate(contexts):
         own = place == k
         part_of_all = float(own[:-1].sum()) / max(1, len(samples))
         cells.append(between(
-            samples, verdicts, cutter, part, orientation, conditions, budget=int(budget * part_of_all), most=most * part_of_all,
+            samples, verdicts, context, part, orientation, budget=int(budget * part_of_all), most=most * part_of_all,
             covered_samples=covered_samples, own=own,
         ) if own.any() else None)  # fmt: skip
     return _joined([each for each in cells if each is not None])
