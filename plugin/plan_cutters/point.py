@@ -18,6 +18,7 @@ from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange, Range
 from plan_cutters.domain.signatures import spelled_out
+from plan_cutters.domain.tolerance import nominal_depth
 from plan_cutters.errors import OptionError
 from plan_cutters.machines.requested_setups import setups_requested
 from plan_cutters.option_types import PointOptions
@@ -134,9 +135,7 @@ def posture_map(
     for _ in range(_ROUNDS):
         surroundings = stage.surround_closer(chord)
         triangles = surroundings.certain.triangles
-        # Twice the chord error: next to the contact, where the true clearance is zero, triangles must not count,
-        # local gouging does.
-        nominal = 2 * triangles.chord_error + 1e-9
+        nominal = nominal_depth(triangles.chord_error)
         tool = assembly(cutter, nominal, nominal)
         context = Context(cutter, among(surroundings, 0.0), tool, tool)
         now = posture_map_of(contact, at_rotations, context, _NARROWEST_NOMINAL)

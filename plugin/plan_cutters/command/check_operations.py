@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
 #: Files that must stand with plan.json, and what they hold.
 _FILES = {"operations.npz": "operations of a plan", "samples.npz": "samples of a plan"}
-#: Share of the tolerance that the chord error of a plan's triangles may take: looser ones make the plan keep a coarser tolerance.
-_CHORD_SHARE = 0.25
 
 
 def checked(part: str, file: str, options: "Options", *, quiet: bool, read_timeout: float) -> int:
@@ -138,13 +136,14 @@ def _fits(
     part: "Part", options: "Options", document: Mapping[str, Any], cutters: list[str], setups: "tuple[Setup, ...]"
 ) -> float:
     """Refuse a plan of another part or of other options; the tolerance that it keeps, mm."""
+    from plan_cutters.domain.tolerance import kept
     from plan_cutters.errors import OptionError
 
     effective = document["effective"]
     places = (effective["placement"], *(effective["other_placements"] or [None] * len(effective["other_setups"])))
     # A plan may keep a tolerance that is coarser than the one asked for, as its triangles allow.
     tolerance, wanted = float(effective["tolerance_mm"]), options.tolerance
-    if tolerance > wanted and abs(tolerance - effective["chord_error_mm"] / _CHORD_SHARE) <= 1e-9 * tolerance:
+    if tolerance > wanted and abs(tolerance - kept(0.0, effective["chord_error_mm"])) <= 1e-9 * tolerance:
         wanted = tolerance
     pairs = [
         ("part", document["part"].get("sha256"), part.sha256),

@@ -13,6 +13,7 @@ from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.posture import PostureRange
+from plan_cutters.domain.tolerance import depths
 from plan_cutters.domain.verdicts import VerdictBuffer, blank
 from plan_cutters.kernels.rows import Contacts, Ranges, Rotary, Tool, VerdictArrays
 from plan_cutters.scene.obstacles import Obstacles
@@ -172,11 +173,11 @@ def contacts_of(samples: SurfaceSamples) -> Contacts:
 def tools(cutter: Cutter, tolerance: float, error: float) -> tuple[Assembly, Assembly]:
     """Make the outer and the inner tool of a cutter, for obstacles with a chord error, mm.
 
-    Every point of the surface has a point of the triangles within that error, and the reverse. The outer tool has flutes that are
-    smaller by the tolerance less the error, and all else is larger by the error. The inner tool has flutes that are smaller by
-    the tolerance and the error, and all else is smaller by the error.
+    In the outer tool flutes are smaller by the depth that is safe, in the inner tool by that which is blocked
+    (`tolerance.depths`); all else, which may touch nothing, is so for a tolerance of 0.
     """
-    return assembly(cutter, tolerance - error, -error), assembly(cutter, tolerance + error, error, kind="inner")
+    (safe, blocked), (safe_beside, blocked_beside) = depths(tolerance, error), depths(0.0, error)
+    return assembly(cutter, safe, safe_beside), assembly(cutter, blocked, blocked_beside, kind="inner")
 
 
 def tool_of(made: Assembly) -> Tool:

@@ -15,8 +15,9 @@ from cad_io.tessellate import tessellate
 from cad_io.tessellate.proxies import StandIn, stand_ins
 from cad_io.tessellate.triangles import At
 from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.tolerance import kept
 from plan_cutters.errors import UnjudgeableError
-from plan_cutters.scene.obstacles import CHORD_SHARE, Obstacles, weights
+from plan_cutters.scene.obstacles import Obstacles, weights
 from plan_cutters.scene.thickened import boxed, thickened
 
 #: Triangles of a loose face that are looked at to tell whether it lies on a body, about.
@@ -121,8 +122,8 @@ class Surroundings(Record):
         return (*self.bodies, *(each.body for each in self.fixtures if each.body is not None))
 
     def tolerance(self, requested: float) -> float:
-        """Give the gouge tolerance that is kept, mm: the one asked for or, where triangles cannot be that close, more."""
-        return max(requested, self.certain.triangles.chord_error / CHORD_SHARE)
+        """Give the gouge tolerance that is kept, mm (`tolerance.kept`)."""
+        return kept(requested, self.certain.triangles.chord_error)
 
     def called(self, face: int) -> str:
         """The name of a face number: `F12`, or `fixture:vise`."""

@@ -111,9 +111,9 @@ class FaceCells:
 
         self.about = self.field.about
         context, outer_tool, cutter = self.context, self.context.outer_tool, self.context.cutter
-        chord = context.conditions.obstacles.triangles.chord_error
+        obstacles, tolerance = context.conditions.obstacles, context.conditions.tolerance
         self.sweeping = Sweeping(context.outer, context.dummy, *outer_tool.noses(cutter.taper, cutter.shape), outer_tool.flutes,
-                                 context.conditions.tolerance - chord, chord)  # fmt: skip
+                                 obstacles.depths(tolerance)[0], obstacles.depths(0.0)[1])  # fmt: skip
 
     @property
     def served(self) -> float:
