@@ -2,8 +2,8 @@ import assert from "node:assert/strict";
 import { test } from "node:test";
 import { common, gougeBounds, gouges, heldTilts, modeAt, place, runs } from "../src/contact.ts";
 import { Samples } from "../src/samples.ts";
-import { dot, minus, mixed, norm, RAD } from "../src/vectors.ts";
-import { away, between, close, direction, endMill, numbers, sampleAt } from "./support.ts";
+import { dot, minus, mixed, norm, plus, RAD, scaled } from "../src/vectors.ts";
+import { away, between, close, direction, endMill, floor, numbers, sampleAt } from "./support.ts";
 
 test("a placed end mill touches its contact with the circle of its corner", () => {
   const random = numbers(1);
@@ -19,6 +19,8 @@ test("a placed end mill touches its contact with the circle of its corner", () =
     const from = minus(centre, tip);
     close(dot(from, axis), corner, 1e-9, "height");
     close(away(from, axis), radius - corner, 1e-9, "offset");
+    // Of that circle it is the lowest point over the surface.
+    close(dot(minus(from, scaled(axis, corner)), sample.normal), -(radius - corner) * Math.sin(posture.tilt * RAD), 1e-9);
   }
 });
 
@@ -46,6 +48,32 @@ test("a flat end gouges up to the tilt at which its ellipse is as flat as the gr
   close(high, Math.PI - Math.asin(5 / 20), 1e-12);
   assert.equal(gougeBounds([1 / 4, 0], Math.PI / 2, 5, 0), null);
   assert.deepEqual(gougeBounds([-0.1, -0.2], 0.3, 5, 0), [0, Math.PI]);
+});
+
+test("a corner gouges just where points of the surface near the contact lie in its ring", () => {
+  const random = numbers(7);
+  const decided = { yes: 0, no: 0 };
+  for (let k = 0; k < 400; k++) {
+    const corner = between(random, 0.5, 3);
+    const tool = endMill(corner + between(random, 0.5, 5), corner, 40);
+    const least = between(random, -0.3, 0.25);
+    const curvature: [number, number] = [between(random, least, 0.3), least];
+    const sample = { ...floor, curvature };
+    const posture = { tilt: between(random, 2, 88), rotation: between(random, 0, 360) };
+    const { tip, axis } = place(tool, sample, posture);
+    const centre = plus(tip, axis, corner);
+    // The least distance from the ring beyond its radius, in squares of the distance from the contact.
+    let least2 = Infinity;
+    for (let i = 0; i < 360; i++) {
+      const [x, y] = [1e-3 * Math.cos(i * RAD), 1e-3 * Math.sin(i * RAD)];
+      const q = minus([x, y, 0.5 * (curvature[0] * x * x + curvature[1] * y * y)], centre);
+      least2 = Math.min(least2, (Math.hypot(away(q, axis) - (tool.radius - corner), dot(q, axis)) - corner) / 1e-6);
+    }
+    if (Math.abs(least2) < 5e-3) continue;
+    assert.equal(gouges(tool, sample, posture), least2 < 0, `${least2} ${JSON.stringify({ curvature, posture, corner })}`);
+    decided[least2 < 0 ? "yes" : "no"]++;
+  }
+  assert.ok(decided.yes > 50 && decided.no > 50, JSON.stringify(decided));
 });
 
 test("bounds of a corner come to those of a flat end as the corner vanishes", () => {

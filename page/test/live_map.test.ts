@@ -84,6 +84,14 @@ test("the axis limit and the lack of contact come before what is met", () => {
   assert.equal(state(few, [wall(1)], 0, 0), "no_contact");
 });
 
+test("what curvature forbids is told only where something is met", () => {
+  const bent = { ...floor, curvature: [1, 1] as [number, number] };
+  const look = (walls: Parameters<typeof drawn>[0]): State =>
+    new Probe(drawn(walls), meta, new Machine(meta)).look(new LiveTool(endMill(2, 2, 40), meta), bent, { tilt: 0, rotation: 0 }).state;
+  assert.equal(look([ground]), "free");
+  assert.equal(look([wall(1.5)]), "local_gouge");
+});
+
 test("a grid holds the state of each rotation and tilt", () => {
   const probe = new Probe(drawn([ground, wall(6)]), meta, new Machine(meta));
   const tool = new LiveTool(endMill(2, 2, 40), meta);
