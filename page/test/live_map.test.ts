@@ -74,6 +74,9 @@ test("what is near is rear gouging, what is far a collision, and other parts hav
   const held = endMill(2, 2, 15);
   held.outline.push({ part: "holder", points: [[0, 15], [9, 15], [9, 40], [0, 40]] });
   assert.equal(state(held, [high], 0, 0), "holder");
+  const clamp = { ...high, at: [-5, -5, 8] as Vec, owner: -1 };
+  assert.equal(state(held, [clamp], 0, 0), "fixture");
+  assert.equal(state(held, [clamp, high], 0, 0), "holder", "a face of the part goes first");
 });
 
 test("the axis limit and the lack of contact come before what is met", () => {

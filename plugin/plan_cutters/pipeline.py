@@ -357,14 +357,10 @@ def assemble(
     `searched`: the work of all searches, which bounds that between the samples unless a budget was requested.
     """
     clock, answers = clock or Clock(), answers or Answers()
-    reaches = {cutter.id: each.verdicts for cutter, each in judged.items()}
-    here = {cutter.id: each.here for cutter, each in judged.items()}
-    served_in = {cutter.id: each.which for cutter, each in judged.items()}
     within = [within_limits(ready.samples, ready.cutters, conditions) & ready.finished for conditions in ready.setups]
     beyond = ready.somewhere & ~np.logical_or.reduce(within)
     moved = travels(ready.options, ready.samples, {cutter: each.here for cutter, each in judged.items()})
-    over = OverSetups(reaches, here, served_in, ready.scene.setup,
-                      tuple((axis, dict(verdicts_there)) for axis, verdicts_there in other_setups))  # fmt: skip
+    over = _over_setups(ready, judged, other_setups)
     entries = completed([judged[c].entry for c in ready.cutters], ready, answers, over, beyond, moved)
     selected, chosen = selection(entries)
     # Where obstacles are missing, none is selected, but one may reach all that could be judged.
@@ -377,14 +373,7 @@ def assemble(
             most = np.inf
             if searched is not None and ready.options.area_budget is None:
                 most = _WORK_LEAST + _WORK_SHARE * searched.looked + _WORK_SAMPLE * len(ready.samples)
-            # Where all setups hold the part alike, what is free in one of them is free in all.
-            setups = ready.setups[:1] if ready.alike else ready.setups
-            which = np.minimum(judged[cutter].which, len(setups) - 1)
-            contexts = [Context.of(cutter, each) for each in setups]
-            served = in_each(ready.samples, judged[cutter].verdicts, which, contexts, ready.scene.part, ready.scene.orientation,
-                             budget=budget, most=most, covered_samples=ready.inside_bodies)  # fmt: skip
-        area = AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
-                         short=served.short, dropped=served.dropped, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
+            area = _area(ready, cutter, judged[cutter], budget, most)
         entries = [
             e.model_copy(update={"area": area, "seen": e.seen or area.feasible}) if e.id == best else e for e in entries
         ]
@@ -398,3 +387,23 @@ def assemble(
         moved,
         answers,
     )
+
+
+def _over_setups(ready: Prepared, judged: Mapping[Cutter, Judged], others: Sequence[OtherSetup]) -> OverSetups:
+    reaches = {cutter.id: each.verdicts for cutter, each in judged.items()}
+    here = {cutter.id: each.here for cutter, each in judged.items()}
+    served_in = {cutter.id: each.which for cutter, each in judged.items()}
+    there = tuple((axis, dict(verdicts_there)) for axis, verdicts_there in others)
+    return OverSetups(reaches, here, served_in, ready.scene.setup, there)
+
+
+def _area(ready: Prepared, cutter: Cutter, judged: Judged, budget: int, most: float) -> AreaEntry:
+    """What is proved between the samples, with so many contacts and so much work."""
+    # Where all setups hold the part alike, what is free in one of them is free in all.
+    setups = ready.setups[:1] if ready.alike else ready.setups
+    which = np.minimum(judged.which, len(setups) - 1)
+    contexts = [Context.of(cutter, each) for each in setups]
+    served = in_each(ready.samples, judged.verdicts, which, contexts, ready.scene.part, ready.scene.orientation,
+                     budget=budget, most=most, covered_samples=ready.inside_bodies)  # fmt: skip
+    return AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
+                     short=served.short, dropped=served.dropped, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip

@@ -140,6 +140,10 @@ def command(request: MapRequest) -> int:
     elif not request.quiet:
         with paper(80) as console:
             _table(result, about, outs, console)
+    return _code(result)
+
+
+def _code(result: "PostureMap") -> int:
     if any(len(each) for each in result.free) and not result.missing:
         return _FREE
     return _UNDECIDED if result.missing or any(len(each) for each in result.undecided) else _NONE

@@ -12,7 +12,7 @@ from cad_io.part.bodies import Body, bodies
 from cad_io.part.boxes import face_box
 from cad_io.read.mesh import Mesh
 from cad_io.tessellate import tessellate
-from cad_io.tessellate.proxies import StandIn, stand_ins
+from cad_io.tessellate.proxies import StandIn, StandIns, stand_ins
 from cad_io.tessellate.triangles import At
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.tolerance import kept
@@ -183,11 +183,24 @@ def surroundings(
     stand = stand_ins(part, triangles.missing, chord)
     missing = tuple((n, why, stand.how[n]) for n, why in triangles.missing if stand.how[n] != "edges")
     unread = tuple(each for each in part.lost if each.face is None)
-    lying = _on_bodies(certain, result)
-    everything = weights(triangles, result)
+    return Surroundings(
+        _possible(part, triangles, stand, result, certain),
+        certain,
+        result,
+        missing,
+        _on_bodies(certain, result),
+        unread,
+    )
+
+
+def _possible(
+    part: Part, triangles: Triangles, stand: StandIns, result: Sequence[Body], certain: Obstacles
+) -> Obstacles:
+    """Everything that may be in the way: the certain obstacles themselves where nothing is guessed."""
+    loose, everything = dict(triangles.loose), weights(triangles, result)
     caps = np.concatenate([np.zeros((0, 3, 3)), *(body.cap for body in result)])
     if not len(stand.vertex) and not len(caps) and not loose and (everything == certain.weight).all():
-        return Surroundings(certain, certain, result, missing, lying, unread)
+        return certain
     # A surface that triangles do not follow closely may be anywhere within their error, and is for certain nowhere.
     rows = rows_by_face(triangles.face)
     shells = [(n, _shell(part, n, triangles.vertex[rows.get(n, [])], error)) for n, error in loose.items()]
@@ -200,10 +213,9 @@ def surroundings(
     )
     open_boxes = [_box(triangles, body) for body in result if not body.closed]
     filled = np.ones(len(caps) + len(shell), np.int8)
-    possible = Obstacles(all_triangles, np.concatenate([everything, stand.weight, filled]),
-                       np.array([box for box in open_boxes if np.isfinite(box).all()]).reshape(-1, 2, 3),
-                       part.looseness)  # fmt: skip
-    return Surroundings(possible, certain, result, missing, lying, unread)
+    return Obstacles(all_triangles, np.concatenate([everything, stand.weight, filled]),
+                     np.array([box for box in open_boxes if np.isfinite(box).all()]).reshape(-1, 2, 3),
+                     part.looseness)  # fmt: skip
 
 
 def _shell(part: Part, number: int, vertex: Floats, error: float) -> Floats:

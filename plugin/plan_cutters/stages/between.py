@@ -145,10 +145,7 @@ def between(
         Samples whose cells are looked at, and behind them whether those about no sample are; the others are as if they were not
         there, but `share` is of all the same.
     """
-    targets = sorted({*np.unique(samples.face).tolist(), *(number for number, _ in samples.empty)})
-    areas = {number: part.faces[number - 1].area for number in targets}
-    unknown = tuple(number for number, area in areas.items() if not area > 0)
-    whole = sum(area for area in areas.values() if area > 0)
+    whole, unknown = _areas(samples, part)
     covered_samples = np.zeros(len(samples), bool) if covered_samples is None else covered_samples
     own = np.ones(len(samples) + 1, bool) if own is None else own
     counted, short = own[:-1] & ~covered_samples, 0
@@ -184,19 +181,8 @@ def between(
         for mine, bare, own_chosen in zip(nodes, strips, np.split(chosen, ends[:-1]), strict=True)
     ]
     looked -= sum(len(mine) for mine in nodes)
-    # Faces with the largest cells first: there each contact may gain most.
-    gains = [float(cells.area.sum()) / max(1, len(cells)) for cells in laid_out]
-    for i in sorted(range(len(faces)), key=lambda i: -gains[i]):
-        looked += faces[i].begin(laid_out[i], upto)
-    # A fair share of the rest for each face, by how many of its cells are open and worth it.
-    least = LEAST_GAIN * whole
-    wanted = [face_cells.worthy(least) for face_cells in faces]
-    behind = sum(wanted)
-    for face_cells, share in zip(faces, wanted, strict=True):
-        # What one face leaves of the work goes to those after it.
-        until = work.looked + max(0.0, upto - work.looked) * share / behind if share else 0.0
-        looked += face_cells.refine(budget * share // max(1, sum(wanted)), least, until)
-        behind -= share
+    looked += _begun(faces, laid_out, upto)
+    looked += _refined(faces, budget, LEAST_GAIN * whole, upto, work)
     unlooked += int((~chosen).sum()) + sum(face_cells.left for face_cells in faces)
     return Between(
         sum(face_cells.served for face_cells in faces),
@@ -209,6 +195,32 @@ def between(
         _cells(faces),
         surrounding_area,
     )
+
+
+def _areas(samples: SurfaceSamples, part: Part) -> tuple[float, tuple[int, ...]]:
+    """The area of all target faces, mm2, and those whose area is not known."""
+    targets = sorted({*np.unique(samples.face).tolist(), *(number for number, _ in samples.empty)})
+    areas = {number: part.faces[number - 1].area for number in targets}
+    unknown = tuple(number for number, area in areas.items() if not area > 0)
+    return sum(area for area in areas.values() if area > 0), unknown
+
+
+def _begun(faces: Sequence[FaceCells], laid_out: Sequence[CellContacts], upto: float) -> int:
+    """Look at the cells of all faces, those with the largest cells first: there each contact may gain most."""
+    gains = [float(cells.area.sum()) / max(1, len(cells)) for cells in laid_out]
+    return sum(faces[i].begin(laid_out[i], upto) for i in sorted(range(len(faces)), key=lambda i: -gains[i]))
+
+
+def _refined(faces: Sequence[FaceCells], budget: int, least: float, upto: float, work: Work) -> int:
+    """Cut cells into four, with a fair share of the budget for each face, by how many of its cells are open and worth it."""
+    wanted = [face_cells.worthy(least) for face_cells in faces]
+    behind, looked = sum(wanted), 0
+    for face_cells, share in zip(faces, wanted, strict=True):
+        # What one face leaves of the work goes to those after it.
+        until = work.looked + max(0.0, upto - work.looked) * share / behind if share else 0.0
+        looked += face_cells.refine(budget * share // max(1, sum(wanted)), least, until)
+        behind -= share
+    return looked
 
 
 def in_each(
