@@ -57,7 +57,7 @@ def ready(what: Any, cutter: str) -> Any:
 def measured(prepared: Any, cutter: Any) -> dict[str, float]:
     """Processor seconds of one cutter, and what they were spent on."""
     from plan_cutters.domain.verdicts import INACCESSIBLE, INSIDE, INTERFERENCE_FREE, UNDECIDED, blank
-    from plan_cutters.scene.conditions import contacts_of, search_postures
+    from plan_cutters.scene.conditions import Context, contacts_of, search_postures
     from plan_cutters.stages.judge import judge
     from plan_cutters.stages.witness import witnesses
 
@@ -67,15 +67,15 @@ def measured(prepared: Any, cutter: Any) -> dict[str, float]:
     judged = time.process_time() - began
     not_reached = (reach.verdict == INACCESSIBLE) & ((reach.reason != INSIDE) | (prepared.inside < 0))
     contacts, seconds = contacts_of(samples), {}
-    tools = conditions.outer_tool(cutter), conditions.inner_tool(cutter)
+    context = Context.of(cutter, conditions)
     groups = {"no": not_reached, "yes": reach.reached & (reach.verdict != INTERFERENCE_FREE)}
     for name, rows in groups.items():
         again = blank(len(samples))
         began = time.process_time()
-        search_postures(contacts, np.flatnonzero(rows), *tools, conditions, again, fixed=True)
+        search_postures(contacts, np.flatnonzero(rows), context, again, fixed=True)
         seconds[name] = time.process_time() - began
     began = time.process_time()
-    found = witnesses(samples, reach, cutter, conditions, inside=prepared.inside)
+    found = witnesses(samples, reach, context, inside=prepared.inside)
     told = time.process_time() - began
     return {
         "samples": len(samples), "triangles": len(conditions.obstacles.triangles),

@@ -19,7 +19,7 @@ from cad_io.arrays import Triangles
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, Machine, plan
 from plan_cutters.domain.posture import PostureRange
-from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.stages.access import access
@@ -45,11 +45,11 @@ def given(obstacles: Obstacles, postures: PostureRange) -> Conditions:
 def existence(result: Any, obstacles: Obstacles, cutter: Cutter) -> tuple[float, float, int]:
     """Best wall and processor seconds of dummy tests and search, and samples not reached."""
     samples, best = result.samples, [np.inf, np.inf]
-    conditions = given(obstacles, PostureRange())
+    context = Context.of(cutter, given(obstacles, PostureRange()))
     for _ in range(BEST_OF):
         wall, processor = time.perf_counter(), time.process_time()
-        free = decompose(samples, result.surface_class == CONVEX, cutter, conditions)
-        reach = access(samples, free, cutter, conditions)
+        free = decompose(samples, result.surface_class == CONVEX, context)
+        reach = access(samples, free, context)
         best = [min(best[0], time.perf_counter() - wall), min(best[1], time.process_time() - processor)]
     return best[0], best[1], int((~reach.reached).sum())
 
@@ -58,7 +58,9 @@ def all_maps(result: Any, obstacles: Obstacles, cutter: Cutter) -> None:
     """Posture maps of all samples at 72 rotations."""
     wall, processor = time.perf_counter(), time.process_time()
     maps = posture_maps(
-        result.samples, cutter, given(obstacles, PostureRange(step=np.radians(5))), result.reaches[cutter.id]
+        result.samples,
+        Context.of(cutter, given(obstacles, PostureRange(step=np.radians(5)))),
+        result.reaches[cutter.id],
     )
     wide = np.degrees(maps.undecided)
     print(f"posture maps, {wide.shape[1]} rotations: {time.perf_counter() - wall:.1f} s "

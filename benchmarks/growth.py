@@ -36,7 +36,7 @@ def one(grid: int, chord: float) -> dict[str, float]:
     from plan_cutters import Cutter
     from plan_cutters.domain.machine import Machine
     from plan_cutters.domain.posture import PostureRange
-    from plan_cutters.scene.conditions import Conditions
+    from plan_cutters.scene.conditions import Conditions, Context
     from plan_cutters.scene.obstacles import Obstacles
     from plan_cutters.scene.surroundings import Surroundings
     from plan_cutters.stages.access import access
@@ -55,8 +55,9 @@ def one(grid: int, chord: float) -> dict[str, float]:
             Machine(), np.array([0.0, 0.0, 1.0]), PostureRange(), Surroundings.sheet(obstacles), tolerance, JOBS
         )
         began = time.perf_counter(), time.process_time()
-        free = decompose(samples, kind == CONVEX, cutter, conditions)
-        reach = access(samples, free, cutter, conditions)
+        context = Context.of(cutter, conditions)
+        free = decompose(samples, kind == CONVEX, context)
+        reach = access(samples, free, context)
         return time.perf_counter() - began[0], time.process_time() - began[1], int(reach.reached.sum())
 
     before: list[float] = []

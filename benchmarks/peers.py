@@ -46,7 +46,7 @@ from plan_cutters.kernels.maps.free_map import free_map
 from plan_cutters.kernels.maps.points import local_gouge_range
 from plan_cutters.kernels.rows import Ranges
 from plan_cutters.kernels.search.search import probe
-from plan_cutters.scene.conditions import Conditions, contacts_of, rotary_of, tool_of
+from plan_cutters.scene.conditions import Conditions, Context, contacts_of, rotary_of, tool_of
 from plan_cutters.scene.faces import select_faces
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
@@ -411,7 +411,7 @@ def existence(samples: SurfaceSamples, obstacles: Obstacles) -> str:
         conditions = Conditions(
             Machine(), np.array([0.0, 0.0, 1.0]), postures, Surroundings.sheet(obstacles), TOLERANCE, jobs
         )
-        reach, seconds = timed(lambda given=conditions: access(samples, none, CUTTER, given), 3, clock)
+        reach, seconds = timed(lambda given=conditions: access(samples, none, Context.of(CUTTER, given)), 3, clock)
         found.append(f"{len(samples) / seconds:.3g} samples/s on {jobs} thread(s)")
     reached = f"{int(reach.reached.sum())} of {len(samples)} samples reached"
     return f"\nOurs, existence of a posture, 72 rotations: {', '.join(found)}; {reached}."

@@ -15,7 +15,7 @@ from plan_cutters import Cutter
 from plan_cutters.kernels.maps.free_map import free_map
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
-from plan_cutters.scene.conditions import contacts_of, tool_of
+from plan_cutters.scene.conditions import Context, contacts_of
 from plan_cutters.stages.posture_maps import NARROWEST
 
 PART = Path(__file__).parent.parent / "samples" / "peaks_and_valleys.step"
@@ -46,7 +46,7 @@ def main() -> None:
     )
     print("| tool | us a rotation | free deg | undecided deg |\n| --- | --- | --- | --- |")
     for name, cutter in TOOLS.items():
-        tool, best = tool_of(ready.conditions.outer_tool(cutter)), np.inf
+        tool, best = Context.of(cutter, ready.conditions).outer, np.inf
         for _ in range(4):
             start = time.process_time()
             free_map(

@@ -24,6 +24,7 @@ from plan_cutters import Cutter, Holder, Stage, plan
 from plan_cutters.document.clock import Clock
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare, run
+from plan_cutters.scene.conditions import Context
 from plan_cutters.stages.judge import judge
 
 PART = Path(__file__).parent.parent / "samples" / "peaks_and_valleys.step"
@@ -67,7 +68,7 @@ def speed() -> None:
         if cutter.plain:
             flat[cutter.radius] = least
         ratio = f"{least / flat[cutter.radius]:.2f}" if cutter.radius in flat else ""
-        pieces = ready.conditions.outer_tool(cutter).piece.shape[1]
+        pieces = Context.of(cutter, ready.conditions).outer_tool.piece.shape[1]
         print(f"| {cutter.id} | {pieces} | {least:.3f} | {ratio} | {int((~reach.reached).sum())} |", flush=True)
     ten = [each for each in TOOLS if not each.plain]
     result = run(PART, Options(cutters=tuple(ten), grid=201, area_budget=0), Clock(None))

@@ -1,13 +1,12 @@
 // The tool axis at the posture shown, and the positions of the rotary axes that hold it.
 
 import type { App } from "./app.ts";
+import { SINGULAR } from "./codes.ts";
 import { copyButton } from "./copy.ts";
 import { el } from "./dom.ts";
 import type { Position } from "./machine.ts";
 import { cross, DEG, norm } from "./vectors.ts";
 
-/** As in plan_cutters.domain.kinematics: nearer to the axis next to the part a position is singular, degrees. */
-const SINGULAR = 2;
 const DIGITS = { angle: 2, axis: 4 };
 
 export class Angles {

@@ -1,5 +1,7 @@
 // Small words for making elements. Styles are set by the style sheet, never by attributes.
 
+import { ALL_BUT, HARDLY_ANY, ROUNDING } from "./codes.ts";
+
 type Child = Node | string | null;
 type Attributes = Record<string, string | number | boolean | null>;
 
@@ -37,9 +39,6 @@ export function button(label: string, work: () => void, attributes: Attributes =
   return made;
 }
 
-/** What rounding leaves of nothing is below this. */
-const ROUNDING = 1e-9;
-
 /** A length or angle in as few figures as are of use, without an exponent. */
 export function figure(value: number, digits = 3): string {
   if (!Number.isFinite(value)) return "unknown";
@@ -58,5 +57,5 @@ export function degrees(value: number): string {
 export function percent(share: number): string {
   if (share <= 0 || share >= 1) return share >= 1 ? "100 %" : "0 %";
   const text = (100 * share).toFixed(1);
-  return text === "0.0" ? "<0.1 %" : text === "100.0" ? ">99.9 %" : `${Number(text)} %`;
+  return text === "0.0" ? HARDLY_ANY : text === "100.0" ? ALL_BUT : `${Number(text)} %`;
 }

@@ -1,6 +1,7 @@
 // Which postures are free at a sample, found from the drawn triangles: an approximation, not certified.
 
 import type { Box3 } from "three";
+import { STATES } from "./codes.ts";
 import { gouges, modeAt, place, type Placed } from "./contact.ts";
 import type { Machine } from "./machine.ts";
 import type { Drawn, Owner } from "./mesh.ts";
@@ -9,22 +10,6 @@ import { hit, reaches, type Solid, solidOf } from "./overlap.ts";
 import type { Posture, Sample } from "./samples.ts";
 import { across, cross, dot, minus, plus } from "./vectors.ts";
 
-/** What can forbid a posture, in the order in which it is told; `free` and the last ones are no causes. */
-export const STATES = [
-  "free",
-  "axis_limit",
-  "no_contact",
-  "local_gouge",
-  "rear_gouge",
-  "collision",
-  "neck",
-  "shank",
-  "holder",
-  "fixture",
-  "undecided",
-  "tolerance",
-  "buried",
-] as const;
 export type State = (typeof STATES)[number];
 
 export interface Met {
@@ -43,14 +28,14 @@ export class LiveTool {
   readonly solids: Solid[];
   /** Obstacles in the flutes within this distance of the contact are rear gouging. */
   readonly near: number;
-  /** Depths up to this, mm, are overlooked: the tolerance and the distance of the drawn triangles from the surface. */
+  /** Depths up to this, mm, are overlooked. */
   readonly spared: number;
 
   constructor(
     readonly cutter: Cutter,
     meta: Meta,
   ) {
-    const spared = meta.tolerance_mm + (meta.drawn_chord_mm ?? 0);
+    const spared = meta.overlooked_mm;
     this.spared = spared;
     this.solids = cutter.outline.map((outline) =>
       solidOf(outline, spared - (outline.part === "flutes" ? cutter.allowance_mm : cutter.clearance_mm)),

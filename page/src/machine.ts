@@ -1,13 +1,11 @@
 // Whether the machine holds a tool axis: by its plain limit, and by its rotary axes within their limits.
 
+import { ON_LIMIT, PARALLEL } from "./codes.ts";
 import { common, heldTilts, runs } from "./contact.ts";
 import type { Kinematics, Meta, Vec } from "./meta.ts";
 import { type Sample, Samples } from "./samples.ts";
 import { cross, DEG, dot, minus, mixed, norm, plus, RAD, scaled } from "./vectors.ts";
 
-/** As in plan_cutters.domain.kinematics. */
-const PARALLEL = 1e-6;
-const ON_LIMIT = 1e-9;
 /** Stored intervals are cut back to the last tilt that is held, in steps of this, degrees. */
 const STEP = 0.1;
 

@@ -124,7 +124,8 @@ export interface Meta {
   setup: { z: Vec; x: Vec | null };
   machine: string;
   tolerance_mm: number;
-  drawn_chord_mm?: number;
+  /** Depths up to this in the drawn triangles, mm, are no gouge for certain. */
+  overlooked_mm: number;
   shown: string;
   selected: string | null;
   reasons: string[];

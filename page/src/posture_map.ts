@@ -2,9 +2,10 @@
 
 import { Angles } from "./angles.ts";
 import type { App } from "./app.ts";
+import { STATES } from "./codes.ts";
 import { causeOf, OPEN, spoken } from "./colours.ts";
 import { button, degrees, el, figure, percent } from "./dom.ts";
-import { STATES, type State } from "./live_map.ts";
+import type { State } from "./live_map.ts";
 import { swatch, tile } from "./patterns.ts";
 import { SampleMap, wording } from "./posture_states.ts";
 import { alike } from "./samples.ts";

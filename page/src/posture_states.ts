@@ -1,9 +1,10 @@
 // The map of one sample: what is certified, what the drawn triangles add to it, and what is said of a posture.
 
 import type { App, Judged } from "./app.ts";
+import { OUTERMOST, STATES } from "./codes.ts";
 import { spoken } from "./colours.ts";
 import { runs } from "./contact.ts";
-import { emptyGrid, fillColumn, type Grid, type Met, STATES, type State } from "./live_map.ts";
+import { emptyGrid, fillColumn, type Grid, type Met, type State } from "./live_map.ts";
 import { alike, type Posture, type Sample } from "./samples.ts";
 import type { Certified, StoredMaps } from "./stored_map.ts";
 import { apart } from "./vectors.ts";
@@ -97,8 +98,7 @@ export class SampleMap {
   /** A blocked posture that comes near to being free: of the last cause, the one that meets least. */
   nearest(): Posture | null {
     const { grid, app } = this;
-    const order: State[] = ["holder", "fixture", "shank", "neck", "collision", "rear_gouge", "local_gouge"];
-    for (const state of order) {
+    for (const state of OUTERMOST) {
       const cells: Posture[] = [];
       grid.rotations.forEach((rotation, column) =>
         grid.tilts.forEach((tilt, row) => {

@@ -33,6 +33,19 @@ _LONGEST, _MOST_JOBS = 1e6, 1024
 _RECKONED = {"feed": (0.1, 1e6, "mm/min"), "scallop": (1e-5, 10.0, "mm"), "stepover": (0.01, 1.0, "diameters"),
              "index_step": (0.5, 90.0, "deg"), "index_time": (0.0, 1e5, "s"),
              "change_time": (0.0, 1e5, "s"), "setup_time": (0.0, 1e6, "s"), "overlap": (0.0, 1e3, "mm")}  # fmt: skip
+#: The least and the largest value of the other numbers, and what is said of one beyond them.
+_LIMITS = {
+    "grid": (2, 5000, "must lie between 2 and 5000 samples a side"),
+    "spacing": (math.ulp(0.0), _LONGEST, f"must be a positive number of mm, at most {_LONGEST:g}"),
+    "tolerance": (LEAST_TOLERANCE, MOST_TOLERANCE, f"must lie between {LEAST_TOLERANCE:g} and {MOST_TOLERANCE:g} mm"),
+    "allowance": (0.0, _LONGEST, f"must be 0 or a positive number of mm, at most {_LONGEST:g}"),
+    "holder_clearance": (0.0, _LONGEST, f"must be 0 or a positive number of mm, at most {_LONGEST:g}"),
+    "length_over_radius": (1.0, 1000.0, "must lie between 1 and 1000"),
+    "area_budget": (0, math.inf, "must not be negative"),
+    "map_budget": (1, math.inf, "must be at least 1 sample"),
+    "most_operations": (1, math.inf, "must be at least 1"),
+    "jobs": (1, _MOST_JOBS, f"must be at least 1 and at most {_MOST_JOBS}"),
+}
 
 
 def machine_option(value: Any) -> Machine:
@@ -202,28 +215,9 @@ class Options:
         self._check_kinds()
         if self.grid is not None and self.spacing is not None:
             raise OptionError("give a grid or a spacing, not both")
-        if self.grid is not None and not 2 <= self.grid <= 5000:
-            raise OptionError(f"grid {self.grid} must lie between 2 and 5000 samples a side")
-        if self.spacing is not None and not 0.0 < self.spacing <= _LONGEST:
-            raise OptionError(f"spacing {self.spacing:g} must be a positive number of mm, at most {_LONGEST:g}")
-        if not LEAST_TOLERANCE <= self.tolerance <= MOST_TOLERANCE:
-            raise OptionError(
-                f"tolerance {self.tolerance:g} must lie between {LEAST_TOLERANCE:g} and {MOST_TOLERANCE:g} mm"
-            )
-        for word in ("allowance", "holder_clearance"):
-            value = getattr(self, word)
-            if not 0.0 <= value <= _LONGEST:
-                raise OptionError(
-                    f"{word.replace('_', ' ')} {value:g} must be 0 or a positive number of mm, at most {_LONGEST:g}"
-                )
-        if not 1.0 <= self.length_over_radius <= 1000.0:
-            raise OptionError(f"length over radius {self.length_over_radius:g} must lie between 1 and 1000")
         if self.unit is not None and self.unit not in UNITS:
             raise OptionError(f"unit {self.unit!r} is not one of {', '.join(UNITS)}")
-        if self.area_budget is not None and self.area_budget < 0:
-            raise OptionError(f"area budget {self.area_budget} must not be negative")
-        if self.map_budget is not None and self.map_budget < 1:
-            raise OptionError(f"map budget {self.map_budget} must be at least 1 sample")
+        self._check_numbers()
         if self.operations is not None and self.machine.turns and self.machine.turning < 2:
             axes = "one rotary axis turns" if self.machine.turning else "no rotary axis turns"
             raise OptionError(f"on machine {self.machine.name} {axes} the tool: a plan of operations chooses the angles of two; "
@@ -235,8 +229,17 @@ class Options:
             )
         if self.operations in ("fastest", "both") and self.feed is None and not self.libraries:
             raise OptionError("the fastest operations need a feed: give --feed MM/MIN, or ask for the fewest")
-        if self.most_operations is not None and self.most_operations < 1:
-            raise OptionError(f"most operations {self.most_operations} must be at least 1")
+        for cutter in self.judged:
+            if not cutter.large_enough(self.tolerance):
+                raise OptionError(f"tolerance {self.tolerance:g} mm is too coarse for cutter {cutter.typed}")
+
+    def _check_numbers(self) -> None:
+        """Every number within its limits."""
+        for word, (low, high, must) in _LIMITS.items():
+            value = getattr(self, word)
+            if value is not None and not low <= value <= high:
+                written = value if isinstance(value, int) else f"{value:g}"
+                raise OptionError(f"{word.replace('_', ' ')} {written} {must}")
         for word, (low, high, unit_) in _RECKONED.items():
             value = getattr(self, word)
             # Angles are rad here, and degrees where they are requested and read.
@@ -244,11 +247,6 @@ class Options:
                 raise OptionError(
                     f"{word.replace('_', ' ')} {value:g} must lie between {low:g} and {high:,.9g} {unit_}"
                 )
-        if not 1 <= self.jobs <= _MOST_JOBS:
-            raise OptionError(f"jobs {self.jobs} must be at least 1 and at most {_MOST_JOBS}")
-        for cutter in self.judged:
-            if not cutter.large_enough(self.tolerance):
-                raise OptionError(f"tolerance {self.tolerance:g} mm is too coarse for cutter {cutter.typed}")
 
     def _check_kinds(self) -> None:
         """Every value of the type that its attribute says."""

@@ -36,7 +36,7 @@ from plan_cutters.plan_file.notes import maps_partial
 from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.proposal import plan_proposed
 from plan_cutters.result import Result
-from plan_cutters.scene.conditions import contacts_of, warm
+from plan_cutters.scene.conditions import Context, contacts_of, warm
 from plan_cutters.scene.faces import choose
 from plan_cutters.scene.inside_material import inside_bodies, inside_material
 from plan_cutters.scene.preparation import Prepared
@@ -161,9 +161,9 @@ def run(
         cutter = next(c for c in ready.cutters if c.id == result.shown)
         verdicts = reported[cutter].here
         if ready.conditions.machine.limited:
-            verdicts = judge(replace(ready, conditions=ready.conditions.machineless), cutter)
+            verdicts = judge(replace(ready, conditions=ready.conditions.without_machine()), cutter)
         maps = posture_maps(
-            ready.samples, cutter, ready.conditions, verdicts, part=ready.scene.part.fingerprint, progress=tell,
+            ready.samples, Context.of(cutter, ready.conditions), verdicts, part=ready.scene.part.fingerprint, progress=tell,
             inside=ready.inside_bodies, about=question(ready, cutter), most=options.map_budget,
         )  # fmt: skip
     document = result.plan
@@ -246,7 +246,7 @@ def prepare(
             one.surroundings.build(options.jobs)
     with clock.stage("compile"):
         compiling("search.search")
-        warm(contacts_of(samples), cutters[0], conditions)
+        warm(contacts_of(samples), Context.of(cutters[0], conditions))
     with clock.stage("bodies"):
         within = inside_material(
             samples, scene.orientation, surroundings.enclosing, surroundings.certain, conditions.tolerance, options.jobs
@@ -326,8 +326,8 @@ def _judged(
         explained, which = by_cutter[cutter]
         verdicts = explained.verdicts
         with clock.stage(cutter.id, shown=False):
-            slack, part = ready.conditions.outer_tool(cutter).slack, ready.scene.part
-            witness_list = witnesses(samples, verdicts, cutter, ready.conditions, inside=ready.shut, part=part)
+            context, part = Context.of(cutter, ready.conditions), ready.scene.part
+            witness_list = witnesses(samples, verdicts, context, inside=ready.shut, part=part)
             marched = march_differs(samples, convex, ready.region, mine.interference_free)
             entry = cutter_entry(
                 cutter,
@@ -338,7 +338,7 @@ def _judged(
                 seconds[cutter],
                 part=part,
                 surroundings=surroundings,
-                slack=slack,
+                slack=context.outer_tool.slack,
                 inside=inside,
                 besides=explained.besides,
             )
@@ -357,14 +357,10 @@ def assemble(
     `searched`: the work of all searches, which bounds that between the samples unless a budget was requested.
     """
     clock, answers = clock or Clock(), answers or Answers()
-    reaches = {cutter.id: each.verdicts for cutter, each in judged.items()}
-    here = {cutter.id: each.here for cutter, each in judged.items()}
-    served_in = {cutter.id: each.which for cutter, each in judged.items()}
     within = [within_limits(ready.samples, ready.cutters, conditions) & ready.finished for conditions in ready.setups]
     beyond = ready.somewhere & ~np.logical_or.reduce(within)
     moved = travels(ready.options, ready.samples, {cutter: each.here for cutter, each in judged.items()})
-    over = OverSetups(reaches, here, served_in, ready.scene.setup,
-                      tuple((axis, dict(verdicts_there)) for axis, verdicts_there in other_setups))  # fmt: skip
+    over = _over_setups(ready, judged, other_setups)
     entries = completed([judged[c].entry for c in ready.cutters], ready, answers, over, beyond, moved)
     selected, chosen = selection(entries)
     # Where obstacles are missing, none is selected, but one may reach all that could be judged.
@@ -377,13 +373,7 @@ def assemble(
             most = np.inf
             if searched is not None and ready.options.area_budget is None:
                 most = _WORK_LEAST + _WORK_SHARE * searched.looked + _WORK_SAMPLE * len(ready.samples)
-            # Where all setups hold the part alike, what is free in one of them is free in all.
-            setups = ready.setups[:1] if ready.alike else ready.setups
-            which = np.minimum(judged[cutter].which, len(setups) - 1)
-            served = in_each(ready.samples, judged[cutter].verdicts, which, cutter, ready.scene.part, ready.scene.orientation,
-                             setups, budget=budget, most=most, covered_samples=ready.inside_bodies)  # fmt: skip
-        area = AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
-                         short=served.short, dropped=served.dropped, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
+            area = _area(ready, cutter, judged[cutter], budget, most)
         entries = [
             e.model_copy(update={"area": area, "seen": e.seen or area.feasible}) if e.id == best else e for e in entries
         ]
@@ -397,3 +387,23 @@ def assemble(
         moved,
         answers,
     )
+
+
+def _over_setups(ready: Prepared, judged: Mapping[Cutter, Judged], others: Sequence[OtherSetup]) -> OverSetups:
+    reaches = {cutter.id: each.verdicts for cutter, each in judged.items()}
+    here = {cutter.id: each.here for cutter, each in judged.items()}
+    served_in = {cutter.id: each.which for cutter, each in judged.items()}
+    there = tuple((axis, dict(verdicts_there)) for axis, verdicts_there in others)
+    return OverSetups(reaches, here, served_in, ready.scene.setup, there)
+
+
+def _area(ready: Prepared, cutter: Cutter, judged: Judged, budget: int, most: float) -> AreaEntry:
+    """What is proved between the samples, with so many contacts and so much work."""
+    # Where all setups hold the part alike, what is free in one of them is free in all.
+    setups = ready.setups[:1] if ready.alike else ready.setups
+    which = np.minimum(judged.which, len(setups) - 1)
+    contexts = [Context.of(cutter, each) for each in setups]
+    served = in_each(ready.samples, judged.verdicts, which, contexts, ready.scene.part, ready.scene.orientation,
+                     budget=budget, most=most, covered_samples=ready.inside_bodies)  # fmt: skip
+    return AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
+                     short=served.short, dropped=served.dropped, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip

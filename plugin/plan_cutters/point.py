@@ -18,13 +18,15 @@ from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange, Range
 from plan_cutters.domain.signatures import spelled_out
+from plan_cutters.domain.tolerance import nominal_depth
 from plan_cutters.errors import OptionError
 from plan_cutters.machines.requested_setups import setups_requested
 from plan_cutters.option_types import PointOptions
 from plan_cutters.options import Options, machine_option
-from plan_cutters.scene.conditions import tools
+from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.scene import Scene
-from plan_cutters.stages.posture_map import SETTLED, Ask, PostureMap, moved, posture_map_of
+from plan_cutters.scene.surroundings import Surroundings
+from plan_cutters.stages.posture_map import SETTLED, PostureMap, moved, posture_map_of
 
 #: Width (rad) below which a range of tilts stays undecided: with a tolerance, and for the nominal answer.
 _NARROWEST, _NARROWEST_NOMINAL = 1e-4, 1e-5
@@ -111,18 +113,16 @@ def posture_map(
     across = None
     if x is not None:
         across = np.array(Placement(stage.setup, x).x)
-    ask = Ask(contact, cutter, np.array(turns), (low, high), machine, np.array(stage.setup), across)
+    setup, postures, at_rotations = np.array(stage.setup), PostureRange((low, high)), np.array(turns)
+
+    def among(surroundings: Surroundings, tolerance: float) -> Conditions:
+        return Conditions(machine, setup, postures, surroundings, tolerance, 1, across)
+
     if wanted > 0:
         surroundings = stage.surround()
-        held_tolerance = surroundings.tolerance(wanted)
-        posture_map = posture_map_of(
-            ask,
-            surroundings,
-            tools(cutter, held_tolerance, surroundings.certain.triangles.chord_error),
-            _NARROWEST,
-            held_tolerance,
-        )
-        if cutter.large_enough(held_tolerance):
+        context = Context.of(cutter, among(surroundings, surroundings.tolerance(wanted)))
+        posture_map = posture_map_of(contact, at_rotations, context, _NARROWEST)
+        if context.judges:
             return posture_map
         # So coarse a tolerance says nothing about so small a cutter.
         none = tuple(np.zeros((0, 2)) for _ in turns)
@@ -135,11 +135,10 @@ def posture_map(
     for _ in range(_ROUNDS):
         surroundings = stage.surround_closer(chord)
         triangles = surroundings.certain.triangles
-        # Twice the chord error: next to the contact, where the true clearance is zero, triangles must not count,
-        # local gouging does.
-        nominal = 2 * triangles.chord_error + 1e-9
+        nominal = nominal_depth(triangles.chord_error)
         tool = assembly(cutter, nominal, nominal)
-        now = posture_map_of(ask, surroundings, (tool, tool), _NARROWEST_NOMINAL, 0.0)
+        context = Context(cutter, among(surroundings, 0.0), tool, tool)
+        now = posture_map_of(contact, at_rotations, context, _NARROWEST_NOMINAL)
         if before is not None and moved(before, now) < SETTLED:
             return replace(now, settled=True)
         before, chord = now, chord * _FINER

@@ -16,6 +16,7 @@ from plan_cutters.domain.stick_out import floor_of, held, outline
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INTERFERENCE_FREE, UNDECIDED
 from plan_cutters.errors import CutterError
 from plan_cutters.pipeline import prepare
+from plan_cutters.scene.conditions import Context
 from plan_cutters.stages.judge import judge
 from tests.support import cad_parts, shapes
 from tests.support.closed_forms import floor, wall
@@ -169,7 +170,7 @@ def test_what_is_in_the_way_is_in_the_holder(clearance):
         "samples/v_groove.step", Options(cutters=(cutter,), machine="tilt:45", grid=13, area_budget=0, jobs=1)
     )
     found = least_stick_out(ready, cutter, judge(ready, cutter))
-    outer_tool, row = ready.conditions.outer_tool(held(cutter, found.beyond)), found.sample
+    outer_tool, row = Context.of(held(cutter, found.beyond), ready.conditions).outer_tool, found.sample
     samples = ready.samples
     deep = outer_tool.depth(
         found.obstacle_point[None], samples.point[row], samples.normal[row], found.tilt_direction, found.tilt

@@ -17,6 +17,7 @@ from plan_cutters.checker.tool import tool_of
 from plan_cutters.command.check_operations import _sizes
 from plan_cutters.domain.outline import outline, points
 from plan_cutters.pipeline import prepare
+from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import served_by
 from tests.support.places import ROOT
 
@@ -208,7 +209,7 @@ def test_the_search_and_the_checker_agree(words):
     angle = np.column_stack([rng.uniform(-180.0, 180.0, 40), rng.uniform(-30.0, 90.0, 40)])
     axes = axes_of(machine, setup, np.vstack([angle, [[0.0, 0.0], [90.0, 90.0], [0.0, 90.0]]]))
     rows = np.arange(len(samples))
-    served = served_by(rows, axes, samples, cutter, ready.conditions)[0]
+    served = served_by(rows, axes, samples, Context.of(cutter, ready.conditions))[0]
     free = both = 0
     for axis, search in zip(axes, served, strict=True):
         turned = np.repeat(axis[None], len(rows), axis=0)

@@ -18,7 +18,8 @@ from cad_io.sample import nearest
 from plan_cutters import posture_map
 from plan_cutters.command import map as of_a_point
 from plan_cutters.domain.intervals import without
-from plan_cutters.report.drawing.posture_map import CAUSES, forbidden
+from plan_cutters.plan_file.reasons import CAUSES, NO_CONTACT
+from plan_cutters.report.drawing.posture_map import forbidden
 from plan_cutters.report.drawing.sheet import DPI, figure, fitting, write
 from tests.support.forked import run as run_copied
 from tests.support.schemas import valid
@@ -97,7 +98,7 @@ def test_every_tilt_has_one_colour():
         machine="tilt:50",
     )
     shares = forbidden(found, 0.0, math.pi / 2)
-    assert set(shares) == {*CAUSES, "undecided", "other"}
+    assert set(shares) == {*CAUSES, NO_CONTACT.code, "undecided", "other"}
     rng = np.random.default_rng(0)
     causes = set()
     for i in range(len(found.rotations)):

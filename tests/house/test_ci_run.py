@@ -17,6 +17,7 @@ CHECKS = {
     "walls": "lint-imports",
     "mypy": "mypy",
     "types": "tsc --noEmit",
+    "codes": "python page/codes.py --check",
     "page": "node build.mjs --check",
     "docs": "mkdocs build --strict",
     "package": "python .ci/installed.py",

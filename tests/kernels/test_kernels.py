@@ -151,7 +151,7 @@ def test_axis_arcs_are_where_the_axis_is_within_the_cone(n, f, limit, setup):
     e1 = np.cross(n, [1, 0, 0] if abs(n[0]) < 0.7 else [0, 1, 0])
     e1 /= np.linalg.norm(e1)
     _, tilt_direction = posture(n, e1, 0.0, f)
-    intervals = axis_intervals(n, tilt_direction, ranges_of(Machine(tilt_limit=limit), setup, PostureRange()))
+    intervals = axis_intervals(n, tilt_direction, ranges_of(Machine(tilt_limit=limit), setup, PostureRange(), None))
     tilts = np.linspace(0, math.pi / 2, 400)
     angle = np.cos(tilts) * (n @ setup) + np.sin(tilts) * (tilt_direction @ setup) - math.cos(limit)
     within = np.zeros(len(tilts), bool)

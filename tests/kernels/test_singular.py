@@ -177,7 +177,9 @@ def test_axis_arcs_by_the_angle_itself(n, f, m, limit):
     setup = np.array([math.cos(m), math.sin(m), 0.0])
     _, tilt_direction = posture(normal, first, 0.0, f)
     bound = math.cos(limit)
-    intervals = axis_intervals(normal, tilt_direction, ranges_of(Machine(tilt_limit=limit), setup, PostureRange()))
+    intervals = axis_intervals(
+        normal, tilt_direction, ranges_of(Machine(tilt_limit=limit), setup, PostureRange(), None)
+    )
     ends = intervals.ravel()[:, None] + np.array([-1e-6, -1e-9, 0.0, 1e-9, 1e-6])
     tilts = np.clip(np.concatenate([np.linspace(0, RIGHT, 181), ends.ravel()]), 0, RIGHT)
     cosine = np.cos(tilts) * (normal @ setup) + np.sin(tilts) * (tilt_direction @ setup)

@@ -19,6 +19,7 @@ from plan_cutters.operations.motion import components, motion
 from plan_cutters.plan_file.operations import ForcedStepEntry, MotionEntry
 from plan_cutters.plan_file.words.motion import motion as sentences
 from plan_cutters.plan_file.words.motion import whatever_the_axes
+from plan_cutters.scene.conditions import Context
 from plan_cutters.stages.posture_maps import PostureMaps, posture_maps
 from tests.support.places import SAMPLES
 from tests.support.shapes import ridge
@@ -146,7 +147,7 @@ def test_without_maps_there_is_no_motion_and_with_some_samples_left_out_it_is_sa
 
 def test_an_empty_map_has_no_components():
     result = plan(ridge(10.0, 10.0), cutters="R1L60rc1", grid=5, **OPTIONS)
-    maps = posture_maps(result.samples, result.judged(), result.conditions, result.reaches[result.shown])
+    maps = posture_maps(result.samples, Context.of(result.judged(), result.conditions), result.reaches[result.shown])
     none = maps_of(maps.normal, maps.direction_max, lambda i, turn: [])
     found = motion(none, result.ready)
     assert (found.components, found.needed, found.largest_share) == (0, 0, 0.0)

@@ -14,6 +14,7 @@ from plan_cutters.operations.over_all_axes import Cells, OpenCells, apart, bodie
 from plan_cutters.operations.probes import Probes
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
+from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import served_by
 from tests.support.cad_parts import ball
 from tests.support.places import SAMPLES
@@ -108,7 +109,7 @@ def test_axes_that_are_free_lie_in_no_cell_that_is_called_blocked(part, cutter, 
     axis /= np.linalg.norm(axis, axis=1)[:, None]
     # The samples' own normals, too: there an end that stands beside its axis turns about.
     axis = np.concatenate([axis, ready.samples.normal[rows[::6]]])
-    free, _ = served_by(rows, axis, ready.samples, ready.cutters[0], ready.setups[0])
+    free, _ = served_by(rows, axis, ready.samples, Context.of(ready.cutters[0], ready.setups[0]))
     assert free.any()
     cells, at, blocked = Cells.whole(1), OpenCells(probes, rows), []
     open_ = at.table(cells)
@@ -138,8 +139,8 @@ def test_more_than_the_tilts_is_called_blocked():
 
 def test_a_tool_that_turns_too_far_has_no_body_left():
     ready = prepare(ridge(10.0, 10.0), Options(cutters=["R6L40"], grid=5))
-    cutter, conditions = ready.cutters[0], ready.setups[0]
-    few, many = (sum(each.piece.shape[1] for each in bodies(cutter, conditions, 0, turn)) for turn in (1.5, 0.02))
+    context = Context.of(ready.cutters[0], ready.setups[0])
+    few, many = (sum(each.piece.shape[1] for each in bodies(context, 0, turn)) for turn in (1.5, 0.02))
     assert few == 0 < many
 
 

@@ -8,6 +8,7 @@ from scipy.spatial.transform import Rotation
 from plan_cutters import plan
 from plan_cutters.kernels.search.fixed_axis import DIRECTIONS
 from plan_cutters.scene.clearance import least_clearance
+from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at, served_by
 
 LONG, WIDE, DEEP, RADIUS = 40.0, 16.0, 8.0, 7.0
@@ -43,7 +44,7 @@ def room(place):
 def test_a_floor_is_served_wherever_the_end_finds_room(pocket):
     result, rows, place, axis, _ = pocket
     cutter = result.plan.cutters[0].id
-    free = served_by(rows, axis[None], result.samples, result.judged(cutter), result.conditions)[0][0]
+    free = served_by(rows, axis[None], result.samples, Context.of(result.judged(cutter), result.conditions))[0][0]
     at_best = room(place)
     # From the best side the nearest that is tried is half a step away at most.
     loss = RADIUS * (np.pi / DIRECTIONS) * 1.01
@@ -57,10 +58,10 @@ def test_postures_of_a_floor_keep_the_tool_from_the_walls(pocket):
     """Where each stands is written: its disk lies in the pocket."""
     result, rows, place, axis, turn = pocket
     cutter, samples = result.judged(result.plan.cutters[0].id), result.samples
-    free = served_by(rows, axis[None], samples, cutter, result.conditions)[0][0]
+    free = served_by(rows, axis[None], samples, Context.of(cutter, result.conditions))[0][0]
     number = np.full(len(samples), -1, np.int32)
     number[rows[free]] = 0
-    held = held_at(axis[None], number, samples, cutter, result.conditions)
+    held = held_at(axis[None], number, samples, Context.of(cutter, result.conditions))
     lean = turn.inv().apply(held.tilt_direction[rows[free]])
     assert np.allclose(np.linalg.norm(lean, axis=1), 1.0)
     middle = place[free] - RADIUS * lean[:, :2]
@@ -72,7 +73,7 @@ def test_rotations_that_are_limited_leave_one_side(pocket):
     result, rows, _, axis, _ = pocket
     cutter = result.judged(result.plan.cutters[0].id)
     limited = plan(result.part, cutters="R7L40", faces="all", grid=15, area_budget=0, rotation=(0.0, 1.0)).conditions
-    few = served_by(rows, axis[None], result.samples, cutter, limited)[0][0]
-    many = served_by(rows, axis[None], result.samples, cutter, result.conditions)[0][0]
+    few = served_by(rows, axis[None], result.samples, Context.of(cutter, limited))[0][0]
+    many = served_by(rows, axis[None], result.samples, Context.of(cutter, result.conditions))[0][0]
     assert not (few & ~many).any()
     assert few.sum() < many.sum()

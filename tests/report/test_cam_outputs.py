@@ -29,7 +29,7 @@ from plan_cutters.domain.verdicts import ACCESSIBLE, INTERFERENCE_FREE
 from plan_cutters.report.regions import _Free, axis_regions, schema_text, write_regions
 from plan_cutters.report.to_csv import write_csv
 from plan_cutters.report.to_vtk import write_vtk
-from plan_cutters.scene.conditions import rotations_of
+from plan_cutters.scene.conditions import Context, rotations_of
 from plan_cutters.scene.fixed_axis import serves
 from tests.support.places import ROOT
 
@@ -229,7 +229,7 @@ def test_every_posture_found_is_served_by_its_own_axis(peaks):
     reach, cutter = peaks.reaches[peaks.shown], peaks.judged()
     rows = np.flatnonzero(reach.reached)[::9]
     for row in rows.tolist():
-        assert serves(np.array([row]), reach.axis[row], peaks.samples, cutter, peaks.conditions)[0]
+        assert serves(np.array([row]), reach.axis[row], peaks.samples, Context.of(cutter, peaks.conditions))[0]
 
 
 def test_a_fixed_axis_serves_just_where_a_map_of_the_point_has_it_free(peaks):
@@ -249,7 +249,7 @@ def test_a_fixed_axis_serves_just_where_a_map_of_the_point_has_it_free(peaks):
             abs(tilt - end) < 1e-3 for interval in found.free[0] for end in interval
         )
         if not near:
-            assert serves(np.array([row]), axis, samples, cutter, peaks.conditions)[0] == free
+            assert serves(np.array([row]), axis, samples, Context.of(cutter, peaks.conditions))[0] == free
             agreed[free] += 1
     assert agreed[True] + agreed[False] >= 8
     assert agreed[True]
@@ -270,7 +270,7 @@ def test_regions_hold_every_reached_sample_once_and_one_axis_serves_each(peaks, 
     pairs = {tuple(sorted(pair)) for pair in samples.neighbours.tolist()}
     for region in found.regions:
         mine, axis = np.array(unpacked(region.rows)), np.array(found.axes[region.axis].axis)
-        assert serves(mine, axis, samples, cutter, peaks.conditions).all()
+        assert serves(mine, axis, samples, Context.of(cutter, peaks.conditions)).all()
         assert region.samples == len(mine) == sum(each.samples for each in region.faces)
         assert region.area_mm2 == pytest.approx(samples.area[mine].sum())
         tilt = np.degrees(np.arccos(np.clip(samples.normal[mine] @ axis, -1, 1)))
@@ -364,7 +364,7 @@ def test_free_tilts_of_a_region_are_within_the_limits_of_the_machine(peaks, mach
 
 
 def test_without_limits_the_machine_leaves_all_tilts(peaks):
-    assert peaks.maps.held(peaks.conditions.machineless) is peaks.maps
+    assert peaks.maps.held(peaks.conditions.without_machine()) is peaks.maps
 
 
 def test_names_that_no_file_can_hold_cost_no_file(tmp_path):

@@ -26,6 +26,7 @@ from plan_cutters.plan_file.palette import operation_colour, parts, rgb
 from plan_cutters.report import DEFAULT_FORMATS, operation_models
 from plan_cutters.report.regions import axis_regions
 from plan_cutters.scene.clearance import clearances
+from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at
 from tests.support.cad_parts import box
 from tests.support.places import ROOT, SAMPLES
@@ -112,7 +113,10 @@ def test_the_clearance_of_an_operation_is_the_least_of_its_samples(written):
             if each.axis is None:
                 continue
             there = held_at(
-                each.axis[None], np.where(found.label == number, 0, -1), samples, each.cutter, result.ready.setups[0]
+                each.axis[None],
+                np.where(found.label == number, 0, -1),
+                samples,
+                Context.of(each.cutter, result.ready.setups[0]),
             )
             every = clearances(at_fixed_axis(samples, there), each.cutter, there, result.ready.setups[0]).distance[
                 each.rows

@@ -12,8 +12,8 @@ import plan_cutters.scene.surroundings as surroundings
 from cad_io import read_part
 from cad_io.tessellate import tessellate
 from plan_cutters import PostureMaps, plan
+from plan_cutters.domain.tolerance import CHORD_REQUESTED, CHORD_SHARE
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INTERFERENCE_FREE, UNDECIDED
-from plan_cutters.scene.obstacles import CHORD_REQUESTED, CHORD_SHARE
 from tests.support.cad_parts import real
 from tests.support.distances import ROUNDING, farthest_from, surface_points
 

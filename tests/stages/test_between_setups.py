@@ -7,6 +7,7 @@ from cad_io.face.evaluate import evaluate
 from plan_cutters import plan
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
+from plan_cutters.scene.conditions import Context
 from plan_cutters.stages.between import in_each
 from tests.support.cad_parts import box
 
@@ -29,8 +30,9 @@ def both():
 @pytest.fixture(scope="module")
 def found(both):
     ready, (name,) = both.ready, both.reaches
-    return in_each(both.samples, both.reaches[name], both.served_in[name], both.judged(), both.part, both.scene.orientation,
-                   ready.setups, budget=2000)  # fmt: skip
+    contexts = [Context.of(both.judged(), setup) for setup in ready.setups]
+    return in_each(both.samples, both.reaches[name], both.served_in[name], contexts, both.part, both.scene.orientation,
+                   budget=2000)  # fmt: skip
 
 
 def into_blocks(contact, normal, axis, blocks):

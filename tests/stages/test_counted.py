@@ -27,7 +27,7 @@ from cad_io.sample.gap import border_probes
 from cad_io.tessellate import tessellate
 from cad_io.tessellate.mesh import folded, upright
 from plan_cutters import Cutter, Machine, plan
-from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.stages.between import between
@@ -205,9 +205,9 @@ def test_a_face_without_samples_whose_area_is_known_counts():
     conditions = Conditions(
         Machine.parse("unlimited"), UP, result.postures, Surroundings.sheet(Obstacles(tessellate(part, 0.002))), 0.01, 1
     )
-    side = orient(part, towards=UP, flip=False)
-    assert between(both, reach, cutter, part, side, conditions, budget=0).feasible
-    found = between(one, reach, cutter, part, side, conditions, budget=0)
+    side, context = orient(part, towards=UP, flip=False), Context.of(cutter, conditions)
+    assert between(both, reach, context, part, side, budget=0).feasible
+    found = between(one, reach, context, part, side, budget=0)
     assert found.share == pytest.approx(0.5)
     assert not found.feasible
 

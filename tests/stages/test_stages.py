@@ -23,7 +23,7 @@ from plan_cutters.domain.verdicts import (
     UNJUDGED,
     blank,
 )
-from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.spacing import BUDGET, default_spacing
 from plan_cutters.scene.surroundings import Surroundings
@@ -172,7 +172,7 @@ def test_reasons_are_handed_up_but_for_what_the_larger_cutter_has_of_its_own():
     known.verdict[:], known.reason[:] = INACCESSIBLE, REASONS.index("collision")
     conditions = Conditions(Machine(), np.array(UP), PostureRange(), Surroundings.sheet(far), 0.01, 1)
     cutter = Cutter.flat(radius=8, length=30)
-    found = access(grid, np.zeros(3, bool), cutter, conditions, known=known)
+    found = access(grid, np.zeros(3, bool), Context.of(cutter, conditions), known=known)
     assert found.verdict.tolist() == [INACCESSIBLE] * 3
     assert [REASONS[r] for r in found.reason] == ["collision", "local_gouge", "collision"]
     # Normals along x, a machine that holds its axis near z.
@@ -180,7 +180,7 @@ def test_reasons_are_handed_up_but_for_what_the_larger_cutter_has_of_its_own():
     tilted = Conditions(
         Machine.parse("tilt:5"), np.array(UP), PostureRange(tilt=(0.0, 0.5)), Surroundings.sheet(far), 0.01, 1
     )
-    found = access(aside, np.zeros(3, bool), cutter, tilted, known=known)
+    found = access(aside, np.zeros(3, bool), Context.of(cutter, tilted), known=known)
     assert [REASONS[r] for r in found.reason] == ["axis_limit"] * 3
 
 
@@ -195,5 +195,5 @@ def test_a_tolerance_too_coarse_for_a_cutter_decides_nothing():
     far = Obstacles(Triangles(np.array([[[0, 0, -50.0], [1, 0, -50], [0, 1, -50]]]), np.ones(1, np.int32), 0.0, ()))
     conditions = Conditions(Machine(), np.array(UP), PostureRange(), Surroundings.sheet(far), 0.5, 1)
     for radius, verdict in ((1.9, UNDECIDED), (2.1, 1)):
-        found = access(grid, np.zeros(2, bool), Cutter.flat(radius=radius, length=30), conditions)
+        found = access(grid, np.zeros(2, bool), Context.of(Cutter.flat(radius=radius, length=30), conditions))
         assert found.verdict.tolist() == [verdict] * 2

@@ -9,7 +9,7 @@ from cad_io.part.orient import orient
 from cad_io.sample import sample
 from cad_io.tessellate import tessellate
 from plan_cutters import Machine, plan
-from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.fixed_axis import held_at, served_by
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
@@ -31,15 +31,15 @@ def served(part, cutter, *, budget, tolerance=0.01, chord=None, machine="unlimit
         return point, shape.normal, shape.direction_max, shape.curvature
 
     around = Surroundings.sheet(Obstacles(tessellate(whole, chord or 0.2 * tolerance)))
-    conditions = Conditions(machine, UP, result.postures, around, tolerance, jobs)
+    context = Context.of(cutter, Conditions(machine, UP, result.postures, around, tolerance, jobs))
     verdicts, fixed = result.reaches[cutter.id], None
     if axes is not None:
         rows = np.arange(len(samples))
-        serves = served_by(rows, axes, samples, cutter, conditions)[0].T
+        serves = served_by(rows, axes, samples, context)[0].T
         upright = np.where(serves, samples.normal @ axes.T, -2.0)
-        verdicts = held_at(axes, np.where(serves.any(axis=1), upright.argmax(axis=1), -1), samples, cutter, conditions)
+        verdicts = held_at(axes, np.where(serves.any(axis=1), upright.argmax(axis=1), -1), samples, context)
         fixed = Fixed(axes, serves)
-    found = between(samples, verdicts, cutter, whole, side, conditions, budget=budget, fixed=fixed)
+    found = between(samples, verdicts, context, whole, side, budget=budget, fixed=fixed)
     return found, geometry, whole
 
 

@@ -11,6 +11,7 @@ from cad_io.write import render_mesh as drawing
 from cad_io.write.net import Net, cut
 from plan_cutters import Cutter, Options, plan
 from plan_cutters.pipeline import prepare
+from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.inside_material import cover
 from plan_cutters.scene.work import Work
 from plan_cutters.stages import witness
@@ -44,14 +45,14 @@ def test_no_search_and_no_witness_search_for_what_is_inside(ready, reach, monkey
     inside = np.flatnonzero(ready.inside_bodies)
     assert len(inside) > 100
     work, none = Work(), np.zeros(len(ready.samples), bool)
-    access(ready.samples, none, SMALL, ready.conditions, inside=ready.inside, rows=inside, work=work)
+    access(ready.samples, none, Context.of(SMALL, ready.conditions), inside=ready.inside, rows=inside, work=work)
     assert work.looked == 0
     some = Work()
-    access(ready.samples, none, SMALL, ready.conditions, inside=ready.inside, work=some)
+    access(ready.samples, none, Context.of(SMALL, ready.conditions), inside=ready.inside, work=some)
     assert some.looked > 0
     searched, real = [], witness._witness
     monkeypatch.setattr(witness, "_witness", lambda s, row, *more: searched.append(row) or real(s, row, *more))
-    found = witness.witnesses(ready.samples, reach, SMALL, ready.conditions, inside=ready.inside)
+    found = witness.witnesses(ready.samples, reach, Context.of(SMALL, ready.conditions), inside=ready.inside)
     assert not ready.inside_bodies[searched].any()
     mine = [w for w in found if ready.inside_bodies[w.sample]]
     # One a body and face, and together they stand for all.
@@ -130,8 +131,8 @@ def area(valley, most, jobs=1):
 
     ready, cutter, reach = valley
     work = Work()
-    conditions = replace(ready.conditions, jobs=jobs)
-    found = between(ready.samples, reach, cutter, ready.scene.part, ready.scene.orientation, conditions, budget=12_000,
+    context = Context.of(cutter, replace(ready.conditions, jobs=jobs))
+    found = between(ready.samples, reach, context, ready.scene.part, ready.scene.orientation, budget=12_000,
                     most=most, work=work)  # fmt: skip
     return found, work.looked
 

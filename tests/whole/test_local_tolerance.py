@@ -18,6 +18,7 @@ from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, REASONS, UNDE
 from plan_cutters.operations.fixed_axes import fixed_axes
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
+from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import serves
 from plan_cutters.stages.judge import judge
 from tests.support import shapes
@@ -227,7 +228,7 @@ def test_largest_radius_fixed_axes_and_nesting_follow_the_same_rule():
     axes, number = fixed_axes(ready.samples, same, reach, ready.conditions)
     assert (number >= 0).all()
     rows = np.flatnonzero(number == 0)
-    assert serves(rows, axes[0], ready.samples, same, ready.conditions).all()
+    assert serves(rows, axes[0], ready.samples, Context.of(same, ready.conditions)).all()
     result = plan(part, cutters=[small, same, large], tolerance=TOLERANCE, grid=7, faces="1", area_budget=0)
     for cutter in (small, same, large):
         alone = judge(ready, cutter)

@@ -32,7 +32,7 @@ from plan_cutters.kernels.maps import free_tilts
 from plan_cutters.kernels.material import sheet
 from plan_cutters.kernels.rows import Contacts, Tree
 from plan_cutters.kernels.search import search
-from plan_cutters.scene.conditions import Conditions, search_postures, tool_of, verdict_arrays_of
+from plan_cutters.scene.conditions import Conditions, Context, search_postures, tool_of, verdict_arrays_of
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings, surroundings
 from tests.support import shapes, waves
@@ -243,14 +243,14 @@ def test_the_door_refuses_what_is_no_number():
     conditions = Conditions(
         Machine(), np.array([0, 0, 1.0]), PostureRange(), Surroundings.sheet(Obstacles(good)), 0.01, 1
     )
-    tools = conditions.outer_tool(SMALL), conditions.inner_tool(SMALL)
+    context = Context.of(SMALL, conditions)
     contact = Contacts(np.zeros((1, 3)), n[None], e1[None], np.zeros((1, 2)))
     for which in range(4):
         broken = list(contact)
         broken[which] = next(spoilt(contact[which]))
         with pytest.raises(ValueError, match="finite"):
-            search_postures(Contacts(*broken), np.zeros(1, np.int64), *tools, conditions, blank(1))
-    search_postures(contact, np.zeros(1, np.int64), *tools, conditions, blank(1))
+            search_postures(Contacts(*broken), np.zeros(1, np.int64), context, blank(1))
+    search_postures(contact, np.zeros(1, np.int64), context, blank(1))
 
 
 # --- the compiler's cache ----------------------------------------------------------------------------------------------------

@@ -1,7 +1,7 @@
 """Answers made of a plan: which cutters finish, how they differ, and why one does not reach a face."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 from plan_cutters.agents.answers import (
@@ -28,7 +28,7 @@ from plan_cutters.agents.answers import (
 )
 from plan_cutters.agents.limits import CallError
 from plan_cutters.plan_file.answers import StepEntry
-from plan_cutters.plan_file.model import CutterEntry, Plan
+from plan_cutters.plan_file.model import CutterEntry, Plan, WitnessEntry
 from plan_cutters.plan_file.nearest import leaves
 from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters.plan_file.shares import FaceVerdicts, by_share
@@ -149,19 +149,12 @@ def explained(
             "was not judged in this plan, it is an obstacle only: ask with `part`", file=plan.part.file, face=face
         )
     counts = cutter.faces.get(face, FaceVerdicts())
-    mine = [w for w in cutter.witnesses if w.face == face and not w.inside_bodies]
-    mine.sort(key=(lambda w: math.dist(w.point, point)) if point is not None else (lambda w: -(w.depth_mm or 0.0)))
+    mine = _witnesses(cutter, face, point)
     unsure = bool(counts.undecided or counts.unjudged or entry.unjudged or plan.missing or not counts.reached)
     changes, about, unhelped = _helping(
         plan, cutter, alone=[f.id for f in plan.faces if f.target] == [face], lost=bool(counts.not_reached)
     )
-    texts = [face_text(plan, cutter, entry, unhelped)]
-    if postures is not None:
-        free = postures.free_share or float(any(row.free for row in postures.rotations))
-        texts.insert(0, posture_text(postures.face, free, postures.undecided_share, by_share(postures.forbidden),
-                                     certified=postures.certified))  # fmt: skip
-    if sample is not None:
-        texts.insert(0, sample_text(sample.distance_mm, sample.verdict, sample.reason))
+    texts = [*_of_point(postures, sample), face_text(plan, cutter, entry, unhelped)]
     lists: dict[str, list[Any]] = {
         "in_the_way": [InTheWay(**each._asdict()) for each in in_the_way(mine)],
         "witnesses": [Witness.model_validate(each) for each in mine],
@@ -179,6 +172,22 @@ def explained(
         reasons=[_reason(code, part) for code, part in by_share(counts.area_share.lost_by)], help_is_about=about,
         no_help=unhelped, postures=postures, sample=sample, **cut,
     )  # fmt: skip
+
+
+def _witnesses(cutter: CutterEntry, face: str, point: Vector | None) -> list[WitnessEntry]:
+    """Witnesses of a face: the nearest to a point first, or the deepest."""
+    mine = [w for w in cutter.witnesses if w.face == face and not w.inside_bodies]
+    return sorted(mine, key=lambda w: -(w.depth_mm or 0.0) if point is None else math.dist(w.point, point))
+
+
+def _of_point(postures: Postures | None, sample: Sample | None) -> Iterator[str]:
+    """What is said of one point: of its sample, and of its postures."""
+    if sample is not None:
+        yield sample_text(sample.distance_mm, sample.verdict, sample.reason)
+    if postures is not None:
+        free = postures.free_share or float(any(row.free for row in postures.rotations))
+        yield posture_text(postures.face, free, postures.undecided_share, by_share(postures.forbidden),
+                           certified=postures.certified)  # fmt: skip
 
 
 def _reason(code: str, share: float) -> Reason:

@@ -5,9 +5,8 @@ import math
 from typing import Any
 
 from plan_cutters.agents.answers import Postures, RotationRow, first
+from plan_cutters.plan_file.reasons import INTERVALS
 
-#: Causes that forbid tilts, as `plan-cutters map --json -` has them.
-CAUSES = ("axis_limit", "rear_gouge", "collision", "neck", "shank", "holder", "buried", "no_contact")
 #: Digits behind the point, deg.
 _DIGITS = 3
 
@@ -17,7 +16,7 @@ def postures_of(output: bytes, tilt: tuple[float, float], most: int) -> Postures
     answer = json.loads(output)
     rows = answer["rotations"]
     wide = max(1e-12, (tilt[1] - tilt[0]) * len(rows))
-    forbidden = {word: sum(_width(row[word]) for row in rows) / wide for word in CAUSES}
+    forbidden = {word: sum(_width(row[word]) for row in rows) / wide for word in INTERVALS}
     gouge = sum(_below(row["local_gouge"], tilt) for row in rows) / wide
     forbidden = {word: min(1.0, share) for word, share in {"local_gouge": gouge, **forbidden}.items() if share > 0.0}
     rotations, more = first([_row(row) for row in rows], most)
@@ -41,7 +40,7 @@ def _below(least: float | None, tilt: tuple[float, float]) -> float:
 def _row(row: dict[str, Any]) -> RotationRow:
     return RotationRow(
         deg=round(row["deg"], _DIGITS), free=_inward(row["free"]), undecided=_rounded(row["undecided"]),
-        local_gouge_below=row["local_gouge"], forbidden={word: _rounded(row[word]) for word in CAUSES if row[word]},
+        local_gouge_below=row["local_gouge"], forbidden={word: _rounded(row[word]) for word in INTERVALS if row[word]},
     )  # fmt: skip
 
 

@@ -15,7 +15,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.radius_map import RadiusMap, Shape
 from plan_cutters.domain.verdicts import INACCESSIBLE, INSIDE, UNJUDGED, blank
 from plan_cutters.errors import OptionError
-from plan_cutters.scene.conditions import contacts_of, require_finite, verdict_arrays_of
+from plan_cutters.scene.conditions import Context, contacts_of, require_finite, verdict_arrays_of
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress, in_chunks
 
@@ -65,8 +65,8 @@ def largest_radius(
     samples, conditions = ready.samples, ready.conditions
     judged, within = samples.unjudged < 0, ready.inside >= 0
     level, beyond, reach = np.full(len(samples), -1), np.full(len(samples), UNJUDGED, np.uint8), blank(len(samples))
-    outer_tool = _ladder([conditions.outer_tool(cutter) for cutter in cutters])
-    inner_tool = _ladder([conditions.inner_tool(cutter) for cutter in cutters])
+    contexts = [Context.of(cutter, conditions) for cutter in cutters]
+    outer_tool, inner_tool = _ladder([c.outer_tool for c in contexts]), _ladder([c.inner_tool for c in contexts])
     rows, contacts, verdicts = np.flatnonzero(judged & ~within), contacts_of(samples), verdict_arrays_of(reach)
     possible, certain = conditions.surroundings.possible.solids, conditions.surroundings.certain.solids
     require_finite(contacts, rows)

@@ -26,17 +26,10 @@ def option(
     option. Cutters that the options name now are not repeated. Those of the default tool set are written, because a plan leaves
     them out as soon as other cutters are given.
     """
-    words: list[str] = []
     options = ready.options
-    known = {each.id for each in ready.cutters} if options.cutters or options.libraries else set()
-    if tuple(cutters) != (cutter,):
-        for each in cutters:
-            if each.id in known:
-                continue
-            text = spoken(each, options)
-            if text is None and each.id not in options.sources:
-                return None
-            words += [] if text is None else ["--cutter", text]
+    words = [] if tuple(cutters) == (cutter,) else _more(ready, cutters)
+    if words is None:
+        return None
     if setups is not None:
         if options.placement is not None or any(options.other_placements):
             return None
@@ -52,6 +45,20 @@ def option(
     if faces is not None:
         words += ["--faces", ",".join(f"F{number}" for number in faces)]
     return " ".join(words) or None
+
+
+def _more(ready: Prepared, cutters: Sequence[Cutter]) -> list[str] | None:
+    """Name the cutters that the options do not name now; None where one has no word."""
+    words, options = list[str](), ready.options
+    known = {each.id for each in ready.cutters} if options.cutters or options.libraries else set()
+    for each in cutters:
+        if each.id in known:
+            continue
+        text = spoken(each, options)
+        if text is None and each.id not in options.sources:
+            return None
+        words += [] if text is None else ["--cutter", text]
+    return words
 
 
 def _within(now: Conditions, then: Conditions) -> list[str]:

@@ -16,7 +16,7 @@ from plan_cutters.answers.least_set import cover
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.errors import OptionError
-from plan_cutters.scene.conditions import Conditions, contacts_of, search_postures
+from plan_cutters.scene.conditions import Conditions, Context, contacts_of, search_postures
 from plan_cutters.scene.preparation import Axis, Prepared
 from plan_cutters.stages.setups import within_limits
 
@@ -204,7 +204,7 @@ class Ranking:
                 f"at which a cutter touches with tilts from {low:g} to {high:g} deg; give other tilts or machine"
             )
         surroundings = few.surroundings.alone or few.surroundings
-        free = _reached(ready, rows, replace(few.machineless, surroundings=surroundings))
+        free = _reached(ready, rows, replace(few.without_machine(), surroundings=surroundings))
         return cls(ready, candidates, rows, bound & free[rows, None] if free.any() else bound, {})
 
     @property
@@ -289,8 +289,7 @@ def _reached(ready: Prepared, rows: Rows, conditions: Conditions) -> NDArray[np.
     for cutter in reversed(ready.cutters):
         if len(open_rows) and conditions.judges(cutter):
             verdicts = blank(len(reached))
-            tools = conditions.outer_tool(cutter), conditions.inner_tool(cutter)
-            search_postures(contacts_of(ready.samples), open_rows, *tools, conditions, verdicts, fixed=True)
+            search_postures(contacts_of(ready.samples), open_rows, Context.of(cutter, conditions), verdicts, fixed=True)
             reached |= verdicts.reached
             open_rows = open_rows[~verdicts.reached[open_rows]]
     return reached

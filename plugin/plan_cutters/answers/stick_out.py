@@ -16,7 +16,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.stick_out import StickOut, floor_of, held, outline
 from plan_cutters.domain.verdicts import ACCESSIBLE, VerdictBuffer, Verdicts, blank
 from plan_cutters.kernels.rows import Contacts, Tool
-from plan_cutters.scene.conditions import contacts_of, rotations_of, tool_of, verdict_arrays_of
+from plan_cutters.scene.conditions import Context, contacts_of, rotations_of, verdict_arrays_of
 from plan_cutters.scene.deepest import deepest_on
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import CHUNK, in_chunks
@@ -81,7 +81,7 @@ def _limited(ready: Prepared, cutter: Cutter, search: "_Search", stick_out: Stic
     axis, normal = posture.axis[row], ready.samples.normal[row]
     face, point = None, None
     if triangle >= 0:
-        outer_tool = ready.conditions.outer_tool(held(cutter, beyond))
+        outer_tool = Context.of(held(cutter, beyond), ready.conditions).outer_tool
         face = obstacles.face(triangle)
         point = deepest_on(
             obstacles.tree.vertex[triangle],
@@ -104,13 +104,13 @@ class _Search:
         self.ready, self.cutter, self.conditions, self.progress = ready, cutter, conditions, progress
         self.contacts: Contacts = contacts_of(ready.samples)
         self.floor = min(cutter.length, floor_of(cutter, conditions.tolerance))
-        self.outline = outline(conditions.outer_tool(cutter), cutter.length)
-        self.whole = tool_of(conditions.outer_tool(cutter))
+        context = Context.of(cutter, conditions)
+        self.outline, self.whole = outline(context.outer_tool, cutter.length), context.outer
         self.found = blank(len(ready.samples))
         self.found.take(slice(None), verdicts)
 
     def tool(self, stick_out: float) -> Tool:
-        return tool_of(self.conditions.outer_tool(held(self.cutter, stick_out)))
+        return Context.of(held(self.cutter, stick_out), self.conditions).outer
 
     def needed(self, rows: NDArray[np.int64], posture: VerdictBuffer) -> tuple[Floats, NDArray[np.int32]]:
         """The stick-outs (n,) that known postures of some samples ask for, and the triangles that are in the way."""

@@ -24,7 +24,7 @@ from plan_cutters.domain.verdicts import (
 )
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.plan_file.words.change_text import reasons, samples
-from plan_cutters.scene.conditions import contacts_of, search_postures, tool_of
+from plan_cutters.scene.conditions import Context, contacts_of, search_postures
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.stages.judge import judge
 
@@ -59,26 +59,19 @@ class Case:
         from plan_cutters.kernels.search.search import dummy_clear
 
         ready, conditions, verdicts = self.ready, self.ready.conditions, blank(len(rows))
-        if not conditions.judges(self.cutter):
+        context = Context.of(self.cutter, conditions)
+        if not context.judges:
             verdicts.verdict[:], verdicts.reason[:] = UNDECIDED, TOLERANCE
             return verdicts.freeze()
         contacts = Contacts(*(np.ascontiguousarray(column[rows]) for column in contacts_of(ready.samples)))
-        outer_tool, inner_tool = conditions.outer_tool(self.cutter), conditions.inner_tool(self.cutter)
         free = np.zeros(len(rows), bool)
-        if len(outer_tool.dummy):
-            upright = (ready.surface_class[rows] == CONVEX) & conditions.upright(contacts.normal)
-            dummy_clear(
-                np.flatnonzero(upright),
-                contacts,
-                outer_tool.dummy,
-                tool_of(outer_tool),
-                conditions.obstacles.solids,
-                free,
-            )
+        if len(context.dummy):
+            upright = np.flatnonzero((ready.surface_class[rows] == CONVEX) & conditions.upright(contacts.normal))
+            dummy_clear(upright, contacts, context.dummy, context.outer, conditions.obstacles.solids, free)
         verdicts.verdict[free] = ACCESSIBLE
         # Of the finished surface these lie within a fixture.
         within = ready.inside[rows] >= 0
-        search_postures(contacts, np.flatnonzero(~free & ~within), outer_tool, inner_tool, conditions, verdicts)
+        search_postures(contacts, np.flatnonzero(~free & ~within), context, verdicts)
         verdicts.verdict[within], verdicts.reason[within] = INACCESSIBLE, INSIDE
         return verdicts.freeze()
 

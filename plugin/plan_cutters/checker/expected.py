@@ -73,28 +73,8 @@ class Reckoned:
             plans = [{"name": name} for name in names]
         timed_ = any(plan["seconds"] is not None for plan in plans if "seconds" in plan)
         stated = effective["index_time_s"]
-        source = written["assumed"]["index_from"]
-        if source == "given" or not question.machine.rates:
-            source = source if source in ("given", "assumed") else "assumed"
-        else:
-            source = "rates"
         total = sum(weight for _, weight in few["weights"])
         count = len(question.operations["chosen"])
-        fastest: Any = None
-        if "fastest" in names:
-            own = next((plan for plan in written["plans"] if plan["name"] == "fastest"), None)
-            seconds = None if own is None else own["seconds"]
-            timed = written["fastest"] or {}
-            best, bound = timed.get("at_best_seconds"), timed.get("bound_seconds")
-            fastest = {
-                "seconds": seconds, "bound_seconds": Loose(0.0, math.inf), "at_best_seconds": Loose(0.0, math.inf),
-                "samples": Loose(0, len(self.area)), "candidates": Loose(0, len(question.operations["candidate_cutter"])),
-            }  # fmt: skip
-            if seconds is None or not isinstance(bound, float | int):
-                fastest["gap"] = None
-            else:
-                fastest["bound_seconds"] = Loose(best if isinstance(best, float | int) else 0.0, seconds * (1 + 1e-9))
-                fastest["gap"] = max(0.0, seconds / bound - 1.0) if bound > 0.0 else 0.0
         return {
             "asked": effective["operations"],
             "rotary": list(question.machine.names),
@@ -105,13 +85,14 @@ class Reckoned:
                 "candidates": len(question.operations["candidate_cutter"]), "at_least": self._at_least(few, total, count),
                 "at_least_any": Loose(0, few["at_least"]),
             },
-            "fastest": fastest,
+            "fastest": self._fastest(written) if "fastest" in names else None,
             "cutters": self._cutters(written) if many and "fastest" in names and timed_ else [],
             "curve": self._curve(written["curve"], count),
             "assumed": {
                 "feed_mm_min": self._feeds(written, effective), "scallop_mm": effective["scallop_mm"],
                 "stepover": effective["stepover"], "overlap_mm": effective["overlap_mm"],
-                "index_s": _INDEX_TIME if stated is None else stated, "index_from": source,
+                "index_s": _INDEX_TIME if stated is None else stated,
+                "index_from": self._index_from(written["assumed"]["index_from"]),
                 "change_s": effective["change_time_s"], "setup_s": effective["setup_time_s"],
             },
         }  # fmt: skip
@@ -188,18 +169,32 @@ class Reckoned:
             return [{"id": name} for name in self.considered]
         return entries
 
+    def _fastest(self, written: Mapping[str, Any]) -> dict[str, Any]:
+        """Reckon what is said of the fastest plan."""
+        own = next((plan for plan in written["plans"] if plan["name"] == "fastest"), None)
+        seconds = None if own is None else own["seconds"]
+        timed = written["fastest"] or {}
+        best, bound = timed.get("at_best_seconds"), timed.get("bound_seconds")
+        fastest: dict[str, Any] = {
+            "seconds": seconds, "bound_seconds": Loose(0.0, math.inf), "at_best_seconds": Loose(0.0, math.inf),
+            "samples": Loose(0, len(self.area)), "candidates": Loose(0, len(self.question.operations["candidate_cutter"])),
+        }  # fmt: skip
+        if seconds is None or not isinstance(bound, float | int):
+            return fastest | {"gap": None}
+        fastest["bound_seconds"] = Loose(best if isinstance(best, float | int) else 0.0, seconds * (1 + 1e-9))
+        return fastest | {"gap": max(0.0, seconds / bound - 1.0) if bound > 0.0 else 0.0}
+
+    def _index_from(self, source: str) -> str:
+        """Where the time to index comes from, if it is not said to be given."""
+        if source != "given" and self.question.machine.rates:
+            return "rates"
+        return source if source in ("given", "assumed") else "assumed"
+
     def _plan(self, k: int, plan: Mapping[str, Any]) -> dict[str, Any]:
         question, label, seconds = self.question, self.array(k, "operation"), self.array(k, "seconds")
         operations = [self._operation(k, i, each) for i, each in enumerate(plan["operations"])]
         fixed = [each for each in operations if each["mode"] == "fixed"]
         assumed = question.document["operations"]["assumed"]
-        rest = self.finished & (label < 0)
-        rest_area = float(self.area[rest].sum())
-        first = self.question.samples[f"reason_{self.considered[0]}"][rest]
-        words = question.document["reasons"]
-        counts = {
-            words[c]: int((first == c).sum()) for c in np.unique(first).tolist() if c != _NO_REASON and c < len(words)
-        }
         cutting = float(seconds[label >= 0].sum())
         known = math.isfinite(cutting)
         turns = sum(
@@ -209,8 +204,6 @@ class Reckoned:
         cutters = {each["cutter"] for each in plan["operations"]}
         setups = {each["setup"] for each in plan["operations"]}
         other = turns + assumed["change_s"] * max(0, len(cutters) - 1) + assumed["setup_s"] * max(0, len(setups) - 1)
-        held = [each for each in plan["operations"] if each["proved_share"] is not None]
-        size = sum(each["area_mm2"] for each in held)
         entry: dict[str, Any] = {
             "name": plan["name"],
             "orientations": len(fixed),
@@ -221,20 +214,24 @@ class Reckoned:
             "changes": max(0, len(cutters) - 1),
             "pieces": sum(len(each["regions"]) for each in operations),
             "operations": operations,
-            "rest": {
-                "samples": int(rest.sum()), "area_mm2": rest_area, "share": rest_area / self.whole if self.whole > 0.0 else 0.0,
-                "reason_counts": counts,
-            },
-        }  # fmt: skip
-        shares = sum(each["area_mm2"] * each["proved_share"] for each in held) / size if size > 0.0 else 0.0
-        entry["proved_share"] = Loose(shares, shares, 1e-6) if held and size > 0.0 else None
-        entry["approaches_proved"] = sum(each["approaches_proved"] or 0 for each in held) if held else None
-        if entry["approaches_proved"] is not None:
-            entry["approaches_proved"] = Loose(entry["approaches_proved"], entry["approaches_proved"])
+            "rest": self._rest(self.finished & (label < 0)),
+            **_proved([each for each in plan["operations"] if each["proved_share"] is not None]),
+        }
         ratio = self._ratio(fixed)
         if plan["ratio_at_most"] is not None:
             entry["ratio_at_most"] = ratio
         return entry
+
+    def _rest(self, rest: NDArray[np.bool_]) -> dict[str, Any]:
+        """What no operation takes (n,)."""
+        area = float(self.area[rest].sum())
+        first = self.question.samples[f"reason_{self.considered[0]}"][rest]
+        words = self.question.document["reasons"]
+        counts = {
+            words[c]: int((first == c).sum()) for c in np.unique(first).tolist() if c != _NO_REASON and c < len(words)
+        }
+        return {"samples": int(rest.sum()), "area_mm2": area, "share": area / self.whole if self.whole > 0.0 else 0.0,
+                "reason_counts": counts}  # fmt: skip
 
     def _ratio(self, fixed: Sequence[Mapping[str, Any]]) -> Any:
         timed = self.question.document["operations"]["fastest"]
@@ -397,3 +394,14 @@ def _runs(rows: Rows) -> list[list[int]]:
         else:
             runs.append([row, row])
     return runs
+
+
+def _proved(held: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """What is proved of a plan, by what is of its operations."""
+    size = sum(each["area_mm2"] for each in held)
+    shares = sum(each["area_mm2"] * each["proved_share"] for each in held) / size if size > 0.0 else 0.0
+    approaches = sum(each["approaches_proved"] or 0 for each in held)
+    return {
+        "proved_share": Loose(shares, shares, 1e-6) if held and size > 0.0 else None,
+        "approaches_proved": Loose(approaches, approaches) if held else None,
+    }

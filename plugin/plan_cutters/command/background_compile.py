@@ -58,14 +58,14 @@ def compile_all(maps: bool) -> None:
     from plan_cutters.domain.machine import Machine
     from plan_cutters.domain.posture import PostureRange
     from plan_cutters.kernels.rows import Contacts
-    from plan_cutters.scene.conditions import Conditions, warm
+    from plan_cutters.scene.conditions import Conditions, Context, warm
     from plan_cutters.scene.obstacles import Obstacles
     from plan_cutters.scene.surroundings import Surroundings
 
     cutter, none = Cutter.flat(radius=1, length=9), np.zeros((0, 3))
     one = Obstacles(Triangles(np.eye(3)[None], np.ones(1, np.int32), 1e-3, ()))
     conditions = Conditions(Machine(), np.array([0.0, 0.0, 1.0]), PostureRange(), Surroundings.sheet(one), 0.01, 1)
-    warm(Contacts(none, none, none, none[:, :2].copy()), cutter, conditions)
+    warm(Contacts(none, none, none, none[:, :2].copy()), Context.of(cutter, conditions))
     # What reading and meshing need is compiled by the first process meanwhile, and only loaded here.
     plan(corner(20.0, 0.2), faces=[1], cutters=[cutter], grid=9, jobs=1, posture_maps=maps)
 

@@ -17,15 +17,15 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from cad_io import Part
-    from plan_cutters.checker.question import Body, Question, Setup, ToolSizes
+    from plan_cutters.checker.question import Body, MachineAxes, Question, Setup, ToolSizes
     from plan_cutters.domain.cutter import Cutter
     from plan_cutters.domain.fixture import Fixture
+    from plan_cutters.domain.machine import Machine
+    from plan_cutters.domain.placement import Placement
     from plan_cutters.options import Options
 
 #: Files that must stand with plan.json, and what they hold.
 _FILES = {"operations.npz": "operations of a plan", "samples.npz": "samples of a plan"}
-#: Share of the tolerance that the chord error of a plan's triangles may take: looser ones make the plan keep a coarser tolerance.
-_CHORD_SHARE = 0.25
 
 
 def checked(part: str, file: str, options: "Options", *, quiet: bool, read_timeout: float) -> int:
@@ -73,47 +73,53 @@ def question_of(
     OptionError
         The plan is of another part or of other options, or has no operations.
     """
-    import numpy as np
-
     from cad_io.part.orient import orient
-    from plan_cutters.checker.question import MachineAxes, Question, Setup
-    from plan_cutters.domain.placement import Placement
+    from plan_cutters.checker.question import Question
     from plan_cutters.errors import OptionError
-    from plan_cutters.scene.faces import clamped_faces, ignored_faces, ignored_words
+    from plan_cutters.scene.faces import ignored_faces, ignored_words
 
     if not isinstance(document.get("operations"), dict):
         raise OptionError("the plan has no operations: make it with --operations")
-    places: list[Placement | None] = [
-        options.placement,
-        *(options.other_placements or (None,) * len(options.other_setups)),
-    ]
-    own = [() if place is None else place.fixtures for place in places]
-    axes = (options.setup, *options.other_setups)
-    setups = tuple(
-        Setup(
-            (float(axis[0]), float(axis[1]), float(axis[2])), None if place is None else place.x,
-            None if place is None else place.origin,
-            tuple(_body(each) for each in (options.fixtures if s == 0 else (*options.shared_fixtures, *own[s]))),
-            clamped_faces(part, place),
-        )
-        for s, (axis, place) in enumerate(zip(axes, places, strict=True))
-    )  # fmt: skip
-    machine, cutters = options.machine, {cutter.id: cutter for cutter in options.judged}
+    cutters, setups = {cutter.id: cutter for cutter in options.judged}, _setups(part, options)
     tolerance = _fits(part, options, document, [*cutters], setups)
+    sign = orient(part, options.setup, options.flip).sign
+    return Question(
+        part, _axes(options.machine), {name: _sizes(cutter) for name, cutter in cutters.items()}, setups,
+        ignored_faces(part, ignored_words(part, options.ignore)), sign, tolerance, document, arrays["operations.npz"],
+        arrays["samples.npz"],
+    )  # fmt: skip
+
+
+def _places(options: "Options") -> "tuple[Placement | None, ...]":
+    return options.placement, *(options.other_placements or (None,) * len(options.other_setups))
+
+
+def _setups(part: "Part", options: "Options") -> "tuple[Setup, ...]":
+    from plan_cutters.checker.question import Setup
+    from plan_cutters.scene.faces import clamped_faces
+
+    setups = []
+    for s, (axis, place) in enumerate(zip((options.setup, *options.other_setups), _places(options), strict=True)):
+        x, origin, own = (None, None, ()) if place is None else (place.x, place.origin, place.fixtures)
+        fixtures = options.fixtures if s == 0 else (*options.shared_fixtures, *own)
+        z = (float(axis[0]), float(axis[1]), float(axis[2]))
+        setups.append(Setup(z, x, origin, tuple(map(_body, fixtures)), clamped_faces(part, place)))
+    return tuple(setups)
+
+
+def _axes(machine: "Machine") -> "MachineAxes":
+    """The rotary axes; a machine without them is set by the azimuth about the setup axis and the tilt from it."""
+    import numpy as np
+
+    from plan_cutters.checker.question import MachineAxes
+
     turning, free = machine.rotary, (-math.inf, math.inf)
-    # A machine without rotary axes is set by the azimuth about the setup axis and the tilt from it.
-    moved = MachineAxes(
+    return MachineAxes(
         tuple(axis.name for axis in turning) or ("azimuth", "tilt"),
         np.array([axis.direction for axis in turning] or [(0.0, 0.0, 1.0), (0.0, 1.0, 0.0)], float),
         np.array([axis.limits or free for axis in turning] or [free, free], float), np.array(machine.tool_axis, float),
         math.pi if machine.tilt_limit is None else machine.tilt_limit,
         bool(turning) and all(axis.rate is not None for axis in turning),
-    )  # fmt: skip
-    sign = orient(part, axes[0], options.flip).sign
-    return Question(
-        part, moved, {name: _sizes(cutter) for name, cutter in cutters.items()}, setups,
-        ignored_faces(part, ignored_words(part, options.ignore)), sign, tolerance, document, arrays["operations.npz"],
-        arrays["samples.npz"],
     )  # fmt: skip
 
 
@@ -138,24 +144,48 @@ def _fits(
     part: "Part", options: "Options", document: Mapping[str, Any], cutters: list[str], setups: "tuple[Setup, ...]"
 ) -> float:
     """Refuse a plan of another part or of other options; the tolerance that it keeps, mm."""
+    from plan_cutters.domain.tolerance import kept
     from plan_cutters.errors import OptionError
 
     effective = document["effective"]
-    places = (effective["placement"], *(effective["other_placements"] or [None] * len(effective["other_setups"])))
     # A plan may keep a tolerance that is coarser than the one asked for, as its triangles allow.
     tolerance, wanted = float(effective["tolerance_mm"]), options.tolerance
-    if tolerance > wanted and abs(tolerance - effective["chord_error_mm"] / _CHORD_SHARE) <= 1e-9 * tolerance:
+    if tolerance > wanted and abs(tolerance - kept(0.0, effective["chord_error_mm"])) <= 1e-9 * tolerance:
         wanted = tolerance
-    pairs = [
+    pairs = [*_of_part(part, document),
+             ("cutters (--cutter, --holder)", sorted(effective["cutters"]), sorted(cutters)),
+             ("list of cutters", sorted(each["id"] for each in document["cutters"]), sorted(cutters)),
+             ("machine (--machine)", effective["machine"], options.machine.name),
+             *_of_setups(options, document, setups), ("tolerance (--tolerance)", tolerance, wanted)]  # fmt: skip
+    for name, angles in (("tilt", options.postures.tilt), ("rotation", options.postures.rotation)):
+        degrees = [round(math.degrees(x), 6) for x in angles]
+        pairs.append((f"{name}s (--{name})", [round(x, 6) for x in effective[f"{name}_deg"]], degrees))
+    for what, was, now in pairs:
+        if was != now:
+            raise OptionError(
+                f"the plan of operations does not fit: {what}: {_short(was)} in the plan, {_short(now)} here"
+            )
+    return tolerance
+
+
+_Pair = tuple[str, Any, Any]
+
+
+def _of_part(part: "Part", document: Mapping[str, Any]) -> list[_Pair]:
+    files = [(each["file"], each["sha256"]) for each in document["part"].get("references", [])]
+    return [
         ("part", document["part"].get("sha256"), part.sha256),
-        (
-            "files that the part refers to",
-            [(each["file"], each["sha256"]) for each in document["part"].get("references", [])],
-            list(part.references),
-        ),
-        ("cutters (--cutter, --holder)", sorted(effective["cutters"]), sorted(cutters)),
-        ("list of cutters", sorted(each["id"] for each in document["cutters"]), sorted(cutters)),
-        ("machine (--machine)", effective["machine"], options.machine.name),
+        ("files that the part refers to", files, list(part.references)),
+    ]
+
+
+def _of_setups(options: "Options", document: Mapping[str, Any], setups: "tuple[Setup, ...]") -> list[_Pair]:
+    effective = document["effective"]
+    places = (effective["placement"], *(effective["other_placements"] or [None] * len(effective["other_setups"])))
+    standing = [
+        [each["name"] for each in document["fixtures"] if s in each.get("setups", [0])] for s in range(len(setups))
+    ]
+    return [
         (
             "setups (--setup)",
             [round(x, 9) for axis in (effective["setup"], *effective["other_setups"]) for x in axis],
@@ -164,38 +194,15 @@ def _fits(
         # Not their places: where a fixture stands shows in what it serves.
         (
             "fixtures (--fixture, --setup)",
-            [
-                [each["name"] for each in document["fixtures"] if s in each.get("setups", [0])]
-                for s in range(len(setups))
-            ],
+            standing,
             [[f"fixture:{each.name}" for each in one.fixtures] for one in setups],
         ),
         (
             "clamped faces (--setup)",
             [(place or {}).get("clamped", []) for place in places],
-            [
-                [] if place is None else list(place.clamped)
-                for place in (options.placement, *(options.other_placements or (None,) * len(options.other_setups)))
-            ],
-        ),
-        ("tolerance (--tolerance)", tolerance, wanted),
-        (
-            "tilts (--tilt)",
-            [round(x, 6) for x in effective["tilt_deg"]],
-            [round(math.degrees(x), 6) for x in options.postures.tilt],
-        ),
-        (
-            "rotations (--rotation)",
-            [round(x, 6) for x in effective["rotation_deg"]],
-            [round(math.degrees(x), 6) for x in options.postures.rotation],
+            [[] if place is None else list(place.clamped) for place in _places(options)],
         ),
     ]
-    for what, was, now in pairs:
-        if was != now:
-            raise OptionError(
-                f"the plan of operations does not fit: {what}: {_short(was)} in the plan, {_short(now)} here"
-            )
-    return tolerance
 
 
 def _short(value: Any) -> str:

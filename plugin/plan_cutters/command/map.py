@@ -21,6 +21,7 @@ from plan_cutters.command.terminal import hand_out, paper
 from plan_cutters.command.values import File, Setup, Words, cutter_ids
 from plan_cutters.command.worker import began, can_supervise, follow_parent, is_child, report
 from plan_cutters.files.terminal_text import clean
+from plan_cutters.plan_file.reasons import INTERVALS
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -144,6 +145,10 @@ def command(request: MapRequest) -> int:
     elif not request.quiet:
         with paper(80) as console:
             _table(result, about, outs, console)
+    return _code(result)
+
+
+def _code(result: "PostureMap") -> int:
     if any(len(each) for each in result.free) and not result.missing:
         return _FREE
     return _UNDECIDED if result.missing or any(len(each) for each in result.undecided) else _NONE
@@ -231,18 +236,7 @@ def _degrees(intervals: "Floats") -> list[list[float]]:
 
 def _facts(result: "PostureMap", face: str, off: float, cutter: "Cutter", request: MapRequest) -> dict[str, Any]:
     """The map as JSON has it; degrees and mm."""
-    words = (
-        "free",
-        "undecided",
-        "axis_limit",
-        "rear_gouge",
-        "collision",
-        "neck",
-        "shank",
-        "holder",
-        "buried",
-        "no_contact",
-    )
+    words = ("free", "undecided", *INTERVALS)
     none = [None if math.isnan(x) else math.degrees(x) for x in result.local_gouge.tolist()]
     return {
         "format": "plan-cutters-map", "format_version": 1,

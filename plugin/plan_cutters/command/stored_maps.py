@@ -2,7 +2,7 @@
 
 import json
 import os
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -20,6 +20,7 @@ from plan_cutters.files.terminal_text import clean
 if TYPE_CHECKING:
     from plan_cutters.command.request import PlanRequest
     from plan_cutters.options import Options
+    from plan_cutters.stages.posture_maps import PostureMaps
 
 _SELF = "plan-cutters stored"
 #: Parameters that are about files, which are not written here.
@@ -107,7 +108,6 @@ def stored(
     from plan_cutters.domain.placement import axis_words
     from plan_cutters.domain.verdicts import WORDS
     from plan_cutters.errors import OptionError
-    from plan_cutters.plan_file.numbers import listed
     from plan_cutters.scene.question import setup_of, words_of
     from plan_cutters.stages.posture_maps import PostureMaps
 
@@ -134,26 +134,38 @@ def stored(
                   "missing": list(missing), "unjudged_faces": list(unjudged), "asked": dict(maps.about)}  # fmt: skip
         terminal.hand_out(json.dumps(answer, indent=2) + "\n")
     if not request.quiet:
-        text = ", ".join(f"{count} {word.replace('_', ' ')}" for word, count in counts.items() if count)
         on = f"{maps.cutter} on {options.machine.name}, setup {axis_words(setup)}"
-        lines = [f"{Path(part).name if part else name}: {on}, by {name}: {text}"]
-        if inside:
-            lines.append(f"{inside} more samples lie inside another body of the part: they are no surface of it.")
-        if counts["undecided"]:
-            lines.append(
-                "What is undecided here, a plan with this machine may decide: the maps leave narrow bands of tilt open."
-            )
-        if maps.unmapped:
-            lines.append(f"{maps.unmapped} samples were not mapped (--map-budget): they are undecided.")
-        if missing:
-            lines.append(f"Obstacles are missing or guessed, so nothing is beyond doubt: {listed(missing, _LISTED)}.")
-        if unjudged:
-            lines.append(f"Not judged: {listed(unjudged, _LISTED)}.")
+        lines = [
+            f"{Path(part).name if part else name}: {on}, by {name}: {_counted(counts)}",
+            *_remarks(maps, inside, counts["undecided"], missing, unjudged),
+        ]
         tells = terminal.say if request.json_out == "-" else terminal.show
         tells(*(clean(line) for line in lines))
     if counts["inaccessible"]:
         return NONE_FEASIBLE
     return NOT_ALL_JUDGED if counts["undecided"] or counts["unjudged"] or missing or unjudged else FEASIBLE
+
+
+def _counted(counts: dict[str, int]) -> str:
+    return ", ".join(f"{count} {word.replace('_', ' ')}" for word, count in counts.items() if count)
+
+
+def _remarks(
+    maps: "PostureMaps", inside: int, undecided: int, missing: Sequence[str], unjudged: Sequence[str]
+) -> Iterator[str]:
+    """What must be said of an answer from posture maps."""
+    from plan_cutters.plan_file.numbers import listed
+
+    if inside:
+        yield f"{inside} more samples lie inside another body of the part: they are no surface of it."
+    if undecided:
+        yield "What is undecided here, a plan with this machine may decide: the maps leave narrow bands of tilt open."
+    if maps.unmapped:
+        yield f"{maps.unmapped} samples were not mapped (--map-budget): they are undecided."
+    if missing:
+        yield f"Obstacles are missing or guessed, so nothing is beyond doubt: {listed(missing, _LISTED)}."
+    if unjudged:
+        yield f"Not judged: {listed(unjudged, _LISTED)}."
 
 
 def _requested(options: "Options", request: "StoredRequest | PlanRequest", named: Collection[str]) -> dict[str, Any]:

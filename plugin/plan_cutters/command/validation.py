@@ -75,33 +75,14 @@ def _words(request: PlanRequest) -> None:
 
     if request.formats is not None:
         read_formats(request.formats)
-    if request.json_out not in (None, "-"):
-        raise OptionError("--json takes -, for standard output; --formats json writes plan.json into the folder")
-    if request.json_out and len(request.parts) > 1:
-        raise OptionError("--json - writes one plan: give one part, or -o DIR --formats json for a file of each")
-    if request.json_out and sys.stdout is None:
-        raise OptionError("--json -: standard output is closed")
+    _json_out(request)
     if request.out == "":
         raise OptionError("-o: the folder has no name")
     if "" in request.parts:
         raise OptionError("PART: a file has no name")
-    for name in ("postures", "check_operations"):
-        if getattr(request, name) is None:
-            continue
-        if any(str(each).lower() == "auto" for each in request.setup):
-            raise OptionError(
-                f"--setup auto plans what it proposes, and --{name.replace('_', '-')} plans nothing: name the setup"
-            )
-        planning = [word for word in ("cluster", "verdicts", "verdicts_key") if getattr(request, word) is not None]
-        if planning:
-            one, other = (word.replace("_", "-") for word in (planning[0], name))
-            raise OptionError(f"--{one} is about planning, and --{other} plans nothing: leave one of them out")
+    _plans_nothing(request)
     if request.check_operations is None:
         refuse_unplanned_operations(request)
-    elif len(request.parts) > 1:
-        raise OptionError("--check-operations is about one part")
-    if request.postures is not None and len(request.parts) > 1:
-        raise OptionError("--postures is about one part")
     if request.postures is not None and not os.path.isfile(request.postures):
         raise OptionError("no such file, or it is no file", file=request.postures)
     if not 0.0 < request.read_timeout < math.inf:
@@ -116,6 +97,35 @@ def _words(request: PlanRequest) -> None:
         raise OptionError("--timeout must be a positive number of seconds")
     if request.memory is not None and not LEAST_MEMORY <= request.memory * 1e9 < 1e18:
         raise OptionError("--memory must be at least 2 GB")
+
+
+def _json_out(request: PlanRequest) -> None:
+    from plan_cutters.errors import OptionError
+
+    if request.json_out not in (None, "-"):
+        raise OptionError("--json takes -, for standard output; --formats json writes plan.json into the folder")
+    if request.json_out and len(request.parts) > 1:
+        raise OptionError("--json - writes one plan: give one part, or -o DIR --formats json for a file of each")
+    if request.json_out and sys.stdout is None:
+        raise OptionError("--json -: standard output is closed")
+
+
+def _plans_nothing(request: PlanRequest) -> None:
+    """Refuse what is about planning, and several parts, where something that was planned is looked at."""
+    from plan_cutters.errors import OptionError
+
+    for name in ("check_operations", "postures"):
+        if getattr(request, name) is None:
+            continue
+        word = f"--{name.replace('_', '-')}"
+        if any(str(each).lower() == "auto" for each in request.setup):
+            raise OptionError(f"--setup auto plans what it proposes, and {word} plans nothing: name the setup")
+        planning = [each for each in ("cluster", "verdicts", "verdicts_key") if getattr(request, each) is not None]
+        if planning:
+            one = planning[0].replace("_", "-")
+            raise OptionError(f"--{one} is about planning, and {word} plans nothing: leave one of them out")
+        if len(request.parts) > 1:
+            raise OptionError(f"{word} is about one part")
 
 
 def refuse_unplanned_operations(request: PlanningRequest) -> None:

@@ -2,7 +2,7 @@
 
 import math
 from collections import Counter
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import Any
 
 from cad_io.files import fingerprint
@@ -60,18 +60,8 @@ def compare(
         why_not.append("no face of the old plan is known again in the new one: they seem to be of two parts")
     if not tools:
         why_not.append("no cutter of the old plan is known again in the new one")
-    faces = [
-        *(_face(old, a, new, b, how, slack) for a, b, how in pairs),
-        *(_gone(old, face) for face in _rest(old.faces, [a.id for a, _, _ in pairs])),
-        *(_added(new, face) for face in _rest(new.faces, [b.id for _, b, _ in pairs])),
-    ]
-    cutters = [
-        *(_cutter(old, a, new, b, how, pairs, slack) for a, b, how in tools),
-        *(_one_sided(old, c, None) for c in _rest(old.cutters, [a.id for a, _, _ in tools])),
-        *(_one_sided(new, None, c) for c in _rest(new.cutters, [b.id for _, b, _ in tools])),
-    ]
-    face_rows = sorted((each for each in faces if each is not None), key=_place)
-    cutter_rows = sorted((each for each in cutters if each is not None), key=_id)
+    face_rows = sorted(filter(None, _faces(old, new, pairs, slack)), key=_place)
+    cutter_rows = sorted(filter(None, _cutters(old, new, tools, pairs, slack)), key=_id)
     differences: list[FaceDifference | CutterDifference] = [*face_rows, *cutter_rows]
     return PlanDifference(
         name=name,
@@ -157,6 +147,23 @@ def _face(old: Plan, a: FaceEntry, new: Plan, b: FaceEntry, how: Any, slack: flo
     if not (loses or wins) and (was.reach, was.reason) == (now.reach, now.reason):
         return None
     return _face_difference(b, old=a.id, new=b.id, matched_by=how, was=was, now=now, lost=loses, won=wins)
+
+
+def _faces(
+    old: Plan, new: Plan, pairs: Sequence[tuple[FaceEntry, FaceEntry, Any]], slack: float
+) -> Iterator[FaceDifference | None]:
+    yield from (_face(old, a, new, b, how, slack) for a, b, how in pairs)
+    yield from (_gone(old, face) for face in _rest(old.faces, [a.id for a, _, _ in pairs]))
+    yield from (_added(new, face) for face in _rest(new.faces, [b.id for _, b, _ in pairs]))
+
+
+def _cutters(
+    old: Plan, new: Plan, tools: Sequence[tuple[CutterEntry, CutterEntry, Any]],
+    pairs: Sequence[tuple[FaceEntry, FaceEntry, Any]], slack: float,
+) -> Iterator[CutterDifference | None]:  # fmt: skip
+    yield from (_cutter(old, a, new, b, how, pairs, slack) for a, b, how in tools)
+    yield from (_one_sided(old, c, None) for c in _rest(old.cutters, [a.id for a, _, _ in tools]))
+    yield from (_one_sided(new, None, c) for c in _rest(new.cutters, [b.id for _, b, _ in tools]))
 
 
 def _gone(plan: Plan, face: FaceEntry) -> FaceDifference:

@@ -147,8 +147,11 @@ class Machine:
 
     def allows(self, axis: Floats, setup: Floats) -> NDArray[np.bool_]:
         """Which tool axes (n, 3) of the part it can hold, by its plain limit and its rotary axes; `setup` as for `kinematics`."""
+        return self.holds(axis, setup, self.kinematics(setup))
+
+    def holds(self, axis: Floats, setup: Floats, kinematics: Kinematics | None) -> NDArray[np.bool_]:
+        """As `allows`, with the rotary axes in the part's frame."""
         held = axis @ setup[2] >= self.limit_cos
-        kinematics = self.kinematics(setup)
         return np.asarray(held if kinematics is None else held & kinematics.allows(axis))
 
     @classmethod

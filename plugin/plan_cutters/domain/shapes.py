@@ -211,7 +211,7 @@ def check(cutter: Dimensions, name: str) -> None:
 
 
 def _check_shape(cutter: Dimensions, name: str) -> None:
-    r, corner, top = cutter.radius, cutter.corner_radius, flute_length_or_nan(cutter)
+    r, corner = cutter.radius, cutter.corner_radius
     if not 0 <= corner <= r:
         raise CutterError(f"corner radius {corner:g} must lie between 0 and the radius {r:g}")
     if cutter.taper and cutter.shape != "end":
@@ -224,42 +224,55 @@ def _check_shape(cutter: Dimensions, name: str) -> None:
         raise CutterError(f"{name}: only barrels and lenses have an arc of their own")
     if cutter.shape != "form" and cutter.outline:
         raise CutterError(f"{name}: an outline belongs to the shape form")
-    if cutter.shape == "end" and top == top:
-        if top <= corner * (1.0 - math.sin(cutter.taper)) - SAME:
-            raise CutterError(f"{name}: its flutes of {top:g} mm end within its corner of radius {corner:g}")
-        if not top_radius(cutter) > 0.0:
-            raise CutterError(f"{name}: its flanks meet below the end of its flutes")
-    if cutter.shape == "lollipop" and not 0.0 < (cutter.shank_radius or 0.0) < r:
+    _CHECKS[cutter.shape](cutter, name)
+
+
+def _check_end(cutter: Dimensions, name: str) -> None:
+    top, corner = flute_length(cutter), cutter.corner_radius
+    if top <= corner * (1.0 - math.sin(cutter.taper)) - SAME:
+        raise CutterError(f"{name}: its flutes of {top:g} mm end within its corner of radius {corner:g}")
+    if not top_radius(cutter) > 0.0:
+        raise CutterError(f"{name}: its flanks meet below the end of its flutes")
+
+
+def _check_lollipop(cutter: Dimensions, name: str) -> None:
+    if not 0.0 < (cutter.shank_radius or 0.0) < cutter.radius:
         raise CutterError(
-            f"{name}: a lollipop's neck must be thinner than its ball of radius {r:g}, and there must be one"
+            f"{name}: a lollipop's neck must be thinner than its ball of radius {cutter.radius:g}, and there must be one"
         )
-    if cutter.shape == "barrel":
-        if not cutter.arc_radius >= r or not cutter.arc_height >= 0.0 or not math.isfinite(cutter.arc_radius):
+
+
+def _check_barrel(cutter: Dimensions, name: str) -> None:
+    r, corner, top = cutter.radius, cutter.corner_radius, flute_length(cutter)
+    if not cutter.arc_radius >= r or not cutter.arc_height >= 0.0 or not math.isfinite(cutter.arc_radius):
+        raise CutterError(
+            f"{name}: a barrel's flank needs a radius of at least its own {r:g}, and a height over its tip"
+        )
+    if corner and not corner < r:
+        raise CutterError(f"{name}: the tip of a barrel must be smaller than its radius {r:g}")
+    if corner:
+        inner, outer = cutter.arc_radius - r, cutter.arc_radius - corner
+        if abs(math.hypot(inner, cutter.arc_height - corner) - outer) > 1e-6 * cutter.arc_radius:
             raise CutterError(
-                f"{name}: a barrel's flank needs a radius of at least its own {r:g}, and a height over its tip"
+                f"{name}: its flank is not tangent to the ball at its tip; Cutter.barrel finds the height"
             )
-        if corner and not corner < r:
-            raise CutterError(f"{name}: the tip of a barrel must be smaller than its radius {r:g}")
-        if corner:
-            inner, outer = cutter.arc_radius - r, cutter.arc_radius - corner
-            if abs(math.hypot(inner, cutter.arc_height - corner) - outer) > 1e-6 * cutter.arc_radius:
-                raise CutterError(
-                    f"{name}: its flank is not tangent to the ball at its tip; Cutter.barrel finds the height"
-                )
-        low = 0.0 if not corner else corner * (1.0 - math.cos(tip_angle(cutter)))
-        if not low < top or not flank(cutter, top) > 0.0 or not flank(cutter, low) > 0.0:
-            raise CutterError(
-                f"{name}: its flank must begin below the end of the flutes and be wider than its axis all along"
-            )
-        if abs(top - cutter.arc_height) >= cutter.arc_radius or cutter.arc_height - low >= cutter.arc_radius:
-            raise CutterError(f"{name}: its flank of radius {cutter.arc_radius:g} does not reach so far along its axis")
-    if cutter.shape == "lens":
-        if not (math.isfinite(cutter.arc_radius) and cutter.arc_radius >= r > corner):
-            raise CutterError(f"{name}: a lens needs a bottom of at least its radius {r:g}, and a smaller corner")
-        if not top >= lens_height(cutter) - SAME:
-            raise CutterError(f"{name}: its flutes of {top:g} mm end within its bottom")
-    if cutter.shape == "form":
-        _check_outline(cutter, name)
+    low = 0.0 if not corner else corner * (1.0 - math.cos(tip_angle(cutter)))
+    if not low < top or not flank(cutter, top) > 0.0 or not flank(cutter, low) > 0.0:
+        raise CutterError(
+            f"{name}: its flank must begin below the end of the flutes and be wider than its axis all along"
+        )
+    if abs(top - cutter.arc_height) >= cutter.arc_radius or cutter.arc_height - low >= cutter.arc_radius:
+        raise CutterError(f"{name}: its flank of radius {cutter.arc_radius:g} does not reach so far along its axis")
+
+
+def _check_lens(cutter: Dimensions, name: str) -> None:
+    top = flute_length(cutter)
+    if not (math.isfinite(cutter.arc_radius) and cutter.arc_radius >= cutter.radius > cutter.corner_radius):
+        raise CutterError(
+            f"{name}: a lens needs a bottom of at least its radius {cutter.radius:g}, and a smaller corner"
+        )
+    if not top >= lens_height(cutter) - SAME:
+        raise CutterError(f"{name}: its flutes of {top:g} mm end within its bottom")
 
 
 def _check_outline(cutter: Dimensions, name: str) -> None:
@@ -276,6 +289,5 @@ def _check_outline(cutter: Dimensions, name: str) -> None:
         raise CutterError(f"{name}: the corners of an outline are its points")
 
 
-def flute_length_or_nan(cutter: Dimensions) -> float:
-    """`flute_length`, nan where an outline has no end yet."""
-    return math.nan if cutter.shape == "form" and not cutter.outline else flute_length(cutter)
+_CHECKS = {"end": _check_end, "lollipop": _check_lollipop, "barrel": _check_barrel, "lens": _check_lens,
+           "form": _check_outline}  # fmt: skip

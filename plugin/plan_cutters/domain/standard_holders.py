@@ -127,13 +127,18 @@ def chuck(text: str) -> Chuck | None:
         return Chuck(short if not match["length"] else f"{short}x{high:g}", ((nose.diameter / 2, high),), nose.bore)
     body = max(nose.diameter, taper.body)
     sections = [(nose.diameter, nose.length), (body, high - least), (max(taper.flange, 0.0), taper.depth)]
+    return Chuck(f"{taper.name}-{short}x{high:g}", _merged(sections), nose.bore)
+
+
+def _merged(sections: list[tuple[float, float]]) -> tuple[tuple[float, float], ...]:
+    """Sections, a diameter and a length each, as radii and lengths: those of one diameter that follow each other in one."""
     merged: list[tuple[float, float]] = []
     for diameter, long in sections:
         if merged and merged[-1][0] == diameter / 2:
             merged[-1] = (diameter / 2, merged[-1][1] + long)
         elif long > 0.0:
             merged.append((diameter / 2, long))
-    return Chuck(f"{taper.name}-{short}x{high:g}", tuple(merged), nose.bore)
+    return tuple(merged)
 
 
 def _taper(plain: str) -> Taper | None:

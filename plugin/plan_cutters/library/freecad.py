@@ -5,7 +5,7 @@ itself counts in, unless the bit says that its units are imperial.
 """
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from itertools import pairwise
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Any
@@ -51,6 +51,7 @@ _PARAMETERS = (
 #: Fields that one release means as the radius of the flat at the tip, and another as that of the corner.
 _FLATS = ("FlatRadius", "TorusRadius")
 _ANGLE = "CuttingEdgeAngle"
+_AS_TOML = "write it as TOML (docs/tool_libraries.md)"
 #: Fields of other shapes: which tip they make of this one, nothing says.
 _STRANGE = ("Radius", "TaperAngle")
 #: Its drawing does not say from where it counts.
@@ -180,47 +181,60 @@ def _tool(entry: dict[str, Any], place: str, number: int | None) -> Listed:
         return _length(value, field, imperial, tool)
 
     for key, words in _PARAMETERS:
-        present = [word for word in words if parameters.get(word) not in (None, "")]
-        tool.take(key, parameters[present[0]] if present else None, (present or words)[0], length)
-        for other in present[1:]:
-            try:
-                same = abs(mm(length(parameters[other], other), 1.0, other) - tool.values.get(key, 0.0)) <= 1e-3
-            except FaultError as fault:
-                tool.faults.append(str(fault))
-                continue
-            if not same:
-                both = f"{present[0]} is {shown(parameters[present[0]])}, {other} is {shown(parameters[other])}"
-                tool.faults.append(f"{both}: they mean the same")
+        _dimension(
+            tool,
+            key,
+            [word for word in words if parameters.get(word) not in (None, "")] or words[:1],
+            parameters,
+            length,
+        )
     if tool.sort:
         if shape and _plain(shape) != _plain(kind):
             # FreeCAD takes the drawing, and the type only where it has no such drawing.
             tool.doubts.append(f"shape-type {shown(kind)}, but shape {shown(shape)}: another drawing can be another tool; "
-                               f"correct one, or write it as TOML (docs/tool_libraries.md)")  # fmt: skip
+                               f"correct one, or {_AS_TOML}")  # fmt: skip
         for word in _STRANGE:
             if re.search("[1-9]", str(parameters.get(word) or "")):
-                tool.doubts.append(f"{word} {shown(parameters[word])}: a {kind} has none; leave it out, or write it as TOML "
-                                   f"(docs/tool_libraries.md)")  # fmt: skip
+                tool.doubts.append(f"{word} {shown(parameters[word])}: a {kind} has none; leave it out, or {_AS_TOML}")
         for word in _FLATS:
             _corner(tool, parameters.get(word), word, length)
         neck = str(parameters.get(_NECK) or "")
         if re.search("[1-9]", neck):
             tool.notes.append(f"{_NECK} {neck[:40]} is not used")
-    angle = parameters.get(_ANGLE)
-    if tool.sort == "chamfer mill":
-        tool.take("TA", angle, _ANGLE, _half_angle)
-        if kind.lower() == "chamfer" and 0.0 < tool.values.get("TA", 0.0) < 45.0:
-            tool.doubts.append(f"{_ANGLE} {shown(angle)} is the whole angle of its cone or that of its flank from the axis: "
-                               f"write it as TOML (docs/tool_libraries.md)")  # fmt: skip
-    elif tool.sort and angle not in (None, ""):
-        whole = tool.tried(lambda: _angle(angle, _ANGLE), 0.0)
-        if whole not in (0.0, 180.0):
-            tool.doubts.append(f"{_ANGLE} {shown(angle)}: a {kind} has no cone; leave it out, or write it as TOML "
-                               f"(docs/tool_libraries.md)")  # fmt: skip
+        _cone(tool, parameters.get(_ANGLE))
     tool.words["LPR"] = "length below the holder"
     attribute = entry.get("attribute")
     if isinstance(attribute, dict):
         take_feed(tool, [Preset("", attribute.get("cutting_feedrate"))], "cutting_feedrate", _feed)
     return tool
+
+
+def _dimension(
+    tool: Listed, key: str, fields: Sequence[str], parameters: dict[str, Any], length: Callable[[Any, str], float]
+) -> None:
+    """Take a dimension from the first of its fields; the others must say the same."""
+    first, *others = fields
+    tool.take(key, parameters[first] if parameters.get(first) not in (None, "") else None, first, length)
+    for other in others:
+        try:
+            same = abs(mm(length(parameters[other], other), 1.0, other) - tool.values.get(key, 0.0)) <= 1e-3
+        except FaultError as fault:
+            tool.faults.append(str(fault))
+            continue
+        if not same:
+            both = f"{first} is {shown(parameters[first])}, {other} is {shown(parameters[other])}"
+            tool.faults.append(f"{both}: they mean the same")
+
+
+def _cone(tool: Listed, angle: Any) -> None:
+    """Take the angle of a chamfer mill; others have no cone."""
+    if tool.sort == "chamfer mill":
+        tool.take("TA", angle, _ANGLE, _half_angle)
+        if tool.kind.lower() == "chamfer" and 0.0 < tool.values.get("TA", 0.0) < 45.0:
+            tool.doubts.append(f"{_ANGLE} {shown(angle)} is the whole angle of its cone or that of its flank from the axis: "
+                               f"{_AS_TOML}")  # fmt: skip
+    elif angle not in (None, "") and tool.tried(lambda: _angle(angle, _ANGLE), 0.0) not in (0.0, 180.0):
+        tool.doubts.append(f"{_ANGLE} {shown(angle)}: a {tool.kind} has no cone; leave it out, or {_AS_TOML}")
 
 
 def _stem(shape: Any) -> str:

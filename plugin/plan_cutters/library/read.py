@@ -135,7 +135,11 @@ def holder_of(value: Any) -> Holder | str:
             if Path(file).suffix.lower() in _SUFFIXES:
                 raise LibraryError("is no file; give one with a holder, or R15L30", file=file) from None
             raise
-    listed = listing(file, skip_bad=True)
+    return _holder_in(listing(file, skip_bad=True), name)
+
+
+def _holder_in(listed: Library, name: str) -> Holder:
+    """The holder of a name in a library, or its only one where there is no name."""
     known = {holder.id: holder for holder in listed.holders}
     for entry in listed.entries:
         if entry.cutter is not None and entry.cutter.holder is not None:

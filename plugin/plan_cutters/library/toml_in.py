@@ -3,6 +3,7 @@
 import math
 import re
 import tomllib
+from collections.abc import Sequence
 from itertools import pairwise
 from typing import Annotated, Any, Literal
 
@@ -198,6 +199,15 @@ def _listed(table: Any, place: str, unit: Any, named: dict[str, Holder | None]) 
     stated.attributes = {"shape": "end" if model.type in _ENDS else model.type, "taper": _taper(model, tool),
                          "flutes": flutes or None, "arc_radius": length(model.PRFRAD, "PRFRAD"), "outline": outline,
                          "arc_height": length(model.profile_height, "profile_height"), **limits}  # fmt: skip
+    needs = _needs(model, tool, flutes, outline)
+    _neck(model, tool, length(model.LN, "LN"), needs)
+    tool.needs = tuple(key for key, needed in needs.items() if needed)
+    take_feed(tool, [Preset("", model.feed)], "feed", lambda value, _: float(value))
+    return tool
+
+
+def _needs(model: ToolTable, tool: Listed, flutes: float, outline: Sequence[tuple[float, float]]) -> dict[str, bool]:
+    """Which dimensions a tool of a type needs, and what of them contradicts its outline."""
     needs = {"DC": True, "LCF": model.LCF != "rest" and not flutes, "TA": model.type == "taper"}
     if model.type in ("lollipop", "form"):
         needs["LCF"] = False
@@ -208,10 +218,7 @@ def _listed(table: Any, place: str, unit: Any, named: dict[str, Holder | None]) 
         if widest and abs(tool.values.get("DC", widest) - widest) > 1e-3:
             tool.faults.append(f"{tool.cite('DC')} is not the largest diameter of its outline")
         needs["DC"], needs["outline"], tool.values["DC"] = False, not widest, widest
-    _neck(model, tool, length(model.LN, "LN"), needs)
-    tool.needs = tuple(key for key, needed in needs.items() if needed)
-    take_feed(tool, [Preset("", model.feed)], "feed", lambda value, _: float(value))
-    return tool
+    return needs
 
 
 def _taper(model: ToolTable, tool: Listed) -> float:

@@ -5,7 +5,7 @@ import math
 from collections.abc import Iterable
 
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.holder import Segment
+from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.library.raw_tool import name_of
 from plan_cutters.library.records import Library
 
@@ -41,6 +41,13 @@ def _kind(cutter: Cutter) -> str:
     return "flat" if not cutter.corner_radius else "ball" if cutter.corner_radius == cutter.radius else "bull"
 
 
+def _holder(holder: Holder | None) -> str:
+    if holder is None:
+        return '"none"'
+    name = f"name = {_text(holder.name)}, " if holder.name else ""
+    return f"{{ {name}stages = {_rows(holder.stages)} }}"
+
+
 def _written(cutter: Cutter, name: str, number: int | None, feed: float | None = None) -> list[str]:
     lines = ["", "[[tool]]"]
     if number is not None:
@@ -68,11 +75,7 @@ def _written(cutter: Cutter, name: str, number: int | None, feed: float | None =
         lines.append(f"DN = {2.0 * (cutter.shank_radius or 0.0)!r}")
     else:
         lines.append('DMM = "same"' if cutter.shank_radius is None else f"DMM = {2.0 * cutter.shank_radius!r}")
-    if cutter.holder is None:
-        lines.append('holder = "none"')
-    else:
-        holder = f"name = {_text(cutter.holder.name)}, " if cutter.holder.name else ""
-        lines.append(f"holder = {{ {holder}stages = {_rows(cutter.holder.stages)} }}")
+    lines.append(f"holder = {_holder(cutter.holder)}")
     for word in ("allowance", "clearance"):
         if getattr(cutter, word) is not None:
             lines.append(f"{word} = {getattr(cutter, word)!r}")

@@ -112,22 +112,25 @@ class _Reading:
 
     def letters_of_joints(self) -> str:
         """The letter of each joint."""
-        text = self.given.get("coordinates", "").upper()
-        sections = [key for key in self.ini.values if re.fullmatch(r"(JOINT|AXIS)_\d", key)]
-        if not text:
-            text = KINS[self.name].joints if self.name in KINS else _LETTERS
-            numbered = [key for key in sections if key.startswith("AXIS")]
-            missing = [key for key in sections if int(key[-1]) >= len(text) or text[int(key[-1])] not in self.letters]
-            # Before there were joints, axes were numbered; maxkins numbers all nine, used or not.
-            if (self.name == TRIVIAL and missing) or (self.name in KINS and len(text) < len(_LETTERS) and numbered):
-                raise MachineError(f"which axis [{(missing or numbered)[0]}] is of is not known: say so, as KINEMATICS = "
-                                   f"{self.name} coordinates={self.letters}")  # fmt: skip
+        text = self.given.get("coordinates", "").upper() or self._letters_unsaid()
         for i, letter in enumerate(text):
             for section in (f"JOINT_{i}", f"AXIS_{i}"):
                 kind = (self.ini.one(section, "TYPE") or "").upper()
                 if kind and kind != ("ANGULAR" if letter in "ABC" else "LINEAR"):
                     raise MachineError(f"[{section}] is {shown(kind)}, but joint {i} is {letter} by its kinematics: say so, as "
                                        f"KINEMATICS = {self.name} coordinates={self.letters}")  # fmt: skip
+        return text
+
+    def _letters_unsaid(self) -> str:
+        """The letter of each joint, where the file does not say it."""
+        text = KINS[self.name].joints if self.name in KINS else _LETTERS
+        sections = [key for key in self.ini.values if re.fullmatch(r"(JOINT|AXIS)_\d", key)]
+        numbered = [key for key in sections if key.startswith("AXIS")]
+        missing = [key for key in sections if int(key[-1]) >= len(text) or text[int(key[-1])] not in self.letters]
+        # Before there were joints, axes were numbered; maxkins numbers all nine, used or not.
+        if (self.name == TRIVIAL and missing) or (self.name in KINS and len(text) < len(_LETTERS) and numbered):
+            raise MachineError(f"which axis [{(missing or numbered)[0]}] is of is not known: say so, as KINEMATICS = "
+                               f"{self.name} coordinates={self.letters}")  # fmt: skip
         return text
 
     def machine(self) -> Machine:

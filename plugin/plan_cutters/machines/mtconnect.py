@@ -35,26 +35,26 @@ def read_probe(content: Content, added: Added) -> Machine:
     root = content.xml()
     if root.tag != "MTConnectDevices":
         raise MachineError(f"is XML with the root {root.tag[:40]}, not MTConnectDevices")
-    devices = [each for top in root.children if top.tag == "Devices" for each in top.children if each.tag == "Device"]
-    with_axes = [(device, list(_components(device))) for device in devices]
-    with_axes = [(device, axes) for device, axes in with_axes if axes]
-    if len(with_axes) != 1:
-        names = ", ".join(shown(device.given.get("name", "")) for device, _ in with_axes)
-        what = f"{len(with_axes)} devices have axes ({names})" if with_axes else "no device of it has axes"
-        raise MachineError(f"{what}: give a file with one machine")
-    device, components = with_axes[0]
+    device, components = _device(root)
     notes: list[str] = []
-    own_axes: list[Axis] = []
-    for component in components:
-        axis = _axis(component, added, notes)
-        if axis is not None:
-            own_axes.append(axis)
+    own_axes = [axis for each in components if (axis := _axis(each, added, notes)) is not None]
     rotary = arranged([each for each in own_axes if each.kind == "rotary"], added, notes, "MTConnect")
     between = [each for each in own_axes if each.kind == "linear"]
     if not between and not rotary:
         raise MachineError("it has no axis X, Y, Z, A, B or C")
     axes = [*(a for a in rotary if a.carries == "part"), *between, *(a for a in rotary if a.carries == "tool")]
     return chain.machine(device.given.get("name") or content.path.stem, axes, notes)
+
+
+def _device(root: Element) -> tuple[Element, list[Element]]:
+    """The only device that has axes, and these."""
+    devices = [each for top in root.children if top.tag == "Devices" for each in top.children if each.tag == "Device"]
+    with_axes = [(device, axes) for device in devices if (axes := list(_components(device)))]
+    if len(with_axes) != 1:
+        names = ", ".join(shown(device.given.get("name", "")) for device, _ in with_axes)
+        what = f"{len(with_axes)} devices have axes ({names})" if with_axes else "no device of it has axes"
+        raise MachineError(f"{what}: give a file with one machine")
+    return with_axes[0]
 
 
 def _components(element: Element) -> Iterator[Element]:

@@ -12,7 +12,6 @@ from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.kinematics import Kinematics
-from plan_cutters.domain.placement import frame_of
 from plan_cutters.scene.conditions import Conditions
 
 #: Digits of an angle in degrees that a control shows.
@@ -49,7 +48,7 @@ class Orientations:
         """Find those of a machine; options see to it that it has two rotary axes, or none that is named."""
         machine, kinematics = conditions.machine, conditions.kinematics
         if kinematics is None:
-            frame = frame_of(conditions.setup, conditions.x)
+            frame = conditions.frame
             free = np.full((2, 2), math.inf) * (-1.0, 1.0)
             return cls(conditions, Kinematics(frame[[2, 1]], free, frame[2]), ("azimuth", "tilt"))
         first, second = machine.rotary
@@ -59,7 +58,7 @@ class Orientations:
         """Angles (n, 2), deg, as a control shows them, and their axes (n, 3): those alone that the machine can hold."""
         shown = np.round(angle, DIGITS) + 0.0
         axis = self.kinematics.axis(np.radians(shown))
-        held = self.conditions.machine.allows(axis, frame_of(self.conditions.setup, self.conditions.x))
+        held = self.conditions.allows(axis)
         low, high = np.degrees(self.kinematics.limit).T
         held &= ((shown >= low - 1e-9) & (shown <= high + 1e-9)).all(axis=1)
         return shown[held], axis[held]

@@ -8,7 +8,6 @@ from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import OperationPlan
-from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.candidates import apart, directions
 from plan_cutters.operations.fewest import Rows, Search, spread
@@ -90,4 +89,4 @@ def _first(samples: SurfaceSamples, verdicts: Verdicts, conditions: Conditions, 
     circle = np.column_stack([wide * np.cos(turn), wide * np.sin(turn), height])
     axes = verdicts.axis[spread(rows, verdicts.axis, _MOST_AXES)]
     every = np.concatenate([directions(samples, conditions.setup), axes, circle])
-    return _columns(every[conditions.machine.allows(every, frame_of(conditions.setup, conditions.x))])
+    return _columns(every[conditions.allows(every)])

@@ -17,6 +17,7 @@ from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import Fewest
 from plan_cutters.domain.pieces import row_of, solid
+from plan_cutters.domain.tolerance import depths
 from plan_cutters.kernels.codes import (
     ARC,
     BOTTOM,
@@ -37,7 +38,7 @@ from plan_cutters.kernels.codes import (
 from plan_cutters.kernels.rows import Tool
 from plan_cutters.operations.cover import UNIT, fewest, relax
 from plan_cutters.operations.probes import Probes
-from plan_cutters.scene.conditions import Conditions, contacts_of
+from plan_cutters.scene.conditions import Context, contacts_of
 
 Rows = NDArray[np.int64]
 #: Halvings of the icosahedron's sides that make the first cells: 320 of them, about 10 deg in radius.
@@ -134,7 +135,7 @@ class OpenCells:
     def __init__(self, probes: Probes, rows: Rows) -> None:
         self.probes, self.rows, self.made = probes, rows, 0
         self._tools: dict[tuple[Cutter, int, int, float], list[Tool]] = {}
-        self._modes = [[setup.inner_tool(each).mode for setup in probes.setups] for each in probes.cutters]
+        self._modes = [[each.inner_tool.mode for each in of_cutter] for of_cutter in probes.contexts]
 
     def table(self, cells: Cells, before: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
         """Find which cells are open, (cells, cutters with setups, rows); `before`: what is known of larger cells around them."""
@@ -183,7 +184,7 @@ class OpenCells:
     def _bodies(self, c: int, s: int, mode: int, turn: float) -> list[Tool]:
         key = self.probes.cutters[c], s, mode, turn
         if key not in self._tools:
-            self._tools[key] = bodies(key[0], self.probes.setups[s], mode, turn)
+            self._tools[key] = bodies(self.probes.contexts[c][s], mode, turn)
         return self._tools[key]
 
 
@@ -203,7 +204,7 @@ def _turn(tilt: Floats, radius: float, offset: float) -> Floats:
     return np.where(far & (at < len(steps)), steps[np.minimum(at, len(steps) - 1)], np.inf)
 
 
-def bodies(cutter: Cutter, conditions: Conditions, mode: int, turn: float) -> list[Tool]:
+def bodies(context: Context, mode: int, turn: float) -> list[Tool]:
     """Make bodies that lie in a tool however it is turned about its centre of curvature, deep enough to count.
 
     What is within D of the centre moves by no more than `turn` D in the tool's frame, so what lies deeper by that much in the
@@ -211,8 +212,7 @@ def bodies(cutter: Cutter, conditions: Conditions, mode: int, turn: float) -> li
 
     Parameters
     ----------
-    cutter : Cutter
-    conditions : Conditions
+    context : Context
     mode : int
         The way in which it touches.
     turn : float
@@ -223,8 +223,9 @@ def bodies(cutter: Cutter, conditions: Conditions, mode: int, turn: float) -> li
     list of Tool
         None where nothing of the tool is left.
     """
+    cutter, conditions, whole = context.cutter, context.conditions, context.inner_tool
     error = conditions.obstacles.triangles.chord_error
-    whole = conditions.inner_tool(cutter)
+    (_, blocked), (_, blocked_beside) = depths(conditions.tolerance, error), depths(0.0, error)
     offset, rows = float(whole.mode[mode, OFFSET_OF]), whole.piece[mode]
     if not len(rows):
         return []
@@ -234,7 +235,7 @@ def bodies(cutter: Cutter, conditions: Conditions, mode: int, turn: float) -> li
         inside = (rows[:, TOP] > first) & (rows[:, BOTTOM] < last)
         wide = float(rows[inside][:, [RADIUS, WIDE]].max(initial=0.0))
         more = turn * math.hypot(offset + wide, max(abs(first), abs(last)))
-        smaller = assembly(cutter, conditions.tolerance + error + more, error + more, kind="inner")
+        smaller = assembly(cutter, blocked + more, blocked_beside + more, kind="inner")
         result += [row for each in smaller.piece[mode] if solid(row := _cut_off(each, first, last))]
     anywhere = whole.mode[mode : mode + 1].copy()
     anywhere[0, [TILT_FROM, TILT_TO]] = -1.0, 4.0
@@ -333,9 +334,9 @@ def over_all_axes(probes: Probes, fewest: Fewest, wanted: Rows) -> tuple[int, fl
 def _largest_tilt(probes: Probes) -> float:
     """The largest tilt of any cutter in any setup, rad."""
     tilts = [
-        min(each.postures.tilt[1], float(each.inner_tool(cutter).mode[:, TILT_TO].max()))
-        for each in probes.setups
-        for cutter in probes.cutters
+        min(each.conditions.postures.tilt[1], float(each.inner_tool.mode[:, TILT_TO].max()))
+        for of_cutter in probes.contexts
+        for each in of_cutter
     ]
     return max(tilts)
 

@@ -21,6 +21,7 @@ from plan_cutters.operations.timing import Paths, Problems, costs_of, widths
 from plan_cutters.operations.workplanes import workplanes
 from plan_cutters.plan_file.numbers import area as size
 from plan_cutters.scene.clearance import least_clearance
+from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at
 from plan_cutters.scene.preparation import Prepared
 
@@ -171,8 +172,8 @@ def _held(task: Task, operation: Operation) -> Verdicts:
     number = np.full(n, -1, np.int32)
     number[operation.rows] = 0
     if operation.axis is not None:
-        conditions = task.ready.setups[operation.setup]
-        return held_at(operation.axis[None], number, samples, operation.cutter, conditions)
+        context = Context.of(operation.cutter, task.ready.setups[operation.setup])
+        return held_at(operation.axis[None], number, samples, context)
     verdicts = task.everywhere[operation.setup][operation.cutter]
     return replace(verdicts, verdict=np.where(number == 0, verdicts.verdict, UNJUDGED).astype(np.uint8))
 

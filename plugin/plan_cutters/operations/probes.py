@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import SurfaceSamples
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.fixed_axis import served_by
 
 Rows = NDArray[np.int64]
@@ -28,6 +28,8 @@ class Probes:
 
     Attributes
     ----------
+    contexts : list of list of Context
+        Of each cutter in each setup.
     made : int
         Times that the tool was put down.
     """
@@ -37,6 +39,7 @@ class Probes:
         outside: Sequence[NDArray[np.bool_]],
     ) -> None:  # fmt: skip
         self.samples, self.cutters, self.setups, self.outside, self.made = samples, cutters, setups, outside, 0
+        self.contexts = [[Context.of(cutter, setup) for setup in setups] for cutter in cutters]
         self._kept: dict[str, NDArray[np.bool_]] = {}
         self._kept_rows: Rows = np.zeros(0, np.int64)
 
@@ -47,7 +50,7 @@ class Probes:
             mine = np.flatnonzero((columns.cutter == c) & (columns.setup == s))
             open_ = np.flatnonzero(self.outside[s][rows])
             if len(open_):
-                free, made = served_by(rows[open_], columns.axis[mine], self.samples, self.cutters[c], self.setups[s])
+                free, made = served_by(rows[open_], columns.axis[mine], self.samples, self.contexts[c][s])
                 table[np.ix_(mine, open_)] = free
                 self.made += made
         return table.T

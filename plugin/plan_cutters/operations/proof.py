@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats
+from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.operations import Operation, OperationPlan
+from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import held_at
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.stages.between import between
@@ -65,11 +66,11 @@ def _proved(ready: Prepared, plan: OperationPlan, group: list[int], budget: int,
     for i, k in enumerate(group):
         number[plan.label == k] = i
     axes, serves = np.array([each.axis for each in chosen]), plan.serves[:, group]
-    first = np.where(number < 0, -1, _roomiest(ready, axes, serves, chosen[0]))
-    conditions = ready.setups[chosen[0].setup]
+    context = Context.of(chosen[0].cutter, ready.setups[chosen[0].setup])
+    first = np.where(number < 0, -1, _roomiest(samples, axes, serves, context))
     proved = between(
-        samples, held_at(axes, first, samples, chosen[0].cutter, conditions), chosen[0].cutter, ready.scene.part,
-        ready.scene.orientation, conditions, budget=budget, most=most, covered_samples=ready.inside_bodies,
+        samples, held_at(axes, first, samples, context), context, ready.scene.part,
+        ready.scene.orientation, budget=budget, most=most, covered_samples=ready.inside_bodies,
         fixed=Fixed(axes, serves),
     )  # fmt: skip
     cells = proved.cells
@@ -92,11 +93,10 @@ def _proved(ready: Prepared, plan: OperationPlan, group: list[int], budget: int,
     return result
 
 
-def _roomiest(ready: Prepared, axes: Floats, serves: NDArray[np.bool_], like: Operation) -> NDArray[np.int32]:
+def _roomiest(samples: SurfaceSamples, axes: Floats, serves: NDArray[np.bool_], context: Context) -> NDArray[np.int32]:
     """Of axes (k, 3) that serve samples (n, k) the one with most room for the contact to move; -1 where none serves."""
-    samples, conditions = ready.samples, ready.setups[like.setup]
     tensor = tensors(samples.normal, samples.direction_max, samples.curvature)
-    remaining = np.array([margin(np.broadcast_to(axis, samples.normal.shape), samples.normal, tensor, like.cutter, conditions)
+    remaining = np.array([margin(np.broadcast_to(axis, samples.normal.shape), samples.normal, tensor, context)
                      for axis in axes]).T  # fmt: skip
     remaining = np.where(serves, np.nan_to_num(remaining, nan=-np.inf, neginf=-1e300), -np.inf)
     return np.where(serves.any(axis=1), remaining.argmax(axis=1), -1).astype(np.int32)

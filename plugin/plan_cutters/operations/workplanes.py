@@ -30,7 +30,7 @@ def workplanes(operations: Sequence[Operation], ready: Prepared, indexing: Index
         origin = (
             np.zeros(3) if (place := placements[s]) is None or place.origin is None else np.array(place.origin, float)
         )
-        across = frame_of(conditions.setup, conditions.x)[0]
+        across = conditions.frame[0]
         for i, seconds in zip(mine, indexing.times(s, known).tolist(), strict=True):
             axis, angle = operations[i].axis, operations[i].angle
             assert axis is not None, "a group holds fixed axes"

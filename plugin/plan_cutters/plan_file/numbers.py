@@ -5,6 +5,8 @@ from collections.abc import Iterable, Sequence
 
 #: Numbers of less than this are what rounding leaves of nothing.
 ROUNDING = 1e-9
+#: How shares are written that would be rounded to none, and to the whole.
+HARDLY_ANY, ALL_BUT = "<0.1 %", ">99.9 %"
 #: From so many seconds on a time is written in minutes, and in hours.
 _MINUTES, _HOURS = 120.0, 7200.0
 
@@ -59,7 +61,7 @@ def percent(share: float, *, some: bool | None = None, whole: bool | None = None
     if share < ROUNDING and not (share > 0.0 if some is None else some):
         return "0 %"
     text = f"{100.0 * min(1.0, max(0.0, share)):.1f}"
-    return {"0.0": "<0.1 %", "100.0": ">99.9 %"}.get(text, f"{text.removesuffix('.0')} %")
+    return {"0.0": HARDLY_ANY, "100.0": ALL_BUT}.get(text, f"{text.removesuffix('.0')} %")
 
 
 def exact(share: float, *, some: bool, whole: bool) -> float:

@@ -50,6 +50,12 @@ _ROWS = (
            "another place for the fixture", "#117733", "lines", "--"),
 )  # fmt: skip
 REASONS = {each.code: each for each in _ROWS}
+#: What a cutter gouges or meets, from its lower end up, and all that forbids tilts in the map of a point: where several forbid
+#: one, the first counts.
+MET = ("local_gouge", "rear_gouge", "collision", "neck", "shank", "holder")
+CAUSES = ("axis_limit", *MET, "buried")
 #: Why a posture map has nothing at a tilt where nothing is in the way: that is no reason for a sample.
 NO_CONTACT = Reason("no_contact", "no contact", "no contact", "The cutter does not touch at this tilt.", "another tilt",
                     "#E5E5E5", "plain", ".")  # fmt: skip
+#: Those whose tilts a map of a point lists as intervals: local gouge is a least and a largest tilt.
+INTERVALS = (*(cause for cause in CAUSES if cause != "local_gouge"), NO_CONTACT.code)

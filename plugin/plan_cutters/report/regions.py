@@ -24,6 +24,7 @@ from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.operations import runs
 from plan_cutters.report.protocol import Judged
 from plan_cutters.scene.clearance import clearances
+from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at
 
 #: Tilts from which ranges are looked for are so far apart, deg.
@@ -45,7 +46,7 @@ def axis_regions(result: Judged) -> AxisRegions:
     verdicts, cutter, conditions = result.here.get(name, result.reaches[name]), result.judged(name), result.conditions
     operations = result.answers.operations
     axes, number = fixed_axes(samples, cutter, verdicts, conditions, operations.plans[0] if operations else None)
-    held = held_at(axes, number, samples, cutter, conditions)
+    held = held_at(axes, number, samples, Context.of(cutter, conditions))
     near = clearances(at_fixed_axis(samples, held), cutter, held, conditions).distance
     label = pieces(number, samples.neighbours)
     free = None if result.maps is None else _Free(result.maps.held(conditions))

@@ -1,6 +1,6 @@
-"""Every stage judges a cutter under these conditions; several of them use the search for a posture that is here, too."""
+"""Conditions of a setup, the context in which they judge one cutter, and the search for a posture that stages share."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 
 import numpy as np
@@ -13,6 +13,7 @@ from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.posture import PostureRange
+from plan_cutters.domain.tolerance import depths
 from plan_cutters.domain.verdicts import VerdictBuffer, blank
 from plan_cutters.kernels.rows import Contacts, Ranges, Rotary, Tool, VerdictArrays
 from plan_cutters.scene.obstacles import Obstacles
@@ -23,7 +24,7 @@ from plan_cutters.scene.work import Work
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Conditions(Record):
-    """The same for all cutters of a plan.
+    """The same for all cutters of a plan, in one setup.
 
     Attributes
     ----------
@@ -31,7 +32,7 @@ class Conditions(Record):
     setup : (3,) float
         Unit setup axis.
     postures : PostureRange
-    around : Surroundings
+    surroundings : Surroundings
         What is, and what may be, in the way.
     tolerance : float
         Gouge tolerance that is kept, mm.
@@ -39,6 +40,14 @@ class Conditions(Record):
         Threads.
     x : (3,) float, optional
         Unit direction of the part along the machine's X, as `Placement` has it.
+    obstacles : Obstacles
+        Everything that may be in the way. It follows from the fields above, as the next three do.
+    frame : (3, 3) float
+        The machine's X, Y and Z in part coordinates, as rows, at zero angles.
+    kinematics : Kinematics, optional
+        The machine's rotary axes in the part's frame; None where any tool axis within its plain limit is possible.
+    ranges : Ranges
+        The postures and the limits of the machine, in the form that kernels take.
     """
 
     machine: Machine
@@ -48,52 +57,86 @@ class Conditions(Record):
     tolerance: float
     jobs: int
     x: Floats | None = None
+    obstacles: Obstacles = field(init=False, compare=False)
+    frame: Floats = field(init=False, compare=False)
+    kinematics: Kinematics | None = field(init=False, compare=False)
+    ranges: Ranges = field(init=False, compare=False)
 
-    @property
-    def obstacles(self) -> Obstacles:
-        """Everything that may be in the way."""
-        return self.surroundings.possible
+    def __post_init__(self) -> None:
+        frame = frame_of(self.setup, self.x)
+        kinematics = self.machine.kinematics(frame)
+        object.__setattr__(self, "obstacles", self.surroundings.possible)
+        object.__setattr__(self, "frame", frame)
+        object.__setattr__(self, "kinematics", kinematics)
+        object.__setattr__(self, "ranges", ranges_of(self.machine, self.setup, self.postures, kinematics))
 
     def judges(self, cutter: Cutter) -> bool:
         """Whether the tolerance that is kept is fine enough to say anything about a cutter."""
         return cutter.large_enough(self.tolerance)
 
-    def outer_tool(self, cutter: Cutter) -> Assembly:
-        """Make the outer tool of a cutter: a triangle that does not reach into it lets the surface come no deeper than
-        allowed.
-        """
-        return tools(cutter, self.tolerance, self.obstacles.triangles.chord_error)[0]
-
-    def inner_tool(self, cutter: Cutter) -> Assembly:
-        """Make the inner tool of a cutter: a triangle that reaches into it proves that a point of the surface is too deep in
-        the cutter.
-        """
-        return tools(cutter, self.tolerance, self.obstacles.triangles.chord_error)[1]
-
-    @property
-    def ranges(self) -> Ranges:
-        """Give the postures and the limits of the machine, in the form that kernels take."""
-        return ranges_of(self.machine, self.setup, self.postures, self.x)
-
-    @property
-    def machineless(self) -> "Conditions":
+    def without_machine(self) -> "Conditions":
         """The same without limits of any machine."""
         return replace(self, machine=Machine())
 
-    @property
-    def kinematics(self) -> Kinematics | None:
-        """The machine's rotary axes in the part's frame; None where any tool axis within its plain limit is possible."""
-        return self.machine.kinematics(frame_of(self.setup, self.x))
+    def allows(self, axis: Floats) -> NDArray[np.bool_]:
+        """Which tool axes (n, 3) the machine can hold."""
+        return self.machine.holds(axis, self.frame, self.kinematics)
 
     def upright(self, normal: Floats) -> NDArray[np.bool_]:
         """At which normals (n, 3) the machine can hold the axis along the normal, and tilt 0 was requested."""
-        return self.machine.allows(normal, frame_of(self.setup, self.x)) & self.postures.upright
+        return self.allows(normal) & self.postures.upright
 
 
-def ranges_of(machine: Machine, setup: Floats, postures: PostureRange, x: Floats | None = None) -> Ranges:
-    """Put the postures and the limits of a machine into the form that kernels take."""
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Context(Record):
+    """One cutter under the conditions of one setup: what every judgement of it needs, made once and handed on.
+
+    Attributes
+    ----------
+    cutter : Cutter
+    conditions : Conditions
+    outer_tool : Assembly
+        A triangle that does not reach into it lets the surface come no deeper than allowed.
+    inner_tool : Assembly
+        A triangle that reaches into it proves that a point of the surface is too deep in the cutter.
+    outer, inner : Tool
+        The same two in the form that kernels take.
+    dummy : (k, COLUMNS) float
+        Of the outer tool the pieces that hold it at tilt 0 in every rotation, as `Assembly.dummy`.
+    """
+
+    cutter: Cutter
+    conditions: Conditions
+    outer_tool: Assembly
+    inner_tool: Assembly
+    outer: Tool = field(init=False, compare=False)
+    inner: Tool = field(init=False, compare=False)
+    dummy: Floats = field(init=False, compare=False)
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "outer", tool_of(self.outer_tool))
+        object.__setattr__(self, "inner", tool_of(self.inner_tool))
+        object.__setattr__(self, "dummy", self.outer_tool.dummy)
+
+    @classmethod
+    def of(cls, cutter: Cutter, conditions: Conditions) -> "Context":
+        """Make both tools of a cutter, for the tolerance that is kept and the chord error of the obstacles."""
+        return cls(cutter, conditions, *tools(cutter, conditions.tolerance, conditions.obstacles.triangles.chord_error))
+
+    @property
+    def judges(self) -> bool:
+        """Whether the tolerance that is kept is fine enough to say anything about the cutter."""
+        return self.conditions.judges(self.cutter)
+
+    def under(self, conditions: Conditions) -> "Context":
+        """The same cutter under other conditions."""
+        return Context.of(self.cutter, conditions)
+
+
+def ranges_of(machine: Machine, setup: Floats, postures: PostureRange, kinematics: Kinematics | None) -> Ranges:
+    """Put the postures and the limits of a machine, with its rotary axes in the part's frame, into the form that kernels take."""
     rotations, (low, high) = postures.rotations, postures.tilt
-    rotary = rotary_of(machine.kinematics(frame_of(setup, x)))
+    rotary = rotary_of(kinematics)
     if len(rotary.aim):
         # Each sample leans towards the axes that there are: rotations asked for would miss them.
         rotations = np.zeros(len(rotary.aim))
@@ -130,11 +173,11 @@ def contacts_of(samples: SurfaceSamples) -> Contacts:
 def tools(cutter: Cutter, tolerance: float, error: float) -> tuple[Assembly, Assembly]:
     """Make the outer and the inner tool of a cutter, for obstacles with a chord error, mm.
 
-    Every point of the surface has a point of the triangles within that error, and the reverse. The outer tool has flutes that are
-    smaller by the tolerance less the error, and all else is larger by the error. The inner tool has flutes that are smaller by
-    the tolerance and the error, and all else is smaller by the error.
+    In the outer tool flutes are smaller by the depth that is safe, in the inner tool by that which is blocked
+    (`tolerance.depths`); all else, which may touch nothing, is so for a tolerance of 0.
     """
-    return assembly(cutter, tolerance - error, -error), assembly(cutter, tolerance + error, error, kind="inner")
+    (safe, blocked), (safe_beside, blocked_beside) = depths(tolerance, error), depths(0.0, error)
+    return assembly(cutter, safe, safe_beside), assembly(cutter, blocked, blocked_beside, kind="inner")
 
 
 def tool_of(made: Assembly) -> Tool:
@@ -161,9 +204,8 @@ def require_finite(contacts: Contacts, rows: NDArray[np.int64]) -> None:
 
 
 def search_postures(
-    contacts: Contacts, rows: NDArray[np.int64], outer_tool: Assembly, inner_tool: Assembly, conditions: Conditions,
-    verdicts: VerdictBuffer, progress: Progress | None = None, *, fixed: bool = False, strict: bool = False,
-    work: Work | None = None,
+    contacts: Contacts, rows: NDArray[np.int64], context: Context, verdicts: VerdictBuffer, progress: Progress | None = None,
+    *, fixed: bool = False, strict: bool = False, work: Work | None = None,
 ) -> None:  # fmt: skip
     """Search a posture for contacts, neighbours in sequence, and write what is found into `verdicts`.
 
@@ -172,9 +214,7 @@ def search_postures(
     contacts : Contacts
     rows : (m,) int64
         Contacts to decide.
-    outer_tool, inner_tool : Assembly
-        As `Conditions.outer_tool` and `Conditions.inner_tool` make them of a cutter.
-    conditions : Conditions
+    context : Context
     verdicts : VerdictBuffer
     fixed : bool
         As for `in_chunks`: each contact starts from what was found at the one before it in its piece.
@@ -193,9 +233,9 @@ def search_postures(
     from plan_cutters.kernels.search.search import search
 
     require_finite(contacts, rows)
-    ranges, surroundings = conditions.ranges._replace(strict=strict), conditions.surroundings
-    possible, certain = surroundings.possible.solids, surroundings.certain.solids
-    tools, buffer = (tool_of(outer_tool), tool_of(inner_tool)), verdict_arrays_of(verdicts)
+    conditions, tools = context.conditions, (context.outer, context.inner)
+    ranges, buffer = conditions.ranges._replace(strict=strict), verdict_arrays_of(verdicts)
+    possible, certain = conditions.obstacles.solids, conditions.surroundings.certain.solids
 
     def searched(piece: NDArray[np.int64]) -> int:
         return int(search(piece, contacts, ranges, *tools, possible, certain, buffer))
@@ -205,14 +245,12 @@ def search_postures(
         work.add(looked)
 
 
-def warm(contacts: Contacts, cutter: Cutter, conditions: Conditions) -> None:
+def warm(contacts: Contacts, context: Context) -> None:
     """Load or compile every kernel, so that stage times are those of the work."""
     from plan_cutters.kernels.search import search
 
-    none, verdicts = np.zeros(0, np.int64), verdict_arrays_of(blank(0))
-    outer_tool, inner_tool = conditions.outer_tool(cutter), conditions.inner_tool(cutter)
-    search.dummy_clear(
-        none, contacts, outer_tool.dummy, tool_of(outer_tool), conditions.obstacles.solids, np.zeros(0, bool)
-    )
-    search.search(none, contacts, conditions.ranges, tool_of(outer_tool), tool_of(inner_tool), conditions.obstacles.solids,
+    none, verdicts, conditions = np.zeros(0, np.int64), verdict_arrays_of(blank(0)), context.conditions
+    solids = conditions.obstacles.solids
+    search.dummy_clear(none, contacts, context.dummy, context.outer, solids, np.zeros(0, bool))
+    search.search(none, contacts, conditions.ranges, context.outer, context.inner, solids,
                   conditions.surroundings.certain.solids, verdicts)  # fmt: skip

@@ -235,13 +235,7 @@ def _selected(
         wanted = tuple(bytes.fromhex(match[1]))
         chosen = {f.number for f in faces if f.colour and tuple(round(255 * c) for c in f.colour) == wanted}
     else:
-        kinds = {
-            "all": every,
-            "blends": set(blends),
-            "sculptured": {f.number for f in faces if f.shape == "sculptured"},
-        }
-        words = {word.strip() for word in plain.split(",")} & set(_KINDS)
-        chosen = _numbered(plain, len(faces), where).union(*(kinds[word] for word in words))
+        chosen = _numbered(plain, len(faces), where) | _of_kinds(plain, faces, blends)
     # All but what a mistyped name selects would be everything.
     known_word = bool(chosen) or plain in _KINDS or _finished(plain)
     if word != plain:
@@ -249,6 +243,14 @@ def _selected(
     if not (known_word and chosen):
         raise OptionError(f"{where} selects no face of this part")
     return chosen
+
+
+def _of_kinds(plain: str, faces: Sequence[FaceInfo], blends: Collection[int]) -> set[int]:
+    """Numbers of the faces of each kind in a list."""
+    sculptured = {f.number for f in faces if f.shape == "sculptured"}
+    kinds = {"all": {f.number for f in faces}, "blends": set(blends), "sculptured": sculptured}
+    words = {word.strip() for word in plain.split(",")} & set(_KINDS)
+    return set[int]().union(*(kinds[word] for word in words))
 
 
 def _numbered(word: str, count: int, where: str) -> set[int]:

@@ -10,10 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints, SurfaceSamples
-from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.verdicts import ACCESSIBLE, Verdicts, blank
-from plan_cutters.scene.conditions import Conditions, contacts_of, rotations_of, tool_of
+from plan_cutters.scene.conditions import Conditions, Context, contacts_of, rotations_of
 from plan_cutters.scene.threads import in_chunks
 
 #: Axes this close are one, rad; ends of ranges this close to a posture's are on it.
@@ -22,15 +20,13 @@ _SAME, _END = 1e-6, 1e-9
 _BLOCK, _AT_ONCE = 4096, 20_000
 
 
-def serves(
-    rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, cutter: Cutter, conditions: Conditions
-) -> NDArray[np.bool_]:
+def serves(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, context: Context) -> NDArray[np.bool_]:
     """At which of some samples (m,) a cutter stands free with one axis (3,)."""
-    return np.asarray(served_by(rows, np.asarray(axis)[None], samples, cutter, conditions)[0][0])
+    return np.asarray(served_by(rows, np.asarray(axis)[None], samples, context)[0][0])
 
 
 def served_by(
-    rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, cutter: Cutter, conditions: Conditions
+    rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, context: Context
 ) -> tuple[NDArray[np.bool_], int]:
     """At which of some samples (m,) a cutter stands free with each of some axes (k, 3).
 
@@ -40,22 +36,22 @@ def served_by(
     made : int
         How many times the tool was put down.
     """
-    column, made = _tested(rows, axes, samples, cutter, conditions)
+    column, made = _tested(rows, axes, samples, context)
     return column >= 0, made
 
 
 def _tested(
-    rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, cutter: Cutter, conditions: Conditions
+    rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, context: Context
 ) -> tuple[NDArray[np.int8], int]:
     """How a cutter stands at samples with axes (k, m), in the numbers of the kernel, and how many times it was put down."""
     from plan_cutters.kernels.search.fixed_axis import DIRECTIONS, served
 
-    low, high = conditions.postures.tilt
+    conditions, (low, high) = context.conditions, context.conditions.postures.tilt
     column = np.full((len(axes), len(rows)), -1, np.int8)
-    held = np.flatnonzero(conditions.machine.allows(axes, frame_of(conditions.setup, conditions.x)))
+    held = np.flatnonzero(conditions.allows(axes))
     if not len(held) or not len(rows):
         return column, 0
-    tool, solids, contacts = tool_of(conditions.outer_tool(cutter)), conditions.obstacles.solids, contacts_of(samples)
+    tool, solids, contacts = context.outer, conditions.obstacles.solids, contacts_of(samples)
     full_turn = conditions.postures.rotation[1] - conditions.postures.rotation[0] > 2.0 * np.pi - _END
     ways = DIRECTIONS if full_turn else 0
 
@@ -99,9 +95,7 @@ def tilt_direction_of(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSam
     )
 
 
-def held_at(
-    axes: Floats, number: Ints, samples: SurfaceSamples, cutter: Cutter, conditions: Conditions
-) -> Verdicts:  # fmt: skip
+def held_at(axes: Floats, number: Ints, samples: SurfaceSamples, context: Context) -> Verdicts:
     """Return the postures of samples that go with one of some axes each, as a search would write them.
 
     Where the axis is the normal, or nearly so (`kernels.search.fixed_axis.FLAT`), and the cutter is free upright alone, with its
@@ -112,7 +106,7 @@ def held_at(
     verdicts = blank(len(number))
     for k, axis in enumerate(axes):
         rows = np.flatnonzero(number == k)
-        ways = _tested(rows, axis[None], samples, cutter, conditions)[0][0].astype(np.int64)
+        ways = _tested(rows, axis[None], samples, context)[0][0].astype(np.int64)
         cosine = samples.normal[rows] @ axis
         across = np.linalg.norm(np.cross(samples.normal[rows], axis), axis=1)
         first = samples.direction_max[rows] - (samples.direction_max[rows] @ axis)[:, None] * axis

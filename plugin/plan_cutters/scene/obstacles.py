@@ -12,6 +12,7 @@ from scipy import ndimage
 from cad_io.arrays import Floats, Ints, Record, Triangles, rows_by_face
 from cad_io.part.bodies import Body
 from plan_cutters.domain.assembly import Assembly
+from plan_cutters.domain.tolerance import depths
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.kernels.rows import Tree
 
@@ -23,8 +24,6 @@ if TYPE_CHECKING:
 _CELLS = 64
 #: Among fixtures, the grid goes this much of the part's longest side beyond it.
 _MARGIN = 0.5
-#: Share of the tolerance that the obstacles' chord error may take, and what is asked of the tessellation.
-CHORD_SHARE, CHORD_REQUESTED = 0.25, 0.2
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -194,14 +193,8 @@ class Obstacles(Record):
         return int(self.faces[triangle])
 
     def depths(self, tolerance: float) -> tuple[float, float]:
-        """Depths `(safe, blocked)`, mm, that decide for the true surface.
-
-        Every surface point has a triangle point within the chord error and the reverse. So if no triangle reaches
-        deeper than `safe`, no surface point is deeper than the tolerance; a triangle point deeper than `blocked`
-        proves one.
-        """
-        error = self.triangles.chord_error
-        return tolerance - error, tolerance + error
+        """Depths that are safe and that are blocked among these triangles, mm (`tolerance.depths`)."""
+        return depths(tolerance, self.triangles.chord_error)
 
     @cached_property
     def skin(self) -> "Obstacles":

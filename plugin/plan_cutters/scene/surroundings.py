@@ -12,11 +12,12 @@ from cad_io.part.bodies import Body, bodies
 from cad_io.part.boxes import face_box
 from cad_io.read.mesh import Mesh
 from cad_io.tessellate import tessellate
-from cad_io.tessellate.proxies import StandIn, stand_ins
+from cad_io.tessellate.proxies import StandIn, StandIns, stand_ins
 from cad_io.tessellate.triangles import At
 from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.tolerance import kept
 from plan_cutters.errors import UnjudgeableError
-from plan_cutters.scene.obstacles import CHORD_SHARE, Obstacles, weights
+from plan_cutters.scene.obstacles import Obstacles, weights
 from plan_cutters.scene.thickened import boxed, thickened
 
 #: Triangles of a loose face that are looked at to tell whether it lies on a body, about.
@@ -121,8 +122,8 @@ class Surroundings(Record):
         return (*self.bodies, *(each.body for each in self.fixtures if each.body is not None))
 
     def tolerance(self, requested: float) -> float:
-        """Give the gouge tolerance that is kept, mm: the one asked for or, where triangles cannot be that close, more."""
-        return max(requested, self.certain.triangles.chord_error / CHORD_SHARE)
+        """Give the gouge tolerance that is kept, mm (`tolerance.kept`)."""
+        return kept(requested, self.certain.triangles.chord_error)
 
     def called(self, face: int) -> str:
         """The name of a face number: `F12`, or `fixture:vise`."""
@@ -182,11 +183,24 @@ def surroundings(
     stand = stand_ins(part, triangles.missing, chord)
     missing = tuple((n, why, stand.how[n]) for n, why in triangles.missing if stand.how[n] != "edges")
     unread = tuple(each for each in part.lost if each.face is None)
-    lying = _on_bodies(certain, result)
-    everything = weights(triangles, result)
+    return Surroundings(
+        _possible(part, triangles, stand, result, certain),
+        certain,
+        result,
+        missing,
+        _on_bodies(certain, result),
+        unread,
+    )
+
+
+def _possible(
+    part: Part, triangles: Triangles, stand: StandIns, result: Sequence[Body], certain: Obstacles
+) -> Obstacles:
+    """Everything that may be in the way: the certain obstacles themselves where nothing is guessed."""
+    loose, everything = dict(triangles.loose), weights(triangles, result)
     caps = np.concatenate([np.zeros((0, 3, 3)), *(body.cap for body in result)])
     if not len(stand.vertex) and not len(caps) and not loose and (everything == certain.weight).all():
-        return Surroundings(certain, certain, result, missing, lying, unread)
+        return certain
     # A surface that triangles do not follow closely may be anywhere within their error, and is for certain nowhere.
     rows = rows_by_face(triangles.face)
     shells = [(n, _shell(part, n, triangles.vertex[rows.get(n, [])], error)) for n, error in loose.items()]
@@ -199,10 +213,9 @@ def surroundings(
     )
     open_boxes = [_box(triangles, body) for body in result if not body.closed]
     filled = np.ones(len(caps) + len(shell), np.int8)
-    possible = Obstacles(all_triangles, np.concatenate([everything, stand.weight, filled]),
-                       np.array([box for box in open_boxes if np.isfinite(box).all()]).reshape(-1, 2, 3),
-                       part.looseness)  # fmt: skip
-    return Surroundings(possible, certain, result, missing, lying, unread)
+    return Obstacles(all_triangles, np.concatenate([everything, stand.weight, filled]),
+                     np.array([box for box in open_boxes if np.isfinite(box).all()]).reshape(-1, 2, 3),
+                     part.looseness)  # fmt: skip
 
 
 def _shell(part: Part, number: int, vertex: Floats, error: float) -> Floats:

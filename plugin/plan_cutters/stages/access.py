@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Ints, SurfaceSamples
-from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import (
     AXIS_LIMIT,
     FIXTURE,
@@ -21,7 +20,7 @@ from plan_cutters.domain.verdicts import (
     blank,
 )
 from plan_cutters.kernels.rows import Contacts
-from plan_cutters.scene.conditions import Conditions, contacts_of, search_postures, tool_of
+from plan_cutters.scene.conditions import Context, contacts_of, search_postures
 from plan_cutters.scene.threads import Progress, in_chunks
 from plan_cutters.scene.work import Work
 
@@ -32,8 +31,7 @@ _HOPELESS = 10.0
 def access(
     samples: SurfaceSamples,
     interference_free: NDArray[np.bool_],
-    cutter: Cutter,
-    conditions: Conditions,
+    context: Context,
     *,
     inside: Ints | None = None,
     known: Verdicts | None = None,
@@ -48,7 +46,7 @@ def access(
     samples : SurfaceSamples
     interference_free : (n,) bool
         As `decompose` gives them.
-    cutter, conditions
+    context : Context
     inside : (n,) int32, optional
         The body that each sample lies within, -1 for none (default): none of those within is accessible.
     known : Verdicts, optional
@@ -61,12 +59,12 @@ def access(
     work : Work, optional
         Where what is looked at is counted.
     """
-    n = len(samples)
+    n, conditions = len(samples), context.conditions
     verdicts = blank(n)
     judged = samples.unjudged < 0
     if rows is not None:
         judged &= np.isin(np.arange(n), rows)
-    if not conditions.judges(cutter):
+    if not context.judges:
         verdicts.verdict[judged], verdicts.reason[judged] = UNDECIDED, TOLERANCE
         return verdicts.freeze()
     within = np.zeros(n, bool) if inside is None else judged & (inside >= 0)
@@ -86,43 +84,31 @@ def access(
     if known is not None:
         follows = wanted & (known.verdict != UNJUDGED)
         verdicts.take(follows, known)
-        _first_reasons(
-            contacts, np.flatnonzero(follows & (known.verdict == INACCESSIBLE)), cutter, conditions, verdicts.reason
-        )
+        _first_reasons(contacts, np.flatnonzero(follows & (known.verdict == INACCESSIBLE)), context, verdicts.reason)
         wanted &= ~follows
-    outer_tool, inner_tool = conditions.outer_tool(cutter), conditions.inner_tool(cutter)
-    search_postures(
-        contacts, np.flatnonzero(wanted), outer_tool, inner_tool, conditions, verdicts, progress, fixed=True, work=work
-    )
+    search_postures(contacts, np.flatnonzero(wanted), context, verdicts, progress, fixed=True, work=work)
     if conditions.surroundings.alone is not None:
         searched = wanted | (inside >= len(conditions.surroundings.bodies) if inside is not None else False)
         handed = judged & (verdicts.reason == FIXTURE)
-        bare = replace(conditions, surroundings=conditions.surroundings.alone)
-        _for_fixtures(contacts, np.flatnonzero((searched & verdicts.not_reached) | handed), cutter, bare, verdicts)
+        bare = context.under(replace(conditions, surroundings=conditions.surroundings.alone))
+        _for_fixtures(contacts, np.flatnonzero((searched & verdicts.not_reached) | handed), bare, verdicts)
     return verdicts.freeze()
 
 
-def _for_fixtures(
-    contacts: Contacts, rows: NDArray[np.int64], cutter: Cutter, bare: Conditions, verdicts: VerdictBuffer
-) -> None:
+def _for_fixtures(contacts: Contacts, rows: NDArray[np.int64], bare: Context, verdicts: VerdictBuffer) -> None:
     """Of samples not reached, tell those that fixtures keep off from those that would not be reached without them, either."""
     rows = rows[~np.isin(verdicts.reason[rows], (AXIS_LIMIT, LOCAL_GOUGE))]
     if not len(rows):
         return
     result = blank(len(verdicts.verdict))
-    search_postures(contacts, rows, bare.outer_tool(cutter), bare.inner_tool(cutter), bare, result, fixed=True)
+    search_postures(contacts, rows, bare, result, fixed=True)
     verdicts.reason[rows] = np.where(result.reached[rows], FIXTURE, result.reason[rows])
 
 
-def _first_reasons(
-    contacts: Contacts, rows: NDArray[np.int64], cutter: Cutter, conditions: Conditions, reason: NDArray[np.uint8]
-) -> None:
+def _first_reasons(contacts: Contacts, rows: NDArray[np.int64], context: Context, reason: NDArray[np.uint8]) -> None:
     """Where the axis limit, or curvature at the contact, leaves this cutter nothing, the reason is its own."""
     from plan_cutters.kernels.search.search import first_reason
 
-    ranges, tool, certain = (
-        conditions.ranges,
-        tool_of(conditions.inner_tool(cutter)),
-        conditions.surroundings.certain.solids,
-    )
+    conditions, tool = context.conditions, context.inner
+    ranges, certain = conditions.ranges, conditions.surroundings.certain.solids
     in_chunks(lambda piece: first_reason(piece, contacts, ranges, tool, certain, reason), rows, conditions.jobs)

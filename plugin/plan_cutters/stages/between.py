@@ -14,9 +14,8 @@ from scipy import ndimage
 
 from cad_io.arrays import FaceGrid, Floats, Ints, Orientation, Record, SurfaceSamples
 from cad_io.part import Part
-from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.cells import CellContacts, Field, laid
 from plan_cutters.stages.connected import connected
@@ -110,10 +109,9 @@ class Between(Record):
 def between(
     samples: SurfaceSamples,
     verdicts: Verdicts,
-    cutter: Cutter,
+    context: Context,
     part: Part,
     orientation: Orientation,
-    conditions: Conditions,
     *,
     budget: int,
     most: float = np.inf,
@@ -130,10 +128,9 @@ def between(
         The faces in them, `empty` ones included, are the target.
     verdicts : Verdicts
         Of the cutter.
-    cutter : Cutter
+    context : Context
     part : Part
     orientation : Orientation
-    conditions : Conditions
     budget : int
         Most contacts to add to the samples.
     most : float
@@ -148,10 +145,7 @@ def between(
         Samples whose cells are looked at, and behind them whether those about no sample are; the others are as if they were not
         there, but `share` is of all the same.
     """
-    targets = sorted({*np.unique(samples.face).tolist(), *(number for number, _ in samples.empty)})
-    areas = {number: part.faces[number - 1].area for number in targets}
-    unknown = tuple(number for number, area in areas.items() if not area > 0)
-    whole = sum(area for area in areas.values() if area > 0)
+    whole, unknown = _areas(samples, part)
     covered_samples = np.zeros(len(samples), bool) if covered_samples is None else covered_samples
     own = np.ones(len(samples) + 1, bool) if own is None else own
     counted, short = own[:-1] & ~covered_samples, 0
@@ -163,7 +157,7 @@ def between(
         trim = part.trim(grid.face)
         if trim is None or not trim.closed:
             continue  # which part of the surface it uses is not known well enough
-        field, mine, bare = laid(part, orientation, samples, grid, verdicts, conditions)
+        field, mine, bare = laid(part, orientation, samples, grid, verdicts, context.conditions)
         on_grid = grid.index[grid.index >= 0]
         unlooked -= int(counted[on_grid].sum())
         if covered_samples[on_grid].any():
@@ -173,7 +167,7 @@ def between(
             mine, bare = (cells.of(~deep[tuple(cells.home.T)]) for cells in (mine, bare))
         # Row -1, of no sample, is the last.
         mine, bare = (cells.of(own[cells.sample]) for cells in (mine, bare))
-        faces.append(FaceCells(field, cutter, conditions, work, fixed))
+        faces.append(FaceCells(field, context, work, fixed))
         nodes.append(mine)
         strips.append(bare)
     surrounding_area = _about(nodes, len(samples)) + _about(strips, len(samples))
@@ -187,19 +181,8 @@ def between(
         for mine, bare, own_chosen in zip(nodes, strips, np.split(chosen, ends[:-1]), strict=True)
     ]
     looked -= sum(len(mine) for mine in nodes)
-    # Faces with the largest cells first: there each contact may gain most.
-    gains = [float(cells.area.sum()) / max(1, len(cells)) for cells in laid_out]
-    for i in sorted(range(len(faces)), key=lambda i: -gains[i]):
-        looked += faces[i].begin(laid_out[i], upto)
-    # A fair share of the rest for each face, by how many of its cells are open and worth it.
-    least = LEAST_GAIN * whole
-    wanted = [face_cells.worthy(least) for face_cells in faces]
-    behind = sum(wanted)
-    for face_cells, share in zip(faces, wanted, strict=True):
-        # What one face leaves of the work goes to those after it.
-        until = work.looked + max(0.0, upto - work.looked) * share / behind if share else 0.0
-        looked += face_cells.refine(budget * share // max(1, sum(wanted)), least, until)
-        behind -= share
+    looked += _begun(faces, laid_out, upto)
+    looked += _refined(faces, budget, LEAST_GAIN * whole, upto, work)
     unlooked += int((~chosen).sum()) + sum(face_cells.left for face_cells in faces)
     return Between(
         sum(face_cells.served for face_cells in faces),
@@ -214,28 +197,54 @@ def between(
     )
 
 
+def _areas(samples: SurfaceSamples, part: Part) -> tuple[float, tuple[int, ...]]:
+    """The area of all target faces, mm2, and those whose area is not known."""
+    targets = sorted({*np.unique(samples.face).tolist(), *(number for number, _ in samples.empty)})
+    areas = {number: part.faces[number - 1].area for number in targets}
+    unknown = tuple(number for number, area in areas.items() if not area > 0)
+    return sum(area for area in areas.values() if area > 0), unknown
+
+
+def _begun(faces: Sequence[FaceCells], laid_out: Sequence[CellContacts], upto: float) -> int:
+    """Look at the cells of all faces, those with the largest cells first: there each contact may gain most."""
+    gains = [float(cells.area.sum()) / max(1, len(cells)) for cells in laid_out]
+    return sum(faces[i].begin(laid_out[i], upto) for i in sorted(range(len(faces)), key=lambda i: -gains[i]))
+
+
+def _refined(faces: Sequence[FaceCells], budget: int, least: float, upto: float, work: Work) -> int:
+    """Cut cells into four, with a fair share of the budget for each face, by how many of its cells are open and worth it."""
+    wanted = [face_cells.worthy(least) for face_cells in faces]
+    behind, looked = sum(wanted), 0
+    for face_cells, share in zip(faces, wanted, strict=True):
+        # What one face leaves of the work goes to those after it.
+        until = work.looked + max(0.0, upto - work.looked) * share / behind if share else 0.0
+        looked += face_cells.refine(budget * share // max(1, sum(wanted)), least, until)
+        behind -= share
+    return looked
+
+
 def in_each(
-    samples: SurfaceSamples, verdicts: Verdicts, which: Ints, cutter: Cutter, part: Part, orientation: Orientation,
-    setups: Sequence[Conditions], *, budget: int, most: float = np.inf, covered_samples: NDArray[np.bool_] | None = None,
+    samples: SurfaceSamples, verdicts: Verdicts, which: Ints, contexts: Sequence[Context], part: Part,
+    orientation: Orientation, *, budget: int, most: float = np.inf, covered_samples: NDArray[np.bool_] | None = None,
 ) -> Between:  # fmt: skip
     """The same over setups that hold the part differently: each cell among the obstacles of the setup that serves its sample.
 
     Parameters
     ----------
-    samples, verdicts, cutter, part, orientation, budget, most, beside
+    samples, verdicts, part, orientation, budget, most, covered_samples
         As for `between`; the verdicts are those over all setups.
     which : (n,) int32
         The setup that serves each sample, -1 for none: its cells go with the first setup, as those about no sample do.
-    setups : sequence of Conditions
-        The first one first.
+    contexts : sequence of Context
+        Of the cutter in each setup, the first one first.
     """
     place = np.append(np.maximum(which, 0), 0)
     cells = []
-    for k, conditions in enumerate(setups):
+    for k, context in enumerate(contexts):
         own = place == k
         part_of_all = float(own[:-1].sum()) / max(1, len(samples))
         cells.append(between(
-            samples, verdicts, cutter, part, orientation, conditions, budget=int(budget * part_of_all), most=most * part_of_all,
+            samples, verdicts, context, part, orientation, budget=int(budget * part_of_all), most=most * part_of_all,
             covered_samples=covered_samples, own=own,
         ) if own.any() else None)  # fmt: skip
     return _joined([each for each in cells if each is not None])

@@ -6,14 +6,13 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
 from cad_io.arrays import Ints, SurfaceSamples
-from plan_cutters.domain.cutter import Cutter
-from plan_cutters.scene.conditions import Conditions, contacts_of, tool_of
+from plan_cutters.scene.conditions import Context, contacts_of
 from plan_cutters.scene.threads import in_chunks
 from plan_cutters.scene.work import Work
 
 
 def decompose(
-    samples: SurfaceSamples, convex: NDArray[np.bool_], cutter: Cutter, conditions: Conditions,
+    samples: SurfaceSamples, convex: NDArray[np.bool_], context: Context,
     *, inside: Ints | None = None, rows: NDArray[np.int64] | None = None, work: Work | None = None,
 ) -> NDArray[np.bool_]:  # fmt: skip
     """Test convex samples with the dummy cutter: which need no posture search?
@@ -22,7 +21,7 @@ def decompose(
     ----------
     samples : SurfaceSamples
     convex : (n,) bool
-    cutter, conditions
+    context : Context
     inside : (n,) int32, optional
         The body that each sample lies within, -1 for none (default): none of those within is free.
     rows : (m,) int64, optional
@@ -37,15 +36,14 @@ def decompose(
     """
     from plan_cutters.kernels.search.search import dummy_clear
 
-    interference_free = np.zeros(len(samples), bool)
+    conditions, interference_free = context.conditions, np.zeros(len(samples), bool)
     allowed = convex & conditions.upright(samples.normal)
     if inside is not None:
         allowed &= inside < 0
     selected = np.flatnonzero(allowed) if rows is None else rows[allowed[rows]]
-    outer_tool = conditions.outer_tool(cutter)
-    if not len(outer_tool.dummy):
+    if not len(context.dummy):
         return interference_free
-    shape, solids, contacts = (outer_tool.dummy, tool_of(outer_tool)), conditions.obstacles.solids, contacts_of(samples)
+    shape, solids, contacts = (context.dummy, context.outer), conditions.obstacles.solids, contacts_of(samples)
 
     def tested(piece: NDArray[np.int64]) -> int:
         return int(dummy_clear(piece, contacts, *shape, solids, interference_free))

@@ -1,22 +1,25 @@
 """A face's cells between the samples: which are served, which are still open, and which of them to cut into four next."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from dataclasses import field as dataclasses_field
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.kernels.codes import NEVER, OFFSET_OF
 from plan_cutters.kernels.rows import Contacts
-from plan_cutters.scene.conditions import Conditions, search_postures, tool_of
+from plan_cutters.scene.conditions import Context, search_postures
 from plan_cutters.scene.threads import CHUNK, in_chunks
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.cells import CellContacts, Field, quartered, tensors
 from plan_cutters.stages.margin import roomiest
+
+if TYPE_CHECKING:
+    from plan_cutters.kernels.area.cover import Sweeping
 
 #: Times that a cell is cut into four, at most.
 LEVELS = 6
@@ -65,8 +68,7 @@ class FaceCells:
     Attributes
     ----------
     field : Field
-    cutter : Cutter
-    conditions : Conditions
+    context : Context
     work : Work
         What was looked at, for this face and others.
     fixed : Fixed, optional
@@ -85,11 +87,12 @@ class FaceCells:
         Contacts looked at, and the work that they took.
     about : (k, 16) float
         What kernels take of the nodes.
+    sweeping : Sweeping
+        What they take of the cutter.
     """
 
     field: Field
-    cutter: Cutter
-    conditions: Conditions
+    context: Context
     work: Work = dataclasses_field(default_factory=Work)
     fixed: Fixed | None = None
     found: list[CellContacts] = dataclasses_field(default_factory=list)
@@ -101,9 +104,16 @@ class FaceCells:
     seen: int = 0
     spent: int = 0
     about: Floats = dataclasses_field(init=False)
+    sweeping: "Sweeping" = dataclasses_field(init=False)
 
     def __post_init__(self) -> None:
+        from plan_cutters.kernels.area.cover import Sweeping
+
         self.about = self.field.about
+        context, outer_tool, cutter = self.context, self.context.outer_tool, self.context.cutter
+        obstacles, tolerance = context.conditions.obstacles, context.conditions.tolerance
+        self.sweeping = Sweeping(context.outer, context.dummy, *outer_tool.noses(cutter.taper, cutter.shape), outer_tool.flutes,
+                                 obstacles.depths(tolerance)[0], obstacles.depths(0.0)[1])  # fmt: skip
 
     @property
     def served(self) -> float:
@@ -189,7 +199,7 @@ class FaceCells:
             gained, count = 0.0, 0
             cuts = [np.flatnonzero(part) for part in np.split(chosen, np.cumsum([len(each) for each in worth])[:-1])]
             for level, contacts in [(level, self._taken(level, rows)) for level, rows in enumerate(cuts) if len(rows)]:
-                quarters = quartered(contacts, self.field, level, self.conditions)
+                quarters = quartered(contacts, self.field, level, self.context.conditions)
                 gained += self.add(quarters, level + 1, upto)
                 count += len(quarters)
             looked, budget = looked + count, budget - 4 * int(chosen.sum())
@@ -222,7 +232,7 @@ def _served(contacts: CellContacts, face_cells: FaceCells, rooms: Sequence[float
 
     Of the postures found on the way, the one with the best outlook is kept.
     """
-    cutter, conditions = face_cells.cutter, face_cells.conditions
+    context = face_cells.context
     status = np.full(len(contacts), _UNTOLD, np.uint8)
     tensor = tensors(contacts.normal, contacts.direction_max, contacts.curvature)
     known = np.isfinite(contacts.axis).all(axis=1) & _whole(contacts)
@@ -232,7 +242,9 @@ def _served(contacts: CellContacts, face_cells: FaceCells, rooms: Sequence[float
         status[~known] = NEVER
         _among(face_cells.fixed, contacts, tensor, status, face_cells, upto)
         return status
-    outer_tool, bends = conditions.outer_tool(cutter), 1.0 / cutter.radius
+    outer_tool, bends = context.outer_tool, 1.0 / context.cutter.radius
+    # Whether surely no posture is left is of no interest here: the outer tool stands for both.
+    outer_alone = replace(context, inner_tool=outer_tool)
     leant = np.zeros(len(contacts), bool)
     if not (outer_tool.mode[:, OFFSET_OF] > 0.0).any():
         # A ball gouges at every tilt or at none.
@@ -248,9 +260,7 @@ def _served(contacts: CellContacts, face_cells: FaceCells, rooms: Sequence[float
         curved = contacts.curvature + margin * bends
         at = Contacts(contacts.point, contacts.normal, contacts.direction_max, curved)
         verdicts = blank(len(contacts))
-        search_postures(
-            at, open_rows, outer_tool, outer_tool, conditions, verdicts, strict=bends > 0.0, work=face_cells.work
-        )
+        search_postures(at, open_rows, outer_alone, verdicts, strict=bends > 0.0, work=face_cells.work)
         rows = open_rows[verdicts.reached[open_rows]]
         if len(rows):
             new = _cover(
@@ -282,15 +292,13 @@ def _tilt_more(
     Returns those that keep it: their parts may be served by it, and there is none with more room.
     """
     leant = np.zeros(len(contacts), bool)
-    first, last = face_cells.conditions.postures.rotation
+    first, last = face_cells.context.conditions.postures.rotation
     # Where rotations are limited the search knows which there are.
     if not len(rows) or face_cells.work.looked >= upto or last - first <= 2.0 * np.pi - 1e-9:
         return leant
     axes, side = contacts.axis.copy(), contacts.side.copy()
     some = contacts.of(rows)
-    axes[rows], side[rows] = roomiest(
-        some.normal, some.direction_max, tensor[rows], some.axis, face_cells.cutter, face_cells.conditions
-    )
+    axes[rows], side[rows] = roomiest(some.normal, some.direction_max, tensor[rows], some.axis, face_cells.context)
     rows = rows[(axes[rows] != contacts.axis[rows]).any(axis=1)]
     rows = rows[_free(contacts, axes, side, face_cells, rows)]
     new = _cover(contacts, tensor, axes, np.zeros(len(axes), bool), face_cells, rows, side)
@@ -307,13 +315,12 @@ def _free(
     """At which rows of contacts the cutter meets nothing with axes that lean to a side."""
     from plan_cutters.kernels.search.search import probe
 
-    conditions, obstacles = face_cells.conditions, face_cells.conditions.obstacles
+    conditions, tool = face_cells.context.conditions, face_cells.context.outer
     met, which = np.zeros(len(contacts), np.int32), np.zeros(len(contacts), np.int32)
-    tool = tool_of(conditions.outer_tool(face_cells.cutter))
     face_cells.work.add(_PROBE * len(rows))
 
     def probed(piece: NDArray[np.int64]) -> None:
-        probe(piece, contacts.point, contacts.normal, axes, side, tool, obstacles.tree, met, which)
+        probe(piece, contacts.point, contacts.normal, axes, side, tool, conditions.obstacles.tree, met, which)
 
     in_chunks(probed, rows, conditions.jobs)
     return np.asarray(met[rows] == -1)
@@ -350,17 +357,13 @@ def _cover(
     sides: Floats | None = None,
 ) -> CellStatus:
     """Outlook (m,) of rows of contacts with tensors and axes; on the sides that they have, or others."""
-    from plan_cutters.kernels.area.cover import Patches, Sweeping, cover
+    from plan_cutters.kernels.area.cover import Patches, cover
     from plan_cutters.kernels.area.zone import Nodes
 
-    field, cutter, conditions = face_cells.field, face_cells.cutter, face_cells.conditions
-    sides = contacts.side if sides is None else sides
-    obstacles, outer_tool = conditions.obstacles, conditions.outer_tool(cutter)
+    field, conditions, sweeping = face_cells.field, face_cells.context.conditions, face_cells.sweeping
+    sides, obstacles = contacts.side if sides is None else sides, conditions.obstacles
     patches = Patches(contacts.point, contacts.normal, tensor, axes, flats, sides, contacts.patch, contacts.home)
     nodes, status = Nodes(field.index, field.closed, face_cells.about), np.zeros(len(contacts), np.uint8)
-    chord = obstacles.triangles.chord_error
-    sweeping = Sweeping(tool_of(outer_tool), outer_tool.dummy, *outer_tool.noses(cutter.taper, cutter.shape), outer_tool.flutes,
-                        conditions.tolerance - chord, chord)  # fmt: skip
 
     def covered(piece: NDArray[np.int64]) -> int:
         return int(cover(piece, patches, nodes, field.number, sweeping, obstacles.tree, obstacles.faces, status))
@@ -375,7 +378,8 @@ def _cover(
     flat = flats[mine] | (sine < _UPRIGHT)
     tilt_direction = np.where(flat[:, None], sides[mine], across / np.where(flat, 1.0, sine)[:, None])
     tilt = np.where(flat, 0.0, np.arctan2(sine, upright))
-    status[mine[conditions.obstacles.holds(outer_tool, contacts.point[mine], normal, tilt_direction, tilt)]] = NEVER
+    within = obstacles.holds(face_cells.context.outer_tool, contacts.point[mine], normal, tilt_direction, tilt)
+    status[mine[within]] = NEVER
     return status[rows]
 
 

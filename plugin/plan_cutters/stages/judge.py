@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import CONVEX, FIXTURE, INSIDE, Verdicts
+from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.ground import Ground
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import with_company
@@ -56,14 +57,10 @@ def judge(
     Verdicts
         Of the m samples.
     """
-    samples, conditions = ready.samples, ready.conditions
+    samples, context = ready.samples, Context.of(cutter, ready.conditions)
     whole = None if rows is None else with_company(rows, len(samples))
-    free = decompose(
-        samples, ready.surface_class == CONVEX, cutter, conditions, inside=ready.shut, rows=whole, work=work
-    )
-    verdicts = access(
-        samples, free, cutter, conditions, inside=ready.shut, known=known, rows=whole, progress=progress, work=work
-    )
+    free = decompose(samples, ready.surface_class == CONVEX, context, inside=ready.shut, rows=whole, work=work)
+    verdicts = access(samples, free, context, inside=ready.shut, known=known, rows=whole, progress=progress, work=work)
     # What is clamped is lost to what holds it, if nothing was found that loses it all the same.
     held = ready.clamped & (ready.inside < 0) & (verdicts.reason == INSIDE)
     if held.any():

@@ -7,10 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.placement import frame_of
 from plan_cutters.kernels.codes import OFFSET_OF, RISE
-from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.conditions import Context
 
 #: Tilts, rad, and rotations that are compared.
 _TILTS, _ROTATIONS = np.radians([20.0, 30.0, 40.0, 50.0, 60.0, 70.0]), 12
@@ -18,7 +16,7 @@ _TILTS, _ROTATIONS = np.radians([20.0, 30.0, 40.0, 50.0, 60.0, 70.0]), 12
 _WORTH = 3.0
 
 
-def margin(axis: Floats, normal: Floats, tensor: Floats, cutter: Cutter, conditions: Conditions) -> NDArray[np.float64]:
+def margin(axis: Floats, normal: Floats, tensor: Floats, context: Context) -> NDArray[np.float64]:
     """Room (n,) to the local gouging bound across the lean, in sines of the tilt of a flat end; -inf where it does not touch.
 
     Parameters
@@ -27,21 +25,20 @@ def margin(axis: Floats, normal: Floats, tensor: Floats, cutter: Cutter, conditi
         Unit.
     tensor : (n, 3, 3) float
         Second fundamental form in part coordinates, 1/mm, concave positive.
-    cutter : Cutter
-    conditions : Conditions
+    context : Context
     """
-    mode = conditions.outer_tool(cutter).mode[0]
+    mode = context.outer_tool.mode[0]
     cosine = (axis * normal).sum(axis=1)
     across = np.cross(normal, axis)
     sine = np.linalg.norm(across, axis=1)
     t = across / np.maximum(sine, 1e-12)[:, None]
     bend = np.einsum("ni,nij,nj->n", t, tensor.reshape(-1, 3, 3), t)
     remainder = sine / (mode[OFFSET_OF] + mode[RISE] * sine) - bend
-    return np.asarray(np.where(cosine > -1e-9, cutter.radius * remainder, -np.inf))
+    return np.asarray(np.where(cosine > -1e-9, context.cutter.radius * remainder, -np.inf))
 
 
 def roomiest(
-    normal: Floats, direction: Floats, tensor: Floats, axis: Floats, cutter: Cutter, conditions: Conditions
+    normal: Floats, direction: Floats, tensor: Floats, axis: Floats, context: Context
 ) -> tuple[Floats, Floats]:
     """Of some postures the one with most room that is not far from a known one; that one where there is none.
 
@@ -52,22 +49,20 @@ def roomiest(
     tensor : (n, 3, 3) float
     axis : (n, 3) float
         Of the postures that are known.
-    cutter : Cutter
-    conditions : Conditions
+    context : Context
 
     Returns
     -------
     axis, tilt_direction : (n, 3) float
     """
-    low, high = conditions.postures.tilt
-    frame, other = frame_of(conditions.setup, conditions.x), np.cross(normal, direction)
+    (low, high), other = context.conditions.postures.tilt, np.cross(normal, direction)
     best, side, most = axis.copy(), direction.copy(), np.full(len(axis), -np.inf)
     for tilt in (each for each in _TILTS if low <= each <= high):
         for turn in np.arange(_ROTATIONS) * (2.0 * np.pi / _ROTATIONS):
             tilt_direction = np.cos(turn) * direction + np.sin(turn) * other
             tried = np.cos(tilt) * normal + np.sin(tilt) * tilt_direction
-            worth = (tried * axis).sum(axis=1) + _WORTH * margin(tried, normal, tensor, cutter, conditions)
+            worth = (tried * axis).sum(axis=1) + _WORTH * margin(tried, normal, tensor, context)
             better = np.flatnonzero(worth > most)
-            better = better[conditions.machine.allows(tried[better], frame)]
+            better = better[context.conditions.allows(tried[better])]
             best[better], side[better], most[better] = tried[better], tilt_direction[better], worth[better]
     return best, side

@@ -3,7 +3,6 @@
 import numpy as np
 
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.verdicts import ACCESSIBLE, Verdicts, blank
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress
@@ -41,7 +40,7 @@ def in_setup(
     rows = np.flatnonzero(verdicts.reached & (conditions.surroundings is ready.conditions.surroundings))
     # Where fewer than two axes turn the tool, rotations are numbered by the axes that there are in a setup.
     few = machine.turns and machine.turning < 2
-    rows = rows[:0] if few else rows[machine.allows(verdicts.axis[rows], frame_of(conditions.setup, conditions.x))]
+    rows = rows[:0] if few else rows[conditions.allows(verdicts.axis[rows])]
     known.verdict[rows] = ACCESSIBLE
     known.take_posture(rows, verdicts)
     return judged(there, cutter, known=known.freeze(), progress=progress)

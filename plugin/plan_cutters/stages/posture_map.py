@@ -11,16 +11,13 @@ import numpy as np
 from cad_io import SurfaceSamples, Triangles
 from cad_io.arrays import Floats, Record
 from plan_cutters.domain.assembly import Assembly
-from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.degrees import Angle, in_radians
 from plan_cutters.domain.intervals import common, complement, join, without
-from plan_cutters.domain.machine import Machine
-from plan_cutters.domain.posture import PostureRange, tilt_direction
+from plan_cutters.domain.posture import tilt_direction
 from plan_cutters.errors import OptionError
 from plan_cutters.kernels.codes import FLUTES, HOLDER, NECK, SHANK, TILT_FROM, TILT_TO
-from plan_cutters.scene.conditions import ranges_of, tool_of
+from plan_cutters.scene.conditions import Context, tool_of
 from plan_cutters.scene.obstacles import Obstacles, halved
-from plan_cutters.scene.surroundings import Surroundings
 
 #: Ends that move by no more, rad, have settled.
 SETTLED = np.radians(0.01)
@@ -103,40 +100,36 @@ class PostureMap(Record):
         return np.cos(tilt) * self.normal + np.sin(tilt) * f
 
 
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Ask(Record):
-    """A map is made of these: contact, cutter, rotations (k,) and tilts from and to, rad, machine, unit setup axis and, if it
-    is known, unit direction along the machine's X."""
+def posture_map_of(contact: SurfaceSamples, rotations: Floats, context: Context, narrowest: float) -> PostureMap:
+    """The map of one contact.
 
-    contact: SurfaceSamples
-    cutter: Cutter
-    rotations: Floats
-    tilt: tuple[float, float]
-    machine: Machine
-    setup: Floats
-    x: Floats | None = None
-
-
-def posture_map_of(
-    ask: Ask, surroundings: Surroundings, tools: tuple[Assembly, Assembly], narrowest: float, tolerance: float
-) -> PostureMap:  # fmt: skip
-    """The map; `tools` as `Conditions.outer_tool` and `Conditions.inner_tool` make them."""
+    Parameters
+    ----------
+    contact : SurfaceSamples
+        One sample.
+    rotations : (k,) float
+        rad.
+    context : Context
+        Tilts are looked at in its posture range. Its tolerance 0 stands for the nominal answer.
+    narrowest : float
+        Width below which a range of tilts stays undecided, rad.
+    """
     from plan_cutters.kernels.maps.free_tilts import FORBIDDEN, OPEN, UNSURE
     from plan_cutters.kernels.maps.points import axis_intervals
 
-    contact, cutter, (low, high) = ask.contact, ask.cutter, ask.tilt
+    cutter, conditions, (low, high) = context.cutter, context.conditions, context.conditions.postures.tilt
     p, n, e1 = contact.point[0], contact.normal[0], contact.direction_max[0]
-    ranges = ranges_of(ask.machine, ask.setup, PostureRange(ask.tilt), ask.x)
-    whole, (outer_tool, inner_tool) = surroundings.possible, tools
+    ranges, surroundings, tolerance = conditions.ranges, conditions.surroundings, conditions.tolerance
+    whole, outer_tool, inner_tool = conditions.obstacles, context.outer_tool, context.inner_tool
     near, far = _rear(whole.triangles, p, n, cutter.radius)
     alone = {"rear_gouge": (near, outer_tool.only(FLUTES)), "collision": (far, outer_tool.only(FLUTES)),
              "neck": (whole, outer_tool.only(NECK)), "shank": (whole, outer_tool.only(SHANK)),
              "holder": (whole, outer_tool.only(HOLDER))}  # fmt: skip
     free, undecided, axis, inside_bodies, no_contact = [], [], [], [], []
     apart: dict[str, list[Floats]] = {word: [] for word in alone}
-    gouge = np.empty((len(ask.rotations), 2))
+    gouge = np.empty((len(rotations), 2))
     touching = join(common(outer_tool.mode[:, [TILT_FROM, TILT_TO]], np.array([[low, high]])))
-    for i, rotation in enumerate(ask.rotations):
+    for i, rotation in enumerate(rotations):
         f = tilt_direction(n, e1, float(rotation))
         bounds = _gouge_bounds(contact.curvature[0], float(rotation), outer_tool)
         gouge[i] = (bounds[:, 0].min(), bounds[:, 1].max()) if len(bounds) else (np.nan, np.nan)
@@ -173,7 +166,7 @@ def posture_map_of(
         undecided.append(unsure if not len(perhaps) else join(np.concatenate([unsure, perhaps])))
         assert set(intervals[:, 2]) <= {OPEN, FORBIDDEN, UNSURE}
     return PostureMap(
-        rotations=ask.rotations, free=tuple(free), undecided=tuple(undecided), local_gouge=gouge[:, 0],
+        rotations=rotations, free=tuple(free), undecided=tuple(undecided), local_gouge=gouge[:, 0],
         local_gouge_most=gouge[:, 1], axis_limit=tuple(axis), no_contact=tuple(no_contact), buried=tuple(inside_bodies), point=p,
         normal=n,
         **{word: tuple(each) for word, each in apart.items()},

@@ -13,7 +13,6 @@ from cad_io import Part
 from cad_io.arrays import Floats, Record, SurfaceSamples
 from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.checks import pair
-from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.degrees import in_radians
 from plan_cutters.domain.host_axes import Heading, HostPlane, plane_of
 from plan_cutters.domain.machine import Machine
@@ -24,7 +23,7 @@ from plan_cutters.errors import OptionError
 from plan_cutters.kernels.rows import Ranges
 from plan_cutters.option_types import ANGLES, PlanOptions
 from plan_cutters.options import Options, machine_option
-from plan_cutters.scene.conditions import Conditions, contacts_of, require_finite, rotary_of, tool_of, verdict_arrays_of
+from plan_cutters.scene.conditions import Conditions, Context, contacts_of, require_finite, rotary_of, verdict_arrays_of
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.question import checksum, refuse_others, require_side, setup_of, turns_of, words_of
 from plan_cutters.scene.threads import Progress, in_chunks
@@ -256,7 +255,7 @@ class PostureMaps(Record):
         machine = conditions.machine
         if not machine.limited:
             return self
-        rotary = rotary_of(conditions.kinematics)
+        rotary = conditions.ranges.rotary
         ranges = Ranges(
             np.cos(self.rotations), np.sin(self.rotations), *self.tilt, conditions.setup, machine.limit_cos, rotary
         )
@@ -290,7 +289,7 @@ class PostureMaps(Record):
 
 
 def posture_maps(
-    samples: SurfaceSamples, cutter: Cutter, conditions: Conditions, verdicts: Verdicts, *, part: str = "",
+    samples: SurfaceSamples, context: Context, verdicts: Verdicts, *, part: str = "",
     inside: NDArray[np.bool_] | None = None, about: Mapping[str, Any] | None = None, most: int | None = None,
     progress: Progress | None = None,
 ) -> PostureMaps:  # fmt: skip
@@ -302,7 +301,7 @@ def posture_maps(
     Parameters
     ----------
     samples : SurfaceSamples
-    cutter, conditions
+    context : Context
         The machine is not looked at.
     verdicts : Verdicts
         What the cutter reaches without a machine.
@@ -319,9 +318,9 @@ def posture_maps(
     """
     from plan_cutters.kernels.maps.free_map import free_map
 
-    conditions = conditions.machineless
-    rotations, ranges, outer_tool = conditions.postures.rotations, conditions.ranges, conditions.outer_tool(cutter)
-    possible, certain, tool = conditions.obstacles, conditions.surroundings.certain, tool_of(outer_tool)
+    conditions, outer_tool, tool = context.conditions.without_machine(), context.outer_tool, context.outer
+    rotations, ranges = conditions.postures.rotations, conditions.ranges
+    possible, certain = conditions.obstacles, conditions.surroundings.certain
     contacts = contacts_of(samples)
     n, k = len(samples), len(rotations)
     count = np.zeros((n, k), np.int32)
@@ -360,7 +359,7 @@ def posture_maps(
     offset = np.concatenate([[0], np.cumsum(count.ravel(), dtype=np.int64)])
     return PostureMaps(rotations, offset, np.concatenate([np.zeros((0, 2)), *pieces]), undecided, samples.normal,
                        samples.direction_max, verdicts.verdict, verdicts.reason, conditions.postures.tilt, conditions.tolerance,
-                       cutter.id, part, np.zeros(0, bool) if inside is None else inside, known)  # fmt: skip
+                       context.cutter.id, part, np.zeros(0, bool) if inside is None else inside, known)  # fmt: skip
 
 
 def _width(part: Floats, count: NDArray[np.int32]) -> Floats:

@@ -28,7 +28,7 @@ from plan_cutters.domain.verdicts import (
     Verdicts,
     blank,
 )
-from plan_cutters.scene.conditions import Conditions, contacts_of, search_postures
+from plan_cutters.scene.conditions import Conditions, Context, contacts_of, search_postures
 from plan_cutters.scene.threads import Progress
 
 _PARTS = tuple(REASONS.index(word) for word in ("neck", "shank", "holder"))
@@ -91,7 +91,7 @@ class Reasons:
         if not len(rows) or not (limited or less or held):
             return Explained(verdicts, besides)
         # Flutes by themselves, without limits and fixtures: what they do not reach nothing else frees, and is done with.
-        bare = replace(first.machineless, surroundings=alone or first.surroundings)
+        bare = replace(first.without_machine(), surroundings=alone or first.surroundings)
         searched = self._search("flutes", less[-1][1] if less else cutter, rows, bare)
         shut = rows[~searched.reached[rows] & np.isin(before[rows], (AXIS_LIMIT, FIXTURE, *_PARTS))]
         reason[shut] = searched.reason[shut]
@@ -99,7 +99,7 @@ class Reasons:
         tell(1, 3)
         if limited:
             if less or held:
-                searched = self._search("unlimited", cutter, rows, first.machineless)
+                searched = self._search("unlimited", cutter, rows, first.without_machine())
             free = searched.reached[rows] if self._alike else self._anywhere(cutter, rows, limited=False)
             reason[rows[free]] = AXIS_LIMIT
             # Where the limit leaves nothing by itself, and so does something without it, both take part.
@@ -140,7 +140,7 @@ class Reasons:
         for k, conditions in enumerate(self.conditions):
             open_ = self.machinable[k][rows] & ~served
             verdicts = self._search(f"setup {k}" if limited else f"unlimited {k}", cutter, rows[open_],
-                                 conditions if limited else conditions.machineless)  # fmt: skip
+                                 conditions if limited else conditions.without_machine())  # fmt: skip
             served |= open_ & verdicts.reached[rows]
         return served
 
@@ -160,10 +160,8 @@ class Reasons:
             verdicts.take(mine, earlier)
         open_rows = rows[verdicts.verdict[rows] == UNJUDGED]
         if len(open_rows):
-            outer_tool, inner_tool = conditions.outer_tool(cutter), conditions.inner_tool(cutter)
-            search_postures(
-                contacts_of(self.samples), open_rows, outer_tool, inner_tool, conditions, verdicts, fixed=True
-            )
+            context = Context.of(cutter, conditions)
+            search_postures(contacts_of(self.samples), open_rows, context, verdicts, fixed=True)
         known[cutter] = verdicts.freeze()
         return known[cutter]
 

@@ -17,7 +17,7 @@ from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import INSIDE, REASONS, TOLERANCE, Verdicts, Witness, blank
 from plan_cutters.kernels.rows import Contacts
-from plan_cutters.scene.conditions import Conditions, rotations_of, tool_of, verdict_arrays_of
+from plan_cutters.scene.conditions import Conditions, Context, rotations_of, tool_of, verdict_arrays_of
 from plan_cutters.scene.deepest import deepest, deepest_of
 from plan_cutters.scene.inside_material import cover
 from plan_cutters.scene.threads import in_chunks
@@ -49,7 +49,7 @@ class _Group:
 
 
 def witnesses(
-    samples: SurfaceSamples, verdicts: Verdicts, cutter: Cutter, conditions: Conditions, *, inside: Ints | None = None,
+    samples: SurfaceSamples, verdicts: Verdicts, context: Context, *, inside: Ints | None = None,
     part: Part | None = None,
 ) -> tuple[Witness, ...]:  # fmt: skip
     """Samples that are not reached, for each face and reason; `inside` as in `access`.
@@ -63,11 +63,12 @@ def witnesses(
     most = max(1, min(_TRIED, _TRIED_IN_ALL // max(1, len(tried))))
     picked = {i: far_apart(samples.point, groups[i].rows, most) for i in tried}
     looked: dict[int, Witness] = {}
-    alone = replace(conditions, jobs=1)
+    conditions = context.conditions
+    alone = context.under(replace(conditions, jobs=1))
 
     def work(rows: NDArray[np.int64]) -> None:
         for row in rows.tolist():
-            looked[row] = _witness(samples, row, verdicts, cutter, alone, part)
+            looked[row] = _witness(samples, row, verdicts, alone, part)
 
     in_chunks(work, np.array([row for rows in picked.values() for row in rows], np.int64), conditions.jobs, chunk=1)
     result: list[Witness] = []
@@ -132,15 +133,13 @@ def _selected(looked: Sequence[Witness], point: Floats) -> list[Witness]:
     return [ranked[0], *others[: _MOST - 1]]
 
 
-def _witness(
-    samples: SurfaceSamples, row: int, verdicts: Verdicts, cutter: Cutter, conditions: Conditions, part: Part | None
-) -> Witness:
+def _witness(samples: SurfaceSamples, row: int, verdicts: Verdicts, context: Context, part: Part | None) -> Witness:
     """Find the posture of least depth by halving the depth that is let pass, and measure it on the surface."""
-    reason = REASONS[verdicts.reason[row]]
+    reason, cutter, conditions = REASONS[verdicts.reason[row]], context.cutter, context.conditions
     least_depth = _least_depth(samples, row, cutter, replace(conditions, surroundings=conditions.surroundings.skins))
     if least_depth is None:
         return Witness(row, reason)
-    obstacles, at, outer_tool = conditions.obstacles, slice(row, row + 1), conditions.outer_tool(cutter)
+    obstacles, at, outer_tool = conditions.obstacles, slice(row, row + 1), context.outer_tool
     best = least_depth[0]
     if obstacles.holds(outer_tool, samples.point[at], samples.normal[at], best.tilt_direction, best.tilt)[0]:
         # Its axis lies within material: one that does not says more, if there is any.

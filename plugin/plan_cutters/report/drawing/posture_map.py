@@ -9,7 +9,7 @@ import numpy as np
 from cad_io.arrays import Floats
 from plan_cutters.domain.intervals import complement, without
 from plan_cutters.plan_file.palette import PALETTE
-from plan_cutters.plan_file.reasons import NO_CONTACT, REASONS
+from plan_cutters.plan_file.reasons import CAUSES, NO_CONTACT, REASONS
 from plan_cutters.report.drawing.sheet import Look, figure, fitting, legend, save, write
 
 #: Inches: the sheet's width, the room left at its sides, and the plot, from its left and with its size.
@@ -23,14 +23,14 @@ def _look(code: str) -> Look:
     return Look(look.name, look.colour, look.hatch)
 
 
-#: In this order each counts for what is forbidden: the first one that does is drawn.
-CAUSES = ("no_contact", "axis_limit", "local_gouge", "rear_gouge", "collision", "neck", "shank", "holder", "buried")
+#: In this order each counts for what is forbidden: where the cutter does not touch, nothing else is drawn.
+_CAUSES = (NO_CONTACT.code, *CAUSES)
 #: All that is drawn, in the legend's order. "Other" is neither free nor undecided, and nothing alone forbids it: within the
 #: bounds of the search.
 _LOOKS = {
     "free": Look("free", PALETTE["interference_free"]),
     "undecided": Look("undecided", PALETTE["undecided"], ".."),
-    **{code: _look(code) for code in CAUSES},
+    **{code: _look(code) for code in _CAUSES},
     "other": Look("not free", "#555555"),
 }
 
@@ -46,12 +46,12 @@ def forbidden(posture_map: Any, low: float, high: float) -> dict[str, list[Float
     low, high : float
         The tilts that were requested, rad.
     """
-    shares: dict[str, list[Floats]] = {code: [] for code in (*CAUSES, "undecided", "other")}
+    shares: dict[str, list[Floats]] = {code: [] for code in (*_CAUSES, "undecided", "other")}
     whole = np.array([[low, high]])
     for i in range(len(posture_map.rotations)):
         remaining = without(without(whole, posture_map.free[i]), posture_map.undecided[i])
         shares["undecided"].append(posture_map.undecided[i])
-        for cause in CAUSES:
+        for cause in _CAUSES:
             mine = _gouged(posture_map, i, low, high) if cause == "local_gouge" else getattr(posture_map, cause)[i]
             rest = without(remaining, mine)
             shares[cause].append(without(remaining, rest))

@@ -10,6 +10,7 @@ from markupsafe import Markup
 from numpy.typing import NDArray
 
 from cad_io.write.render_mesh import render_mesh
+from plan_cutters.domain.tolerance import depths
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.report.markup import embedded, policy, template
 from plan_cutters.report.page import arrays, tables
@@ -99,7 +100,11 @@ def page(
         **operation_arrays(result),
     }
     others = _together(arrays.posture_arrays(result, name) for name in result.reaches if name != result.shown)
-    meta = {**meta_of(result, surface, atlas, box, spots), "drawn_chord_mm": faces.deflection, "scalars": legends}
+    _, overlooked = depths(result.plan.effective.tolerance_mm, faces.deflection)
+    meta = {
+        **meta_of(result, surface, atlas, box, spots), "drawn_chord_mm": faces.deflection, "overlooked_mm": overlooked,
+        "scalars": legends,
+    }  # fmt: skip
     about = Drawing(faces.deflection, faces.missing)
 
     where = np.arange(len(result.samples)) if rows is None else rows
