@@ -6,12 +6,21 @@ import { build } from "esbuild";
 
 const here = dirname(fileURLToPath(import.meta.url));
 const rooms = join(here, "..", "plugin", "plan_cutters");
-/** The pages: script and styles of each, and where they go. */
+/** What is bundled: script and styles of each page, what both pages load before their own script, and where they go. */
 const pages = [
+  { script: "src/three.ts", global: "THREE", into: join(rooms, "report", "page"), name: "three" },
   { script: "src/main.ts", style: "src/page.css", into: join(rooms, "report", "page"), name: "page" },
   { script: "src/compare.ts", style: "src/compare.css", into: join(rooms, "comparison"), name: "review" },
 ];
 const common = { absWorkingDir: here, minify: true, charset: "ascii", legalComments: "none", write: false };
+/** A page takes three.js from the script before its own. */
+const before = {
+  name: "before",
+  setup(build) {
+    build.onResolve({ filter: /^\.\/three$/ }, () => ({ path: "three", namespace: "before" }));
+    build.onLoad({ filter: /.*/, namespace: "before" }, () => ({ contents: "module.exports = THREE;" }));
+  },
+};
 
 /** The packages of which something is bundled, each with its version and licence. */
 function bundled(inputs) {
@@ -31,18 +40,21 @@ function bundled(inputs) {
 }
 
 const files = new Map();
-for (const { script, style, into, name } of pages) {
-  const made = await build({ ...common, entryPoints: [script], bundle: true, format: "iife", target: ["es2022"], metafile: true });
-  const styles = await build({ ...common, entryPoints: [style], bundle: true });
+for (const { script, style, global, into, name } of pages) {
+  const target = { bundle: true, format: "iife", target: ["es2022"], metafile: true };
+  const whole = global ? { globalName: global } : { plugins: [before] };
+  const made = await build({ ...common, ...target, ...whole, entryPoints: [script] });
   const licences = bundled(made.metafile.inputs).map((part) => `${part.name} ${part.version}\n\n${part.text}\n`).join("\n----\n\n");
   // What is written into a page must be plain ASCII, and nothing in it may end the script.
   const plain = licences.replaceAll("©", "(c)").replace(/[^\x00-\x7f]/g, "?");
-  const code = `/*! This page contains:\n\n${plain.replaceAll("*/", "* /")}*/\n${made.outputFiles[0].text}`;
+  const head = plain && `/*! This page contains:\n\n${plain.replaceAll("*/", "* /")}*/\n`;
+  const code = `${head}${made.outputFiles[0].text}`;
   for (const word of ["</script", "<!--", "sourceMappingURL"]) {
     if (code.toLowerCase().includes(word.toLowerCase())) throw new Error(`the bundle contains ${word}`);
   }
-  files.set(join(into, `${name}.js`), code).set(join(into, `${name}.css`), styles.outputFiles[0].text);
-  files.set(join(into, "licences.txt"), plain);
+  files.set(join(into, `${name}.js`), code);
+  if (style) files.set(join(into, `${name}.css`), (await build({ ...common, entryPoints: [style], bundle: true })).outputFiles[0].text);
+  if (plain) files.set(join(into, "licences.txt"), plain);
 }
 
 let stale = 0;

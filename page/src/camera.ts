@@ -1,6 +1,6 @@
 // Where one looks from: a turntable about the setup axis, in parallel projection.
 
-import { Matrix4, OrthographicCamera, Vector3 } from "three";
+import { Matrix4, OrthographicCamera, Vector3 } from "./three";
 import type { Vec } from "./meta.ts";
 import { across, cross, DEG, dot, mixed, plus, RAD, scaled, unit } from "./vectors.ts";
 

@@ -1,6 +1,6 @@
 // The clipping plane: across an axis of the part, with caps where it cuts closed bodies.
 
-import { Mesh, NotEqualStencilFunc, PlaneGeometry, Vector3, ZeroStencilOp } from "three";
+import { Mesh, NotEqualStencilFunc, PlaneGeometry, Vector3, ZeroStencilOp } from "./three";
 import type { App } from "./app.ts";
 import { closed } from "./closed.ts";
 import { colourOf } from "./colours.ts";

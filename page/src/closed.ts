@@ -2,7 +2,7 @@
 // surfaces that a ray meets is odd in every direction or in none. Small cracks between faces do not matter to that, as they do
 // not to a picture.
 
-import { DoubleSide, Ray, Vector3 } from "three";
+import { DoubleSide, Ray, Vector3 } from "./three";
 import type { Drawn, Owner } from "./mesh.ts";
 
 const POINTS = 400;

@@ -1,6 +1,6 @@
 // One of two plans: its picture, coloured by face or by sample.
 
-import type { ShaderMaterial } from "three";
+import type { ShaderMaterial } from "./three";
 import type { Aim } from "./camera.ts";
 import { colourOf, type Look } from "./colours.ts";
 import type { Shown } from "./compare_looks.ts";

@@ -1,6 +1,6 @@
 // How the arrays come out of the page: base64, raw deflate, then byte planes, zigzag and differences undone.
 
-import { DataUtils } from "three";
+import { DataUtils } from "./three";
 import type { ArrayEntry, Meta } from "./meta.ts";
 
 export type Numbers = Uint8Array | Uint16Array | Uint32Array | Int16Array | Int32Array | Float32Array;

@@ -1,6 +1,6 @@
 // The borders of faces, as thin lines: a part reads better with them.
 
-import { BufferAttribute, BufferGeometry, LineSegments } from "three";
+import { BufferAttribute, BufferGeometry, LineSegments } from "./three";
 import type { Drawn } from "./mesh.ts";
 import { plainMaterial } from "./shading.ts";
 

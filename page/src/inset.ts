@@ -1,6 +1,6 @@
 // All of the part in a corner of the picture while the picture shows a piece of it: which piece, and where the sample is.
 
-import { OrthographicCamera } from "three";
+import { OrthographicCamera } from "./three";
 import type { App } from "./app.ts";
 import type { Aim } from "./camera.ts";
 import { el, svg } from "./dom.ts";

@@ -1,6 +1,6 @@
 // Which postures are free at a sample, found from the drawn triangles: an approximation, not certified.
 
-import type { Box3 } from "three";
+import type { Box3 } from "./three";
 import { STATES } from "./codes.ts";
 import { gouges, modeAt, place, type Placed } from "./contact.ts";
 import type { Machine } from "./machine.ts";

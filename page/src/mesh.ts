@@ -1,7 +1,6 @@
 // The drawn triangles: those of the faces in order, then those of the fixtures; and the tree over them.
 
-import { BufferAttribute, BufferGeometry } from "three";
-import { MeshBVH } from "three-mesh-bvh";
+import { BufferAttribute, BufferGeometry, MeshBVH } from "./three";
 import type { Arrays } from "./decode.ts";
 import type { Meta, Vec } from "./meta.ts";
 import { octahedral } from "./vectors.ts";

@@ -1,6 +1,6 @@
 // The outline of what is in the way: a mask of it, whole whatever lies before it, and a line along the mask's borders.
 
-import { type BufferGeometry, Mesh, PlaneGeometry, Scene, Vector2, WebGLRenderTarget } from "three";
+import { type BufferGeometry, Mesh, PlaneGeometry, Scene, Vector2, WebGLRenderTarget } from "./three";
 import type { Drawn, Owner } from "./mesh.ts";
 import { contourMaterial, maskMaterial } from "./shading.ts";
 import type { Stage } from "./stage.ts";

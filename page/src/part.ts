@@ -1,6 +1,6 @@
 // The part and its fixtures in 3D, coloured sample by sample through the atlas.
 
-import { type DataTexture, Group, Mesh, type ShaderMaterial } from "three";
+import { type DataTexture, Group, Mesh, type ShaderMaterial } from "./three";
 import type { Look } from "./colours.ts";
 import type { Arrays } from "./decode.ts";
 import type { Drawn, Owner } from "./mesh.ts";

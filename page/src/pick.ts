@@ -1,6 +1,6 @@
 // What lies under the pointer: the point of the surface, its face or fixture, and the nearest sample.
 
-import { DoubleSide, Ray, Raycaster, Triangle, Vector2, Vector3 } from "three";
+import { DoubleSide, Ray, Raycaster, Triangle, Vector2, Vector3 } from "./three";
 import type { Drawn, Owner } from "./mesh.ts";
 import type { Vec } from "./meta.ts";
 import type { PartView } from "./part.ts";

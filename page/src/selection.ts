@@ -1,6 +1,6 @@
 // Faces that are picked to be named: they are tinted in the picture, and are copied as the text of --faces.
 
-import { DoubleSide, Group, Mesh } from "three";
+import { DoubleSide, Group, Mesh } from "./three";
 import type { App } from "./app.ts";
 import { copyButton } from "./copy.ts";
 import { button, el } from "./dom.ts";

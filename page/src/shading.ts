@@ -14,7 +14,7 @@ import {
   UnsignedByteType,
   Vector3,
   Vector4,
-} from "three";
+} from "./three";
 import { rgb } from "./colours.ts";
 
 /** What all materials share: the clipping plane (kept: xyz . p <= w) and the pixels of a step of the patterns. */

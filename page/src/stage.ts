@@ -1,6 +1,6 @@
 // The canvas: it is drawn when something has changed, and at no other time.
 
-import { BufferGeometry, type Material, Mesh, type Object3D, Scene, Vector3, WebGLRenderer } from "three";
+import { BufferGeometry, type Material, Mesh, type Object3D, Scene, Vector3, WebGLRenderer } from "./three";
 import { Turntable } from "./camera.ts";
 import type { Meta, Vec } from "./meta.ts";
 import { shared } from "./shading.ts";

@@ -1,6 +1,6 @@
 // The whole tool assembly in place: its outline turned about its axis, each part in a grey of its own.
 
-import { Group, LatheGeometry, Matrix4, Mesh, type ShaderMaterial, Vector2, Vector3 } from "three";
+import { Group, LatheGeometry, Matrix4, Mesh, type ShaderMaterial, Vector2, Vector3 } from "./three";
 import type { Placed } from "./contact.ts";
 import type { Cutter, PartName } from "./meta.ts";
 import { ghostMaterial, toolMaterial } from "./shading.ts";

@@ -1,7 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { BufferAttribute, BufferGeometry } from "three";
-import { MeshBVH } from "three-mesh-bvh";
+import { BufferAttribute, BufferGeometry, MeshBVH } from "../src/three";
 import { STATES } from "../src/codes.ts";
 import { emptyGrid, fillColumn, LiveTool, Probe, type State } from "../src/live_map.ts";
 import { Machine } from "../src/machine.ts";

@@ -19,7 +19,7 @@ from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.palette import PALETTE
 from plan_cutters.plan_file.words.chip import Chip
 from plan_cutters.plan_file.words.names import short_names
-from plan_cutters.report.markup import embedded, policy, template
+from plan_cutters.report.markup import embedded, policy, template, with_three
 
 PAGE = "review.html"
 #: What became of a face: in words, its colour and its pattern in both pictures.
@@ -100,6 +100,7 @@ def page(difference: PlanDifference, old: Side, new: Side) -> bytes:
         **{word: side.picture.meta for word, side in sides.items()},
     }
     script, style = ((_HERE / name).read_text(encoding="utf-8") for name in ("review.js", "review.css"))
+    script = with_three(script)
     return _TEMPLATE.render(
         policy=policy(script, style, "data: blob:"),
         script=Markup(script),

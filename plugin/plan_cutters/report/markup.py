@@ -53,3 +53,8 @@ def template(path: Path) -> jinja2.Template:
 
 def _hash(text: str) -> str:
     return "sha256-" + base64.b64encode(hashlib.sha256(text.encode()).digest()).decode()
+
+
+def with_three(script: str) -> str:
+    """The script of a page that shows the part, and before it what such pages share of three.js."""
+    return Path(__file__).with_name("page").joinpath("three.js").read_text(encoding="utf-8") + script

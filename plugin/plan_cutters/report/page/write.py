@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from cad_io.write.render_mesh import render_mesh
 from plan_cutters.domain.tolerance import depths
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.report.markup import embedded, policy, template
+from plan_cutters.report.markup import embedded, policy, template, with_three
 from plan_cutters.report.page import arrays, tables
 from plan_cutters.report.page.arrays import Arrays
 from plan_cutters.report.page.atlas import atlas_of
@@ -158,7 +158,7 @@ def _together(each: Iterable[Arrays]) -> Arrays:
 
 
 def _rendered(meta: dict[str, Any], data: str, shown: dict[str, Any]) -> bytes:
-    script, style = _asset("page.js"), _asset("page.css")
+    script, style = with_three(_asset("page.js")), _asset("page.css")
     return _TEMPLATE.render(
         policy=policy(script, style, "data: blob:"),
         script=Markup(script),

@@ -1,0 +1,37 @@
+// What the pages take of three.js: both load one bundle of it.
+
+export {
+  AlwaysStencilFunc,
+  BufferAttribute,
+  BufferGeometry,
+  DataTexture,
+  DataUtils,
+  DoubleSide,
+  GLSL3,
+  GreaterDepth,
+  Group,
+  InvertStencilOp,
+  LatheGeometry,
+  LineSegments,
+  Matrix4,
+  Mesh,
+  NearestFilter,
+  NotEqualStencilFunc,
+  OrthographicCamera,
+  PlaneGeometry,
+  RGBAFormat,
+  Ray,
+  Raycaster,
+  Scene,
+  ShaderMaterial,
+  Triangle,
+  UnsignedByteType,
+  Vector2,
+  Vector3,
+  Vector4,
+  WebGLRenderTarget,
+  WebGLRenderer,
+  ZeroStencilOp,
+} from "three";
+export type { Box3, Material, Object3D, ShaderMaterialParameters } from "three";
+export { MeshBVH } from "three-mesh-bvh";
