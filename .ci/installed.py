@@ -17,7 +17,7 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 OURS = ("plan_cutters/", "cad_io/")
 #: What an environment with the wheel may take, MB, and who must not be in it (`docs/install.md`).
-MOST_MB, NOT_THERE = 900, ("cadquery", "build123d", "vtk", "casadi", "pandas", "dask")
+MOST_MB, NOT_THERE = 700, ("matplotlib", "cadquery", "build123d", "vtk", "casadi", "pandas", "dask")
 #: What a package index shows.
 SHOWN = ("Author", "Summary", "License-Expression", "Keywords", "Classifier", "Project-URL", "Requires-Python")
 
