@@ -195,11 +195,7 @@ def _of_setups(options: "Options", document: Mapping[str, Any], setups: "tuple[S
             [round(x, 9) for setup in setups for x in setup.z],
         ),
         # Not their places: where a fixture stands shows in what it serves.
-        (
-            "fixtures (--fixture, --setup)",
-            named,
-            [[f"fixture:{each.name}" for each in one.fixtures] for one in setups],
-        ),
+        ("fixtures (--fixture, --setup)", named, [[f"fixture:{each.name}" for each in one.fixtures] for one in setups]),
         (
             "clamped faces (--setup)",
             [(place or {}).get("clamped", []) for place in places],
