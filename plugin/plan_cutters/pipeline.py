@@ -380,13 +380,7 @@ def assemble(
     with clock.stage("plan", shown=False):
         began = started or datetime.datetime.now(datetime.UTC)
         document = plan_of(ready, entries, selected, chosen, began, answers, setup_table(ready, within, over))
-    return Result(
-        clock.stamp(with_text(document)),
-        ready,
-        over,
-        moved,
-        answers,
-    )
+    return Result(clock.stamp(with_text(document)), ready, over, moved, answers)
 
 
 def _over_setups(ready: Prepared, judged: Mapping[Cutter, Judged], others: Sequence[OtherSetup]) -> OverSetups:

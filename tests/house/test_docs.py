@@ -7,7 +7,7 @@ import pytest
 from tests.support.places import ROOT
 
 PAGE = (ROOT / "docs" / "maintainers.md").read_text(encoding="utf-8").replace("`P/", "`plugin/plan_cutters/")
-ROWS = re.findall(r"^\| \[(?:a|an) .*?\]\(#(.*?)\) \| (.*?) \|", PAGE, re.MULTILINE)
+ROWS = re.findall(r"^\| \[(?:a|an|the) .*?\]\(#(.*?)\) \| (.*?) \|", PAGE, re.MULTILINE)
 
 
 @pytest.mark.parametrize("path", sorted(set(re.findall(r"`((?:plugin|cad_io|tests|docs)/[\w/.]+)`", PAGE))))
@@ -23,8 +23,8 @@ def test_every_page_stands_in_the_menu_once():
     assert sorted(named) == sorted(pages)
 
 
-def test_ten_questions_have_at_most_three_files_each():
-    assert len(ROWS) == 10
+def test_each_question_has_at_most_three_files():
+    assert len(ROWS) == 13
     for question, files in ROWS:
         assert 1 <= len(files.split(",")) <= 3, question
         assert f"\n## {question.replace('-', ' ')}\n" in PAGE.lower()

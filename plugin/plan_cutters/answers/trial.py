@@ -12,16 +12,7 @@ from numpy.typing import NDArray
 
 from plan_cutters.domain.change import Change, Thing
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.verdicts import (
-    ACCESSIBLE,
-    CONVEX,
-    INACCESSIBLE,
-    INSIDE,
-    TOLERANCE,
-    UNDECIDED,
-    Verdicts,
-    blank,
-)
+from plan_cutters.domain.verdicts import ACCESSIBLE, CONVEX, INACCESSIBLE, INSIDE, TOLERANCE, UNDECIDED, Verdicts, blank
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.plan_file.words.change_text import reasons, samples
 from plan_cutters.scene.conditions import Context, contacts_of, search_postures

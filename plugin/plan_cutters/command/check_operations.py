@@ -144,13 +144,16 @@ def _fits(
     part: "Part", options: "Options", document: Mapping[str, Any], cutters: list[str], setups: "tuple[Setup, ...]"
 ) -> float:
     """Refuse a plan of another part or of other options; the tolerance that it keeps, mm."""
-    from plan_cutters.domain.tolerance import kept
+    from plan_cutters.domain.tolerance import effective_tolerance
     from plan_cutters.errors import OptionError
 
     effective = document["effective"]
     # A plan may keep a tolerance that is coarser than the one asked for, as its triangles allow.
     tolerance, wanted = float(effective["tolerance_mm"]), options.tolerance
-    if tolerance > wanted and abs(tolerance - kept(0.0, effective["chord_error_mm"])) <= 1e-9 * tolerance:
+    if (
+        tolerance > wanted
+        and abs(tolerance - effective_tolerance(0.0, effective["chord_error_mm"])) <= 1e-9 * tolerance
+    ):
         wanted = tolerance
     pairs = [*_of_part(part, document),
              ("cutters (--cutter, --holder)", sorted(effective["cutters"]), sorted(cutters)),
@@ -182,7 +185,7 @@ def _of_part(part: "Part", document: Mapping[str, Any]) -> list[_Pair]:
 def _of_setups(options: "Options", document: Mapping[str, Any], setups: "tuple[Setup, ...]") -> list[_Pair]:
     effective = document["effective"]
     places = (effective["placement"], *(effective["other_placements"] or [None] * len(effective["other_setups"])))
-    standing = [
+    named = [
         [each["name"] for each in document["fixtures"] if s in each.get("setups", [0])] for s in range(len(setups))
     ]
     return [
@@ -192,11 +195,7 @@ def _of_setups(options: "Options", document: Mapping[str, Any], setups: "tuple[S
             [round(x, 9) for setup in setups for x in setup.z],
         ),
         # Not their places: where a fixture stands shows in what it serves.
-        (
-            "fixtures (--fixture, --setup)",
-            standing,
-            [[f"fixture:{each.name}" for each in one.fixtures] for one in setups],
-        ),
+        ("fixtures (--fixture, --setup)", named, [[f"fixture:{each.name}" for each in one.fixtures] for one in setups]),
         (
             "clamped faces (--setup)",
             [(place or {}).get("clamped", []) for place in places],

@@ -8,14 +8,7 @@ from typing import Any
 from cad_io.files import fingerprint
 from plan_cutters.comparison.matching import match_cutters, match_faces
 from plan_cutters.comparison.model import REQUESTED, Change, CutterDifference, FaceDifference, FaceState, PlanDifference
-from plan_cutters.comparison.states import (
-    cutter_falls,
-    cutter_state,
-    face_state,
-    falls,
-    reached_whole,
-    unreachable,
-)
+from plan_cutters.comparison.states import cutter_falls, cutter_state, face_state, falls, reached_whole, unreachable
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
 from plan_cutters.plan_file.part_info import FixtureEntry, PartInfo
 from plan_cutters.plan_file.words.names import called

@@ -8,7 +8,7 @@ import numpy as np
 from plan_cutters.document.build import degrees
 from plan_cutters.document.travel import placement_entry
 from plan_cutters.domain.operations import INDEX_TIME
-from plan_cutters.domain.tolerance import kept
+from plan_cutters.domain.tolerance import effective_tolerance
 from plan_cutters.options import Options
 from plan_cutters.plan_file.effective import Effective, LocalTolerance
 from plan_cutters.scene.preparation import Prepared
@@ -49,7 +49,8 @@ def _local(ready: Prepared) -> list[LocalTolerance]:
     whole = sum(faces[number - 1].area for number in targets)
     changes = [
         LocalTolerance(
-            face=f"F{number}", chord_error_mm=error, tolerance_mm=kept(0.0, error), area_mm2=faces[number - 1].area,
+            face=f"F{number}", chord_error_mm=error, tolerance_mm=effective_tolerance(0.0, error),
+            area_mm2=faces[number - 1].area,
             share=faces[number - 1].area / whole if number in targets and whole > 0.0 else 0.0,
         )
         for number, error in ready.conditions.surroundings.loose.items()

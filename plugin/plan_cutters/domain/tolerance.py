@@ -31,10 +31,10 @@ def depths(tolerance: float, chord_error: float) -> tuple[float, float]:
     return tolerance - chord_error, tolerance + chord_error
 
 
-def kept(requested: float, chord_error: float) -> float:
+def effective_tolerance(requested: float, chord_error: float) -> float:
     """The gouge tolerance that is kept, mm: the one requested or, where triangles cannot be that close, more.
 
-    >>> kept(0.01, 0.0025), kept(0.01, 0.01)
+    >>> effective_tolerance(0.01, 0.0025), effective_tolerance(0.01, 0.01)
     (0.01, 0.04)
     """
     return max(requested, chord_error / CHORD_SHARE)

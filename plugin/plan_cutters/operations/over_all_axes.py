@@ -225,7 +225,7 @@ def bodies(context: Context, mode: int, turn: float) -> list[Tool]:
     """
     cutter, conditions, whole = context.cutter, context.conditions, context.inner_tool
     error = conditions.obstacles.triangles.chord_error
-    (_, blocked), (_, blocked_beside) = depths(conditions.tolerance, error), depths(0.0, error)
+    (_, blocked), (_, blocked_rest) = depths(conditions.tolerance, error), depths(0.0, error)
     offset, rows = float(whole.mode[mode, OFFSET_OF]), whole.piece[mode]
     if not len(rows):
         return []
@@ -235,7 +235,7 @@ def bodies(context: Context, mode: int, turn: float) -> list[Tool]:
         inside = (rows[:, TOP] > first) & (rows[:, BOTTOM] < last)
         wide = float(rows[inside][:, [RADIUS, WIDE]].max(initial=0.0))
         more = turn * math.hypot(offset + wide, max(abs(first), abs(last)))
-        smaller = assembly(cutter, blocked + more, blocked_beside + more, kind="inner")
+        smaller = assembly(cutter, blocked + more, blocked_rest + more, kind="inner")
         result += [row for each in smaller.piece[mode] if solid(row := _cut_off(each, first, last))]
     anywhere = whole.mode[mode : mode + 1].copy()
     anywhere[0, [TILT_FROM, TILT_TO]] = -1.0, 4.0

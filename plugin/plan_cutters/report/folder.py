@@ -3,8 +3,9 @@
 import os
 import secrets
 import shutil
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import closing, suppress
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Protocol
 
@@ -173,56 +174,29 @@ def write_all(
     with clock.stage("start", shown=False):
         from plan_cutters.report.formats import Making, with_operations
         from plan_cutters.report.models import SCHEMAS, with_splits
-        from plan_cutters.report.to_json import PENDING, write_plan
+        from plan_cutters.report.to_json import PENDING
 
     if step_schema not in SCHEMAS:
         raise OptionError(f"STEP schema {step_schema!r} is not built in; give one of {', '.join(SCHEMAS)}")
     plans = [str(each.name) for each in result.plan.operations.plans] if result.plan.operations else []
     wanted = with_operations(formats, plans)
     later = [name for name in LATER if name in wanted]
-    arrays = [name for name in ("npz",) if name in formats] + (["postures"] if result.maps else [])
-    arrays += ["operations", "operations_csv"] if result.plan.operations else []
     with staging or Staging(out) as staging:
-        document: Plan = result.plan
-        files: dict[str, FileEntry] = {}
-        missing = dict.fromkeys(later, PENDING)
         making = Making(result, staging.folder, step_schema, clock, listener.begins if listener else lambda what: None)
-
-        def put() -> "Plan":
-            plan = document.model_copy(
-                update={
-                    "files": {name: files[name] for name in WRITERS if name in files},
-                    "not_written": dict(missing),
-                }
-            )
-            plan = clock.stamp(plan)
-            if "json" in formats:
-                with clock.stage("json", shown=False):
-                    try:
-                        write_plan(plan, staging.folder / PLAN)
-                    except PlanError as error:
-                        raise PlanError(error.cause, file=str(out / PLAN)) from None
-            return plan
-
-        def show() -> None:
-            if "json" in formats:
-                staging.publish(PLAN)
-
+        written = _Written(result.plan, staging, clock, out, dict.fromkeys(later, PENDING), as_json="json" in formats)
         try:
-            for name in arrays:
+            for name in _arrays(result, formats):
                 with clock.stage(name, shown=False):
-                    files[name] = making.file(name)
+                    written.files[name] = making.file(name)
         except OSError as error:
             raise _unwritable(out, error) from None
-        document = put()
+        written.put()
         # All is on disk: from here on files only change their names, and no plan stands beside files that are not its own.
         _clear(out)
-        for entry in files.values():
-            staging.publish(entry.name)
-        show()
+        written.publish(written.files)
         if listener:
             with clock.stage("show", shown=False):
-                listener.safe(document)
+                listener.safe(written.plan)
         split = 0
         with closing(making.files(later)) as each:
             for name, make in each:
@@ -230,20 +204,62 @@ def write_all(
                     listener.begins(name)
                 try:
                     with clock.stage(name, shown=False):
-                        files[name] = make()
+                        written.files[name] = make()
                 except Exception as error:
-                    missing[name] = _cause(error)
+                    written.missing[name] = _cause(error)
                     if listener:
                         listener.failed(name, error)
                 else:
-                    del missing[name]
+                    del written.missing[name]
                 if len(making.splits) > split:
-                    split, document = len(making.splits), with_splits(document, making.splits)
-                document = put()
-                if name in files:
-                    staging.publish(files[name].name)
-                show()
-    return document
+                    split, written.plan = len(making.splits), with_splits(written.plan, making.splits)
+                written.put()
+                written.publish([name])
+    return written.plan
+
+
+def _arrays(result: Judged, formats: Sequence[str]) -> Iterator[str]:
+    """The files of arrays: they are written before the plan is safe."""
+    if "npz" in formats:
+        yield "npz"
+    if result.maps:
+        yield "postures"
+    if result.plan.operations:
+        yield from ("operations", "operations_csv")
+
+
+@dataclass
+class _Written:
+    """The plan in the folder, and the files that are written by now, or not."""
+
+    plan: "Plan"
+    staging: Staging
+    clock: "Clock"
+    out: Path
+    missing: dict[str, str]
+    files: "dict[str, FileEntry]" = field(default_factory=dict)
+    as_json: bool = field(kw_only=True)
+
+    def put(self) -> None:
+        """Write the plan, with its files as they are now, beside the output."""
+        files = {name: self.files[name] for name in WRITERS if name in self.files}
+        self.plan = self.clock.stamp(self.plan.model_copy(update={"files": files, "not_written": dict(self.missing)}))
+        if self.as_json:
+            from plan_cutters.report.to_json import write_plan
+
+            with self.clock.stage("json", shown=False):
+                try:
+                    write_plan(self.plan, self.staging.folder / PLAN)
+                except PlanError as error:
+                    raise PlanError(error.cause, file=str(self.out / PLAN)) from None
+
+    def publish(self, names: Iterable[str]) -> None:
+        """Let files, those that there are, and the plan appear in the output."""
+        for name in names:
+            if name in self.files:
+                self.staging.publish(self.files[name].name)
+        if self.as_json:
+            self.staging.publish(PLAN)
 
 
 def file_name(name: str) -> str:

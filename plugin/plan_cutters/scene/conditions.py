@@ -176,8 +176,8 @@ def tools(cutter: Cutter, tolerance: float, error: float) -> tuple[Assembly, Ass
     In the outer tool flutes are smaller by the depth that is safe, in the inner tool by that which is blocked
     (`tolerance.depths`); all else, which may touch nothing, is so for a tolerance of 0.
     """
-    (safe, blocked), (safe_beside, blocked_beside) = depths(tolerance, error), depths(0.0, error)
-    return assembly(cutter, safe, safe_beside), assembly(cutter, blocked, blocked_beside, kind="inner")
+    (safe, blocked), (safe_rest, blocked_rest) = depths(tolerance, error), depths(0.0, error)
+    return assembly(cutter, safe, safe_rest), assembly(cutter, blocked, blocked_rest, kind="inner")
 
 
 def tool_of(made: Assembly) -> Tool:

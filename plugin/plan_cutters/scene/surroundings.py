@@ -15,7 +15,7 @@ from cad_io.tessellate import tessellate
 from cad_io.tessellate.proxies import StandIn, StandIns, stand_ins
 from cad_io.tessellate.triangles import At
 from plan_cutters.domain.fixture import Fixture
-from plan_cutters.domain.tolerance import kept
+from plan_cutters.domain.tolerance import effective_tolerance
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.scene.obstacles import Obstacles, weights
 from plan_cutters.scene.thickened import boxed, thickened
@@ -122,8 +122,8 @@ class Surroundings(Record):
         return (*self.bodies, *(each.body for each in self.fixtures if each.body is not None))
 
     def tolerance(self, requested: float) -> float:
-        """Give the gouge tolerance that is kept, mm (`tolerance.kept`)."""
-        return kept(requested, self.certain.triangles.chord_error)
+        """Give the gouge tolerance that is kept, mm (`tolerance.effective_tolerance`)."""
+        return effective_tolerance(requested, self.certain.triangles.chord_error)
 
     def called(self, face: int) -> str:
         """The name of a face number: `F12`, or `fixture:vise`."""
