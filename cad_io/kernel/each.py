@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import BinaryIO, TypeVar, cast
 
-from cad_io.kernel.copies import answers, begin, end_within, ended, out_of_time, tell
+from cad_io.forks import answers, begin, end_within, ended, out_of_time, tell
 
 Item = TypeVar("Item")
 Done = TypeVar("Done")

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from types import TracebackType
 from typing import BinaryIO, Generic, TypeVar, cast
 
-from cad_io.kernel.copies import answers, begin, ended, tell
+from cad_io.forks import answers, begin, ended, tell
 
 Done = TypeVar("Done")
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import BinaryIO
 
-from cad_io.kernel.copies import begin, ended, out_of_time, parts_of, stuck
+from cad_io.forks import begin, ended, out_of_time, parts_of, stuck
 
 
 class TimeLimit(Exception):

@@ -18,9 +18,9 @@ from OCP.TopAbs import TopAbs_FACE
 from OCP.TopoDS import TopoDS, TopoDS_Shape
 
 from cad_io.arrays import FaceLabels
+from cad_io.forks import end_within
 from cad_io.kernel import shape_map
 from cad_io.kernel.components import as_one, children, components
-from cad_io.kernel.copies import end_within
 from cad_io.kernel.time_limit import ChildDied, TimeLimit, limited
 from cad_io.split.attempt import Attempt, Trial, copied
 from cad_io.split.contour import smoothed

@@ -16,11 +16,12 @@ from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
 from plan_cutters.command.progress import Display
 from plan_cutters.command.request import MapRequest, posture_options, read_tools, takes
-from plan_cutters.command.supervise import supervise
 from plan_cutters.command.terminal import hand_out, paper
 from plan_cutters.command.values import File, Setup, Words, cutter_ids
-from plan_cutters.command.worker import began, can_supervise, follow_parent, is_child, report
 from plan_cutters.files.terminal_text import clean
+from plan_cutters.workers.assignment import began, is_child, report
+from plan_cutters.workers.child import can_supervise
+from plan_cutters.workers.supervise import supervise
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -317,7 +318,6 @@ def main(words: Sequence[str], name: str | None = None) -> NoReturn:
     """
     if name and can_supervise() and not is_child():
         ended(name, words, lambda: _watched(words, name))
-    follow_parent()
     if is_child():
         signal.signal(signal.SIGINT, interrupt)
     ended(name or _SELF, words, lambda: invoked(command, name or _SELF, words))

@@ -196,7 +196,7 @@ class Hook:
             exec(CODE, vars(module) | {{"module": module}})
         spec.loader.exec_module = patched
         return spec
-if "PLAN_CUTTERS_REPORT" in os.environ:
+if "PLAN_CUTTERS_ASSIGNMENT" in os.environ:
     sys.meta_path.insert(0, Hook())
 """
 HANG, CRASH = "while True: pass", "import os; os.kill(os.getpid(), 11)"

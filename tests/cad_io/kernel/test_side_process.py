@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cad_io.kernel import copies
+from cad_io import forks
 from cad_io.kernel.each import each
 from cad_io.kernel.side_process import SideProcess
 from cad_io.kernel.time_limit import TimeLimit, limited
@@ -112,7 +112,7 @@ def test_without_a_copy_the_work_is_done_here(monkeypatch):
 
 def test_a_copy_whose_words_are_taken_slowly_is_not_stuck(monkeypatch):
     # It sleeps whenever the pipe is full, and is looked at once a second however often its words come.
-    monkeypatch.setattr(copies, "_ASLEEP", 3)
+    monkeypatch.setattr(forks, "_ASLEEP", 3)
     with SideProcess(lambda: b"x" * 30_000_000, 20.0) as copy:
         assert copy.result(lambda: b"") == b"x" * 30_000_000
 
