@@ -26,9 +26,14 @@ def test_it_takes_its_place_at_the_end(tmp_path):
 def test_what_is_not_written_to_its_end_is_gone(tmp_path, ends):
     path = tmp_path / "a"
     path.write_text("old")
-    with pytest.raises(type(ends)), whole(path) as temporary:
-        temporary.write_text("ne")
-        raise ends
+
+    def write():
+        with whole(path) as temporary:
+            temporary.write_text("ne")
+            raise ends
+
+    with pytest.raises(type(ends)):
+        write()
     assert path.read_text() == "old"
     assert list(tmp_path.iterdir()) == [path]
 
