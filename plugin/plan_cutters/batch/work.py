@@ -17,7 +17,7 @@ from plan_cutters.batch.job import UNREADABLE, USAGE, Handed
 from plan_cutters.batch.row import PartRow
 from plan_cutters.errors import PlanError
 from plan_cutters.workers.assignment import INTERRUPTED, TIMED_OUT, Assignment
-from plan_cutters.workers.child import Child, command, compiler
+from plan_cutters.workers.child import Child, compiler
 
 PLAN = "plan.json"
 #: Folder of the output with the verdicts of each cutter on each part.
@@ -281,16 +281,14 @@ def planned(task: Task, content: Content, folder: Path) -> tuple[int, str]:
         there.write_bytes(data)
     offer = _offered(folder)
     (folder / ".handed").write_bytes(job_input.packed(task.handed.options, task.part, offer, task.secret))
-    words = [f"./{name}", "-o", "out", "--quiet", *task.words]
+    words = ["-m", "plan_cutters", "plan", f"./{name}", "-o", "out", "--quiet", *task.words]
     if task.store is not None:
         # A cutter that joins later is judged alone: the verdicts of the others are there.
         words += ["--verdicts", f"{task.store.rstrip('/')}/{VERDICTS}"]
     wanted = _wanted()
     with open(folder / ".said", "wb") as log:
         handed = Assignment(parent=os.getpid(), job=str(folder / ".handed"))
-        child = Child(
-            command("plan-cutters plan", words), handed, cwd=folder, stdin=subprocess.DEVNULL, stdout=log, stderr=log
-        )
+        child = Child(words, handed, cwd=folder, stdin=subprocess.DEVNULL, stdout=log, stderr=log)
     shared = False
     try:
         ends = time.monotonic() + (task.timeout or float("inf"))
