@@ -1,7 +1,7 @@
-"""Processes end with the one that started them. Forked copies of this one, too: how they begin, and whether they are stuck.
+"""Forked copies of this process, and processes that end with the one that started them.
 
-Whatever ended a parent, and whatever its child is doing: Linux kills the child at once. Elsewhere a copy of it looks after its
-parent: a thread could not, for the CAD kernel does not let go of the interpreter while it works.
+Whatever ended that one, and whatever they are doing themselves: Linux kills them at once. Elsewhere a copy of each looks after
+its parent: a thread could not, for the CAD kernel does not let go of the interpreter while it works.
 """
 
 import contextlib
@@ -17,7 +17,7 @@ import sys
 import time
 import warnings
 from collections.abc import Callable, Iterator
-from typing import Any, BinaryIO
+from typing import Any, BinaryIO, Self
 
 _SET_DEATH_SIGNAL = 1  # PR_SET_PDEATHSIG
 #: Seconds between two looks at a parent, where the system itself does not look.
@@ -28,8 +28,8 @@ _LOOK, _ASLEEP = 1.0, 60
 _LENGTH = struct.Struct("<q")
 
 
-def begin(work: Callable[[BinaryIO], None], seconds: float) -> tuple[int, int]:
-    """Have a copy of this process do some work. It ends with this process, whatever ends that, and without clean-up.
+class Copy:
+    """A copy of this process that does some work, without clean-up at its end. It ends with the block of `with`.
 
     Parameters
     ----------
@@ -38,34 +38,99 @@ def begin(work: Callable[[BinaryIO], None], seconds: float) -> tuple[int, int]:
     seconds : float
         Of processor time, after which the system ends the copy, by SIGXCPU.
 
-    Returns
-    -------
-    end, child : int
-        The end of the pipe to read from, which the caller closes, and the number of the copy, for `ended`.
+    Attributes
+    ----------
+    status : int
+        How it ended, once it has; 0, as if by itself, where someone else has waited for it: a program that ignores SIGCHLD, or
+        waits for whatever ends.
+
+    Raises
+    ------
+    OSError
+        There is no room for another process.
     """
-    end, start = os.pipe()
-    caller = os.getpid()
-    try:
-        with warnings.catch_warnings():
-            # Python 3.12 warns of locks held by other threads; at worst the copy waits for one, which is noticed.
-            warnings.simplefilter("ignore", DeprecationWarning)
-            child = os.fork()
-    except OSError:  # no room for another process
-        os.close(end)
-        os.close(start)
-        raise
-    if child:
-        os.close(start)
-        return end, child
-    try:
-        faulthandler.disable()  # a crash here is told by the other side
-        end_with(caller)
-        _end_alone(seconds)
-        signal.signal(signal.SIGPROF, signal.SIG_DFL)
-        with os.fdopen(start, "wb") as pipe:
-            work(pipe)
-    finally:
-        os._exit(0)
+
+    def __init__(self, work: Callable[[BinaryIO], None], seconds: float) -> None:
+        self.status = 0
+        self._end, start = os.pipe()
+        caller = os.getpid()
+        try:
+            with warnings.catch_warnings():
+                # Python 3.12 warns of locks held by other threads; at worst the copy waits for one, which is noticed.
+                warnings.simplefilter("ignore", DeprecationWarning)
+                self._child = os.fork()
+        except OSError:
+            os.close(self._end)
+            os.close(start)
+            raise
+        if self._child:
+            os.close(start)
+            return
+        try:
+            faulthandler.disable()  # a crash here is told by the other side
+            end_with(caller)
+            _end_alone(seconds)
+            signal.signal(signal.SIGPROF, signal.SIG_DFL)
+            with os.fdopen(start, "wb") as pipe:
+                work(pipe)
+        finally:
+            os._exit(0)
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        os.close(self._end)
+        with contextlib.suppress(ChildProcessError, ProcessLookupError):
+            # Asked first: the number of one that is waited for may be another process's by now.
+            done, self.status = os.waitpid(self._child, os.WNOHANG)
+            if not done:
+                os.kill(self._child, signal.SIGKILL)
+                self.status = os.waitpid(self._child, 0)[1]
+
+    @property
+    def out_of_time(self) -> bool:
+        """Whether it was ended for its processor time."""
+        return os.WIFSIGNALED(self.status) and os.WTERMSIG(self.status) in (signal.SIGPROF, signal.SIGXCPU)
+
+    def parts(self, late: Callable[[], float] | None = None) -> Iterator[bytes]:
+        """Yield all that it says, as it comes, until its side closes; `late` gives the seconds to wait before it is asked again.
+
+        By default it is waited for as long as it does not sleep without end.
+
+        Raises
+        ------
+        TimeoutError
+            There is nothing left to wait.
+        """
+        late = late or _stuck(self._child)
+        ready = select.poll()  # `select` itself knows no numbers above 1023
+        ready.register(self._end, select.POLLIN)
+        while (wait := late()) > 0:
+            if ready.poll(1000.0 * min(wait, _LOOK)):
+                part = os.read(self._end, 1 << 20)
+                if not part:
+                    return
+                yield part
+        raise TimeoutError
+
+    def answers(self) -> Iterator[Any]:
+        """Yield what it tells by `tell`, as it comes, until it ends: half an answer is none.
+
+        Raises
+        ------
+        TimeoutError
+            It sleeps and does nothing.
+        """
+        data = bytearray()
+        for part in self.parts():
+            data += part
+            while len(data) >= _LENGTH.size:
+                whole = _LENGTH.size + _LENGTH.unpack_from(data)[0]
+                if len(data) < whole:
+                    break
+                yield pickle.loads(bytes(data[_LENGTH.size : whole]))
+                del data[:whole]
 
 
 def end_within(seconds: float) -> None:
@@ -74,28 +139,14 @@ def end_within(seconds: float) -> None:
     signal.setitimer(signal.ITIMER_PROF, seconds)
 
 
-def ended(child: int) -> int:
-    """End a copy, if it has not ended, and give its status.
-
-    That is 0, as if it had ended by itself, where someone else has waited for it: a program that ignores SIGCHLD, or waits
-    for whatever ends.
-    """
-    status = 0
-    with contextlib.suppress(ChildProcessError, ProcessLookupError):
-        # Asked first: the number of one that is waited for may be another process's by now.
-        done, status = os.waitpid(child, os.WNOHANG)
-        if not done:
-            os.kill(child, signal.SIGKILL)
-            status = os.waitpid(child, 0)[1]
-    return status
+def tell(pipe: BinaryIO, answer: object) -> None:
+    """Write an answer for `Copy.answers` to read."""
+    data = pickle.dumps(answer)
+    pipe.write(_LENGTH.pack(len(data)) + data)
+    pipe.flush()
 
 
-def out_of_time(status: int) -> bool:
-    """Whether a copy was ended for its processor time."""
-    return os.WIFSIGNALED(status) and os.WTERMSIG(status) in (signal.SIGPROF, signal.SIGXCPU)
-
-
-def stuck(child: int) -> Callable[[], float]:
+def _stuck(child: int) -> Callable[[], float]:
     """Seconds to wait until it is asked again; none once the copy has slept at so many looks. Never while it works."""
     idle, before, looked = 0, "", -math.inf
 
@@ -116,51 +167,6 @@ def stuck(child: int) -> Callable[[], float]:
         return _LOOK if idle < _ASLEEP else 0.0
 
     return late
-
-
-def parts_of(end: int, late: Callable[[], float]) -> Iterator[bytes]:
-    """All that a copy says, as it comes, until its side closes; `late` gives the seconds to wait before it is asked again.
-
-    Raises
-    ------
-    TimeoutError
-        There is nothing left to wait.
-    """
-    ready = select.poll()  # `select` itself knows no numbers above 1023
-    ready.register(end, select.POLLIN)
-    while (wait := late()) > 0:
-        if ready.poll(1000.0 * min(wait, _LOOK)):
-            part = os.read(end, 1 << 20)
-            if not part:
-                return
-            yield part
-    raise TimeoutError
-
-
-def tell(pipe: BinaryIO, answer: object) -> None:
-    """Write an answer for `answers` to read."""
-    data = pickle.dumps(answer)
-    pipe.write(_LENGTH.pack(len(data)) + data)
-    pipe.flush()
-
-
-def answers(end: int, child: int) -> Iterator[Any]:
-    """Whole answers of a copy as they come, until it ends: half an answer is none.
-
-    Raises
-    ------
-    TimeoutError
-        It sleeps and does nothing.
-    """
-    data = bytearray()
-    for part in parts_of(end, stuck(child)):
-        data += part
-        while len(data) >= _LENGTH.size:
-            whole = _LENGTH.size + _LENGTH.unpack_from(data)[0]
-            if len(data) < whole:
-                break
-            yield pickle.loads(bytes(data[_LENGTH.size : whole]))
-            del data[:whole]
 
 
 def _end_alone(seconds: float) -> None:

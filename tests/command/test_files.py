@@ -15,8 +15,8 @@ import trimesh
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder
 
 from cad_io.arrays import FaceLabels, Style
+from cad_io.copies import TimeLimit, limited
 from cad_io.errors import WriteError
-from cad_io.kernel.time_limit import TimeLimit, limited
 from cad_io.part import Part
 from cad_io.split import attempt
 from cad_io.split.border import CannotSplit

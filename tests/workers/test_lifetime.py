@@ -29,7 +29,7 @@ def spin():
 
 def trap(name):
     if name == where and how == "copy":
-        from cad_io.kernel.time_limit import limited
+        from cad_io.copies import limited
         limited(lambda: spin() or b"", 600.0)
     elif name == where and how == "sleep":
         Path(os.environ["STUCK_SIGN"]).touch()
@@ -223,8 +223,8 @@ CALLER = """
 import itertools, os, sys, threading
 from pathlib import Path
 import cad_io.forks as forks
-from cad_io.kernel.each import each
-from cad_io.kernel.time_limit import limited
+from cad_io.copies import each
+from cad_io.copies import limited
 if sys.argv[3] == "looked after":
     forks._killed_by_the_system = lambda: False
 def spin():

@@ -174,7 +174,7 @@ def handed_out(
     """
     flight, done = _Flight(client, tasks, function), 0
     try:
-        while not flight.lost():
+        while not flight.gone():
             flight.fill()
             if board is not None:
                 board.progress(done, len(flight.tasks), total)
@@ -184,7 +184,7 @@ def handed_out(
             if answer is None:
                 continue
             task, outcome = answer
-            if flight.left_out(outcome):
+            if flight.for_another(outcome):
                 if board is not None:
                     board.say(f"worker {outcome.unfit} is left out: {outcome.row.error}")
                 flight.hand(task)
@@ -252,11 +252,11 @@ class _Flight:
         future.release()
         return task, outcome
 
-    def lost(self) -> bool:
+    def gone(self) -> bool:
         """Whether the scheduler has been gone for too long."""
         return bool(self._gone) and (self._client.status == "closed" or time.monotonic() - self._gone > _GONE)
 
-    def left_out(self, outcome: Any) -> bool:
+    def for_another(self, outcome: Any) -> bool:
         """Whether a task is for another worker, since its own is unfit and there is one."""
         where = getattr(outcome, "unfit", "")
         if not where:

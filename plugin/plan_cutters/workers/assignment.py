@@ -1,4 +1,4 @@
-"""What a process knows of the one that started it: one record, in one environment variable; and what it reports to that."""
+"""An assignment is what a process knows of the one that started it, as one environment variable; reports go back to that."""
 
 import contextlib
 import functools
@@ -22,7 +22,7 @@ TIMED_OUT = 124
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """What the parent of a process says to it.
+    """An assignment says to a process what it is to know.
 
     Attributes
     ----------
