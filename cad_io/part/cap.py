@@ -15,8 +15,8 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats
+from cad_io.copies import Ended, each
 from cad_io.kernel import may_refuse
-from cad_io.kernel.each import Ended, each
 from cad_io.part.sew import edge_uses
 
 #: Deflections of a cap's border, rad, and mm as a share of the part's diagonal.

@@ -3,9 +3,9 @@
 import pickle
 from collections.abc import Callable
 
+from cad_io.copies import ChildDied, TimeLimit, limited
 from cad_io.errors import CadIoError, ReadError
 from cad_io.kernel import translated
-from cad_io.kernel.time_limit import ChildDied, TimeLimit, limited
 from cad_io.part.packing import PartContent, packed, unpacked
 
 

@@ -5,10 +5,10 @@ import pickle
 from dataclasses import dataclass, field
 
 from cad_io.arrays import LostFace
+from cad_io.copies import ChildDied, TimeLimit, limited
 from cad_io.errors import ReadError
 from cad_io.files import OutsideError
 from cad_io.kernel import translated
-from cad_io.kernel.time_limit import ChildDied, TimeLimit, limited
 from cad_io.read.references import DOCUMENTS, in_folder_of, names
 from cad_io.read.sniff import sniff
 from cad_io.read.step import Loaded, distinct_faces

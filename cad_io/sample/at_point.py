@@ -14,12 +14,12 @@ from OCP.gp import gp_Pnt
 from OCP.ShapeAnalysis import ShapeAnalysis_Surface
 
 from cad_io.arrays import Floats, Orientation, SurfaceSamples
+from cad_io.copies import Ended, each
 from cad_io.errors import SampleError
 from cad_io.face.curvature import curvature
 from cad_io.face.trim import Trim
 from cad_io.kernel import translated
 from cad_io.kernel.components import compound
-from cad_io.kernel.each import Ended, each
 from cad_io.part import Part
 
 _PRECISION = 1e-9  # mm, asked of the projection

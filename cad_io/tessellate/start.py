@@ -11,9 +11,9 @@ import numpy as np
 import shapely
 
 from cad_io.arrays import Floats, Ints
+from cad_io.copies import TimeLimit
 from cad_io.face.trim import Trim
 from cad_io.kernel import may_refuse
-from cad_io.kernel.time_limit import TimeLimit
 from cad_io.part import Part
 from cad_io.surface import Surface
 from cad_io.tessellate.mesh import BorderCurve, UVMesh, bordered, kernel_start

@@ -22,8 +22,8 @@ from cad_io.kernel import translated
 from cad_io.kernel.mesher import meshed
 from cad_io.split.pieces import MIXED, Piece, Split
 from cad_io.surface import Surface
+from cad_io.whole import whole
 from cad_io.write.render_mesh import ANGLE, FINE, Mesh, diagonal, face_mesh
-from cad_io.write.temporary_file import temporary_file
 
 _METRE = 1e-3
 _COMPONENT = {"float32": 5126, "uint32": 5125, "uint16": 5123}
@@ -92,7 +92,7 @@ def write_gltf(
     WriteError
         The file cannot be written, or there is no triangle to write.
     """
-    with temporary_file(path) as temporary:
+    with whole(path, WriteError) as temporary:
         with translated("meshing", error=WriteError, file=str(path)):
             meshes = list(meshes_of(split, deflection))
         if not any(mesh for _, mesh in meshes):

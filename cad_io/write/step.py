@@ -30,15 +30,15 @@ from OCP.TopTools import TopTools_IndexedMapOfShape
 from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
 
 from cad_io.arrays import Floats, Style
+from cad_io.copies import ChildDied, TimeLimit, limited
 from cad_io.errors import WriteError
 from cad_io.kernel import edges_of, explore, faces, shape_map, silence, translated
 from cad_io.kernel.assembly import Node
 from cad_io.kernel.bodies import placed
 from cad_io.kernel.components import compound, flat
-from cad_io.kernel.time_limit import ChildDied, TimeLimit, limited
 from cad_io.split.pieces import Piece, Split
+from cad_io.whole import whole
 from cad_io.write.canonical import canonical
-from cad_io.write.temporary_file import temporary_file
 
 #: Of every file: a fixed one, so that the same input gives the same bytes.
 TIME_STAMP = "2000-01-01T00:00:00"
@@ -100,7 +100,7 @@ def write_step(
     silence()
     file = str(path)
     styles = {id(piece): style(piece) for piece in split.pieces}
-    with temporary_file(path) as temporary:
+    with whole(path, WriteError) as temporary:
 
         def write() -> bytes:
             try:

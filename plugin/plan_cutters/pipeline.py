@@ -11,7 +11,7 @@ import numpy as np
 
 from cad_io import Part, read_part
 from cad_io.arrays import Ints
-from cad_io.kernel.side_process import SideProcess
+from cad_io.copies import SideProcess
 from cad_io.read.read import TIMEOUT
 from cad_io.tessellate.triangles import At
 from plan_cutters.answers.ask import ask

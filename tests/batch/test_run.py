@@ -13,12 +13,13 @@ import pytest
 
 from plan_cutters import Options, plan_many
 from plan_cutters.batch import cluster, keys
-from plan_cutters.batch.job import TIMED_OUT, Fault, Job, Settings
+from plan_cutters.batch.job import Fault, Job, Settings
 from plan_cutters.batch.row import PartRow
 from plan_cutters.batch.run import Terms, foreseen, handed_out, outcomes, run_batch
 from plan_cutters.batch.store import Store
 from plan_cutters.batch.work import VERDICTS, Outcome
 from plan_cutters.errors import PlanError
+from plan_cutters.workers.assignment import TIMED_OUT
 from tests.support.places import ROOT
 
 GROOVE = (ROOT / "samples/v_groove.step").read_bytes()

@@ -7,8 +7,9 @@ import fsspec
 import pytest
 
 from plan_cutters.batch.row import PartRow
-from plan_cutters.batch.store import MARKER, Store, read
+from plan_cutters.batch.store import MARKER, Store
 from plan_cutters.errors import PlanError
+from plan_cutters.files.folder import read
 
 ROW = PartRow(name="a", file="a.step", key="k1", status="planned", code=0, folder="a-plan")
 FILES = {"review.html": b"page", "plan.json": b"{}"}
@@ -48,7 +49,8 @@ def store(request, tmp_path):
 
 
 def names(store):
-    return sorted(path.removeprefix(store.root).strip("/") for path in store._fs.find(store.root))
+    fs, root = fsspec.core.url_to_fs(store.root_url, use_listings_cache=False)
+    return sorted(path.removeprefix(root).strip("/") for path in fs.find(root))
 
 
 def test_a_part_is_done_when_its_marker_says_so(store):
@@ -69,7 +71,7 @@ def test_a_part_is_done_when_its_marker_says_so(store):
 
 def test_a_file_that_was_changed_or_lost_makes_the_part_undone(store):
     store.publish("a-plan", FILES, ROW)
-    store._fs.rm_file(f"{store.root}/a-plan/review.html")
+    store.remove("a-plan/review.html")
     assert store.row("a-plan") is None
     store.publish("a-plan", FILES, ROW)
     store.put("a-plan/plan.json", b"{}, and more")

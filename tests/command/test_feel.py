@@ -22,7 +22,6 @@ from plan_cutters.command import map as of_a_point
 from plan_cutters.command import summary as summaries
 from plan_cutters.command.progress import Display
 from plan_cutters.command.rows import _distinct
-from plan_cutters.command.supervise import _Watch
 from plan_cutters.command.terminal import show
 from plan_cutters.domain.default_tools import builtin
 from plan_cutters.files.terminal_text import clean
@@ -31,6 +30,8 @@ from plan_cutters.plan_file.numbers import percent
 from plan_cutters.plan_file.words.details import others
 from plan_cutters.plan_file.words.story import story_of
 from plan_cutters.plan_file.words.text import with_text
+from plan_cutters.workers.assignment import VARIABLE, Assignment
+from plan_cutters.workers.supervise import _Watch
 from tests.support.commands import assert_one_line, in_lines, leftovers, said_until
 from tests.support.forked import ENV, run
 from tests.support.places import SAMPLES
@@ -390,10 +391,13 @@ def test_what_the_child_says_comes_through_whatever_it_holds():
     watch = _Watch(1.0, display)
     watch.pipe = here
     odd = "a\nsafe 0 /tmp\\x\udcff ü\u2028.step"
-    child = f"from plan_cutters.command.worker import report as tell; odd = {odd!r}\n"
+    child = f"from plan_cutters.workers.assignment import report as tell; odd = {odd!r}\n"
     child += "tell('part', odd); tell('at', '3 9'); tell('say', odd); tell('show', odd)"
     subprocess.run(
-        [sys.executable, "-c", child], env=ENV | {"PLAN_CUTTERS_REPORT": str(there)}, pass_fds=(there,), check=True
+        [sys.executable, "-c", child],
+        env=ENV | {VARIABLE: str(Assignment(report=there))},
+        pass_fds=(there,),
+        check=True,
     )
     watch.listen(0.0)
     os.close(here)
@@ -622,7 +626,7 @@ def test_what_is_warned_of_the_cache_of_the_compiler_is_one_line(tmp_path, monke
 def test_an_interrupt_where_none_can_be_raised_is_taken_again():
     code = """
 import os, signal, sys, time
-from plan_cutters.command.supervise import keep_interrupts
+from plan_cutters.command.codes import keep_interrupts
 from plan_cutters.plan_file.words.details import others
 from plan_cutters.plan_file.words.text import with_text
 keep_interrupts()

@@ -15,8 +15,8 @@ import trimesh
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder
 
 from cad_io.arrays import FaceLabels, Style
+from cad_io.copies import TimeLimit, limited
 from cad_io.errors import WriteError
-from cad_io.kernel.time_limit import TimeLimit, limited
 from cad_io.part import Part
 from cad_io.split import attempt
 from cad_io.split.border import CannotSplit
@@ -112,7 +112,7 @@ def test_processor_time_is_counted_not_the_clocks():
 
 
 def test_a_copy_that_does_nothing_at_all_is_ended(monkeypatch):
-    monkeypatch.setattr("cad_io.kernel.copies._ASLEEP", 1)
+    monkeypatch.setattr("cad_io.forks._ASLEEP", 1)
     began = time.monotonic()
     with pytest.raises(TimeLimit):
         limited(lambda: time.sleep(60) or b"", 100, processor=True)

@@ -1,19 +1,21 @@
 """Two runs never mix in one folder; a plan there names files that are there, whatever ended the run."""
 
 import contextlib
+import errno
+import fcntl
 import hashlib
 import json
 import os
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
 import pytest
 
 from plan_cutters import PlanError, plan
-from plan_cutters.files import lock
 from plan_cutters.files.lock import Lock, lock_of, sweep
 from plan_cutters.report import Staging
 from tests.support.forked import ENV
@@ -98,13 +100,54 @@ def test_another_machines_lock_is_left_alone(tmp_path, monkeypatch):
             lock_of(out).unlink()
 
 
-def test_without_locks_of_the_system_a_file_that_is_there_is_one(tmp_path, monkeypatch):
-    monkeypatch.setattr(lock, "_locked", lambda handle: None)
+@pytest.mark.parametrize("number", [errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP], ids=errno.errorcode.get)
+def test_without_locks_of_the_system_a_file_that_is_there_is_one(tmp_path, monkeypatch, number):
+    def without(*_):
+        raise OSError(number, os.strerror(number))
+
+    monkeypatch.setattr(fcntl, "flock", without)
     held = Lock(tmp_path / "out")
     with pytest.raises(PlanError, match="if nothing runs there any more, remove"):
         Lock(tmp_path / "out")
     held.release()
     Lock(tmp_path / "out").release()
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_lock_that_cannot_be_written_is_none(tmp_path, monkeypatch):
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_text", full)
+    with pytest.raises(OSError, match="No space left"):
+        Lock(tmp_path / "out")
+    monkeypatch.undo()
+    assert list(tmp_path.iterdir()) == []
+    Lock(tmp_path / "out").release()
+
+
+def test_many_that_begin_at_once_have_it_one_after_the_other(tmp_path):
+    """The file goes with each owner, and none that finds it going takes one that another has."""
+    inside, most = [], 0
+
+    def work():
+        nonlocal most
+        for _ in range(30):
+            try:
+                held = Lock(tmp_path / "out")
+            except PlanError:
+                continue
+            inside.append(1)
+            most = max(most, len(inside))
+            inside.pop()
+            held.release()
+
+    threads = [threading.Thread(target=work) for _ in range(8)]
+    for each in threads:
+        each.start()
+    for each in threads:
+        each.join()
+    assert most == 1
     assert list(tmp_path.iterdir()) == []
 
 

@@ -6,7 +6,8 @@ import sys
 
 import pytest
 
-from plan_cutters.command import worker
+from plan_cutters.workers import child
+from plan_cutters.workers.assignment import VARIABLE
 from tests.support.commands import leftovers
 from tests.support.forked import ENV
 from tests.support.places import SAMPLES
@@ -75,17 +76,17 @@ def test_what_says_why_models_are_missing_loads_nothing(tmp_path):
 )
 def test_it_begins_early_where_there_is_a_part(monkeypatch, words, begun):
     made = []
-    monkeypatch.delenv(worker.REPORT, raising=False)
-    monkeypatch.setattr(worker, "_early", [])
-    monkeypatch.setattr(worker.atexit, "register", lambda call: None)
+    monkeypatch.delenv(VARIABLE, raising=False)
+    monkeypatch.setattr(child, "_early", [])
+    monkeypatch.setattr(child.atexit, "register", lambda call: None)
 
     class Made:
         drop = None
 
-    monkeypatch.setattr(worker, "Worker", lambda words, name, *, waits: made.append((words, waits)) or Made)
-    worker.begin_early(words)
+    monkeypatch.setattr(child, "Worker", lambda words, name, *, waits: made.append((words, waits)) or Made)
+    child.begin_early(words)
     assert made == ([(words, True)] if begun else [])
-    assert len(worker._early) == len(made)
+    assert len(child._early) == len(made)
 
 
 def test_one_that_waits_ends_where_the_words_are_wrong(tmp_path):

@@ -7,7 +7,9 @@ import sys
 import click
 import pytest
 
-from plan_cutters.command import entry, worker
+from plan_cutters.command import entry
+from plan_cutters.workers import child
+from plan_cutters.workers.assignment import VARIABLE
 from tests.support.forked import ENV, run
 from tests.support.places import ROOT
 
@@ -149,10 +151,10 @@ def test_only_a_plan_begins_early(monkeypatch, words, begun):
     class Made:
         drop = None
 
-    monkeypatch.delenv(worker.REPORT, raising=False)
-    monkeypatch.setattr(worker, "_early", [])
-    monkeypatch.setattr(worker.atexit, "register", lambda call: None)
-    monkeypatch.setattr(worker, "Worker", lambda words, name, *, waits: made.append((words, name, waits)) or Made)
+    monkeypatch.delenv(VARIABLE, raising=False)
+    monkeypatch.setattr(child, "_early", [])
+    monkeypatch.setattr(child.atexit, "register", lambda call: None)
+    monkeypatch.setattr(child, "Worker", lambda words, name, *, waits: made.append((words, name, waits)) or Made)
     monkeypatch.setattr(entry, "module_of", lambda name: type("Module", (), {"main": lambda words, name: None}))
     monkeypatch.setattr(sys, "argv", ["plan-cutters", *words])
     entry.plan_cutters()

@@ -6,11 +6,10 @@ import math
 import pytest
 
 from plan_cutters import plan
-from plan_cutters.batch import job
 from plan_cutters.command import retry
-from plan_cutters.command.worker import TIMED_OUT
-from plan_cutters.command.worker_errors import OutOfTime
 from plan_cutters.report.to_json import PENDING
+from plan_cutters.workers.assignment import TIMED_OUT
+from plan_cutters.workers.errors import OutOfTime
 from tests.support.commands import assert_one_line, leftovers
 from tests.support.forked import run
 from tests.support.places import SAMPLES
@@ -32,10 +31,6 @@ def test_time_that_is_enough_changes_nothing(tmp_path):
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
 
 
-def test_one_code_for_a_part_alone_and_in_a_batch():
-    assert job.TIMED_OUT == TIMED_OUT
-
-
 class Children:
     """In place of children: what becomes of each, and what it was told of parts that are done and of its time."""
 
@@ -43,8 +38,8 @@ class Children:
         self.ends, self.told = list(ends), []
         monkeypatch.setattr(retry, "supervise", self)
 
-    def __call__(self, words, *, more, timeout, since, **_):
-        self.told.append((json.loads(more.get(retry.EXCLUDED, "[0, {}]"))[0], since))
+    def __call__(self, words, *, done, timeout, since, **_):
+        self.told.append((done, since))
         end = self.ends.pop(0)
         if isinstance(end, Exception):
             raise end

@@ -103,11 +103,11 @@ def _command(command, words, cwd, environment, streams, bare):
         for name in [n for n in sys.modules if n.partition(".")[0] in ("plan_cutters", "cad_io", "OCP", "numba")]:
             del sys.modules[name]
         sys.modules["OCP"] = sys.modules["numba"] = subprocess.Popen = None
-    worker = importlib.import_module("plan_cutters.command.worker")
+    child = importlib.import_module("plan_cutters.workers.child")
     if bare:
-        worker.begin_early = lambda words: None
+        child.begin_early = lambda words: None
     else:
-        worker.subprocess = SimpleNamespace(**{**vars(subprocess), "Popen": _worker})
+        child.subprocess = SimpleNamespace(**{**vars(subprocess), "Popen": _worker})
     vars(importlib.import_module("plan_cutters.command.entry"))[_ENTRIES[command]]()
 
 
@@ -121,9 +121,9 @@ _ENTRIES = {
 
 def _worker(words, *, env, start_new_session, pass_fds):
     """Start the command's worker: a copy of this process in place of a new interpreter that calls the same entry."""
-    python, option, run, *words = words
+    python, *option, run, words = (*words[:4], words[4:])
     name = run.partition("'")[2].rpartition("'")[0]
-    assert (python, option) == (sys.executable, "-c"), "the worker is started in another way: copy that"
+    assert (python, *option) == (sys.executable, "-P", "-c"), "the worker is started in another way: copy that"
     assert run == f"from plan_cutters.command.entry import begin; begin({name!r})"
 
     def work():

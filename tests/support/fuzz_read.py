@@ -34,10 +34,12 @@ from cad_io import Part
 from cad_io.kernel import silence
 from cad_io.read.face_comparison import edge_count
 from plan_cutters import pipeline
-from plan_cutters.command import cli, codes, supervise, worker
+from plan_cutters.command import cli, codes, terminal
 from plan_cutters.document import plan as plan_module
 from plan_cutters.report.to_json import schema
 from plan_cutters.scene import surroundings
+from plan_cutters.workers.assignment import VARIABLE, Assignment, limit_memory
+from plan_cutters.workers.supervise import LIMITED
 from tests.support.fuzz_seeds import write_seeds
 
 SUFFIXES = {".step", ".stp", ".iges", ".igs"}
@@ -189,9 +191,9 @@ def _forked(cases: Sequence[Case]) -> tuple[list[int], Outcome | None]:
             os.setsid()  # reading may fork again
             os.close(here)
             os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
-            os.environ[worker.REPORT], os.environ[worker.MEMORY] = str(there), str(8 << 30)
-            supervise.limit_memory()
-            supervise.keep_output()
+            os.environ[VARIABLE] = str(Assignment(report=there, memory=8 << 30))
+            limit_memory()
+            terminal.keep_output()
             for case in cases:
                 os.write(there, b"stage start\n")
                 os.write(there, f"ended {case.run()}\n".encode())
@@ -204,7 +206,7 @@ def _forked(cases: Sequence[Case]) -> tuple[list[int], Outcome | None]:
         while len(codes) < len(cases):
             limit = READING if stage in ("start", "read") else REST
             if not select.select([here], [], [], max(0.0, since + limit - time.monotonic()))[0]:
-                return codes, Outcome(f"{stage} past its limit" if stage in supervise.LIMITED else "HANG", stage)
+                return codes, Outcome(f"{stage} past its limit" if stage in LIMITED else "HANG", stage)
             data = os.read(here, 1 << 16)
             if not data:
                 open_ = False
@@ -376,7 +378,7 @@ def main() -> int:
             for i, case, outcome in zip(numbers, cases, attempt(cases), strict=True):
                 kind = outcome.kind + (" with models" if case.models and outcome.plan else "")
                 outcomes[kind] += 1
-                if outcome.kind.isupper() or outcome.kind.startswith(("crash", *supervise.LIMITED)):
+                if outcome.kind.isupper() or outcome.kind.startswith(("crash", *LIMITED)):
                     print(f"{i} {case.file.name}: {kind}: {outcome.detail}", flush=True)
                     if given.keep:
                         given.keep.mkdir(exist_ok=True)

@@ -1,21 +1,21 @@
 """The command as a process of a call: its progress is passed on, and it ends with the call, whatever ends that."""
 
-import contextlib
 import json
 import os
 import re
-import signal
-import sys
-from collections.abc import Awaitable, Callable, Mapping, Sequence
+from collections.abc import AsyncIterator, Awaitable, Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from subprocess import DEVNULL
+from subprocess import DEVNULL, PIPE
+from typing import IO
 
 import anyio
-from anyio.abc import ByteReceiveStream, Process
+from anyio.to_thread import run_sync
 
 from cad_io.files import WITHIN
 from plan_cutters.agents.limits import CallError, Limits
+from plan_cutters.workers.assignment import Assignment
+from plan_cutters.workers.child import Child, command
 
 #: Told of each step of the work: seconds since it began, and words about it.
 ProgressListener = Callable[[float, str], Awaitable[None]]
@@ -59,22 +59,20 @@ async def run(
     """
     more = [] if limits.memory_gb is None or words[0] != "plan" else [f"--memory={limits.memory_gb!r}"]
     name = "plan-cutters" if words[0] == "plan" else f"plan-cutters {words[0]}"
-    # Its name is one that the command itself uses; `end_with` kills it if this process is killed.
-    begin = (f"from cad_io.lifetime import end_with; end_with({os.getpid()}); "
-             f"from plan_cutters.command.entry import begin; begin({name!r})")  # fmt: skip
     await tell(0.0, "starting")
-    process = await anyio.open_process(
-        [sys.executable, "-c", begin, *words[1:], *more], stdin=DEVNULL, cwd=cwd, env=_environment(limits, within),
-        start_new_session=True,
-    )  # fmt: skip
+    # Started by the thread that waits for the call: on Linux the child ends with the thread that started it.
+    child = Child(command(name, [*words[1:], *more]), Assignment(parent=os.getpid()), environment=_environment(limits, within),
+                  cwd=cwd, stdin=DEVNULL, stdout=PIPE, stderr=PIPE, bufsize=0)  # fmt: skip
     output, errors = bytearray(), bytearray()
     try:
         async with anyio.create_task_group() as tasks:
-            tasks.start_soon(_collect, process.stdout, output)
-            tasks.start_soon(_listen, process.stderr, errors, tell)
-        code = await process.wait()
+            tasks.start_soon(_collect, child.process.stdout, output)
+            tasks.start_soon(_listen, child.process.stderr, errors, tell)
+        code = await run_sync(child.process.wait, abandon_on_cancel=True)
     finally:
-        await _end(process)
+        # In order first, so that it takes away what it had begun to write.
+        with anyio.CancelScope(shield=True), child.process:
+            await run_sync(child.end, _GRACE)
     if len(output) > _OUTPUT:
         raise CallError("the answer of the command is too long: choose fewer faces or cutters")
     faults = tuple(line for line in bytes(errors).decode(errors="replace").splitlines() if _FAULT.match(line))
@@ -93,36 +91,23 @@ def _line(fault: str) -> str:
     return fault.partition(": ")[2][:2000]
 
 
-async def _collect(stream: ByteReceiveStream | None, buffer: bytearray) -> None:
-    if stream is not None:
-        async for piece in stream:
-            if len(buffer) <= _OUTPUT:
-                buffer += piece
+async def _pieces(pipe: IO[bytes] | None) -> AsyncIterator[bytes]:
+    while pipe is not None and (piece := await run_sync(pipe.read, 1 << 16, abandon_on_cancel=True)):
+        yield piece
 
 
-async def _listen(stream: ByteReceiveStream | None, output: bytearray, tell: ProgressListener) -> None:
+async def _collect(pipe: IO[bytes] | None, buffer: bytearray) -> None:
+    async for piece in _pieces(pipe):
+        if len(buffer) <= _OUTPUT:
+            buffer += piece
+
+
+async def _listen(pipe: IO[bytes] | None, output: bytearray, tell: ProgressListener) -> None:
     rest = b""
-    if stream is None:
-        return
-    async for piece in stream:
+    async for piece in _pieces(pipe):
         output += piece
         del output[:-_LOG]
         *lines, rest = (rest + piece).split(b"\n")
         for line in lines:
             if step := _STEP.match(line.decode(errors="replace")):
                 await tell(float(step[1]), step[2])
-
-
-async def _end(process: Process) -> None:
-    """End the process if it has not ended: in order first, so that it takes away what it had begun to write."""
-    with anyio.CancelScope(shield=True):
-        if process.returncode is None:
-            with contextlib.suppress(ProcessLookupError):
-                process.send_signal(signal.SIGTERM)
-            with anyio.move_on_after(_GRACE):
-                await process.wait()
-        if process.returncode is None:
-            with contextlib.suppress(ProcessLookupError, PermissionError):
-                os.killpg(process.pid, signal.SIGKILL)
-            await process.wait()
-        await process.aclose()

@@ -7,8 +7,8 @@ from pathlib import Path
 
 from cad_io.files import checksum, checksums, fingerprint
 from cad_io.read.references import followed
-from plan_cutters.batch import store
 from plan_cutters.errors import PlanError
+from plan_cutters.files import folder as files
 
 
 @dataclass(frozen=True)
@@ -55,7 +55,7 @@ def _is_within(name: str) -> bool:
     return not os.path.isabs(name) and name.split(os.sep)[0] != ".."
 
 
-def content(file: str, read: Callable[[str], bytes] = store.read) -> Content:
+def content(file: str, read: Callable[[str], bytes] = files.read) -> Content:
     """Read a file, and all that it refers to.
 
     Parameters
@@ -74,7 +74,7 @@ def content(file: str, read: Callable[[str], bytes] = store.read) -> Content:
 
     def other(name: str) -> bytes | None:
         try:
-            return store.read(name) if os.path.isabs(name) else read(f"{folder}{slash}{name}")
+            return files.read(name) if os.path.isabs(name) else read(f"{folder}{slash}{name}")
         except PlanError:
             return None
 

@@ -17,7 +17,7 @@ from plan_cutters.errors import OptionError
 from plan_cutters.options import Options
 
 #: Exit codes of a batch: as of a single plan (`docs/command.md`).
-USAGE, UNREADABLE, TIMED_OUT = 2, 3, 124
+USAGE, UNREADABLE = 2, 3
 
 
 @dataclass(frozen=True)

@@ -1,22 +1,18 @@
 """How options, a part and a cluster come to the command in a worker's child: in a file that its parent names, not in words.
 
-Only the environment names it, for a pickle must come from nobody but ourselves.
+Only the `Assignment` names it, for a pickle must come from nobody but ourselves.
 """
 
 import functools
-import os
 import pickle
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from plan_cutters.workers.assignment import assignment
+
 if TYPE_CHECKING:
     from cad_io import Part
     from plan_cutters.options import Options
-
-#: Environment variable: the file.
-FILE = "PLAN_CUTTERS_HANDED"
-#: And the process with which the command is to end (`command.worker.PARENT`).
-PARENT = "PLAN_CUTTERS_PARENT"
 
 
 @dataclass(frozen=True)
@@ -45,12 +41,13 @@ def packed(options: bytes, part: bytes | None, offer: Offer | None = None, key: 
 
 def options() -> "Options | None":
     """The options that were handed to this process; None where its words have them."""
-    return pickle.loads(_content()["options"]) if FILE in os.environ else None
+    handed = _content()["options"]
+    return None if handed is None else pickle.loads(handed)
 
 
 def holds_part() -> bool:
     """Whether the part was handed, too."""
-    return FILE in os.environ and _content()["part"] is not None
+    return _content()["part"] is not None
 
 
 def part() -> "Part":
@@ -61,16 +58,21 @@ def part() -> "Part":
 
 def offer() -> Offer | None:
     """The cluster that is lent to this process; None where there is none."""
-    return _content()["offer"] if FILE in os.environ else None
+    return _content()["offer"]
 
 
 def key() -> bytes | None:
     """The key of kept verdicts that was handed to this process; None where there is none."""
-    result: bytes | None = _content()["key"] if FILE in os.environ else None
+    result: bytes | None = _content()["key"]
     return result
 
 
-@functools.cache
 def _content() -> dict[str, Any]:
-    with open(os.environ[FILE], "rb") as opened:
+    file = assignment().job
+    return dict.fromkeys(("options", "part", "offer", "key")) if file is None else _read(file)
+
+
+@functools.cache
+def _read(file: str) -> dict[str, Any]:
+    with open(file, "rb") as opened:
         return dict(pickle.load(opened))

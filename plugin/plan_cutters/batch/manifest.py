@@ -14,8 +14,8 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from plan_cutters.batch.job import UNREADABLE, USAGE, Fault
 from plan_cutters.batch.sources import Source
-from plan_cutters.batch.store import file_system, read
 from plan_cutters.errors import PlanError
+from plan_cutters.files.folder import file_system, read
 
 #: Most bytes of a manifest: a hundred thousand parts with long options.
 _LARGEST = 64 << 20

@@ -40,7 +40,7 @@ class Planned:
     @property
     def plan(self) -> "Plan | None":
         """The plan document; None where the part failed: then `row.error` says why."""
-        from plan_cutters.batch.store import read
+        from plan_cutters.files.folder import read
         from plan_cutters.plan_file.load import plan_of
 
         if self.row.folder is None or self.row.status == "failed":

@@ -10,12 +10,14 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Protocol
 
 from plan_cutters.batch import cluster as clusters
-from plan_cutters.batch import keys, store
+from plan_cutters.batch import keys
 from plan_cutters.batch.content import content
 from plan_cutters.batch.job import UNREADABLE, USAGE, Fault, Handed, Job, Settings, handed
 from plan_cutters.batch.row import PartRow
+from plan_cutters.batch.store import Store
 from plan_cutters.batch.work import Outcome, Task, cached, content_of, work
 from plan_cutters.errors import PlanError
+from plan_cutters.files.folder import in_memory, read
 
 #: Tasks in flight for each thread of the cluster, and at least so many: the next one is there when a thread is free.
 _QUEUED, _LEAST = 2, 8
@@ -66,7 +68,7 @@ class Terms:
 
 
 def run_batch(
-    parts: Sequence[Job | Fault], client: Any, out: store.Store, terms: Terms, *, board: ProgressListener | None = None,
+    parts: Sequence[Job | Fault], client: Any, out: Store, terms: Terms, *, board: ProgressListener | None = None,
     title: str = "plan-cutters batch",
 ) -> Iterator[PartRow]:  # fmt: skip
     """Plan parts on a cluster, and write the table of all when the last one is done.
@@ -113,14 +115,14 @@ def run_batch(
 
 
 def outcomes(
-    jobs: Iterable[Job], client: Any, terms: Terms, *, out: store.Store | None = None, token: str = "",
+    jobs: Iterable[Job], client: Any, terms: Terms, *, out: Store | None = None, token: str = "",
     board: ProgressListener | None = None, total: int | None = None,
 ) -> Iterator[Outcome]:  # fmt: skip
     """Plan parts on a cluster; outcomes as they come. Without `out`, the files come with them."""
     if total is None and isinstance(jobs, Sequence):
         total = len(jobs)
     versions = keys.versions()
-    travels = out is not None and store.in_memory(out.url)
+    travels = out is not None and in_memory(out.url)
     where = None if out is None or travels else out.root_url
     faulty: list[Outcome] = []
 
@@ -128,7 +130,7 @@ def outcomes(
         for job in jobs:
             try:
                 there, key = terms.of(job.settings)
-                here = content(job.file) if store.in_memory(job.file) else None
+                here = content(job.file) if in_memory(job.file) else None
                 task = Task(job.name, job.file, here, job.part, there,
                             _words(job.settings, terms), key, where, token, terms.force, terms.timeout, versions,
                             job.file if "://" in job.file else os.path.abspath(job.file), terms.secret)  # fmt: skip
@@ -170,68 +172,103 @@ def handed_out(
     whose worker is lost goes to another one (dask's `allowed-failures`); what the function raises is not tried again. A worker
     that is unfit (`Outcome.unfit`) gets no more tasks as long as there are others: it would fail them all in no time.
     """
-    from distributed import Future
-
-    run, count = secrets.token_hex(4), itertools.count()
-    ready: queue.SimpleQueue[Future] = queue.SimpleQueue()
-    flying: dict[Future, Any] = {}
-    done, most, looked, gone, begun_all = 0, _LEAST, 0.0, 0.0, False
-    threads: dict[str, int] = {}
-    unfit: set[str] = set()
-
-    def hand(task: Any) -> None:
-        fit = [each for each in threads if each not in unfit] if unfit else None
-        future = client.submit(function, task, key=f"plan-{run}-{next(count)}", pure=False, retries=0, workers=fit or None,
-                               allow_other_workers=bool(fit))  # fmt: skip
-        flying[future] = task
-        future.add_done_callback(ready.put)
-
+    flight, done = _Flight(client, tasks, function), 0
     try:
-        while True:
-            if not gone and time.monotonic() - looked > _LOOK:
-                threads, looked = _threads(client), time.monotonic()
-                most = max(_LEAST, _QUEUED * sum(threads.values()))
-            while not begun_all and len(flying) < most and not gone:
-                task = next(tasks, None)
-                if task is None:
-                    begun_all = True
-                    break
-                hand(task)
+        while not flight.gone():
+            flight.fill()
             if board is not None:
-                board.progress(done, len(flying), total)
-            if not flying:
+                board.progress(done, len(flight.tasks), total)
+            if not flight.tasks:
                 return
-            try:
-                future = ready.get(timeout=_LOOK)
-            except queue.Empty:
-                gone = 0.0 if client.status == "running" else gone or time.monotonic()
-                if client.status == "closed" or (gone and time.monotonic() - gone > _GONE):
-                    break
+            answer = flight.answer()
+            if answer is None:
                 continue
-            if future not in flying:
+            task, outcome = answer
+            if flight.for_another(outcome):
+                if board is not None:
+                    board.say(f"worker {outcome.unfit} is left out: {outcome.row.error}")
+                flight.hand(task)
                 continue
-            task, outcome = flying.pop(future), _result(future)
-            future.release()
-            if where := getattr(outcome, "unfit", ""):
-                unfit.add(where)
-                threads = _threads(client)
-                if any(each not in unfit for each in threads):
-                    if board is not None:
-                        board.say(f"worker {where} is left out: {outcome.row.error}")
-                    hand(task)
-                    continue
             done += 1
             yield task, outcome
-        for task in itertools.chain(flying.values(), tasks):
-            yield (
-                task,
-                ConnectionError(
-                    "the connection to the scheduler broke: run the same command again, what is done is reused"
-                ),
-            )
+        for task in itertools.chain(flight.tasks.values(), tasks):
+            why = "the connection to the scheduler broke: run the same command again, what is done is reused"
+            yield task, ConnectionError(why)
     finally:
-        if flying and client.status == "running":
-            client.cancel(list(flying))
+        flight.cancel()
+
+
+class _Flight:
+    """Tasks that a cluster works on, and what comes of them.
+
+    Attributes
+    ----------
+    tasks : dict
+        By their futures.
+    """
+
+    def __init__(self, client: Any, tasks: Iterator[Any], function: Callable[[Any], Any]) -> None:
+        self.tasks: dict[Any, Any] = {}
+        self._client, self._more, self._function = client, tasks, function
+        self._run, self._count = secrets.token_hex(4), itertools.count()
+        self._ready: queue.SimpleQueue[Any] = queue.SimpleQueue()
+        self._threads: dict[str, int] = {}
+        self._unfit: set[str] = set()
+        self._looked = self._gone = 0.0
+        self._most, self._begun_all = _LEAST, False
+
+    def hand(self, task: Any) -> None:
+        """Begin a task."""
+        fit = [each for each in self._threads if each not in self._unfit] if self._unfit else None
+        future = self._client.submit(self._function, task, key=f"plan-{self._run}-{next(self._count)}", pure=False, retries=0,
+                                     workers=fit or None, allow_other_workers=bool(fit))  # fmt: skip
+        self.tasks[future] = task
+        future.add_done_callback(self._ready.put)
+
+    def fill(self) -> None:
+        """Begin as many tasks as the cluster is to have at a time; none while its scheduler is gone."""
+        if self._gone:
+            return
+        if time.monotonic() - self._looked > _LOOK:
+            self._threads, self._looked = _threads(self._client), time.monotonic()
+            self._most = max(_LEAST, _QUEUED * sum(self._threads.values()))
+        while not self._begun_all and len(self.tasks) < self._most:
+            task = next(self._more, None)
+            if task is None:
+                self._begun_all = True
+            else:
+                self.hand(task)
+
+    def answer(self) -> tuple[Any, Any] | None:
+        """A task that has ended, with its result or the exception that it ended in; None where it is quiet for a while."""
+        try:
+            future = self._ready.get(timeout=_LOOK)
+        except queue.Empty:
+            self._gone = 0.0 if self._client.status == "running" else self._gone or time.monotonic()
+            return None
+        if future not in self.tasks:
+            return None
+        task, outcome = self.tasks.pop(future), _result(future)
+        future.release()
+        return task, outcome
+
+    def gone(self) -> bool:
+        """Whether the scheduler has been gone for too long."""
+        return bool(self._gone) and (self._client.status == "closed" or time.monotonic() - self._gone > _GONE)
+
+    def for_another(self, outcome: Any) -> bool:
+        """Whether a task is for another worker, since its own is unfit and there is one."""
+        where = getattr(outcome, "unfit", "")
+        if not where:
+            return False
+        self._unfit.add(where)
+        self._threads = _threads(self._client)
+        return any(each not in self._unfit for each in self._threads)
+
+    def cancel(self) -> None:
+        """Begin none of what has not begun."""
+        if self.tasks and self._client.status == "running":
+            self._client.cancel(list(self.tasks))
 
 
 def _threads(client: Any) -> dict[str, int]:
@@ -268,11 +305,11 @@ def _words(settings: Settings, terms: Terms) -> tuple[str, ...]:
     return (*words, *(() if terms.memory is None else ("--memory", repr(terms.memory / 1e9))))
 
 
-def _cached(task: Task, out: store.Store) -> PartRow | None:
+def _cached(task: Task, out: Store) -> PartRow | None:
     return cached(out, task.folder, keys.key(content_of(task).key, task.settings), task.name, task.file)
 
 
-def foreseen(parts: Iterable[Job | Fault], out: store.Store, terms: Terms) -> Iterator[PartRow]:
+def foreseen(parts: Iterable[Job | Fault], out: Store, terms: Terms) -> Iterator[PartRow]:
     """Say of each part what a run would do, and do nothing: `planned` with no verdict yet, `kept` or `failed`."""
     for part in parts:
         if isinstance(part, Fault):
@@ -283,7 +320,7 @@ def foreseen(parts: Iterable[Job | Fault], out: store.Store, terms: Terms) -> It
             task = Task(part.name, part.file, None, part.part, there, (), key, out.url, "", False, None, {})
             row = None if terms.force else _cached(task, out)
             if row is None:
-                store.read(part.file) if part.part is None and terms.force else None
+                read(part.file) if part.part is None and terms.force else None
             yield row or PartRow(name=part.name, file=part.file, status="planned", code=0)
         except PlanError as error:
             yield _failed(part, str(error), UNREADABLE)

@@ -6,8 +6,8 @@ from pathlib import PurePosixPath
 from typing import Any
 
 from plan_cutters.batch.job import UNREADABLE, USAGE, Fault
-from plan_cutters.batch.store import cause, file_system
 from plan_cutters.errors import PlanError
+from plan_cutters.files.folder import cause, file_system
 
 #: What files of parts are called.
 SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")

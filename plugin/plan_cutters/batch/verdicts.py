@@ -1,12 +1,9 @@
 """Verdicts that are kept, cutter by cutter: what was judged before, on the same ground, is not judged again."""
 
-import contextlib
 import functools
 import hashlib
 import hmac
 import json
-import os
-import secrets
 import zlib
 from collections.abc import Callable, Iterator
 from dataclasses import fields, replace
@@ -19,12 +16,11 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from plan_cutters.batch.digest import digest, sources
-from plan_cutters.batch.store import file_system
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import NO_REASON, REASONS, UNJUDGED, WORDS, Verdicts
 from plan_cutters.errors import PlanError
-from plan_cutters.files.regular import regular_bytes
+from plan_cutters.files.folder import Folder
 from plan_cutters.files.seal import stamp
 from plan_cutters.scene.ground import Ground
 from plan_cutters.scene.preparation import Prepared
@@ -79,7 +75,12 @@ class VerdictCache:
     """
 
     def __init__(self, where: str, otherwise: Judge = judge, key: bytes | None = None) -> None:
-        self._folder: _Local | _Remote = _Remote(where) if "://" in where else _Local(where)
+        if not where:
+            raise PlanError("--verdicts: the folder has no name")
+        try:
+            self._folder = Folder(where)
+        except PlanError as error:
+            raise PlanError(f"--verdicts {error}") from None
         self._where, self._otherwise, self._key = where, otherwise, key
         self._of: tuple[Any, ...] = ()
         self._ground = b""
@@ -137,15 +138,17 @@ class VerdictCache:
         """Names of the entries of a cutter: the one that was found among the same cutters first."""
         yield name
         try:
-            others = self._folder.names(f"{own[:2]}/{own}")
+            files = self._folder.names(f"{own[:2]}/{own}")
         except Exception as error:
             self._fault(own, "cannot be read", error)
             return
-        yield from sorted(each for each in others if each != name and each[32:] == self._owner)
+        # Those that begin with a point are being written.
+        others = {each.removesuffix(_SUFFIX) for each in files if each.endswith(_SUFFIX) and not each.startswith(".")}
+        yield from sorted(each for each in others - {name} if each[32:] == self._owner)
 
     def _read(self, own: str, name: str, ready: Prepared) -> tuple[Verdicts, int] | None:
         try:
-            content = self._folder.get(_place(own, name))
+            content = self._folder.get(_place(own, name), _MOST)
         except Exception as error:
             self._fault(own, "cannot be read", error)
             return None
@@ -260,58 +263,3 @@ def _place(own: str, name: str) -> str:
 
 def _stated(known: Verdicts) -> dict[str, Any]:
     return {each.name: getattr(known, each.name) for each in fields(known)}
-
-
-class _Local:
-    """A folder of this machine."""
-
-    def __init__(self, where: str) -> None:
-        if not where:
-            raise PlanError("--verdicts: the folder has no name")
-        self._root = Path(where)
-
-    def get(self, name: str) -> bytes | None:
-        return regular_bytes(self._root / name, _MOST)
-
-    def put(self, name: str, content: bytes) -> None:
-        path = self._root / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        # Several runs may write the same entry at a time.
-        temporary = path.with_name(f".{path.name}-{secrets.token_hex(4)}")
-        try:
-            temporary.write_bytes(content)
-            os.replace(temporary, path)
-        finally:
-            with contextlib.suppress(OSError):
-                temporary.unlink(missing_ok=True)
-
-    def names(self, folder: str) -> list[str]:
-        return [path.name.removesuffix(_SUFFIX) for path in (self._root / folder).glob(f"[!.]*{_SUFFIX}")]
-
-
-class _Remote:
-    """A folder of a file system of fsspec: there a file is put as a whole."""
-
-    def __init__(self, where: str) -> None:
-        try:
-            self._fs, root = file_system(where)
-        except PlanError as error:
-            raise PlanError(f"--verdicts {error}") from None
-        self._root = root.rstrip("/")
-
-    def get(self, name: str) -> bytes | None:
-        try:
-            return bytes(self._fs.cat_file(f"{self._root}/{name}"))
-        except FileNotFoundError:
-            return None
-
-    def put(self, name: str, content: bytes) -> None:
-        self._fs.pipe_file(f"{self._root}/{name}", content)
-
-    def names(self, folder: str) -> list[str]:
-        try:
-            listed = self._fs.ls(f"{self._root}/{folder}", detail=False, refresh=True)
-        except FileNotFoundError:
-            return []
-        names = [str(each).rpartition("/")[2] for each in listed]
-        return [each.removesuffix(_SUFFIX) for each in names if each.endswith(_SUFFIX)]

@@ -4,7 +4,6 @@ import functools
 import os
 import signal
 import subprocess
-import sys
 import tempfile
 import time
 from collections.abc import Callable, Mapping
@@ -14,9 +13,11 @@ from typing import Any
 
 from plan_cutters.batch import job_input, keys, store
 from plan_cutters.batch.content import Content, content
-from plan_cutters.batch.job import TIMED_OUT, UNREADABLE, USAGE, Handed
+from plan_cutters.batch.job import UNREADABLE, USAGE, Handed
 from plan_cutters.batch.row import PartRow
 from plan_cutters.errors import PlanError
+from plan_cutters.workers.assignment import INTERRUPTED, TIMED_OUT, Assignment
+from plan_cutters.workers.child import Child, compiler
 
 PLAN = "plan.json"
 #: Folder of the output with the verdicts of each cutter on each part.
@@ -178,11 +179,17 @@ def _unfit(versions: Mapping[str, str]) -> str:
 @functools.cache
 def _ready() -> str:
     """Make sure, once a worker, that the CAD kernel loads here and that there is machine code; why not."""
-    loaded = subprocess.run(
-        [sys.executable, "-P", "-c", "import OCP"], capture_output=True, text=True, check=False, errors="replace"
+    loaded = Child(
+        ["-c", "import OCP"],
+        Assignment(),
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+        errors="replace",
     )
-    if loaded.returncode:
-        why = (loaded.stderr.strip().splitlines() or ["it crashed"])[-1]
+    _, words = loaded.process.communicate()
+    if loaded.process.returncode:
+        why = (words.strip().splitlines() or ["it crashed"])[-1]
         return f"{_here()}: the CAD kernel cannot be loaded ({why}): install it, libgl1 on Debian"
     from plan_cutters.files.lock import Lock
     from plan_cutters.kernels.jit import at_hand
@@ -197,13 +204,12 @@ def _ready() -> str:
             continue
         try:
             if at_hand("search.search") is False:
-                environment = {**os.environ, job_input.PARENT: str(os.getpid())}
-                code = "import plan_cutters.command.background_compile as b; b.follow_parent(); b.compile_all(False)"
-                made = subprocess.run(
-                    [sys.executable, "-P", "-c", code], env=environment, capture_output=True, check=False
-                )
-                if made.returncode:
-                    break  # each part compiles for itself, and says what is wrong
+                made = compiler(maps=False)
+                try:
+                    if made.ended():
+                        break  # each part compiles for itself, and says what is wrong
+                finally:
+                    made.end()
         finally:
             lock.release()
     return ""
@@ -275,54 +281,34 @@ def planned(task: Task, content: Content, folder: Path) -> tuple[int, str]:
         there.write_bytes(data)
     offer = _offered(folder)
     (folder / ".handed").write_bytes(job_input.packed(task.handed.options, task.part, offer, task.secret))
-    environment = {name: value for name, value in os.environ.items() if not name.startswith("PLAN_CUTTERS_")}
-    environment |= {job_input.FILE: str(folder / ".handed"), job_input.PARENT: str(os.getpid())}
-    words = [sys.executable, "-P", "-m", "plan_cutters", "plan", f"./{name}", "-o", "out", "--quiet", *task.words]
+    words = ["-m", "plan_cutters", "plan", f"./{name}", "-o", "out", "--quiet", *task.words]
     if task.store is not None:
         # A cutter that joins later is judged alone: the verdicts of the others are there.
         words += ["--verdicts", f"{task.store.rstrip('/')}/{VERDICTS}"]
     wanted = _wanted()
     with open(folder / ".said", "wb") as log:
-        child = subprocess.Popen(words, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=log, stderr=log,
-                                 start_new_session=True)  # fmt: skip
+        handed = Assignment(parent=os.getpid(), job=str(folder / ".handed"))
+        child = Child(words, handed, cwd=folder, stdin=subprocess.DEVNULL, stdout=log, stderr=log)
     shared = False
     try:
         ends = time.monotonic() + (task.timeout or float("inf"))
-        while True:
-            try:
-                code = child.wait(_LOOK)
-                break
-            except subprocess.TimeoutExpired:
-                if time.monotonic() > ends:
-                    _end(child)
-                    return TIMED_OUT, (f"{task.file}: not done within {task.timeout:g} s: sample more coarsely "
-                                       "(--spacing), or give more time (--timeout-part)")  # fmt: skip
-                if not wanted():
-                    _end(child)
-                    return 130, f"{task.file}: interrupted"
-                if offer is not None and not shared and os.path.exists(offer.said):
-                    _free_memory()
-                    shared = True
+        while (code := child.ended(_LOOK)) is None:
+            if time.monotonic() > ends:
+                return TIMED_OUT, (f"{task.file}: not done within {task.timeout:g} s: sample more coarsely "
+                                   "(--spacing), or give more time (--timeout-part)")  # fmt: skip
+            if not wanted():
+                return INTERRUPTED, f"{task.file}: interrupted"
+            if offer is not None and not shared and os.path.exists(offer.said):
+                _free_memory()
+                shared = True
     finally:
-        _end(child)
+        child.end(_GRACE)
     log_lines = (folder / ".said").read_text(encoding="utf-8", errors="replace").strip().splitlines()
     line = log_lines[-1] if log_lines else ""
     if code < 0:
         return UNREADABLE, f"{task.file}: the process was killed ({signal.Signals(-code).name}): out of memory, perhaps"
     line = line.removeprefix("plan-cutters: ")
     return code, line if task.file in line else line.replace(f"./{name}", task.file)
-
-
-def _end(child: "subprocess.Popen[bytes]") -> None:
-    """Leave nothing of it running: asked once, so that it ends its own child, then killed."""
-    if child.poll() is not None:
-        return
-    child.terminate()
-    try:
-        child.wait(_GRACE)
-    except subprocess.TimeoutExpired:
-        child.kill()
-        child.wait()
 
 
 def files_of(folder: Path) -> dict[str, Path]:

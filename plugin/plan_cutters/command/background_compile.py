@@ -1,12 +1,11 @@
 """Machine code made ahead: on the first run of all, a second process compiles while this one reads and meshes the part."""
 
-import os
-import subprocess
 import sys
 import time
 from collections.abc import Callable
 
-from plan_cutters.command.worker import PARENT, REPORT, follow_parent
+from plan_cutters.workers.assignment import follow_parent
+from plan_cutters.workers.child import compiler
 
 #: The longest that is waited for it, s: what is not there by then is compiled here.
 _PATIENCE = 120.0
@@ -28,21 +27,17 @@ def begin(maps: bool) -> Callable[[str], None] | None:
 
     if at_hand("search.search") is not False:
         return None
-    environment = {name: value for name, value in os.environ.items() if name != REPORT} | {PARENT: str(os.getpid())}
-    words = [sys.executable, "-m", "plan_cutters.command.background_compile", *(["maps"] if maps else [])]
     try:
-        other = subprocess.Popen(words, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
-                                 stderr=subprocess.DEVNULL)  # fmt: skip
+        other = compiler(maps)
     except OSError:
         return None  # it would only have saved time
 
     ends = time.monotonic() + _PATIENCE
 
     def wait(entry: str) -> None:
-        while other.poll() is None and not at_hand(entry):
+        while other.ended(0.0) is None and not at_hand(entry):
             if time.monotonic() > ends:
-                other.kill()
-                other.wait()
+                other.end()
             time.sleep(_LOOK)
 
     return wait

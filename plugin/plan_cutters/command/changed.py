@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
+from cad_io.whole import whole
 from plan_cutters.command.codes import run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
@@ -23,7 +24,6 @@ from plan_cutters.command.terminal import error, hand_out, say
 from plan_cutters.command.values import Folder
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.files.temporary import require_temporary
-from plan_cutters.files.whole import whole
 from plan_cutters.report.folder import with_pictures
 
 if TYPE_CHECKING:
@@ -228,7 +228,7 @@ def _compared(part: Changed, began: str, head: str, request: PartRequest | None,
     if difference and not difference.same:
         names = {"before": f"as it was, {began[:12]}", "after": "as it is"}
         (out / side_page).parent.mkdir(parents=True)
-        with whole(out / side_page) as temporary:
+        with whole(out / side_page, PlanError) as temporary:
             sides = [Side(names[side], plans[side], picture_of(pages[side] / PLAN, plans[side])) for side in names]
             temporary.write_bytes(page(difference, *sides))
     return Row(

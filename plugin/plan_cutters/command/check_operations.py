@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from plan_cutters.command import terminal
 from plan_cutters.command.progress import Display, Teller
-from plan_cutters.command.worker import is_child
+from plan_cutters.workers.assignment import is_child
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -14,29 +14,24 @@ from typing import NoReturn
 import click
 
 from plan_cutters.command import help_groups, terminal
-from plan_cutters.command.codes import ended, guarded, interrupt, invoked
+from plan_cutters.command.codes import ended, guarded, interrupt, invoked, keep_interrupts
 from plan_cutters.command.entry import SUBCOMMANDS
 from plan_cutters.command.option_groups import CODES, EXAMPLES, options
 from plan_cutters.command.request import PlanRequest, takes
-from plan_cutters.command.supervise import (
-    default_memory,
-    keep_interrupts,
-    keep_output,
-    limit_memory,
-)
 from plan_cutters.command.values import File
-from plan_cutters.command.worker import (
-    GO,
+from plan_cutters.files.terminal_text import clean
+from plan_cutters.workers.assignment import (
     INTERRUPTED,
+    assignment,
     began,
-    can_supervise,
-    follow_parent,
     is_child,
+    limit_memory,
     report,
     wait_to_begin,
 )
-from plan_cutters.command.worker_errors import Unfinished
-from plan_cutters.files.terminal_text import clean
+from plan_cutters.workers.child import can_supervise
+from plan_cutters.workers.errors import Unfinished
+from plan_cutters.workers.supervise import default_memory
 
 _SELF = "plan-cutters"
 
@@ -57,7 +52,6 @@ def command(request: PlanRequest) -> int:
     reason. The plan, models coloured by verdict and the samples are written into a folder.
     """
     from plan_cutters.command.one_part import one_part
-    from plan_cutters.command.retry import excluded_faces
     from plan_cutters.command.validation import check, folders
 
     parts = request.parts
@@ -75,7 +69,7 @@ def command(request: PlanRequest) -> int:
     codes = []
     outs = folders(request)
     since: float | None = began()
-    done, excluded = excluded_faces()
+    done, excluded = assignment().done, assignment().excluded
     for i, part in enumerate(parts):
         if i < done:
             continue
@@ -100,15 +94,14 @@ def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
     words = list(sys.argv[1:] if args is None else args)
     if not is_child():
         ended(_SELF, words, lambda: _watched(words, name))
-    follow_parent()
     # Whoever started the command may ignore interrupts, as a shell does for what runs in the background: the parent does not.
     signal.signal(signal.SIGINT, interrupt)
     keep_interrupts()
     gc.disable()  # nothing of what imports make is garbage; `one_part` turns it on again
     terminal.keep_streams()
-    keep_output()
+    terminal.keep_output()
     terminal.warn_in_lines()
-    if GO in os.environ:
+    if assignment().go is not None:
         load()
         wait_to_begin()
     limit_memory()
@@ -148,7 +141,7 @@ def _watched(words: list[str], name: str) -> int:
     if not can_supervise():
         if request.timeout is not None:
             raise OptionError("--timeout: this system has no process that could be ended; leave it out")
-        keep_output()
+        terminal.keep_output()
         return invoked(command, _SELF, words)
     names = {cutter.id: called(cutter) for cutter in requested.judged}
     display = Display(request.quiet or request.postures is not None, len(names), began(), names=names)

@@ -4,6 +4,7 @@ import contextlib
 import os
 import signal
 import sys
+import threading
 import traceback
 from collections.abc import Callable, Sequence
 from functools import partial
@@ -12,8 +13,8 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from plan_cutters.command import terminal
-from plan_cutters.command.worker import INTERRUPTED
-from plan_cutters.command.worker_errors import Supervised
+from plan_cutters.workers.assignment import INTERRUPTED
+from plan_cutters.workers.errors import Supervised
 
 if TYPE_CHECKING:
     from plan_cutters.plan_file.model import Plan
@@ -44,6 +45,19 @@ def interrupt(number: int, _: object) -> NoReturn:
     """Raise an interrupt as Python does, and remember it: an import that it ends may raise an error of its own instead."""
     _interrupts.append(number)
     raise KeyboardInterrupt
+
+
+def keep_interrupts() -> None:
+    """Take an interrupt again that came where none can be raised, as while the process copies itself for the kernel."""
+    before, me = sys.unraisablehook, threading.get_ident()
+
+    def again(what: "sys.UnraisableHookArgs") -> None:
+        if issubclass(what.exc_type, KeyboardInterrupt):
+            threading.Timer(0.05, signal.pthread_kill, (me, signal.SIGINT)).start()
+        else:
+            before(what)
+
+    sys.unraisablehook = again
 
 
 def guarded(work: Callable[[], tuple[int, str]], debug: bool) -> tuple[int, str]:

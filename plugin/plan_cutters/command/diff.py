@@ -120,9 +120,9 @@ def _pages(old: Path, new: Path, comparison: "Comparison", out: Path) -> dict[st
     PlanError
         A page would take the place of a plan's own, or cannot be written.
     """
+    from cad_io.whole import whole
     from plan_cutters.comparison.review import PAGE, pages
     from plan_cutters.errors import PlanError
-    from plan_cutters.files.whole import whole
     from plan_cutters.plan_file.load import PLAN
 
     made = {}
@@ -140,7 +140,7 @@ def _pages(old: Path, new: Path, comparison: "Comparison", out: Path) -> dict[st
             path.parent.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise PlanError(f"cannot be written: {error.strerror}", file=str(path)) from None
-        with whole(path) as temporary:
+        with whole(path, PlanError) as temporary:
             temporary.write_bytes(page)
         made[name] = path
     return made

@@ -4,19 +4,19 @@ import json
 import math
 from collections.abc import Sequence
 from importlib import import_module
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
+from cad_io.whole import whole
 from plan_cutters.command.codes import USAGE, faults, run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
 from plan_cutters.command.request import MachinesRequest, takes
 from plan_cutters.command.terminal import error, hand_out, paper
 from plan_cutters.command.values import File, Words, machine_names
+from plan_cutters.errors import PlanError
 from plan_cutters.files.terminal_text import clean
-from plan_cutters.files.whole import write
 from plan_cutters.plan_file.numbers import exact_angle
 
 if TYPE_CHECKING:
@@ -78,7 +78,8 @@ def command(request: MachinesRequest) -> int:
 
     lines = faults(machines or tuple(builtin_machines()), one, request.debug)
     if read and not lines and request.to_toml is not None:
-        write(Path(request.to_toml), import_module("plan_cutters.machines").to_toml(read[0]))
+        with whole(request.to_toml, PlanError) as temporary:
+            temporary.write_text(import_module("plan_cutters.machines").to_toml(read[0]), encoding="utf-8")
     if request.as_json:
         document = {"format": "plan-cutters-machines", "format_version": 1, "machines": entries}
         hand_out(json.dumps(document, indent=2, ensure_ascii=False) + "\n")

@@ -11,17 +11,19 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
+from cad_io.whole import whole
 from plan_cutters.command.codes import ended, interrupt, invoked
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
 from plan_cutters.command.progress import Display
 from plan_cutters.command.request import MapRequest, posture_options, read_tools, takes
-from plan_cutters.command.supervise import supervise
 from plan_cutters.command.terminal import hand_out, paper
 from plan_cutters.command.values import File, Setup, Words, cutter_ids
-from plan_cutters.command.worker import began, can_supervise, follow_parent, is_child, report
 from plan_cutters.files.terminal_text import clean
 from plan_cutters.plan_file.reasons import INTERVALS
+from plan_cutters.workers.assignment import began, is_child, report
+from plan_cutters.workers.child import can_supervise
+from plan_cutters.workers.supervise import supervise
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -257,22 +259,17 @@ def _draw(result: "PostureMap", tilt: tuple[float, float], about: list[str], out
     from plan_cutters.errors import PlanError
     from plan_cutters.report.drawing.posture_map import draw_map
 
-    asides = [out.with_name(f".{out.stem}.part{out.suffix}") for out in outs]
-    for temporary in asides:
-        report("staging", str(temporary.absolute()))
+    temporary: dict[Path, Path] = {}
     try:
-        draw_map(result, tilt, about[0], about[1:], asides)
-        for temporary, out in zip(asides, outs, strict=True):
-            os.replace(temporary, out)
+        with contextlib.ExitStack() as stack:
+            for out in outs:
+                temporary[
+                    stack.enter_context(whole(out, named=lambda path: report("staging", str(path.absolute()))))
+                ] = out
+            draw_map(result, tilt, about[0], about[1:], list(temporary))
     except OSError as error:
-        out = next(
-            (out for temporary, out in zip(asides, outs, strict=True) if error.filename == str(temporary)), outs[0]
-        )
+        out = next((out for path, out in temporary.items() if error.filename == str(path)), outs[0])
         raise PlanError(f"cannot be written: {error.strerror or error}", file=str(out)) from None
-    finally:
-        for temporary in asides:
-            with contextlib.suppress(OSError):
-                temporary.unlink(missing_ok=True)
 
 
 def _table(result: "PostureMap", about: list[str], outs: Sequence[Path], console: "Console") -> None:
@@ -318,7 +315,6 @@ def main(words: Sequence[str], name: str | None = None) -> NoReturn:
     """
     if name and can_supervise() and not is_child():
         ended(name, words, lambda: _watched(words, name))
-    follow_parent()
     if is_child():
         signal.signal(signal.SIGINT, interrupt)
     ended(name or _SELF, words, lambda: invoked(command, name or _SELF, words))

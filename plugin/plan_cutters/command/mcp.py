@@ -13,7 +13,7 @@ from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
 from plan_cutters.command.request import McpRequest, takes
 from plan_cutters.command.values import Folder
-from plan_cutters.command.worker import INTERRUPTED
+from plan_cutters.workers.assignment import INTERRUPTED
 
 _SELF = "plan-cutters mcp"
 

@@ -13,9 +13,9 @@ from plan_cutters.command import terminal
 from plan_cutters.command.codes import code_of
 from plan_cutters.command.progress import Display, Teller
 from plan_cutters.command.summary import summary, written
-from plan_cutters.command.worker import INTERRUPTED, is_child, report, report_work
 from plan_cutters.plan_file.words.details import others
 from plan_cutters.plan_file.words.names import called
+from plan_cutters.workers.assignment import INTERRUPTED, is_child, report, report_work
 
 if TYPE_CHECKING:
     from plan_cutters.command.request import PlanRequest

@@ -4,8 +4,8 @@ from typing import TYPE_CHECKING
 
 from plan_cutters.command import terminal
 from plan_cutters.command.codes import UNREADABLE
-from plan_cutters.command.worker import INTERRUPTED
-from plan_cutters.command.worker_errors import Unfinished
+from plan_cutters.workers.assignment import INTERRUPTED
+from plan_cutters.workers.errors import Unfinished
 
 if TYPE_CHECKING:
     from plan_cutters.command.request import PlanRequest

@@ -9,10 +9,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from plan_cutters.command import terminal
-from plan_cutters.command.worker import report
 from plan_cutters.domain.answer_kinds import KINDS
 from plan_cutters.files.terminal_text import clean
 from plan_cutters.plan_file.numbers import part_done
+from plan_cutters.workers.assignment import report
 
 #: What stages are called; several may be one to the user. A stage that is none of these is the judging of a cutter.
 _WORDS = {

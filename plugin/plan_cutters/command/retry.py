@@ -3,28 +3,18 @@
 A part that takes longer than it may is left, and the next one is planned.
 """
 
-import json
 import math
-import os
 from collections.abc import Sequence
 from pathlib import Path
 
 from plan_cutters.command import terminal
 from plan_cutters.command.progress import Display
-from plan_cutters.command.supervise import supervise
-from plan_cutters.command.worker import TIMED_OUT
-from plan_cutters.command.worker_errors import OutOfTime, Stuck, Unfinished
+from plan_cutters.workers.assignment import TIMED_OUT
+from plan_cutters.workers.errors import OutOfTime, Stuck, Unfinished
+from plan_cutters.workers.supervise import supervise
 
-#: Environment variable by which the child knows which parts are done and which faces of the next one are set aside.
-EXCLUDED = "PLAN_CUTTERS_ASIDE"
 #: Faces that are set aside for a part: with more of them, the file is rather to be exported again.
 MOST = 5
-
-
-def excluded_faces() -> tuple[int, dict[int, str]]:
-    """How many parts are done; of the next one, by face number, why nothing more is to be asked about a face."""
-    attempt = json.loads(os.environ.get(EXCLUDED, "[0, {}]"))
-    return attempt[0], {int(number): why for number, why in attempt[1].items()}
 
 
 def supervised(
@@ -39,10 +29,9 @@ def supervised(
     began: float | None = since
     faces: dict[int, str] = {}
     while True:
-        more = {EXCLUDED: json.dumps([done, faces])} if done or faces else {}
         try:
-            return max(code, supervise(words, read_timeout=read_timeout, memory=memory, display=display, more=more,
-                                       timeout=timeout, since=began))  # fmt: skip
+            return max(code, supervise(words, read_timeout=read_timeout, memory=memory, display=display, timeout=timeout,
+                                       since=began, done=done, excluded=faces))  # fmt: skip
         except Unfinished as stopped:
             stopped.parts += done
             stopped.code = max(code, stopped.code)

@@ -15,9 +15,9 @@ from io import StringIO, TextIOWrapper
 from typing import IO, TYPE_CHECKING, Any, Literal, TypeVar
 
 from cad_io.errors import CacheWarning
-from plan_cutters.command.worker import is_child, report
 from plan_cutters.errors import PlanError
 from plan_cutters.files.terminal_text import clean
+from plan_cutters.workers.assignment import is_child, report
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -130,6 +130,20 @@ def emit(text: str) -> None:
     with contextlib.suppress(OSError, ValueError, AttributeError):
         sys.stderr.write(text)
         sys.stderr.flush()
+
+
+def keep_output() -> None:
+    """Leave the output to us: what the kernel prints past Python, as its BREP reader does, goes nowhere.
+
+    So do Python's warnings, of overflows for one, unless asked for with -W: numbers that are not finite are dealt with
+    where they arise.
+    """
+    if not sys.warnoptions:
+        warnings.simplefilter("ignore")
+    ours, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    os.close(nowhere)
+    sys.stdout = os.fdopen(ours, "w", encoding="utf-8")
 
 
 def warn_in_lines() -> None:

@@ -9,14 +9,15 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
+from cad_io.whole import whole
 from plan_cutters.command.codes import USAGE, faults, run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import ENDED, options
 from plan_cutters.command.request import ToolsRequest, takes
 from plan_cutters.command.terminal import error, hand_out, paper
 from plan_cutters.command.values import File, Folder
+from plan_cutters.errors import PlanError
 from plan_cutters.files.terminal_text import clean
-from plan_cutters.files.whole import write
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -238,12 +239,12 @@ def _to_toml(libraries: "Sequence[Library]", path: Path) -> None:
     texts = [to_toml(library) for library in libraries]
     # Every part says the unit; the file says it once.
     text = "".join([texts[0], *(part.replace('unit = "mm"\n', "", 1) for part in texts[1:])])
-    write(path, text)
+    with whole(path, PlanError) as temporary:
+        temporary.write_text(text, encoding="utf-8")
 
 
 def _draw(libraries: "Sequence[Library]", folder: Path) -> None:
     from plan_cutters.domain.spec import is_spec
-    from plan_cutters.errors import PlanError
     from plan_cutters.plan_file.words.names import called
 
     draw = import_module("plan_cutters.report.drawing.tool").draw
@@ -263,7 +264,8 @@ def _draw(libraries: "Sequence[Library]", folder: Path) -> None:
     except OSError as error:
         raise PlanError(f"cannot be made: {error.strerror}", file=str(folder)) from None
     for name, text in drawings.items():
-        write(folder / f"{name}.svg", text)
+        with whole(folder / f"{name}.svg", PlanError) as temporary:
+            temporary.write_text(text, encoding="utf-8")
 
 
 def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:

@@ -1,7 +1,8 @@
 """Archives of arrays (`.npz`) that others wrote: what each array is said to be is looked at before any of it is unpacked."""
 
-import ast
+import math
 import os
+import warnings
 import zipfile
 import zlib
 from dataclasses import dataclass
@@ -9,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.lib import format as npy
 from numpy.typing import NDArray
 
 from cad_io import files
@@ -36,10 +38,7 @@ class Header:
     @property
     def bytes(self) -> int:
         """Bytes of its numbers."""
-        count = np.dtype(self.dtype).itemsize
-        for each in self.shape:
-            count *= each
-        return count
+        return np.dtype(self.dtype).itemsize * math.prod(self.shape)
 
 
 class Archive:
@@ -89,19 +88,9 @@ class Archive:
 
     def read(self, name: str) -> NDArray[Any]:
         """One array, as its header says."""
-        header = self.headers[name]
         try:
-            array = np.empty(header.shape, header.dtype)
-            view: Any = array.reshape(-1).view(np.uint8) if header.bytes else b""
             with self._archive.open(f"{name}.npy") as packed:
-                packed.read(header.start)
-                place = 0
-                while place < len(view):
-                    piece = packed.read(min(1 << 20, len(view) - place))
-                    if not piece:
-                        raise EOFError
-                    view[place : place + len(piece)] = np.frombuffer(piece, np.uint8)
-                    place += len(piece)
+                array: NDArray[Any] = npy.read_array(packed, allow_pickle=False, max_header_size=_HEADER)
                 # To the end of it, so that its checksum is looked at.
                 if packed.read(1):
                     raise EOFError
@@ -146,31 +135,21 @@ class Archive:
         return headers
 
     def _header(self, member: zipfile.ZipInfo, shown: str) -> Header:
-        """Read what `numpy.lib.format` describes, without its readers: they make what the header says."""
+        """Read a header of version 1, as NumPy writes them for numbers and texts: the others may be gigabytes long."""
         try:
-            with self._archive.open(member) as packed:
-                start = packed.read(10)
-                if start[:6] != b"\x93NUMPY" or start[6:8] not in (b"\x01\x00", b"\x02\x00", b"\x03\x00"):
+            # One that NumPy reads only after it has mended it is none, whatever else its parser raises.
+            with self._archive.open(member) as packed, warnings.catch_warnings(action="error"):
+                if npy.read_magic(packed) != (1, 0):
                     raise ValueError
-                width = 2 if start[6] == 1 else 4
-                size = start[8:] + packed.read(width - 2)
-                length = int.from_bytes(size[:width], "little")
-                if len(size) != width or length > _HEADER:
-                    raise ValueError
-                text = packed.read(length)
-            fields = ast.literal_eval(text.decode("latin-1").strip())
-            dtype, order, shape = fields["descr"], fields["fortran_order"], fields["shape"]
-            if len(fields) != 3 or len(text) != length or not isinstance(dtype, str) or order is not False:
+                shape, by_columns, dtype = npy.read_array_header_1_0(packed, _HEADER)
+                start = packed.tell()
+            if by_columns or len(shape) > 4 or not all(type(each) is int and 0 <= each < 1 << 40 for each in shape):
                 raise ValueError
-            if not isinstance(shape, tuple) or len(shape) > 4:
+            if dtype.kind not in "biufU":
                 raise ValueError
-            if not all(type(each) is int and 0 <= each < 1 << 40 for each in shape):
-                raise ValueError
-            if np.dtype(dtype).kind not in "biufU":
-                raise ValueError
-        except _FAULTS:
+        except Exception:
             raise self.fault(f"{shown} is no array of numbers or texts") from None
-        return Header(np.dtype(dtype).str, shape, 8 + width + length)
+        return Header(dtype.str, shape, start)
 
 
 def _most() -> int:

@@ -10,13 +10,12 @@ import socket
 from collections.abc import Callable
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from plan_cutters.errors import PlanError
 
-try:
-    import fcntl
-except ImportError:  # Windows
-    fcntl = None  # type: ignore[assignment]
+if TYPE_CHECKING:
+    from filelock import BaseFileLock
 
 #: Errors that say that a file system has no locks of its own.
 _NONE = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.EINVAL}
@@ -48,67 +47,51 @@ class Lock:
     """
 
     def __init__(self, out: Path, named: Callable[[Path], None] = lambda _: None, staging: Path | None = None) -> None:
-        self.file, self._handle, self._staging = lock_of(out), -1, staging
+        self.file, self._held = lock_of(out), False
+        since = datetime.now(UTC).isoformat(timespec="seconds")
+        self._entry: dict[str, object] = {"host": socket.gethostname(), "pid": os.getpid(), "since": since}
+        if staging is not None:
+            self._entry["staging"] = str(staging)
         named(self.file)
-        while self._handle < 0:
-            self._handle = self._taken(out)
+        while not self._held:
+            self._take(out)
 
     def release(self) -> None:
         """Let others write."""
-        if self._handle >= 0:
-            handle, self._handle = self._handle, -1
-            if fcntl is None:  # Windows removes no open file
-                os.close(handle)
-                with contextlib.suppress(OSError):
-                    self.file.unlink()
-                return
+        if self._held:
+            self._held = False
             try:
                 # While it is ours, so that no other process loses a lock of its own.
                 with contextlib.suppress(OSError):
-                    if _stands(handle, self.file):
+                    if _owner(self.file) == self._entry:
                         self.file.unlink()
             finally:
-                os.close(handle)
+                self._system.release()
 
-    def _taken(self, out: Path) -> int:
-        """The open file once it is ours, -1 to try again."""
-        flags, made = os.O_RDWR | getattr(os, "O_NOFOLLOW", 0), True
+    def _take(self, out: Path) -> None:
+        """Take it; it is not held after that where its owner has just removed it."""
+        made, self._system = _made(self.file), _system_lock(self.file)
         try:
-            handle = os.open(self.file, flags | os.O_CREAT | os.O_EXCL, 0o644)
-        except FileExistsError:
-            made = False
-            try:
-                handle = os.open(self.file, flags)
-            except FileNotFoundError:
-                return -1
-            except PermissionError:
-                raise _busy(out, self.file, alive=False) from None
-        try:
-            alone = _locked(handle)
+            alone = _acquired(self._system)
+            if alone is False and not self.file.exists():
+                return
             if alone is False or (alone is None and not made):
                 raise _busy(out, self.file, alive=alone is False)
-            if not _stands(handle, self.file):
-                os.close(handle)
-                return -1
             before = {} if made else _owner(self.file)
-            if before.get("host", socket.gethostname()) != socket.gethostname():
+            if before.get("host", self._entry["host"]) != self._entry["host"]:
                 raise _busy(out, self.file, alive=False)
             _discard(out, before.get("staging"))
-            since = datetime.now(UTC).isoformat(timespec="seconds")
-            text = {"host": socket.gethostname(), "pid": os.getpid(), "since": since}
-            if self._staging is not None:
-                text["staging"] = str(self._staging)
-            os.ftruncate(handle, 0)
-            os.write(handle, (json.dumps(text) + "\n").encode())
-        except OSError:
-            os.close(handle)
+            self.file.write_text(json.dumps(self._entry) + "\n", encoding="utf-8")
+            self._held = True
+        except OSError as error:
             if made:
-                sweep(self.file)
+                self.file.unlink(missing_ok=True)
+            elif isinstance(error, PermissionError):
+                raise _busy(out, self.file, alive=False) from None
             raise
-        except PlanError:
-            os.close(handle)
-            raise
-        return handle
+        finally:
+            if not self._held:
+                self._system.release()
 
 
 def lock_of(out: Path) -> Path:
@@ -119,17 +102,41 @@ def lock_of(out: Path) -> Path:
 
 def sweep(file: Path) -> None:
     """Remove a lock's file that a process which was ended left behind, unless another one has it by now."""
-    if fcntl is None:
-        with contextlib.suppress(OSError):
-            file.unlink()
-        return
     with contextlib.suppress(OSError):
-        handle = os.open(file, os.O_RDWR | getattr(os, "O_NOFOLLOW", 0))
-        try:
-            if _locked(handle) is not False and _stands(handle, file):
-                file.unlink()
-        finally:
-            os.close(handle)
+        system = _system_lock(file)
+        if file.exists() and _acquired(system) is not False:
+            file.unlink()
+            system.release()
+
+
+def _made(file: Path) -> bool:
+    """Make the file of a lock; False where it is there."""
+    try:
+        os.close(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644))
+    except FileExistsError:
+        return False
+    return True
+
+
+def _system_lock(file: Path) -> "BaseFileLock":
+    from filelock import FileLock  # most commands take none
+
+    return FileLock(file, thread_local=False, fallback_to_soft=False)
+
+
+def _acquired(system: "BaseFileLock") -> bool | None:
+    """Whether the system's lock on a file is ours now; None where there are none, and on Windows, where nobody could read it."""
+    if os.name == "nt":
+        return None
+    try:
+        system.acquire(timeout=0)
+    except TimeoutError:
+        return False
+    except OSError as error:
+        if error.errno in _NONE:
+            return None
+        raise
+    return True
 
 
 def _discard(out: Path, staging: object) -> None:
@@ -139,27 +146,6 @@ def _discard(out: Path, staging: object) -> None:
     folder, name = Path(staging), re.compile(rf"\.{re.escape(out.name)}-[0-9a-f]{{8}}")
     if folder.parent == out.absolute().parent and name.fullmatch(folder.name) and not folder.is_symlink():
         shutil.rmtree(folder, ignore_errors=True)
-
-
-def _locked(handle: int) -> bool | None:
-    """Whether the system's lock on an open file is ours now; None where there are none."""
-    if fcntl is None:
-        return None
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError as error:
-        if error.errno in _NONE:
-            return None
-        return False
-    return True
-
-
-def _stands(handle: int, file: Path) -> bool:
-    """Whether an open file is still the one of that name: its owner may have removed it since it was opened."""
-    try:
-        return os.path.samestat(os.fstat(handle), os.stat(file))
-    except FileNotFoundError:
-        return False
 
 
 def _owner(file: Path) -> dict[str, object]:

@@ -1,10 +1,10 @@
 """The plan as JSON, and its schema."""
 
 import json
-import os
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from cad_io.whole import whole
 from plan_cutters.errors import PlanError
 
 if TYPE_CHECKING:
@@ -50,13 +50,8 @@ def write_plan(plan: "Plan", path: Path) -> None:
 
 
 def _write(text: str, path: Path) -> None:
-    temporary = path.with_name(f".{path.name}.part")
-    try:
+    with whole(path, PlanError) as temporary:
         temporary.write_text(text, encoding="utf-8")
-        os.replace(temporary, path)
-    except OSError as error:
-        temporary.unlink(missing_ok=True)
-        raise PlanError(f"cannot write the plan ({error.strerror})", file=str(path)) from None
 
 
 def listed(path: Path) -> dict[str, str] | None:

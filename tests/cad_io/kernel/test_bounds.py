@@ -14,9 +14,9 @@ import pytest
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
 
 from cad_io import read_part
+from cad_io.copies import Ended, each
 from cad_io.errors import SampleError, WriteError
 from cad_io.kernel import faces
-from cad_io.kernel.each import Ended, each
 from cad_io.part import coincide, curves, sew
 from cad_io.part.coincide import TooMany
 from cad_io.part.orient import orient
@@ -196,7 +196,7 @@ class Hook:
             exec(CODE, vars(module) | {{"module": module}})
         spec.loader.exec_module = patched
         return spec
-if "PLAN_CUTTERS_REPORT" in os.environ:
+if "PLAN_CUTTERS_ASSIGNMENT" in os.environ:
     sys.meta_path.insert(0, Hook())
 """
 HANG, CRASH = "while True: pass", "import os; os.kill(os.getpid(), 11)"

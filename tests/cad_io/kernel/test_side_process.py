@@ -12,10 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cad_io.kernel import copies
-from cad_io.kernel.each import each
-from cad_io.kernel.side_process import SideProcess
-from cad_io.kernel.time_limit import TimeLimit, limited
+from cad_io import copies, forks
+from cad_io.copies import SideProcess, TimeLimit, each, limited
 from plan_cutters import pipeline, plan
 from plan_cutters.report import formats, models
 from plan_cutters.report.folder import write_all
@@ -71,7 +69,7 @@ def test_whatever_becomes_of_the_copy_the_result_is_made_here(fault):
 
 @pytest.mark.parametrize("part", [b"", b"\0", struct.pack("<q", 9) + b"half"])
 def test_half_an_answer_is_none(monkeypatch, part):
-    monkeypatch.setattr(SideProcess, "_answer", lambda self, pipe: pipe.write(part))
+    monkeypatch.setattr(copies, "tell", lambda pipe, answer: pipe.write(part))
     with SideProcess(lambda: "here", 5.0) as copy:
         assert copy.result() == "here"
 
@@ -103,16 +101,14 @@ def test_without_a_copy_the_work_is_done_here(monkeypatch):
     with SideProcess(os.getpid, 5.0, worth=False) as copy:
         assert not copy.works
         assert copy.result() == os.getpid()
-    monkeypatch.setattr(
-        "cad_io.kernel.side_process.begin", lambda *_: (_ for _ in ()).throw(OSError("no more processes"))
-    )
+    monkeypatch.setattr("cad_io.copies.Copy", lambda *_: (_ for _ in ()).throw(OSError("no more processes")))
     with SideProcess(os.getpid, 5.0) as copy:
         assert copy.result() == os.getpid()
 
 
 def test_a_copy_whose_words_are_taken_slowly_is_not_stuck(monkeypatch):
     # It sleeps whenever the pipe is full, and is looked at once a second however often its words come.
-    monkeypatch.setattr(copies, "_ASLEEP", 3)
+    monkeypatch.setattr(forks, "_ASLEEP", 3)
     with SideProcess(lambda: b"x" * 30_000_000, 20.0) as copy:
         assert copy.result(lambda: b"") == b"x" * 30_000_000
 
@@ -160,7 +156,7 @@ def test_a_page_whose_copy_crashes_is_written_here(tmp_path, monkeypatch):
 
 def test_one_thread_asked_for_is_one_process(tmp_path, monkeypatch):
     begun = []
-    monkeypatch.setattr("cad_io.kernel.side_process.begin", lambda *given: begun.append(given))
+    monkeypatch.setattr("cad_io.copies.Copy", lambda *given: begun.append(given))
     result = plan(GROOVE, cutters="R2L30", grid=9, jobs=1)
     write_all(replace(result), tmp_path / "out", ("json", "html"))
     assert not begun

@@ -13,9 +13,9 @@ from OCP.TopLoc import TopLoc_Location
 
 from cad_io import Part, ReadError, read_part
 from cad_io.arrays import LostFace
+from cad_io.copies import limited
 from cad_io.kernel import faces
 from cad_io.kernel.assembly import Node
-from cad_io.kernel.time_limit import limited
 from cad_io.read import read
 from tests.support.cad_parts import box, compound, drilled, moved, real
 

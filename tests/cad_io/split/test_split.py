@@ -24,9 +24,9 @@ from OCP.TopLoc import TopLoc_Location
 from scipy.ndimage import maximum_filter, minimum_filter
 
 from cad_io import read_part
+from cad_io.copies import ChildDied, TimeLimit, limited
 from cad_io.kernel import faces
 from cad_io.kernel.components import compound
-from cad_io.kernel.time_limit import ChildDied, TimeLimit, limited
 from cad_io.part import Part
 from cad_io.split import attempt, cut_faces, drawing
 from cad_io.split.border import CannotSplit

@@ -29,7 +29,7 @@ def spin():
 
 def trap(name):
     if name == where and how == "copy":
-        from cad_io.kernel.time_limit import limited
+        from cad_io.copies import limited
         limited(lambda: spin() or b"", 600.0)
     elif name == where and how == "sleep":
         Path(os.environ["STUCK_SIGN"]).touch()
@@ -222,11 +222,11 @@ def test_a_script_that_gives_up_is_not_held(tmp_path):
 CALLER = """
 import itertools, os, sys, threading
 from pathlib import Path
-import cad_io.lifetime as lifetime
-from cad_io.kernel.each import each
-from cad_io.kernel.time_limit import limited
+import cad_io.forks as forks
+from cad_io.copies import each
+from cad_io.copies import limited
 if sys.argv[3] == "looked after":
-    lifetime._killed_by_the_system = lambda: False
+    forks._killed_by_the_system = lambda: False
 def spin():
     Path(sys.argv[1]).touch()
     any(itertools.repeat(False))
@@ -251,7 +251,7 @@ def test_copies_end_with_the_program_that_plans(tmp_path, how, call):
 
 
 def test_a_parent_that_was_gone_before_it_was_followed(tmp_path):
-    code = "import os; from cad_io.lifetime import end_with; end_with(os.getppid() + 1); print('alive')"
+    code = "import os; from cad_io.forks import end_with; end_with(os.getppid() + 1); print('alive')"
     done = subprocess.run([sys.executable, "-c", code], env=ENV, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout) == (-signal.SIGKILL, "")
 

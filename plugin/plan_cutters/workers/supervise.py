@@ -11,20 +11,27 @@ import os
 import select
 import shutil
 import signal
-import subprocess
-import sys
-import threading
 import time
-import warnings
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Protocol
 
-from plan_cutters.command.worker import INTERRUPTED, MEMORY, Worker, early
-from plan_cutters.command.worker_errors import OutOfTime, Stuck, Supervised, Unfinished
+from plan_cutters.workers.assignment import INTERRUPTED
+from plan_cutters.workers.child import Worker, early
+from plan_cutters.workers.errors import OutOfTime, Stuck, Supervised, Unfinished
 
-if TYPE_CHECKING:
-    from plan_cutters.command.progress import Display
+
+class Display(Protocol):
+    """Who is told what the child reports: `command.progress.Display`."""
+
+    def begins(self, part: str) -> None: ...
+    def stage(self, stage: str) -> None: ...
+    def detail(self, text: str) -> None: ...
+    def say(self, text: str) -> None: ...
+    def show(self, text: str) -> None: ...
+    def at(self, done: int, total: int) -> None: ...
+    def tick(self) -> None: ...
+
 
 #: Seconds that an interrupted child has to end in order; it has not if the kernel does not come back to it.
 GRACE = 0.25
@@ -37,51 +44,15 @@ _WORK = {"measure": "measuring of faces", "sew": "sewing", "orient": "search for
 A_FACE = {"measure": 0.25, "sample": 1.0, "tessellate": 0.25}
 
 
-def limit_memory() -> None:
-    """Keep to the memory limit that the parent set."""
-    if MEMORY in os.environ:
-        import resource
-
-        limit = int(os.environ[MEMORY])
-        with contextlib.suppress(ValueError, OSError):  # macOS has no such limit
-            resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
-
-
-def keep_interrupts() -> None:
-    """Take an interrupt again that came where none can be raised, as while the process copies itself for the kernel."""
-    before, me = sys.unraisablehook, threading.get_ident()
-
-    def again(what: "sys.UnraisableHookArgs") -> None:
-        if issubclass(what.exc_type, KeyboardInterrupt):
-            threading.Timer(0.05, signal.pthread_kill, (me, signal.SIGINT)).start()
-        else:
-            before(what)
-
-    sys.unraisablehook = again
-
-
-def keep_output() -> None:
-    """Leave the output to us: what the kernel prints past Python, as its BREP reader does, goes nowhere.
-
-    So do Python's warnings, of overflows for one, unless asked for with -W: numbers that are not finite are dealt with
-    where they arise.
-    """
-    if not sys.warnoptions:
-        warnings.simplefilter("ignore")
-    ours, nowhere = os.dup(1), os.open(os.devnull, os.O_WRONLY)
-    os.dup2(nowhere, 1)
-    os.close(nowhere)
-    sys.stdout = os.fdopen(ours, "w", encoding="utf-8")
-
-
 def default_memory() -> int:
     """Three quarters of the machine's memory, bytes."""
     return int(0.75 * os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
 
 
 def supervise(
-    words: Sequence[str], *, read_timeout: float = math.inf, memory: int | None = None, display: "Display | None" = None,
-    name: str = "plan-cutters", more: Mapping[str, str] | None = None, timeout: float = math.inf, since: float | None = None,
+    words: Sequence[str], *, read_timeout: float = math.inf, memory: int | None = None, display: Display | None = None,
+    name: str = "plan-cutters", timeout: float = math.inf, since: float | None = None, done: int = 0,
+    excluded: Mapping[int, str] | None = None,
 ) -> int:  # fmt: skip
     """Run a command in a child.
 
@@ -99,12 +70,12 @@ def supervise(
         Told what the child tells.
     name : str
         The command's, as `entry.begin` takes it.
-    more : mapping, optional
-        More environment variables of the child.
     timeout : float
         Seconds that the whole of a part may take.
     since : float, optional
         When the first part began (`time.monotonic`); default now.
+    done, excluded
+        As of `Assignment`.
 
     Returns
     -------
@@ -133,7 +104,8 @@ def supervise(
     previous = {number: signal.signal(number, stop) for number in _stopping()}
     previous[signal.SIGALRM] = signal.signal(signal.SIGALRM, lambda *_: None if child is None else child.kill())
     try:
-        child = (None if more else early(words)) or Worker(words, name, memory, more=more)
+        again = done or excluded
+        child = (None if again else early(words)) or Worker(words, name, memory, done=done, excluded=excluded)
         watch.pipe, watch.child = child.here, child.process.pid
         if signals:  # before there was anyone to tell
             raise KeyboardInterrupt
@@ -141,8 +113,7 @@ def supervise(
         while child.process.poll() is None:
             watch.listen(0.2)
             if watch.over:  # neither the child nor a copy of it holds the other end: it has ended, or is about to
-                with contextlib.suppress(subprocess.TimeoutExpired):
-                    child.process.wait(0.2)
+                child.ended(0.2)
             if time.monotonic() - watch.began > timeout:
                 raise OutOfTime(watch.dones, watch.code, watch.safe and watch.safe[1])
             if watch.late():
@@ -196,7 +167,7 @@ class _Watch:
     """Keep all that the child has reported so far."""
 
     def __init__(
-        self, read_timeout: float, display: "Display | None" = None, *, began: float | None = None
+        self, read_timeout: float, display: Display | None = None, *, began: float | None = None
     ) -> None:  # fmt: skip
         self.pipe, self.read_timeout, self.display = -1, read_timeout, display
         self.part, self.stage, self.since = "part", "start", time.monotonic()

@@ -1,5 +1,6 @@
 """Machine code that is made by a second process while the first one reads and meshes."""
 
+import json
 import os
 import subprocess
 import sys
@@ -8,6 +9,7 @@ import pytest
 
 from plan_cutters.command import background_compile
 from plan_cutters.kernels import jit
+from plan_cutters.workers.assignment import VARIABLE, Assignment
 from tests.support.forked import ENV
 from tests.support.places import ROOT
 
@@ -25,16 +27,17 @@ def test_the_second_process_is_waited_for(monkeypatch, maps):
 
     def popen(words, **more):
         started.append(words)
-        assert background_compile.REPORT not in more["env"]  # it must not speak for this one
+        there = json.loads(more["env"][VARIABLE])
+        assert (there["report"], there["parent"]) == (None, os.getpid())  # it must not speak for this one
         return real([sys.executable, "-c", "import time; time.sleep(0.2)"], **more)
 
-    monkeypatch.setenv(background_compile.REPORT, "1")
+    monkeypatch.setenv(VARIABLE, str(Assignment(report=1)))
     monkeypatch.setattr(jit, "at_hand", lambda name: False)
     monkeypatch.setattr(subprocess, "Popen", popen)
     wait = background_compile.begin(maps)
     assert wait is not None
     wait("search.search")
-    assert started[0][2:] == ["plan_cutters.command.background_compile", *(["maps"] if maps else [])]
+    assert started[0][3:] == ["plan_cutters.command.background_compile", *(["maps"] if maps else [])]
 
 
 def test_it_is_waited_for_until_an_entry_is_there(monkeypatch):

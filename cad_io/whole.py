@@ -1,0 +1,50 @@
+"""Files appear whole or not at all: written under another name, then renamed."""
+
+import contextlib
+import os
+import secrets
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Protocol
+
+
+class FileError(Protocol):
+    """The class of an error that names a file."""
+
+    def __call__(self, cause: str, *, file: str) -> Exception: ...
+
+
+@contextlib.contextmanager
+def whole(
+    path: str | Path, error: FileError | None = None, named: Callable[[Path], None] = lambda _: None
+) -> Iterator[Path]:
+    """Give a path in the same folder to write to; it is renamed to `path` when the block ends well, removed when it does not.
+
+    Parameters
+    ----------
+    path : path
+    error : type of error, optional
+        Raised in place of an `OSError`.
+    named : callable, optional
+        Called with the path to write to before it exists, so that whoever ends this process can take it away.
+
+    Raises
+    ------
+    error or OSError
+        The folder cannot be written to, or the file cannot be written or take its place.
+    """
+    path = Path(path)
+    temporary = path.with_name(f".{path.stem}-{secrets.token_hex(4)}{path.suffix}")
+    named(temporary)
+    try:
+        # The kernel writes by name, so the file is made here, with the rights of any new file, and closed again.
+        os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
+        yield temporary
+        os.replace(temporary, path)
+    except OSError as fault:
+        if error is None:
+            raise
+        raise error(f"cannot be written: {fault.strerror or fault}", file=str(path)) from fault
+    finally:
+        with contextlib.suppress(OSError):
+            temporary.unlink(missing_ok=True)
