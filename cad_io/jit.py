@@ -1,4 +1,4 @@
-"""Two decorators, one cache folder for each module as it is: everything that is known of the compiler.
+"""Three decorators, one cache folder for each module as it is: everything that is known of the compiler.
 
 The compiler's own cache looks at one file at a time and misses edits in a module that a kernel calls, so the cache folder's
 name carries the fingerprint of the module and of all that it imports (`cad_io.fingerprint`). The compiler asks for the cache
@@ -11,6 +11,7 @@ damaged is never run, but compiled anew, and a cache that cannot be written cost
 
 import contextlib
 import functools
+import gc
 import hashlib
 import io
 import os
@@ -283,36 +284,56 @@ def _once(compiled: Any) -> Any:
     return compiled
 
 
-def _also_from_python(kernel: Any, ours: frozenset[str]) -> Any:
+def _uncollected(entry: Any) -> Any:
+    """Compile an entry with the collector of garbage at rest.
+
+    What the compiler makes lives until it ends: looking for garbage among it, again and again, took a seventh of the time.
+    """
+    compile_for_args = entry._compile_for_args
+
+    def compiled(*args: Any, **kws: Any) -> Any:
+        collects = gc.isenabled()
+        gc.disable()
+        try:
+            return compile_for_args(*args, **kws)
+        finally:
+            if collects:
+                gc.enable()
+
+    entry._compile_for_args = compiled
+    return entry
+
+
+def _also_from_python(kernel: Any, ours: frozenset[str], nrt: bool) -> Any:
     """Let Python call a kernel too, as tests and benchmarks do: that compiles it as an entry, beside the others in the cache."""
 
     @functools.cache
     def compiled() -> Any:
         with _our_cache(kernel.py_func, ours, "called"):
-            return _checked(numba.njit(**_ENTRY, _nrt=False)(kernel.py_func))
+            return _uncollected(_checked(numba.njit(**_ENTRY, _nrt=nrt)(kernel.py_func)))
 
     kernel._insert = lambda *overload: None
     kernel._compile_for_args = lambda *args, **kws: compiled()
     return kernel
 
 
-def decorators(name: str) -> tuple[Decorator, Decorator]:
-    """`entry` and `kernel` for the module of a name, and for those that take them from it.
+def decorators(name: str) -> tuple[Decorator, Decorator, Decorator]:
+    """`entry`, `kernel` and `maker` for the module of a name, and for those that take them from it.
 
     An entry is called by Python, and may make arrays. It is compiled on its first call, its machine code is kept on disk, and
     it releases the GIL. A kernel is called by entries, and makes no array itself: it works without the counting of references,
     two atomic instructions for every array at every call, which took a third of all time. The entry keeps the arrays alive. A
-    kernel has no machine code of its own.
+    kernel has no machine code of its own. A maker is called by entries, too, and has none, either, but makes arrays for them.
     """
     ours = frozenset({name.partition(".")[0]})
 
     def entry(function: Callable[..., Any]) -> Callable[..., Any]:
         with _our_cache(function, ours):
-            return _once(_checked(numba.njit(**_ENTRY)(function)))
+            return _uncollected(_once(_checked(numba.njit(**_ENTRY)(function))))
 
-    def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
+    def linked(function: Callable[..., Any], nrt: bool) -> Callable[..., Any]:
         with _our_cache(function, ours):
-            made = numba.njit(**_ENTRY, _nrt=False, no_cpython_wrapper=True, pipeline_class=_KernelCompiler)(function)
-        return _also_from_python(_once(_checked(made)), ours)
+            made = numba.njit(**_ENTRY, _nrt=nrt, no_cpython_wrapper=True, pipeline_class=_KernelCompiler)(function)
+        return _also_from_python(_once(_checked(made)), ours, nrt)
 
-    return entry, kernel
+    return entry, functools.partial(linked, nrt=False), functools.partial(linked, nrt=True)

@@ -25,7 +25,7 @@ import tempfile
 import numpy as np
 from cad_io.jit import decorators
 
-entry, kernel = decorators(__name__)
+entry, kernel, _ = decorators(__name__)
 
 @kernel
 def deepest(x):
@@ -126,7 +126,7 @@ TWO = """
 import sys
 import numpy as np
 from cad_io.jit import decorators
-entry, kernel = decorators(__name__)
+entry, kernel, _ = decorators(__name__)
 
 if len(sys.argv) > 1:
     @entry

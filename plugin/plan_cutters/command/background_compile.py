@@ -26,7 +26,7 @@ def begin(maps: bool) -> Callable[[str], None] | None:
     """
     from plan_cutters.kernels.jit import at_hand
 
-    if at_hand("search.search.search") is not False:
+    if at_hand("search.search.search_rows") is not False:
         return None
     environment = {name: value for name, value in os.environ.items() if name != REPORT} | {PARENT: str(os.getpid())}
     words = [sys.executable, "-m", "plan_cutters.command.background_compile", *(["maps"] if maps else [])]

@@ -4,9 +4,9 @@ from pathlib import Path
 
 from cad_io.jit import VERSION, cache_folder, decorators
 
-__all__ = ["VERSION", "at_hand", "entry", "kernel"]
+__all__ = ["VERSION", "at_hand", "entry", "kernel", "maker"]
 
-entry, kernel = decorators(__name__)
+entry, kernel, maker = decorators(__name__)
 
 
 def at_hand(name: str) -> bool | None:
