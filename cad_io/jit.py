@@ -1,9 +1,9 @@
-"""Two decorators, one cache folder for each folder of sources: everything that is known of the compiler.
+"""Three decorators, one cache folder for each module as it is: everything that is known of the compiler.
 
 The compiler's own cache looks at one file at a time and misses edits in a module that a kernel calls, so the cache folder's
-name carries a hash of every source in the folder that makes the decorators, and in the folders below it. The compiler asks for
-the cache folder when a function is decorated: it is set for that moment alone, so that neither the host's own compiled
-functions nor the environment of its processes change, whoever imports the compiler first.
+name carries the fingerprint of the module and of all that it imports (`cad_io.fingerprint`). The compiler asks for the cache
+folder when a function is decorated: it is set for that moment alone, so that neither the host's own compiled functions nor the
+environment of its processes change, whoever imports the compiler first.
 
 The compiler runs whatever stands in its cache. Ours has a checksum in each file: machine code that a full disk or a power cut
 damaged is never run, but compiled anew, and a cache that cannot be written costs time alone.
@@ -11,18 +11,23 @@ damaged is never run, but compiled anew, and a cache that cannot be written cost
 
 import contextlib
 import functools
+import gc
 import hashlib
 import io
 import os
 import stat
 import struct
+import sys
 import tempfile
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from types import CodeType
 from typing import Any
 
+import llvmlite
 import numba
+import numpy as np
 from llvmlite import binding as llvm
 from numba.core import caching
 from numba.core.codegen import JITCodeLibrary
@@ -30,8 +35,16 @@ from numba.core.compiler import Compiler
 from numba.core.types import unliteral  # type: ignore[attr-defined]
 
 from cad_io.errors import CacheWarning
+from cad_io.fingerprint import fingerprint
 
 VERSION: str = numba.__version__
+
+#: What lies beneath all machine code. The processor is in the compiler's own key of each entry.
+_BENEATH = {
+    "python": [sys.version, sys.flags.optimize],
+    "libraries": [VERSION, llvmlite.__version__, np.__version__],
+    "compiler": [str(getattr(numba.config, each)) for each in ("OPT", "BOUNDSCHECK", "LOOP_VECTORIZE", "SLP_VECTORIZE")],
+}
 
 #: What the compiler is told of every function. Nothing calls one as C does.
 _ENTRY: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
@@ -58,28 +71,46 @@ def _roots() -> Iterator[Path]:
             yield shared
 
 
-@functools.cache
-def cache_folder(sources: Path) -> str:
-    """Folder of the machine code of just the sources in a folder and those below it; made if need be.
+def _writable(folder: Path) -> bool:
+    """Make a folder if need be; whether files can be written there."""
+    with contextlib.suppress(OSError):
+        folder.mkdir(parents=True, exist_ok=True)
+        return os.access(folder, os.W_OK)
+    return False
 
-    It is named `kernels-` and a checksum. Another name is that of a folder for this process alone, where no other one can be
-    written; where not even that can be, it is not there.
-    """
-    # Whoever changes how things are compiled or cached is to meet nothing of before.
-    digest = hashlib.sha256(VERSION.encode() + Path(__file__).read_bytes())
-    for source in sorted(sources.rglob("*.py")):
-        digest.update(source.relative_to(sources).as_posix().encode())
-        digest.update(source.read_bytes())
-    folders = [root / f"kernels-{digest.hexdigest()[:16]}" for root in _roots()]
-    for folder in folders:
-        with contextlib.suppress(OSError):
-            folder.mkdir(parents=True, exist_ok=True)
-            if os.access(folder, os.W_OK):
-                return str(folder)
+
+@functools.cache
+def _of_this_process() -> str | None:
+    """Folder for this process alone; None where not even that can be made."""
     try:
         return tempfile.mkdtemp(prefix="plan-cutters-")
     except OSError:
-        return str(folders[0]) if folders else os.path.join(os.devnull, "plan-cutters")
+        return None
+
+
+@functools.cache
+def cache_folder(name: str, package: str, file: str, ours: frozenset[str] = frozenset()) -> tuple[str, bool]:
+    """Folder of the machine code of just a module as it is, and of all that it imports; made if need be; whether it lasts.
+
+    It is that of the module's name and of its fingerprint. One for this process alone does not last: no other one can be written, or
+    the source cannot be read. Where not even that can be written, it is not there.
+
+    Parameters
+    ----------
+    name, package, file : str
+        The module's `__name__`, `__package__` and `__file__`.
+    ours : frozenset of str
+        Top-level packages that count where they are imported, beside that of the module and the compiler's.
+    """
+    ours |= {each.partition(".")[0] for each in (name, __name__)}
+    roots = [each for each in _roots() if _writable(each)]
+    made_of = fingerprint(name, package, file, ours, roots[0] / "sources" if roots else None)
+    if made_of is not None:
+        last = hashlib.sha256(f"{_BENEATH} {made_of}".encode()).hexdigest()[:16]
+        for root in roots:
+            if _writable(folder := root / name / last):
+                return str(folder), True
+    return _of_this_process() or os.path.join(os.devnull, "plan-cutters"), False
 
 
 #: What was warned of already.
@@ -98,15 +129,34 @@ _Impl: Any = getattr(caching, "CacheImpl", None) or caching._CacheImpl
 _Locator: Any = getattr(caching, "UserProvidedCacheLocator", None) or caching._UserProvidedCacheLocator
 
 
+def _meaning(code: CodeType, doc: str | None) -> list[Any]:
+    """What a function does: its code, without its docstring and without places."""
+    constants = [_meaning(each, None) if isinstance(each, CodeType) else each for each in code.co_consts if each != doc]
+    return [code.co_code, code.co_names, code.co_varnames, constants]
+
+
 class _ByContent(_Locator):
     """Machine code lies by what it was made of, which its folder's name says, and not by where the sources are or how old.
 
     So another environment with the same sources, or another checkout, takes what is there.
     """
 
+    def __init__(self, function: Callable[..., Any], file: str) -> None:
+        super().__init__(function, file)
+        self._own = hashlib.sha256(repr(_meaning(function.__code__, function.__doc__)).encode()).hexdigest()[:8]
+
+    @classmethod
+    def from_function(cls, function: Callable[..., Any], file: str) -> Any:
+        """Sources may lie in an archive, where the compiler looks for none."""
+        return cls(function, file)
+
     @classmethod
     def get_suitable_cache_subpath(cls, file: str) -> str:
-        return Path(file).parent.name
+        return ""
+
+    def get_disambiguator(self) -> str:
+        """What a function is, not the line where it stands: one module may define two under one name."""
+        return self._own
 
     def get_source_stamp(self) -> str:
         return "by content"
@@ -176,9 +226,11 @@ def _checked(compiled: Any) -> Any:
 
 
 @contextlib.contextmanager
-def _our_cache(sources: Path, *beneath: str) -> Iterator[None]:
+def _our_cache(function: Callable[..., Any], ours: frozenset[str], *beneath: str) -> Iterator[None]:
+    module = function.__globals__
+    folder, _ = cache_folder(module["__name__"], module.get("__package__") or "", module["__file__"], ours)
     before = numba.config.CACHE_DIR, _Impl._locator_classes
-    numba.config.CACHE_DIR = str(Path(cache_folder(sources), *beneath))
+    numba.config.CACHE_DIR = os.path.join(folder, *beneath)
     _Impl._locator_classes = [_ByContent]
     try:
         yield
@@ -232,36 +284,56 @@ def _once(compiled: Any) -> Any:
     return compiled
 
 
-def _also_from_python(kernel: Any, sources: Path) -> Any:
+def _uncollected(entry: Any) -> Any:
+    """Compile an entry with the collector of garbage at rest.
+
+    What the compiler makes lives until it ends: looking for garbage among it, again and again, took a seventh of the time.
+    """
+    compile_for_args = entry._compile_for_args
+
+    def compiled(*args: Any, **kws: Any) -> Any:
+        collects = gc.isenabled()
+        gc.disable()
+        try:
+            return compile_for_args(*args, **kws)
+        finally:
+            if collects:
+                gc.enable()
+
+    entry._compile_for_args = compiled
+    return entry
+
+
+def _also_from_python(kernel: Any, ours: frozenset[str], nrt: bool) -> Any:
     """Let Python call a kernel too, as tests and benchmarks do: that compiles it as an entry, beside the others in the cache."""
 
     @functools.cache
     def compiled() -> Any:
-        with _our_cache(sources, "called"):
-            return _checked(numba.njit(**_ENTRY, _nrt=False)(kernel.py_func))
+        with _our_cache(kernel.py_func, ours, "called"):
+            return _uncollected(_checked(numba.njit(**_ENTRY, _nrt=nrt)(kernel.py_func)))
 
     kernel._insert = lambda *overload: None
     kernel._compile_for_args = lambda *args, **kws: compiled()
     return kernel
 
 
-def decorators(file: str) -> tuple[Decorator, Decorator]:
-    """`entry` and `kernel` for the sources in the folder of a file, and in the rooms below it.
+def decorators(name: str) -> tuple[Decorator, Decorator, Decorator]:
+    """`entry`, `kernel` and `maker` for the module of a name, and for those that take them from it.
 
     An entry is called by Python, and may make arrays. It is compiled on its first call, its machine code is kept on disk, and
     it releases the GIL. A kernel is called by entries, and makes no array itself: it works without the counting of references,
     two atomic instructions for every array at every call, which took a third of all time. The entry keeps the arrays alive. A
-    kernel has no machine code of its own.
+    kernel has no machine code of its own. A maker is called by entries, too, and has none, either, but makes arrays for them.
     """
-    sources = Path(file).parent
+    ours = frozenset({name.partition(".")[0]})
 
     def entry(function: Callable[..., Any]) -> Callable[..., Any]:
-        with _our_cache(sources):
-            return _once(_checked(numba.njit(**_ENTRY)(function)))
+        with _our_cache(function, ours):
+            return _uncollected(_once(_checked(numba.njit(**_ENTRY)(function))))
 
-    def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
-        with _our_cache(sources):
-            made = numba.njit(**_ENTRY, _nrt=False, no_cpython_wrapper=True, pipeline_class=_KernelCompiler)(function)
-        return _also_from_python(_once(_checked(made)), sources)
+    def linked(function: Callable[..., Any], nrt: bool) -> Callable[..., Any]:
+        with _our_cache(function, ours):
+            made = numba.njit(**_ENTRY, _nrt=nrt, no_cpython_wrapper=True, pipeline_class=_KernelCompiler)(function)
+        return _also_from_python(_once(_checked(made)), ours, nrt)
 
-    return entry, kernel
+    return entry, functools.partial(linked, nrt=False), functools.partial(linked, nrt=True)

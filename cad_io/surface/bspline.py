@@ -10,7 +10,7 @@ import numpy as np
 
 from cad_io.jit import decorators
 
-entry, kernel = decorators(__file__)
+entry, kernel, _ = decorators(__name__)
 
 #: Highest degree that the CAD kernel knows.
 DEGREE = 25

@@ -4,7 +4,7 @@ import numpy as np
 
 from cad_io.jit import decorators
 
-entry, kernel = decorators(__file__)
+entry, kernel, _ = decorators(__name__)
 
 
 @kernel

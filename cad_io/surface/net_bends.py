@@ -14,7 +14,7 @@ from cad_io.jit import decorators
 from cad_io.surface.bends import Bends
 from cad_io.surface.bspline import Net, span, wrapped
 
-entry, kernel = decorators(__file__)
+entry, kernel, _ = decorators(__name__)
 
 
 @kernel

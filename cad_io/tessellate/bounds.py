@@ -18,7 +18,7 @@ from cad_io.jit import decorators
 from cad_io.surface import Bends, Surface
 from cad_io.surface.forms import lines_within
 
-entry, kernel = decorators(__file__)
+entry, kernel, _ = decorators(__name__)
 
 #: Cells along a surface that is bent one way only, at least, so many times those of one bent both ways; at most each way, where
 #: dense knots are put together. Where there are few one way, there may be more the other way.

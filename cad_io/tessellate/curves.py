@@ -20,7 +20,7 @@ from cad_io.surface.forms import curve_lines, curve_net
 from cad_io.surface.net_bends import net_bends
 from cad_io.tessellate.bounds import evenly
 
-entry, kernel = decorators(__file__)
+entry, kernel, maker = decorators(__name__)
 
 #: Cells along a bent curve, at least; points of a curve that is replaced.
 _CELLS, _POINTS = 16, 257
@@ -173,7 +173,7 @@ def _bends(net: Net, ends: tuple[float, float]) -> tuple[Floats, Floats]:
     return line, bend
 
 
-@entry
+@maker
 def workspace():
     """Room for the kernels."""
     wide = DEGREE + 1

@@ -10,7 +10,7 @@ import numpy as np
 from cad_io.arrays import Floats, Ints
 from cad_io.jit import decorators
 
-entry, kernel = decorators(__file__)
+entry, kernel, _ = decorators(__name__)
 
 #: A corner is in the circle of another triangle if it is so far in it, and a corner bends if it bends so much: shares of the
 #: terms that cancel where points lie on one circle or on one line.

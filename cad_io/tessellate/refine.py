@@ -12,7 +12,7 @@ from cad_io.jit import decorators
 from cad_io.tessellate.bounds import TORN, bend, most_inside, twist_share, window
 from cad_io.tessellate.curves import point, strays, workspace
 
-entry, kernel = decorators(__file__)
+entry, kernel, _ = decorators(__name__)
 
 #: No triangle is cut more often.
 _DEEPEST = 60

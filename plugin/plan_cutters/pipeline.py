@@ -245,7 +245,7 @@ def prepare(
         for one in each:
             one.surroundings.build(options.jobs)
     with clock.stage("compile"):
-        compiling("search.search")
+        compiling("search.search.search_rows")
         warm(contacts_of(samples), Context.of(cutters[0], conditions))
     with clock.stage("bodies"):
         within = inside_material(

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import tempfile
 import warnings
+import zipfile
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +25,7 @@ import tempfile
 import numpy as np
 from cad_io.jit import decorators
 
-entry, kernel = decorators(__file__)
+entry, kernel, _ = decorators(__name__)
 
 @kernel
 def deepest(x):
@@ -114,19 +115,62 @@ def test_the_same_sources_elsewhere_and_later_are_not_compiled_again(tmp_path):
     assert told == [(1, 0), (0, 1)]
 
 
-def test_sources_in_rooms_below_count(tmp_path, monkeypatch):
-    """A kernel in one room calls those in others: what changes in any of them must not be answered by old machine code."""
+def test_a_line_above_a_function_is_no_other_function(run, tmp_path):
+    run("k.total(x)")
+    source = (tmp_path / "kernels_of_test.py").read_text()
+    (tmp_path / "kernels_of_test.py").write_text(source.replace("import sys", "# A remark.\n\n\nimport sys"))
+    assert [told[1:] for told in run("k.total(x)")[1].values()] == [(0, 0), (0, 0), (0, 1), (0, 0)]
+
+
+TWO = """
+import sys
+import numpy as np
+from cad_io.jit import decorators
+entry, kernel, _ = decorators(__name__)
+
+if len(sys.argv) > 1:
+    @entry
+    def number():
+        return 1
+else:
+    @entry
+    def number():
+        return 2
+
+print(number())
+"""
+
+
+def test_two_functions_under_one_name_are_two(tmp_path):
+    """Sources alone do not tell which of them a process defines."""
+    (tmp_path / "two.py").write_text(TWO)
+    environment = {**ENV, "NUMBA_CACHE_DIR": str(tmp_path / "cache")}
+    for words, value in ((["other"], "1"), ([], "2"), (["other"], "1")):
+        done = subprocess.run([sys.executable, str(tmp_path / "two.py"), *words], env=environment, capture_output=True,
+                              text=True, check=True)  # fmt: skip
+        assert done.stdout.strip() == value
+
+
+def test_kernels_in_an_archive_are_compiled_once_and_by_what_stands_there(tmp_path):
+    def total(one):
+        with zipfile.ZipFile(tmp_path / "room.zip", "w") as archive:
+            archive.writestr("kernels_of_test.py", SOURCE.replace("+ 1.0", f"+ {one}"))
+        environment = {**ENV, "NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": str(tmp_path / "room.zip")}
+        done = subprocess.run([sys.executable, "-c", RUN.format(call="k.total(x)")], env=environment, capture_output=True,
+                              text=True, check=True)  # fmt: skip
+        value, told = done.stdout.split("] ", 1)
+        return ast.literal_eval(value + "]"), ast.literal_eval(told)["total"][1:]
+
+    assert [total(one) for one in ("1.0", "1.0", "2.0", "1.0")] == [
+        ([14.0], (1, 0)), ([14.0], (0, 1)), ([18.0], (1, 0)), ([14.0], (0, 1)),
+    ]  # fmt: skip
+
+
+def test_machine_code_of_a_module_without_its_source_is_not_shared(tmp_path, monkeypatch):
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "cache"))
-    room = tmp_path / "sources" / "room"
-    room.mkdir(parents=True)
-    (tmp_path / "sources" / "jit.py").write_text("")
-    folders = []
-    for name, text in (("a.py", "x = 1"), ("a.py", "x = 2"), ("b.py", "x = 2")):
-        for old in room.iterdir():
-            old.unlink()
-        (room / name).write_text(text)
-        folders.append(cache_folder.__wrapped__(tmp_path / "sources"))
-    assert len(set(folders)) == 3
+    folder, lasts = cache_folder.__wrapped__("bare", "", str(tmp_path / "bare.pyc"))
+    assert not lasts
+    assert not Path(folder).is_relative_to(tmp_path / "cache")
 
 
 @pytest.fixture
@@ -153,7 +197,7 @@ def loaded(tmp_path, monkeypatch):
 
 
 def cached(folder, pattern):
-    (found,) = folder.glob(f"cache/plan-cutters/*/sources/{pattern}")
+    (found,) = folder.glob(f"cache/plan-cutters/kernels_of_test/*/{pattern}")
     return found
 
 
@@ -262,8 +306,8 @@ def test_an_entry_under_the_name_of_another_one_is_not_run(loaded, tmp_path):
 
 
 def folder_of(tmp_path):
-    (tmp_path / "sources").mkdir(exist_ok=True)
-    return Path(cache_folder.__wrapped__(tmp_path / "sources"))
+    (tmp_path / "room.py").write_text("")
+    return Path(cache_folder.__wrapped__("room", "", str(tmp_path / "room.py"))[0])
 
 
 @pytest.fixture
@@ -278,13 +322,15 @@ def no_home(tmp_path, monkeypatch):
     monkeypatch.setattr(Path, "home", none)
     (tmp_path / "tmp").mkdir()
     monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "tmp"))
-    return tmp_path / "tmp"
+    jit._of_this_process.cache_clear()
+    yield tmp_path / "tmp"
+    jit._of_this_process.cache_clear()
 
 
 def test_without_a_home_machine_code_lies_among_temporary_files(tmp_path, no_home):
     folder = folder_of(tmp_path)
-    assert folder.parent == no_home / f"plan-cutters-{os.getuid()}"
-    assert folder.parent.stat().st_mode & 0o777 == 0o700
+    assert folder.parents[1] == no_home / f"plan-cutters-{os.getuid()}"
+    assert folder.parents[1].stat().st_mode & 0o777 == 0o700
     assert folder_of(tmp_path) == folder
 
 
@@ -292,10 +338,10 @@ def test_what_another_user_put_among_temporary_files_is_not_run(tmp_path, no_hom
     theirs = folder_of(tmp_path)
     user = os.getuid()
     monkeypatch.setattr(os, "getuid", lambda: user + 1)
-    theirs.parent.rename(no_home / f"plan-cutters-{user + 1}")
+    theirs.parents[1].rename(no_home / f"plan-cutters-{user + 1}")
     found = folder_of(tmp_path)
     assert found.parent == no_home
-    assert not found.name.startswith("kernels-")
+    assert found.name.startswith("plan-cutters-")
 
 
 def test_where_nothing_can_be_written_it_works_without_a_cache(loaded, no_home, monkeypatch):

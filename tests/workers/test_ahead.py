@@ -36,7 +36,7 @@ def test_the_second_process_is_waited_for(monkeypatch, maps):
     monkeypatch.setattr(subprocess, "Popen", popen)
     wait = background_compile.begin(maps)
     assert wait is not None
-    wait("search.search")
+    wait("search.search.search_rows")
     assert started[0][3:] == ["plan_cutters.command.background_compile", *(["maps"] if maps else [])]
 
 
@@ -47,9 +47,9 @@ def test_it_is_waited_for_until_an_entry_is_there(monkeypatch):
     monkeypatch.setattr(subprocess, "Popen", lambda words, **more: made.append(
         real([sys.executable, "-c", "import time; time.sleep(600)"], **more)) or made[0])  # fmt: skip
     wait = background_compile.begin(maps=False)
-    there.append("search.search")
+    there.append("search.search.search_rows")
     try:
-        wait("search.search")
+        wait("search.search.search_rows")
         assert made[0].poll() is None
     finally:
         made[0].kill()
@@ -62,14 +62,14 @@ def test_one_that_does_not_end_is_not_waited_for_for_ever(monkeypatch):
     monkeypatch.setattr(background_compile, "_PATIENCE", 0.2)
     monkeypatch.setattr(subprocess, "Popen", lambda words, **more: made.append(
         real([sys.executable, "-c", "import time; time.sleep(600)"], **more)) or made[0])  # fmt: skip
-    background_compile.begin(maps=False)("search.search")
+    background_compile.begin(maps=False)("search.search.search_rows")
     assert made[0].returncode is not None
 
 
 def test_machine_code_is_found_where_the_compiler_keeps_it(tmp_path):
     """In a process of its own: where the folder is, is asked once."""
     look = (
-        "from plan_cutters.kernels.jit import at_hand; print(at_hand('rows.none'), at_hand('place.search_workspace'))"
+        "from plan_cutters.kernels.jit import at_hand; print(at_hand('rows.none'), at_hand('search.place.search_workspace'))"
     )
     make = "from plan_cutters.kernels.search.place import search_workspace; search_workspace()"
     environment = {**ENV, "NUMBA_CACHE_DIR": str(tmp_path)}
@@ -134,7 +134,7 @@ def test_a_plain_cutter_loads_what_it_needs_and_nothing_else(made_ahead):
         [sys.executable, "-c", LOADED], env={**os.environ, **ENV}, cwd=ROOT, capture_output=True, text=True, check=True
     ).stdout
     ahead, plain, maps = (set(line.split()) for line in said.splitlines())
-    searched = {"search.dummy_clear", "search.probe", "search.search"}
+    searched = {"search.dummy_clear", "search.probe", "search.search_rows"}
     assert plain == {"cover.cover", "material.windings", "tree.build", *searched}
     assert ahead == plain, "what is made ahead is what a plan needs"
     assert maps - plain == {"free_map.free_map", "lanes.wide_tree"}

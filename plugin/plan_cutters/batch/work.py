@@ -196,14 +196,14 @@ def _ready() -> str:
 
     # The first of the workers of a machine compiles for all of them.
     place = Path(tempfile.gettempdir(), f"plan-cutters-compiling-{getattr(os, 'getuid', int)()}")
-    while at_hand("search.search") is False:
+    while at_hand("search.search.search_rows") is False:
         try:
             lock = Lock(place)
         except PlanError:
             time.sleep(0.5)
             continue
         try:
-            if at_hand("search.search") is False:
+            if at_hand("search.search.search_rows") is False:
                 made = compiler(maps=False)
                 try:
                     if made.ended():

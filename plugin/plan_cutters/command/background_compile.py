@@ -25,7 +25,7 @@ def begin(maps: bool) -> Callable[[str], None] | None:
     """
     from plan_cutters.kernels.jit import at_hand
 
-    if at_hand("search.search") is not False:
+    if at_hand("search.search.search_rows") is not False:
         return None
     try:
         other = compiler(maps)

@@ -117,7 +117,7 @@ def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
 
 def load() -> None:
     """Load what every plan needs; nothing where there is no machine code yet: who compiles that begins first."""
-    if import_module("plan_cutters.kernels.jit").at_hand("search.search") is False:
+    if import_module("plan_cutters.kernels.jit").at_hand("search.search.search_rows") is False:
         return
     import_module("plan_cutters.command.one_part")
     import_module("plan_cutters.report.models")

@@ -1,20 +1,21 @@
 """The decorators of all kernels of cutters; see `cad_io.jit`."""
 
-import os
 from pathlib import Path
 
 from cad_io.jit import VERSION, cache_folder, decorators
 
-__all__ = ["VERSION", "at_hand", "entry", "kernel"]
+__all__ = ["VERSION", "at_hand", "entry", "kernel", "maker"]
 
-entry, kernel = decorators(__file__)
+entry, kernel, maker = decorators(__name__)
 
 
 def at_hand(name: str) -> bool | None:
-    """Whether there is machine code of an entry, `module.function`, made by an earlier run or by another process.
+    """Whether there is machine code of an entry, `room.module.function`, made by an earlier run or by another process.
 
     None where it is kept for this process alone, since no folder can be written to.
     """
-    folder = Path(cache_folder(Path(__file__).parent))
-    lasting = folder.name.startswith("kernels-") and os.access(folder, os.W_OK)
-    return any(folder.glob(f"**/{name}-*.nbc")) if lasting else None
+    module, _, function = name.rpartition(".")
+    *rooms, stem = module.split(".")
+    package = ".".join([__name__.rpartition(".")[0], *rooms])
+    folder, lasts = cache_folder(f"{package}.{stem}", package, str(Path(__file__).parent.joinpath(*rooms, f"{stem}.py")))
+    return any(Path(folder).glob(f"{stem}.{function}-*.nbc")) if lasts else None

@@ -142,7 +142,8 @@ def _probed(
     from plan_cutters.kernels.search.search import probe
 
     made = grown(cutter, distance + conditions.obstacles.triangles.chord_error + _ROUNDING)
-    postures = samples.point, samples.normal, verdicts.axis, verdicts.tilt_direction
+    # Arrays that may not be written are another type to the compiler: `probe` would be compiled once more for them.
+    postures = samples.point, samples.normal, verdicts.axis.copy(), verdicts.tilt_direction.copy()
     in_chunks(
         lambda piece: probe(piece, *postures, tool_of(made), conditions.obstacles.tree, triangle, which),
         rows,

@@ -71,14 +71,52 @@ class Sweeping(NamedTuple):
     chord: float
 
 
-@kernel
-def _motion(row, patches, nodes, frame, sine, h, turn, offset, rise):
-    """How a contact's cutter moves and turns about its axis as the contact wanders.
+class Stance(NamedTuple):
+    """This record holds how one rule takes a contact's cutter.
 
-    Returns the surface's curvature along the tilt direction, across it and mixed; the turn about the axis within the patch, in
-    all (psi), and the part of it that does not follow from the curvature at the contact; that part of the normal's change.
+    upright: the tilt direction is not known, or there is none; along: the axis lies along a plane. sine, cosine: of the tilt;
+    steepness: what the axis has across the normal, whatever the rule takes it for. mode: in which the cutter touches.
     """
-    k_ff, k_tt, k_ft, home = 0.0, 0.0, 0.0, patches.home[row]
+
+    rule: int
+    upright: bool
+    along: bool
+    sine: float
+    cosine: float
+    steepness: float
+    mode: int
+
+
+class Wander(NamedTuple):
+    """This record holds how a cutter moves and turns about its axis as the contact wanders in its patch.
+
+    status: as of `cover` where bounds alone decide, -1 where they do not. turn: of the normal, rad; lift: of the surface off the
+    tangent plane, mm; k_ff, k_tt, k_ft: curvature along the tilt direction, across it and mixed, 1/mm; psi: the turn about the
+    axis in all, lateral: the part of it that does not follow from the curvature at the contact, rad; rest: that part of the
+    normal's change.
+    """
+
+    status: int
+    turn: float
+    lift: float
+    k_ff: float
+    k_tt: float
+    k_ft: float
+    psi: float
+    lateral: float
+    rest: float
+
+
+@kernel
+def _decided(status):
+    """What wanders where bounds alone decide."""
+    return Wander(status, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+@kernel
+def _wander(row, patches, nodes, frame, sine, offset, turn, lift):
+    """How a contact's cutter that leans to a known side moves as the contact wanders."""
+    k_ff, k_tt, k_ft, home, h = 0.0, 0.0, 0.0, patches.home[row], patches.patch[row]
     for k in range(3):
         for m in range(3):
             k_ff += patches.tensor[row, k, m] * frame.f[k] * frame.f[m]
@@ -87,10 +125,19 @@ def _motion(row, patches, nodes, frame, sine, h, turn, offset, rise):
     variation = nodes.about[nodes.index[home[0], home[1]], 12]
     rest = 2.0 * variation * h + turn * turn
     if offset == 0.0:
-        return k_ff, k_tt, k_ft, 0.0, 0.0, rest
+        return Wander(-1, turn, lift, k_ff, k_tt, k_ft, 0.0, 0.0, rest)
     lateral = (2.0 * variation * h + 0.5 * turn * turn + turn * turn / (sine - turn)) / (sine - turn)
     psi = min(turn / (sine - turn), (abs(k_tt) + abs(k_ft)) * h / sine + lateral)
-    return k_ff, k_tt, k_ft, psi, lateral, rest
+    return Wander(-1, turn, lift, k_ff, k_tt, k_ft, psi, lateral, rest)
+
+
+class Obstacles(NamedTuple):
+    """This record holds a tree and the face numbers of its triangles, the face of the contact, and the triangle tested first."""
+
+    tree: Any
+    triangle_face: Any
+    face: int
+    hint: int
 
 
 @kernel
@@ -101,14 +148,16 @@ def _cell_status(row, patches, nodes, face, sweeping, tree, triangle_face, block
     across it all on one side (B12). On a plane along the axis it shifts (B15).
     """
     first = _ABOUT if patches.flat[row] else _LEANING
-    best, result = _by(first, row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, workspace)
+    obstacles = Obstacles(tree, triangle_face, face, blocker)
+    best, result = _status_by(first, row, patches, nodes, sweeping, obstacles, body, workspace)
     if first == _LEANING:
         for rule in (_ABOUT, _LEVEL):
             if best == 0:
                 break
             if rule == _ABOUT and not sweeping.tool.mode[0, 0] > 0.0:
                 continue
-            status, met = _by(rule, row, patches, nodes, face, sweeping, tree, triangle_face, result, body, workspace)
+            obstacles = Obstacles(tree, triangle_face, face, result)
+            status, met = _status_by(rule, row, patches, nodes, sweeping, obstacles, body, workspace)
             best, result = min(best, status), met if met >= 0 else result
     return best, result
 
@@ -123,126 +172,158 @@ def _longest(piece):
 
 
 @kernel
-def _by(rule, row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, workspace):
-    """`_outlook` by one rule."""
-    tool, depth, chord = sweeping.tool, sweeping.depth, sweeping.chord
-    f, t, near = workspace.f, workspace.t, workspace.near
-    p, n, a = patches.point[row], patches.normal[row], patches.axis[row]
-    h, flat, home = patches.patch[row], patches.flat[row], patches.home[row]
-    if not h > 0.0:
-        return 1, -1
+def _leaning(rule, row, patches, f):
+    """Write the tilt direction `f` that a rule takes; whether there is one, and the stance, of which only the mode is open."""
+    n, a = patches.normal[row], patches.axis[row]
     cosine = dot(a, n)
     for k in range(3):
         f[k] = a[k] - cosine * n[k]
     steepness = np.sqrt(dot(f, f))
-    sine = steepness
     upright, along = rule != _LEANING, rule == _LEVEL and abs(cosine) <= _ALONG
     if rule == _LEVEL and not along:
         side = patches.side[row]
         length = np.sqrt(dot(side, side))
-        # A side that is not known, or does not lie in the plane, is none.
-        if not (steepness <= _ALONG and cosine > 0.0 and abs(length - 1.0) <= 1e-6 and abs(dot(side, n)) <= 1e-6):
-            return NEVER, -1
         for k in range(3):
             f[k] = side[k]
-        sine, cosine = 0.0, 1.0
-    elif flat or sine < 1e-6:
-        sine, cosine = 0.0, 1.0
+        # A side that is not known, or does not lie in the plane, is none.
+        known = steepness <= _ALONG and cosine > 0.0 and abs(length - 1.0) <= 1e-6 and abs(dot(side, n)) <= 1e-6
+        return known, Stance(rule, upright, along, 0.0, 1.0, steepness, -1)
+    if patches.flat[row] or steepness < 1e-6:
         perpendicular(n, f)
-    else:
-        for k in range(3):
-            f[k] /= sine
-    cross(n, f, t)
-    tilt = np.arctan2(sine, cosine)
-    mode = 0 if flat else mode_at(tool, tilt)
-    if mode < 0:
-        return NEVER, -1
-    offset, rise, low, high, _ = tool.mode[mode]
-    if (
-        upright
-        and not flat
-        and not along
-        and not (
-            mode == 0 and low <= 0.0 and cosine > 0.0 and steepness <= _NEAR * MOST_TURN and len(sweeping.dummy) > 0
-        )
-    ):
-        return NEVER, -1
-    nose = Nose(offset, rise, np.cos(sweeping.widening[mode]), np.sin(sweeping.widening[mode]), low, high)
-    if flat and len(tool.mode) > 1 and high < 0.25:
-        return NEVER, -1
-    frame, pose, most = Frame(p, n, f, t), (sine, cosine), workspace.seen.most
-    if not begin(frame, h, home, nodes, workspace.seen):
-        return NEVER, -1
-    if rule == _LEVEL and not STRETCH * most[0, 3] * _SMALLEST * h <= _ALONG:
-        return NEVER, -1
+        return True, Stance(rule, upright, along, 0.0, 1.0, steepness, -1)
+    for k in range(3):
+        f[k] /= steepness
+    return True, Stance(rule, upright, along, steepness, cosine, steepness, -1)
+
+
+@kernel
+def _touches(stance, flat, sweeping):
+    """Whether a cutter touches in the mode of its stance so that the rule holds."""
+    if stance.mode < 0:
+        return False
+    _, _, low, high, _ = sweeping.tool.mode[stance.mode]
+    if flat:
+        return not (len(sweeping.tool.mode) > 1 and high < 0.25)
+    if not stance.upright or stance.along:
+        return True
+    near = stance.steepness <= _NEAR * MOST_TURN
+    return stance.mode == 0 and low <= 0.0 and stance.cosine > 0.0 and near and len(sweeping.dummy) > 0
+
+
+@kernel
+def _settled(stance, turn, tilt, high, modes):
+    """The `status` of `cover` where the normal's turn alone says that a rule does not hold all over the patch, else -1."""
+    # In a smaller patch normals turn less: there the lean is no nearer to them.
+    if stance.rule == _ABOUT and not stance.steepness <= _NEAR * turn + _ALONG:
+        return NEVER
+    if stance.rule == _LEVEL and not turn <= _ALONG:
+        return 1
+    if modes > 1 and not stance.along and not tilt + turn <= high:
+        return 1
+    return -1
+
+
+@kernel
+def _bounded(stance, row, patches, nodes, frame, sweeping, depth, workspace):
+    """How the cutter moves within its patch, and whether bounds of curvature decide; writes `near`: what needs no test."""
+    tool, chord, near, flat = sweeping.tool, sweeping.chord, workspace.near, patches.flat[row]
+    h, home, upright, pose = patches.patch[row], patches.home[row], stance.upright, (stance.sine, stance.cosine)
+    offset, rise, low, high, _ = tool.mode[stance.mode]
+    widening = sweeping.widening[stance.mode]
+    nose = Nose(offset, rise, np.cos(widening), np.sin(widening), low, high)
+    tilt = np.arctan2(stance.sine, stance.cosine)
+    most, full, wander = workspace.seen.most, np.inf, _decided(-1)
     # In the smallest patch there remain the home node's own curvature and what it may differ in its cell.
-    least = spared(chord + distance_of(0) * _SMALLEST * h, depth, chord)
+    least = spared(chord + distance_of(0) * _SMALLEST * h, sweeping.depth, chord)
     if not upright and not held_below(pose, 0.0, most[0, 0] - least, most[0, 2], most[0, 1] - least, 0.0, nose):
-        return NEVER, -1
-    if rule == _LEVEL:
-        # What a cutter that stands exactly enters of a plane that leans this little.
-        depth -= (_longest(tool.piece[mode]) if along else 2.0 * offset) * (2.0 * _ALONG)
-    full, turn, lift, k_ff, k_tt, k_ft, psi, lateral, rest = np.inf, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0
+        return _decided(NEVER)
     # Bounds do not get smaller with distance: what does not hold nearby needs no look farther out.
     for last in (0, _HALF_WAY, EXTENTS - 1):
         if full == np.inf:
             full = look_round(frame, h, home, nodes, workspace.seen, h * distance_of(last))
         if full < 0.0:
-            return 1, -1
+            return _decided(1)
         # How far the normal turns within the patch, and how far the surface leaves the tangent plane.
         turn, lift = STRETCH * most[0, 3] * h, LIFT * most[0, 3] * h * h
-        if upright and not flat:
-            # In a smaller patch normals turn less: there the lean is no nearer to them.
-            if rule == _ABOUT and not steepness <= _NEAR * turn + _ALONG:
-                return NEVER, -1
-            if rule == _LEVEL and not turn <= _ALONG:
-                return 1, -1
-            if len(tool.mode) > 1 and not along and not tilt + turn <= high:
-                return 1, -1
+        settled = _settled(stance, turn, tilt, high, len(tool.mode)) if upright and not flat else -1
+        if settled >= 0:
+            return _decided(settled)
         if not turn <= MOST_TURN or too_steep(pose, turn, upright, nose):
-            return halvings(most, h, pose, upright, nose, depth, chord, near), -1
+            return _decided(halvings(most, h, pose, upright, nose, depth, chord, near))
+        wander = Wander(-1, turn, lift, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         if not upright:
-            k_ff, k_tt, k_ft, psi, lateral, rest = _motion(row, patches, nodes, frame, sine, h, turn, offset, rise)
-        held = extent(most, last, full, h, pose, upright, psi, turn, nose, depth, chord, near)
+            wander = _wander(row, patches, nodes, frame, stance.sine, offset, turn, lift)
+        held = extent(most, last, full, h, pose, upright, wander.psi, turn, nose, depth, chord, near)
         if held < 0:
-            return halvings(most, h, pose, upright, nose, depth, chord, near), -1
+            return _decided(halvings(most, h, pose, upright, nose, depth, chord, near))
         if held < last:
             break
-    if not near[0] > 0.0:
-        return NEVER, -1
+    return wander if near[0] > 0.0 else _decided(NEVER)
+
+
+@kernel
+def _move(stance, wander, row, patches, frame, sweeping, body, workspace):
+    """Write the bodies and pieces that hold the cutter wherever it moves with its contact in the patch."""
+    sine, cosine, h, piece = stance.sine, stance.cosine, patches.patch[row], sweeping.tool.piece[stance.mode]
+    offset, rise, _, _, _ = sweeping.tool.mode[stance.mode]
+    turn, lift, steepness = wander.turn, wander.lift, stance.steepness
     for k in range(3):
-        body[P + k] = p[k] + rise * n[k]
-        body[A + k] = a[k]
-        body[X + k] = cosine * f[k] - sine * n[k]
-        body[Y + k] = t[k]
+        body[P + k] = frame.p[k] + rise * frame.n[k]
+        body[A + k] = patches.axis[row, k]
+        body[X + k] = cosine * frame.f[k] - sine * frame.n[k]
+        body[Y + k] = frame.t[k]
     body[HALF] = 0.0
-    if rule == _ABOUT:
-        body[OFFSET] = 0.0
+    body[OFFSET] = 0.0 if stance.rule == _ABOUT else offset
+    if stance.rule == _ABOUT:
         for k in range(BODY):
             workspace.bodies[0, k] = body[k]
         # What the contact and the centre of curvature move across the axis, and along it.
-        grown(
-            sweeping.dummy,
-            workspace.pieces[0],
-            h + rise * turn,
-            lift + h * steepness + rise * turn * (steepness + turn),
-        )
-    elif rule == _LEVEL:
-        body[OFFSET] = offset
-        grow = lift + (h + rise + 2.0 * offset) * 2.0 * _ALONG
-        extruded(body, tool.piece[mode], frame, h, pose, (1.0, 0.0, 0.0, 1.0, 0.0), grow, workspace, 18)
+        along = lift + h * steepness + rise * turn * (steepness + turn)
+        grown(sweeping.dummy, workspace.pieces[0], h + rise * turn, along)
+        return
+    if stance.rule == _LEVEL:
+        grow, slides = lift + (h + rise + 2.0 * offset) * 2.0 * _ALONG, (1.0, 0.0, 0.0, 1.0, 0.0)
     else:
-        body[OFFSET] = offset
-        grow = 0.5 * abs(offset) * psi * psi + lift + rise * rest
+        grow = 0.5 * abs(offset) * wander.psi * wander.psi + lift + rise * wander.rest
         # The centre of curvature wanders less than the contact on a concave surface, and turns with the normal.
         lever = rise + (offset / sine if sine > 0.0 else 0.0)
-        slides = (1.0 - rise * k_ff, rise * abs(k_ft), lever * k_ft, abs(1.0 - lever * k_tt), abs(offset) * lateral)
-        extruded(body, tool.piece[mode], frame, h, pose, slides, grow, workspace, 18)
-    exempt = sweeping.flutes if upright else sweeping.nose[mode]
-    near[6], near[7], near[8] = turn, lift, depth
+        across, mixed = abs(1.0 - lever * wander.k_tt), lever * wander.k_ft
+        slides = (1.0 - rise * wander.k_ff, rise * abs(wander.k_ft), mixed, across, abs(offset) * wander.lateral)
+    extruded(body, piece, frame, h, (sine, cosine), slides, grow, workspace, 18)
+
+
+@kernel
+def _status_by(rule, row, patches, nodes, sweeping, obstacles, body, workspace):
+    """`_cell_status` by one rule."""
+    f, t, near, flat, depth = workspace.f, workspace.t, workspace.near, patches.flat[row], sweeping.depth
+    if not patches.patch[row] > 0.0:
+        return 1, -1
+    known, stance = _leaning(rule, row, patches, f)
+    if not known:
+        return NEVER, -1
+    n = patches.normal[row]
+    cross(n, f, t)
+    mode = 0 if flat else mode_at(sweeping.tool, np.arctan2(stance.sine, stance.cosine))
+    stance = Stance(rule, stance.upright, stance.along, stance.sine, stance.cosine, stance.steepness, mode)
+    frame, seen_nodes = Frame(patches.point[row], n, f, t), workspace.seen
+    if not _touches(stance, flat, sweeping) or not begin(frame, patches.patch[row], patches.home[row], nodes, seen_nodes):
+        return NEVER, -1
+    if rule == _LEVEL:
+        if not STRETCH * seen_nodes.most[0, 3] * _SMALLEST * patches.patch[row] <= _ALONG:
+            return NEVER, -1
+        # What a cutter that stands exactly enters of a plane that leans this little.
+        wide = _longest(sweeping.tool.piece[mode]) if stance.along else 2.0 * sweeping.tool.mode[mode, 0]
+        depth -= wide * (2.0 * _ALONG)
+    wander = _bounded(stance, row, patches, nodes, frame, sweeping, depth, workspace)
+    if wander.status >= 0:
+        return wander.status, -1
+    _move(stance, wander, row, patches, frame, sweeping, body, workspace)
+    exempt = sweeping.flutes if stance.upright else sweeping.nose[mode]
+    near[6], near[7], near[8] = wander.turn, wander.lift, depth
     hit = first_in_the_way(
-        blocker, exempt, sweeping.flutes, rule == _ABOUT, frame, face, tree, triangle_face, workspace
-    )
+        obstacles.hint, exempt, sweeping.flutes, rule == _ABOUT, frame, obstacles.face, obstacles.tree,
+        obstacles.triangle_face, workspace,
+    )  # fmt: skip
     return 0 if hit < 0 else 1, hit
 
 

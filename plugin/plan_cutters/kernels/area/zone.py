@@ -4,7 +4,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.jit import kernel, maker
 
 #: Distances tried for `extent`, and the largest of them in patch radii.
 EXTENTS, FARTHEST = 17, 10.0
@@ -122,7 +122,7 @@ class Seen(NamedTuple):
     looked: Any
 
 
-@entry
+@maker
 def seen():
     """Make a record for it."""
     return Seen(

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from plan_cutters.kernels.codes import ARC, BOTTOM, CONE, CYLINDER, HIGH, KIND, LOW, RADIUS, ROUND, SLOPE, TOP, WIDE
-from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.jit import kernel, maker
 
 #: A bound of a piece: two rims, each a radius and a height, and by how much what lies between them is grown all round; the slope
 #: of its side; whether there is such a bound.
@@ -111,7 +111,7 @@ def _bounds_of(piece, k, bound):
         _put_bound(bound, 2 * k + 1, wide, piece[k, BOTTOM], wide, piece[k, TOP], 0.0, 0.0)
 
 
-@entry
+@maker
 def turning_of(piece, offset, low, high):
     """Compute the bounds of a tool's pieces in one mode, which posture maps need.
 

@@ -5,7 +5,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from plan_cutters.kernels.codes import HIGH, LOW, RADIUS
-from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.jit import kernel, maker
 from plan_cutters.kernels.linear.lanes import LANES
 from plan_cutters.kernels.maps.bounds import FAR, FLOOR, LATERAL, NEAR
 from plan_cutters.kernels.maps.intervals import (
@@ -60,7 +60,7 @@ class Workspace(NamedTuple):
     scratch: Scratch
 
 
-@entry
+@maker
 def cut_workspace():
     """Make a workspace for cutting intervals."""
     return Workspace(

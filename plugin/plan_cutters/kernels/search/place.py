@@ -23,7 +23,7 @@ from plan_cutters.kernels.codes import (
     TILT_TO,
 )
 from plan_cutters.kernels.intervals import remove
-from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.jit import kernel, maker
 from plan_cutters.kernels.limits import held_tilts, turn_of
 from plan_cutters.kernels.linear.vectors import tilt_frame
 from plan_cutters.kernels.material import outside, winding
@@ -142,7 +142,7 @@ class Workspace(NamedTuple):
     scratch: Scratch
 
 
-@entry
+@maker
 def search_workspace():
     """Make a workspace for searches."""
     return Workspace(

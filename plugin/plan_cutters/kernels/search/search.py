@@ -10,6 +10,8 @@ Curvature at the contact only tells where to look first: a posture that it forbi
 no point of the surface is too deep.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from plan_cutters.kernels.codes import (
@@ -41,7 +43,9 @@ _NO_INTERVAL = 1.7e-4
 #: A posture is searched in intervals down to this, rad: it may stand where arcs leave more than they seem to.
 _FINEST = 1e-5
 #: Where searches begin, among the tilts that curvature allows and among the others: rotation, and the tilt tried first.
-START = ((0, -1.0), (0, -1.0))
+_ANYWHERE = (0, -1.0)
+START = (_ANYWHERE, _ANYWHERE)
+_FIRST = np.zeros(1, np.int64)
 
 
 @kernel
@@ -77,45 +81,66 @@ def _write(results, row, contacts, ranges, rotation, tilt):
         results.axis[row, k] = cosine * n[k] + sine * results.tilt_direction[row, k]
 
 
+class Mode(NamedTuple):
+    """How samples are searched: from the `at`-th on, each at first at the rotation and tilt of `start`, at so many `turns`, with
+    intervals of tilt narrower than `narrowest`, rad, passed over. decides: whether the inner tool says what is inaccessible, and why.
+    stops: whether the first sample without a posture is the last one."""
+
+    at: int
+    start: tuple[int, float]
+    turns: int
+    narrowest: float
+    decides: bool
+    stops: bool
+
+
 @entry
-def search(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, results):
-    """Decide the samples `rows`, one after the other, each starting from the posture of the one before.
+def search_rows(rows, contacts, ranges, tools, solids, mode, results):
+    """Look for postures of the samples `rows`, one after the other, each starting from the posture of the one before.
+
+    All searches are this one: compiled for each of its uses, they took three times as long on the first run.
 
     Parameters
     ----------
     rows : (m,) int64
-        Samples to decide, neighbours in sequence.
+        Samples, neighbours in sequence.
     contacts : Contacts
     ranges : Ranges
-    outer_tool, inner_tool : Tool
+    tools : (Tool, Tool)
         The outer and the inner tool.
-    possible, certain : Solids
-        The possible obstacles, to call a posture safe; the certain ones, to call a sample inaccessible.
-    results : Found, written
+    solids : (Solids, Solids)
+        The possible and the certain obstacles.
+    mode : Mode
+        Unless it decides, nothing is asked of the inner tool and the certain obstacles.
+    results : VerdictArrays, written
 
     Returns
     -------
-    int
-        How many boxes were looked at, and what else takes as long (`sweep.ROTATION`).
+    int, int
+        Where it ended in `rows`, and how many boxes were looked at, and what else takes as long (`sweep.ROTATION`).
     """
-    rotations = len(ranges.rotation_cos)
+    rotations, (outer_tool, inner_tool), (possible, certain) = len(ranges.rotation_cos), tools, solids
     # What is only perhaps in the way must not count as surely in it: each side has obstacle caches of its own.
     pasts, workspaces = both(rotations, len(outer_tool.mode))
-    outer = Side(outer_tool, possible, MAYBE_INSIDE, _FINEST, pasts)
-    pasts, _ = both(rotations, len(inner_tool.mode))
+    outer = Side(outer_tool, possible, MAYBE_INSIDE, mode.narrowest, pasts)
+    pasts, _ = both(rotations if mode.decides else 0, len(inner_tool.mode))
     inner = Side(inner_tool, certain, SURELY_INSIDE, _NO_INTERVAL, pasts)
-    last, freed, missed, tilt = START, START, False, 0.0
-    for row in rows:
-        sure = False
+    start, at = (mode.start, mode.start), mode.at
+    last, freed, missed, tilt = start, start, False, 0.0
+    while at < len(rows) and not (mode.stops and missed):
+        row, sure = rows[at], False
+        at += 1
         # The sides in turn: the inner one first where the sample before has no posture.
         for of_inner in (missed, not missed):
+            if of_inner and not mode.decides:
+                continue
             if of_inner:
-                rotation, _, freed = sweep_both(contacts, row, ranges, inner, freed, rotations, workspaces)
+                rotation, _, freed = sweep_both(contacts, row, ranges, inner, freed, mode.turns, workspaces)
                 sure = rotation < 0
             else:
-                rotation, tilt, last = sweep_both(contacts, row, ranges, outer, last, rotations, workspaces)
+                rotation, tilt, last = sweep_both(contacts, row, ranges, outer, last, mode.turns, workspaces)
                 missed = rotation < 0
-            if rotation < 0:
+            if rotation < 0 and mode.decides:
                 results.reason[row] = _reason(workspaces[0].tally, workspaces[1].tally)
             if sure or not missed:
                 break
@@ -124,35 +149,28 @@ def search(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, re
         else:
             results.verdict[row] = ACCESSIBLE
             _write(results, row, contacts, ranges, rotation, tilt)
-    return workspaces[0].scratch.looked[0] + workspaces[1].scratch.looked[0]
+    return at, workspaces[0].scratch.looked[0] + workspaces[1].scratch.looked[0]
 
 
-@entry
+def search(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, results):
+    """Decide the samples `rows`, one after the other; how many boxes were looked at.
+
+    The possible obstacles are there to call a posture safe, the certain ones to call a sample inaccessible; else as `search_rows`.
+    """
+    mode = Mode(0, _ANYWHERE, len(ranges.rotation_cos), _FINEST, True, False)
+    return search_rows(rows, contacts, ranges, (outer_tool, inner_tool), (possible, certain), mode, results)[1]
+
+
 def until_not_reached(rows, at, contacts, ranges, tool, solids, patient, results):
     """Look for postures of the samples `rows` from the `at`-th on, at which a tool is in nothing's way; where it ended.
 
     Unless it is `patient`, behind the first sample that has none; such samples are written as UNDECIDED, for nothing was asked
-    about why. Intervals that `search` takes for none are passed over, so that it finds a posture where this does. The other
-    parameters are those of `posture`.
+    about why. Intervals that `search` takes for none are passed over, so that it finds a posture where this does.
     """
-    rotations = len(ranges.rotation_cos)
-    (pasts, workspaces), last = both(rotations, len(tool.mode)), START
-    side = Side(tool, solids, MAYBE_INSIDE, _NO_INTERVAL, pasts)
-    while at < len(rows):
-        row = rows[at]
-        at += 1
-        rotation, tilt, last = sweep_both(contacts, row, ranges, side, last, rotations, workspaces)
-        if rotation >= 0:
-            results.verdict[row] = ACCESSIBLE
-            _write(results, row, contacts, ranges, rotation, tilt)
-        else:
-            results.verdict[row] = UNDECIDED
-            if not patient:
-                return at
-    return at
+    mode = Mode(at, _ANYWHERE, len(ranges.rotation_cos), _NO_INTERVAL, False, not patient)
+    return search_rows(rows, contacts, ranges, (tool, tool), (solids, solids), mode, results)[0]
 
 
-@entry
 def posture(contacts, ranges, tool, narrowest, start, turns, solids, results):
     """Look for a posture of the first contact at which a tool is in nothing's way; whether there is one.
 
@@ -169,15 +187,12 @@ def posture(contacts, ranges, tool, narrowest, start, turns, solids, results):
         How many rotations to look at.
     solids : Solids
         All that may be in the way.
-    results : Found, written
+    results : VerdictArrays, written
         The posture.
     """
-    pasts, workspaces = both(len(ranges.rotation_cos), len(tool.mode))
-    side = Side(tool, solids, MAYBE_INSIDE, narrowest, pasts)
-    rotation, tilt, _ = sweep_both(contacts, 0, ranges, side, (start, start), turns, workspaces)
-    if rotation >= 0:
-        _write(results, 0, contacts, ranges, rotation, tilt)
-    return rotation >= 0
+    mode = Mode(0, start, turns, narrowest, False, False)
+    search_rows(_FIRST, contacts, ranges, (tool, tool), (solids, solids), mode, results)
+    return bool(results.verdict[0] == ACCESSIBLE)
 
 
 @entry

@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from plan_cutters.kernels.codes import ARC, HIGH, INSIDE, KIND, LOW, OFFSET_OF, RADIUS, RISE, ROUND, SCALE, SLOPE
-from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.jit import kernel, maker
 from plan_cutters.kernels.limits import turn_of
 from plan_cutters.kernels.linear.vectors import cross
 from plan_cutters.kernels.rows import Frame
@@ -69,7 +69,7 @@ class Side(NamedTuple):
     pasts: Any
 
 
-@entry
+@maker
 def memory(rotations, modes, bent):
     """Make an empty obstacle cache."""
     return Memory(
@@ -276,7 +276,7 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, 
     return -1, 0.0
 
 
-@entry
+@maker
 def both(rotations, modes):
     """Make empty obstacle caches for both kinds of sweep, and a workspace for each."""
     return (memory(rotations, modes, False), memory(rotations, modes, True)), (search_workspace(), search_workspace())

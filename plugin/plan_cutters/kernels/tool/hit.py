@@ -32,14 +32,14 @@ from plan_cutters.kernels.codes import (
     SLOPE,
     TOP,
 )  # fmt: skip
-from plan_cutters.kernels.jit import entry, kernel
+from plan_cutters.kernels.jit import kernel, maker
 from plan_cutters.kernels.rows import Scratch
 from plan_cutters.kernels.tool.pieces import clipped, inset, polygon_hit, support
 
 P, A, X, Y, OFFSET, HALF, BODY = 0, 3, 6, 9, 12, 13, 14
 
 
-@entry
+@maker
 def scratch():
     """Make a workspace for walks of a tree."""
     return Scratch(
