@@ -12,7 +12,7 @@ from plan_cutters.workers.assignment import assignment
 
 @dataclass(frozen=True)
 class Offer:
-    """What a task of a batch offers to the process that plans its part.
+    """An offer is what a task of a batch offers to the process that plans its part.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class JobInput:
 
 
 def job_input() -> JobInput:
-    """What was handed to this process: nothing where no batch has started it."""
+    """Return what was handed to this process: nothing where no batch has started it."""
     file = assignment().job
     return JobInput() if file is None else _read(file)
 
