@@ -95,9 +95,7 @@ def test_a_part_that_does_not_get_the_cluster_judges_by_itself(ready, running, t
 
 def test_a_cluster_that_is_lost_on_the_way_costs_nothing(ready, tmp_path):
     with LocalCluster(n_workers=1, processes=False, dashboard_address=":0") as mortal:
-        lent = SharedCluster(
-            Offer(mortal.scheduler_address, str(tmp_path / "turn"), str(tmp_path / "said")), large=0
-        )
+        lent = SharedCluster(Offer(mortal.scheduler_address, str(tmp_path / "turn"), str(tmp_path / "said")), large=0)
         lent(ready, ready.cutters[0])
     found = lent(ready, ready.cutters[1])
     lent.close()
