@@ -7,7 +7,8 @@ import pytest
 from distributed import Client, LocalCluster
 
 from plan_cutters import Options, PlanError, plan, plan_many
-from plan_cutters.batch import cluster, job_input
+from plan_cutters.batch import cluster
+from plan_cutters.batch.job_input import Offer
 from plan_cutters.batch.shared_cluster import SharedCluster
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.files.lock import Lock
@@ -63,7 +64,7 @@ def test_workers_with_other_versions_are_refused_with_both_named(running, monkey
 
 
 def test_a_large_part_of_a_batch_is_judged_by_its_cluster_and_says_so(ready, running, tmp_path):
-    offer = job_input.Offer(running, str(tmp_path / "turn"), str(tmp_path / "said"))
+    offer = Offer(running, str(tmp_path / "turn"), str(tmp_path / "said"))
     cutter = ready.cutters[0]
     lent = SharedCluster(offer, large=len(ready.samples))
     try:
@@ -81,7 +82,7 @@ def test_a_large_part_of_a_batch_is_judged_by_its_cluster_and_says_so(ready, run
 def test_a_part_that_does_not_get_the_cluster_judges_by_itself(ready, running, tmp_path, monkeypatch, why):
     monkeypatch.setattr(cluster, "_ANSWER", 0.3)
     address = "tcp://127.0.0.1:9" if why == "no scheduler" else running
-    offer = job_input.Offer(address, str(tmp_path / "turn"), str(tmp_path / "said"))
+    offer = Offer(address, str(tmp_path / "turn"), str(tmp_path / "said"))
     other = Lock(tmp_path / "turn") if why == "taken" else None
     lent = SharedCluster(offer, large=len(ready.samples) + (why == "small"))
     found = lent(ready, ready.cutters[0])
@@ -94,9 +95,7 @@ def test_a_part_that_does_not_get_the_cluster_judges_by_itself(ready, running, t
 
 def test_a_cluster_that_is_lost_on_the_way_costs_nothing(ready, tmp_path):
     with LocalCluster(n_workers=1, processes=False, dashboard_address=":0") as mortal:
-        lent = SharedCluster(
-            job_input.Offer(mortal.scheduler_address, str(tmp_path / "turn"), str(tmp_path / "said")), large=0
-        )
+        lent = SharedCluster(Offer(mortal.scheduler_address, str(tmp_path / "turn"), str(tmp_path / "said")), large=0)
         lent(ready, ready.cutters[0])
     found = lent(ready, ready.cutters[1])
     lent.close()

@@ -2,6 +2,7 @@
 
 import functools
 import os
+import pickle
 import signal
 import subprocess
 import tempfile
@@ -11,9 +12,10 @@ from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import Any
 
-from plan_cutters.batch import job_input, keys, store
+from plan_cutters.batch import keys, store
 from plan_cutters.batch.content import Content, content
 from plan_cutters.batch.job import UNREADABLE, USAGE, Handed
+from plan_cutters.batch.job_input import JobInput, Offer
 from plan_cutters.batch.row import PartRow
 from plan_cutters.errors import PlanError
 from plan_cutters.workers.assignment import INTERRUPTED, TIMED_OUT, Assignment
@@ -179,16 +181,9 @@ def _unfit(versions: Mapping[str, str]) -> str:
 @functools.cache
 def _ready() -> str:
     """Make sure, once a worker, that the CAD kernel loads here and that there is machine code; why not."""
-    loaded = Child(
-        ["-c", "import OCP"],
-        Assignment(),
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        text=True,
-        errors="replace",
-    )
-    _, words = loaded.process.communicate()
-    if loaded.process.returncode:
+    loaded = Child(["-c", "import OCP"], Assignment(), stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    words = loaded.process.communicate()[1].decode(errors="replace")
+    if loaded.ended():
         why = (words.strip().splitlines() or ["it crashed"])[-1]
         return f"{_here()}: the CAD kernel cannot be loaded ({why}): install it, libgl1 on Debian"
     from plan_cutters.files.lock import Lock
@@ -251,14 +246,12 @@ def _wanted() -> Callable[[], bool]:
     return wanted
 
 
-def _offered(folder: Path) -> job_input.Offer | None:
+def _offered(folder: Path) -> Offer | None:
     """The cluster of this worker, for a part that turns out to be large; None where another process cannot reach it."""
     worker = _worker()
     if worker is None or not worker.scheduler.address.startswith("tcp://"):
         return None
-    return job_input.Offer(
-        worker.scheduler.address, str(Path(worker.local_directory, "large-part")), str(folder / ".lent")
-    )
+    return Offer(worker.scheduler.address, str(Path(worker.local_directory, "large-part")), str(folder / ".lent"))
 
 
 def _free_memory() -> None:
@@ -280,15 +273,16 @@ def planned(task: Task, content: Content, folder: Path) -> tuple[int, str]:
         there.parent.mkdir(parents=True, exist_ok=True)
         there.write_bytes(data)
     offer = _offered(folder)
-    (folder / ".handed").write_bytes(job_input.packed(task.handed.options, task.part, offer, task.secret))
+    handed = JobInput(task.handed.options, task.part, offer, task.secret)
+    (folder / ".handed").write_bytes(pickle.dumps(handed, protocol=5))
     words = ["-m", "plan_cutters", "plan", f"./{name}", "-o", "out", "--quiet", *task.words]
     if task.store is not None:
         # A cutter that joins later is judged alone: the verdicts of the others are there.
         words += ["--verdicts", f"{task.store.rstrip('/')}/{VERDICTS}"]
     wanted = _wanted()
     with open(folder / ".said", "wb") as log:
-        handed = Assignment(parent=os.getpid(), job=str(folder / ".handed"))
-        child = Child(words, handed, cwd=folder, stdin=subprocess.DEVNULL, stdout=log, stderr=log)
+        knows = Assignment(parent=os.getpid(), job=str(folder / ".handed"))
+        child = Child(words, knows, cwd=folder, stdin=subprocess.DEVNULL, stdout=log, stderr=log)
     shared = False
     try:
         ends = time.monotonic() + (task.timeout or float("inf"))

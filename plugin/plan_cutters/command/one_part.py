@@ -1,6 +1,7 @@
 """One part: planned, written, summarised."""
 
 import gc
+import pickle
 import time
 import traceback
 from collections.abc import Callable, Iterator, Mapping
@@ -8,7 +9,7 @@ from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from plan_cutters.batch import job_input
+from plan_cutters.batch.job_input import job_input
 from plan_cutters.command import terminal
 from plan_cutters.command.codes import code_of
 from plan_cutters.command.progress import Display, Teller
@@ -50,7 +51,8 @@ def one_part(
         gc.freeze()
         gc.enable()
         clock = Clock(watch.tell, began=began)
-        source = job_input.part() if job_input.holds_part() else part
+        handed = job_input().part
+        source = pickle.loads(handed) if handed else part
         with _judging(request) as judged:
             result = run(source, options, clock, read_timeout=request.read_timeout, at=report_work, compiling=compiling,
                          excluded=omitted, judged=judged)  # fmt: skip
@@ -107,11 +109,11 @@ def _judging(request: "PlanRequest") -> "Iterator[Judge]":
 
             client = stack.enter_context(cluster.opened(request.cluster))
         shared = None
-        if (offer := job_input.offer()) is not None:
+        if (offer := job_input().offer) is not None:
             from plan_cutters.batch.shared_cluster import SharedCluster
 
             shared = stack.enter_context(closing(SharedCluster(offer)))
-        key = job_input.key() if request.verdicts_key is None else key_of(request.verdicts_key)
+        key = job_input().key if request.verdicts_key is None else key_of(request.verdicts_key)
         judged = judging(client, request.verdicts, shared, key)
         yield judged
     if request.verdicts is not None:

@@ -151,10 +151,10 @@ def refuse_unplanned_operations(request: PlanningRequest) -> None:
 def _faults(parts: Sequence[str]) -> list[CadIoError]:
     """Why parts cannot be read, as far as their first bytes tell."""
     from cad_io.read.sniff import kind
-    from plan_cutters.batch.job_input import holds_part
+    from plan_cutters.batch.job_input import job_input
 
     errors: list[CadIoError] = []
-    for part in () if holds_part() else parts:
+    for part in () if job_input().part else parts:
         try:
             kind(part)
         except CadIoError as error:
@@ -208,8 +208,12 @@ def _fixture(file: str) -> None:
 
 def options_of(request: PlanningRequest) -> "Options":
     """The options of a plan, from the words of the command line; a PlanError for what has no meaning."""
-    from plan_cutters.batch import job_input
+    import pickle
+
+    from plan_cutters.batch.job_input import job_input
     from plan_cutters.options import Options
 
     # A batch has looked at its words already, perhaps on another machine.
-    return job_input.options() or Options(**planning_options(request))
+    handed = job_input().options
+    options: Options = pickle.loads(handed) if handed else Options(**planning_options(request))
+    return options
