@@ -21,7 +21,6 @@ from plan_cutters.command.terminal import hand_out, paper
 from plan_cutters.command.values import File, Setup, Words, cutter_ids
 from plan_cutters.command.worker import began, can_supervise, follow_parent, is_child, report
 from plan_cutters.files.terminal_text import clean
-from plan_cutters.plan_file.reasons import INTERVALS
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -231,6 +230,8 @@ def _degrees(intervals: "Floats") -> list[list[float]]:
 
 def _facts(result: "PostureMap", face: str, off: float, cutter: "Cutter", request: MapRequest) -> dict[str, Any]:
     """The map as JSON has it; degrees and mm."""
+    from plan_cutters.plan_file.reasons import INTERVALS
+
     words = ("free", "undecided", *INTERVALS)
     none = [None if math.isnan(x) else math.degrees(x) for x in result.local_gouge.tolist()]
     return {
