@@ -29,15 +29,15 @@ from plan_cutters.option_types import ANGLES, PlanOptions
 LEAST_TOLERANCE, MOST_TOLERANCE = 1e-4, 10.0
 #: Longest length that can be requested, mm: longer ones are rather a mistake. Most threads.
 _LONGEST, _MOST_JOBS = 1e6, 1024
-#: What the plan of operations reckons with: the least and the largest value of each option, and its unit.
-_RECKONED = {"feed": (0.1, 1e6, "mm/min"), "scallop": (1e-5, 10.0, "mm"), "stepover": (0.01, 1.0, "diameters"),
+#: The least and the largest value of options, and their unit: the tolerance, and what the plan of operations reckons with.
+_RECKONED = {"tolerance": (LEAST_TOLERANCE, MOST_TOLERANCE, "mm"), "feed": (0.1, 1e6, "mm/min"),
+             "scallop": (1e-5, 10.0, "mm"), "stepover": (0.01, 1.0, "diameters"),
              "index_step": (0.5, 90.0, "deg"), "index_time": (0.0, 1e5, "s"),
              "change_time": (0.0, 1e5, "s"), "setup_time": (0.0, 1e6, "s"), "overlap": (0.0, 1e3, "mm")}  # fmt: skip
 #: The least and the largest value of the other numbers, and what is said of one beyond them.
 _LIMITS = {
     "grid": (2, 5000, "must lie between 2 and 5000 samples a side"),
     "spacing": (math.ulp(0.0), _LONGEST, f"must be a positive number of mm, at most {_LONGEST:g}"),
-    "tolerance": (LEAST_TOLERANCE, MOST_TOLERANCE, f"must lie between {LEAST_TOLERANCE:g} and {MOST_TOLERANCE:g} mm"),
     "allowance": (0.0, _LONGEST, f"must be 0 or a positive number of mm, at most {_LONGEST:g}"),
     "holder_clearance": (0.0, _LONGEST, f"must be 0 or a positive number of mm, at most {_LONGEST:g}"),
     "length_over_radius": (1.0, 1000.0, "must lie between 1 and 1000"),

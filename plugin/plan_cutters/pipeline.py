@@ -314,7 +314,6 @@ def _judged(
 ) -> dict[Cutter, Judged]:  # fmt: skip
     """Combine the verdicts of each cutter over all setups, find the reasons, and make its line in the plan."""
     samples, convex, surroundings = ready.samples, ready.surface_class == CONVEX, ready.conditions.surroundings
-    inside = ready.inside_bodies
     reasons = Reasons(samples, ready.setups, ready.somewhere, ready.machinable)
     by_cutter = {}
     with clock.stage("reasons") as tell:
@@ -339,7 +338,7 @@ def _judged(
                 part=part,
                 surroundings=surroundings,
                 slack=context.outer_tool.slack,
-                inside=inside,
+                inside=ready.inside_bodies,
                 besides=explained.besides,
             )
             judged[cutter] = Judged(verdicts, which, mine if other_setups else verdicts, entry)
@@ -387,16 +386,14 @@ def _over_setups(ready: Prepared, judged: Mapping[Cutter, Judged], others: Seque
     reaches = {cutter.id: each.verdicts for cutter, each in judged.items()}
     here = {cutter.id: each.here for cutter, each in judged.items()}
     served_in = {cutter.id: each.which for cutter, each in judged.items()}
-    there = tuple((axis, dict(verdicts_there)) for axis, verdicts_there in others)
-    return OverSetups(reaches, here, served_in, ready.scene.setup, there)
+    return OverSetups(reaches, here, served_in, ready.scene.setup, tuple((axis, dict(each)) for axis, each in others))
 
 
 def _area(ready: Prepared, cutter: Cutter, judged: Judged, budget: int, most: float) -> AreaEntry:
     """What is proved between the samples, with so many contacts and so much work."""
     # Where all setups hold the part alike, what is free in one of them is free in all.
-    setups = ready.setups[:1] if ready.alike else ready.setups
-    which = np.minimum(judged.which, len(setups) - 1)
-    contexts = [Context.of(cutter, each) for each in setups]
+    contexts = [Context.of(cutter, each) for each in (ready.setups[:1] if ready.alike else ready.setups)]
+    which = np.minimum(judged.which, len(contexts) - 1)
     served = in_each(ready.samples, judged.verdicts, which, contexts, ready.scene.part, ready.scene.orientation,
                      budget=budget, most=most, covered_samples=ready.inside_bodies)  # fmt: skip
     return AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,

@@ -13,6 +13,7 @@ from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.checks import number, shown
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.radius_map import RadiusMap, Shape
+from plan_cutters.domain.tolerance import JUDGED_SHARE
 from plan_cutters.domain.verdicts import INACCESSIBLE, INSIDE, UNJUDGED, blank
 from plan_cutters.errors import OptionError
 from plan_cutters.scene.conditions import Context, contacts_of, require_finite, verdict_arrays_of
@@ -96,7 +97,7 @@ def _cutters(
     if not _STEPS[0] <= step <= _STEPS[1]:
         raise OptionError(f"step of radii {step:g} must lie between {_STEPS[0]:g} and {_STEPS[1]:g}")
     conditions, part = ready.conditions, ready.scene.part
-    finest = 4.0 * conditions.tolerance / min(1.0, ratio) * (1.0 + 1e-9)
+    finest = conditions.tolerance / JUDGED_SHARE / min(1.0, ratio) * (1.0 + 1e-9)
     half = 0.5 * max(part.size) if most is None else number(most, "largest radius")
     first = max(min(_LEAST, _SHARE * half), finest) if least is None else number(least, "least radius")
     last = max(first, half) if most is None else half

@@ -73,8 +73,7 @@ class Reckoned:
             plans = [{"name": name} for name in names]
         timed_ = any(plan["seconds"] is not None for plan in plans if "seconds" in plan)
         stated = effective["index_time_s"]
-        total = sum(weight for _, weight in few["weights"])
-        count = len(question.operations["chosen"])
+        total, count = sum(weight for _, weight in few["weights"]), len(question.operations["chosen"])
         return {
             "asked": effective["operations"],
             "rotary": list(question.machine.names),
@@ -170,7 +169,6 @@ class Reckoned:
         return entries
 
     def _fastest(self, written: Mapping[str, Any]) -> dict[str, Any]:
-        """Reckon what is said of the fastest plan."""
         own = next((plan for plan in written["plans"] if plan["name"] == "fastest"), None)
         seconds = None if own is None else own["seconds"]
         timed = written["fastest"] or {}
@@ -185,10 +183,8 @@ class Reckoned:
         return fastest | {"gap": max(0.0, seconds / bound - 1.0) if bound > 0.0 else 0.0}
 
     def _index_from(self, source: str) -> str:
-        """Where the time to index comes from, if it is not said to be given."""
-        if source != "given" and self.question.machine.rates:
-            return "rates"
-        return source if source in ("given", "assumed") else "assumed"
+        rates = source != "given" and self.question.machine.rates
+        return "rates" if rates else source if source in ("given", "assumed") else "assumed"
 
     def _plan(self, k: int, plan: Mapping[str, Any]) -> dict[str, Any]:
         question, label, seconds = self.question, self.array(k, "operation"), self.array(k, "seconds")
@@ -201,8 +197,7 @@ class Reckoned:
             float(each["index_s"] if one["mode"] == "fixed" else assumed["index_s"])
             for one, each in zip(operations, plan["operations"], strict=True)
         )
-        cutters = {each["cutter"] for each in plan["operations"]}
-        setups = {each["setup"] for each in plan["operations"]}
+        cutters, setups = ({each[name] for each in plan["operations"]} for name in ("cutter", "setup"))
         other = turns + assumed["change_s"] * max(0, len(cutters) - 1) + assumed["setup_s"] * max(0, len(setups) - 1)
         entry: dict[str, Any] = {
             "name": plan["name"],
@@ -217,9 +212,8 @@ class Reckoned:
             "rest": self._rest(self.finished & (label < 0)),
             **_proved([each for each in plan["operations"] if each["proved_share"] is not None]),
         }
-        ratio = self._ratio(fixed)
         if plan["ratio_at_most"] is not None:
-            entry["ratio_at_most"] = ratio
+            entry["ratio_at_most"] = self._ratio(fixed)
         return entry
 
     def _rest(self, rest: NDArray[np.bool_]) -> dict[str, Any]:
@@ -227,9 +221,8 @@ class Reckoned:
         area = float(self.area[rest].sum())
         first = self.question.samples[f"reason_{self.considered[0]}"][rest]
         words = self.question.document["reasons"]
-        counts = {
-            words[c]: int((first == c).sum()) for c in np.unique(first).tolist() if c != _NO_REASON and c < len(words)
-        }
+        known = [c for c in np.unique(first).tolist() if c != _NO_REASON and c < len(words)]
+        counts = {words[c]: int((first == c).sum()) for c in known}
         return {"samples": int(rest.sum()), "area_mm2": area, "share": area / self.whole if self.whole > 0.0 else 0.0,
                 "reason_counts": counts}  # fmt: skip
 

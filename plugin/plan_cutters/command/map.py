@@ -20,7 +20,6 @@ from plan_cutters.command.request import MapRequest, posture_options, read_tools
 from plan_cutters.command.terminal import hand_out, paper
 from plan_cutters.command.values import File, Setup, Words, cutter_ids
 from plan_cutters.files.terminal_text import clean
-from plan_cutters.plan_file.reasons import INTERVALS
 from plan_cutters.workers.assignment import began, is_child, report
 from plan_cutters.workers.child import can_supervise
 from plan_cutters.workers.supervise import supervise
@@ -238,6 +237,8 @@ def _degrees(intervals: "Floats") -> list[list[float]]:
 
 def _facts(result: "PostureMap", face: str, off: float, cutter: "Cutter", request: MapRequest) -> dict[str, Any]:
     """The map as JSON has it; degrees and mm."""
+    from plan_cutters.plan_file.reasons import INTERVALS
+
     words = ("free", "undecided", *INTERVALS)
     none = [None if math.isnan(x) else math.degrees(x) for x in result.local_gouge.tolist()]
     return {

@@ -14,6 +14,7 @@ from plan_cutters.domain.lengths import text_of
 from plan_cutters.domain.shapes import Part, check, flute_length, stages
 from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.domain.spec import dimensions, parted, typed, written
+from plan_cutters.domain.tolerance import JUDGED_SHARE
 from plan_cutters.errors import CutterError
 
 
@@ -181,7 +182,7 @@ class Cutter(Dimensions):
 
     def large_enough(self, tolerance: float) -> bool:
         """Whether verdicts to a tolerance, mm, say anything about this cutter: it is at least four of it thick and long."""
-        return tolerance < self.thinnest / 4
+        return tolerance < JUDGED_SHARE * self.thinnest
 
     @property
     def plain(self) -> bool:

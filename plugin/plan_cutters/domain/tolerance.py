@@ -6,6 +6,8 @@ depths from here; a change of the rule is a new `METHOD` of `scene.question`.
 
 #: Share of the tolerance that the obstacles' chord error may take, and what is asked of the tessellation.
 CHORD_SHARE, CHORD_REQUESTED = 0.25, 0.2
+#: Verdicts say something about a cutter whose radius and flutes' length the tolerance is a smaller share of.
+JUDGED_SHARE = 0.25
 #: Of a nominal answer, mm.
 _HAIR = 1e-9
 

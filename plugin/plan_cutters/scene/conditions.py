@@ -103,6 +103,8 @@ class Context(Record):
         The same two in the form that kernels take.
     dummy : (k, COLUMNS) float
         Of the outer tool the pieces that hold it at tilt 0 in every rotation, as `Assembly.dummy`.
+    judges : bool
+        Whether the tolerance that is kept is fine enough to say anything about the cutter.
     """
 
     cutter: Cutter
@@ -112,21 +114,18 @@ class Context(Record):
     outer: Tool = field(init=False, compare=False)
     inner: Tool = field(init=False, compare=False)
     dummy: Floats = field(init=False, compare=False)
+    judges: bool = field(init=False, compare=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "outer", tool_of(self.outer_tool))
         object.__setattr__(self, "inner", tool_of(self.inner_tool))
         object.__setattr__(self, "dummy", self.outer_tool.dummy)
+        object.__setattr__(self, "judges", self.conditions.judges(self.cutter))
 
     @classmethod
     def of(cls, cutter: Cutter, conditions: Conditions) -> "Context":
         """Make both tools of a cutter, for the tolerance that is kept and the chord error of the obstacles."""
         return cls(cutter, conditions, *tools(cutter, conditions.tolerance, conditions.obstacles.triangles.chord_error))
-
-    @property
-    def judges(self) -> bool:
-        """Whether the tolerance that is kept is fine enough to say anything about the cutter."""
-        return self.conditions.judges(self.cutter)
 
     def under(self, conditions: Conditions) -> "Context":
         """The same cutter under other conditions."""
