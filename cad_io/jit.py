@@ -43,7 +43,9 @@ VERSION: str = numba.__version__
 _BENEATH = {
     "python": [sys.version, sys.flags.optimize],
     "libraries": [VERSION, llvmlite.__version__, np.__version__],
-    "compiler": [str(getattr(numba.config, each)) for each in ("OPT", "BOUNDSCHECK", "LOOP_VECTORIZE", "SLP_VECTORIZE")],
+    "compiler": [
+        str(getattr(numba.config, each)) for each in ("OPT", "BOUNDSCHECK", "LOOP_VECTORIZE", "SLP_VECTORIZE")
+    ],
 }
 
 #: What the compiler is told of every function. Nothing calls one as C does.
@@ -92,8 +94,8 @@ def _of_this_process() -> str | None:
 def cache_folder(name: str, package: str, file: str, ours: frozenset[str] = frozenset()) -> tuple[str, bool]:
     """Folder of the machine code of just a module as it is, and of all that it imports; made if need be; whether it lasts.
 
-    It is that of the module's name and of its fingerprint. One for this process alone does not last: no other one can be written, or
-    the source cannot be read. Where not even that can be written, it is not there.
+    It is that of the module's name and of its fingerprint. One for this process alone does not last: no other one can be
+    written, or the source cannot be read. Where not even that can be written, it is not there.
 
     Parameters
     ----------

@@ -7,7 +7,7 @@ that a hole of four quarters is a hole.
 """
 
 from collections.abc import Mapping, Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,6 +60,38 @@ class Bare(NamedTuple):
     surface: Surface | None
 
 
+def _agreements(
+    agree: Floats, normal: Floats, kappa: Floats, across: Floats
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_], NDArray[np.bool_]]:
+    """Whether two faces go on smoothly over their edge (k,), each bends most across it (k, 2), and both bend alike (k,).
+
+    Parameters
+    ----------
+    agree : (k,)
+        1 where the two faces' normals are on the same side, -1 where they are not.
+    normal, kappa, across : (k, 2, points, 3), (k, 2, points, 2), (k, 2, points)
+        Normals, principal curvatures and the curvature across the edge, nan where the kernel cannot evaluate them.
+    """
+    with np.errstate(invalid="ignore"):
+        dot = agree[:, None] * (normal[:, 0] * normal[:, 1]).sum(axis=2)
+        smooth = (dot > np.cos(SMOOTH)).mean(axis=1) >= _MOSTLY
+        most = np.abs(kappa).max(axis=3)
+        least = np.maximum(_ACROSS * most, (1 - _SAME) * np.abs(across[:, ::-1]))
+        bends = (np.abs(across) >= least).mean(axis=2) >= _MOSTLY
+        # Seen from the other side, what is largest is smallest, with the other sign.
+        there = np.where(agree[:, None, None] > 0, kappa[:, 1], -kappa[:, 1, :, ::-1])
+        alike = (np.abs(kappa[:, 0] - there).max(axis=2) <= _SAME * most.max(axis=1)).mean(axis=1) >= _MOSTLY
+    return smooth, bends, alike
+
+
+def _edges_between(shape: Sequence[Any], rounded: list[bool]) -> list[Any]:
+    """Edges of two different faces, one of them at least of a round shape, and their users."""
+    return [
+        (edge, users) for edge, users in edge_uses(shape)
+        if len(users) == 2 and users[0][0] != users[1][0] and (rounded[users[0][0]] or rounded[users[1][0]])
+    ]  # fmt: skip
+
+
 def blends(faces: Sequence[Bare], size: float) -> frozenset[int]:
     """Numbers of the faces of a part that are blends.
 
@@ -74,10 +106,7 @@ def blends(faces: Sequence[Bare], size: float) -> frozenset[int]:
     """
     infos, shape = [face.info for face in faces], [face.shape for face in faces]
     rounded = [info.shape in _ROUND and info.unjudged is None for info in infos]
-    edges = [
-        (edge, users) for edge, users in edge_uses(shape)
-        if len(users) == 2 and users[0][0] != users[1][0] and (rounded[users[0][0]] or rounded[users[1][0]])
-    ]  # fmt: skip
+    edges = _edges_between(shape, rounded)
     if not edges:
         return frozenset()
     owner = np.array([[i for i, _ in users] for _, users in edges])
@@ -92,15 +121,7 @@ def blends(faces: Sequence[Bare], size: float) -> frozenset[int]:
         blend = _side(faces[i], size, [edges[k][0] for k in mine.tolist()])
         if blend is not None:
             normal[mine, which], kappa[mine, which], across[mine, which], turned[i] = blend
-    with np.errstate(invalid="ignore"):
-        dot = agree[:, None] * (normal[:, 0] * normal[:, 1]).sum(axis=2)
-        smooth = (dot > np.cos(SMOOTH)).mean(axis=1) >= _MOSTLY
-        most = np.abs(kappa).max(axis=3)
-        least = np.maximum(_ACROSS * most, (1 - _SAME) * np.abs(across[:, ::-1]))
-        bends = (np.abs(across) >= least).mean(axis=2) >= _MOSTLY
-        # Seen from the other side, what is largest is smallest, with the other sign.
-        there = np.where(agree[:, None, None] > 0, kappa[:, 1], -kappa[:, 1, :, ::-1])
-        alike = (np.abs(kappa[:, 0] - there).max(axis=2) <= _SAME * most.max(axis=1)).mean(axis=1) >= _MOSTLY
+    smooth, bends, alike = _agreements(agree, normal, kappa, across)
     kind = np.array([info.shape for info in infos])
     rounds = np.array(rounded)[owner].all(axis=1)
     on = smooth & alike & rounds & (kind[owner[:, 0]] == kind[owner[:, 1]])

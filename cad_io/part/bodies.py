@@ -7,6 +7,7 @@ within is known to lie there perhaps.
 
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,6 +40,36 @@ class Body:
     cap: Floats
 
 
+def _bodies_of_solid(part: Part, numbers: Any, solid: Any, without: Collection[int]) -> Iterator[Body]:
+    """Bodies of one solid; `numbers` is the map of the part's faces."""
+    members = [(numbers.FindIndex(f), TopoDS.Face_s(f)) for f in explore(solid, TopAbs_FACE)]
+    members = [(n, f) for n, f in members if n and n not in without]
+    flags = np.array([-1 if f.Orientation() == TopAbs_REVERSED else 1 for _, f in members], int)
+    shapes = [f for _, f in members]
+    groups = joined_faces(shapes)
+    if not all(_boundless([shapes[i] for i in g.members], flags[g.members]) for g in groups):
+        # Faces that lie edge to edge without sharing it: joined as loose ones are.
+        shapes = join(shapes, float(np.linalg.norm(part.size))).faces
+        groups = joined_faces(shapes)
+    for group in groups:
+        mine, sign = [shapes[i] for i in group.members], flags[group.members]
+        if not _boundless(mine, sign) and group.relative is not None:
+            # The solid contradicts itself, or is open: what the edges say counts, to the side that most faces name.
+            sign = group.relative.astype(int) * int(np.sign((sign * group.relative).sum()) or 1)
+        yield from _body(part, [members[i][0] for i in group.members], mine, sign, solid=True)
+
+
+def _bodies_of_loose(part: Part, without: Collection[int]) -> Iterator[Body]:
+    """Bodies of the faces that belong to no solid."""
+    loose = {n: face for n, face in part.sewn.faces.items() if n not in without}
+    order = _each_once(loose)
+    for group in joined_faces([loose[n] for n in order]):
+        if group.relative is not None:
+            numbers = [order[i] for i in group.members]
+            sign, mine = group.relative.astype(int), [loose[n] for n in numbers]
+            yield from _body(part, numbers, mine, sign, solid=False, touching=group.touching)
+
+
 def bodies(part: Part, *, without: Collection[int] = ()) -> tuple[Body, ...]:
     """Every skin of a part that encloses something, each void and each shell of a solid apart.
 
@@ -50,34 +81,9 @@ def bodies(part: Part, *, without: Collection[int] = ()) -> tuple[Body, ...]:
     without : collection of int
         Face numbers to leave out: a skin that has lost some of its faces is open.
     """
-    result: dict[tuple[tuple[int, ...], tuple[int, ...]], Body] = {}
     numbers = shape_map(part.shape, TopAbs_FACE)
-    for solid in part.solid_shapes():
-        members = [(numbers.FindIndex(f), TopoDS.Face_s(f)) for f in explore(solid, TopAbs_FACE)]
-        members = [(n, f) for n, f in members if n and n not in without]
-        flags = np.array([-1 if f.Orientation() == TopAbs_REVERSED else 1 for _, f in members], int)
-        shapes = [f for _, f in members]
-        groups = joined_faces(shapes)
-        if not all(_boundless([shapes[i] for i in g.members], flags[g.members]) for g in groups):
-            # Faces that lie edge to edge without sharing it: joined as loose ones are.
-            shapes = join(shapes, float(np.linalg.norm(part.size))).faces
-            groups = joined_faces(shapes)
-        for group in groups:
-            mine, sign = [shapes[i] for i in group.members], flags[group.members]
-            if not _boundless(mine, sign) and group.relative is not None:
-                # The solid contradicts itself, or is open: what the edges say counts, to the side that most faces name.
-                sign = group.relative.astype(int) * int(np.sign((sign * group.relative).sum()) or 1)
-            for body in _body(part, [members[i][0] for i in group.members], mine, sign, solid=True):
-                result[body.faces, body.sign] = body
-    loose = {n: face for n, face in part.sewn.faces.items() if n not in without}
-    order = _each_once(loose)
-    for group in joined_faces([loose[n] for n in order]):
-        if group.relative is not None:
-            mine_numbers = [order[i] for i in group.members]
-            mine = [loose[n] for n in mine_numbers]
-            sign = group.relative.astype(int)
-            for body in _body(part, mine_numbers, mine, sign, solid=False, touching=group.touching):
-                result[body.faces, body.sign] = body
+    solid = [body for each in part.solid_shapes() for body in _bodies_of_solid(part, numbers, each, without)]
+    result = {(body.faces, body.sign): body for body in (*solid, *_bodies_of_loose(part, without))}
     return tuple(result.values())
 
 

@@ -6,7 +6,7 @@ with. A distance is never told too small, so that what is not understood stays a
 the work is bounded by the number of pieces and of ends that lie next to each other.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain, pairwise
 from typing import NamedTuple
 
@@ -178,6 +178,17 @@ def _runs(piece: Indices, place: Floats, tolerance: float) -> list[slice]:
     return [slice(a, b) for a, b in pairwise(ends)]
 
 
+def _apart(curves: Curves, faces: list[tuple[int, ...]], table: _Table, ends: Iterable[tuple[int, int]], tolerance: float,
+           pieces: list[int]) -> NDArray[np.bool_]:  # fmt: skip
+    """Which pairs of edges are no two sides of one narrow face; `ends` are their edges, `pieces` the rows of the first ones."""
+    own = [bool(set(faces[a]) & set(faces[b])) for a, b in ends]
+    tubes = _Tubes(curves, faces) if any(own) else None
+    return np.array(
+        [not it or tubes is None or tubes.wide(table, row, tolerance) for it, row in zip(own, pieces, strict=True)],
+        bool,
+    )
+
+
 def _joined(curves: Curves, faces: list[tuple[int, ...]], groups: list[Group], tolerance: float) -> list[Group]:
     """Groups that lie on each other become one, the nearest first."""
     table = _Table.of(groups)
@@ -186,11 +197,7 @@ def _joined(curves: Curves, faces: list[tuple[int, ...]], groups: list[Group], t
     distance = _distances(curves, table, i, j, way)
     near = np.flatnonzero(distance <= tolerance)
     ends = zip(table.edge[i[near]].tolist(), table.edge[j[near]].tolist(), strict=True)
-    itself = np.array([bool(set(faces[a]) & set(faces[b])) for a, b in ends], bool)
-    if itself.any():
-        tubes = _Tubes(curves, faces)
-        good = [not own or tubes.wide(table, int(i[k]), tolerance) for own, k in zip(itself, near, strict=True)]
-        near = near[np.array(good, bool)]
+    near = near[_apart(curves, faces, table, ends, tolerance, i[near].tolist())]
     order = near[np.argsort(distance[near], kind="stable")]
     allowed: dict[tuple[int, int], set[int]] = {}
     for k in order.tolist():

@@ -5,7 +5,7 @@ part: the part is the shape that it belongs to, for what stands around a face is
 """
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -108,6 +108,20 @@ def _shape(source: Any, held: Held) -> None:
     held.picked.append(Mark(shape, _label(source), _colour(source)))
 
 
+def _add(bodies: Sequence[Any], held: Held) -> None:
+    for body in bodies:
+        held.add(_item(body, held))
+
+
+def _missing(faces: Sequence[Any], bodies: Sequence[Any]) -> list[Any]:
+    """The faces that none of the bodies holds."""
+    here = TopTools_IndexedMapOfShape()
+    for body in bodies:
+        for face in explore(_wrapped(body), TopAbs_FACE):
+            here.Add(face)
+    return [face for face in faces if not here.Contains(_wrapped(face))]
+
+
 def _workplane(source: Any, held: Held) -> None:
     """The shapes on a stack; faces there are picked on the nearest shape in the chain that holds them."""
     on_stack = [value for value in source.vals() if _has_shape(value)]
@@ -117,20 +131,14 @@ def _workplane(source: Any, held: Held) -> None:
         if not bodies:
             raise ReadError(f"the stack of the {type(source).__name__} holds no solid and no face: plan after a solid, "
                             "or after faces(...)")  # fmt: skip
-        for body in bodies:
-            held.add(_item(body, held))
+        _add(bodies, held)
         return
     missing, before, node = list(faces), 0, source
     while missing and node is not None:
         bodies = [value for value in node.vals() if _has_shape(value) and _is_body(value)]
-        here = TopTools_IndexedMapOfShape()
-        for body in bodies:
-            for face in explore(_wrapped(body), TopAbs_FACE):
-                here.Add(face)
-        rest = [face for face in missing if not here.Contains(_wrapped(face))]
+        rest = _missing(missing, bodies)
         if len(rest) < len(missing):
-            for body in bodies:
-                held.add(_item(body, held))
+            _add(bodies, held)
             if before:
                 held.warnings.append(
                     f"{len(missing) - len(rest)} of the picked faces belong to an earlier shape in the chain: the later "

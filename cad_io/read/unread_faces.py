@@ -212,6 +212,7 @@ class UnreadFaces:
             why = self._cause("a face that the shell lists is missing, or is none", [number])
             unread += [LostFace(self.ident(number), "", why)] * count
         unread += self._places()
+        unread += self._not_placed()
         return unread
 
     def ident(self, number: int) -> str:
@@ -307,7 +308,7 @@ class UnreadFaces:
         return [self.shapes[ns[0] - 1] for ns, _ in zip((ns for ns in quiet if ns), range(_OTHERS), strict=False)]
 
     def _places(self) -> Iterator[LostFace]:
-        """Instances of products, and bare surfaces, that something harmless to any face has moved or lost."""
+        """Instances of products, and bare surfaces, that something harmless to any face has moved."""
         faulty = {fault.number for fault in self.harmless if fault.number and fault.parameter not in _WORDS}
         reported: set[int] = set()
         for number in sorted(faulty):
@@ -324,6 +325,9 @@ class UnreadFaces:
                 isinstance(user, StepShape_GeometricSet) for user in users
             ):
                 yield LostFace(self.ident(number), "", self._cause("a surface may not be as written", [number]))
+
+    def _not_placed(self) -> Iterator[LostFace]:
+        """Components of the assembly that are nowhere in what was read."""
         for number, entity in self.model.entities.items():
             if isinstance(entity, StepRepr_NextAssemblyUsageOccurrence) and number not in self.results:
                 product = entity.RelatedProductDefinition()

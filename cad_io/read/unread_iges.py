@@ -1,6 +1,6 @@
 """Which faces written in an IGES file are not in the part, or not as written?"""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any
 
 from OCP.TopoDS import TopoDS_Face
@@ -24,6 +24,30 @@ def fell_apart(model: Model) -> bool:
     )
 
 
+def _felt(model: Model, faults: Sequence[Fault], split: bool) -> dict[int, list[Fault]]:
+    """Faults that faces felt, by the number of the entity; with `split` those that felt none, too."""
+    felt: dict[int, list[Fault]] = {
+        n: [] for n, entity in model.entities.items() if entity.TypeNumber() == _FACE and split
+    }
+    for fault in (*faults, *model.trouble(fails=True)):
+        for n in model.users(fault.number, _is_face):
+            if n and _is_face(model.entities[n]):
+                felt.setdefault(n, []).append(fault)
+    return felt
+
+
+def _face_numbers(model: Model, results: Collection[int], shapes: Sequence[TopoDS_Face]) -> dict[int, int]:
+    """Face numbers of the entities that faces were made of, as far as that is known."""
+    made = model.makers(dict(enumerate(shapes, 1)))
+    if made is None:
+        return {}
+    numbers = {entity: n for n, entity in made.items() if _is_face(model.entities[entity])}
+    # A face that failed may stand there as its bare surface.
+    unknown = [n for n in range(1, len(shapes) + 1) if n not in numbers.values()]
+    missed = [n for n, entity in model.entities.items() if _is_face(entity) and n in results and n not in numbers]
+    return numbers | dict(zip(missed, unknown, strict=True)) if len(unknown) == len(missed) else numbers
+
+
 def unread_of_iges(
     model: Model, faults: Sequence[Fault], shapes: Sequence[TopoDS_Face], *, split: bool
 ) -> list[LostFace]:
@@ -41,23 +65,10 @@ def unread_of_iges(
         Count the edges of every face, since solids fell apart.
     """
     results = model.results()
-    felt: dict[int, list[Fault]] = {
-        n: [] for n, entity in model.entities.items() if entity.TypeNumber() == _FACE and split
-    }
-    for fault in (*faults, *model.trouble(fails=True)):
-        for n in model.users(fault.number, _is_face):
-            if n and _is_face(model.entities[n]):
-                felt.setdefault(n, []).append(fault)
+    felt = _felt(model, faults, split)
     gone = [n for n, entity in model.entities.items() if _is_face(entity) and n not in results]
     unread = [_unread(model, n, "the CAD kernel could not make it", felt.get(n, [])) for n in gone]
-    numbers: dict[int, int] = {}
-    if felt and (made := model.makers(dict(enumerate(shapes, 1)))) is not None:
-        numbers = {entity: n for n, entity in made.items() if _is_face(model.entities[entity])}
-        # A face that failed may stand there as its bare surface.
-        unknown = [n for n in range(1, len(shapes) + 1) if n not in numbers.values()]
-        missed = [n for n, entity in model.entities.items() if _is_face(entity) and n in results and n not in numbers]
-        if len(unknown) == len(missed):
-            numbers.update(zip(missed, unknown, strict=True))
+    numbers = _face_numbers(model, results, shapes) if felt else {}
     for entity, fault_list in felt.items():
         if entity in numbers and (why := _altered(model, entity, fault_list, shapes[numbers[entity] - 1])):
             unread.append(_unread(model, entity, why, fault_list, numbers[entity]))

@@ -99,13 +99,10 @@ class Attempt:
         for number in sorted(self._cut):
             works_on({number})
             changed[number] = self._pieces(number, fresh[number], drawings[number])
-        neighbours: dict[int, set[int]] = {}
-        for number, face in fresh.items():
-            cutters = {n for e in edges_of(face) for n in self._cutters.get(net.edges.FindIndex(e), ())}
-            if number not in self._cut and cutters:
-                neighbours[number] = cutters
-                works_on(cutters)
-                changed[number] = [rewired(net, face)]
+        neighbours = self._neighbours(fresh)
+        for number, cutters in neighbours.items():
+            works_on(cutters)
+            changed[number] = [rewired(net, fresh[number])]
         if trial.careful:
             self._ask(changed, neighbours)
         if self.wrong or not changed:
@@ -117,6 +114,14 @@ class Attempt:
             self._ask(changed, neighbours)
             if not self.wrong:
                 self.wrong = dict.fromkeys(self._cut, reason)
+
+    def _neighbours(self, fresh: dict[int, Any]) -> dict[int, set[int]]:
+        """Faces that stay whole and have edges that others cut, and those others."""
+        cutters = {
+            number: {n for e in edges_of(face) for n in self._cutters.get(self._net.edges.FindIndex(e), ())}
+            for number, face in fresh.items() if number not in self._cut
+        }  # fmt: skip
+        return {number: those for number, those in cutters.items() if those}
 
     def _ask(self, changed: dict[int, list[Any]], neighbours: dict[int, set[int]]) -> None:
         """Find faces that are not valid, though they were, and whose fault that is."""

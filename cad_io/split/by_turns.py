@@ -6,7 +6,7 @@ so on: each turn draws one boundary, and where three labels meet the later bound
 """
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -42,6 +42,27 @@ class _Stage:
         return self.part.surface(self.pieces[number - 1][0].face)
 
 
+def _requests(stage: _Stage, roomy: dict[int, FaceLabels]) -> Iterator[FaceLabels]:
+    """Labels that part each piece of several labels into two halves of them."""
+    taken = _taken(stage.pieces, roomy)
+    for i, (piece, group) in enumerate(stage.pieces, 1):
+        if len(group) > 1:
+            field = roomy[piece.face]
+            off = np.isin(taken[piece.face], [0, i], invert=True)
+            yield FaceLabels(i, field.u, field.v, _halves(field, off, group))
+
+
+def _halved(each: Piece, before: Piece, group: tuple[int, ...]) -> tuple[Piece, tuple[int, ...]]:
+    """A piece of the original face, and the labels on it, from a piece of the stage and what it was cut from."""
+    if len(group) <= 1:
+        return Piece(before.face, before.label, each.shape, before.shares), group
+    middle = len(group) // 2
+    group = () if each.label < 0 else group[:middle] if each.label == 0 else group[middle:]
+    label = group[0] if len(group) == 1 else MIXED
+    own = before.shares.get(MIXED, 1.0) * each.shares.get(each.label, 0.0)
+    return Piece(before.face, label, each.shape, {label: own} if own else {}), group
+
+
 def split_by_turns(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 5) -> Split:
     """Split faces along the boundaries of labels that have no order.
 
@@ -66,26 +87,8 @@ def split_by_turns(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 
     stage = _Stage(part, start.shape, [_first(each, roomy.get(each.face)) for each in start.pieces])
     whole, remaining, joined = dict[int, str](), dict[int, FaceLabels](), Counter[int]()
     while any(len(group) > 1 for _, group in stage.pieces):
-        requests = []
-        taken = _taken(stage.pieces, roomy)
-        for i, (piece, group) in enumerate(stage.pieces, 1):
-            if len(group) > 1:
-                field = roomy[piece.face]
-                off = np.isin(taken[piece.face], [0, i], invert=True)
-                requests.append(FaceLabels(i, field.u, field.v, _halves(field, off, group)))
-        done = split(stage, requests, seconds=seconds)
-        pieces = []
-        for each in done.pieces:
-            before, group = stage.pieces[each.face - 1]
-            if len(group) > 1:
-                middle = len(group) // 2
-                group = () if each.label < 0 else group[:middle] if each.label == 0 else group[middle:]
-                label = group[0] if len(group) == 1 else MIXED
-                own = before.shares.get(MIXED, 1.0) * each.shares.get(each.label, 0.0)
-                own_piece = Piece(before.face, label, each.shape, {label: own} if own else {})
-            else:
-                own_piece = Piece(before.face, before.label, each.shape, before.shares)
-            pieces.append((own_piece, group))
+        done = split(stage, list(_requests(stage, roomy)), seconds=seconds)
+        pieces = [_halved(each, *stage.pieces[each.face - 1]) for each in done.pieces]
         for i, why in done.whole.items():
             whole[stage.pieces[i - 1][0].face] = why
             remaining[stage.pieces[i - 1][0].face] = fields[stage.pieces[i - 1][0].face]

@@ -2,6 +2,7 @@
 
 import itertools
 from collections import Counter, defaultdict
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -116,6 +117,24 @@ def judged(regions: list[Region], scale: Floats, grid: LabelGrid, known: Ints) -
     return out
 
 
+def _longest_border(r: int, group: dict[int, int], borders: Iterable[tuple[tuple[int, int], float]]) -> int:
+    """The group with which region `r` has the longest common border, itself where it has none.
+
+    A border is the two regions that it parts, and its length.
+    """
+    shared: dict[int, float] = defaultdict(float)
+    for (a, b), length in borders:
+        if group[a] != group[b] and r in (group[a], group[b]):
+            shared[group[b] if group[a] == r else group[a]] += length
+    return max(shared, key=lambda k: (shared[k], -k), default=r)
+
+
+def _joins(part: Judged, other: Judged, worst: int) -> bool:
+    """Whether a sliver is to join a region, as `slivers` says."""
+    worse = part.label < other.label <= worst
+    return bool(other.counts) and (worse or (worst < 0 and not part.counts))
+
+
 def slivers(arrangement: Arrangement, parts: list[Judged], worst: int) -> tuple[list[int], dict[int, int], int]:
     """Tell which slivers are to join what is around them.
 
@@ -141,13 +160,8 @@ def slivers(arrangement: Arrangement, parts: list[Judged], worst: int) -> tuple[
     for r in sorted(group, key=lambda r: (area[r], r)):
         if area[r] >= cell or sum(parts[r].counts.values()) > _FEW or group[r] != r:
             continue
-        shared: Counter[int] = Counter()
-        for (a, b), length in zip(neighbours, lengths, strict=True):
-            if group[a] != group[b] and r in (group[a], group[b]):
-                shared[group[b] if group[a] == r else group[a]] += length  # type: ignore[assignment]
-        enclosing = max(shared, key=lambda k: (shared[k], -k), default=r)
-        worse = parts[r].label < parts[enclosing].label <= worst
-        if parts[enclosing].counts and (worse or (worst < 0 and not parts[r].counts)):
+        enclosing = _longest_border(r, group, zip(neighbours, lengths, strict=True))
+        if _joins(parts[r], parts[enclosing], worst):
             group = {k: enclosing if g == r else g for k, g in group.items()}
             area[enclosing] += area[r]
     separate = [i for i, (a, b) in enumerate(neighbours) if group[a] != group[b]]
@@ -218,6 +232,11 @@ def _turns(
     return out
 
 
+def _lies_in(point: Floats, path: Floats, ring: Floats) -> bool:
+    """Whether a point (2,) lies in a loop, whose box is looked at first."""
+    return bool((path.min(axis=0) <= point).all() and (point <= path.max(axis=0)).all() and holds(ring, point[None])[0])
+
+
 def _nested(loops: list[list[Half]], size: float) -> list[Region]:
     """Regions: an outer loop, and the holes in it."""
     paths = [np.concatenate([half.xy[:-1] for half in loop]) for loop in loops]
@@ -226,13 +245,11 @@ def _nested(loops: list[list[Half]], size: float) -> list[Region]:
     if not holes:
         raise CannotSplit("its border runs the wrong way round")
     rings = [chain(np.vstack([path, path[:1]])) for path in paths]
-    lows, highs = ([of(path, axis=0) for path in paths] for of in (np.min, np.max))
     for i in range(len(loops)):
         if i in holes:
             continue
         probe = left_of(paths[i], 1e-3 * size)
-        boxed = [o for o in holes if (lows[o] <= probe).all() and (probe <= highs[o]).all()]
-        enclosing = [o for o in boxed if holds(rings[o], probe[None])[0]]
+        enclosing = [o for o in holes if _lies_in(probe, paths[o], rings[o])]
         if not enclosing:
             raise CannotSplit("a hole lies in none of its regions")
         holes[min(enclosing, key=lambda o: areas[o])].append(i)

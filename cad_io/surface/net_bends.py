@@ -103,6 +103,14 @@ def _over(ball, low, high):
 
 
 @kernel
+def _share(i, j, a, b, p, q):
+    """The share of pole (i - a, j - b) of a patch of degrees p, q in pole (i, j) one degree higher; 0 where there is none."""
+    if not (0 <= i - a <= p and 0 <= j - b <= q):
+        return 0.0
+    return (i if a else p + 1 - i) * (j if b else q + 1 - j) / ((p + 1.0) * (q + 1.0))
+
+
+@kernel
 def _less_affine(cell, p, q, slope, raised):
     """Leave in `raised`, one degree higher each way, a rational patch less its weight times an affine map, S about.
 
@@ -119,8 +127,8 @@ def _less_affine(cell, p, q, slope, raised):
                 raised[i, j, c] = 0.0
             for a in range(2):
                 for b in range(2):
-                    if 0 <= i - a <= p and 0 <= j - b <= q:
-                        share = (i if a else p + 1 - i) * (j if b else q + 1 - j) / ((p + 1.0) * (q + 1.0))
+                    share = _share(i, j, a, b, p, q)
+                    if share > 0.0:
                         w = share * cell[i - a, j - b, 3]
                         raised[i, j, 3] += w
                         for c in range(3):
@@ -134,9 +142,9 @@ def _less_affine(cell, p, q, slope, raised):
             for j in range(q + 2):
                 for a in range(2):
                     for b in range(2):
-                        if 0 <= i - a <= p and 0 <= j - b <= q:
-                            # A share of a corner of the square is the value of 1, s or t there.
-                            share = (i if a else p + 1 - i) * (j if b else q + 1 - j) / ((p + 1.0) * (q + 1.0))
+                        # A share of a corner of the square is the value of 1, s or t there.
+                        share = _share(i, j, a, b, p, q)
+                        if share > 0.0:
                             raised[i, j, c] -= (
                                 share * cell[i - a, j - b, 3] * (origin + a * slope[0, c] + b * slope[1, c])
                             )

@@ -115,20 +115,23 @@ def meridian(part: Part, origin: Sequence[float], direction: Sequence[float], ch
 _Lines = list[tuple[tuple[float, float, float, float], bool]]
 
 
+def _disk(face: Any, plane: Any, base: Floats, along: Floats) -> _Lines | None:
+    """The line of a plane face that turns about the axis: across it, to its farthest circle."""
+    if not _coaxial(plane.Location(), plane.Axis().Direction(), base, along, anywhere=True):
+        return None
+    height = float((_xyz(plane.Location()) - base) @ along)
+    radii = [_circle(edge, base, along) for edge in edges_of(face)]
+    known = [radius for radius in radii if radius is not None]
+    return [((0.0, height, max(known), height), True)] if radii and len(known) == len(radii) else None
+
+
 def _turning(face: Any, base: Floats, along: Floats, chord: float) -> _Lines | None:
     """Lines of a face that turns about the axis, none where they are not known; None where it does not turn about it."""
     surface = BRepAdaptor_Surface(face)
     kind = surface.GetType()
     _, _, v0, v1 = BRepTools.UVBounds_s(face)
     if kind == GeomAbs_Plane:
-        plane = surface.Plane()
-        if not _coaxial(plane.Location(), plane.Axis().Direction(), base, along, anywhere=True):
-            return None
-        height = float((_xyz(plane.Location()) - base) @ along)
-        radii = [_circle(edge, base, along) for edge in edges_of(face)]
-        if not radii or any(radius is None for radius in radii):
-            return None
-        return [((0.0, height, max(radius for radius in radii if radius is not None), height), True)]
+        return _disk(face, surface.Plane(), base, along)
     if kind == GeomAbs_SurfaceOfRevolution:
         axis = surface.AxeOfRevolution()
         return [] if _coaxial(axis.Location(), axis.Direction(), base, along) else None

@@ -213,20 +213,23 @@ def _finished(outline: Outline, uv: Floats, corner: Ints, surface: Surface) -> U
     return bordered(UVMesh(uv, corner, border), [each.on_curve for each in outline.uses], surface)
 
 
+def _axes(
+    lines: tuple[Floats, Floats], sides: list[tuple[int, bool, tuple[float, float]]]
+) -> tuple[Floats, Floats] | None:
+    """Lines of a grid along u and v, through the ends of its sides; None where they cannot be laid, or part too many cells."""
+    ends = [np.array([t for along, _, span in sides if along == k for t in span]) for k in range(2)]
+    u, v = _through(lines[0], ends[0]), _through(lines[1], ends[1])
+    return None if u is None or v is None or (len(u) - 1) * (len(v) - 1) > _CELLS else (u, v)
+
+
 def _on_grid(surface: Surface, trim: Trim, uses: list[Use], lines: tuple[Floats, Floats]) -> UVMesh | None:
     """A whole rectangle of the parameter plane: cells alone; None where its border does not run along its sides."""
     sides = [_side(use, trim) for use in uses]
     if any(side is None for side in sides):
         return None
     known = [side for side in sides if side is not None]
-    ends = [np.array([t for along, _, span in known if along == k for t in span]) for k in range(2)]
-    grid = []
-    for k in range(2):
-        laid = _through(lines[k], ends[k])
-        if laid is None:
-            return None
-        grid.append(laid)
-    if (len(grid[0]) - 1) * (len(grid[1]) - 1) > _CELLS:
+    grid = _axes(lines, known)
+    if grid is None:
         return None
     filled, corner = cells(np.ones((len(grid[0]) - 1, len(grid[1]) - 1), bool))
     uv = np.stack([each.ravel() for each in np.meshgrid(*grid, indexing="ij")], axis=1)

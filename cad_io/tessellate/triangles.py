@@ -12,12 +12,13 @@ from contextlib import contextmanager
 from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 from OCP.BRepTools import BRepTools
 
-from cad_io.arrays import Triangles
+from cad_io.arrays import Floats, Ints, Triangles
 from cad_io.kernel import translated
 from cad_io.part import Part
-from cad_io.tessellate.patch import EMPTY, Patch, Tried, workspace
+from cad_io.tessellate.patch import EMPTY, Laid, Patch, Tried, workspace
 from cad_io.tessellate.refine import RefinedMesh
 from cad_io.tessellate.start import At, expected, starts
 
@@ -42,6 +43,43 @@ _LARGEST = 1 << 19
 
 Item = TypeVar("Item")
 Done = TypeVar("Done")
+
+
+def _gathered(
+    part: Part, patches: Sequence[Patch], laid: list[Laid], ends: Ints, chord: float
+) -> tuple[Floats, NDArray[np.bool_], dict[int, float], dict[int, str]]:
+    """Put the triangles of all faces into one array, and let go of `laid`.
+
+    Returns
+    -------
+    vertex : (ends[-1], 3, 3)
+        Those of a patch are the rows from its end to the next.
+    whole : (ends[-1],) bool
+        Which of them are finite.
+    off : dict
+        Face number -> chord error, mm, of faces that are covered.
+    missing : dict
+        Face number -> why not, of the others.
+    """
+    vertex = np.empty((ends[-1], 3, 3))
+    whole = np.ones(len(vertex), bool)
+    off: dict[int, float] = {}
+    missing: dict[int, str] = {}
+    for patch, first, last in zip(patches, ends[:-1], ends[1:], strict=True):
+        # One after the other, and let go: here memory is at its most.
+        each, rows = laid.pop(0), slice(first, last)
+        np.take(each.point, each.corner, axis=0, out=vertex[rows])
+        if not np.isfinite(each.off) or not np.isfinite(each.point).all():
+            whole[rows] = np.isfinite(vertex[rows]).all(axis=(1, 2))
+            missing[patch.number] = "its surface cannot be evaluated everywhere"
+            continue
+        if not each.whole:
+            missing[patch.number] = "it takes more triangles than the budget allows"
+            continue
+        off[patch.number] = each.off
+        if uncovered := _uncovered(part, patch.number, each.area, chord):
+            missing[patch.number] = f"its triangles leave up to {math.ceil(100.0 * uncovered)} % of it uncovered"
+    return vertex, whole, off, missing
 
 
 def tessellate(
@@ -92,31 +130,17 @@ def tessellate(
             laid.append(each)
         tried.clear()
     ends = np.cumsum([0, *(len(each.corner) for each in laid)])
-    vertex = np.empty((ends[-1], 3, 3))
-    whole = np.ones(len(vertex), bool)
-    off: dict[int, float] = {}
-    for patch, first, last in zip(patches, ends[:-1], ends[1:], strict=True):
-        # One after the other, and let go: here memory is at its most.
-        each, rows = laid.pop(0), slice(first, last)
-        np.take(each.point, each.corner, axis=0, out=vertex[rows])
-        if not np.isfinite(each.off) or not np.isfinite(each.point).all():
-            whole[rows] = np.isfinite(vertex[rows]).all(axis=(1, 2))
-            missing[patch.number] = "its surface cannot be evaluated everywhere"
-            continue
-        if not each.whole:
-            missing[patch.number] = "it takes more triangles than the budget allows"
-            continue
-        off[patch.number] = each.off
-        if uncovered := _uncovered(part, patch.number, each.area, chord):
-            missing[patch.number] = f"its triangles leave up to {math.ceil(100.0 * uncovered)} % of it uncovered"
+    vertex, whole, off, left_out = _gathered(part, patches, laid, ends, chord)
+    missing.update(left_out)
     loose = {number: error for number, error in off.items() if error > _LOOSE * most}
     if len(loose) == len(off):
         # Nothing is closer: all of it is as close as it is.
         loose = {}
     face = np.repeat(np.array([patch.number for patch in patches], np.int32), np.diff(ends))
+    rows = slice(None) if whole.all() else whole
     return Triangles(
-        vertex=vertex if whole.all() else vertex[whole],
-        face=face if whole.all() else face[whole],
+        vertex=vertex[rows],
+        face=face[rows],
         chord_error=max((error for number, error in off.items() if number not in loose), default=0.0),
         missing=tuple(sorted(missing.items())),
         measured=tuple(patch.number for patch in patches if not patch.proved),

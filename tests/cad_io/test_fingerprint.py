@@ -37,12 +37,15 @@ SEARCH, HIT, CODES, MASK, REFINE = (
 def sources(tmp_path):
     """A copy of our sources."""
     for package in (ROOT / "cad_io", ROOT / "plugin" / "plan_cutters"):
-        shutil.copytree(package, tmp_path / "sources" / package.name, ignore=shutil.ignore_patterns("__pycache__", "*.js"))
+        shutil.copytree(
+            package, tmp_path / "sources" / package.name, ignore=shutil.ignore_patterns("__pycache__", "*.js")
+        )
     return tmp_path / "sources"
 
 
 def with_machine_code(sources):
-    files = [*sources.glob("plan_cutters/kernels/**/*.py"), *sources.glob("cad_io/surface/*.py"), *sources.glob("cad_io/tessellate/*.py")]
+    rooms = ("plan_cutters/kernels/**", "cad_io/surface", "cad_io/tessellate")
+    files = [file for room in rooms for file in sources.glob(f"{room}/*.py")]
     names = [".".join(file.relative_to(sources).with_suffix("").parts) for file in sorted(files)]
     return [name for name in names if re.search("^@(entry|kernel)$", file_of(sources, name).read_text(), re.M)]
 
@@ -68,6 +71,16 @@ def changed(before, after):
     return {name for name in before if before[name] != after[name]}
 
 
+def imports(text, name):
+    package, _, stem = name.rpartition(".")
+    for line in map(str.strip, text.splitlines()):
+        if line.startswith((f"from {name} import ", f"import {name}")):
+            return True
+        if line.startswith(f"from {package} import ") and stem in line.replace(",", " ").split():
+            return True
+    return False
+
+
 def users(sources, name):
     """Modules that import one at any distance, by the text of their lines: as slow and as plain as can be."""
     packages = [sources / each for each in OURS]
@@ -75,14 +88,7 @@ def users(sources, name):
             for package in packages for f in package.rglob("*.py")}  # fmt: skip
     found = {name}
     while True:
-        more = {
-            each
-            for each in text.keys() - found
-            for one in found
-            for line in text[each].splitlines()
-            if line.strip().startswith((f"from {one} import ", f"import {one}"))
-            or (line.strip().startswith(f"from {one.rpartition('.')[0]} import ") and one.rpartition(".")[2] in line.replace(",", " ").split())
-        }
+        more = {each for each in text.keys() - found if any(imports(text[each], one) for one in found)}
         if not more:
             return found
         found |= more

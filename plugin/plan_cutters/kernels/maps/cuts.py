@@ -194,21 +194,34 @@ def _out_in_parts(corner, ca, sa, cb, sb, turning, k, workspace):
     return True
 
 
+class Met(NamedTuple):
+    """This record holds triangle `i` of some, and piece `k` of the tool that it may be in the way of."""
+
+    vertex: Any
+    i: int
+    frame: Any
+    turning: Any
+    k: int
+
+
 @kernel
-def _in_the_way(vertex, i, frame, tilt, turning, k, workspace):
-    """Whether a triangle reaches into piece k at a tilt."""
+def _in_the_way(met, tilt, workspace):
+    """Whether a triangle reaches into a piece at a tilt."""
     workspace.spent[0] += 1
-    stand(workspace.body, frame, np.cos(tilt), np.sin(tilt), turning.offset, 0.0)
-    return triangle_hit(vertex, i, workspace.body, turning.piece, 1 << k, 0.0, workspace.scratch)[0] >= 0
+    stand(workspace.body, met.frame, np.cos(tilt), np.sin(tilt), met.turning.offset, 0.0)
+    return (
+        triangle_hit(met.vertex, met.i, workspace.body, met.turning.piece, 1 << met.k, 0.0, workspace.scratch)[0] >= 0
+    )
 
 
 @kernel
-def _first_in_the_way(vertex, i, frame, a, b, sign, narrowest, turning, k, workspace):
-    """The first tilt, from a up or from b down (`sign`), at which a triangle is not shown to be clear of piece k; nan if none.
+def _first_in_the_way(met, a, b, sign, narrowest, workspace):
+    """The first tilt, from a up or from b down (`sign`), at which a triangle is not shown to be clear of a piece; nan if none.
 
     A range is clear if planes part the triangle from the piece, or if it misses the piece widened by what tilting within the
     range can do (lemma S5). Others are halved.
     """
+    vertex, i, frame, turning, k = met
     body, ranges, scratch, eight = workspace.body, workspace.ranges, workspace.scratch, (turning.eight >> k) & 1
     ranges[0, 0], ranges[0, 1] = a, b
     top = 1
@@ -216,7 +229,7 @@ def _first_in_the_way(vertex, i, frame, a, b, sign, narrowest, turning, k, works
         top -= 1
         workspace.spent[0] += 1
         first, last = ranges[top, 0], ranges[top, 1]
-        if not eight and _in_the_way(vertex, i, frame, first if sign > 0.0 else last, turning, k, workspace):
+        if not eight and _in_the_way(met, first if sign > 0.0 else last, workspace):
             return first if sign > 0.0 else last
         middle, half = 0.5 * (first + last), 0.5 * (last - first)
         stand(body, frame, np.cos(middle), np.sin(middle), turning.offset, 0.0)
@@ -305,47 +318,62 @@ def _shrink(corner, interval, g, sign, narrowest, turning, k, workspace):
 
 
 @kernel
+def _ends_in_the_way(met, interval, g, workspace):
+    """Whether a triangle is in the way at the first tilt of an interval, and at the last.
+
+    What was undecided at an end no longer is where this triangle is in the way.
+    """
+    a, b, unsure_first, unsure_last = interval[g, FIRST], interval[g, LAST], interval[g, UF], interval[g, UL]
+    at_first, at_last = _in_the_way(met, a, workspace), _in_the_way(met, b, workspace)
+    if at_first and unsure_first > 0.0 and _in_the_way(met, a - unsure_first, workspace):
+        interval[g, UF] = 0.0
+    if at_last and unsure_last > 0.0 and _in_the_way(met, b + unsure_last, workspace):
+        interval[g, UL] = 0.0
+    return at_first, at_last
+
+
+@kernel
+def _closely(met, start, end, narrowest, workspace):
+    """The first and the last tilt of a range at which a triangle is not shown to be clear, nan if there is none.
+
+    The third value is whether it is in the way at three tilts between them; for flutes in lanes that is not asked.
+    """
+    unsure = 2.0 * narrowest
+    left = _first_in_the_way(met, start, end, 1.0, narrowest, workspace)
+    if np.isnan(left):
+        return left, left, False
+    right = _first_in_the_way(met, left, end, -1.0, narrowest, workspace)
+    right = left if np.isnan(right) else right
+    middle = 0.5 * (left + right)
+    return left, right, bool(
+        (met.turning.eight >> met.k) & 1
+        or (
+            _in_the_way(met, min(left + unsure, middle), workspace)
+            and _in_the_way(met, middle, workspace)
+            and _in_the_way(met, max(right - unsure, middle), workspace)
+        )
+    )  # fmt: skip
+
+
+@kernel
 def cut_intervals(vertex, i, frame, interval, count, narrowest, turning, k, workspace):
     """Take the tilts at which a triangle is in the way of piece k out of the intervals; (their count, whether any was cut).
 
     The triangle is in `workspace.corner` too, as rows (x, y, z) from the centre.
     """
-    corner, cut = workspace.corner, False
+    corner, cut, met = workspace.corner, False, Met(vertex, i, frame, turning, k)
     # What its corners alone forbid is known in closed form, and mostly all that it does.
     for j in range(3):
         count, took = take_point(corner[j, 0], corner[j, 1], corner[j, 2], interval, count, turning, k, workspace.arcs)
         cut = cut or took
     g = 0
     while g < count:
-        a, b, ca, sa, cb, sb = (
-            interval[g, FIRST],
-            interval[g, LAST],
-            interval[g, CF],
-            interval[g, SF],
-            interval[g, CL],
-            interval[g, SL],
-        )
-        if _out(corner, ca, sa, cb, sb, turning, k, workspace):
+        a, b = interval[g, FIRST], interval[g, LAST]
+        if _out(corner, interval[g, CF], interval[g, SF], interval[g, CL], interval[g, SL], turning, k, workspace):
             g += 1
             continue
         # A side or the middle of the triangle sticks out further than its corners: mostly by a little, at one end.
-        at_first, at_last = (
-            _in_the_way(vertex, i, frame, a, turning, k, workspace),
-            _in_the_way(vertex, i, frame, b, turning, k, workspace),
-        )
-        # What was undecided at its ends no longer is where this triangle is in the way.
-        if (
-            at_first
-            and interval[g, UF] > 0.0
-            and _in_the_way(vertex, i, frame, a - interval[g, UF], turning, k, workspace)
-        ):
-            interval[g, UF] = 0.0
-        if (
-            at_last
-            and interval[g, UL] > 0.0
-            and _in_the_way(vertex, i, frame, b + interval[g, UL], turning, k, workspace)
-        ):
-            interval[g, UL] = 0.0
+        at_first, at_last = _ends_in_the_way(met, interval, g, workspace)
         # From an end at which it is not in the way nothing is gained if it is at the other.
         up, up_failed, down, down_failed = np.inf, b - a, np.inf, b - a
         if not at_last:
@@ -362,24 +390,16 @@ def cut_intervals(vertex, i, frame, interval, count, narrowest, turning, k, work
             continue
         left, right, unsure = max(a, b - down), min(b, a + up), narrowest
         if left > right or not (
-            _in_the_way(vertex, i, frame, max(a, b - down_failed), turning, k, workspace)
-            and _in_the_way(vertex, i, frame, min(b, a + up_failed), turning, k, workspace)
+            _in_the_way(met, max(a, b - down_failed), workspace) and _in_the_way(met, min(b, a + up_failed), workspace)
         ):
             # Not known to be in the way right up to there: looked at closely.
             start, end = (left, right) if left <= right else (a, b)
             unsure = 2.0 * narrowest
-            left = _first_in_the_way(vertex, i, frame, start, end, 1.0, narrowest, turning, k, workspace)
+            left, right, shown = _closely(met, start, end, narrowest, workspace)
             if np.isnan(left):
                 g += 1
                 continue
-            right = _first_in_the_way(vertex, i, frame, left, end, -1.0, narrowest, turning, k, workspace)
-            right = left if np.isnan(right) else right
-            middle = 0.5 * (left + right)
-            if not (turning.eight >> k) & 1 and not (
-                _in_the_way(vertex, i, frame, min(left + unsure, middle), turning, k, workspace)
-                and _in_the_way(vertex, i, frame, middle, turning, k, workspace)
-                and _in_the_way(vertex, i, frame, max(right - unsure, middle), turning, k, workspace)
-            ):
+            if not shown:
                 # Where nothing shows the triangle clear it need not be in the way.
                 interval[INTERVALS, UF] += right - left
         cut = True

@@ -138,6 +138,37 @@ class _View(NamedTuple):
 
 
 @kernel
+def _remember(seen, rotation, inner, lane, triangle):
+    """Let a triangle that cut, in a lane of a cached leaf, be tried first: at all rotations, and at this one."""
+    leaves, known, tally, place = seen.leaves, seen.known, seen.tally, seen.place
+    known[-1, tally[2]] = triangle
+    for k in range(9):
+        leaves[_LEAVES + 1, k, tally[2]] = leaves[inner, k, lane]
+    tally[2] = (tally[2] + 1) % LANES
+    known[rotation, place[rotation]] = triangle
+    place[rotation] = (place[rotation] + 1) % LANES
+
+
+@kernel
+def _take_box(view, slot, lane, turn, interval, count, turning, mask, arcs):
+    """Take what the point of its triangles that a box names forbids to the pieces of a mask; how many intervals are left."""
+    cosine, sine = turn
+    x, y, z = view[slot, 13, lane], view[slot, 14, lane], view[slot, 15, lane]
+    x, y = cosine * x + sine * y, cosine * y - sine * x
+    for k in range(len(turning.piece)):
+        if (mask >> k) & 1:
+            count, _ = take_point(x, y, z, interval, count, turning, k, arcs)
+    return count
+
+
+@kernel
+def _leave_undecided(interval, count):
+    """Count all that is left as undecided."""
+    for g in range(count):
+        interval[INTERVALS, UF] += interval[g, LAST] - interval[g, FIRST] + interval[g, UF] + interval[g, UL]
+
+
+@kernel
 def _rotation(frame, e1, e2, turn, rotation, interval, count, turning, whole, low, narrowest, wide, seen, workspace):
     """Take the intervals of one rotation, its cosine and sine `turn`, through the tree, level by level; how many are left.
 
@@ -148,7 +179,6 @@ def _rotation(frame, e1, e2, turn, rotation, interval, count, turning, whole, lo
     vertex, blocks, offset, bottom = wide
     view, leaves, below, home, tally = seen.boxes, seen.leaves, seen.below, seen.home, seen.tally
     known, queue, ahead = seen.known, seen.queue, seen.ahead
-    place = seen.place
     margin, inside, which, remaining = seen.margin, seen.inside, seen.which, seen.left
     triangles, levels = len(vertex), len(offset) - 1
     for k in range(LANES):
@@ -196,18 +226,9 @@ def _rotation(frame, e1, e2, turn, rotation, interval, count, turning, whole, lo
                         workspace,
                     )  # fmt: skip
                     if cut >= 0:
-                        known[-1, tally[2]] = begin + cut
-                        for k in range(9):
-                            leaves[_LEAVES + 1, k, tally[2]] = leaves[inner, k, cut]
-                        tally[2] = (tally[2] + 1) % LANES
-                        known[rotation, place[rotation]] = begin + cut
-                        place[rotation] = (place[rotation] + 1) % LANES
+                        _remember(seen, rotation, inner, cut, begin + cut)
                     continue
-                x, y, z = view[slot, 13, lane], view[slot, 14, lane], view[slot, 15, lane]
-                x, y = cosine * x + sine * y, cosine * y - sine * x
-                for k in range(len(turning.piece)):
-                    if (remaining[lane] >> k) & 1:
-                        count, _ = take_point(x, y, z, interval, count, turning, k, workspace.arcs)
+                count = _take_box(view, slot, lane, turn, interval, count, turning, remaining[lane], workspace.arcs)
                 if inner == _UNSEEN and tally[0] < _SEEN:
                     inner = tally[0]
                     _see(view, inner, blocks, offset[level + 1] + box, p, e1, e2, n, seen.reach)
@@ -218,10 +239,7 @@ def _rotation(frame, e1, e2, turn, rotation, interval, count, turning, whole, lo
                     tally[0] += 1
                 if coming == _QUEUE:
                     # Too much in the way to be told apart: nothing here is called free.
-                    for g in range(count):
-                        interval[INTERVALS, UF] += (
-                            interval[g, LAST] - interval[g, FIRST] + interval[g, UF] + interval[g, UL]
-                        )
+                    _leave_undecided(interval, count)
                     return 0
                 ahead[coming, 0], ahead[coming, 1], ahead[coming, 2] = inner, box, remaining[lane]
                 coming += 1

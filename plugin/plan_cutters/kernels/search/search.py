@@ -82,9 +82,12 @@ def _write(results, row, contacts, ranges, rotation, tilt):
 
 
 class Mode(NamedTuple):
-    """How samples are searched: from the `at`-th on, each at first at the rotation and tilt of `start`, at so many `turns`, with
-    intervals of tilt narrower than `narrowest`, rad, passed over. decides: whether the inner tool says what is inaccessible, and why.
-    stops: whether the first sample without a posture is the last one."""
+    """This record holds how samples are searched.
+
+    at: the place of the first one. start: rotation and tilt tried first; turns: how many rotations. narrowest: intervals of tilt
+    narrower than this are passed over, rad. decides: whether the inner tool says what is inaccessible, and why. stops: whether
+    the first sample without a posture is the last one.
+    """
 
     at: int
     start: tuple[int, float]
@@ -155,7 +158,8 @@ def search_rows(rows, contacts, ranges, tools, solids, mode, results):
 def search(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, results):
     """Decide the samples `rows`, one after the other; how many boxes were looked at.
 
-    The possible obstacles are there to call a posture safe, the certain ones to call a sample inaccessible; else as `search_rows`.
+    The possible obstacles are there to call a posture safe, the certain ones to call a sample inaccessible; the rest is as for
+    `search_rows`.
     """
     mode = Mode(0, _ANYWHERE, len(ranges.rotation_cos), _FINEST, True, False)
     return search_rows(rows, contacts, ranges, (outer_tool, inner_tool), (possible, certain), mode, results)[1]

@@ -197,6 +197,20 @@ def _in_cone(polygon, count, piece, k, grow):
 
 
 @kernel
+def _end_of_side(w, ew, q, along, at_axis, radius):
+    """The squared distance of a side's end from a disk, and its slope along the side.
+
+    `w` is the end's height and `q` its distance from the axis; `ew` and `along` / `q` are their slopes, `at_axis` the latter's on
+    the axis.
+    """
+    value, slope, r = w * w, 2.0 * w * ew, q - radius
+    if r > 0.0:
+        value += r * r
+        slope += 2.0 * r * (along / q if q > 0.0 else at_axis)
+    return value, slope
+
+
+@kernel
 def _side_in_arc(aw, ax, ay, ew, ex, ey, radius, square):
     """The share along a side, from the centre's height, at which it reaches into an arc; -1 if nowhere. Its ends do not.
 
@@ -212,20 +226,11 @@ def _side_in_arc(aw, ax, ay, ew, ex, ey, radius, square):
         w, x, y = aw + part * ew, ax + part * ex, ay + part * ey
         return part if w * w + x * x + y * y < square else -1.0
     low, high = 0.0, 1.0
-    q = np.sqrt(e0)
-    r = q - radius
-    value_low, slope_low = aw * aw, 2.0 * aw * ew
-    if r > 0.0:
-        value_low += r * r
-        slope_low += 2.0 * r * (e1 / q if q > 0.0 else np.sqrt(e2))
+    value_low, slope_low = _end_of_side(aw, ew, np.sqrt(e0), e1, np.sqrt(e2), radius)
     if slope_low >= 0.0:
         return -1.0
     q = np.sqrt(max(0.0, e0 + 2.0 * e1 + e2))
-    r = q - radius
-    value_high, slope_high = (aw + ew) ** 2, 2.0 * (aw + ew) * ew
-    if r > 0.0:
-        value_high += r * r
-        slope_high += 2.0 * r * ((e1 + e2) / q if q > 0.0 else -np.sqrt(e2))
+    value_high, slope_high = _end_of_side(aw + ew, ew, q, e1 + e2, -np.sqrt(e2), radius)
     if slope_high <= 0.0:
         return -1.0
     weight_low, weight_high, last, part = slope_low, slope_high, 0, 0.5
@@ -273,6 +278,26 @@ def _holds(polygon, count, w, x, y, nw, nx, ny):
 
 
 @kernel
+def _normal_of(polygon, count):
+    """A polygon's normal, as long as twice its area, and the square of the longest way from its first corner to another."""
+    nx, ny, nw, longest = 0.0, 0.0, 0.0, 0.0
+    for i in range(1, count - 1):
+        aw, ax, ay = polygon[i, 0] - polygon[0, 0], polygon[i, 1] - polygon[0, 1], polygon[i, 2] - polygon[0, 2]
+        bw, bx, by = (
+            polygon[i + 1, 0] - polygon[0, 0],
+            polygon[i + 1, 1] - polygon[0, 1],
+            polygon[i + 1, 2] - polygon[0, 2],
+        )
+        nx += ay * bw - aw * by
+        ny += aw * bx - ax * bw
+        nw += ax * by - ay * bx
+    for i in range(1, count):
+        aw, ax, ay = polygon[i, 0] - polygon[0, 0], polygon[i, 1] - polygon[0, 1], polygon[i, 2] - polygon[0, 2]
+        longest = max(longest, aw * aw + ax * ax + ay * ay)
+    return nx, ny, nw, longest
+
+
+@kernel
 def _in_arc(polygon, count, piece, k, grow):
     """Whether a polygon reaches into an arc widened by `grow`, between whose heights it lies, and a point that does.
 
@@ -288,21 +313,8 @@ def _in_arc(polygon, count, piece, k, grow):
             value += q * q
         if value < square:
             return True, polygon[i, 0], polygon[i, 1], polygon[i, 2]
-    nx, ny, nw = 0.0, 0.0, 0.0
-    for i in range(1, count - 1):
-        aw, ax, ay = polygon[i, 0] - polygon[0, 0], polygon[i, 1] - polygon[0, 1], polygon[i, 2] - polygon[0, 2]
-        bw, bx, by = (
-            polygon[i + 1, 0] - polygon[0, 0],
-            polygon[i + 1, 1] - polygon[0, 1],
-            polygon[i + 1, 2] - polygon[0, 2],
-        )
-        nx += ay * bw - aw * by
-        ny += aw * bx - ax * bw
-        nw += ax * by - ay * bx
-    size, longest = np.sqrt(nx * nx + ny * ny + nw * nw), 0.0
-    for i in range(1, count):
-        aw, ax, ay = polygon[i, 0] - polygon[0, 0], polygon[i, 1] - polygon[0, 1], polygon[i, 2] - polygon[0, 2]
-        longest = max(longest, aw * aw + ax * ax + ay * ay)
+    nx, ny, nw, longest = _normal_of(polygon, count)
+    size = np.sqrt(nx * nx + ny * ny + nw * nw)
     # The normal of a needle is rounding: its sides say all.
     if size > _NEEDLE * longest:
         across = np.sqrt(nx * nx + ny * ny)
