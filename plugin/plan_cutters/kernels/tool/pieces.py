@@ -281,8 +281,7 @@ def _normal_of(polygon, count):
         longest = max(longest, aw * aw + ax * ax + ay * ay)
         if i + 1 < count:
             bw, bx, by = polygon[i + 1, 0] - w, polygon[i + 1, 1] - x, polygon[i + 1, 2] - y
-            nx += ay * bw - aw * by
-            ny += aw * bx - ax * bw
+            nx, ny = nx + (ay * bw - aw * by), ny + (aw * bx - ax * bw)
             nw += ax * by - ay * bx
     return nx, ny, nw, np.sqrt(nx * nx + ny * ny + nw * nw), longest
 
