@@ -75,8 +75,8 @@ def _noted(source: bytes, notes: Path | None) -> Parsed:
             return Parsed(digest, tuple((level, module, name) for level, module, name in imports))
     except (OSError, ValueError):
         pass
-    found = parsed(source)
-    text, unfinished = json.dumps(found), note.with_name(f"{note.name}.{os.urandom(4).hex()}")
+    result = parsed(source)
+    text, unfinished = json.dumps(result), note.with_name(f"{note.name}.{os.urandom(4).hex()}")
     with contextlib.suppress(OSError):
         notes.mkdir(parents=True, exist_ok=True)
         try:
@@ -84,7 +84,7 @@ def _noted(source: bytes, notes: Path | None) -> Parsed:
             unfinished.replace(note)
         finally:
             unfinished.unlink(missing_ok=True)
-    return found
+    return result
 
 
 def _content(path: str) -> bytes | None:
@@ -165,10 +165,10 @@ def fingerprint(name: str, package: str, file: str, ours: frozenset[str], notes:
     if source is None:
         return None
     digest, imports = _noted(source, notes)
-    digests, ahead = {name: digest}, [*_meant(package, imports, ours)]
-    while ahead:
-        module = ahead.pop()
+    digests, waiting = {name: digest}, [*_meant(package, imports, ours)]
+    while waiting:
+        module = waiting.pop()
         if module not in digests:
             digests[module], further = _direct(module, ours, notes)
-            ahead += further
+            waiting += further
     return _digest(json.dumps(digests, sort_keys=True).encode())

@@ -157,7 +157,7 @@ class _ByContent(_Locator):
         return ""
 
     def get_disambiguator(self) -> str:
-        """What a function is, not the line where it stands: one module may define two under one name."""
+        """Tell functions apart by their code, not by their lines: one module may define two under one name."""
         return self._own
 
     def get_source_stamp(self) -> str:

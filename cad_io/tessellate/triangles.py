@@ -130,8 +130,8 @@ def tessellate(
             laid.append(each)
         tried.clear()
     ends = np.cumsum([0, *(len(each.corner) for each in laid)])
-    vertex, whole, off, left_out = _gathered(part, patches, laid, ends, chord)
-    missing.update(left_out)
+    vertex, whole, off, uncovered = _gathered(part, patches, laid, ends, chord)
+    missing.update(uncovered)
     loose = {number: error for number, error in off.items() if error > _LOOSE * most}
     if len(loose) == len(off):
         # Nothing is closer: all of it is as close as it is.

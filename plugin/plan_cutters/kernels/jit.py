@@ -15,7 +15,9 @@ def at_hand(name: str) -> bool | None:
     None where it is kept for this process alone, since no folder can be written to.
     """
     module, _, function = name.rpartition(".")
-    *rooms, stem = module.split(".")
-    package = ".".join([__name__.rpartition(".")[0], *rooms])
-    folder, lasts = cache_folder(f"{package}.{stem}", package, str(Path(__file__).parent.joinpath(*rooms, f"{stem}.py")))
+    *folders, stem = module.split(".")
+    package = ".".join([__name__.rpartition(".")[0], *folders])
+    folder, lasts = cache_folder(
+        f"{package}.{stem}", package, str(Path(__file__).parent.joinpath(*folders, f"{stem}.py"))
+    )
     return any(Path(folder).glob(f"{stem}.{function}-*.nbc")) if lasts else None

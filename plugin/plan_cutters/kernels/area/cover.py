@@ -306,7 +306,9 @@ def _status_by(rule, row, patches, nodes, sweeping, obstacles, body, workspace):
     mode = 0 if flat else mode_at(sweeping.tool, np.arctan2(stance.sine, stance.cosine))
     stance = Stance(rule, stance.upright, stance.along, stance.sine, stance.cosine, stance.steepness, mode)
     frame, seen_nodes = Frame(patches.point[row], n, f, t), workspace.seen
-    if not _touches(stance, flat, sweeping) or not begin(frame, patches.patch[row], patches.home[row], nodes, seen_nodes):
+    if not _touches(stance, flat, sweeping) or not begin(
+        frame, patches.patch[row], patches.home[row], nodes, seen_nodes
+    ):
         return NEVER, -1
     if rule == _LEVEL:
         if not STRETCH * seen_nodes.most[0, 3] * _SMALLEST * patches.patch[row] <= _ALONG:

@@ -9,6 +9,7 @@ import numpy as np
 
 from plan_cutters.kernels.codes import ARC, BOTTOM, CONE, CYLINDER, HIGH, KIND, LOW, RADIUS, ROUND, SLOPE, TOP, WIDE
 from plan_cutters.kernels.jit import kernel, maker
+from plan_cutters.kernels.rows import Cylinder
 
 #: A bound of a piece: two rims, each a radius and a height, and by how much what lies between them is grown all round; the slope
 #: of its side; whether there is such a bound.
@@ -109,6 +110,13 @@ def _bounds_of(piece, k, bound):
     _put_bound(bound, 2 * k, radius, slope, radius, slope, piece[k, ROUND], 0.0)
     if radius < 0.0 or piece[k, BOTTOM] > slope - piece[k, ROUND] or piece[k, TOP] < slope + piece[k, ROUND]:
         _put_bound(bound, 2 * k + 1, wide, piece[k, BOTTOM], wide, piece[k, TOP], 0.0, 0.0)
+
+
+@kernel
+def flutes(turning, k):
+    """Piece k as the eight sides take it."""
+    piece = turning.piece
+    return Cylinder(turning.offset, piece[k, RADIUS], piece[k, LOW], piece[k, HIGH], piece)
 
 
 @maker

@@ -7,7 +7,7 @@ import numpy as np
 from plan_cutters.kernels.codes import HIGH, LOW, RADIUS
 from plan_cutters.kernels.jit import kernel, maker
 from plan_cutters.kernels.linear.lanes import LANES
-from plan_cutters.kernels.maps.bounds import FAR, FLOOR, LATERAL, NEAR
+from plan_cutters.kernels.maps.bounds import FAR, FLOOR, LATERAL, NEAR, flutes
 from plan_cutters.kernels.maps.intervals import (
     CF,
     CL,
@@ -26,7 +26,7 @@ from plan_cutters.kernels.maps.intervals import (
 )
 from plan_cutters.kernels.maps.passes import _passes
 from plan_cutters.kernels.maps.planes import BOXES, ENDS, all_ends, distances, put_ends, triangles_clear
-from plan_cutters.kernels.rows import Cylinder, Scratch
+from plan_cutters.kernels.rows import Scratch
 from plan_cutters.kernels.tool.arcs import point_arc
 from plan_cutters.kernels.tool.hit import BODY, _swept_hit, scratch, stand, triangle_hit
 from plan_cutters.kernels.tool.pieces import inset
@@ -68,13 +68,6 @@ def cut_workspace():
         np.empty((11, LANES)), np.empty((BOXES, LANES)), np.empty((ENDS, LANES)), np.empty(LANES), np.empty(LANES),
         np.empty((64, 3, 3)), np.empty(64, np.int64), np.zeros(1, np.int64), scratch(),
     )  # fmt: skip
-
-
-@kernel
-def flutes(turning, k):
-    """Piece k as the eight sides take it."""
-    piece = turning.piece
-    return Cylinder(turning.offset, piece[k, RADIUS], piece[k, LOW], piece[k, HIGH], piece)
 
 
 @kernel
@@ -334,10 +327,7 @@ def _ends_in_the_way(met, interval, g, workspace):
 
 @kernel
 def _closely(met, start, end, narrowest, workspace):
-    """The first and the last tilt of a range at which a triangle is not shown to be clear, nan if there is none.
-
-    The third value is whether it is in the way at three tilts between them; for flutes in lanes that is not asked.
-    """
+    """The first and last tilt of a range at which a triangle is not shown to be clear, nan if none; whether it is in the way."""
     unsure = 2.0 * narrowest
     left = _first_in_the_way(met, start, end, 1.0, narrowest, workspace)
     if np.isnan(left):

@@ -16,8 +16,8 @@ from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.limits import turn_of
 from plan_cutters.kernels.linear.lanes import LANES, _see, _see_leaf, _see_triangle, _turn
 from plan_cutters.kernels.linear.vectors import cross, tilt_frame
-from plan_cutters.kernels.maps.bounds import FAR, FLOOR, NEAR, Turning, turning_of
-from plan_cutters.kernels.maps.cuts import cut_intervals, cut_workspace, flutes, take_point
+from plan_cutters.kernels.maps.bounds import FAR, FLOOR, NEAR, Turning, flutes, turning_of
+from plan_cutters.kernels.maps.cuts import cut_intervals, cut_workspace, take_point
 from plan_cutters.kernels.maps.intervals import CF, CL, COLUMNS, FIRST, INTERVALS, LAST, SF, SL, UF, UL, _begin, _end
 from plan_cutters.kernels.maps.passes import _boxes_pass, _triangles_pass
 from plan_cutters.kernels.maps.planes import all_ends, boxes_clear, triangles_clear, turn_boxes, turn_triangles
@@ -174,8 +174,7 @@ def _rotation(frame, e1, e2, turn, rotation, interval, count, turning, whole, lo
 
     `whole` is the mask of the pieces that anything can reach from this contact, `low` what is out of reach of them all.
     """
-    p, n = frame.p, frame.n
-    cosine, sine = turn
+    p, n, (cosine, sine) = frame.p, frame.n, turn
     vertex, blocks, offset, bottom = wide
     view, leaves, below, home, tally = seen.boxes, seen.leaves, seen.below, seen.home, seen.tally
     known, queue, ahead = seen.known, seen.queue, seen.ahead

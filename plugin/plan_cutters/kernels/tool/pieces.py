@@ -34,9 +34,7 @@ _HALVINGS = 6
 
 @kernel
 def inset(piece, k, height, square):
-    """How deep at least a point at a height, the square of its distance from the axis given, lies in piece k; negative
-    outside.
-    """
+    """How deep at least a point at a height, by the square of its distance from the axis, lies in piece k; negative outside."""
     q = np.sqrt(square)
     if piece[k, KIND] == ARC:
         r = max(0.0, q - piece[k, RADIUS])
@@ -198,11 +196,7 @@ def _in_cone(polygon, count, piece, k, grow):
 
 @kernel
 def _end_of_side(w, ew, q, along, at_axis, radius):
-    """The squared distance of a side's end from a disk, and its slope along the side.
-
-    `w` is the end's height and `q` its distance from the axis; `ew` and `along` / `q` are their slopes, `at_axis` the latter's on
-    the axis.
-    """
+    """The squared distance from a disk of a side's end, at height `w` and `q` from the axis, and its slope along the side."""
     value, slope, r = w * w, 2.0 * w * ew, q - radius
     if r > 0.0:
         value += r * r
@@ -229,8 +223,9 @@ def _side_in_arc(aw, ax, ay, ew, ex, ey, radius, square):
     value_low, slope_low = _end_of_side(aw, ew, np.sqrt(e0), e1, np.sqrt(e2), radius)
     if slope_low >= 0.0:
         return -1.0
-    q = np.sqrt(max(0.0, e0 + 2.0 * e1 + e2))
-    value_high, slope_high = _end_of_side(aw + ew, ew, q, e1 + e2, -np.sqrt(e2), radius)
+    value_high, slope_high = _end_of_side(
+        aw + ew, ew, np.sqrt(max(0.0, e0 + 2.0 * e1 + e2)), e1 + e2, -np.sqrt(e2), radius
+    )
     if slope_high <= 0.0:
         return -1.0
     weight_low, weight_high, last, part = slope_low, slope_high, 0, 0.5
@@ -279,22 +274,16 @@ def _holds(polygon, count, w, x, y, nw, nx, ny):
 
 @kernel
 def _normal_of(polygon, count):
-    """A polygon's normal, as long as twice its area, and the square of the longest way from its first corner to another."""
-    nx, ny, nw, longest = 0.0, 0.0, 0.0, 0.0
-    for i in range(1, count - 1):
-        aw, ax, ay = polygon[i, 0] - polygon[0, 0], polygon[i, 1] - polygon[0, 1], polygon[i, 2] - polygon[0, 2]
-        bw, bx, by = (
-            polygon[i + 1, 0] - polygon[0, 0],
-            polygon[i + 1, 1] - polygon[0, 1],
-            polygon[i + 1, 2] - polygon[0, 2],
-        )
-        nx += ay * bw - aw * by
-        ny += aw * bx - ax * bw
-        nw += ax * by - ay * bx
+    """A polygon's normal, as long as twice its area, its length, and the square of the longest way from the first corner."""
+    nx, ny, nw, longest, w, x, y = 0.0, 0.0, 0.0, 0.0, polygon[0, 0], polygon[0, 1], polygon[0, 2]
     for i in range(1, count):
-        aw, ax, ay = polygon[i, 0] - polygon[0, 0], polygon[i, 1] - polygon[0, 1], polygon[i, 2] - polygon[0, 2]
+        aw, ax, ay = polygon[i, 0] - w, polygon[i, 1] - x, polygon[i, 2] - y
         longest = max(longest, aw * aw + ax * ax + ay * ay)
-    return nx, ny, nw, longest
+        if i + 1 < count:
+            bw, bx, by = polygon[i + 1, 0] - w, polygon[i + 1, 1] - x, polygon[i + 1, 2] - y
+            nx, ny = nx + (ay * bw - aw * by), ny + (aw * bx - ax * bw)
+            nw += ax * by - ay * bx
+    return nx, ny, nw, np.sqrt(nx * nx + ny * ny + nw * nw), longest
 
 
 @kernel
@@ -313,8 +302,7 @@ def _in_arc(polygon, count, piece, k, grow):
             value += q * q
         if value < square:
             return True, polygon[i, 0], polygon[i, 1], polygon[i, 2]
-    nx, ny, nw, longest = _normal_of(polygon, count)
-    size = np.sqrt(nx * nx + ny * ny + nw * nw)
+    nx, ny, nw, size, longest = _normal_of(polygon, count)
     # The normal of a needle is rounding: its sides say all.
     if size > _NEEDLE * longest:
         across = np.sqrt(nx * nx + ny * ny)
