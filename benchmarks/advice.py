@@ -55,11 +55,7 @@ def row(part: Path) -> str:
         typed = step["option"].split()
         kept = [w for k in range(0, len(WORDS), 2) if WORDS[k] not in typed for w in WORDS[k : k + 2]]
         _, again = asked(part, folder / "then", [*CUTTERS, *kept, *typed])
-        shares = (
-            not_reached(folder / "now", [best["id"]]),
-            step["lost_after"],
-            not_reached(folder / "then", step["cutters"]),
-        )
+        shares = (not_reached(folder / "now", [best["id"]]), step["lost_after"], not_reached(folder / "then", step["cutters"]))
     told = " | ".join(f"{100 * share:.2f} %" for share in shares)
     return f"| {part.name} | {step['why']} | {told} | {seconds:.0f} | {again:.0f} |"
 

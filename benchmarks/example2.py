@@ -58,9 +58,7 @@ def all_maps(result: Any, obstacles: Obstacles, cutter: Cutter) -> None:
     """Posture maps of all samples at 72 rotations."""
     wall, processor = time.perf_counter(), time.process_time()
     maps = posture_maps(
-        result.samples,
-        Context.of(cutter, given(obstacles, PostureRange(step=np.radians(5)))),
-        result.reaches[cutter.id],
+        result.samples, Context.of(cutter, given(obstacles, PostureRange(step=np.radians(5)))), result.reaches[cutter.id]
     )
     wide = np.degrees(maps.undecided)
     print(f"posture maps, {wide.shape[1]} rotations: {time.perf_counter() - wall:.1f} s "
@@ -78,9 +76,7 @@ def main() -> None:
     print(f"samples {len(samples)}, obstacle triangles {len(triangles.triangles)}, 36 rotations, two threads")
     print(f"convex {100 * convex / len(samples):.1f} % of the samples")
     for cutter, entry in zip(cutters, result.plan.cutters, strict=True):
-        print(
-            f"{entry.id:8} feasible {entry.feasible!s:5}  free {100 * entry.interference_free / convex:.1f} % of convex"
-        )
+        print(f"{entry.id:8} feasible {entry.feasible!s:5}  free {100 * entry.interference_free / convex:.1f} % of convex")
         for name, obstacles in (("certified", triangles), ("point obstacles", points)):
             wall, processor, not_reached = existence(result, obstacles, cutter)
             print(f"         {name}: {wall:.3f} s (processor {processor:.3f}), {not_reached} not reached")

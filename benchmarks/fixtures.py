@@ -36,9 +36,7 @@ def vise_of(triangles: int) -> Fixture:
     longest = 100.0
     while len(found := vise((60.0, 40.0, 24.5), 15.5, longest=longest)) < triangles:
         longest *= 0.97
-    return Fixture(
-        trimesh.Trimesh(found.reshape(-1, 3), np.arange(3 * len(found)).reshape(-1, 3), process=False), name="vise"
-    )
+    return Fixture(trimesh.Trimesh(found.reshape(-1, 3), np.arange(3 * len(found)).reshape(-1, 3), process=False), name="vise")
 
 
 def work(ready: Prepared, cutter: Cutter) -> dict[str, int]:

@@ -162,28 +162,19 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
         tilt_direction[i] = np.cos(turn) * first[i] + np.sin(turn) * np.cross(normal[i], first[i])
         axis[i] = np.cos(tilt) * normal[i] + np.sin(tilt) * tilt_direction[i]
         left = np.cross(normal[i], tilt_direction[i])
-        hit.stand(
-            bodies[i], Frame(point[i], normal[i], tilt_direction[i], left), np.cos(tilt), np.sin(tilt), RADIUS, 0.0
-        )
+        hit.stand(bodies[i], Frame(point[i], normal[i], tilt_direction[i], left), np.cos(tilt), np.sin(tilt), RADIUS, 0.0)
         near[i] = rng.choice(np.argsort(np.linalg.norm(centre - point[i], axis=1))[:200])
     rotations = 2 * np.pi * np.arange(TURNS) / TURNS
     scratch, cc_points = hit.scratch(), Contacts(point, normal, first, curvature)
     out = VerdictArrays(
-        np.empty(n, np.uint8),
-        axis.copy(),
-        tilt_direction.copy(),
-        np.empty(n),
-        np.empty(n, np.int32),
-        np.empty(n, np.uint8),
+        np.empty(n, np.uint8), axis.copy(), tilt_direction.copy(), np.empty(n), np.empty(n, np.int32), np.empty(n, np.uint8)
     )
     solids = material.sheet(built)
     free, triangle, which = np.empty(n, np.bool_), np.empty(n, np.int32), np.empty(n, np.int32)
 
     def maps_of(count: int) -> None:
         for i in range(count):
-            free_tilts.free_tilts(
-                point[i % n], normal[i % n], tilt_direction[i % n], 0.0, RIGHT, TOOL, 0, NARROWEST, built, 2000
-            )
+            free_tilts.free_tilts(point[i % n], normal[i % n], tilt_direction[i % n], 0.0, RIGHT, TOOL, 0, NARROWEST, built, 2000)
 
     wide = lanes.WideTree(*lanes.wide_tree(built))
     blocks = wide.blocks
@@ -191,9 +182,7 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
     for i in range(len(blocks)):
         lanes._see(view, i, blocks, i, point[0], first[0], np.cross(normal[0], first[0]), normal[0], 100.0)
     for i in range(len(leaves)):
-        lanes._see_leaf(
-            leaves[i], vertex, 8 * i, 8 * i + 8, point[0], first[0], np.cross(normal[0], first[0]), normal[0]
-        )
+        lanes._see_leaf(leaves[i], vertex, 8 * i, 8 * i + 8, point[0], first[0], np.cross(normal[0], first[0]), normal[0])
     interval = np.array([[0.2, 1.4, np.cos(0.2), np.sin(0.2), np.cos(1.4), np.sin(1.4), 0, 0]])
     part, filled, unsure = np.empty((n, TURNS, 8, 2)), np.empty((n, TURNS), np.int32), np.empty((n, TURNS))
     asked = contacts()
@@ -284,11 +273,7 @@ def main() -> None:
     for name, (unit, count, run) in runs.items():
         spent = 1e6 * seconds(count, run)
         shown = f"{1000 * spent:.1f} ns" if spent < 1 else f"{spent:.1f} us"
-        print(
-            f"| `{name}` | {unit} | {shown} | {counted[name]:,.0f} |"
-            if counted
-            else f"| `{name}` | {unit} | {shown} | |"
-        )
+        print(f"| `{name}` | {unit} | {shown} | {counted[name]:,.0f} |" if counted else f"| `{name}` | {unit} | {shown} | |")
 
 
 if __name__ == "__main__":

@@ -24,9 +24,7 @@ GRID, RANGE = 201, {"ratio": 10.0, "step": 0.02, "least": 0.5, "most": 60.0}
 def main() -> None:
     part, grid = sys.argv[1] if len(sys.argv) > 1 else str(PART), int(sys.argv[2]) if len(sys.argv) > 2 else GRID
     ready = prepare(part, Options(cutters="R6L80", grid=grid))
-    print(
-        "| end | samples | s | us each | percentiles, mm | no less than most | bottleneck | beyond: lost | not decided |"
-    )
+    print("| end | samples | s | us each | percentiles, mm | no less than most | bottleneck | beyond: lost | not decided |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
     for shape in ("flat", "ball"):
         largest_radius(ready, shape, **RANGE)

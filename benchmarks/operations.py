@@ -23,15 +23,9 @@ SAMPLES = Path(__file__).parents[1] / "samples"
 CASES = {
     "peaks 61": ("peaks_and_valleys.step", {"cutters": "R6L80", "grid": 61}),
     "peaks 201": ("peaks_and_valleys.step", {"cutters": "R6L80", "grid": 201}),
-    "peaks 201, 5 deg": (
-        "peaks_and_valleys.step",
-        {"cutters": "R6L80", "grid": 201, "index_step": 0.08726646259971647},
-    ),
+    "peaks 201, 5 deg": ("peaks_and_valleys.step", {"cutters": "R6L80", "grid": 201, "index_step": 0.08726646259971647}),
     "pocket_top": ("pocket_top.step", {"cutters": "R6L80", "faces": "all", "spacing": 2.0}),
-    "control_arm": (
-        "control_arm.step",
-        {"cutters": "R6L60rc6", "faces": "all", "spacing": 3.0, "holder": "R15L40+R25L60"},
-    ),
+    "control_arm": ("control_arm.step", {"cutters": "R6L60rc6", "faces": "all", "spacing": 3.0, "holder": "R15L40+R25L60"}),
 }
 REAL = {
     "featuretype": (
@@ -73,9 +67,7 @@ def main() -> None:
         memory(cases)
         return
     plan(SAMPLES / "pocket_top.step", cutters="R6L80", grid=4, operations="both", feed=2000, area_budget=0)
-    print(
-        "part                samples  fewest (at least, proof)        candidates  deg   probes M  plan s  fewest s  both s"
-    )
+    print("part                samples  fewest (at least, proof)        candidates  deg   probes M  plan s  fewest s  both s")
     for name, (file, more) in cases.items():
         took = {}
         for which in ("fewest", "both"):
@@ -87,10 +79,7 @@ def main() -> None:
         few = entry.fewest
         found = f"{few.found} ({few.at_least}, {few.proof})"
         spent = f"{entry.probes / 1e6:9.2f} {whole - mine:7.1f} {took['fewest']:9.1f} {took['both']:7.1f}"
-        print(
-            f"{name:18} {len(result.samples):8}  {found:30} {few.candidates:11}  {few.spacing_deg:4.2g} {spent}",
-            flush=True,
-        )
+        print(f"{name:18} {len(result.samples):8}  {found:30} {few.candidates:11}  {few.spacing_deg:4.2g} {spent}", flush=True)
 
 
 if __name__ == "__main__":

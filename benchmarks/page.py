@@ -44,10 +44,7 @@ def _once(playwright: Playwright, path: Path) -> dict[str, float]:
     marks: dict[str, float] = page.evaluate(_MARKS)
     after = _seconds()
     browser.close()
-    return {
-        **marks,
-        **{f"{kind}, cpu s": after.get(kind, 0.0) - before.get(kind, 0.0) for kind in ("renderer", "gpu-process")},
-    }
+    return {**marks, **{f"{kind}, cpu s": after.get(kind, 0.0) - before.get(kind, 0.0) for kind in ("renderer", "gpu-process")}}
 
 
 def _seconds() -> dict[str, float]:

@@ -235,9 +235,7 @@ def maps(samples: SurfaceSamples, rows: NDArray[np.int64], obstacles: Obstacles,
     found = Maps(np.zeros((n, k, ROOM, 2)), np.zeros((n, k), np.int32), np.zeros((n, k)))
     safe = TOLERANCE - obstacles.triangles.chord_error
     tool = tool_of(assembly(CUTTER, safe, safe))
-    ranges = Ranges(
-        np.cos(ROTATIONS), np.sin(ROTATIONS), 0.0, np.pi / 2, np.array([0.0, 0.0, 1.0]), -2.0, rotary_of(None)
-    )
+    ranges = Ranges(np.cos(ROTATIONS), np.sin(ROTATIONS), 0.0, np.pi / 2, np.array([0.0, 0.0, 1.0]), -2.0, rotary_of(None))
 
     def work(places: NDArray[np.int64]) -> None:
         piece = slice(places[0], places[-1] + 1)
@@ -324,9 +322,7 @@ class Truth:
     def _depth(self, i: int, j: int, k: int) -> float:
         if (i, j, k) not in self._known:
             at = self._where[i]
-            self._known[i, j, k] = self._exact.deepest(
-                at.point, at.axis[j, k], at.x_t[j, k], CUTTER.radius, CUTTER.length
-            )
+            self._known[i, j, k] = self._exact.deepest(at.point, at.axis[j, k], at.x_t[j, k], CUTTER.radius, CUTTER.length)
         return self._known[i, j, k]
 
 
@@ -408,9 +404,7 @@ def existence(samples: SurfaceSamples, obstacles: Obstacles) -> str:
     none = np.zeros(len(samples), bool)
     found = []
     for jobs, clock in CLOCKS.items():
-        conditions = Conditions(
-            Machine(), np.array([0.0, 0.0, 1.0]), postures, Surroundings.sheet(obstacles), TOLERANCE, jobs
-        )
+        conditions = Conditions(Machine(), np.array([0.0, 0.0, 1.0]), postures, Surroundings.sheet(obstacles), TOLERANCE, jobs)
         reach, seconds = timed(lambda given=conditions: access(samples, none, Context.of(CUTTER, given)), 3, clock)
         found.append(f"{len(samples) / seconds:.3g} samples/s on {jobs} thread(s)")
     reached = f"{int(reach.reached.sum())} of {len(samples)} samples reached"

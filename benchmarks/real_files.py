@@ -47,9 +47,7 @@ def row(file: Path, out: Path) -> list[str]:
     assert len(faces) == plan["part"]["faces"]
     assert all(f["unjudged"] for f in unjudged), "a face was dropped without a word"
     size = " x ".join(f"{s:.4g}" for s in plan["part"]["size_mm"])
-    counts = " / ".join(
-        str(entry[k]) for k in ("interference_free", "accessible", "undecided", "inaccessible", "unjudged")
-    )
+    counts = " / ".join(str(entry[k]) for k in ("interference_free", "accessible", "undecided", "inaccessible", "unjudged"))
     notes = [*plan["part"]["warnings"], *(f"{k} {v['rung']}: {v['why']}" for k, v in plan["split"].items() if v["why"])]
     return [
         file.name, str(done.returncode), seconds, size, str(len(faces)), f"{len(targets) - len(unjudged)} + {len(unjudged)}",
@@ -96,9 +94,7 @@ def exact_area(face: Any) -> float:
             curve.D1(x, point, tangent)
             border.append((point.X(), point.Y(), sign * share * tangent.Y()))
     u, v, dv = np.array(border).T
-    knots = np.union1d(
-        [u.min(), u.max()], interval_ends(adaptor.NbUIntervals(GeomAbs_CN), adaptor.UIntervals, GeomAbs_CN)
-    )
+    knots = np.union1d([u.min(), u.max()], interval_ends(adaptor.NbUIntervals(GeomAbs_CN), adaptor.UIntervals, GeomAbs_CN))
     knots = knots[(knots >= u.min()) & (knots <= u.max())]
     total = 0.0
     for a, b in pairwise(knots.tolist()):

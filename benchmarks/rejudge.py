@@ -232,9 +232,7 @@ class Posture:
                 grid = uv + np.stack(np.meshgrid(*[np.linspace(-1, 1, NODES)] * 2), -1).reshape(-1, 2) * step
                 grid = np.clip(grid, low, high)
                 found = self.depth(faces.at(face, grid))
-                inside = (
-                    i for i in np.argsort(-found) if faces.inside[face](gp_Pnt2d(*grid[i].tolist())) != TopAbs_OUT
-                )
+                inside = (i for i in np.argsort(-found) if faces.inside[face](gp_Pnt2d(*grid[i].tolist())) != TopAbs_OUT)
                 first = next(inside, None)
                 if first is None:
                     break

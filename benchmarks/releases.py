@@ -103,9 +103,7 @@ class Tree:
             plan = json.loads((out / "plan.json").read_text()) if ended and (out / "plan.json").exists() else None
         assert used is not None
         unit = 1e6 if sys.platform == "darwin" else 1e3
-        return Ran(
-            child.returncode if ended else None, seconds, used.ru_utime + used.ru_stime, used.ru_maxrss / unit, plan
-        )
+        return Ran(child.returncode if ended else None, seconds, used.ru_utime + used.ru_stime, used.ru_maxrss / unit, plan)
 
 
 @contextmanager
@@ -138,9 +136,7 @@ def same(before: Ran, after: Ran) -> str:
     if not (before.plan and after.plan):
         return pair(before.code, after.code, "exit {}")
     was, now = ({c["id"]: c for c in ran.plan["cutters"]} for ran in (before, after) if ran.plan)
-    if before.code != after.code or {i: c["feasible"] for i, c in was.items()} != {
-        i: c["feasible"] for i, c in now.items()
-    }:
+    if before.code != after.code or {i: c["feasible"] for i, c in was.items()} != {i: c["feasible"] for i, c in now.items()}:
         return "differ"
     kinds = ("interference_free", "accessible", "undecided", "inaccessible", "unjudged")
     moved = max(sum(abs(was[i][k] - now[i][k]) for k in kinds) // 2 for i in was)
@@ -172,9 +168,7 @@ def totals(rows: Sequence[tuple[Ran, Ran]]) -> list[list[str]]:
     ways = {"largest": max, "median": statistics.median, "sum": sum}
     out = []
     for name, way in ways.items():
-        both = [
-            [way(getattr(row[i], key) for row in rows) for i in (0, 1)] for key in ("seconds", "processor", "memory")
-        ]
+        both = [[way(getattr(row[i], key) for row in rows) for i in (0, 1)] for key in ("seconds", "processor", "memory")]
         out.append([name, "", "", "", timed(*both[0]), timed(*both[1]), "", "", "",
                     "" if name == "sum" else pair(*both[2], "{:.0f}")])  # fmt: skip
     return out
@@ -204,9 +198,7 @@ HEAD = ["file", "faces", "samples", "triangles", "whole command s", "processor s
 @click.option("--times", default=1, show_default=True, help="Runs of each; the quickest counts.")
 @click.option("--limit", default=400.0, show_default=True, help="Seconds after which a run is ended.")
 @click.option("--markdown", type=Path, help="Where to write the tables, too.")
-def main(
-    folder: Path, before: str, only: tuple[str, ...], words: str, times: int, limit: float, markdown: Path | None
-) -> None:
+def main(folder: Path, before: str, only: tuple[str, ...], words: str, times: int, limit: float, markdown: Path | None) -> None:
     """Plan the CAD files of FOLDER with a former release and with this tree."""
     files = sorted(f for f in folder.resolve().iterdir() if f.suffix.lower() in SUFFIXES)
     files = [f for f in files if not only or any(word in f.name for word in only)]
@@ -217,10 +209,7 @@ def main(
             was, now = (tree.run(file, words.split(), limit, times) for tree in trees)
             rows.append((was, now))
             click.echo(" | ".join(answers(file, was, now)))
-    stages = [
-        [f.name, *(timed(was.stage(s), now.stage(s)) for s in STAGES)]
-        for f, (was, now) in zip(files, rows, strict=True)
-    ]
+    stages = [[f.name, *(timed(was.stage(s), now.stage(s)) for s in STAGES)] for f, (was, now) in zip(files, rows, strict=True)]
     whole = [answers(f, was, now) for f, (was, now) in zip(files, rows, strict=True)]
     text = "\n\n".join(
         [

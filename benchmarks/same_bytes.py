@@ -24,13 +24,7 @@ from plan_cutters import PlanError, plan, posture_map
 
 SAMPLES = Path(__file__).parents[1] / "samples"
 #: Solids, an assembly, IGES surfaces without a solid, a body with bodies inside, faces that fall apart.
-REAL = (
-    "asitus_ANC101-ill.stp",
-    "occt_linkrods.step",
-    "bladex_upper.iges",
-    "axom_boxed_sphere.step",
-    "trimesh_featuretype.STEP",
-)
+REAL = ("asitus_ANC101-ill.stp", "occt_linkrods.step", "bladex_upper.iges", "axom_boxed_sphere.step", "trimesh_featuretype.STEP")
 CUTTERS = ("R6L60", "R3L40", "R1.5L25")
 
 

@@ -66,12 +66,8 @@ def parts(folder: Path, count: int, grid: int, workers: list[int]) -> None:
     """(a) Many parts: rate, and the share of the threads' time that is not spent on a part."""
     from plan_cutters import plan_many
 
-    files = [f for f in sorted(folder.rglob("*")) if f.suffix.lower() in CAD] + sorted(
-        (ROOT / "samples").glob("*.step")
-    )
-    named = [
-        (f"{k:03}-{file.stem}", str(file)) for k, file in enumerate(itertools.islice(itertools.cycle(files), count))
-    ]
+    files = [f for f in sorted(folder.rglob("*")) if f.suffix.lower() in CAD] + sorted((ROOT / "samples").glob("*.step"))
+    named = [(f"{k:03}-{file.stem}", str(file)) for k, file in enumerate(itertools.islice(itertools.cycle(files), count))]
     print(f"{count} parts of {len(files)} files, {len(OPTIONS['cutters'])} cutters, grid {grid}", flush=True)  # type: ignore[arg-type]
     first = 0.0
     for each in workers:

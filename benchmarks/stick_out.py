@@ -26,9 +26,7 @@ def main() -> None:
     cutters = tuple(Cutter.parse(text) for text in CUTTERS)
     ready = prepare(part, Options(cutters=cutters, holder=HOLDER, grid=grid))
     print(f"{part}: {len(ready.samples)} samples, {len(ready.conditions.obstacles.triangles)} triangles")
-    print(
-        "| cutter | judging, s | least stick-out, s | processor s | each sample to 0.5 mm, s | mm | limited by | below it |"
-    )
+    print("| cutter | judging, s | least stick-out, s | processor s | each sample to 0.5 mm, s | mm | limited by | below it |")
     print("| --- | --- | --- | --- | --- | --- | --- | --- |")
     for cutter in ready.cutters:
         reach = judge(ready, cutter)

@@ -39,11 +39,7 @@ def row(part: Part, number: int) -> str:
     u, v = rng.uniform(trim.box[0], trim.box[1], POINTS), rng.uniform(trim.box[2], trim.box[3], POINTS)
     fewer_u, fewer_v = u[:OF_THE_KERNEL], v[:OF_THE_KERNEL]
     derivatives = surface.second(u, v)
-    ours = [
-        seconds(lambda: surface.values(u, v)),
-        seconds(lambda: surface.second(u, v)),
-        seconds(lambda: curvature(derivatives)),
-    ]
+    ours = [seconds(lambda: surface.values(u, v)), seconds(lambda: surface.second(u, v)), seconds(lambda: curvature(derivatives))]
     theirs = [
         seconds(lambda: values(surface.adaptor, fewer_u, fewer_v)),
         seconds(lambda: second_derivatives(surface.adaptor, fewer_u, fewer_v)),

@@ -39,11 +39,7 @@ def main() -> None:
     ready = prepare(str(PART), options)
     contacts, obstacles = contacts_of(ready.samples), ready.conditions.obstacles
     rows = np.sort(np.random.default_rng(0).permutation(len(ready.samples))[:SAMPLES])
-    part, count, unsure = (
-        np.zeros((SAMPLES, TURNS, ROOM, 2)),
-        np.zeros((SAMPLES, TURNS), np.int32),
-        np.zeros((SAMPLES, TURNS)),
-    )
+    part, count, unsure = (np.zeros((SAMPLES, TURNS, ROOM, 2)), np.zeros((SAMPLES, TURNS), np.int32), np.zeros((SAMPLES, TURNS)))
     print("| tool | us a rotation | free deg | undecided deg |\n| --- | --- | --- | --- |")
     for name, cutter in TOOLS.items():
         tool, best = Context.of(cutter, ready.conditions).outer, np.inf

@@ -89,18 +89,14 @@ def exact(path: Path, cutter: Cutter, count: int) -> str:
     reach, samples, (entry,) = result.reaches[cutter.id], result.samples, result.plan.cutters
     rows = np.flatnonzero(reach.reached)
     rng, tool = np.random.default_rng(0), Reference(cutter)
-    rows = (
-        rows[rng.permutation(len(rows))[:count]] if count < len(rows) else rng.choice(rows, min(count, 20 * len(rows)))
-    )
+    rows = rows[rng.permutation(len(rows))[:count]] if count < len(rows) else rng.choice(rows, min(count, 20 * len(rows)))
     worst = -math.inf
     for row in rows:
         tilt_direction = reach.tilt_direction[row]
         if reach.interference_free[row]:
             # Free in every rotation.
             turn = rng.uniform(0.0, 2.0 * math.pi)
-            tilt_direction = math.cos(turn) * tilt_direction + math.sin(turn) * np.cross(
-                samples.normal[row], tilt_direction
-            )
+            tilt_direction = math.cos(turn) * tilt_direction + math.sin(turn) * np.cross(samples.normal[row], tilt_direction)
         tip, frame = tool.frame(samples.point[row], samples.normal[row], tilt_direction, float(reach.tilt[row]))
         near = cloud[tree.query_ball_point(samples.point[row], 3.0 * cutter.radius)]
         x, y, w = ((np.concatenate([far, near]) - tip) @ frame.T).T
@@ -136,19 +132,11 @@ def kinds(scale: float) -> list[Cutter]:
         Cutter.bull(radius=3 * scale, corner_radius=scale, length=40 * scale, flutes=15 * scale, **more),
         Cutter.ball(radius=3 * scale, length=40 * scale, flutes=15 * scale, **more),
         Cutter.ball(radius=1.5 * scale, length=40 * scale, taper=math.radians(5), holder=holder),
-        Cutter.bull(
-            radius=2 * scale, corner_radius=0.5 * scale, length=40 * scale, taper=math.radians(3), holder=holder
-        ),
+        Cutter.bull(radius=2 * scale, corner_radius=0.5 * scale, length=40 * scale, taper=math.radians(3), holder=holder),
         Cutter.lollipop(radius=3 * scale, neck_radius=1.5 * scale, length=40 * scale, holder=holder),
-        Cutter.barrel(
-            radius=3 * scale, flank_radius=40 * scale, tip_radius=scale, length=40 * scale, flutes=11 * scale
-        ),
-        Cutter.lens(
-            radius=4 * scale, bottom_radius=20 * scale, corner_radius=0.5 * scale, length=40 * scale, holder=holder
-        ),
-        Cutter.form(
-            [(0, 0), (2 * scale, 0), (3 * scale, scale), (3 * scale, 8 * scale)], length=40 * scale, holder=holder
-        ),
+        Cutter.barrel(radius=3 * scale, flank_radius=40 * scale, tip_radius=scale, length=40 * scale, flutes=11 * scale),
+        Cutter.lens(radius=4 * scale, bottom_radius=20 * scale, corner_radius=0.5 * scale, length=40 * scale, holder=holder),
+        Cutter.form([(0, 0), (2 * scale, 0), (3 * scale, scale), (3 * scale, 8 * scale)], length=40 * scale, holder=holder),
     ]
 
 

@@ -58,11 +58,7 @@ def _names(record: Any) -> list[str]:
 def _same(one: Any, other: Any) -> bool:
     if isinstance(one, np.ndarray):
         floating = one.dtype.kind == "f"
-        return (
-            isinstance(other, np.ndarray)
-            and one.dtype == other.dtype
-            and np.array_equal(one, other, equal_nan=floating)
-        )
+        return isinstance(other, np.ndarray) and one.dtype == other.dtype and np.array_equal(one, other, equal_nan=floating)
     if isinstance(one, tuple):
         return isinstance(other, tuple) and len(one) == len(other) and all(map(_same, one, other))
     return bool(one == other)
@@ -71,9 +67,7 @@ def _same(one: Any, other: Any) -> bool:
 def _brief(value: Any) -> str:
     if isinstance(value, np.ndarray):
         return f"{value.dtype} {value.shape}"
-    if isinstance(value, tuple) and (
-        len(value) > _LISTED or any(isinstance(each, np.ndarray | tuple) for each in value)
-    ):
+    if isinstance(value, tuple) and (len(value) > _LISTED or any(isinstance(each, np.ndarray | tuple) for each in value)):
         return f"{len(value)} {type(value[0]).__name__}" if value else "()"
     return repr(value)
 

@@ -80,9 +80,7 @@ def _answer(call: Callable[[], bytes], pipe: BinaryIO) -> None:
     pipe.write(answer)
 
 
-def each(
-    call: Callable[[Item], Done], items: Sequence[Item], *, seconds: float, hangs: int = 2
-) -> Iterator[Done | Ended]:
+def each(call: Callable[[Item], Done], items: Sequence[Item], *, seconds: float, hangs: int = 2) -> Iterator[Done | Ended]:
     """Yield the result of `call` for each item, in the order of the items.
 
     It runs in a forked copy of this process, which ends with it and is made again behind an item that ends it. Where the

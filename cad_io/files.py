@@ -144,9 +144,7 @@ def checksums(files: Iterable[tuple[str, bytes | None]]) -> tuple[tuple[str, str
 def fingerprint(sha256: str, references: Sequence[tuple[str, str | None]]) -> str:
     """Checksum of a CAD file with all that it refers to, from theirs: its own SHA-256 where it refers to nothing."""
     stated = sorted(f"{len(name)} {name} {result}" for name, result in references)
-    return (
-        hashlib.sha256("\n".join([sha256, *stated]).encode(errors="surrogateescape")).hexdigest() if stated else sha256
-    )
+    return hashlib.sha256("\n".join([sha256, *stated]).encode(errors="surrogateescape")).hexdigest() if stated else sha256
 
 
 def _refuse(status: os.stat_result) -> None:

@@ -46,9 +46,7 @@ def parsed(source: bytes) -> Parsed:
             imports |= {(0, each.name, "") for each in node.names}
         elif isinstance(node, ast.ImportFrom):
             imports |= {(node.level, node.module or "", each.name) for each in node.names}
-        elif isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) and ast.get_docstring(
-            node
-        ):
+        elif isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef) and ast.get_docstring(node):
             del node.body[0]
     return Parsed(_digest(ast.dump(tree).encode()), tuple(sorted(imports)))
 

@@ -43,9 +43,7 @@ VERSION: str = numba.__version__
 _BENEATH = {
     "python": [sys.version, sys.flags.optimize],
     "libraries": [VERSION, llvmlite.__version__, np.__version__],
-    "compiler": [
-        str(getattr(numba.config, each)) for each in ("OPT", "BOUNDSCHECK", "LOOP_VECTORIZE", "SLP_VECTORIZE")
-    ],
+    "compiler": [str(getattr(numba.config, each)) for each in ("OPT", "BOUNDSCHECK", "LOOP_VECTORIZE", "SLP_VECTORIZE")],
 }
 
 #: What the compiler is told of every function. Nothing calls one as C does.

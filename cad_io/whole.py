@@ -15,9 +15,7 @@ class FileError(Protocol):
 
 
 @contextlib.contextmanager
-def whole(
-    path: str | Path, error: FileError | None = None, named: Callable[[Path], None] = lambda _: None
-) -> Iterator[Path]:
+def whole(path: str | Path, error: FileError | None = None, named: Callable[[Path], None] = lambda _: None) -> Iterator[Path]:
     """Give a path in the same folder to write to; it is renamed to `path` when the block ends well, removed when it does not.
 
     Parameters

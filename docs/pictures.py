@@ -11,12 +11,7 @@ from playwright.sync_api import sync_playwright
 DOCS = Path(__file__).parent
 ROOT, PICTURES = DOCS.parent, DOCS / "pictures"
 #: Without these WebGL shows nothing where there is no graphics card.
-_CHROMIUM = [
-    "--no-sandbox",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-    "--disable-background-networking",
-]
+_CHROMIUM = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"]
 _CUTTERS = ["--cutters", "samples/shop.toml", "--cutter", "D16L90", "--holder", "D40L30+D62L40"]
 
 
@@ -35,13 +30,7 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder)
         said = run(
-            "plan-cutters",
-            "samples/peaks_and_valleys.step",
-            *_CUTTERS,
-            "--answers",
-            "stick-out,mend",
-            "-o",
-            str(out / "p"),
+            "plan-cutters", "samples/peaks_and_valleys.step", *_CUTTERS, "--answers", "stick-out,mend", "-o", str(out / "p")
         )
         # The last lines tell seconds, which differ, and a folder.
         text = said[said.index("\nTake ") + 1 : said.index("\nWritten")]

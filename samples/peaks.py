@@ -59,9 +59,7 @@ def grid(shape: Shape, n: int):
     # The peak in the quadrant x > 0, y > 0; the valleys mirror each other.
     quadrant = np.where((x >= 0) & (y >= 0), z, -np.inf)
     top = np.unravel_index(np.argmax(quadrant), z.shape)
-    bottom = [
-        np.unravel_index(np.argmin(np.where(s, z, np.inf)), z.shape) for s in ((x >= 0) & (y <= 0), (x <= 0) & (y >= 0))
-    ]
+    bottom = [np.unravel_index(np.argmin(np.where(s, z, np.inf)), z.shape) for s in ((x >= 0) & (y <= 0), (x <= 0) & (y >= 0))]
     apart = [np.hypot(x[top] - x[b], y[top] - y[b]) for b in bottom]
     near = bottom[int(np.argmin(apart))]
     scale = ALTITUDE / (z[top] - z[near])
@@ -97,9 +95,7 @@ def figures(shape: Shape, n: int = 81, mesh: int = 141) -> dict:
     normal, direction, curvature = geometry(points)
     convex = curvature[..., 0] <= 1e-6 / 100
     result = {"convex": 100 * convex.mean(), "regions": label(convex)[1], "distance": distance}
-    cost = (
-        ((result["convex"] - CONVEX) / 1.0) ** 2 + ((distance - DISTANCE) / 2.0) ** 2 + 25 * abs(result["regions"] - 2)
-    )
+    cost = ((result["convex"] - CONVEX) / 1.0) ** 2 + ((distance - DISTANCE) / 2.0) ** 2 + 25 * abs(result["regions"] - 2)
     result["cost"] = cost
     if cost > 400:
         return {**result, "cost": cost + 1000}
@@ -115,25 +111,14 @@ def figures(shape: Shape, n: int = 81, mesh: int = 141) -> dict:
     triangles = np.concatenate([np.stack(t, 2).reshape(-1, 3, 3) for t in ((a, b, c), (a, c, d))])
     order, box, depth = tree.build(np.ascontiguousarray(triangles))
     obstacles = sheet(Tree(np.ascontiguousarray(triangles[order]), box, depth))
-    contacts = Contacts(
-        *(np.ascontiguousarray(v.reshape(-1, v.shape[-1])) for v in (points, normal, direction, curvature))
-    )
+    contacts = Contacts(*(np.ascontiguousarray(v.reshape(-1, v.shape[-1])) for v in (points, normal, direction, curvature)))
     n, turn = len(contacts.point), np.arange(36) * np.pi / 18
     ranges = Ranges(np.cos(turn), np.sin(turn), 0.0, np.pi / 2, np.array([0.0, 0, 1]), -2.0)
     for radius, length in ((6.0, 80.0), (8.0, 90.0)):
         free, reach = np.zeros(n, bool), blank(n)
         search.dummy_clear(np.flatnonzero(convex.ravel()), contacts, radius, length, 0.03, obstacles, free)
         search.search(
-            np.flatnonzero(~free),
-            contacts,
-            ranges,
-            radius,
-            length,
-            0.03,
-            0.05,
-            obstacles,
-            obstacles,
-            verdict_arrays_of(reach),
+            np.flatnonzero(~free), contacts, ranges, radius, length, 0.03, 0.05, obstacles, obstacles, verdict_arrays_of(reach)
         )
         lost = int(np.isin(reach.verdict, (0, 3)).sum())
         result[f"lost_{radius:g}"] = lost
@@ -162,9 +147,7 @@ def main(seconds: float, seed: int) -> None:
         if found["cost"] < best_cost:
             best, best_cost = trial, found["cost"]
             print(f"{time.time() - began:6.0f} s", {k: round(float(v), 2) for k, v in found.items()}, flush=True)
-            print(
-                "        ", {f.name: round(float(v), 3) for f, v in zip(fields(Shape), trial, strict=True)}, flush=True
-            )
+            print("        ", {f.name: round(float(v), 3) for f, v in zip(fields(Shape), trial, strict=True)}, flush=True)
 
 
 if __name__ == "__main__":

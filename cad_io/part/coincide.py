@@ -184,8 +184,7 @@ def _apart(curves: Curves, faces: list[tuple[int, ...]], table: _Table, ends: It
     own = [bool(set(faces[a]) & set(faces[b])) for a, b in ends]
     tubes = _Tubes(curves, faces) if any(own) else None
     return np.array(
-        [not it or tubes is None or tubes.wide(table, row, tolerance) for it, row in zip(own, pieces, strict=True)],
-        bool,
+        [not it or tubes is None or tubes.wide(table, row, tolerance) for it, row in zip(own, pieces, strict=True)], bool
     )
 
 
@@ -225,9 +224,7 @@ def _joined(curves: Curves, faces: list[tuple[int, ...]], groups: list[Group], t
             for mine, way in zip(members, ways, strict=True) if mine]  # fmt: skip
 
 
-def _candidates(
-    curves: Curves, table: _Table, alone: NDArray[np.bool_], tolerance: float
-) -> tuple[Indices, Indices, Indices]:
+def _candidates(curves: Curves, table: _Table, alone: NDArray[np.bool_], tolerance: float) -> tuple[Indices, Indices, Indices]:
     """Pairs of pieces with both ends next to each other, and whether they run the same way: +1 or -1.
 
     A piece as short as the tolerance lies next to anything there, and is joined with nothing.
@@ -298,9 +295,7 @@ def points(curves: Curves, faces: list[tuple[int, ...]], groups: Sequence[Group]
     What one face has alone is a point together with all such pieces that go on at its ends: of a hole made of short pieces, each
     would be one.
     """
-    short = [
-        g for g, alone in zip(groups, _alone(faces, groups), strict=True) if alone and curves.drawn[g.pieces[0].edge]
-    ]
+    short = [g for g, alone in zip(groups, _alone(faces, groups), strict=True) if alone and curves.drawn[g.pieces[0].edge]]
     table = _Table.of(short)
     small = np.flatnonzero(table.lengths(curves) <= tolerance)
     if not len(small):

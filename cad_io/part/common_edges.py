@@ -133,10 +133,7 @@ def _fits(curves: Curves, groups: Sequence[Group]) -> "list[_Fit]":
     tangent = curves.at(there, s)[1]
     with np.errstate(all="ignore"):
         speed = (along * tangent).sum(axis=1) / (tangent * tangent).sum(axis=1)
-    return [
-        _Fit.of(t[a:b], s[a:b], speed[a:b], way)
-        for a, b, (_, _, way) in zip(starts[:-1], starts[1:], rows, strict=True)
-    ]
+    return [_Fit.of(t[a:b], s[a:b], speed[a:b], way) for a, b, (_, _, way) in zip(starts[:-1], starts[1:], rows, strict=True)]
 
 
 class _Fit(NamedTuple):

@@ -65,9 +65,7 @@ def sew(shape: TopoDS_Shape, faces: Sequence[TopoDS_Face], diagonal: float) -> S
     numbers = _outside_solids(shape)
     shell = join([faces[number - 1] for number in numbers], diagonal)
     open_edges, length = len(shell.left), float(sum(shell.left))
-    return Sewn(
-        dict(zip(numbers, shell.faces, strict=True)), shell.kept, shell.tried, open_edges, length, shell.stopped
-    )
+    return Sewn(dict(zip(numbers, shell.faces, strict=True)), shell.kept, shell.tried, open_edges, length, shell.stopped)
 
 
 class Join(NamedTuple):

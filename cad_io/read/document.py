@@ -61,9 +61,7 @@ class FaceMarks:
         self.layers: dict[int, tuple[str, ...]] = {}
         self.taken: set[int] = set()
 
-    def paint(
-        self, numbers: list[int], name: str = "", colour: Colour | None = None, layers: tuple[str, ...] = ()
-    ) -> None:
+    def paint(self, numbers: list[int], name: str = "", colour: Colour | None = None, layers: tuple[str, ...] = ()) -> None:
         """Mark faces; what is empty leaves what they have."""
         if name:
             self.names.update(dict.fromkeys(numbers, name))
@@ -135,9 +133,7 @@ class _Inherited(NamedTuple):
 
     def at(self, label: TDF_Label, place: TopLoc_Location | None = None) -> "_Inherited":
         return _Inherited(
-            self.place.Multiplied(place) if place else self.place,
-            self.colour or _colour(label),
-            self.layers or _layers(label),
+            self.place.Multiplied(place) if place else self.place, self.colour or _colour(label), self.layers or _layers(label)
         )
 
 

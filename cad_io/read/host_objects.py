@@ -207,9 +207,7 @@ def _is_host(source: Any) -> bool:
     """Whether it is, or may hold, a shape."""
     if isinstance(source, TopoDS_Shape) or _is_assembly(source) or callable(getattr(source, "vals", None)):
         return True
-    return any(hasattr(type(source), word) for word in ("wrapped", "part")) or "wrapped" in getattr(
-        source, "__dict__", ()
-    )
+    return any(hasattr(type(source), word) for word in ("wrapped", "part")) or "wrapped" in getattr(source, "__dict__", ())
 
 
 def _wrapped(source: Any) -> TopoDS_Shape:

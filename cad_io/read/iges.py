@@ -79,9 +79,7 @@ class Loaded:
             gone = sum(each.face is None for each in result.lost)
             result.lost += [LostFace("", "", "it is written, but could not be read")] * (written - face_count - gone)
         unknown = [fault for fault in self.faults if "(entity type)" in fault.text]
-        result.lost += [LostFace("", "", "an entity of no known type stands in the file: it may be a face")] * len(
-            unknown
-        )
+        result.lost += [LostFace("", "", "an entity of no known type stands in the file: it may be a face")] * len(unknown)
         if self.faults:
             result.warnings.append(f"the file has faults{text}")
         return result
@@ -95,8 +93,7 @@ class Loaded:
         for section, count in zip((b"S", b"G", b"D", b"P"), counts.groups() if counts else (), strict=False):
             if (here := len(self.sections[section])) < int(count):
                 raise ReadError(
-                    f"is missing lines ({here} of {int(count)} in section {section.decode()}): fetch it again",
-                    file=self.file,
+                    f"is missing lines ({here} of {int(count)} in section {section.decode()}): fetch it again", file=self.file
                 )
 
 

@@ -79,9 +79,7 @@ def read_mesh(source: Any, unit: str | None = None) -> Mesh:
     if kind == "glb":
         # glTF has Y up.
         vertex = np.stack([vertex[..., 0], -vertex[..., 2], vertex[..., 1]], axis=-1) + 0.0
-        notes = (
-            f"its lengths are {'metres' if unit is None else unit}, and its Y axis is the part's Z, as GLB has it",
-        )
+        notes = (f"its lengths are {'metres' if unit is None else unit}, and its Y axis is the part's Z, as GLB has it",)
     elif unit is None and file is not None:
         notes = (f"{kind.upper()} files name no unit: mm was assumed",)
     unit = unit or ("m" if kind == "glb" else "mm")

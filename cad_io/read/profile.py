@@ -54,15 +54,11 @@ def _turned(shape: Any, axis: gp_Ax1, origin: Sequence[float], direction: Sequen
     for plane in flat[:1]:
         across = abs(plane.Axis().Direction().Dot(axis.Direction()))
         if across > _FLAT or plane.Distance(axis.Location()) > _ON:
-            raise ReadError(
-                "the profile lies in no plane through the axis: draw it there, or give the axis that it turns about"
-            )
+            raise ReadError("the profile lies in no plane through the axis: draw it there, or give the axis that it turns about")
     try:
         return turned(shape, origin, direction)
     except CadIoError:
-        raise ReadError(
-            "the profile cannot be turned about the axis: draw its one half, on one side of the axis"
-        ) from None
+        raise ReadError("the profile cannot be turned about the axis: draw its one half, on one side of the axis") from None
 
 
 def _coplanar(one: Any, other: Any) -> bool:

@@ -190,6 +190,4 @@ def _scaled_node(node: Node, unit: str | None) -> Node:
         return node
     move = node.place.Transformation()
     move.SetTranslationPart(gp_Vec(move.TranslationPart() * in_mm(unit)))
-    return replace(
-        node, place=TopLoc_Location(move), children=tuple(_scaled_node(child, unit) for child in node.children)
-    )
+    return replace(node, place=TopLoc_Location(move), children=tuple(_scaled_node(child, unit) for child in node.children))

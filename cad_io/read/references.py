@@ -17,9 +17,7 @@ _NAMED = re.compile(rb"(?:" + b"|".join(WORDS) + rb")\s*\(\s*'((?:[^']|'')*)'")
 #: A comment, or a text, in which none begins.
 _COMMENT = re.compile(rb"/\*.*?\*/|'[^']*'", re.DOTALL)
 #: Letters beyond ASCII, and a backslash, as a text has them (ISO 10303-21, 6.4.3).
-_LETTERS = re.compile(
-    rb"\\X2\\((?:[0-9A-Fa-f]{4})*)\\X0\\|\\X4\\((?:[0-9A-Fa-f]{8})*)\\X0\\|\\X\\([0-9A-Fa-f]{2})|\\S\\(.)|\\\\"
-)
+_LETTERS = re.compile(rb"\\X2\\((?:[0-9A-Fa-f]{4})*)\\X0\\|\\X4\\((?:[0-9A-Fa-f]{8})*)\\X0\\|\\X\\([0-9A-Fa-f]{2})|\\S\\(.)|\\\\")
 #: Documents beside the shape: that one is not there costs no geometry.
 DOCUMENTS = (".pdf", ".txt", ".doc", ".docx", ".xls", ".xlsx", ".csv", ".htm", ".html", ".jpg", ".jpeg", ".png", ".tif",
               ".tiff", ".svg")  # fmt: skip

@@ -94,9 +94,7 @@ def referred(file: str, data: bytes, timeout: float, above: tuple[str, ...] = ()
             continue
         result.add(below)
         result.add(
-            Referred(
-                {path: count}, [LostFace("", " ".join(filter(None, (name, *who))), why) for *who, why in unread], risky
-            )
+            Referred({path: count}, [LostFace("", " ".join(filter(None, (name, *who))), why) for *who, why in unread], risky)
         )
     return result
 

@@ -70,9 +70,7 @@ def _opened(file: str) -> Iterator[BinaryIO]:
     except FileNotFoundError:
         raise ReadError("no such file", file=file) from None
     except MemoryError:
-        raise ReadError(
-            "is too large for the memory allowed: give more, or check that it is the part", file=file
-        ) from None
+        raise ReadError("is too large for the memory allowed: give more, or check that it is the part", file=file) from None
     except (OSError, ValueError) as error:
         raise ReadError(f"cannot be read: {getattr(error, 'strerror', None) or error}", file=file) from error
 

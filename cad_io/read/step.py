@@ -46,14 +46,7 @@ _IDENTS = re.compile(rb"(?:^|;)\s*(#\d+)\s*=", re.MULTILINE)
 #: Shells and the faces that they name; statements, by their number, and what they are.
 _SHELL = re.compile(rb"\b(?:CLOSED_SHELL|OPEN_SHELL|CONNECTED_FACE_SET)\s*\(\s*'[^']*'\s*,\s*\(([^)]*)\)")
 _STATEMENT = re.compile(rb"(?:^|;)\s*(#\d+)\s*=\s*([A-Z_0-9]*)\s*\(", re.MULTILINE)
-_FACE_KINDS = (
-    b"ADVANCED_FACE",
-    b"FACE_SURFACE",
-    b"FACE",
-    b"ORIENTED_FACE",
-    b"SUBFACE",
-    b"",
-)  # none: of several kinds at once
+_FACE_KINDS = (b"ADVANCED_FACE", b"FACE_SURFACE", b"FACE", b"ORIENTED_FACE", b"SUBFACE", b"")  # none: of several kinds at once
 #: Numbers so large that the kernel may crash on them, by their exponents.
 _HUGE = [re.compile(rb"%s\+?0*[1-9]\d\d" % letter) for letter in (b"E", b"e")]
 _BEFORE = tuple(b"%c" % byte for byte in b"0123456789.")
@@ -155,10 +148,7 @@ class Loaded:
                 raise
             # One bad vertex can cost a whole solid: without the faces at it, the others may come.
             return self._again(names=self.names, careful=True).transfer()
-        made, written = (
-            distinct_faces(result.shape) - self.foreign,
-            sum(len(kind.findall(self.data)) for kind in _FACES),
-        )
+        made, written = (distinct_faces(result.shape) - self.foreign, sum(len(kind.findall(self.data)) for kind in _FACES))
         if not traced:
             # All is well, or else the file is read again with marks: only then can be told what is lost.
             if made >= written and not self.model.trouble(fails=True) and not self._doubtful(result.shape):
@@ -194,8 +184,7 @@ class Loaded:
                     )
             if self.unit is None and _is_length(entity) and fault.parameter != "dimensions":
                 raise ReadError(
-                    f"has a faulty length unit ({fault.short}): give the right one with --unit (unit= in Python)",
-                    file=self.file,
+                    f"has a faulty length unit ({fault.short}): give the right one with --unit (unit= in Python)", file=self.file
                 )
 
     def _refuse_unnoticed(self) -> None:

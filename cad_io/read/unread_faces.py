@@ -318,9 +318,7 @@ class UnreadFaces:
                 at = self.model.number(place)
                 if at not in reported:
                     reported.add(at)
-                    yield LostFace(
-                        self.ident(at), "", self._cause("it may put a component in the wrong place", [number])
-                    )
+                    yield LostFace(self.ident(at), "", self._cause("it may put a component in the wrong place", [number]))
             elif any(isinstance(user, StepGeom_Surface) for user in users) and any(
                 isinstance(user, StepShape_GeometricSet) for user in users
             ):

@@ -19,16 +19,12 @@ _FACE, _LOOP, _WHOLES = 510, 508, (186, 514)
 
 def fell_apart(model: Model) -> bool:
     """Whether the transfer could not put faces together to the solids and shells that are written."""
-    return any(
-        model.entities[fault.number].TypeNumber() in _WHOLES for fault in model.trouble(fails=False) if fault.number
-    )
+    return any(model.entities[fault.number].TypeNumber() in _WHOLES for fault in model.trouble(fails=False) if fault.number)
 
 
 def _felt(model: Model, faults: Sequence[Fault], split: bool) -> dict[int, list[Fault]]:
     """Faults that faces felt, by the number of the entity; with `split` those that felt none, too."""
-    felt: dict[int, list[Fault]] = {
-        n: [] for n, entity in model.entities.items() if entity.TypeNumber() == _FACE and split
-    }
+    felt: dict[int, list[Fault]] = {n: [] for n, entity in model.entities.items() if entity.TypeNumber() == _FACE and split}
     for fault in (*faults, *model.trouble(fails=True)):
         for n in model.users(fault.number, _is_face):
             if n and _is_face(model.entities[n]):
@@ -48,9 +44,7 @@ def _face_numbers(model: Model, results: Collection[int], shapes: Sequence[TopoD
     return numbers | dict(zip(missed, unknown, strict=True)) if len(unknown) == len(missed) else numbers
 
 
-def unread_of_iges(
-    model: Model, faults: Sequence[Fault], shapes: Sequence[TopoDS_Face], *, split: bool
-) -> list[LostFace]:
+def unread_of_iges(model: Model, faults: Sequence[Fault], shapes: Sequence[TopoDS_Face], *, split: bool) -> list[LostFace]:
     """Faces without a shape, and those that had trouble and cannot show that they are whole.
 
     Parameters

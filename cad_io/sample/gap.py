@@ -69,10 +69,7 @@ def inner_probes(part: Part, number: int, lines: Lines, finer: NDArray[np.bool_]
 def halved(lines: Lines) -> tuple[Floats, Floats]:
     """Grid lines and those half way between; of a closed range up to the seam's other end."""
     halves = []
-    for line, closed, low, high in (
-        (lines.u, lines.closed_u, *lines.span[:2]),
-        (lines.v, lines.closed_v, *lines.span[2:]),
-    ):
+    for line, closed, low, high in ((lines.u, lines.closed_u, *lines.span[:2]), (lines.v, lines.closed_v, *lines.span[2:])):
         whole = np.append(line, line[0] + high - low) if closed else line
         between = np.empty(2 * len(whole) - 1)
         between[::2], between[1::2] = whole, 0.5 * (whole[1:] + whole[:-1])
@@ -99,8 +96,7 @@ def denser(lines: Lines, finer: NDArray[np.bool_], uv: Floats, trim: Trim) -> Li
     wide = (u[2 * i + 2] - u[2 * i]) * trim.scale[0] >= (v[2 * j + 2] - v[2 * j]) * trim.scale[1]
     along_u, along_v = np.where(on_u & on_v, wide, ~on_v | on_u), np.where(on_u & on_v, ~wide, ~on_u | on_v)
     return lines._replace(
-        u=np.union1d(lines.u, u[2 * np.unique(i[along_u]) + 1]),
-        v=np.union1d(lines.v, v[2 * np.unique(j[along_v]) + 1]),
+        u=np.union1d(lines.u, u[2 * np.unique(i[along_u]) + 1]), v=np.union1d(lines.v, v[2 * np.unique(j[along_v]) + 1])
     )
 
 

@@ -61,9 +61,7 @@ def uniform(surface: Surface, trim: Trim, count: int) -> Lines:
     return Lines(u.lines(share), v.lines(share), u.closed, v.closed, (u.low, u.high, v.low, v.high))
 
 
-def spaced(
-    surface: Surface, trim: Trim, spacing: float, more: tuple[float, float] = (1.0, 1.0), finer: int = 1
-) -> Lines:
+def spaced(surface: Surface, trim: Trim, spacing: float, more: tuple[float, float] = (1.0, 1.0), finer: int = 1) -> Lines:
     """Lines over the trim's box so that neighbours are at most `spacing` mm apart, `more` and `finer` times as many if asked.
 
     Lines are laid by the largest speed across them, so the gap holds everywhere as far as the probes saw.

@@ -142,9 +142,7 @@ class Arrangement:
                 continue  # touches a vertex
             self.stretches.append(Stretch(number, np.concatenate([[a], t[among], [b]]), path, (ca, cb), (na, nb)))
 
-    def _bounds(
-        self, spline: Spline, curve: "BSpline", t: Floats, xy: Floats
-    ) -> list[tuple[float, tuple[int, float] | None]]:
+    def _bounds(self, spline: Spline, curve: "BSpline", t: Floats, xy: Floats) -> list[tuple[float, tuple[int, float] | None]]:
         """Parameters between which a curve is all inside or all outside, each with the side it meets there and where."""
         size, slope, first, last = self.border.size, curve.derivative(), float(t[0]), float(t[-1])
 

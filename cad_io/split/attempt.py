@@ -139,9 +139,7 @@ class Attempt:
 
     def _pieces(self, number: int, face: Any, drawing: Drawing) -> list[Any]:
         arrangement, regions = drawing.found, [part.region for part in drawing.parts]
-        mark = tuple(
-            tuple(cut.stops) if (cut := self._net.cuts.get(side.key)) else () for side in arrangement.border.sides
-        )
+        mark = tuple(tuple(cut.stops) if (cut := self._net.cuts.get(side.key)) else () for side in arrangement.border.sides)
         try:
             made = pieces(self._net, face, drawing.surface, arrangement, regions)
             reason = "" if mark in arrangement.sound else wrong_pieces(face, made)

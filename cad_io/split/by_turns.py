@@ -96,9 +96,7 @@ def split_by_turns(part: Any, labels: Sequence[FaceLabels], *, seconds: float = 
             joined[stage.pieces[i - 1][0].face] += n
         stage = _Stage(part, done.shape, pieces)
     last = tuple(each for each, _ in stage.pieces)
-    strays = {
-        number: _strays(each, [piece for piece in last if piece.face == number]) for number, each in fields.items()
-    }
+    strays = {number: _strays(each, [piece for piece in last if piece.face == number]) for number, each in fields.items()}
     return Split(stage.shape, last, whole, {k: n for k, n in strays.items() if n}, remaining, dict(joined))
 
 
@@ -124,9 +122,7 @@ def _with_neighbours(line: Floats, wanted: NDArray[np.bool_]) -> tuple[Floats, N
     """A line of parameters with one more on either side of those wanted, a third of a cell away; and the node each copies."""
     at = np.flatnonzero(wanted)
     low, high = at[at > 0], at[at < len(line) - 1]
-    new = np.concatenate(
-        [line, line[low] - (line[low] - line[low - 1]) / 3.0, line[high] + (line[high + 1] - line[high]) / 3.0]
-    )
+    new = np.concatenate([line, line[low] - (line[low] - line[low - 1]) / 3.0, line[high] + (line[high + 1] - line[high]) / 3.0])
     node = np.concatenate([np.arange(len(line)), low, high])
     order = np.argsort(new, kind="stable")
     return new[order], node[order]
@@ -142,9 +138,7 @@ def _first(piece: Piece, labels: FaceLabels | None) -> tuple[Piece, tuple[int, .
 
 def _taken(pieces: Sequence[tuple[Piece, tuple[int, ...]]], labels: Mapping[int, FaceLabels]) -> dict[int, Ints]:
     """The piece, from 1, that each node (nu, nv) of a face with labels to part lies on; 0 on any border, the face's own too."""
-    taken = {
-        piece.face: np.zeros(labels[piece.face].label.shape, np.int32) for piece, group in pieces if len(group) > 1
-    }
+    taken = {piece.face: np.zeros(labels[piece.face].label.shape, np.int32) for piece, group in pieces if len(group) > 1}
     for i, (piece, _) in enumerate(pieces, 1):
         if piece.face in taken:
             taken[piece.face][_on(labels[piece.face], piece.shape)] = i

@@ -111,8 +111,7 @@ def smoothed(grids: Sequence[LabelGrid]) -> list[list[Line]]:
         Of each grid; none for a field of one label.
     """
     chains = [
-        [chain for k in range(int(grid.field.min()), int(grid.field.max())) for chain in _chains(grid, k)]
-        for grid in grids
+        [chain for k in range(int(grid.field.min()), int(grid.field.max())) for chain in _chains(grid, k)] for grid in grids
     ]
     along = iter(_relaxed([chain for mine in chains for chain in mine]))
     return [

@@ -111,9 +111,7 @@ def cut_faces(
         result, pieces = _unpacked(answer, shape)
         pieces.failed |= failed
         return result, pieces
-    return shape, CutFaces(
-        failed=failed | {n: "too many other faces could not be split" for n in labels if n not in failed}
-    )
+    return shape, CutFaces(failed=failed | {n: "too many other faces could not be split" for n in labels if n not in failed})
 
 
 class _Watch:

@@ -52,10 +52,7 @@ def label_grid(face: Any, labels: FaceLabels) -> tuple[LabelGrid, Ints, NDArray[
     over = 0.0 if poles else _OVER
 
     label, lines, closed = labels.label, [], []
-    directions = (
-        (labels.u, u_period, surface.IsUPeriodic(), u0, u1),
-        (labels.v, v_period, surface.IsVPeriodic(), v0, v1),
-    )
+    directions = ((labels.u, u_period, surface.IsUPeriodic(), u0, u1), (labels.v, v_period, surface.IsVPeriodic(), v0, v1))
     for axis, (line, period, periodic, first, last) in enumerate(directions):
         cell = (line[-1] - line[0]) / (len(line) - 1)
         if period and line[-1] - line[0] + 1.5 * cell > period:

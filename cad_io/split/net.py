@@ -63,9 +63,7 @@ class Net:
 
     def __init__(self, shape: Any, surface_of: Callable[[int], Surface], off: Off | None = None) -> None:
         """Look at a shape; `surface_of` gives a face's surface by its number here, `off` what another copy of it has measured."""
-        self.edges, self.vertices, self.faces = (
-            shape_map(shape, kind) for kind in (TopAbs_EDGE, TopAbs_VERTEX, TopAbs_FACE)
-        )
+        self.edges, self.vertices, self.faces = (shape_map(shape, kind) for kind in (TopAbs_EDGE, TopAbs_VERTEX, TopAbs_FACE))
         self.cuts: dict[int, Cut] = {}
         self.loose: dict[int, float] = {}
         self._known: dict[int, Edge] = {}

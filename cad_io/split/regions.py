@@ -208,9 +208,7 @@ def _halves(arrangement: Arrangement) -> list[Half]:
     return halves
 
 
-def _turns(
-    halves: list[Half], twin: dict[int, int], come: list[int], leave: list[int], span: float
-) -> list[tuple[int, int]]:
+def _turns(halves: list[Half], twin: dict[int, int], come: list[int], leave: list[int], span: float) -> list[tuple[int, int]]:
     """For each half that arrives at a node, the next one around the region on its left."""
     if not leave:
         raise CannotSplit("the border of a region ends")

@@ -72,9 +72,7 @@ def followed(surface: Surface, spline: Spline) -> Followed:
         return surface.values(*curve(t).T)
 
     knots = np.unique(spline.knots)
-    averages = (
-        np.linspace(knots[0], knots[-1], 9) if len(knots) < 5 else np.union1d(knots, 0.5 * (knots[1:] + knots[:-1]))
-    )
+    averages = np.linspace(knots[0], knots[-1], 9) if len(knots) < 5 else np.union1d(knots, 0.5 * (knots[1:] + knots[:-1]))
     while True:
         space = make_interp_spline(averages, at(averages), k=3)
         gap = np.diff(averages)
@@ -89,9 +87,7 @@ def followed(surface: Surface, spline: Spline) -> Followed:
 
     ends = gp_Pnt(*space(averages[0]).tolist()), gp_Pnt(*space(averages[-1]).tolist())
     plane = cubic(spline.knots, spline.poles)
-    return Followed(
-        cubic(space.t, space.c), plane, float(averages[0]), float(averages[-1]), ends, max(1.2 * worst, 1e-7)
-    )
+    return Followed(cubic(space.t, space.c), plane, float(averages[0]), float(averages[-1]), ends, max(1.2 * worst, 1e-7))
 
 
 def surface_edge(face: Any, curve: Followed, start: Any, stop: Any) -> Any:

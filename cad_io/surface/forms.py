@@ -92,8 +92,7 @@ def form_of(adaptor: BRepAdaptor_Surface) -> Form | None:
 def _elementary(surface: Any, profile: elementary.Profile) -> Form:
     frame = elementary.frame_of(surface.Position())
     return Form(
-        lambda u, v, count: elementary.revolved(frame, profile, u, v, count),
-        lambda u, v: elementary.bends(frame, profile, u, v),
+        lambda u, v, count: elementary.revolved(frame, profile, u, v, count), lambda u, v: elementary.bends(frame, profile, u, v)
     )
 
 
@@ -279,6 +278,4 @@ def _turned(curve: "Net", axis: Any) -> Form:
         limits = elementary.Limits(reach, speed, bend, 2.0 * of_line.spread[0, :, 1], speed)
         return elementary.turned_bends(evaluate, limits, u, v)
 
-    return Form(
-        evaluate, bends, (_NONE, line.knots[1]), (_NONE, line.jumps[1]), (0.0, line.period[1]), (0, line.degree[1])
-    )
+    return Form(evaluate, bends, (_NONE, line.knots[1]), (_NONE, line.jumps[1]), (0.0, line.period[1]), (0, line.degree[1]))

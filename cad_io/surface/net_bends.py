@@ -145,9 +145,7 @@ def _less_affine(cell, p, q, slope, raised):
                         # A share of a corner of the square is the value of 1, s or t there.
                         share = _share(i, j, a, b, p, q)
                         if share > 0.0:
-                            raised[i, j, c] -= (
-                                share * cell[i - a, j - b, 3] * (origin + a * slope[0, c] + b * slope[1, c])
-                            )
+                            raised[i, j, c] -= share * cell[i - a, j - b, 3] * (origin + a * slope[0, c] + b * slope[1, c])
     return low, high
 
 

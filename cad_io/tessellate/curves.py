@@ -93,9 +93,7 @@ def packed(curves: Sequence[BRepAdaptor_Curve2d], ranges: Sequence[tuple[float, 
         lines += len(mine)
     # Where a curve's knots end tells the next's beginning.
     number = np.concatenate([number, [[0, 0, knots, poles, lines, 0]]])
-    return Curves(
-        number, real, *(np.ascontiguousarray(np.concatenate(each)) for each in (knot, pole, line, bend))
-    ), exact
+    return Curves(number, real, *(np.ascontiguousarray(np.concatenate(each)) for each in (knot, pole, line, bend))), exact
 
 
 def _straight(curve: BRepAdaptor_Curve2d, ends: tuple[float, float]) -> Net | None:

@@ -89,11 +89,7 @@ def meridian(part: Part, origin: Sequence[float], direction: Sequence[float], ch
                 lines.append((q, w, r, h) if w <= h else (r, h, q, w))
                 exact.append(on_body)
     off = 0.0 if all(exact) else chord
-    line, own, foot = (
-        np.array(lines).reshape(-1, 4),
-        np.array(exact, bool),
-        min((row[1] for row in lines), default=math.inf),
-    )
+    line, own, foot = (np.array(lines).reshape(-1, 4), np.array(exact, bool), min((row[1] for row in lines), default=math.inf))
     if meshed:
         triangles = tessellate(part, chord, faces=meshed)
         if triangles.missing:
@@ -135,9 +131,7 @@ def _turning(face: Any, base: Floats, along: Floats, chord: float) -> _Lines | N
     if kind == GeomAbs_SurfaceOfRevolution:
         axis = surface.AxeOfRevolution()
         return [] if _coaxial(axis.Location(), axis.Direction(), base, along) else None
-    made = {GeomAbs_Cylinder: "Cylinder", GeomAbs_Cone: "Cone", GeomAbs_Sphere: "Sphere", GeomAbs_Torus: "Torus"}.get(
-        kind
-    )
+    made = {GeomAbs_Cylinder: "Cylinder", GeomAbs_Cone: "Cone", GeomAbs_Sphere: "Sphere", GeomAbs_Torus: "Torus"}.get(kind)
     if made is None or max(abs(v0), abs(v1)) > _FARTHEST:
         return None
     body = getattr(surface, made)()

@@ -46,9 +46,7 @@ class UVMesh(NamedTuple):
     border: tuple[BorderCurve, ...]
 
 
-def kernel_start(
-    part: Part, number: int, deflection: float, angle: float, seconds: float
-) -> tuple[UVMesh | None, float]:
+def kernel_start(part: Part, number: int, deflection: float, angle: float, seconds: float) -> tuple[UVMesh | None, float]:
     """Mesh a face by the kernel's mesher, which may never end: its triangles, None where it fails, and the seconds it took.
 
     Parameters

@@ -88,9 +88,7 @@ class Patch(NamedTuple):
 
     def tried(self, chord: float, most: int, workspace: RefinedMesh) -> "Tried":
         """Triangles for a chord error, counted, and kept if there is room for them."""
-        count, number, off, strayed, area = refined(
-            self.start, self.table, self.curves, self._asked(chord), most, workspace
-        )
+        count, number, off, strayed, area = refined(self.start, self.table, self.curves, self._asked(chord), most, workspace)
         own = None
         if count <= min(most, len(workspace.corner)) and number <= len(workspace.uv):
             own = RefinedMesh(workspace.uv[:number].copy(), workspace.corner[:count].copy())

@@ -95,9 +95,7 @@ def bounded_by(corner: Ints, border: Ints) -> bool:
 def places(uv: Floats) -> tuple[Indices, Indices]:
     """Rows of points (n, 2) that stand for each place, and the number of the place of each (n,)."""
     # Complex numbers are sorted by both parts, and faster than pairs; zeros of both signs are one.
-    _, first, place = np.unique(
-        np.ascontiguousarray(uv + 0.0).view(complex).ravel(), return_index=True, return_inverse=True
-    )
+    _, first, place = np.unique(np.ascontiguousarray(uv + 0.0).view(complex).ravel(), return_index=True, return_inverse=True)
     return first, place.ravel()
 
 
@@ -120,10 +118,7 @@ def _whole_cells(region: shapely.Geometry, u: Floats, v: Floats) -> Bools:
     if min(none.shape) < 2:
         return none
     du, dv = _AWAY * np.diff(u), _AWAY * np.diff(v)
-    low_u, high_u = (
-        np.broadcast_to((u[:-1] - du)[:, None], none.shape),
-        np.broadcast_to((u[1:] + du)[:, None], none.shape),
-    )
+    low_u, high_u = (np.broadcast_to((u[:-1] - du)[:, None], none.shape), np.broadcast_to((u[1:] + du)[:, None], none.shape))
     low_v, high_v = np.broadcast_to(v[:-1] - dv, none.shape), np.broadcast_to(v[1:] + dv, none.shape)
     shapely.prepare(region)
     return np.asarray(shapely.contains_properly(region, shapely.box(low_u, low_v, high_u, high_v)))

@@ -149,14 +149,10 @@ def _enclosing(vertex: Floats) -> tuple[NDArray[np.int8], Floats]:
         # How often the skin runs along each of its edges, one way less the other.
         mine = order[shell_of[order // 3] == shell]
         edges, which = np.unique(key[mine], return_inverse=True)
-        net = np.bincount(
-            which, weights=weight[mine // 3] * np.where(tail[mine] < head[mine], 1, -1), minlength=len(edges)
-        )
+        net = np.bincount(which, weights=weight[mine // 3] * np.where(tail[mine] < head[mine], 1, -1), minlength=len(edges))
         open_edges = [(edges[i] // len(nodes), edges[i] % len(nodes), int(net[i])) for i in np.flatnonzero(net)]
         place = {c: nodes[i] for i, c in enumerate(corner.ravel().tolist())} if open_edges else {}
-        lines = [
-            np.array([place[low], place[high]] if n > 0 else [place[high], place[low]]) for low, high, n in open_edges
-        ]
+        lines = [np.array([place[low], place[high]] if n > 0 else [place[high], place[low]]) for low, high, n in open_edges]
         cap = coned(lines, [abs(n) for *_, n in open_edges], near) if lines else np.zeros((0, 3, 3))
         origin = vertex[rows[0], 0]
         solid = np.concatenate([vertex[rows] * 1.0, cap]) - origin

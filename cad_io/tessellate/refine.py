@@ -156,9 +156,7 @@ def _cut(stack, k, look, curves, number, spare):
     else:
         # An edge may end a rounding beside the line that it is to be cut at.
         if look.axis >= 0:
-            share = (share - stack.uv[k, edge, look.axis]) / (
-                stack.uv[k, next_, look.axis] - stack.uv[k, edge, look.axis]
-            )
+            share = (share - stack.uv[k, edge, look.axis]) / (stack.uv[k, next_, look.axis] - stack.uv[k, edge, look.axis])
         u = (1.0 - share) * stack.uv[k, edge, 0] + share * stack.uv[k, next_, 0]
         v = (1.0 - share) * stack.uv[k, edge, 1] + share * stack.uv[k, next_, 1]
         # On the line, not beside it by a rounding.
@@ -221,10 +219,7 @@ def _refined(start, table, curves, chord, most, stack, spare, result):
                 # A middle on a bent border may lie beyond the opposite corner: such a child is folded over.
                 turn = 1 if twice < 0.0 else 0
                 result.corner[leaves, 0] = stack.corner[top, 0]
-                result.corner[leaves, 1], result.corner[leaves, 2] = (
-                    stack.corner[top, 1 + turn],
-                    stack.corner[top, 2 - turn],
-                )
+                result.corner[leaves, 1], result.corner[leaves, 2] = (stack.corner[top, 1 + turn], stack.corner[top, 2 - turn])
             leaves += 1
             top -= 1
             if leaves > most:

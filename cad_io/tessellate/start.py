@@ -207,15 +207,12 @@ def _metric(bend: Floats, trim: Trim, lines: list[Floats]) -> Floats:
 
 def _finished(outline: Outline, uv: Floats, corner: Ints, surface: Surface) -> UVMesh:
     border = tuple(
-        BorderCurve(nodes, each.parameter, each.use.curve)
-        for nodes, each in zip(outline.nodes, outline.uses, strict=True)
+        BorderCurve(nodes, each.parameter, each.use.curve) for nodes, each in zip(outline.nodes, outline.uses, strict=True)
     )
     return bordered(UVMesh(uv, corner, border), [each.on_curve for each in outline.uses], surface)
 
 
-def _axes(
-    lines: tuple[Floats, Floats], sides: list[tuple[int, bool, tuple[float, float]]]
-) -> tuple[Floats, Floats] | None:
+def _axes(lines: tuple[Floats, Floats], sides: list[tuple[int, bool, tuple[float, float]]]) -> tuple[Floats, Floats] | None:
     """Lines of a grid along u and v, through the ends of its sides; None where they cannot be laid, or part too many cells."""
     ends = [np.array([t for along, _, span in sides if along == k for t in span]) for k in range(2)]
     u, v = _through(lines[0], ends[0]), _through(lines[1], ends[1])
@@ -280,9 +277,7 @@ def _through(lines: Floats, ends: Floats) -> Floats | None:
         return None
     inner = lines[1:-1]
     allowed = _MOVED * np.interp(inner, 0.5 * (lines[1:] + lines[:-1]), np.diff(lines)) if len(inner) else inner
-    after = (
-        np.clip(np.searchsorted(wanted, inner), 1, len(wanted) - 1) if len(wanted) > 1 else np.zeros(len(inner), int)
-    )
+    after = np.clip(np.searchsorted(wanted, inner), 1, len(wanted) - 1) if len(wanted) > 1 else np.zeros(len(inner), int)
     apart = np.minimum(np.abs(inner - wanted[after]), np.abs(inner - wanted[np.maximum(after - 1, 0)]))
     return np.unique(np.concatenate([[low], inner[apart > allowed], wanted, [high]]))
 

@@ -123,9 +123,7 @@ def tessellate(
         patches, tried = _affordable(part, patches, (chord, guess), budget, jobs, at)
         most = min((each.chord for each in tried), default=chord)
         laid = []
-        for patch, each in zip(
-            patches, _each(lambda i: patches[i].laid(tried[i], budget), range(len(tried)), jobs), strict=True
-        ):
+        for patch, each in zip(patches, _each(lambda i: patches[i].laid(tried[i], budget), range(len(tried)), jobs), strict=True):
             at("own", patch.number)
             laid.append(each)
         tried.clear()
@@ -149,9 +147,7 @@ def tessellate(
     )
 
 
-def _begun(
-    part: Part, numbers: Sequence[int], chord: float, budget: int, at: At
-) -> tuple[list[Patch], float, dict[int, str]]:
+def _begun(part: Part, numbers: Sequence[int], chord: float, budget: int, at: At) -> tuple[list[Patch], float, dict[int, str]]:
     """Patches of faces, the chord error for which the budget is expected to do, and why a face has no patch."""
     guess, size = chord, float(np.linalg.norm(part.size))
     while (count := expected(part, numbers, guess)) > budget and guess < size:

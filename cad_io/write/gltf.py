@@ -219,9 +219,7 @@ class _Glb:
             return {}
         attributes = {key: self._accessor(array, key) for key, array in mesh.attributes.items()}
         indices = self._accessor(mesh.triangle.reshape(-1))
-        self.meshes.append(
-            {"name": name, "primitives": [{"attributes": attributes, "indices": indices, "material": 0}]}
-        )
+        self.meshes.append({"name": name, "primitives": [{"attributes": attributes, "indices": indices, "material": 0}]})
         return {"mesh": len(self.meshes) - 1}
 
     def _accessor(self, array: NDArray[Any], attribute: str = "") -> int:

@@ -64,9 +64,7 @@ class Net:
     def looked_at(self, chord: float, angle: float) -> "Look":
         """How far the edges' middles lie from the surface."""
         there, count = np.roll(self.corner, -1, axis=1), len(self.uv)
-        key, of = np.unique(
-            np.minimum(self.corner, there) * count + np.maximum(self.corner, there), return_inverse=True
-        )
+        key, of = np.unique(np.minimum(self.corner, there) * count + np.maximum(self.corner, there), return_inverse=True)
         edge, of = np.stack([key // count, key % count], axis=1), of.reshape(-1, 3)
         uv = 0.5 * (self.uv[edge[:, 0]] + self.uv[edge[:, 1]])
         ends, most = np.array(list(self.border), np.int64).reshape(-1, 2), np.full(len(key), angle)
@@ -79,9 +77,7 @@ class Net:
         off, length = np.linalg.norm(point - 0.5 * (first + last), axis=1), np.linalg.norm(last - first, axis=1)
         # What the middle of a triangle is off counts for its longest edge.
         inner = self.uv[self.corner].mean(axis=1)
-        deep = np.linalg.norm(
-            self.surface.values(inner[:, 0], inner[:, 1]) - self.point[self.corner].mean(axis=1), axis=1
-        )
+        deep = np.linalg.norm(self.surface.values(inner[:, 0], inner[:, 1]) - self.point[self.corner].mean(axis=1), axis=1)
         longest = of[np.arange(len(of)), length[of].argmax(axis=1)]
         np.maximum.at(off, longest, deep)
         off = np.where(np.isfinite(off) & np.isfinite(point).all(axis=1), off, 0.0)

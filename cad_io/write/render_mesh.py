@@ -51,9 +51,7 @@ class RenderMesh(NamedTuple):
     missing: tuple[int, ...]
 
 
-def render_mesh(
-    part: Part, sides: Sequence[float] | Floats, *, most: int, deflection: float | None = None
-) -> RenderMesh:
+def render_mesh(part: Part, sides: Sequence[float] | Floats, *, most: int, deflection: float | None = None) -> RenderMesh:
     """Mesh all faces of a part to be looked at; the part itself stays without a mesh.
 
     Coarse triangles are cut where they lie farthest from the surface, until they are near enough or there are as many as are

@@ -105,17 +105,7 @@ def write_step(
         def write() -> bytes:
             try:
                 with translated("writing STEP", error=WriteError, file=file):
-                    _write(
-                        split,
-                        temporary,
-                        lambda piece: styles[id(piece)],
-                        product,
-                        tree,
-                        layers or {},
-                        schema,
-                        others,
-                        file,
-                    )
+                    _write(split, temporary, lambda piece: styles[id(piece)], product, tree, layers or {}, schema, others, file)
             except WriteError as error:
                 return pickle.dumps((error.cause, error.face))
             except OSError as error:
@@ -178,12 +168,7 @@ class _Document:
     """The kernel's document as it grows."""
 
     def __init__(
-        self,
-        document: Any,
-        style: Callable[[Piece], Style],
-        layers: Mapping[int, Sequence[str]],
-        product: str,
-        file: str,
+        self, document: Any, style: Callable[[Piece], Style], layers: Mapping[int, Sequence[str]], product: str, file: str
     ) -> None:
         self.shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
         self.colours = XCAFDoc_DocumentTool.ColorTool_s(document.Main())
@@ -193,9 +178,7 @@ class _Document:
         self.faces = self.styles = 0
 
     def fill(self, split: Split, tree: Sequence[Node]) -> None:
-        tree = tree or [
-            Node(self.product, "", TopLoc_Location(), faces=tuple(dict.fromkeys(p.face for p in split.pieces)))
-        ]
+        tree = tree or [Node(self.product, "", TopLoc_Location(), faces=tuple(dict.fromkeys(p.face for p in split.pieces)))]
         leaves = [leaf for root in tree for leaf, _, _ in root.leaves()]
         leaf_of = {number: i for i, leaf in enumerate(leaves) for number in leaf.faces}
         owner = TopTools_IndexedMapOfShape()

@@ -19,9 +19,7 @@ def on_page_markdown(markdown: str, **_: Any) -> str:
     markdown = re.sub(r"<!-- help: (.+?) -->", lambda found: f"```text\n{_help(found[1])}```", markdown)
     docs = Path(__file__).parent.parent
     markdown = re.sub(r"<!-- notebook: (\S+) -->", lambda found: _cells(docs / found[1]), markdown)
-    return re.sub(
-        r"<!-- file: (\S+) -->", lambda found: f"```text\n{(docs / found[1]).read_text('utf-8')}```", markdown
-    )
+    return re.sub(r"<!-- file: (\S+) -->", lambda found: f"```text\n{(docs / found[1]).read_text('utf-8')}```", markdown)
 
 
 def _cells(notebook: Path) -> str:
@@ -35,9 +33,7 @@ def _cells(notebook: Path) -> str:
 
 def _help(name: str) -> str:
     command: Command = module_of(name).command
-    result = CliRunner(env={"COLUMNS": "100", "NO_COLOR": "1", "TERM": "dumb"}).invoke(
-        command, ["--help"], prog_name=name
-    )
+    result = CliRunner(env={"COLUMNS": "100", "NO_COLOR": "1", "TERM": "dumb"}).invoke(command, ["--help"], prog_name=name)
     if result.exit_code:
         raise RuntimeError(f"{name} --help: {result.output or result.exception}")
     return result.output

@@ -11,11 +11,7 @@ from .picking import Picker
 from .remembered import Choices
 from .windows import QtCore, QtGui
 
-FACES = [
-    ("Free-form faces and fillets", "sculptured,blends"),
-    ("Picked faces", "picked"),
-    ("All faces", "all"),
-]
+FACES = [("Free-form faces and fillets", "sculptured,blends"), ("Picked faces", "picked"), ("All faces", "all")]
 MACHINES = [
     ("Any tool axis", ""),
     ("3 axes", "3-axis"),
@@ -51,9 +47,7 @@ class PartBox:
         self.faces: tuple[int, ...] = ()
         self.form, layout = windows.box("Part and faces", "part")
         self._name = windows.words("none: select a body", "body")
-        layout.addRow(
-            "Body", windows.row(self._name, windows.button("Take", self.take, "Take the body, or faces, selected now"))
-        )
+        layout.addRow("Body", windows.row(self._name, windows.button("Take", self.take, "Take the body, or faces, selected now")))
         self._kind = windows.combo(FACES, choices.faces)
         self._kind.setObjectName("faces")
         layout.addRow("To machine", self._kind)
@@ -80,9 +74,7 @@ class PartBox:
                 self._name.setText(str(error))
             return self._tell()
         self.document, self.body, self.faces = found
-        windows.choose(
-            self._kind, "picked" if self.faces else "sculptured,blends" if self.kind() == "picked" else self.kind()
-        )
+        windows.choose(self._kind, "picked" if self.faces else "sculptured,blends" if self.kind() == "picked" else self.kind())
         self._tell()
 
     def kind(self) -> str:
@@ -98,9 +90,7 @@ class PartBox:
 
     def _picking(self, on: bool) -> None:
         if on:
-            self._picker.give(
-                self.pick, self._taken, [(self.document, self.body, f"Face{number}") for number in self.faces]
-            )
+            self._picker.give(self.pick, self._taken, [(self.document, self.body, f"Face{number}") for number in self.faces])
         else:
             self._picker.stop(self.pick)
         self._tell()
@@ -142,16 +132,12 @@ class ToolsBox:
         self._list = QtGui.QListWidget()
         self._list.setObjectName("tools")
         windows.narrow(self._list).setFixedHeight(74)
-        self._list.setToolTip(
-            "Tick what is judged. Nothing ticked: the program's own set of usual metric sizes. Del takes away."
-        )
+        self._list.setToolTip("Tick what is judged. Nothing ticked: the program's own set of usual metric sizes. Del takes away.")
         layout.addRow(self._list)
         self._typed = QtGui.QLineEdit()
         self._typed.setObjectName("typed")
         self._typed.setPlaceholderText("D12L80, R6L80rc6…")
-        self._typed.setToolTip(
-            "Diameter D or radius R, stick-out L, corner radius rc: R6L80rc6 is a ball end. Enter adds it."
-        )
+        self._typed.setToolTip("Diameter D or radius R, stick-out L, corner radius rc: R6L80rc6 is a ball end. Enter adds it.")
         self._typed.editingFinished.connect(self._add_typed)
         layout.addRow("Add", windows.narrow(self._typed))
         layout.addRow("", windows.button("Tool library…", self._add_library, "Fusion, HSMWorks, FreeCAD or TOML"))
@@ -240,25 +226,18 @@ class MachineBox:
         self._machine.setObjectName("machine")
         self._machine.setToolTip("A machine that the program knows, tilt:45, or a machine file")
         layout.addRow(
-            "Machine",
-            windows.row(self._machine, windows.button("File…", self._machine_file, "TOML, JSON, .fcm, .ini, .mch")),
+            "Machine", windows.row(self._machine, windows.button("File…", self._machine_file, "TOML, JSON, .fcm, .ini, .mch"))
         )
         entries = [*AXES, ("Proposed by the program", "auto"), ("Picked face or edge", "picked")]
         self._setup = windows.combo(entries, choices.setup if choices.setup != "picked" else "+z")
         self._setup.setObjectName("setup")
-        self._setup.setToolTip(
-            "The direction of the part that points along the spindle when all rotary axes are at zero"
-        )
-        self.pick_axis = windows.button(
-            "Pick", self._picking_axis, "Click a flat face, a straight edge or an axis", True
-        )
+        self._setup.setToolTip("The direction of the part that points along the spindle when all rotary axes are at zero")
+        self.pick_axis = windows.button("Pick", self._picking_axis, "Click a flat face, a straight edge or an axis", True)
         layout.addRow("Spindle", windows.row(self._setup, self.pick_axis))
         self._axis_words = windows.words("", "axis")
         layout.addRow("", self._axis_words)
         self._bodies = windows.words("none", "fixtures")
-        self.pick_fixtures = windows.button(
-            "Pick", self._picking_fixtures, "Click what holds the part; Ctrl adds more", True
-        )
+        self.pick_fixtures = windows.button("Pick", self._picking_fixtures, "Click what holds the part; Ctrl adds more", True)
         layout.addRow("Fixtures", windows.row(self._bodies, self.pick_fixtures))
         self._table = QtGui.QCheckBox("Table under the part")
         self._table.setChecked(choices.table)
@@ -282,9 +261,9 @@ class MachineBox:
         self._setup_chosen()
 
     def _machine_file(self) -> None:
-        path = QtGui.QFileDialog.getOpenFileName(
-            self.form, "Machine", "", "Machines (*.toml *.json *.fcm *.ini *.mch);;All (*)"
-        )[0]
+        path = QtGui.QFileDialog.getOpenFileName(self.form, "Machine", "", "Machines (*.toml *.json *.fcm *.ini *.mch);;All (*)")[
+            0
+        ]
         if path:
             self._machine.setEditText(path)
 
@@ -319,9 +298,7 @@ class MachineBox:
     def _picking_fixtures(self, on: bool) -> None:
         if on:
             self._picker.give(
-                self.pick_fixtures,
-                self._fixtures_taken,
-                [(document, name, "") for document, name, _ in self._fixtures],
+                self.pick_fixtures, self._fixtures_taken, [(document, name, "") for document, name, _ in self._fixtures]
             )
         else:
             self._picker.stop(self.pick_fixtures)

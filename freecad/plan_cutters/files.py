@@ -106,9 +106,7 @@ def library(result: results.Result, cutter: dict[str, Any], folder: str) -> str:
         The plan does not hold all of its shape.
     """
     if cutter["shape"] != "end":
-        raise model.Refused(
-            f"the plan does not hold the whole shape of {cutter['id']}: ask the program for its posture maps"
-        )
+        raise model.Refused(f"the plan does not hold the whole shape of {cutter['id']}: ask the program for its posture maps")
     parts: dict[str, list[dict[str, float]]] = {"neck": [], "shank": [], "holder": []}
     for stage in cutter["stages"]:
         parts[stage["part"]].append(stage)
@@ -162,13 +160,7 @@ def _tools(job: model.Job, folder: str) -> list[str]:
         if not kind:
             raise model.Refused(f"{bit.Label} is no tool bit")
         path = os.path.join(folder, f"bit{number}.fctb")
-        entry = {
-            "version": 2,
-            "name": bit.Label,
-            "shape": f"{kind}.fcstd",
-            "parameter": host.lengths(bit),
-            "attribute": {},
-        }
+        entry = {"version": 2, "name": bit.Label, "shape": f"{kind}.fcstd", "parameter": host.lengths(bit), "attribute": {}}
         with open(path, "w", encoding="utf-8") as file:
             json.dump(entry, file)
         found += ["--cutters", path]

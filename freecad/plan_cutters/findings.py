@@ -122,14 +122,10 @@ class Findings(windows.Panel):
         sign, colour = SIGNS[text.tone]
         selected = "· selected" if entry["id"] == self.result.plan["selected"] else ""
         self._chip.setText(" ".join(filter(None, (sign, text.verdict, selected))))
-        self._chip.setStyleSheet(
-            f"background: {colour}; color: white; font-weight: bold; padding: 4px; border-radius: 4px"
-        )
+        self._chip.setStyleSheet(f"background: {colour}; color: white; font-weight: bold; padding: 4px; border-radius: 4px")
         self._headline.setText(self.result.headline())
         self._headline.setToolTip("\n".join(self.result.summary()))
-        whole = (
-            "" if entry is self.result.shown() else "Each face has the colour of its worst verdict with this cutter."
-        )
+        whole = "" if entry is self.result.shown() else "Each face has the colour of its worst verdict with this cutter."
         self._sentence.setText(" ".join(filter(None, (text.sentence, whole))))
         while self._legend.rowCount():
             self._legend.removeRow(0)

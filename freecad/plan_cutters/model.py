@@ -142,9 +142,7 @@ def planned(thing):
     parent = thing.getParentGeoFeatureGroup()
     if parent is not None and parent.isDerivedFrom("PartDesign::Body"):
         if parent.Tip is not thing:
-            raise Refused(
-                f"{thing.Label} is not the last step of {parent.Label}: select faces of the body as it is shown"
-            )
+            raise Refused(f"{thing.Label} is not the last step of {parent.Label}: select faces of the body as it is shown")
         thing = parent
     shape_of(thing)
     return thing
@@ -202,9 +200,7 @@ def axis(thing, element: str = "", reverse: bool = False) -> str:
         else:
             found = None
     if found is None or not math.isfinite(found.Length) or found.Length < 1e-9:
-        raise Refused(
-            f"{thing.Label} {name}".strip() + " has no axis: pick a plane or round face, a straight or round edge"
-        )
+        raise Refused(f"{thing.Label} {name}".strip() + " has no axis: pick a plane or round face, a straight or round edge")
     found = found.normalize() * (-1.0 if reverse else 1.0)
     return ",".join(f"{round(value, 12) + 0.0:.12g}" for value in found)
 

@@ -116,9 +116,7 @@ def show(document, result: results.Result, cutter: str = ""):
         missing = pieces.not_shown(result, found, entry["id"])
         _note(group, "StringList", "NotShown", missing, "Verdicts on a face that no object shows")
         if missing:
-            host.warn(
-                f"without a colour of their own, for they are too small or whole faces are coloured: {', '.join(missing)}"
-            )
+            host.warn(f"without a colour of their own, for they are too small or whole faces are coloured: {', '.join(missing)}")
         operations.add(document, group, result)
         host.visible(thing, False)
     document.recompute()
@@ -142,13 +140,7 @@ def _verdict(document, result: results.Result, word: str, faces, numbers):
     _note(thing, "String", ROLE, "verdict")
     _note(thing, "String", "Verdict", word, "Code in plan.json")
     _note(thing, "Color", "Colour", colour, "In the legend")
-    _note(
-        thing,
-        "StringList",
-        "Faces",
-        [f"F{number}" for number in numbers],
-        "Face of the body, of each face of this object",
-    )
+    _note(thing, "StringList", "Faces", [f"F{number}" for number in numbers], "Face of the body, of each face of this object")
     host.paint(thing, colour)
     return thing
 
@@ -277,9 +269,7 @@ def put_tool(group, spot: results.Spot | results.Sample):
             counts = [len(solid.Faces) for solid in found.Shape.Solids]
             host.paint_faces(found, [tool.COLOURS[part] for part, count in zip(parts, counts) for _ in range(count)])
         if spot.tip is None:
-            raise model.Refused(
-                f"where the tip of {spot.cutter} is cannot be told from the plan: the review page shows it"
-            )
+            raise model.Refused(f"where the tip of {spot.cutter} is cannot be told from the plan: the review page shows it")
         found.Placement = tool.placement(spot.tip, spot.axis)
         host.visible(found, True)
     return found

@@ -80,9 +80,7 @@ def make_job(group, word: str = MODELS[0]):
         }
         order = [place for place, name in enumerate(names) if name is not None]
         document.recompute()
-        job = macro.tried_job(
-            document, result.plan, plan, (part, planes, taken, {place: n for n, place in enumerate(order, 1)})
-        )
+        job = macro.tried_job(document, result.plan, plan, (part, planes, taken, {place: n for n, place in enumerate(order, 1)}))
         if job is None:
             raise model.Refused("this FreeCAD made no CAM job: the report view says why")
         host.visible(part, False)

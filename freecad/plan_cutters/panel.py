@@ -64,9 +64,7 @@ class Panel(windows.Panel):
         kinds = {"all": "all faces", "picked": f"{count} face{'s' * (count != 1)}"}
         what = kinds.get(self.part.kind(), "free-form faces and fillets")
         label = App.getDocument(job.document).getObject(job.body).Label
-        self.status.setText(
-            f"{label}: {what}; {self.tools.summary()}; {job.machine or 'any tool axis'}; spindle {job.setup}."
-        )
+        self.status.setText(f"{label}: {what}; {self.tools.summary()}; {job.machine or 'any tool axis'}; spindle {job.setup}.")
         self._offer(True)
 
     def _offer(self, ready: bool) -> None:

@@ -57,7 +57,5 @@ def _of_model(result: results.Result, count: int) -> list[tuple[int, str, object
         host.warn(str(error))
         return None
     rows = [(name[0], name[1], face) for name, face in zip(names, faces) if name is not None]
-    known = {row[0] for row in rows} == set(range(1, count + 1)) and {row[1] for row in rows} <= set(
-        result.plan["legend"]
-    )
+    known = {row[0] for row in rows} == set(range(1, count + 1)) and {row[1] for row in rows} <= set(result.plan["legend"])
     return rows if known else None

@@ -20,9 +20,7 @@ class Page:
         layout = qt.QFormLayout(self.form)
         self._command = qt.QLineEdit()
         self._command.setPlaceholderText(shutil.which("plan-cutters") or "plan-cutters is not on the search path")
-        self._command.setToolTip(
-            "Path of plan-cutters, or a command with words; empty: as it is found on the search path"
-        )
+        self._command.setToolTip("Path of plan-cutters, or a command with words; empty: as it is found on the search path")
         find = qt.QPushButton("Find…")
         find.clicked.connect(lambda *_: self._find())
         line = qt.QHBoxLayout()

@@ -133,9 +133,7 @@ class Result:
                 raise model.Refused(f"the plan has no cutter {wanted}")
             return found
         # A plan of an older program, from a document that was saved with it, does not say which one it shows.
-        return min(
-            self.plan["cutters"], key=lambda each: each["area_share"]["inaccessible"] + each["area_share"]["undecided"]
-        )
+        return min(self.plan["cutters"], key=lambda each: each["area_share"]["inaccessible"] + each["area_share"]["undecided"])
 
     def cutters(self) -> list[str]:
         """Ids of the cutters, in the order of the plan."""
@@ -258,9 +256,7 @@ class Result:
         first = int(taken[row])
         rows = [both[row][first], *(each for place, each in enumerate(both[row]) if place != first)]
         return tuple(
-            {name: round(float(value), 6) + 0.0 for name, value in zip(names, each)}
-            for each in rows
-            if all(each == each)
+            {name: round(float(value), 6) + 0.0 for name, value in zip(names, each)} for each in rows if all(each == each)
         )
 
     def review(self) -> str:
@@ -309,9 +305,7 @@ def parsed(path: str) -> dict[str, Any]:
         with open(path, encoding="utf-8") as file:
             plan = json.load(file)
     except (OSError, ValueError):
-        raise model.Refused(
-            "the program wrote no plan: give options of plan-cutters alone, no files of parts"
-        ) from None
+        raise model.Refused("the program wrote no plan: give options of plan-cutters alone, no files of parts") from None
     if not isinstance(plan, dict) or plan.get("format") != FORMAT:
         raise model.Refused("the program wrote no plan of plan-cutters")
     if plan.get("format_version") != VERSION:

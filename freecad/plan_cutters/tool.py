@@ -13,12 +13,7 @@ import FreeCAD as App
 import Part
 
 #: Colours of the parts of an assembly.
-COLOURS = {
-    "flutes": (0.55, 0.60, 0.65),
-    "neck": (0.45, 0.50, 0.55),
-    "shank": (0.45, 0.50, 0.55),
-    "holder": (0.25, 0.27, 0.30),
-}
+COLOURS = {"flutes": (0.55, 0.60, 0.65), "neck": (0.45, 0.50, 0.55), "shank": (0.45, 0.50, 0.55), "holder": (0.25, 0.27, 0.30)}
 #: Shapes of cutters whose dimensions in the plan say all.
 DRAWN = ("end", "lollipop")
 

@@ -244,9 +244,7 @@ class Options:
             value = getattr(self, word)
             # Angles are rad here, and degrees where they are requested and read.
             if value is not None and not low <= (value := math.degrees(value) if unit_ == "deg" else value) <= high:
-                raise OptionError(
-                    f"{word.replace('_', ' ')} {value:g} must lie between {low:g} and {high:,.9g} {unit_}"
-                )
+                raise OptionError(f"{word.replace('_', ' ')} {value:g} must lie between {low:g} and {high:,.9g} {unit_}")
 
     def _check_kinds(self) -> None:
         """Every value of the type that its attribute says."""

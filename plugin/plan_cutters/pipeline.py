@@ -65,9 +65,7 @@ _MANY_FACES, _SAMPLING = 12, 60.0
 
 
 @spelled_out(PlanOptions, Options)
-def plan(
-    part: Any, *, progress: Progress | None = None, judged: Judge = judge, **options: Unpack[PlanOptions]
-) -> Result:
+def plan(part: Any, *, progress: Progress | None = None, judged: Judge = judge, **options: Unpack[PlanOptions]) -> Result:
     """Judge each cutter on the target faces of a part.
 
     Parameters
@@ -237,9 +235,7 @@ def prepare(
         region = regions(samples, surface_class)
     if not (samples.unjudged < 0).any():
         causes = {reason for _, reason in samples.empty} | set(samples.reasons)
-        raise UnjudgeableError(
-            f"no target face can be judged: {'; '.join(sorted(causes)) or 'no samples'}", file=whole.file
-        )
+        raise UnjudgeableError(f"no target face can be judged: {'; '.join(sorted(causes)) or 'no samples'}", file=whole.file)
     with clock.stage("tree"):
         conditions, *_ = each = conditions_of(scene, options)
         for one in each:
@@ -254,18 +250,7 @@ def prepare(
         inside = inside_bodies(within, surroundings.bodies, scene.orientation)
         ready = with_setups(
             Prepared(
-                scene,
-                options,
-                chosen,
-                spacing,
-                samples,
-                surface_class,
-                region,
-                within,
-                inside,
-                conditions,
-                cutters,
-                coarser,
+                scene, options, chosen, spacing, samples, surface_class, region, within, inside, conditions, cutters, coarser
             ),
             each,
         )
@@ -373,9 +358,7 @@ def assemble(
             if searched is not None and ready.options.area_budget is None:
                 most = _WORK_LEAST + _WORK_SHARE * searched.looked + _WORK_SAMPLE * len(ready.samples)
             area = _area(ready, cutter, judged[cutter], budget, most)
-        entries = [
-            e.model_copy(update={"area": area, "seen": e.seen or area.feasible}) if e.id == best else e for e in entries
-        ]
+        entries = [e.model_copy(update={"area": area, "seen": e.seen or area.feasible}) if e.id == best else e for e in entries]
     with clock.stage("plan", shown=False):
         began = started or datetime.datetime.now(datetime.UTC)
         document = plan_of(ready, entries, selected, chosen, began, answers, setup_table(ready, within, over))

@@ -95,9 +95,7 @@ def posture_map(
     """
     cutter, machine = Cutter.of(cutter), machine_option(machine)
     place = numbers(point, "point", 3)
-    angles = in_radians(
-        {"rotations": rotations, "rotations_deg": rotations_deg}, {"rotations": Angle(-360.0, 360.0, "several")}
-    )
+    angles = in_radians({"rotations": rotations, "rotations_deg": rotations_deg}, {"rotations": Angle(-360.0, 360.0, "several")})
     if (wanted := angles["rotations"]) is None:
         raise OptionError("give rotations, in radians, or rotations_deg, in degrees")
     each = (wanted,) if isinstance(wanted, Real) else wanted
@@ -127,9 +125,7 @@ def posture_map(
         # So coarse a tolerance says nothing about so small a cutter.
         none = tuple(np.zeros((0, 2)) for _ in turns)
         free = tuple(complement(forbidden, low, high) for forbidden in posture_map.axis_limit)
-        return replace(
-            posture_map, free=none, undecided=free, rear_gouge=none, collision=none, buried=none, certified=False
-        )
+        return replace(posture_map, free=none, undecided=free, rear_gouge=none, collision=none, buried=none, certified=False)
     chord = min(_FIRST_CHORD, 1e-3 * cutter.radius)
     before: PostureMap | None = None
     for _ in range(_ROUNDS):

@@ -69,9 +69,7 @@ class Result:
         return self.__dict__ | {"ready": replace(self.ready, options=plain)}
 
     def __repr__(self) -> str:
-        return (
-            f"Result({self.part!r}, {len(self.samples)} samples, {len(self.cutters)} cutters, selected {self.selected})"
-        )
+        return f"Result({self.part!r}, {len(self.samples)} samples, {len(self.cutters)} cutters, selected {self.selected})"
 
     @property
     def scene(self) -> Scene:
@@ -256,13 +254,7 @@ class Result:
             )
         doubtful = self.conditions.surroundings.doubtful
         return on_face(
-            self.plan.faces[number - 1],
-            entry,
-            self.samples,
-            verdicts,
-            known,
-            doubtful=doubtful,
-            inside=self.inside_bodies,
+            self.plan.faces[number - 1], entry, self.samples, verdicts, known, doubtful=doubtful, inside=self.inside_bodies
         )
 
     def summary(self) -> str:
@@ -307,9 +299,7 @@ class Result:
 
         return card(self)
 
-    def to_dataframe(
-        self, of: Literal["samples", "faces", "cutters"] = "samples", cutter: str | None = None
-    ) -> "DataFrame":
+    def to_dataframe(self, of: Literal["samples", "faces", "cutters"] = "samples", cutter: str | None = None) -> "DataFrame":
         """A table of pandas, with units at the end of names; what is not known is nan or None.
 
         Parameters
@@ -338,11 +328,7 @@ class Result:
         write_plan(self.plan, Path(path))
 
     def write(
-        self,
-        out: str | Path,
-        formats: Sequence[str] = ("json", "html", "step", "glb", "npz"),
-        *,
-        step_schema: str = "ap242",
+        self, out: str | Path, formats: Sequence[str] = ("json", "html", "step", "glb", "npz"), *, step_schema: str = "ap242"
     ) -> Plan:
         """Write files into the folder `out`, each whole or not at all, the plan and the samples first.
 

@@ -102,8 +102,7 @@ def test_silence_is_not_an_answer():
 def test_the_deepest_witness_comes_first_and_with_a_point_the_nearest():
     data = made_plan(faces=1)
     data["cutters"][1]["witnesses"] = [
-        witness([x, 0, 0], "F1", depth, reason="collision", obstacle_face=None)
-        for x, depth in ((0, 1), (5, 3), (9, None))
+        witness([x, 0, 0], "F1", depth, reason="collision", obstacle_face=None) for x, depth in ((0, 1), (5, 3), (9, None))
     ]
     plan = Plan.model_validate(data)
     assert [w.point[0] for w in explained(plan, plan.cutters[1], "F1", 9).witnesses] == [5, 0, 9]
@@ -155,9 +154,7 @@ def test_cutters_are_named_by_the_words_that_were_given():
     data["selected"] = "R1L80"
     plan = Plan.model_validate(data)
     found = planned(plan, 0, 9, {})
-    assert found.told.startswith(
-        "Take flat end D2 x 80. For part.step: D2L80, judged without a holder, 80 mm up from its tip."
-    )
+    assert found.told.startswith("Take flat end D2 x 80. For part.step: D2L80, judged without a holder, 80 mm up from its tip.")
     assert [c.id for c in found.cutters] == ["R1L80", "R2L80"]
     # A change that could not be decided is no help.
     said = explained(plan, plan.cutters[1], "F1", 9)
@@ -220,13 +217,7 @@ def test_a_path_counts_by_where_it_ends(tmp_path):
         Roots(()).confined("a")
     with pytest.raises(CallError, match="is no folder"):
         Roots.of([tmp_path / "in/a"])
-    uris = [
-        f"file://{tmp_path}/in",
-        f"file://{tmp_path}/none",
-        "https://host/x",
-        "file://other/x",
-        f"file://{tmp_path}/in/a",
-    ]
+    uris = [f"file://{tmp_path}/in", f"file://{tmp_path}/none", "https://host/x", "file://other/x", f"file://{tmp_path}/in/a"]
     assert Roots.of_client(uris) == roots
 
 

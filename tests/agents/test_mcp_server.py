@@ -38,9 +38,7 @@ class Server:
         async def tell(done, total, words):
             self.told.append((name, done, words))
 
-        return self.portal.start_task_soon(
-            functools.partial(self.client.call_tool, name, arguments, progress_callback=tell)
-        )
+        return self.portal.start_task_soon(functools.partial(self.client.call_tool, name, arguments, progress_callback=tell))
 
     def answer(self, call):
         """The answer of a call, which is as its schema says, and the same as text."""
@@ -72,9 +70,7 @@ def server(tmp_path_factory):
     with start_blocking_portal() as portal, open(os.devnull, "w") as nowhere:
         from mcp.client.stdio import stdio_client
 
-        given = StdioServerParameters(
-            command=sys.executable, args=words, env={"PYTHONPATH": ENV["PYTHONPATH"]}, cwd=str(root)
-        )
+        given = StdioServerParameters(command=sys.executable, args=words, env={"PYTHONPATH": ENV["PYTHONPATH"]}, cwd=str(root))
         client = Client(stdio_client(given, errlog=nowhere))
         with portal.wrap_async_context_manager(client):
             listed = portal.call(client.list_tools).tools
@@ -85,9 +81,7 @@ def server(tmp_path_factory):
 def planned(server):
     """A plan with its files, made while another call works; both answers."""
     plan = server.begin("plan_part", part=GROOVE, out="out", formats=["npz"], **HELD)
-    posture = server.begin(
-        "posture_map", part=GROOVE, cutter="R8L90", point=[0, 0, 0], rotation_step_deg=90, picture=True
-    )
+    posture = server.begin("posture_map", part=GROOVE, cutter="R8L90", point=[0, 0, 0], rotation_step_deg=90, picture=True)
     return server.answer(plan), posture.result(200)
 
 
@@ -118,9 +112,7 @@ def test_a_plan_is_what_its_file_says(server, planned):
     assert found["selected"] is plan["selected"] is None
     (mine,), (cutter,) = found["cutters"], plan["cutters"]
     assert mine["lost_by"] == cutter["area_share"]["lost_by"]
-    assert mine["reached"] == pytest.approx(
-        1 - cutter["area_share"]["inaccessible"] - cutter["area_share"]["undecided"]
-    )
+    assert mine["reached"] == pytest.approx(1 - cutter["area_share"]["inaccessible"] - cutter["area_share"]["undecided"])
     assert [note["code"] for note in found["notes"]][: len(plan["note_codes"])] == plan["note_codes"]
     assert found["files"] == {"json": f"{server.root}/out/plan.json", "npz": f"{server.root}/out/samples.npz"}
     assert sorted(os.listdir(server.root / "out")) == ["plan.json", "samples.npz"]
@@ -189,14 +181,7 @@ def test_what_lies_outside_is_refused(server, tmp_path):
     os.symlink(tmp_path, server.root / "away")
     os.symlink(SAMPLES / GROOVE, server.root / "link.step")
     try:
-        for name in (
-            "/etc/passwd",
-            "../x.step",
-            "away/plan.json",
-            "link.step",
-            str(SAMPLES / GROOVE),
-            f"./../{SAMPLES.name}/x",
-        ):
+        for name in ("/etc/passwd", "../x.step", "away/plan.json", "link.step", str(SAMPLES / GROOVE), f"./../{SAMPLES.name}/x"):
             assert "lies outside the roots" in server.refused("plan_part", part=name), name
             assert "lies outside the roots" in server.refused("explain_sample", plan=name, cutter="R6", face="F1"), name
         for word in ("out", "library", "holder", "machine"):
@@ -222,9 +207,7 @@ def test_what_is_wrong_or_too_large_is_one_line(server):
     assert "either `face` or `point`" in server.refused("explain_sample", part=GROOVE, cutter="R6L80")
     assert "cuters: Extra inputs" in server.refused("plan_part", part=GROOVE, cuters=["R6L80"])
     assert "there is no tool 'plan'" in server.refused("plan", part=GROOVE)
-    assert "lists 3 cutters, and this server judges at most 2" in server.refused(
-        "plan_part", part=GROOVE, library="shop.toml"
-    )
+    assert "lists 3 cutters, and this server judges at most 2" in server.refused("plan_part", part=GROOVE, library="shop.toml")
     (server.root / "bad.step").write_text("no part")
     assert server.refused("plan_part", part="bad.step").startswith(f"{server.root}/bad.step: ")
 

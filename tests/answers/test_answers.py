@@ -88,13 +88,7 @@ def test_words_of_answers():
 
 
 def test_what_is_said_is_never_rounded_the_wrong_way():
-    assert [down(r) for r in (1.94996, 4.9458, 119.91, 0.0123456, 2.0)] == [
-        "1.94 mm",
-        "4.94 mm",
-        "119 mm",
-        "0.0123 mm",
-        "2 mm",
-    ]
+    assert [down(r) for r in (1.94996, 4.9458, 119.91, 0.0123456, 2.0)] == ["1.94 mm", "4.94 mm", "119 mm", "0.0123 mm", "2 mm"]
     assert [up(h) for h in (7.8926, 7.89, 12.0, 0.001)] == ["7.90 mm", "7.89 mm", "12.00 mm", "0.01 mm"]
 
 

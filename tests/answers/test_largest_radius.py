@@ -85,9 +85,7 @@ def test_every_flat_end_fits_into_a_wide_v_groove(groove):
 
 def tube(radius, length, **options):
     """A hole along Z through a block, of which it is all that is looked at."""
-    part = read_part(
-        cut(box(60.0, 60.0, length, (-30, -30, -0.5 * length)), rod(radius, length, (0, 0, -0.5 * length)))
-    )
+    part = read_part(cut(box(60.0, 60.0, length, (-30, -30, -0.5 * length)), rod(radius, length, (0, 0, -0.5 * length))))
     return ready(part, faces=[next(face.number for face in part.faces if face.shape == "cylinder")], **options)
 
 
@@ -242,9 +240,7 @@ def test_a_cutter_shrunk_about_its_contact_stays_inside_itself(shape, ratio, sha
     axis = math.cos(tilt) * normal + math.sin(tilt) * tilt_direction
     points = rng.uniform(-2, 2, (4000, 3)) + ratio * rng.uniform(0, 1, (4000, 1)) * axis
     deep, small = (
-        assembly(ENDS[shape](radius=r, length=ratio * r), depth, depth).depth(
-            points, np.zeros(3), normal, tilt_direction, tilt
-        )
+        assembly(ENDS[shape](radius=r, length=ratio * r), depth, depth).depth(points, np.zeros(3), normal, tilt_direction, tilt)
         for r in (1.0, share)
     )
     assume((small > 0).sum() > 5)
@@ -355,14 +351,7 @@ def test_percentiles_by_number_and_by_area():
     assert found.judged.tolist() == [True, True, False, True, True]
     assert found.no_less.tolist() == [False, False, False, True, False]
     assert found.percentiles() == {0: 2.0, 5: 2.0, 25: 2.0, 50: 2.0, 75: 4.0, 95: 8.0}
-    assert found.percentiles(np.array([1.0, 1.0, 50.0, 98.0, 0.0])) == {
-        0: 2.0,
-        5: 8.0,
-        25: 8.0,
-        50: 8.0,
-        75: 8.0,
-        95: 8.0,
-    }
+    assert found.percentiles(np.array([1.0, 1.0, 50.0, 98.0, 0.0])) == {0: 2.0, 5: 8.0, 25: 8.0, 50: 8.0, 75: 8.0, 95: 8.0}
     nothing = a_map([np.nan, np.nan])
     assert nothing.bottleneck is None
     assert nothing.percentiles() == {}

@@ -232,10 +232,7 @@ def test_nothing_is_asked_about_what_lies_inside_another_body():
     found, by, _ = asked(stacked(), "R2L30", faces="6,7,11", grid=9)
     assert (found.lost, found.buried) == (90, 90)
     assert not by
-    assert (
-        found.why
-        == "90 samples are within another body, which is no surface of the finished part; nothing else is lost"
-    )
+    assert found.why == "90 samples are within another body, which is no surface of the finished part; nothing else is lost"
     found, by, planned = asked(stacked(), "R2L30", faces="6,7,11", grid=9, machine="tilt:60", setup=(1, 0, 0))
     assert 0 < found.buried < found.lost
     assert by["tilt_limit"].helps
@@ -265,8 +262,7 @@ def beside_a_post(away):
 
     frame = shapes.axes((-40 - 15 - away, 0, 20), (0, 0, 1), (1, 0, 0))
     return shapes.shell(
-        shapes.plane((0, 0.1), (-0.05, 0.05)),
-        BRepBuilderAPI_MakeFace(gp_Cylinder(frame, 40.0), -1.5, 1.5, 0.0, 60.0).Face(),
+        shapes.plane((0, 0.1), (-0.05, 0.05)), BRepBuilderAPI_MakeFace(gp_Cylinder(frame, 40.0), -1.5, 1.5, 0.0, 60.0).Face()
     )
 
 
@@ -403,9 +399,7 @@ def test_what_was_no_thicker_than_the_flutes_stays_so():
 
 def test_it_asks_for_no_more_searches_than_a_few_plans(monkeypatch):
     count, real = [], trial.search_postures
-    monkeypatch.setattr(
-        trial, "search_postures", lambda c, rows, *more: count.append(len(rows)) or real(c, rows, *more)
-    )
+    monkeypatch.setattr(trial, "search_postures", lambda c, rows, *more: count.append(len(rows)) or real(c, rows, *more))
     part = shapes.shell(shapes.Patch.random(np.random.default_rng(2), height=10.0).face())
     cutter = Cutter.flat(radius=2.5, length=9, flutes=6.0, shank_radius=2.5, holder="R14L60")
     found, _, _ = asked(part, cutter, grid=61, machine="tilt:35", tolerance=0.05, rotation_step=0.35)
@@ -431,18 +425,13 @@ def test_it_tells_how_far_it_is_and_can_be_interrupted():
 def test_open_faces_keep_their_side_when_the_setup_turns():
     """Seen from the other side an open face would be worked on there: the change says so, or is not made."""
     part = compound(
-        shapes.plane((-10, 10), (-10, 10), (0, 0, 0), (math.sin(1.7), 0, math.cos(1.7)), (0, 1, 0)),
-        box(1, 1, 1, at=(90, 90, 0)),
+        shapes.plane((-10, 10), (-10, 10), (0, 0, 0), (math.sin(1.7), 0, math.cos(1.7)), (0, 1, 0)), box(1, 1, 1, at=(90, 90, 0))
     )
-    ready = prepare(
-        part, Options(cutters=("R3L40",), grid=5, area_budget=0, machine="tilt:3", tilt=(0.0, 0.0), faces="F1")
-    )
+    ready = prepare(part, Options(cutters=("R3L40",), grid=5, area_budget=0, machine="tilt:3", tilt=(0.0, 0.0), faces="F1"))
     cutter = ready.cutters[0]
     change = next(each for each in mend(ready, cutter, judge(ready, cutter)).changes if each.thing == "setup")
     assert change.helps
-    again = plan(
-        part, cutters=("R3L40",), grid=5, area_budget=0, machine="tilt:3", tilt=(0.0, 0.0), faces="F1", **change.options
-    )
+    again = plan(part, cutters=("R3L40",), grid=5, area_budget=0, machine="tilt:3", tilt=(0.0, 0.0), faces="F1", **change.options)
     assert again.cutters[0].feasible
     assert np.allclose(again.samples.normal, ready.samples.normal)
 

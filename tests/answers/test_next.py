@@ -59,9 +59,7 @@ def left(result, step):
     not_reached = finished.wanted.copy()
     here = {(0, result.ready.scene.setup): result.reaches}
     here |= {(k, axis): found for k, (axis, found) in enumerate(result.elsewhere, 1)}
-    used = [
-        found for (_, axis), found in here.items() if any(np.allclose(axis, each, atol=1e-5) for each in step.setups)
-    ]
+    used = [found for (_, axis), found in here.items() if any(np.allclose(axis, each, atol=1e-5) for each in step.setups)]
     assert len(used) == len(step.setups)
     for found in used:
         for name in step.cutters:
@@ -215,27 +213,13 @@ def test_steps_are_in_the_order_of_what_they_leave_then_of_what_they_ask():
         if entry.mend is None:
             continue
         told = [step for step in entry.mend.steps if not is_excluded(step)]
-        ranks = [
-            (round(step.lost_after, 4), len(step.changes), sum(MEANS.index(c.thing) for c in step.changes))
-            for step in told
-        ]
+        ranks = [(round(step.lost_after, 4), len(step.changes), sum(MEANS.index(c.thing) for c in step.changes)) for step in told]
         assert ranks == sorted(ranks)
         assert all(step.lost_after < step.lost_before for step in told)
 
 
 TRIED = {
-    "pocket_top.step": (
-        "--cutter",
-        "R6L20",
-        "--cutter",
-        "R3L15",
-        "--holder",
-        "R25L60",
-        "--machine",
-        "tilt:5",
-        "--grid",
-        "21",
-    ),
+    "pocket_top.step": ("--cutter", "R6L20", "--cutter", "R3L15", "--holder", "R25L60", "--machine", "tilt:5", "--grid", "21"),
     "peaks_and_valleys.step": ("--cutter", "R4L15F10S4", "--holder", "R20L60", "--machine", "tilt:35", "--grid", "21"),
     "v_groove.step": ("--cutter", "R6L20", "--machine", "tilt:8", "--grid", "21"),
 }
@@ -303,9 +287,7 @@ def test_the_nearest_three_are_asked_about_and_the_others_are_named():
     assert max(not_reached[name] for name in mended) <= min(not_reached[name] for name in few.plan.not_mended) + 1e-12
     assert any("not asked about: --answers mend-all" in line for line in answered(few.plan))
     every = run(
-        part,
-        options(*words, "--machine", "tilt:3", "--grid", "5", "--answers", "mend-all", "--area-budget", "0"),
-        Clock(),
+        part, options(*words, "--machine", "tilt:3", "--grid", "5", "--answers", "mend-all", "--area-budget", "0"), Clock()
     )
     assert {c.id for c in every.cutters if c.mend} == set(failing)
     assert every.plan.not_mended == []
@@ -326,9 +308,7 @@ def test_a_change_says_its_effect_and_its_option():
     for change in helping:
         assert change.lost_before == pytest.approx(entry.mend.lost_share)
         assert change.lost_after == 0.0
-        again = followed(
-            read_part(SAMPLES / "v_groove.step"), change, "--cutter", "R6L60", "--machine", "tilt:3", "--grid", "9"
-        )
+        again = followed(read_part(SAMPLES / "v_groove.step"), change, "--cutter", "R6L60", "--machine", "tilt:3", "--grid", "9")
         assert any(c.feasible for c in again.cutters)
     assert all(change.lost_after is None and change.option is None for change in entry.mend.changes if not change.helps)
 
@@ -390,9 +370,7 @@ def test_where_nothing_is_shared_no_set_is_told():
 def test_a_set_is_a_sentence():
     def of(runs, share, left=0, proven=True, doubtful=False, unjudged=0):
         made = [SimpleNamespace(cutter=c, share=s, setup=axis) for c, s, axis in runs]
-        found = SimpleNamespace(
-            runs=made, share=share, left=left, left_share=1 - share, proven=proven, doubtful=doubtful
-        )
+        found = SimpleNamespace(runs=made, share=share, left=left, left_share=1 - share, proven=proven, doubtful=doubtful)
         samples = SimpleNamespace(unjudged=unjudged)
         return together(SimpleNamespace(least_set=found, samples=samples, faces=[]))
 
@@ -410,9 +388,7 @@ def test_a_set_is_a_sentence():
     assert of([("A", 0.6, up), ("B", 0.3, up)], 0.9, unjudged=3) == (
         "A for 60 % of the area and B for the rest reach all of it that could be judged"
     )
-    assert of([("A", 0.6, up), ("B", 0.3, up)], 0.9, left=2, unjudged=3).endswith(
-        "; nothing given reaches another 10 %"
-    )
+    assert of([("A", 0.6, up), ("B", 0.3, up)], 0.9, left=2, unjudged=3).endswith("; nothing given reaches another 10 %")
 
 
 # --- areas ----------------------------------------------------------------------------------------------------------------

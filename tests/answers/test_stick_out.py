@@ -166,15 +166,11 @@ def test_a_judgement_says_the_same_where_a_hair_of_tilts_is_left(part, cutter, o
 def test_what_is_in_the_way_is_in_the_holder(clearance):
     """Of triangles as long as the part the very point that stops a shorter one."""
     cutter = Cutter.ball(radius=2, length=50, flutes=5, holder="R12:20L30", clearance=clearance)
-    ready = prepare(
-        "samples/v_groove.step", Options(cutters=(cutter,), machine="tilt:45", grid=13, area_budget=0, jobs=1)
-    )
+    ready = prepare("samples/v_groove.step", Options(cutters=(cutter,), machine="tilt:45", grid=13, area_budget=0, jobs=1))
     found = least_stick_out(ready, cutter, judge(ready, cutter))
     outer_tool, row = Context.of(held(cutter, found.beyond), ready.conditions).outer_tool, found.sample
     samples = ready.samples
-    deep = outer_tool.depth(
-        found.obstacle_point[None], samples.point[row], samples.normal[row], found.tilt_direction, found.tilt
-    )
+    deep = outer_tool.depth(found.obstacle_point[None], samples.point[row], samples.normal[row], found.tilt_direction, found.tilt)
     assert 0.0 < deep[0] <= BEYOND + EXACT
 
 
@@ -192,9 +188,7 @@ sizes = st.floats(0.5, 30.0)
 
 
 @settings(max_examples=60, deadline=None)
-@given(
-    st.lists(st.tuples(sizes, sizes, sizes), min_size=1, max_size=4), st.sampled_from([0.0, 0.4]), st.integers(0, 10**6)
-)
+@given(st.lists(st.tuples(sizes, sizes, sizes), min_size=1, max_size=4), st.sampled_from([0.0, 0.4]), st.integers(0, 10**6))
 def test_the_outline_lies_under_the_holder(stages, clearance, seed):
     """A point that the outline leaves out is in no piece of the holder, however far that comes up, and little more is left in."""
     stages = [(max(r, 2.0), length, max(u, 2.0)) for r, length, u in stages]

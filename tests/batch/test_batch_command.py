@@ -128,9 +128,7 @@ def killed_at(parts, moment, victim, workers="2"):
     try:
         moment(client)
         seen = descendants(client)
-        workers = (
-            [each for each in seen if each.is_running() and planning(each.children())] if victim != "client" else []
-        )
+        workers = [each for each in seen if each.is_running() and planning(each.children())] if victim != "client" else []
         with contextlib.suppress(psutil.NoSuchProcess, ProcessLookupError):
             (workers[0] if workers else client).kill()
         client.communicate(timeout=240)

@@ -53,10 +53,7 @@ def test_a_scheduler_without_workers_is_one_line(monkeypatch):
 
 def test_workers_with_other_versions_are_refused_with_both_named(running, monkeypatch):
     def versions(self, **_):
-        return {
-            "client": {"packages": {"plan_cutters": "1.0"}},
-            "workers": {"w": {"packages": {"plan_cutters": "0.9"}}},
-        }
+        return {"client": {"packages": {"plan_cutters": "1.0"}}, "workers": {"w": {"packages": {"plan_cutters": "0.9"}}}}
 
     monkeypatch.setattr(Client, "get_versions", versions)
     with pytest.raises(PlanError, match=r"plan-cutters 0\.9, this machine 1\.0"), cluster.opened(running):
@@ -121,9 +118,7 @@ def test_two_large_parts_on_one_thread_do_not_wait_for_each_other():
         Client(one, set_as_default=False) as client,
     ):
         found = list(plan_many([("a", str(file)), ("b", str(file))], client, **asked))
-        judged = client.run_on_scheduler(
-            lambda dask_scheduler: {str(each[0]) for each in dask_scheduler.transition_log}
-        )
+        judged = client.run_on_scheduler(lambda dask_scheduler: {str(each[0]) for each in dask_scheduler.transition_log})
     assert any(key.startswith("judge ") for key in judged)
     for each in found:
         assert each.row.error is None

@@ -153,9 +153,7 @@ def test_no_row_is_lost_and_no_failure_is_silent(rows):
         row.cutter is not None for row in rows
     )
     page = found["index.html"].decode()
-    assert [page.count(f'<tr role="row" data-is="{word}"') for word in OUTCOMES] == [
-        getattr(summary.parts, w) for w in OUTCOMES
-    ]
+    assert [page.count(f'<tr role="row" data-is="{word}"') for word in OUTCOMES] == [getattr(summary.parts, w) for w in OUTCOMES]
     cells = list(csv.reader(io.StringIO(found["index.csv"].decode(), newline=""), strict=True))
     assert len(cells) == 1 + len(rows)
     assert {len(line) for line in cells} == {len(table.columns())}
@@ -177,12 +175,7 @@ def test_the_summary_keeps_to_its_schema(files):
         "code": 3,
         "error": "no cause was reported (exit code 0)",
     }
-    assert summary["run"]["cluster"] == {
-        "workers": 2,
-        "scheduler": "tcp://127.0.0.1:8786",
-        "odd": str(object),
-        "nan": None,
-    }
+    assert summary["run"]["cluster"] == {"workers": 2, "scheduler": "tcp://127.0.0.1:8786", "odd": str(object), "nan": None}
     assert summary["run"]["seconds_of_parts"] == pytest.approx(84.0)
     assert "plan_cutters" in summary["versions"]
 
@@ -234,10 +227,7 @@ def test_columns_are_stable():
     assert text.count(b"\r\n") == text.count(b"\n") == 2
 
 
-@given(
-    st.sampled_from(["=1+1", "+1", "-1", "@SUM(A1)", "\t=1", "\r=1", "\n=1", " =1", "＝1", "'=1", "'", "", "a=1"])
-    | st.text()
-)
+@given(st.sampled_from(["=1+1", "+1", "-1", "@SUM(A1)", "\t=1", "\r=1", "\n=1", " =1", "＝1", "'=1", "'", "", "a=1"]) | st.text())
 @settings(max_examples=100, deadline=None)
 def test_no_text_is_a_formula_and_each_comes_back(text):
     (cells,) = cells_of([part(verdict=text)])
@@ -399,8 +389,7 @@ def test_the_crop_is_the_view_of_the_sheet():
     style = (Path(table.__file__).parent / "index.css").read_text()
     wide, high = map(float, re.search(r"\n\.picture {[^}]*width: ([\d.]+)rem; height: ([\d.]+)rem", style).groups())
     whole, left, top = map(
-        float,
-        re.search(r"\n\.picture img {[^}]*width: ([\d.]+)rem; left: -([\d.]+)rem; top: -([\d.]+)rem", style).groups(),
+        float, re.search(r"\n\.picture img {[^}]*width: ([\d.]+)rem; left: -([\d.]+)rem; top: -([\d.]+)rem", style).groups()
     )
     scale = whole / sheet._SHEET[0]
     x, y = sheet._PLACES[1]

@@ -105,9 +105,7 @@ def test_only_what_verdicts_depend_on_counts(before, asked, again):
     kept._write = lambda *given: None
     there = prepare(PART, Options.of(ASKED | asked)) if asked else ready
     told = []
-    kept._otherwise = lambda ready, cutter, *given, **more: (
-        told.append(cutter.id) or judge(ready, cutter, *given, **more)
-    )
+    kept._otherwise = lambda ready, cutter, *given, **more: told.append(cutter.id) or judge(ready, cutter, *given, **more)
     for cutter in reversed(there.cutters):
         kept(there, cutter)
     assert [name.partition("F")[0][:5] for name in told] == again

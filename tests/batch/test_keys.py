@@ -83,9 +83,7 @@ def test_every_process_makes_the_same_key():
         "print(keys.settings_key(s, handed(s.options)))"
     )
     environment = {**os.environ, "PYTHONHASHSEED": "7", "PYTHONPATH": f"{ROOT / 'plugin'}{os.pathsep}{ROOT}"}
-    said = subprocess.run(
-        [sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True
-    ).stdout
+    said = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True).stdout
     assert said.strip() == key(cutters="R6L80", machine="trunnion-ac", holder="er32")
 
 

@@ -59,10 +59,7 @@ def test_of_many_parts_failures_and_counts_are_told():
         one.row(GOOD)
     one.row(BAD)
     one.close()
-    assert lines(text) == [
-        "rim\\n\\x1b[2J: failed: rim.step: not a STEP file",
-        f"{EACH + 1} of {EACH + 1} parts done, 1 failed",
-    ]
+    assert lines(text) == ["rim\\n\\x1b[2J: failed: rim.step: not a STEP file", f"{EACH + 1} of {EACH + 1} parts done, 1 failed"]
 
 
 def test_where_the_number_is_not_known_lines_stop_at_the_same_number():

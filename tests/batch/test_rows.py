@@ -215,16 +215,7 @@ def test_a_worker_that_is_killed_costs_nothing(ready, single):
 def test_a_scheduler_that_is_killed_while_blocks_are_on_it_is_one_line(ready, tmp_path):
     """A process of its own, killed once its tasks show that a worker judges; nothing waits for it for ever."""
     file = tmp_path / "scheduler.json"
-    begun = [
-        sys.executable,
-        "-m",
-        "distributed.cli.dask_scheduler",
-        "--port",
-        "0",
-        "--no-dashboard",
-        "--scheduler-file",
-        file,
-    ]
+    begun = [sys.executable, "-m", "distributed.cli.dask_scheduler", "--port", "0", "--no-dashboard", "--scheduler-file", file]
     scheduler = subprocess.Popen(begun, stderr=subprocess.DEVNULL)
     ends, caught = time.monotonic() + 60, []
     try:
@@ -269,12 +260,5 @@ def test_a_scheduler_that_is_killed_while_blocks_are_on_it_is_one_line(ready, tm
 
 
 def test_the_columns_of_verdicts_are_all_handed_back():
-    assert [each.name for each in fields(Verdicts)] == [
-        "verdict",
-        "axis",
-        "tilt_direction",
-        "tilt",
-        "rotation",
-        "reason",
-    ]
+    assert [each.name for each in fields(Verdicts)] == ["verdict", "axis", "tilt_direction", "tilt", "rotation", "reason"]
     assert Cutter.parse("R6L80") == pickle.loads(pickle.dumps(Cutter.parse("R6L80")))

@@ -93,11 +93,7 @@ def test_rows_come_what_is_done_is_kept_and_a_broken_part_costs_itself(client, t
     assert rows["broken"].error.startswith(str(tmp_path / "broken.step"))
     assert rows["a"].share == 1.0
     assert "D12" in rows["a"].cutter
-    assert sorted(each.name for each in (tmp_path / "out").iterdir() if each.is_dir()) == [
-        VERDICTS,
-        "a-plan",
-        "deep-plan",
-    ]
+    assert sorted(each.name for each in (tmp_path / "out").iterdir() if each.is_dir()) == [VERDICTS, "a-plan", "deep-plan"]
     assert (tmp_path / "out/summary.json").is_file()
     plan = json.loads((tmp_path / "out/a-plan/plan.json").read_text())
     assert plan["part"]["file"] == "a.step"
@@ -221,9 +217,7 @@ def test_what_is_in_flight_is_bounded_and_an_error_is_not_tried_again(client):
         found[task] = result
     assert board.most <= 8
     assert sorted(found) == list(range(300))
-    assert all(
-        isinstance(result, ValueError) if task % 50 == 7 else result == task / 2 for task, result in found.items()
-    )
+    assert all(isinstance(result, ValueError) if task % 50 == 7 else result == task / 2 for task, result in found.items())
 
 
 def _picky(task):

@@ -113,10 +113,7 @@ def test_a_wrong_line_of_toml_costs_its_part_alone(folder):
     [
         ("[[part]\n", "is no TOML"),
         ("[options]\nspacing = 1\n", "part: is missing"),
-        (
-            "[options]\nspacing = 1\nspacng = 1\n[[part]]\nfile='b.step'\n",
-            "parts.toml:3: no option of a part is called spacng",
-        ),
+        ("[options]\nspacing = 1\nspacng = 1\n[[part]]\nfile='b.step'\n", "parts.toml:3: no option of a part is called spacng"),
         ("[[part]]\nfile='b.step'\n[other]\nx=1\n", "parts.toml:3: other: "),
         ("", "part: is missing"),
     ],

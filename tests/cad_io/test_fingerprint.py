@@ -37,9 +37,7 @@ SEARCH, HIT, CODES, MASK, REFINE = (
 def sources(tmp_path):
     """A copy of our sources."""
     for package in (ROOT / "cad_io", ROOT / "plugin" / "plan_cutters"):
-        shutil.copytree(
-            package, tmp_path / "sources" / package.name, ignore=shutil.ignore_patterns("__pycache__", "*.js")
-        )
+        shutil.copytree(package, tmp_path / "sources" / package.name, ignore=shutil.ignore_patterns("__pycache__", "*.js"))
     return tmp_path / "sources"
 
 

@@ -39,15 +39,9 @@ def test_what_is_not_written_to_its_end_is_gone(tmp_path, ends):
 
 
 def test_errors_of_the_system_name_the_file(tmp_path):
-    with (
-        pytest.raises(WriteError, match=r"^.*a: cannot be written: No space left on device$"),
-        whole(tmp_path / "a", WriteError),
-    ):
+    with pytest.raises(WriteError, match=r"^.*a: cannot be written: No space left on device$"), whole(tmp_path / "a", WriteError):
         raise OSError(28, "No space left on device")
-    with (
-        pytest.raises(WriteError, match=r"none.a: cannot be written: No such file"),
-        whole(tmp_path / "none/a", WriteError),
-    ):
+    with pytest.raises(WriteError, match=r"none.a: cannot be written: No such file"), whole(tmp_path / "none/a", WriteError):
         pass
     (tmp_path / "folder").mkdir()
     with pytest.raises(WriteError, match="cannot be written"), whole(tmp_path / "folder", WriteError):

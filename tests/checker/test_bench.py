@@ -93,11 +93,7 @@ def test_a_tool_touches_at_its_contact(cutter):
             assert cutter.shape in ("barrel", "lens", "end", "form")
             continue
         # The lowest point of a circle about the axis, and of them all that of the part that cuts.
-        cutting = (
-            border[border[:, 1] <= tool.solids[0].high + 1e-9]
-            if cutter.shape != "form"
-            else border[border[:, 1] <= 8.0]
-        )
+        cutting = border[border[:, 1] <= tool.solids[0].high + 1e-9] if cutter.shape != "form" else border[border[:, 1] <= 8.0]
         low = tip[0, 2] + cutting[:, 1] * math.cos(tilt) - cutting[:, 0] * math.sin(tilt)
         assert abs(low.min()) < 2e-3, degrees
 
@@ -131,9 +127,7 @@ def test_what_is_met_is_what_points_all_over_the_surface_say(peaks, cutter):
         away = exact - tip[k]
         h = away @ axis[k]
         q = np.linalg.norm(away - h[:, None] * axis[k], axis=1)
-        over = max(
-            float(solid.depth(q, h)[0].max()) - (0.01 if solid.part == "flutes" else 0.0) for solid in tool.solids
-        )
+        over = max(float(solid.depth(q, h)[0].max()) - (0.01 if solid.part == "flutes" else 0.0) for solid in tool.solids)
         if over > 0.0:
             assert found.verdict[k] == MET
         elif over < -0.05:
@@ -150,14 +144,7 @@ def test_a_check_that_has_no_time_decides_nothing(peaks):
     _, cells, root = peaks
     tool = tool_of(_sizes(CUTTERS[0]))
     found = met(
-        cells,
-        root,
-        tool,
-        np.zeros((3, 3)),
-        np.tile([0.0, 0.0, 1.0], (3, 1)),
-        (0.01, 0.0),
-        5e-4,
-        Clock(time.monotonic() - 1.0),
+        cells, root, tool, np.zeros((3, 3)), np.tile([0.0, 0.0, 1.0], (3, 1)), (0.01, 0.0), 5e-4, Clock(time.monotonic() - 1.0)
     )
     assert not np.isin(found.verdict, (FREE, MET)).any()
 
@@ -185,24 +172,10 @@ def test_the_search_and_the_checker_agree(words):
         np.array([0.0, 0.0, 1.0]), math.pi, False,
     )  # fmt: skip
     setup = Setup((0.0, 0.0, 1.0), None, None, tuple(map(_body, options.fixtures)), frozenset())
-    arrays = {
-        "point": samples.point,
-        "normal": samples.normal,
-        "direction_max": samples.direction_max,
-        "face": samples.face,
-    }
+    arrays = {"point": samples.point, "normal": samples.normal, "direction_max": samples.direction_max, "face": samples.face}
     document = {"effective": {"tilt_deg": [0.0, 90.0], "rotation_deg": [0.0, 360.0]}}
     question = Question(
-        read_part(part),
-        machine,
-        {cutter.id: _sizes(cutter)},
-        (setup,),
-        frozenset(),
-        np.zeros(0),
-        0.01,
-        document,
-        {},
-        arrays,
+        read_part(part), machine, {cutter.id: _sizes(cutter)}, (setup,), frozenset(), np.zeros(0), 0.01, document, {}, arrays
     )
     bench = Bench(question, lambda doing: None)
     rng = np.random.default_rng(3)

@@ -89,6 +89,4 @@ def test_a_tolerance_that_is_coarser_than_wanted_is_named(written):
     question = replace(question_of(written.part, Options(**WORDS), document, arrays), asked=0.01)
     assert question.tolerance == 0.04
     lines = check(question, seconds=0.0).lines
-    assert any(
-        line.startswith("not checked: Whether the part allows no better tolerance than the 0.04 mm") for line in lines
-    )
+    assert any(line.startswith("not checked: Whether the part allows no better tolerance than the 0.04 mm") for line in lines)

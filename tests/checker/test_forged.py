@@ -119,8 +119,7 @@ def _kinds():
     """Each entry that a plan may have; those for which many tools are put down are slow."""
     schema = OperationsEntry.model_json_schema()
     return [
-        pytest.param(kind, marks=pytest.mark.slow) if kind in _SLOW else kind
-        for kind in sorted(schema_patterns(schema, schema))
+        pytest.param(kind, marks=pytest.mark.slow) if kind in _SLOW else kind for kind in sorted(schema_patterns(schema, schema))
     ]
 
 

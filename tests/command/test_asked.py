@@ -162,9 +162,7 @@ def test_ignoring_on_the_command_line(tmp_path):
     assert "1 to machine, 1 ignored" in in_lines(done.stdout)
     assert "No face that can be judged is sculptured" in in_lines(done.stdout)
     document = json.loads((tmp_path / "covered-plan" / "plan.json").read_text())
-    jsonschema.Draft202012Validator(json.loads((ROOT / "plugin/plan_cutters/plan.schema.json").read_text())).validate(
-        document
-    )
+    jsonschema.Draft202012Validator(json.loads((ROOT / "plugin/plan_cutters/plan.schema.json").read_text())).validate(document)
     assert document["effective"]["ignore"] == ["F2"]
     assert document["effective"]["target_faces"] == ["F1"]
     assert "ignored" in document["legend"]

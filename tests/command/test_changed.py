@@ -84,9 +84,7 @@ def step(folder, base, temp, **inputs):
     done = subprocess.run(["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", mine["run"]], cwd=folder,
                           env=ENV | job | env, capture_output=True, text=True, check=False)  # fmt: skip
     outputs = (
-        dict(line.split("=", 1) for line in (temp / "output").read_text().splitlines())
-        if (temp / "output").exists()
-        else {}
+        dict(line.split("=", 1) for line in (temp / "output").read_text().splitlines()) if (temp / "output").exists() else {}
     )
     return done, (temp / "summary").read_text() if (temp / "summary").exists() else "", outputs
 
@@ -101,9 +99,7 @@ def test_the_action_tells_what_a_branch_loses(repository, ran):
     temp, (done, summary, outputs) = ran
     assert done.returncode == 1, done.stderr
     assert outputs == {"parts": "4", "lost": "2", "failing": "2", "folder": str(temp / "plan-cutters-changed")}
-    told = {
-        each["part"]: each for each in json.loads((temp / "plan-cutters-changed/changed.json").read_text())["parts"]
-    }
+    told = {each["part"]: each for each in json.loads((temp / "plan-cutters-changed/changed.json").read_text())["parts"]}
     assert {name: each["how"] for name, each in told.items()} == {
         "gone.stp": "deleted", "large.STEP": "added", "parts/slot.step": "changed", "sub/a name.step": "renamed from old.step",
     }  # fmt: skip
@@ -112,9 +108,7 @@ def test_the_action_tells_what_a_branch_loses(repository, ran):
     assert told["parts/slot.step"]["unreachable"]
     assert not told["sub/a name.step"]["difference"]["lost"]
     lines = [line for line in done.stderr.splitlines() if line.startswith("plan-cutters changed: ")]
-    assert lines == [
-        "plan-cutters changed: large.STEP: is a pointer of Git LFS, not the part: check it out with lfs: true"
-    ]
+    assert lines == ["plan-cutters changed: large.STEP: is a pointer of Git LFS, not the part: check it out with lfs: true"]
     assert "| fails | parts/slot.step | changed | lost" in summary
     assert "renamed from old.step" in summary
     assert not (temp / "plan-cutters-changed/before/gone.stp").exists()
@@ -243,16 +237,7 @@ def shop(folder):
     (folder / "tools/Library/l.fctl").write_text(json.dumps({"tools": [{"nr": 1, "path": "b.fctb"}], "version": 1}))
     (folder / "machine/base.inc").write_bytes((DATA / "machines/linuxcnc_xyzac-trt.ini").read_bytes())
     (folder / "machine/m.ini").write_text("[KINS]\nJOINTS = 5\n#INCLUDE base.inc\n")
-    return [
-        "--cutters",
-        "tools/Library/l.fctl",
-        "--assume-stickout",
-        "30",
-        "--holder",
-        "none",
-        "--machine",
-        "machine/m.ini",
-    ]
+    return ["--cutters", "tools/Library/l.fctl", "--assume-stickout", "30", "--holder", "none", "--machine", "machine/m.ini"]
 
 
 def test_a_file_that_an_option_leads_to_makes_another_key(tmp_path, monkeypatch):
@@ -319,9 +304,7 @@ def test_each_rule_is_stricter_than_the_one_before():
     assert [[row.breaks(rule) for rule in RULES] for row in (lost, open_face, unread)] == [
         [False, True, True, True], [False, False, True, True], [False, False, False, True],
     ]  # fmt: skip
-    assert set(RULES) == set(
-        ACTION["inputs"]["fail-on"]["description"].partition(" (")[0].replace(" or ", ", ").split(", ")
-    )
+    assert set(RULES) == set(ACTION["inputs"]["fail-on"]["description"].partition(" (")[0].replace(" or ", ", ").split(", "))
 
 
 def test_the_image_is_slim_and_not_root():

@@ -290,9 +290,7 @@ def test_a_copy_of_this_process_says_what_a_new_one_does(tmp_path):
     """What lets most tests of the command run without the start of an interpreter."""
     (tmp_path / "bad.step").write_text("no")
     quick = (SAMPLES / "v_groove.step", "--cutter", "R2L90", "--grid", "5", "--area-budget", "0", "--formats", "json")
-    seconds = re.compile(
-        r"^ +[0-9.]+ s  .*$|[0-9.]+ s\b", re.MULTILINE
-    )  # which stage began when, and how long all took
+    seconds = re.compile(r"^ +[0-9.]+ s  .*$|[0-9.]+ s\b", re.MULTILINE)  # which stage began when, and how long all took
     for words in ((*quick, "bad.step"), (*quick, "--grid", "1")):
         anew, copied = run_anew(*words, cwd=tmp_path), run(*words, cwd=tmp_path)
         assert anew.returncode == copied.returncode

@@ -181,10 +181,7 @@ def test_the_first_line_says_which_cutter_to_take(capsys, planned):
 def test_what_is_served_between_samples_is_put_in_words(capsys, planned):
     (entry,) = [c for c in planned.cutters if c.area]
     said = in_lines(shown(capsys, planned))
-    assert (
-        f"{percent(entry.area.share, some=True, whole=False)} of the area is proved safe with the tool axis kept"
-        in said
-    )
+    assert f"{percent(entry.area.share, some=True, whole=False)} of the area is proved safe with the tool axis kept" in said
     assert "is not proved, which does not mean unsafe" in said
 
 
@@ -196,9 +193,7 @@ def test_where_none_is_feasible_the_worst_faces_are_listed(capsys, failing):
     rows = [line.split() for line in takewhile(str.strip, said.splitlines()[head + 2 :])]
     best = max(failing.cutters, key=lambda c: c.interference_free + c.accessible)
     areas = {face.id: face.area_mm2 for face in failing.faces}
-    not_reached = {
-        name: areas[name] * (v.area_share.inaccessible + v.area_share.undecided) for name, v in best.faces.items()
-    }
+    not_reached = {name: areas[name] * (v.area_share.inaccessible + v.area_share.undecided) for name, v in best.faces.items()}
     worst = sorted(not_reached.values(), reverse=True)[:5]
     assert [not_reached[row[0]] for row in rows] == pytest.approx([each for each in worst if each])
     assert all(head in said for head in ("mm2 not reached", "of the face"))
@@ -261,15 +256,7 @@ def long_names(document):
     cutters = []
     for i, c in enumerate(document.cutters):
         name = f"{'ultra ' * (i % 3)}long reach high performance end mill for moulds, variant {i} of the series, coated"
-        source = {
-            "file": "a.tools",
-            "place": f"entry {i}",
-            "number": i,
-            "name": name,
-            "kind": "flat",
-            "unit": "mm",
-            "notes": [],
-        }
+        source = {"file": "a.tools", "place": f"entry {i}", "number": i, "name": name, "kind": "flat", "unit": "mm", "notes": []}
         cutters.append(c.model_dump() | {"name": name, "sources": [source], "seconds": 0.0})
     return Plan.model_validate(document.model_dump() | {"cutters": cutters})
 
@@ -394,10 +381,7 @@ def test_what_the_child_says_comes_through_whatever_it_holds():
     child = f"from plan_cutters.workers.assignment import report as tell; odd = {odd!r}\n"
     child += "tell('part', odd); tell('at', '3 9'); tell('say', odd); tell('show', odd)"
     subprocess.run(
-        [sys.executable, "-c", child],
-        env=ENV | {VARIABLE: str(Assignment(report=there))},
-        pass_fds=(there,),
-        check=True,
+        [sys.executable, "-c", child], env=ENV | {VARIABLE: str(Assignment(report=there))}, pass_fds=(there,), check=True
     )
     watch.listen(0.0)
     os.close(here)
@@ -410,9 +394,7 @@ def test_what_the_child_says_comes_through_whatever_it_holds():
 def test_it_speaks_soon_and_shows_a_clock_on_a_terminal(tmp_path):
     parent, child = pty.openpty()
     words = [sys.executable, "-m", "plan_cutters", str(GROOVE), *QUICK, *FILES]
-    process = subprocess.Popen(
-        words, cwd=tmp_path, env=ENV | {"TERM": "xterm", "COLUMNS": "80"}, stdout=child, stderr=child
-    )
+    process = subprocess.Popen(words, cwd=tmp_path, env=ENV | {"TERM": "xterm", "COLUMNS": "80"}, stdout=child, stderr=child)
     os.close(child)
     said = b""
     while True:
@@ -604,9 +586,7 @@ def ended_from_outside(*_):
     ("plan-cutters", one_part, "one_part", (*QUICK, "--quiet")),
     ("plan-cutters-map", of_a_point, "_options", ("--at", "0,0,0", "--cutter", "R6L80")),
 ], ids=["plan", "map"])  # fmt: skip
-def test_an_interrupt_that_becomes_another_error_is_still_one(
-    tmp_path, monkeypatch, command, module, name, words, work
-):
+def test_an_interrupt_that_becomes_another_error_is_still_one(tmp_path, monkeypatch, command, module, name, words, work):
     monkeypatch.setattr(module, name, work)
     done = run(GROOVE, *words, cwd=tmp_path, command=command)
     assert (done.returncode, done.stderr) == (130, f"{command}: interrupted; no file is half-written\n")

@@ -174,9 +174,7 @@ def test_a_seam_and_turns_off_the_grid(tmp_path):
                    extras=lambda n: {}, piece_extras=lambda p: {})  # fmt: skip
         meshes = trimesh.load(tmp_path / "p.glb").geometry
         area.append([meshes[f"F1_{k}"].area * 1e6 for k in range(3)])
-    nodes = np.array(
-        [(wall.label[:-1, 1:-1] == k).sum() + 0.5 * (wall.label[:-1, [0, -1]] == k).sum() for k in range(3)]
-    )
+    nodes = np.array([(wall.label[:-1, 1:-1] == k).sum() + 0.5 * (wall.label[:-1, [0, -1]] == k).sum() for k in range(3)])
     for found in area:
         assert found == pytest.approx(area[0], rel=1e-6)
         assert found == pytest.approx(nodes / nodes.sum() * 2 * np.pi * 10 * 40, rel=0.02)
@@ -278,9 +276,7 @@ def test_a_plan_that_names_files_of_others_removes_none(result, tmp_path):
     other.write_text("of others")
     (out / "more.step").write_text("of others")
     said = read(out)
-    said["files"] = {
-        n: {"name": name, "sha256": sha256(other)} for n, name in (("a", "../other.step"), ("b", "more.step"))
-    }
+    said["files"] = {n: {"name": name, "sha256": sha256(other)} for n, name in (("a", "../other.step"), ("b", "more.step"))}
     (out / "plan.json").write_text(json.dumps(said))
     result.write(out, ("json",))
     assert other.exists()

@@ -107,9 +107,7 @@ def test_a_place_that_cannot_be_written_to(tmp_path):
 
 
 def test_each_assembly_is_drawn(tmp_path):
-    path = write_json(
-        tmp_path / "a.json", [fusion(number=4, name="a/b: 6 mm"), fusion(number=4, name="a/b: 6 mm", LB=50)]
-    )
+    path = write_json(tmp_path / "a.json", [fusion(number=4, name="a/b: 6 mm"), fusion(number=4, name="a/b: 6 mm", LB=50)])
     assert run(path, "--draw", tmp_path / "drawn").returncode == 0
     names = sorted(each.name for each in (tmp_path / "drawn").iterdir())
     assert names == ["T4_a_b_6_mm.svg", "T4_a_b_6_mm_2.svg"]

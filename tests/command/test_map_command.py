@@ -126,11 +126,7 @@ def test_what_is_left_of_intervals():
     ("words", "code", "says"),
     [
         (["nix.step", "--at", "0,0,0", "--cutter", "R8L90"], 3, "nix.step: no such file"),
-        (
-            [GROOVE, "--at", "0,0,90", "--cutter", "R8L90"],
-            2,
-            "mm from the part: the nearest point of a face is (-24.15",
-        ),
+        ([GROOVE, "--at", "0,0,90", "--cutter", "R8L90"], 2, "mm from the part: the nearest point of a face is (-24.15"),
         ([GROOVE, "--at", "0,0", "--cutter", "R8L90"], 2, "--at '0,0' is not 3 numbers"),
         ([GROOVE, "--at", "0,0,nan", "--cutter", "R8L90"], 2, "is not 3 numbers"),
         ([GROOVE, "--at", "0,0,0", "--cutter", "Q8"], 2, "cutter 'Q8' is not of the form"),
@@ -174,9 +170,7 @@ def test_a_tool_of_a_library_and_its_name(capsys, tmp_path):
 
 def test_a_setup_file_says_how_the_part_stands(capsys, tmp_path):
     """Its X decides which of the tilts across it a trunnion holds, and its fixtures are in the way."""
-    (tmp_path / "setup.toml").write_text(
-        'unit = "mm"\naxis = [0, 0, 1]\nx = [0, 1, 0]\nfixtures = ["box:4,4,40@14,0,30"]\n'
-    )
+    (tmp_path / "setup.toml").write_text('unit = "mm"\naxis = [0, 0, 1]\nx = [0, 1, 0]\nfixtures = ["box:4,4,40@14,0,30"]\n')
     (tmp_path / "mill.toml").write_text(
         'format = "plan-cutters-machine"\nversion = 1\nname = "mill"\nunits = { length = "mm", angle = "deg" }\n'
         'sign = "tool-relative"\n'
@@ -236,9 +230,7 @@ def test_a_reader_that_goes_is_no_verdict():
 
 
 def test_as_a_program(tmp_path):
-    done = run_copied(
-        "map", GROOVE, "--at", "0,0,0", "--cutter", "R8L90", "--rotation", "0:0", "-o", tmp_path / "m.png"
-    )
+    done = run_copied("map", GROOVE, "--at", "0,0,0", "--cutter", "R8L90", "--rotation", "0:0", "-o", tmp_path / "m.png")
     assert (done.returncode, done.stderr) == (0, "")
     assert "to 61.4" in done.stdout
 

@@ -7,10 +7,7 @@ from plan_cutters.command import entry
 from plan_cutters.command.values import Faces, Words
 
 #: What each command needs.
-NEEDED = {
-    "map": {"--at": "0,0,0", "--cutter": "R6L80"},
-    "batch": {"--out": "o"},
-}
+NEEDED = {"map": {"--at": "0,0,0", "--cutter": "R6L80"}, "batch": {"--out": "o"}}
 
 
 def parsed(command, *words):

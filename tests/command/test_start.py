@@ -27,9 +27,7 @@ LOAD = "import sys\nfrom plan_cutters.command import cli\ncli.load()\nprint(*sys
 
 
 def loaded(code, *words, cwd):
-    done = subprocess.run(
-        [sys.executable, "-c", code, *words], cwd=cwd, env=ENV, capture_output=True, text=True, check=True
-    )
+    done = subprocess.run([sys.executable, "-c", code, *words], cwd=cwd, env=ENV, capture_output=True, text=True, check=True)
     return {name.partition(".")[0] for name in done.stdout.split()}
 
 
@@ -42,17 +40,7 @@ def test_what_waits_loads_neither_the_kernel_nor_the_compiler(tmp_path):
 def test_what_works_loads_nothing_that_no_plan_needs(tmp_path):
     found = loaded(LOAD, cwd=tmp_path)
     assert found >= {"OCP", "numba", "pydantic"}
-    assert not found & {
-        "matplotlib",
-        "PIL",
-        "trimesh",
-        "build123d",
-        "cadquery",
-        "pytest",
-        "openpyxl",
-        "IPython",
-        "pandas",
-    }
+    assert not found & {"matplotlib", "PIL", "trimesh", "build123d", "cadquery", "pytest", "openpyxl", "IPython", "pandas"}
 
 
 def test_what_says_why_models_are_missing_loads_nothing(tmp_path):
@@ -94,9 +82,7 @@ def test_one_that_waits_ends_where_the_words_are_wrong(tmp_path):
     mark = f"MARK_OF_START={tmp_path}"
     name, _, value = mark.partition("=")
     words = [sys.executable, "-m", "plan_cutters", GROOVE, "--cutter", "R6Q"]
-    done = subprocess.run(
-        words, cwd=tmp_path, env=ENV | {name: value}, capture_output=True, text=True, check=False, timeout=60
-    )
+    done = subprocess.run(words, cwd=tmp_path, env=ENV | {name: value}, capture_output=True, text=True, check=False, timeout=60)
     assert done.returncode == 2
     assert len(done.stderr.splitlines()) == 1
     assert leftovers(tmp_path) == []

@@ -46,9 +46,7 @@ def test_a_first_word_that_is_no_subcommand_is_a_part(tmp_path):
         done = run(*words, cwd=tmp_path)
         assert done.returncode == 3
         assert "no part" not in done.stderr
-        assert all(
-            word in done.stderr for word in ("plan-cutters: ", "part.step" if words[0] == "part.step" else words[-1])
-        )
+        assert all(word in done.stderr for word in ("plan-cutters: ", "part.step" if words[0] == "part.step" else words[-1]))
     done = run("map", "--grid", "5", cwd=tmp_path)
     assert done.returncode == 2
     assert done.stderr.startswith("plan-cutters map: ")
@@ -91,9 +89,7 @@ def test_help_loads_neither_numpy_nor_the_kernel(tmp_path, name):
     code = f"import sys; sys.argv = ['x', {name!r}, '--help']\nfrom plan_cutters.command.entry import plan_cutters\n"
     code += "try: plan_cutters()\nexcept SystemExit: pass\n"
     code += "assert not {'OCP', 'numba', 'scipy', 'numpy', 'pydantic'} & set(sys.modules), sorted(sys.modules)"
-    done = subprocess.run(
-        [sys.executable, "-c", code], cwd=tmp_path, env=ENV, capture_output=True, text=True, check=False
-    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, env=ENV, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
 
 

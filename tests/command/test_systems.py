@@ -19,10 +19,7 @@ sys.modules["resource"] = None
 from plan_cutters.command.cli import main
 main([{part!r}, "--cutter", "R6L80", "--cutter", "R2L30", "--grid", "9", "--area-budget", "200", "--quiet", "-o", {out!r}])
 """
-GONE = {
-    "Windows": ["fork", "killpg", "getuid", "sysconf", "sched_getaffinity", "setsid"],
-    "macOS": ["sched_getaffinity"],
-}
+GONE = {"Windows": ["fork", "killpg", "getuid", "sysconf", "sched_getaffinity", "setsid"], "macOS": ["sched_getaffinity"]}
 
 
 def planned(gone, out):

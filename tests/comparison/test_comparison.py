@@ -208,10 +208,7 @@ def test_a_plan_without_places_is_known_by_numbers():
     new = made([face(1, area=50.0), face(2, area=60.0)], [cutter("R6L80", {})], sha="b")
     bare = [FaceEntry.model_validate({**f.model_dump(), "centre_mm": None}) for f in new.faces]
     old = new.model_copy(update={"faces": bare, "part": new.part.model_copy(update={"sha256": "a"})})
-    assert [(a.id, b.id, how) for a, b, how in match_faces(old, new)] == [
-        ("F1", "F1", "number"),
-        ("F2", "F2", "number"),
-    ]
+    assert [(a.id, b.id, how) for a, b, how in match_faces(old, new)] == [("F1", "F1", "number"), ("F2", "F2", "number")]
 
 
 @pytest.mark.parametrize(
@@ -269,9 +266,7 @@ def test_names_cannot_break_the_markdown():
                        only_new=[], comparable=True, lost=True, won=False)  # fmt: skip
     text = markdown(found)
     assert "<script" not in text.replace("\\<script", "")
-    (row,) = [
-        line for line in text.splitlines() if "F1" in line and line.startswith("| lost |") and "sculptured" in line
-    ]
+    (row,) = [line for line in text.splitlines() if "F1" in line and line.startswith("| lost |") and "sculptured" in line]
     assert row.replace("\\|", "").count("|") == 7
     assert escaped("x*y") in text
     assert "g\\|h" in text

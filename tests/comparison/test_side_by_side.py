@@ -186,9 +186,7 @@ def test_of_many_pairs_those_that_differ_have_a_page(results, tmp_path):
     done = run("diff", "was", "now", "-o", "out", "--markdown", cwd=tmp_path)
     assert done.returncode == 1
     assert "[Both plans side by side](out/a%20b/review.html)" in done.stdout
-    assert sorted(each.relative_to(tmp_path / "out").as_posix() for each in tmp_path.glob("out/**/*.html")) == [
-        "a b/review.html"
-    ]
+    assert sorted(each.relative_to(tmp_path / "out").as_posix() for each in tmp_path.glob("out/**/*.html")) == ["a b/review.html"]
 
 
 @pytest.fixture
@@ -269,9 +267,7 @@ def hue(page, word, face):
              side.stage.table.set(aim); side.stage.draw(); return side.stage.project(aim.target); }""",
         [word, face],
     )
-    image = np.asarray(Image.open(io.BytesIO(page.locator(f"#{word} .frame").screenshot())).convert("RGB")).astype(
-        float
-    )
+    image = np.asarray(Image.open(io.BytesIO(page.locator(f"#{word} .frame").screenshot())).convert("RGB")).astype(float)
     found = image[round(y) - 6 : round(y) + 7, round(x) - 6 : round(x) + 7].reshape(-1, 3).mean(axis=0)
     return found / found.sum()
 
@@ -323,9 +319,7 @@ def test_verdicts_of_a_cutter_have_the_shares_of_the_plan(shown, results, path):
 def test_a_lost_face_without_samples_has_its_colour(shown, results, folders, tmp_path):
     """Nothing was sampled there: it would be as grey as an obstacle if samples were all that has colour."""
     cutter = results["new"].plan.cutters[0].id
-    bare = plan(
-        read_part(block(12)), cutters=[results["old"].judged(cutter)], faces="F1,F2", grid=5, area_budget=0, jobs=2
-    )
+    bare = plan(read_part(block(12)), cutters=[results["old"].judged(cutter)], faces="F1,F2", grid=5, area_budget=0, jobs=2)
     unseen = bare.plan.faces[4]
     assert not unseen.target
     asked = [f.model_copy(update={"target": True}) for f in bare.plan.faces]

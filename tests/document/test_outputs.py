@@ -22,16 +22,12 @@ PAGE = (ROOT / "docs/json.md").read_text(encoding="utf-8")
 
 def listed(title):
     """The rows of the table under a heading: code and meaning."""
-    return dict(
-        re.findall(r"^\| `(\w+)` \| (.*) \|$", PAGE.partition(f"\n## {title}\n")[2].partition("\n## ")[0], re.MULTILINE)
-    )
+    return dict(re.findall(r"^\| `(\w+)` \| (.*) \|$", PAGE.partition(f"\n## {title}\n")[2].partition("\n## ")[0], re.MULTILINE))
 
 
 @pytest.mark.parametrize("file", ["plan.schema.json", *(f"{name}.schema.json" for name in OUTPUTS)])
 def test_a_schema_is_that_of_its_model_and_is_told(file):
-    assert (ROOT / "plugin/plan_cutters" / file).read_text() == schemas()[file], (
-        "run: python -m plan_cutters.report.to_json"
-    )
+    assert (ROOT / "plugin/plan_cutters" / file).read_text() == schemas()[file], "run: python -m plan_cutters.report.to_json"
     assert f"`{file}`" in PAGE
 
 

@@ -62,11 +62,7 @@ def test_shares_of_a_plan_are_those_of_its_samples():
     entry, reach = result.cutters[0], result.reaches["R8L90"]
     area = result.samples.area
     for word, code in (("inaccessible", 0), ("accessible", 1), ("interference_free", 2), ("undecided", 3)):
-        assert getattr(entry.area_share, word) == pytest.approx(
-            area[reach.verdict == code].sum() / area.sum(), abs=1e-12
-        )
+        assert getattr(entry.area_share, word) == pytest.approx(area[reach.verdict == code].sum() / area.sum(), abs=1e-12)
     assert sum(getattr(entry.area_share, word) for word in
                ("inaccessible", "accessible", "interference_free", "undecided", "unjudged")) == pytest.approx(1.0)  # fmt: skip
-    assert sum(entry.area_share.lost_by.values()) == pytest.approx(
-        entry.area_share.inaccessible + entry.area_share.undecided
-    )
+    assert sum(entry.area_share.lost_by.values()) == pytest.approx(entry.area_share.inaccessible + entry.area_share.undecided)

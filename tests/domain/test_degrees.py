@@ -51,9 +51,7 @@ def test_a_cutter_by_diameter_and_degrees_is_the_same_cutter(radius, length, tap
 
 
 def test_the_other_kinds_go_by_diameter_too():
-    assert Cutter.lollipop(diameter=8, neck_diameter=4, length=50) == Cutter.lollipop(
-        radius=4, neck_radius=2, length=50
-    )
+    assert Cutter.lollipop(diameter=8, neck_diameter=4, length=50) == Cutter.lollipop(radius=4, neck_radius=2, length=50)
     barrel, lens = (
         {"flank_radius": 60, "height": 8, "length": 50, "flutes": 15, "shank_radius": 4},
         {"bottom_radius": 40, "corner_radius": 1, "length": 80},
@@ -74,9 +72,7 @@ def test_both_units_at_once_are_one_error(word):
     kept = getattr(Options(), word) or 0.1
     degrees = np.degrees(kept).tolist()
     # The default of the other one, too: it was given.
-    with pytest.raises(
-        OptionError, match=f"{word} and {word}_deg are one angle, in radians and in degrees: give one of them"
-    ):
+    with pytest.raises(OptionError, match=f"{word} and {word}_deg are one angle, in radians and in degrees: give one of them"):
         Options(**{word: kept, f"{word}_deg": degrees})
     assert getattr(Options(**{word: kept, f"{word}_deg": None}), word) == kept
     # What was not given in degrees has its default.
@@ -147,18 +143,9 @@ def test_one_point_in_degrees():
         (lambda: of_degrees.axis(0, 0.5, tilt_deg=30), "tilt and tilt_deg are one angle"),
         (lambda: of_degrees.axis(0), "give a tilt, in radians, or tilt_deg, in degrees"),
         (lambda: posture_map(GROOVE, **words), "give rotations, in radians, or rotations_deg, in degrees"),
-        (
-            lambda: posture_map(GROOVE, **words, rotations=0.0, rotations_deg=0),
-            "rotations and rotations_deg are one angle",
-        ),
-        (
-            lambda: posture_map(GROOVE, **words, rotations_deg=[400]),
-            "rotations_deg 400 must lie between -360 and 360 degrees",
-        ),
-        (
-            lambda: posture_map(GROOVE, **words, rotations=0.0, tilt=(0, 1), tilt_deg=(0, 60)),
-            "tilt and tilt_deg are one angle",
-        ),
+        (lambda: posture_map(GROOVE, **words, rotations=0.0, rotations_deg=0), "rotations and rotations_deg are one angle"),
+        (lambda: posture_map(GROOVE, **words, rotations_deg=[400]), "rotations_deg 400 must lie between -360 and 360 degrees"),
+        (lambda: posture_map(GROOVE, **words, rotations=0.0, tilt=(0, 1), tilt_deg=(0, 60)), "tilt and tilt_deg are one angle"),
     ):
         with pytest.raises(OptionError, match=error):
             wrong()

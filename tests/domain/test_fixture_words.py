@@ -113,9 +113,7 @@ def test_sizes_have_the_unit_and_places_are_mm():
 def test_options_take_one_or_many_and_tell_them_apart():
     one = Options(fixtures="table:-5").fixtures
     assert [each.text for each in one] == ["table:-5"]
-    many = Options(
-        fixtures=["jaw.stl", "jaw.stl@0,60,0", Fixture("other/jaw.stl"), Fixture("x.stl", name="clamp")]
-    ).fixtures
+    many = Options(fixtures=["jaw.stl", "jaw.stl@0,60,0", Fixture("other/jaw.stl"), Fixture("x.stl", name="clamp")]).fixtures
     assert [each.name for each in many] == ["jaw", "jaw 2", "jaw 3", "clamp"]
     assert Options(fixtures=None).fixtures == ()
     with pytest.raises(FixtureError):

@@ -116,11 +116,7 @@ def test_allowed_tilts_against_a_dense_scan(name):
         assert (np.diff(intervals.ravel()) >= 0).all()
         held = found.allows(np.cos(tilt)[:, None] * n + np.sin(tilt)[:, None] * f)
         inside = ((tilt[:, None] >= intervals[:, 0]) & (tilt[:, None] <= intervals[:, 1])).any(axis=1)
-        near = (
-            (np.abs(tilt[:, None] - intervals.ravel()) < 1e-8).any(axis=1)
-            if len(intervals)
-            else np.zeros(len(tilt), bool)
-        )
+        near = (np.abs(tilt[:, None] - intervals.ravel()) < 1e-8).any(axis=1) if len(intervals) else np.zeros(len(tilt), bool)
         assert (held == inside)[~near].all()
         # Just beyond each end, and just within it.
         for low, high in intervals:
@@ -136,9 +132,7 @@ def test_a_tilting_table_in_closed_form(turn, most, tilt_direction):
     """A trunnion of A -most to most and C without limits holds what is within `most` of the spindle: a cone."""
     limit = np.array([[-math.inf, math.inf], [-most, most]])
     found = Kinematics(np.array([[0, 0, 1.0], [1.0, 0, 0]]), limit, UP)
-    n = np.array(
-        [math.sin(tilt_direction) * math.cos(turn), math.sin(tilt_direction) * math.sin(turn), math.cos(tilt_direction)]
-    )
+    n = np.array([math.sin(tilt_direction) * math.cos(turn), math.sin(tilt_direction) * math.sin(turn), math.cos(tilt_direction)])
     f = np.cross(np.cross(n, [0.3, -0.5, 0.8]), n)
     f /= np.linalg.norm(f)
     tilt = np.linspace(0, math.pi / 2, 500)
@@ -163,10 +157,7 @@ def test_a_tilting_table_in_closed_form(turn, most, tilt_direction):
 )
 def test_an_axis_whose_limits_leave_one_angle_is_none(first, second, like):
     """The machine turns its tool as one without that axis does: kernels and positions know the same axes."""
-    axes = (
-        Axis.rotary("C", "part", (0, 0, 1), limits_deg=first),
-        Axis.rotary("B", "tool", (0, 1, 0), limits_deg=second),
-    )
+    axes = (Axis.rotary("C", "part", (0, 0, 1), limits_deg=first), Axis.rotary("B", "tool", (0, 1, 0), limits_deg=second))
     machine, other = Machine("still", axes=axes), Machine("like", axes=like, fixed=True)
     assert machine.turning == len(like)
     frame = frame_of(np.array([0.3, -0.2, 0.9]) / math.sqrt(0.94), np.array([5.0, 7.0, -3.0]))

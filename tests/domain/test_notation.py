@@ -99,10 +99,7 @@ def test_names_tell_two_of_a_kind_apart_by_their_words():
     faces = [face(1)]
     entries = [cutter(name, {"F1": verdicts(5)}) for name in ("R6L80F20", "R6L80F30")]
     given = [each.model_copy(update={"name": f"D12L80F{n}"}) for each, n in zip(entries, (20, 30), strict=True)]
-    assert [*short_names(made(faces, given)).values()] == [
-        "flat end D12 x 80 (D12L80F20)",
-        "flat end D12 x 80 (D12L80F30)",
-    ]
+    assert [*short_names(made(faces, given)).values()] == ["flat end D12 x 80 (D12L80F20)", "flat end D12 x 80 (D12L80F30)"]
     inch = entries[0].model_copy(update={"name": "D0.5inL3in", "radius": 6.35, "length": 76.2})
     assert called(inch) == "flat end D0.5in x 3in"
     assert described(inch, called(inch)) == "D0.5inL3in, judged without a holder, 3 in up from its tip"

@@ -107,9 +107,7 @@ class TestStandardHolders:
         holder = holder_of(word)
         taper, nose = word.split("-") if "-" in word else (None, word)
         nut = NOSES[nose]
-        assert all(
-            2 * stage.radius >= min(nut.diameter, TAPERS[taper].flange if taper else 1e9) for stage in holder.stages
-        )
+        assert all(2 * stage.radius >= min(nut.diameter, TAPERS[taper].flange if taper else 1e9) for stage in holder.stages)
         assert 2 * holder.stages[0].radius == nut.diameter
         assert holder.stages[0].length >= nut.length
         length = math.fsum(stage.length for stage in holder.stages)
@@ -141,9 +139,7 @@ class TestStandardHolders:
         for below in np.linspace(0.01, short - 0.01, 40):
             assert radius(long, below) >= radius(short, below)
 
-    @pytest.mark.parametrize(
-        "text", ["ER32", "HSK-A63-ER32", "hsk63a/er32", "a63-er32", "ISO40-ER16x100", "ct40-er32x4in"]
-    )
+    @pytest.mark.parametrize("text", ["ER32", "HSK-A63-ER32", "hsk63a/er32", "a63-er32", "ISO40-ER16x100", "ct40-er32x4in"])
     def test_other_spellings(self, text):
         assert Holder.parse(text).stages[0].length > 0
 
@@ -197,8 +193,7 @@ class TestStandardHolders:
 
 class TestSetups:
     @pytest.mark.parametrize(
-        ("word", "axis"),
-        [("+z", (0, 0, 1)), ("z", (0, 0, 1)), ("-Z", (0, 0, -1)), (" -y ", (0, -1, 0)), ("X", (1, 0, 0))],
+        ("word", "axis"), [("+z", (0, 0, 1)), ("z", (0, 0, 1)), ("-Z", (0, 0, -1)), (" -y ", (0, -1, 0)), ("X", (1, 0, 0))]
     )
     def test_words_are_axes_everywhere(self, word, axis, tmp_path):
         assert Options(setup=word).setup == axis
@@ -271,15 +266,10 @@ class TestTables:
         """A block on its side: the face that stands on the table, and the one that looks up."""
         for axis in ("-y", "+y"):
             part = Scene.of(box(40, 30, 20), setup=axis).part
-            normals = {
-                f.id: plan(part, cutters="D6L60", faces=f.id, grid=3, area_budget=0).samples.normal[0]
-                for f in part.faces
-            }
+            normals = {f.id: plan(part, cutters="D6L60", faces=f.id, grid=3, area_budget=0).samples.normal[0] for f in part.faces}
             up = next(name for name, n in normals.items() if n @ Placement(z=axis).z > 0.9)
             down = next(name for name, n in normals.items() if n @ Placement(z=axis).z < -0.9)
-            found = plan(
-                part, cutters="D6L60", faces=f"{up},{down}", grid=5, setup=axis, fixtures="table", area_budget=0
-            )
+            found = plan(part, cutters="D6L60", faces=f"{up},{down}", grid=5, setup=axis, fixtures="table", area_budget=0)
             (reach,) = found.reaches.values()
             bottom = found.samples.face == int(down[1:])
             assert reach.not_reached[bottom].all()
@@ -314,8 +304,7 @@ class TestNames:
         assert max(map(len, names)) <= _NAME + 2
         assert len(set(_distinct(names, _NAME))) == 19
         assert all(
-            f"D{2 * cutter.radius:g} " in name and kind(cutter) in name
-            for cutter, name in zip(cutters, names, strict=True)
+            f"D{2 * cutter.radius:g} " in name and kind(cutter) in name for cutter, name in zip(cutters, names, strict=True)
         )
         assert not any("built-in" in name for name in names)
 
@@ -338,12 +327,8 @@ class TestNames:
     def test_numbers_only_where_they_are_unique(self):
         """Of two libraries: 1 is in both, 3 is also a tool that is not used, 2 and 4 are of one tool."""
         ball, flat, bull = Cutter(3, 40, 3, name="Ball"), Cutter(6, 80, name="Flat"), Cutter(5, 60, 1, name="Bull")
-        one = Library(
-            "a.toml", "x", (Entry("1", 1, cutter=ball), Entry("2", 2, cutter=flat), Entry("3", 3, unused="no"))
-        )
-        two = Library(
-            "b.toml", "x", (Entry("1", 1, cutter=bull), Entry("2", 3, cutter=ball), Entry("3", 4, cutter=flat))
-        )
+        one = Library("a.toml", "x", (Entry("1", 1, cutter=ball), Entry("2", 2, cutter=flat), Entry("3", 3, unused="no")))
+        two = Library("b.toml", "x", (Entry("1", 1, cutter=bull), Entry("2", 3, cutter=ball), Entry("3", 4, cutter=flat)))
         found = plan(box(), libraries=[one, two], faces="F1", grid=2, area_budget=0).plan
         names = short_names(found)
         assert names == {ball.id: "Ball D6", flat.id: "T2 T4 Flat D12", bull.id: "Bull D10"}

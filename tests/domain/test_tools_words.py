@@ -87,11 +87,7 @@ def test_an_option_that_cannot_be_is_one_clear_line(options, cause):
 def test_the_built_in_drawer_has_every_kind_and_ranks_from_the_largest():
     drawer = builtin()
     assert [c.radius for c in ranked(drawer)] == sorted((c.radius for c in drawer), reverse=True)
-    assert {(c.corner_radius == 0, c.corner_radius == c.radius) for c in drawer} == {
-        (True, False),
-        (False, True),
-        (False, False),
-    }
+    assert {(c.corner_radius == 0, c.corner_radius == c.radius) for c in drawer} == {(True, False), (False, True), (False, False)}
     assert all(c.holder and "built-in" in c.name for c in drawer)
     assert len({c.id for c in drawer}) == len(drawer)
 

@@ -19,9 +19,7 @@ def test_a_spec_and_its_cutter_are_the_same():
     assert Cutter.parse("r0.5l12.25").id == "R0.5L12.25"
 
 
-@pytest.mark.parametrize(
-    "spec", ["", "6x80", "R6", "R6L", "RxL80", "R1.2.3L4", "R6L80rc", "R0L80", "R6L-1", "R6L80rc7"]
-)
+@pytest.mark.parametrize("spec", ["", "6x80", "R6", "R6L", "RxL80", "R1.2.3L4", "R6L80rc", "R0L80", "R6L-1", "R6L80rc7"])
 def test_specs_that_are_no_cutter(spec):
     with pytest.raises(CutterError):
         Cutter.parse(spec)
@@ -48,14 +46,7 @@ def test_rotations_share_the_range():
 
 @pytest.mark.parametrize(
     "options",
-    [
-        {"tilt": (1.0, 0.5)},
-        {"tilt": (-0.1, 1)},
-        {"tilt": (0, 4)},
-        {"rotation": (0, 7)},
-        {"rotation": (1, 0)},
-        {"step": 0.0},
-    ],
+    [{"tilt": (1.0, 0.5)}, {"tilt": (-0.1, 1)}, {"tilt": (0, 4)}, {"rotation": (0, 7)}, {"rotation": (1, 0)}, {"step": 0.0}],
 )
 def test_ranges_that_mean_nothing(options):
     with pytest.raises(OptionError):
@@ -80,13 +71,7 @@ def faces():
 
 @pytest.mark.parametrize(
     ("text", "numbers"),
-    [
-        ("sculptured", (2, 4)),
-        ("all", (1, 2, 3, 4)),
-        ("1,3-4", (1, 3, 4)),
-        ("name:^blade", (2, 4)),
-        ("color:#FF0000", (4,)),
-    ],
+    [("sculptured", (2, 4)), ("all", (1, 2, 3, 4)), ("1,3-4", (1, 3, 4)), ("name:^blade", (2, 4)), ("color:#FF0000", (4,))],
 )
 def test_face_selections(text, numbers):
     assert select_faces(faces(), text) == numbers

@@ -20,10 +20,7 @@ def read_only(*given, **words):
 
 @pytest.mark.parametrize(
     "work",
-    [
-        lambda: cluster.opened(None).__enter__(),
-        lambda: changed.main(["--base", "main"], standalone_mode=False),
-    ],
+    [lambda: cluster.opened(None).__enter__(), lambda: changed.main(["--base", "main"], standalone_mode=False)],
     ids=["batch", "changed"],
 )
 def test_no_folder_for_temporary_files_is_one_line(work, monkeypatch):

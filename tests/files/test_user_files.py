@@ -91,9 +91,7 @@ def test_a_bit_outside_is_not_there_and_says_nothing(shop, monkeypatch):
 
 def test_an_included_file_outside_says_nothing(shop, monkeypatch):
     (shop / "outside/secret.inc").write_text("[TRAJ]\nLINEAR_UNITS = furlongsecret\n")
-    (shop / "root/m.ini").write_text(
-        "#INCLUDE ../outside/secret.inc\n[KINS]\nKINEMATICS = xyzac-trt-kins\nJOINTS = 5\n"
-    )
+    (shop / "root/m.ini").write_text("#INCLUDE ../outside/secret.inc\n[KINS]\nKINEMATICS = xyzac-trt-kins\nJOINTS = 5\n")
     with pytest.raises(MachineError, match="furlongsecret"):
         read_machine(shop / "root/m.ini")
     monkeypatch.setenv(WITHIN, json.dumps([str(shop / "root")]))
@@ -160,10 +158,7 @@ def test_a_key_must_be_one(tmp_path):
 
 def test_seals_differ_by_content_and_key():
     # RFC 4231, test case 2.
-    assert (
-        stamp(b"what do ya want for nothing?", b"Jefe")
-        == "5bdcc146bf60754e6a042426089575c75a003f089d2739839dec58b964ec3843"
-    )
+    assert stamp(b"what do ya want for nothing?", b"Jefe") == "5bdcc146bf60754e6a042426089575c75a003f089d2739839dec58b964ec3843"
     record = {"a": 1, "b": [2]}
     assert seal(record, None) == seal(record | {"seal": "x"}, None)
     assert len({seal(record, None), seal(record, b"k"), seal(record, b"l"), seal(record | {"a": 2}, None)}) == 4

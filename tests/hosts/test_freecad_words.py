@@ -142,9 +142,7 @@ def test_a_spot_and_a_sample_have_the_words_of_the_plan(results):
     found = result(results, plan)
     (spot,) = found.spots()
     assert spot.text == "F1 inside material (undecided)"
-    sample = SimpleNamespace(
-        face="F1", away_mm=0.25, verdict="interference_free", reason="", angles=({"A": 10.0}, {"A": -10.0})
-    )
+    sample = SimpleNamespace(face="F1", away_mm=0.25, verdict="interference_free", reason="", angles=({"A": 10.0}, {"A": -10.0}))
     assert found.sentence(sample) == "F1, 0.25 mm from the click: interference-free; A 10°, or A -10°"
     sample.verdict, sample.reason, sample.angles = "inaccessible", "collision", ()
     assert found.sentence(sample) == "F1, 0.25 mm from the click: inaccessible for flute collision"

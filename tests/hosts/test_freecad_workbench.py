@@ -224,9 +224,7 @@ def test_verdicts_lie_on_the_faces_that_they_name(work):
         assert colour == pytest.approx([v / 255 for v in bytes.fromhex(work["plan"]["legend"][verdict][1:])], abs=0.003)
     assert list(areas.values()) == pytest.approx(work["areas"], rel=1e-3)
     seen = {(name, verdict) for verdict, name, *_ in work["shown"]["verdicts"] if verdict != "check"}
-    unseen = {
-        (name, word) for name, *words, _, _ in map(str.split, work["shown"]["missing"]) for word in ["_".join(words)]
-    }
+    unseen = {(name, word) for name, *words, _, _ in map(str.split, work["shown"]["missing"]) for word in ["_".join(words)]}
     (cutter,) = work["plan"]["cutters"]
     words = ("inaccessible", "undecided", "unjudged", "accessible", "interference_free")
     judged = {(face, word) for face, counts in cutter["faces"].items() for word in words if counts[word]}
@@ -456,14 +454,7 @@ for case in json.load(open(os.environ["CASES"])):
 """
 )
 
-SPECS = (
-    "R6L80",
-    "R6L80rc2",
-    "R6L80rc6",
-    "R3L60rc1T5F20S8HR10L5+R20L30",
-    "R5L40F10N4x12S6HR15:25L30",
-    "D8L30rc1F6N3x5N3.5:4x4S5",
-)
+SPECS = ("R6L80", "R6L80rc2", "R6L80rc6", "R3L60rc1T5F20S8HR10L5+R20L30", "R5L40F10N4x12S6HR15:25L30", "D8L30rc1F6N3x5N3.5:4x4S5")
 CUTTERS = (
     *(Cutter.parse(spec) for spec in SPECS),
     replace(Cutter.parse("R4L30F9S3HR20L10"), taper=-0.2),
@@ -488,13 +479,7 @@ def postures(cutter, count=12):
 def entry(cutter):
     """The dimensions of a cutter, as a plan has them."""
     stages = [
-        {
-            "part": part,
-            "low_mm": low,
-            "length_mm": each.length,
-            "radius_mm": each.radius,
-            "upper_radius_mm": each.upper_radius,
-        }
+        {"part": part, "low_mm": low, "length_mm": each.length, "radius_mm": each.radius, "upper_radius_mm": each.upper_radius}
         for part, low, each in cutter.stages
     ]
     return {
@@ -599,12 +584,7 @@ def test_selections_that_are_no_body_are_a_line(bad):
     }
     assert all(bad["picked"][word].startswith(start) for word, start in starts.items()), bad["picked"]
     assert bad["picked"].keys() == starts.keys()
-    assert bad["taken"] == [
-        ["work", "Twin", [1, 3]],
-        ["work", "Body", [2]],
-        ["work", "Body", []],
-        ["work", "Block", [2]],
-    ]
+    assert bad["taken"] == [["work", "Twin", [1, 3]], ["work", "Body", [2]], ["work", "Body", []], ["work", "Block", [2]]]
 
 
 def test_a_link_is_planned_where_it_stands(bad):

@@ -91,26 +91,14 @@ def ball():
 def waisted():
     """A concave throat, a torus, between two cylinders."""
     profile = (
-        cq.Workplane("XZ")
-        .lineTo(20, 0)
-        .lineTo(20, 10)
-        .threePointArc((15, 15), (20, 20))
-        .lineTo(20, 40)
-        .lineTo(0, 40)
-        .close()
+        cq.Workplane("XZ").lineTo(20, 0).lineTo(20, 10).threePointArc((15, 15), (20, 20)).lineTo(20, 40).lineTo(0, 40).close()
     )
     return profile.revolve(360, (0, 0), (0, 1)).val().wrapped
 
 
 def spun():
     """A surface that the kernel knows only as one of revolution."""
-    profile = (
-        cq.Workplane("XZ")
-        .lineTo(10, 0)
-        .spline([(13, 10), (12, 20), (20, 30)], includeCurrent=True)
-        .lineTo(0, 30)
-        .close()
-    )
+    profile = cq.Workplane("XZ").lineTo(10, 0).spline([(13, 10), (12, 20), (20, 30)], includeCurrent=True).lineTo(0, 30).close()
     return profile.revolve(360, (0, 0), (0, 1)).val().wrapped
 
 

@@ -100,9 +100,7 @@ def test_a_compound_has_the_same_labels_and_colours(result):
         assert list(whole[group]) == list(other[group])
         assert list(whole[group].values()) == [pytest.approx(colour, abs=1e-5) for colour in other[group].values()]
     # It is a part again: planned like any other compound.
-    again = plan(
-        compound(result), faces="component:targets", cutters="R2L14", spacing=5.0, tolerance=0.05, area_budget=0
-    )
+    again = plan(compound(result), faces="component:targets", cutters="R2L14", spacing=5.0, tolerance=0.05, area_budget=0)
     assert again.plan.samples.count > 0
 
 
@@ -159,9 +157,7 @@ def test_the_tool_stands_where_it_was_judged(result):
 def test_the_tool_at_a_witness_is_in_the_obstacle(result):
     wide = next(cutter.id for cutter in result.cutters if cutter.id.startswith("R5"))
     floor = next(each for each in result.faces(cutter=wide) if each.reached == 0.0)
-    (tool,) = (
-        group for group in assembly(result, cutter=wide, at=floor.worst).children if group.name.startswith("tool ")
-    )
+    (tool,) = (group for group in assembly(result, cutter=wide, at=floor.worst).children if group.name.startswith("tool "))
     depth = floor.worst.depth_mm
     assert depth > 0.5
     point = cq.Vertex.makeVertex(*floor.worst.obstacle_point)
@@ -185,15 +181,11 @@ def test_values_of_a_face_are_those_of_its_samples(result):
             not_reached = reach.not_reached[mine]
             assert (each.reason is None) == (not not_reached.any())
             if not_reached.any():
-                most = max(
-                    set(reach.reason[mine][not_reached].tolist()), key=lambda r: weight[reach.reason[mine] == r].sum()
-                )
+                most = max(set(reach.reason[mine][not_reached].tolist()), key=lambda r: weight[reach.reason[mine] == r].sum())
                 assert each.reason == REASONS[most]
                 assert sum(each.reasons.values()) == pytest.approx(1.0 - each.reached)
                 assert each.worst.face == each.id
-                assert (each.worst.depth_mm or 0.0) == max(
-                    w.depth_mm or 0.0 for w in cutter.witnesses if w.face == each.id
-                )
+                assert (each.worst.depth_mm or 0.0) == max(w.depth_mm or 0.0 for w in cutter.witnesses if w.face == each.id)
             else:
                 assert each.worst is None
 

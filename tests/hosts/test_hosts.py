@@ -150,8 +150,7 @@ def boxes(part):
         high = [max(x, y) for x, y in zip(high, (face.xmax, face.ymax, face.zmax), strict=True)]
         found[path] = (low, high, colours | {part.faces[number - 1].colour})
     return {
-        path: ([round(x, 3) for x in low], [round(x, 3) for x in high], colours)
-        for path, (low, high, colours) in found.items()
+        path: ([round(x, 3) for x in low], [round(x, 3) for x in high], colours) for path, (low, high, colours) in found.items()
     }
 
 

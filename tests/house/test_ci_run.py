@@ -49,9 +49,7 @@ def checkout(tmp_path_factory):
 
 def run(checkout, fails=""):
     environment = {**os.environ, "PATH": f"{checkout / 'bin'}{os.pathsep}{os.environ['PATH']}", "FAILS": fails}
-    return subprocess.run(
-        ["bash", ".ci/run"], cwd=checkout, env=environment, capture_output=True, text=True, check=False
-    )
+    return subprocess.run(["bash", ".ci/run"], cwd=checkout, env=environment, capture_output=True, text=True, check=False)
 
 
 @pytest.mark.parametrize("name", CHECKS)

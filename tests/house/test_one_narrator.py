@@ -42,8 +42,7 @@ def own_units(tree: ast.Module) -> Iterator[ast.JoinedStr]:
         if isinstance(node, ast.JoinedStr) and id(node) not in raised:
             pairs = zip(node.values, node.values[1:], strict=False)
             if any(
-                isinstance(a, ast.FormattedValue) and isinstance(b, ast.Constant) and UNIT.match(str(b.value))
-                for a, b in pairs
+                isinstance(a, ast.FormattedValue) and isinstance(b, ast.Constant) and UNIT.match(str(b.value)) for a, b in pairs
             ):
                 yield node
 
@@ -56,9 +55,7 @@ def test_the_search_knows_a_unit():
 
 
 def test_units_are_written_in_one_room():
-    assert [
-        f"{name}:{node.lineno}: {ast.unparse(node)[:90]}" for name, tree in modules() for node in own_units(tree)
-    ] == []
+    assert [f"{name}:{node.lineno}: {ast.unparse(node)[:90]}" for name, tree in modules() for node in own_units(tree)] == []
 
 
 def test_texts_name_no_code_of_a_reason():

@@ -57,9 +57,7 @@ def test_the_stub_has_the_names_that_are_handed_on(package):
     path = Path(package.__file__)
     assert (path.parent / "py.typed").is_file()
     stub = ast.parse(path.with_suffix(".pyi").read_text())
-    assert {name.name for each in stub.body if isinstance(each, ast.ImportFrom) for name in each.names} == set(
-        package._HOME
-    )
+    assert {name.name for each in stub.body if isinstance(each, ast.ImportFrom) for name in each.names} == set(package._HOME)
     for each in stub.body:
         if isinstance(each, ast.ImportFrom):
             for name in each.names:
@@ -91,9 +89,7 @@ def test_the_commands_declare_an_option_alike():
     commands = {name: entry.module_of(f"plan-cutters {name}").command for name in entry.SUBCOMMANDS}
     plans = {each.name: each for each in cli.command.params}
     for command in (of_a_point.command, stored_maps.command):
-        shared = [
-            each for each in command.params if each.name in plans and each.name not in ("part", "out", "json_out")
-        ]
+        shared = [each for each in command.params if each.name in plans and each.name not in ("part", "out", "json_out")]
         assert len(shared) >= 17
         for each in shared:
             assert each.opts == plans[each.name].opts
@@ -108,9 +104,7 @@ def test_every_option_is_in_the_plan():
     entries = {re.sub("_(mm|deg|s|mm_min)$", "", name) for name in Effective.model_fields}
     # Libraries are an entry of their own; the number of threads changes nothing.
     assert WORDS - entries == {"libraries", "jobs"}
-    found = plan(
-        ROOT / "samples/v_groove.step", cutters="R6L80", grid=5, area_budget=0, allowance=0.1, tilt=(0.1, 1.0)
-    ).plan
+    found = plan(ROOT / "samples/v_groove.step", cutters="R6L80", grid=5, area_budget=0, allowance=0.1, tilt=(0.1, 1.0)).plan
     asked = found.effective
     assert (asked.allowance_mm, asked.grid, asked.rotation_step_deg, asked.flip) == (0.1, 5, pytest.approx(10.0), False)
     assert asked.tilt_deg == pytest.approx((math.degrees(0.1), math.degrees(1.0)))

@@ -16,12 +16,7 @@ def test_package_data_are_the_files_that_git_tracks():
     for package, folder in (("plan_cutters", ROOT / "plugin/plan_cutters"), ("cad_io", ROOT / "cad_io")):
         done = subprocess.run(["git", "ls-files", "-z", "."], cwd=folder, capture_output=True, text=True, check=True)
         tracked = {name for name in done.stdout.split("\0") if name and not name.endswith(".py")}
-        matched = {
-            path.relative_to(folder).as_posix()
-            for glob in globs[package]
-            for path in folder.glob(glob)
-            if path.is_file()
-        }
+        matched = {path.relative_to(folder).as_posix() for glob in globs[package] for path in folder.glob(glob) if path.is_file()}
         assert matched == tracked
         assert tracked
 
@@ -37,9 +32,7 @@ def test_both_flavours_of_the_kernel_are_one_version():
 
 def test_the_command_needs_no_host_to_be_installed():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    assert not [
-        each for each in project["dependencies"] if re.match(r"cadquery(?!-ocp-novtk)|build123d|vtk|pandas", each)
-    ]
+    assert not [each for each in project["dependencies"] if re.match(r"cadquery(?!-ocp-novtk)|build123d|vtk|pandas", each)]
 
 
 def test_setup_refuses_a_word_that_it_does_not_know(tmp_path):

@@ -46,11 +46,7 @@ def test_texts_are_strings_that_are_read_and_no_docstrings():
 @pytest.mark.parametrize("word", INSTEAD)
 def test_each_word_is_known_in_every_form_of_name(word):
     first, second = ("stand", "in") if word == "standin" else (word, "")
-    for name in (
-        f"{first}_{second}",
-        f"_{first.upper()}_{second.upper()}",
-        f"New{first.capitalize()}{second.capitalize()}",
-    ):
+    for name in (f"{first}_{second}", f"_{first.upper()}_{second.upper()}", f"New{first.capitalize()}{second.capitalize()}"):
         assert word in words_of(name), name
     assert words_of(f"un{word}ed") == set()
 

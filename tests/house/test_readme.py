@@ -35,9 +35,7 @@ def test_what_scripts_call_is_shown_at_work():
 
 
 def _text(thing):
-    return "".join(
-        filter(None, (thing.__doc__, *(getattr(getattr(thing, n, None), "__doc__", "") for n in ("of", "parse"))))
-    )
+    return "".join(filter(None, (thing.__doc__, *(getattr(getattr(thing, n, None), "__doc__", "") for n in ("of", "parse")))))
 
 
 def blocks(page):

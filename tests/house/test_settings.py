@@ -26,9 +26,7 @@ def is_there(name):
 def named(contract):
     """The modules that a contract is about."""
     yield from (
-        each
-        for field in ("containers", "ancestors", "source_modules", "forbidden_modules")
-        for each in contract.get(field, ())
+        each for field in ("containers", "ancestors", "source_modules", "forbidden_modules") for each in contract.get(field, ())
     )
     yield from (each for line in contract.get("ignore_imports", ()) for each in line.split(" -> "))
     for container in contract.get("containers", ()):

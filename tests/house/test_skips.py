@@ -20,10 +20,7 @@ TESTS = {
 
 @pytest.mark.parametrize(
     ("ci", "code", "summary"),
-    [
-        ({"CI": "true"}, 1, "1 failed, 1 skipped, 1 xfailed, 2 errors in "),
-        ({}, 0, "4 skipped, 1 xfailed in "),
-    ],
+    [({"CI": "true"}, 1, "1 failed, 1 skipped, 1 xfailed, 2 errors in "), ({}, 0, "4 skipped, 1 xfailed in ")],
     ids=str,
 )
 def test_a_skipped_test_fails_in_ci(tmp_path, ci, code, summary):

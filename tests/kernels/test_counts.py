@@ -87,9 +87,7 @@ def maps(nudge):
     vertex += 1e-9 * rng.standard_normal(vertex.shape)
     rows = np.linspace(0, len(contacts.point) - 1, 8).astype(np.int64)
     turn = 2 * np.pi * np.arange(24) / 24
-    return waves.mapped(
-        rows, contacts, waves.ranges(turn, np.cos(0.8)), waves.flat(6.0, 40.0, 0.04), waves.tree_of(vertex)
-    )
+    return waves.mapped(rows, contacts, waves.ranges(turn, np.cos(0.8)), waves.flat(6.0, 40.0, 0.04), waves.tree_of(vertex))
 
 
 def test_posture_maps_do_no_more_work_than_they_did():

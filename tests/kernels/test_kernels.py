@@ -55,9 +55,7 @@ def test_triangle_hit_agrees_with_dense_points(seed):
         triangle = contact + rng.normal(0, 8, 3) + rng.normal(0, rng.choice([0.01, 1, 20]), (3, 3))
         which, height, px, py = hit.triangle_hit(triangle[None].copy(), 0, body, piece, 1, 0.0, SCRATCH)
         found = which == 0
-        deepest = depth_in_cutter(
-            triangle_points(triangle, 60), contact, normal, axis, tilt_direction, radius, length
-        ).max()
+        deepest = depth_in_cutter(triangle_points(triangle, 60), contact, normal, axis, tilt_direction, radius, length).max()
         if deepest > s:
             assert found
         if found:
@@ -255,7 +253,4 @@ def test_search_agrees_with_a_posture_grid(seed):
             for rotation in rotations:
                 for tilt in np.linspace(0, math.pi / 2, 19):
                     axis, tilt_direction = posture(normal[i], direction[i], tilt, rotation)
-                    assert (
-                        depth_in_cutter(dense, point[i], normal[i], axis, tilt_direction, radius, length).max()
-                        > s - 0.5
-                    )
+                    assert depth_in_cutter(dense, point[i], normal[i], axis, tilt_direction, radius, length).max() > s - 0.5

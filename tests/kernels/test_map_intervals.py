@@ -61,9 +61,7 @@ def test_boxes_that_pass_never_enter():
         for k in range(3):
             view[0, 3 + k], view[0, 6 + k], view[0, 9 + k] = axes[0, k], axes[1, k], axes[2, k]
         view[0, 12] = place[2] + np.abs(sides[2]).sum()
-        passes._boxes_pass(
-            view, 0, cosine, sine, interval_of(first, last), 1, waves.cylinder(radius, high + low, low), margin
-        )
+        passes._boxes_pass(view, 0, cosine, sine, interval_of(first, last), 1, waves.cylinder(radius, high + low, low), margin)
         assert (margin == margin[0]).all()
         if margin[0] >= 0:
             passed += 1
@@ -79,9 +77,7 @@ def test_triangles_that_pass_never_enter():
     for rng, radius, low, high, first, last, place, size in cases(2, 8000):
         triangle = place + size * rng.standard_normal((3, 3)) * 10 ** rng.uniform(-1.5, 0, 3)
         seen = np.repeat(triangle.reshape(9, 1), lanes.LANES, 1)
-        passes._triangles_pass(
-            seen, 1.0, 0.0, interval_of(first, last), 1, waves.cylinder(radius, high + low, low), margin
-        )
+        passes._triangles_pass(seen, 1.0, 0.0, interval_of(first, last), 1, waves.cylinder(radius, high + low, low), margin)
         assert (margin == margin[0]).all()
         ends = np.cos(first), np.sin(first), np.cos(last), np.sin(last)
         close = passes._passes(triangle, *ends, waves.cylinder(radius, high + low, low), first_part, second_part)

@@ -78,9 +78,7 @@ def test_an_arc_is_where_the_point_is_inside(case, tilt):
     assume(s < length / 2)
     tilt = min(RIGHT, max(0.0, tilt))
     cosine, sine = math.cos(tilt), math.sin(tilt)
-    first, last = point_arc(
-        cosine * z + sine * x, cosine * x - sine * z + radius, y, tilt, radius, radius - s, s, length - s
-    )
+    first, last = point_arc(cosine * z + sine * x, cosine * x - sine * z + radius, y, tilt, radius, radius - s, s, length - s)
     ends = [e + d for e in (first, last) for d in (-1e-3, -1e-6, -1e-9, -1e-12, 0.0, 1e-12, 1e-9, 1e-6, 1e-3)]
     tilts = np.clip(np.concatenate([np.linspace(0, RIGHT, 181), ends, [0.5 * (first + last)]]), 0, RIGHT)
     deeper = depth_while_tilting((x, y, z), tilts, radius, length) - s
@@ -177,9 +175,7 @@ def test_axis_arcs_by_the_angle_itself(n, f, m, limit):
     setup = np.array([math.cos(m), math.sin(m), 0.0])
     _, tilt_direction = posture(normal, first, 0.0, f)
     bound = math.cos(limit)
-    intervals = axis_intervals(
-        normal, tilt_direction, ranges_of(Machine(tilt_limit=limit), setup, PostureRange(), None)
-    )
+    intervals = axis_intervals(normal, tilt_direction, ranges_of(Machine(tilt_limit=limit), setup, PostureRange(), None))
     ends = intervals.ravel()[:, None] + np.array([-1e-6, -1e-9, 0.0, 1e-9, 1e-6])
     tilts = np.clip(np.concatenate([np.linspace(0, RIGHT, 181), ends.ravel()]), 0, RIGHT)
     cosine = np.cos(tilts) * (normal @ setup) + np.sin(tilts) * (tilt_direction @ setup)
@@ -197,9 +193,7 @@ def test_a_machine_of_three_axes_reaches_a_floor_up_to_its_wall():
     floor = shapes.plane((0, 20), (0, 20))
     wall = shapes.plane((0, 20), (0, 10), (0, 0, 0), (0, 1, 0), (-1, 0, 0))
     cutter = Cutter.flat(radius=3, length=30)
-    result = plan(
-        shapes.shell(floor, wall), cutters=[cutter], faces="1", grid=9, area_budget=0, machine=Machine.parse("tilt:0")
-    )
+    result = plan(shapes.shell(floor, wall), cutters=[cutter], faces="1", grid=9, area_budget=0, machine=Machine.parse("tilt:0"))
     reach, y = result.reaches[cutter.id], result.samples.point[:, 1]
     assert not (reach.verdict[y > 0.1] == INACCESSIBLE).any()
     assert reach.axis[reach.reached][:, 2] == pytest.approx(1, abs=1e-12)
@@ -363,9 +357,7 @@ def found_postures(obstacles, radius, length, depth, n=150, seed=0):
         tip = np.array([*rng.normal(0, 0.3, 2), 1.0])
         normal[i] = tip / np.linalg.norm(tip)
         first = np.cross(normal[i], rng.standard_normal(3))
-        axis[i], tilt_direction[i] = posture(
-            normal[i], first / np.linalg.norm(first), rng.uniform(0, RIGHT), rng.uniform(0, 6.3)
-        )
+        axis[i], tilt_direction[i] = posture(normal[i], first / np.linalg.norm(first), rng.uniform(0, RIGHT), rng.uniform(0, 6.3))
     postures = (point + 0.05 * normal, normal, axis, tilt_direction)
     return postures, probed(obstacles, postures, radius, length, depth)
 

@@ -100,9 +100,7 @@ def test_the_least_depth_is_that_of_a_grid(comb):
         Machine(), np.array([0, 0, 1.0]), postures, Surroundings.sheet(walls), SAFE + walls.triangles.chord_error, 1
     )
     assert np.cos(postures.rotations) == pytest.approx(RANGES.rotation_cos, abs=1e-12)
-    not_reached = np.flatnonzero(
-        searched(contacts, solids, radius, np.arange(len(contacts.point))).verdict == INACCESSIBLE
-    )
+    not_reached = np.flatnonzero(searched(contacts, solids, radius, np.arange(len(contacts.point))).verdict == INACCESSIBLE)
     short = []
     for row in not_reached[:: max(1, len(not_reached) // 12)]:
         one = Contacts(*(column[row : row + 1].copy() for column in contacts))

@@ -148,10 +148,7 @@ def test_what_planes_call_clear_never_enters(kind):
             for lane in range(lanes.LANES):
                 # Near the surface of the piece at a tilt of the gap.
                 tilt, turn, size = rng.uniform(*ends), rng.uniform(0, 7), 10 ** rng.uniform(-2, 1)
-                q, height = (
-                    piece[k, 9] + size * rng.exponential() * rng.choice([1, -0.1]),
-                    rng.uniform(low - size, high),
-                )
+                q, height = (piece[k, 9] + size * rng.exponential() * rng.choice([1, -0.1]), rng.uniform(low - size, high))
                 x, y = q * np.cos(turn) - offset, q * np.sin(turn)
                 c, s = np.cos(tilt), np.sin(tilt)
                 place = np.array([c * x + s * height, y, c * height - s * x])

@@ -101,13 +101,7 @@ def gouges(reference, tilt, towards, curvature, size):
     tip, frame = reference.frame(np.zeros(3), np.eye(3)[2], np.eye(3)[0], tilt, towards)
     h = 1e-4 * size
     turn = np.linspace(0, math.pi, 181)
-    back = (
-        np.linspace(-1, 1, 401)
-        * h
-        * h
-        * (2 / size + 2 * abs(kft) + 2 * max(abs(kff), abs(ktt)))
-        / max(math.sin(tilt), 0.05)
-    )
+    back = np.linspace(-1, 1, 401) * h * h * (2 / size + 2 * abs(kft) + 2 * max(abs(kff), abs(ktt))) / max(math.sin(tilt), 0.05)
     x = np.concatenate([h * np.cos(turn), back, back])
     y = np.concatenate([h * np.sin(turn), np.full(401, h), np.full(401, -h)])
     points = np.stack([x, y, 0.5 * (kff * x * x + ktt * y * y) + kft * x * y], 1)

@@ -40,9 +40,7 @@ def near(rng, made, mode, tilt, size):
     """A place next to the surface of some piece."""
     row = made.piece[mode][rng.integers(made.piece.shape[1])]
     w, turn = rng.uniform(row[7], row[8]), rng.uniform(0, 2 * math.pi)
-    wide = (
-        row[3] + row[4] * (w - row[1]) if row[0] != 2 else row[3] + math.sqrt(max(0.0, row[5] ** 2 - (w - row[4]) ** 2))
-    )
+    wide = row[3] + row[4] * (w - row[1]) if row[0] != 2 else row[3] + math.sqrt(max(0.0, row[5] ** 2 - (w - row[4]) ** 2))
     q = max(0.0, wide) + size * rng.uniform(-1, 2)
     offset, rise = made.mode[mode, :2]
     x, y = q * math.cos(turn) - offset, q * math.sin(turn)
@@ -87,9 +85,7 @@ def test_a_miss_with_a_rate_is_a_miss_at_every_tilt_of_the_turn(kind):
         made = assembly(random_cutter(rng, kind), 0.02, -0.01)
         body, mode, tilt = stood(rng, made)
         size, rate = 10.0 ** rng.uniform(-1.5, 1), 10.0 ** rng.uniform(-3, -0.7)
-        corner = near(rng, made, mode, tilt, size) + size * rng.standard_normal((3, 3)) * 10.0 ** rng.uniform(
-            -1.5, 0, 3
-        )
+        corner = near(rng, made, mode, tilt, size) + size * rng.standard_normal((3, 3)) * 10.0 ** rng.uniform(-1.5, 0, 3)
         tree = waves.tree_of(corner[None])
         found = hit.tree_hit(tree, body, made.piece[mode], rate, -1, scratch)[0]
         missed, hits = missed + (found < 0), hits + (found >= 0)

@@ -212,9 +212,7 @@ def test_damaged_files_end_in_one_line(tmp_path_factory, suffix, data):
         whole = to_toml(builtin()[:3]).encode()
     for _ in range(data.draw(st.integers(1, 3))):
         at = data.draw(st.integers(0, len(whole)))
-        new = data.draw(
-            st.sampled_from([b"", b"nan", b"-1", b"1e999", b"null", b"[]", b'"x"', b"\xff", b"\0", b"0", b"\n"])
-        )
+        new = data.draw(st.sampled_from([b"", b"nan", b"-1", b"1e999", b"null", b"[]", b'"x"', b"\xff", b"\0", b"0", b"\n"]))
         whole = whole[:at] + new + whole[at + data.draw(st.integers(0, 30)) :]
     path.write_bytes(whole)
     try:
@@ -234,9 +232,7 @@ def names():
         return [row["file"] for row in csv.DictReader(manifest)]
 
 
-@pytest.mark.parametrize(
-    "name", names() or [pytest.param("", marks=pytest.mark.skip(reason="shared/data/tools is not at hand"))]
-)
+@pytest.mark.parametrize("name", names() or [pytest.param("", marks=pytest.mark.skip(reason="shared/data/tools is not at hand"))])
 def test_every_real_file_is_read_or_refused_by_name(name):
     foreign = {".tbl": "LinuxCNC tool table", ".km": "Kiri:Moto", ".vtdb": "Vectric", ".ctr": "DeskProto"}
     path = REAL / name

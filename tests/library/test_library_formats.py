@@ -105,10 +105,7 @@ def test_a_collar_wider_than_the_holder_is_a_contradiction(tmp_path):
         ({"kind": "wobble mill"}, '"wobble mill" is unknown'),
         ({"kind": ""}, "its type is missing"),
         ({"kind": "chamfer mill"}, "TA is missing"),
-        (
-            {"kind": "lollipop mill", "shoulder_diameter": None, "LCF": 5, "shoulder_length": 6},
-            "shoulder-diameter is missing",
-        ),
+        ({"kind": "lollipop mill", "shoulder_diameter": None, "LCF": 5, "shoulder_length": 6}, "shoulder-diameter is missing"),
     ],
 )
 def test_what_lacks_something_is_listed_with_the_field(tmp_path, change, said):
@@ -147,10 +144,7 @@ def test_what_lacks_something_is_listed_with_the_field(tmp_path, change, said):
         ({"shaft": {"segments": [{"height": 6, "upper-diameter": 8}]}}, "lower-diameter is missing"),
         ({"shaft": {"segments": "none"}}, "no list of segments"),
         ({"holder": HOLDER | {"segments": [section(5, 0, 9)]}}, "diameter of 0"),
-        (
-            {"holder": HOLDER | {"segments": [section(-5, 9)]}},
-            "cannot be negative",
-        ),
+        ({"holder": HOLDER | {"segments": [section(-5, 9)]}}, "cannot be negative"),
         ({"holder": HOLDER | {"segments": [section(5, 6, 9)]}}, "narrower"),
         ({"holder": "chuck"}, "holder is 'chuck'"),
         ({"unit": "furlongs"}, "unit is 'furlongs'"),
@@ -167,9 +161,7 @@ def test_what_lacks_something_is_listed_with_the_field(tmp_path, change, said):
     ],
 )
 def test_a_broken_tool_among_good_ones_is_named(tmp_path, change, said):
-    path = write_json(
-        tmp_path / "a.json", [fusion(name="good"), fusion(**{"name": "the bad one", "number": 3} | change)]
-    )
+    path = write_json(tmp_path / "a.json", [fusion(name="good"), fusion(**{"name": "the bad one", "number": 3} | change)])
     with pytest.raises(LibraryError) as error:
         read_library(path)
     text = str(error.value)
@@ -437,9 +429,7 @@ def test_holders_are_found_by_file_and_name(tmp_path):
     assert holder_of(str(path)).id == "R10:12L5+R12L25"
     with pytest.raises(LibraryError, match="lists 1 holder and no tools; give it with --holder"):
         read_library(path)
-    two = write_json(
-        tmp_path / "two.json", [HOLDER, HOLDER | {"description": "other", "segments": HOLDER["segments"][:1]}]
-    )
+    two = write_json(tmp_path / "two.json", [HOLDER, HOLDER | {"description": "other", "segments": HOLDER["segments"][:1]}])
     with pytest.raises(LibraryError, match=r'choose one as two\.json#NAME: "chuck", "other"'):
         holder_of(str(two))
     assert holder_of(f"{two}#other").id == "R12:15L20"
@@ -480,9 +470,7 @@ def test_a_tapered_mill_that_is_no_ball_says_so(tmp_path):
 
 
 def test_two_diameters_at_a_tip_are_not_chosen_from(tmp_path):
-    tool = fusion(
-        "tapered mill", DC=6, RE=0, tip_diameter=2, TA=5, shoulder_length=None, shoulder_diameter=None, shaft=None
-    )
+    tool = fusion("tapered mill", DC=6, RE=0, tip_diameter=2, TA=5, shoulder_length=None, shoulder_diameter=None, shaft=None)
     (entry,) = listing(write_json(tmp_path / "a.json", [tool])).entries
     assert entry.cutter is None
     assert not entry.broken
@@ -490,9 +478,7 @@ def test_two_diameters_at_a_tip_are_not_chosen_from(tmp_path):
 
 
 def test_flutes_wider_than_the_shank_are_noted(tmp_path):
-    tool = fusion(
-        "tapered mill", DC=2, RE=0, TA=30, shoulder_length=None, shoulder_diameter=None, shaft=None, holder=None
-    )
+    tool = fusion("tapered mill", DC=2, RE=0, TA=30, shoulder_length=None, shoulder_diameter=None, shaft=None, holder=None)
     (entry,) = listing(write_json(tmp_path / "a.json", [tool]), holder="none").entries
     wide = 2 + 2 * 12 * math.tan(math.radians(30))
     assert f"SFDM 8 is thinner than its flutes where they end, {wide:.6g}" in entry.notes
@@ -513,12 +499,7 @@ def test_hsmworks_text_in_another_encoding_than_it_declares(tmp_path):
     path = _hsmlib(tmp_path)
     text = path.read_bytes().decode("utf-16" if path.read_bytes()[:2] in (b"\xff\xfe", b"\xfe\xff") else "utf-8")
     body = text.partition("?>")[2] if text.startswith("<?xml") else text
-    for declared, encoding in (
-        ("UTF-16", "utf-8"),
-        ("UTF-8", "utf-16"),
-        ("UTF-16", "utf-16-be"),
-        ("UTF-8", "utf-8-sig"),
-    ):
+    for declared, encoding in (("UTF-16", "utf-8"), ("UTF-8", "utf-16"), ("UTF-16", "utf-16-be"), ("UTF-8", "utf-8-sig")):
         path.write_bytes(f'<?xml version="1.0" encoding="{declared}"?>{body}'.encode(encoding))
         assert [cutter.id for cutter in read_library(path)] == [ID]
 
@@ -539,9 +520,7 @@ def test_hsmworks_holder_in_its_own_unit(tmp_path):
     sections = '<section length="0" diameter="30"/><section length="25.4" diameter="30"/>'
     holder = f'<holder unit="millimeters" gauge-length="25.4">{sections}</holder>'
     path = tmp_path / "a.hsmlib"
-    path.write_text(
-        f'<tool-library><tool type="flat end mill" unit="inches"><body {body}/>{holder}</tool></tool-library>'
-    )
+    path.write_text(f'<tool-library><tool type="flat end mill" unit="inches"><body {body}/>{holder}</tool></tool-library>')
     assert [cutter.id for cutter in read_library(path)] == ["R6.35L50.8F25.4S6.35HR15L25.4"]
 
 

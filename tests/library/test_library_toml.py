@@ -37,9 +37,7 @@ def test_what_is_written_is_read_bit_for_bit(tmp_path_factory, kind, seed, name)
 
 def test_a_neck_of_several_sections_and_a_lollipop_on_a_shank(tmp_path):
     steps = Cutter.parse("R3L60F12N2.5x4N2.5:4x6S4")
-    ball = Cutter.lollipop(
-        radius=3, neck_radius=1.5, length=40, neck=(Stage(1.5, 10), Stage(2, 40 - 10 - 3 - math.sqrt(6.75)))
-    )
+    ball = Cutter.lollipop(radius=3, neck_radius=1.5, length=40, neck=(Stage(1.5, 10), Stage(2, 40 - 10 - 3 - math.sqrt(6.75))))
     made = [steps, ball, *builtin()]
     assert list(read(tmp_path, to_toml(made))) == made
 

@@ -31,9 +31,7 @@ def test_the_finishing_preset_counts_and_is_said(tmp_path, writer):
 
 
 def test_without_one_for_finishing_the_first_counts_and_is_said(tmp_path):
-    entry = only(
-        read_library(write_json(tmp_path / "a.json", [with_presets(fusion(), [("Steel", 900), ("Brass", 950)])]))
-    )
+    entry = only(read_library(write_json(tmp_path / "a.json", [with_presets(fusion(), [("Steel", 900), ("Brass", 950)])])))
     assert (entry.feed, entry.preset) == (900.0, "Steel")
     assert 'feed of the first of its presets, "Steel": 900 mm/min' in entry.notes
 
@@ -50,9 +48,7 @@ def test_nonsense_is_ignored_with_a_note(tmp_path, bad):
     entry = only(library)
     assert (entry.feed, entry.cutter.id) == (None, ID)
     assert any("v_f" in note and "no feed" in note for note in entry.notes)
-    other = only(
-        read_library(write_json(tmp_path / "b.json", [with_presets(fusion(), [("Finish", bad), ("All", 700)])]))
-    )
+    other = only(read_library(write_json(tmp_path / "b.json", [with_presets(fusion(), [("Finish", bad), ("All", 700)])])))
     assert other.feed == 700.0
 
 
@@ -91,13 +87,7 @@ def test_hsmworks_has_presets_or_the_tools_own_motion(tmp_path):
                                             ("quick", None), ("-3", None)])  # fmt: skip
 def test_a_freecad_bit_may_have_one(tmp_path, given, feed):
     parameter = {"Diameter": "6 mm", "CuttingEdgeHeight": "12 mm", "Length": "60 mm", "ShankDiameter": "6 mm"}
-    bit = {
-        "version": 2,
-        "name": "a",
-        "shape-type": "Endmill",
-        "parameter": parameter,
-        "attribute": {"cutting_feedrate": given},
-    }
+    bit = {"version": 2, "name": "a", "shape-type": "Endmill", "parameter": parameter, "attribute": {"cutting_feedrate": given}}
     path = tmp_path / "a.fctb"
     path.write_text(json.dumps(bit), encoding="utf-8")
     entry = only(read_library(path, assume_stickout=40, holder="none"))

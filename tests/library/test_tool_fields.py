@@ -62,15 +62,9 @@ def test_a_corner_radius_decides_if_the_other_agrees_in_one_reading(tmp_path, fi
 def record(cutter):
     """What a plan has of a cutter, as far as a bit needs it."""
     stages = [
-        {"part": part, "radius_mm": stage.radius, "upper_radius_mm": stage.upper_radius}
-        for part, _, stage in cutter.stages
+        {"part": part, "radius_mm": stage.radius, "upper_radius_mm": stage.upper_radius} for part, _, stage in cutter.stages
     ]
-    kept = {
-        "shape": cutter.shape,
-        "radius": cutter.radius,
-        "corner_radius": cutter.corner_radius,
-        "length": cutter.length,
-    }
+    kept = {"shape": cutter.shape, "radius": cutter.radius, "corner_radius": cutter.corner_radius, "length": cutter.length}
     return kept | {"taper_deg": math.degrees(cutter.taper), "flutes_mm": flute_length(cutter), "stages": stages}
 
 
@@ -84,9 +78,7 @@ def macro(monkeypatch):
     return found
 
 
-@pytest.mark.parametrize(
-    "spec", ["D6L40F12S6", "D6L40rc0.5F12S6", "D6L40rc1.5F12S4", "D6L40rc2.9F12S8", "D6L40rc3F12S6"]
-)
+@pytest.mark.parametrize("spec", ["D6L40F12S6", "D6L40rc0.5F12S6", "D6L40rc1.5F12S4", "D6L40rc2.9F12S8", "D6L40rc3F12S6"])
 def test_a_bit_of_the_macro_is_read_as_its_cutter(tmp_path, monkeypatch, spec):
     cutter = Cutter.parse(spec)
     assert written(tmp_path, monkeypatch, cutter).id == cutter.id
@@ -160,21 +152,12 @@ def test_a_zero_is_an_answer(tmp_path, suffix, kind, change, said):
 
 @pytest.mark.parametrize("kind", ["flat end mill", "ball end mill", "chamfer mill", "lollipop mill", "dovetail mill"])
 def test_a_largest_diameter_that_nothing_explains_is_not_ignored(tmp_path, kind):
-    more = (
-        {"TA": 45, "tip_diameter": 1}
-        if kind == "chamfer mill"
-        else {"TA": 5, "RE": 0}
-        if kind == "dovetail mill"
-        else {}
-    )
-    plain = (
-        PLAIN | ({"shoulder_diameter": 4, "shoulder_length": 20, "LCF": 5} if kind == "lollipop mill" else {}) | more
-    )
+    more = {"TA": 45, "tip_diameter": 1} if kind == "chamfer mill" else {"TA": 5, "RE": 0} if kind == "dovetail mill" else {}
+    plain = PLAIN | ({"shoulder_diameter": 4, "shoulder_length": 20, "LCF": 5} if kind == "lollipop mill" else {}) | more
     path = tmp_path / "a.json"
     assert entry(write_json(path, [fusion(kind, DCX=6, **plain)])).cutter
     assert (
-        "DCX 8 is wider than all that its other dimensions say"
-        in entry(write_json(path, [fusion(kind, DCX=8, **plain)])).unused
+        "DCX 8 is wider than all that its other dimensions say" in entry(write_json(path, [fusion(kind, DCX=8, **plain)])).unused
     )
 
 
@@ -307,9 +290,7 @@ def test_a_field_of_another_shape_is_not_ignored(tmp_path, field, shape):
 def test_a_first_section_has_a_lower_end(tmp_path):
     path = tmp_path / "a.hsmlib"
     body = '<body body-length="40" diameter="6" flute-length="12" shaft-diameter="6"/>'
-    text = (
-        f'<tool-library><tool type="flat end mill" unit="millimeters">{body}<holder>%s</holder></tool></tool-library>'
-    )
+    text = f'<tool-library><tool type="flat end mill" unit="millimeters">{body}<holder>%s</holder></tool></tool-library>'
     path.write_text(text % '<section length="20" diameter="30"/>')
     with pytest.raises(LibraryError, match="no diameter at its lower end"):
         entry(path)
@@ -350,9 +331,7 @@ def test_what_is_judged_above_the_flutes_encloses_each_reading(tmp_path_factory,
     path = tmp_path_factory.mktemp("fields") / "a.json"
     plain = {"DC": tip, "RE": 0, "TA": half, "LCF": 12, "LB": 40, "SFDM": shank, "shaft": None, "holder": None}
     top = 0.5 * tip + 12 * math.tan(math.radians(half))
-    judged = entry(
-        write_json(path, [fusion("tapered mill", **plain, shoulder_length=height, shoulder_diameter=neck)])
-    ).cutter
+    judged = entry(write_json(path, [fusion("tapered mill", **plain, shoulder_length=height, shoulder_diameter=neck)])).cutter
     assert judged is not None
     at = 12 + 28 * share
     for ends in [12.0, 20.0, 40.0] if height is None and neck else [height or 12.0]:
@@ -366,9 +345,5 @@ def test_each_answer_of_the_page_has_its_test():
     tests = "".join(path.read_text(encoding="utf-8") for path in (ROOT / "tests" / "library").glob("*.py"))
     named = re.findall(r"\b(test_\w+)(?!\.py)\b", page)
     assert len(set(named)) > 20
-    missing = {
-        name
-        for name in named
-        if f"def {name}(" not in tests and not (ROOT / "tests" / "library" / f"{name}.py").exists()
-    }
+    missing = {name for name in named if f"def {name}(" not in tests and not (ROOT / "tests" / "library" / f"{name}.py").exists()}
     assert not missing

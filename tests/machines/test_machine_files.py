@@ -127,9 +127,7 @@ PINS = {"x": 3.0, "y": -4.0, "z": 5.0}
 
 
 @pytest.mark.parametrize("conventional", [0, 1])
-@pytest.mark.parametrize(
-    ("name", "tilt", "forward"), [("xyzac-trt-kins", "A", trt_ac), ("xyzbc-trt-kins", "B", trt_bc)]
-)
+@pytest.mark.parametrize(("name", "tilt", "forward"), [("xyzac-trt-kins", "A", trt_ac), ("xyzbc-trt-kins", "B", trt_bc)])
 def test_trunnions_of_linuxcnc_move_as_their_formulas_say(name, tilt, forward, conventional, tmp_path):
     side, pins = ("y", {**PINS, "dy": 20.0, "dz": 10.0}) if tilt == "A" else ("x", {**PINS, "dx": -20.0, "dz": 10.0})
     lines = [
@@ -145,9 +143,7 @@ def test_trunnions_of_linuxcnc_move_as_their_formulas_say(name, tilt, forward, c
         pose = tool_in_part(machine, at)
         # The formulas count against ISO 841, unless told.
         assert pose[:3, 3] == pytest.approx(forward(joints, sign * t, sign * c, pins), abs=1e-9)
-        up = np.subtract(
-            forward(np.add(joints, Z), sign * t, sign * c, pins), forward(joints, sign * t, sign * c, pins)
-        )
+        up = np.subtract(forward(np.add(joints, Z), sign * t, sign * c, pins), forward(joints, sign * t, sign * c, pins))
         assert pose[:3, 2] == pytest.approx(up, abs=1e-9)
         assert held_by(machine, (c, t)) == pytest.approx(up, abs=1e-12)
 
@@ -195,26 +191,16 @@ def test_the_tilting_head_of_maxkins_moves_as_its_formulas_say(conventional, tmp
 def test_kinematics_that_say_nothing_turn_by_their_names_once_their_order_is_said(tmp_path):
     path = write(tmp_path, "mill.ini", ini("trivkins", "XYZAB", units="inch", limits=(-10, 100)))
     machine = read_machine(path, "B,A")
-    assert limits(machine) == {
-        "B": (-10, 100),
-        "A": (-10, 100),
-        "X": (-254, 2540),
-        "Y": (-254, 2540),
-        "Z": (-254, 2540),
-    }
+    assert limits(machine) == {"B": (-10, 100), "A": (-10, 100), "X": (-254, 2540), "Y": (-254, 2540), "Z": (-254, 2540)}
     for b, a in ANGLES:
         assert held_by(machine, (b, a)) == pytest.approx(turn(Y, b) @ turn(X, a) @ Z, abs=1e-12)
         assert held_by(read_machine(path, "A/B"), (a, b)) == pytest.approx(turn(X, a) @ turn(Y, b) @ Z, abs=1e-12)
-        assert held_by(read_machine(path, "B,A,table"), (b, a)) == pytest.approx(
-            turn(Y, -b) @ turn(X, -a) @ Z, abs=1e-12
-        )
+        assert held_by(read_machine(path, "B,A,table"), (b, a)) == pytest.approx(turn(Y, -b) @ turn(X, -a) @ Z, abs=1e-12)
 
 
 def test_joints_narrow_what_an_axis_may_and_the_note_says_so(tmp_path):
     lines = ("[JOINT_3]", "TYPE = ANGULAR", "MIN_LIMIT = -30 # deg", "MAX_LIMIT = 70", "MAX_VELOCITY = 20")
-    machine = read_machine(
-        write(tmp_path, "mill.ini", ini("trivkins coordinates=XYZA", "XYZA", *lines, limits=(-50, 50)))
-    )
+    machine = read_machine(write(tmp_path, "mill.ini", ini("trivkins coordinates=XYZA", "XYZA", *lines, limits=(-50, 50))))
     assert limits(machine)["A"] == (-30, 50)
     assert machine.rotary[0].rate == math.radians(20)
     assert any(note.startswith("A: the limits of the axis and of its joints differ") for note in machine.notes)
@@ -269,13 +255,9 @@ def test_a_freecad_pair_about_x_and_y_needs_an_order(tmp_path):
 
 @pytest.mark.parametrize("added", ["table", "tool-relative"])
 def test_a_fusion_tree_moves_as_its_parts_do(added, tmp_path):
-    table = mch_axis(
-        "Y", [0, -1, 0], mch_axis("A", X, mch_axis("C", Z, TABLE), min=-30, max=120), kind="linear", range=[-3, 4]
-    )
+    table = mch_axis("Y", [0, -1, 0], mch_axis("A", X, mch_axis("C", Z, TABLE), min=-30, max=120), kind="linear", range=[-3, 4])
     head = mch_axis("X", X, mch_axis("Z", Z, HEAD, kind="linear", range={"min": -1, "max": 2}), kind="linear")
-    machine = read_machine(
-        write(tmp_path, "mill.mch", mch(table, head, units={"length": "in", "angle": "degrees"})), added
-    )
+    machine = read_machine(write(tmp_path, "mill.mch", mch(table, head, units={"length": "in", "angle": "degrees"})), added)
     assert limits(machine) == {"C": None, "A": (-30, 120), "Y": (-76.2, 101.6), "X": None, "Z": (-25.4, 50.8)}
     sense = 1.0 if added == "table" else -1.0
     point = 25.4 * np.array([1, 2, 3])
@@ -336,9 +318,7 @@ def test_a_spindle_that_is_called_c_turns_nothing(tmp_path):
 
 
 def test_a_slanted_axis_of_a_probe_is_asked_about(tmp_path):
-    slanted = component(
-        "B", -180, 180, inside='<Motion type="REVOLUTE"><Axis>0 1 1</Axis><Origin>1 2 3</Origin></Motion>'
-    )
+    slanted = component("B", -180, 180, inside='<Motion type="REVOLUTE"><Axis>0 1 1</Axis><Origin>1 2 3</Origin></Motion>')
     path = write(tmp_path, "probe.xml", probe(component("C"), slanted))
     with pytest.raises(MachineError, match=r"axis B runs along .* FILE#table or FILE#tool-relative"):
         read_machine(path, "C/B")
@@ -363,9 +343,7 @@ def axes(draw):
     for name in names:
         kind = draw(st.sampled_from(["rotary", "linear"] if turning < 2 else ["linear"]))
         turning += kind == "rotary"
-        ends = draw(
-            st.none() | st.tuples(st.floats(-1e4, 0.0) | st.just(-math.inf), st.floats(0.0, 1e4) | st.just(math.inf))
-        )
+        ends = draw(st.none() | st.tuples(st.floats(-1e4, 0.0) | st.just(-math.inf), st.floats(0.0, 1e4) | st.just(math.inf)))
         rate = draw(st.none() | st.floats(1e-3, 1e5))
         point = draw(st.tuples(NUMBERS, NUMBERS, NUMBERS)) if kind == "rotary" else (0.0, 0.0, 0.0)
         found.append(Axis(name, kind, draw(st.sampled_from(["part", "tool"])), draw(VECTORS), ends, point, rate))
@@ -396,9 +374,7 @@ def test_built_in_machines_survive_their_file(name, tmp_path):
 
 def test_chains_run_from_the_bed_outward_and_units_count(tmp_path):
     linear = {"axis": "Z", "type": "linear", "direction": Z, "limits": [-1, None], "rate": 2}
-    given = own(
-        [rotary("A", X, [-10, 20], point=[1, 0, 0]), rotary("C", Z)], [linear], units={"length": "inch", "angle": "deg"}
-    )
+    given = own([rotary("A", X, [-10, 20], point=[1, 0, 0]), rotary("C", Z)], [linear], units={"length": "inch", "angle": "deg"})
     machine = read_machine(write(tmp_path, "mill.json", given))
     assert [axis.name for axis in machine.axes] == ["C", "A", "Z"]
     assert machine.axes[1].point == (25.4, 0.0, 0.0)
@@ -535,11 +511,7 @@ def test_bad_machine_files_are_one_line(name, content, why, tmp_path, capsys):
 
 
 def test_what_is_no_file_is_one_line(tmp_path):
-    for path, why in (
-        (tmp_path, "is a folder"),
-        (tmp_path / "none.ini", "No such file"),
-        ("/dev/null", "no regular file"),
-    ):
+    for path, why in ((tmp_path, "is a folder"), (tmp_path / "none.ini", "No such file"), ("/dev/null", "no regular file")):
         with pytest.raises(MachineError, match=why):
             machine_of(str(path))
     with pytest.raises(MachineError, match="'mill' is not known"):

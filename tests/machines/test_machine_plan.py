@@ -51,9 +51,7 @@ def test_a_machine_holds_no_more_than_none_and_no_less_than_its_cone():
     axes = (Axis("C", "rotary", "part", (0, 0, 1)), tilting)
     reaches = []
     for machine in (Machine("table", axes=axes), Machine.parse("tilt:8"), Machine()):
-        ready = prepare(
-            "samples/peaks_and_valleys.step", Options(cutters=CUTTER, grid=21, machine=machine, area_budget=0)
-        )
+        ready = prepare("samples/peaks_and_valleys.step", Options(cutters=CUTTER, grid=21, machine=machine, area_budget=0))
         reaches.append(judge(ready, CUTTER))
     table, cone, free = reaches
     assert (table.reached == cone.reached).all()
@@ -105,15 +103,9 @@ def test_the_map_of_one_point_takes_a_machine_file(tmp_path):
 def test_an_underside_does_not_change_the_choice():
     """A plate's underside is beyond a limit of 60 deg: the cutter that leaves nothing else is told for this setup."""
     block = cad_parts.box(20, 20, 6)
-    found = plan(
-        block, cutters=[CUTTER, Cutter.flat(radius=1, length=30)], faces="all", machine="tilt:60", grid=4, area_budget=0
-    )
+    found = plan(block, cutters=[CUTTER, Cutter.flat(radius=1, length=30)], faces="all", machine="tilt:60", grid=4, area_budget=0)
     document = found.plan
-    under = [
-        face.id
-        for face in document.faces
-        if found.samples.normal[found.samples.face == int(face.id[1:]), 2].max() < -0.9
-    ]
+    under = [face.id for face in document.faces if found.samples.normal[found.samples.face == int(face.id[1:]), 2].max() < -0.9]
     (entry, _) = document.cutters
     assert len(under) == 1
     assert entry.beyond_setup == 16 == entry.inaccessible == entry.faces[under[0]].inaccessible
@@ -135,9 +127,7 @@ def test_what_is_within_the_limits_is_what_some_cutter_could_touch():
     """A slow twin: no sample beyond is reached by any cutter, each within has an axis in the cone about its normal."""
     part = shapes.bowl(15.0)
     cutters = (Cutter.flat(radius=0.5, length=60), Cutter.ball(radius=0.5, length=60))
-    ready = prepare(
-        part, Options(cutters=cutters, faces="all", machine="tilt:20", tilt=(0.0, 0.5), grid=9, area_budget=0)
-    )
+    ready = prepare(part, Options(cutters=cutters, faces="all", machine="tilt:20", tilt=(0.0, 0.5), grid=9, area_budget=0))
     within = within_limits(ready.samples, ready.cutters, ready.conditions)
     away = np.arccos(np.clip(ready.samples.normal @ [0, 0, 1.0], -1, 1))
     sure = np.abs(away - math.radians(20) - 0.5) > 0.02
@@ -162,18 +152,10 @@ def test_several_setups_reach_more_together(tmp_path):
     """On a machine of three axes each setup reaches what a plan with it reaches; together they are what any of them does."""
     axes = [(0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (0.0, -1.0, 0.0)]
     found = plan(
-        "samples/blade.step",
-        cutters=CUTTER,
-        machine="3-axis",
-        setup=axes[0],
-        other_setups=axes[1:],
-        grid=13,
-        area_budget=0,
+        "samples/blade.step", cutters=CUTTER, machine="3-axis", setup=axes[0], other_setups=axes[1:], grid=13, area_budget=0
     )
     alone = [
-        plan("samples/blade.step", cutters=CUTTER, machine="3-axis", setup=axis, grid=13, area_budget=0).reaches[
-            CUTTER.id
-        ]
+        plan("samples/blade.step", cutters=CUTTER, machine="3-axis", setup=axis, grid=13, area_budget=0).reaches[CUTTER.id]
         for axis in axes
     ]
     (entry,) = found.plan.cutters
@@ -193,9 +175,7 @@ def test_several_setups_reach_more_together(tmp_path):
 @pytest.mark.parametrize("machine", ["tilt:40", "trunnion-ac"])
 def test_another_setup_finds_what_a_plan_with_it_finds(machine):
     """Postures that are handed over are held there, and none is missed."""
-    found = plan(
-        "samples/blade.step", cutters=CUTTER, machine=machine, other_setups=[(0, 1, 0.2)], grid=13, area_budget=0
-    )
+    found = plan("samples/blade.step", cutters=CUTTER, machine=machine, other_setups=[(0, 1, 0.2)], grid=13, area_budget=0)
     ((axis, reaches),) = found.elsewhere
     alone = plan("samples/blade.step", cutters=CUTTER, machine=machine, setup=(0, 1, 0.2), grid=13, area_budget=0)
     assert (reaches[CUTTER.id].reached == alone.reaches[CUTTER.id].reached).all()

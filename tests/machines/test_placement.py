@@ -30,9 +30,7 @@ PLACED = Placement(z=(1, -2, 0.5), x=(0.3, 1, 1), origin=(10, -20, 30))
 def linear(*limits, carries="tool"):
     """Three linear axes with one pair of limits each."""
     given = [None if each is None else each for each in limits]
-    return tuple(
-        Axis(name, "linear", carries, way, end) for name, way, end in zip("XYZ", (X, Y, Z), given, strict=True)
-    )
+    return tuple(Axis(name, "linear", carries, way, end) for name, way, end in zip("XYZ", (X, Y, Z), given, strict=True))
 
 
 def turning(*rotary, limits=((-500, 500),) * 3):
@@ -42,12 +40,9 @@ def turning(*rotary, limits=((-500, 500),) * 3):
 
 
 TRUNNION = turning(
-    Axis("C", "rotary", "part", Z, point=(12, -7, 40)),
-    Axis("A", "rotary", "part", X, (-2.0, 2.0), point=(3, 25, -60)),
+    Axis("C", "rotary", "part", Z, point=(12, -7, 40)), Axis("A", "rotary", "part", X, (-2.0, 2.0), point=(3, 25, -60))
 )
-HEADS = turning(
-    Axis("C", "rotary", "tool", Z, point=(1, 2, 3)), Axis("B", "rotary", "tool", (0, 1, 1), point=(-4, 6, 150))
-)
+HEADS = turning(Axis("C", "rotary", "tool", Z, point=(1, 2, 3)), Axis("B", "rotary", "tool", (0, 1, 1), point=(-4, 6, 150)))
 TABLE_AND_HEAD = Machine(
     "skew",
     axes=(
@@ -232,10 +227,7 @@ def test_turning_the_part_is_turning_the_machine(x):
     limits = (math.radians(20), math.radians(50))
     along = tuple(frame.T @ (1, 0, 0))
     axes = [
-        (
-            Axis("A", "rotary", "part", way, limits),
-            Axis("B", "rotary", "tool", tuple(frame.T @ (0, 1, 0)) if own else Y, limits),
-        )
+        (Axis("A", "rotary", "part", way, limits), Axis("B", "rotary", "tool", tuple(frame.T @ (0, 1, 0)) if own else Y, limits))
         for way, own in ((X, False), (along, True))
     ]
     words = {"cutters": CUTTER, "grid": 13, "area_budget": 0}
@@ -250,13 +242,9 @@ def test_turning_the_part_is_turning_the_machine(x):
 
 
 def test_stored_maps_answer_for_a_placement():
-    machine = Machine(
-        "m", axes=(Axis("A", "rotary", "part", X, (-0.2, 0.6)), Axis("B", "rotary", "part", Y, (-0.2, 0.6)))
-    )
+    machine = Machine("m", axes=(Axis("A", "rotary", "part", X, (-0.2, 0.6)), Axis("B", "rotary", "part", Y, (-0.2, 0.6))))
     placement = Placement(x=(0, 1, 0))
-    found = plan(
-        "samples/blade.step", cutters=CUTTER, machine=machine, setup=placement, grid=7, area_budget=0, posture_maps=True
-    )
+    found = plan("samples/blade.step", cutters=CUTTER, machine=machine, setup=placement, grid=7, area_budget=0, posture_maps=True)
     stored = found.maps.within(machine, placement.z, x=placement.x)
     reach = found.reaches[CUTTER.id]
     # What stored maps leave undecided aside, they say the same.
@@ -266,9 +254,7 @@ def test_stored_maps_answer_for_a_placement():
 
 
 def test_other_setups_have_an_x_of_their_own():
-    machine = Machine(
-        "m", axes=(Axis("A", "rotary", "part", X, (-0.2, 0.6)), Axis("B", "rotary", "part", Y, (-0.2, 0.6)))
-    )
+    machine = Machine("m", axes=(Axis("A", "rotary", "part", X, (-0.2, 0.6)), Axis("B", "rotary", "part", Y, (-0.2, 0.6))))
     words = {"cutters": CUTTER, "machine": machine, "grid": 9, "area_budget": 0}
     turned = Placement(z=(0, 1, 1), x=(-1, 0, 0))
     both = plan("samples/blade.step", setup=Z, other_setups=[turned], **words)
@@ -345,22 +331,14 @@ def test_the_command_says_what_is_wrong_with_a_setup_file(tmp_path, text, cause)
 
 
 def test_clamped_faces_are_no_targets_and_fixtures_are_in_the_way(tmp_path):
-    write(
-        tmp_path,
-        'unit = "mm"\naxis = [0, 0, 1]\norigin = [0, 0, 5]\nclamped = ["F1", "F3"]\nfixtures = ["table:-50"]\n',
-    )
+    write(tmp_path, 'unit = "mm"\naxis = [0, 0, 1]\norigin = [0, 0, 5]\nclamped = ["F1", "F3"]\nfixtures = ["table:-50"]\n')
     done = run(SAMPLES / "v_groove.step", "--cutter", "R2L30rc2", "--setup", "vise.toml", "--faces", "all", "--grid", "5",
                "--json", "-", "--area-budget", "0", cwd=tmp_path)  # fmt: skip
     assert done.returncode in (0, 1), done.stderr
     found = json.loads(done.stdout)
     assert found["effective"]["target_faces"] == ["F2"]
     assert found["effective"]["fixtures"] == ["table:-50"]
-    assert found["effective"]["placement"] == {
-        "file": "vise.toml",
-        "x": None,
-        "origin_mm": [0, 0, 5],
-        "clamped": ["F1", "F3"],
-    }
+    assert found["effective"]["placement"] == {"file": "vise.toml", "x": None, "origin_mm": [0, 0, 5], "clamped": ["F1", "F3"]}
     assert "2 faces are clamped and therefore no targets: F1, F3." in found["notes"]
     assert [each["name"] for each in found["fixtures"]] == ["fixture:table"]
 
@@ -384,9 +362,7 @@ def test_options_keep_a_placement(tmp_path):
     assert [each.text for each in other.fixtures] == [each.text for each in other.shared_fixtures] == ["box:1,2,3"]
     assert [each.text for each in other.other_placements[0].fixtures] == ["table:-50"]
     assert replace(other, grid=5).other_placements == other.other_placements
-    assert (
-        [each.text for each in found.shared_fixtures] == [each.text for each in again.shared_fixtures] == ["box:1,2,3"]
-    )
+    assert [each.text for each in found.shared_fixtures] == [each.text for each in again.shared_fixtures] == ["box:1,2,3"]
     both = Options(setup=path, fixtures="table:-50")
     assert both.shared_fixtures == both.fixtures
     assert Options(setup=X, other_setups=[path], fixtures="table:-50").other_placements[0].x == Y

@@ -10,9 +10,7 @@ from hypothesis.extra.numpy import arrays
 
 from plan_cutters.operations.cover import UNIT, fewest, relax, whole_weights
 
-TABLES = st.tuples(st.integers(1, 14), st.integers(1, 9)).flatmap(
-    lambda size: arrays(bool, size, elements=st.booleans())
-)
+TABLES = st.tuples(st.integers(1, 14), st.integers(1, 9)).flatmap(lambda size: arrays(bool, size, elements=st.booleans()))
 
 
 def brute(table):

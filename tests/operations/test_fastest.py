@@ -76,9 +76,7 @@ def test_exchanging_keeps_the_number_and_that_all_are_served_and_is_never_dearer
 
 
 def test_of_two_that_serve_all_the_faster_is_taken():
-    problem = Problem(
-        np.array([[3.0, 1.0], [3.0, 2.0]]), np.zeros(2, np.int32), np.zeros(2, np.int32), Costs(0.0, 0.0, 0.0)
-    )
+    problem = Problem(np.array([[3.0, 1.0], [3.0, 2.0]]), np.zeros(2, np.int32), np.zeros(2, np.int32), Costs(0.0, 0.0, 0.0))
     assert exchanged(problem, np.array([0])).tolist() == [1]
 
 

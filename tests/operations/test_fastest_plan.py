@@ -59,9 +59,7 @@ def test_a_cutter_of_the_fastest_plan_saves_its_change_and_no_other_does(written
     used = {each.cutter for plan_ in found.plans if plan_.name == "fastest" for each in plan_.operations}
     assert used
     for use in found.cutters:
-        assert (
-            (use.saves_seconds >= use.change_seconds) if use.id in used else (use.saves_seconds <= use.change_seconds)
-        )
+        assert (use.saves_seconds >= use.change_seconds) if use.id in used else (use.saves_seconds <= use.change_seconds)
 
 
 def test_the_fastest_is_the_least_of_all_plans_found_whatever_the_search_for_it_finds(monkeypatch):

@@ -12,10 +12,7 @@ from plan_cutters.operations.labels import joined, labelled, pieces
 def grid(nx, ny):
     number = np.arange(nx * ny).reshape(nx, ny)
     return np.concatenate(
-        [
-            np.stack([number[1:].ravel(), number[:-1].ravel()], 1),
-            np.stack([number[:, 1:].ravel(), number[:, :-1].ravel()], 1),
-        ]
+        [np.stack([number[1:].ravel(), number[:-1].ravel()], 1), np.stack([number[:, 1:].ravel(), number[:, :-1].ravel()], 1)]
     )
 
 

@@ -268,10 +268,7 @@ def step(**more):
         (entry(components=0, components_strict=0), ["nothing can be estimated"]),
         (entry(components_strict=9), ["By strict joins there are 9 parts"]),
         (entry(needed_at_least=1), ["2 of them, at least 1, together"]),
-        (
-            entry(forced_steps=[step(deg=90.0, turning_deg=90.0, lines=9)]),
-            ["4 of 9 grid lines along u", "90 deg", "F1"],
-        ),
+        (entry(forced_steps=[step(deg=90.0, turning_deg=90.0, lines=9)]), ["4 of 9 grid lines along u", "90 deg", "F1"]),
         (entry(forced_steps=[step(turning_deg=60.0)]), ["the first rotary axis turns by 60 deg"]),
     ],
 )
@@ -282,8 +279,7 @@ def test_sentences_say_what_was_found_and_that_it_is_an_estimate(found, words):
 
 
 @pytest.mark.parametrize(
-    ("found", "least", "words"),
-    [(5, 5, "No other axes"), (5, 3, "no fewer than 3"), (5, 2, ""), (1, 1, ""), (2, 1, "")],
+    ("found", "least", "words"), [(5, 5, "No other axes"), (5, 3, "no fewer than 3"), (5, 2, ""), (1, 1, ""), (2, 1, "")]
 )
 def test_the_bound_over_all_axes_is_told_where_it_says_something(found, least, words):
     few = SimpleNamespace(found=found, at_least_any=least)

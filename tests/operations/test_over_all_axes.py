@@ -25,11 +25,7 @@ BALL = "R1L60rc1"
 
 @pytest.mark.parametrize(
     ("tilt", "caps"),
-    [
-        (63.44, 5),
-        (37.38, 12),
-        *(pytest.param(*each, marks=pytest.mark.slow) for each in ((70.53, 4), (54.74, 6), (51.03, 7))),
-    ],
+    [(63.44, 5), (37.38, 12), *(pytest.param(*each, marks=pytest.mark.slow) for each in ((70.53, 4), (54.74, 6), (51.03, 7)))],
 )
 def test_it_never_passes_the_least_number_of_caps_that_cover_a_sphere(tilt, caps):
     """Samples all over a ball, every one of them with a weight; the answer is said to be far above."""
@@ -73,9 +69,7 @@ def test_cells_are_all_directions_and_their_radius_is_that_of_the_farthest():
     assert (angle <= cells.radius[:, None])[inside].all()
     small = cells.parted()
     assert len(small) == 4 * len(cells)
-    assert (
-        np.repeat(np.arccos(np.clip((cells.middle * small.middle[::4]).sum(axis=1), -1, 1)), 1) < cells.radius
-    ).all()
+    assert (np.repeat(np.arccos(np.clip((cells.middle * small.middle[::4]).sum(axis=1), -1, 1)), 1) < cells.radius).all()
 
 
 def inside_of(cells, axis):
@@ -99,9 +93,7 @@ PARTS = {"groove": lambda: SAMPLES / "v_groove.step", "trough": lambda: trough(1
 def test_axes_that_are_free_lie_in_no_cell_that_is_called_blocked(part, cutter, holder, most):
     """The certified test of 400 random axes at 60 samples, against cells of four sizes."""
     more = {} if holder is None else {"holder": holder}
-    ready = prepare(
-        PARTS[part](), Options(cutters=[cutter], grid=15, faces="all", tilt=(0.0, math.radians(most)), **more)
-    )
+    ready = prepare(PARTS[part](), Options(cutters=[cutter], grid=15, faces="all", tilt=(0.0, math.radians(most)), **more))
     probes = Probes(ready.samples, ready.cutters, ready.setups, [ready.finished])
     rng = np.random.default_rng(1)
     rows = np.sort(rng.choice(np.flatnonzero(ready.finished), 60, replace=False))

@@ -29,9 +29,7 @@ def grooved(plane, groove, change):
 
 
 def task_of(reached, change):
-    verdicts = {
-        cutter: SimpleNamespace(reached=np.array(mine)) for cutter, mine in zip((LARGE, SMALL), reached, strict=True)
-    }
+    verdicts = {cutter: SimpleNamespace(reached=np.array(mine)) for cutter, mine in zip((LARGE, SMALL), reached, strict=True)}
     ready = SimpleNamespace(options=SimpleNamespace(change_time=change))
     return SimpleNamespace(cutters=(LARGE, SMALL), everywhere=(verdicts,), rows=np.arange(2), ready=ready)
 
@@ -151,9 +149,7 @@ def test_a_ball_in_a_plane_trough_takes_the_seconds_of_its_width():
     c, radius, feed = -10.0, 6.0, 1000.0
     cosine = ((c + radius) ** 2 + (c + 0.01) ** 2 - radius**2) / (2 * (c + radius) * (c + 0.01))
     each = 2.0 * abs(c) * math.acos(cosine)
-    result = plan(
-        trough(10.0, 10.0), cutters="R6L60rc6", faces="all", grid=7, operations="fewest", feed=feed, area_budget=0
-    )
+    result = plan(trough(10.0, 10.0), cutters="R6L60rc6", faces="all", grid=7, operations="fewest", feed=feed, area_budget=0)
     entry = result.plan.operations.plans[0]
     area = sum(one.area_mm2 for one in entry.operations)
     assert entry.cutting_seconds == pytest.approx(area / (each * feed / 60.0), rel=0.01)

@@ -84,9 +84,7 @@ def circles(c, radius, scallop):
 @pytest.mark.parametrize("scallop", [0.01, 0.05, 0.3])
 def test_a_ball_on_a_sphere_and_in_one(c, scallop):
     exact = min(12.0, circles(c, 6.0, scallop))
-    assert width(Cutter.parse("R6L80rc6"), 0.3, high=-1 / c, low=-1 / c, scallop=scallop) == pytest.approx(
-        exact, rel=0.01
-    )
+    assert width(Cutter.parse("R6L80rc6"), 0.3, high=-1 / c, low=-1 / c, scallop=scallop) == pytest.approx(exact, rel=0.01)
 
 
 @pytest.mark.parametrize("c", [-30.0, -9.0])
@@ -97,9 +95,7 @@ def test_in_a_cylinder_a_ball_is_fed_along_it(c, scallop):
 
 
 def test_on_a_cylinder_a_ball_is_fed_around_it_as_on_a_plane():
-    assert width(Cutter.parse("R6L80rc6"), 0.3, low=-1 / 20.0) == pytest.approx(
-        2 * math.sqrt(2 * 6 * 0.01 - 1e-4), rel=0.01
-    )
+    assert width(Cutter.parse("R6L80rc6"), 0.3, low=-1 / 20.0) == pytest.approx(2 * math.sqrt(2 * 6 * 0.01 - 1e-4), rel=0.01)
 
 
 def test_a_whole_sphere_takes_its_area_over_width_and_feed():

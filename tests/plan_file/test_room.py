@@ -29,9 +29,7 @@ def written(tmp_path):
 
 
 def plan(cutters=2, **more):
-    entries = [
-        cutter(f"R{k}L80", {"F1": verdicts(inaccessible=10 * (k - 1))}, radius=float(k)) for k in range(1, cutters + 1)
-    ]
+    entries = [cutter(f"R{k}L80", {"F1": verdicts(inaccessible=10 * (k - 1))}, radius=float(k)) for k in range(1, cutters + 1)]
     return made([face(1)], entries[::-1], **more)
 
 

@@ -125,13 +125,7 @@ def test_a_witness_names_its_sample():
     assert row_of(MET, entry()) == 1
     assert row_of(MET, entry(sample=None)) == 1
     assert row_of(MET, entry(sample=None, face="F1")) == 0
-    for other in (
-        entry(sample=2),
-        entry(sample=0),
-        entry(sample=7),
-        entry(point=(5, 5, 5), sample=None),
-        entry(face="F3"),
-    ):
+    for other in (entry(sample=2), entry(sample=0), entry(sample=7), entry(point=(5, 5, 5), sample=None), entry(face="F3")):
         with pytest.raises(ValueError, match="of another plan"):
             row_of(MET, other)
 
@@ -162,9 +156,7 @@ def test_each_reason_has_all_its_words():
         assert re.fullmatch("#[0-9A-F]{6}", each.colour)
         assert each.pattern in patterns
         assert each.name not in script.replace("fixture", "") or each.name in ("fixture", "tolerance")
-    assert (
-        len({each.name for each in REASONS.values()}) == len({each.colour for each in REASONS.values()}) == len(REASONS)
-    )
+    assert len({each.name for each in REASONS.values()}) == len({each.colour for each in REASONS.values()}) == len(REASONS)
 
 
 def test_each_verdict_has_a_name_and_a_colour():
@@ -178,10 +170,7 @@ def unsure(thing, why, **more):
 
 
 def test_what_is_not_decided_is_said_once_and_of_what():
-    one, other = (
-        "3 of 3 samples are not reached without any limit of the axis",
-        "with 0.0025 mm, 3 samples are undecided",
-    )
+    one, other = ("3 of 3 samples are not reached without any limit of the axis", "with 0.0025 mm, 3 samples are undecided")
     changes = [
         unsure("tolerance", f"is not decided: {other}"),
         unsure("setup", f"is not decided: {one}"),
@@ -210,9 +199,7 @@ def test_a_step_that_gains_hardly_anything_says_so():
 def test_all_faces_are_not_asked_for_again_where_one_is_clamped():
     scope = Scope(judged=1, judged_mm2=90.0, not_judged=1, not_judged_mm2=10.0, judged_by_kind={"sculptured": 1},
                   not_judged_by_kind={"plane": 1})  # fmt: skip
-    document = made([face(1), face(2, target=False)], [cutter("R6L80", {"F1": verdicts()})]).model_copy(
-        update={"scope": scope}
-    )
+    document = made([face(1), face(2, target=False)], [cutter("R6L80", {"F1": verdicts()})]).model_copy(update={"scope": scope})
     assert not_judged(document) == ["1 plane face was not judged, only an obstacle: it is clamped."]
     asked = document.effective.model_copy(update={"faces": "sculptured"})
     (line,) = not_judged(document.model_copy(update={"effective": asked}))
@@ -236,9 +223,7 @@ def test_no_bound_is_rounded_down():
     (("D12L80", "R3L40"), "radius", "2.95 mm", "12.2 mm", "0.1 mm"),
 ])  # fmt: skip
 def test_the_largest_tool_is_measured_as_the_cutters_were_given(names, across, larger, half, least):
-    cutters = [
-        cutter(f"R{n}L80", {"F1": verdicts()}).model_copy(update={"name": name}) for n, name in enumerate(names, 3)
-    ]
+    cutters = [cutter(f"R{n}L80", {"F1": verdicts()}).model_copy(update={"name": name}) for n, name in enumerate(names, 3)]
     found = RadiusEntry(shape="flat", length_over_radius=10.0, step=0.02, least_mm=0.1, most_mm=80.0, percentiles_mm={"50": 12.2},
                         below=0, no_less=0, bottleneck_mm=2.958, bottleneck_face="F1", bottleneck_point=(1.0, 2.0, 3.0),
                         beyond="inaccessible", reason="rear_gouge")  # fmt: skip

@@ -313,18 +313,14 @@ def test_free_tilts_of_a_region_are_free_at_each_of_its_samples(peaks):
                 for row in rows.tolist():
                     spans = [maps.free[maps.offset[row * k + j] : maps.offset[row * k + j + 1]] for j in range(k)]
                     assert every(
-                        any(
-                            low <= math.radians(span[0]) + 1e-12 and math.radians(span[1]) - 1e-12 <= high
-                            for low, high in each
-                        )
+                        any(low <= math.radians(span[0]) + 1e-12 and math.radians(span[1]) - 1e-12 <= high for low, high in each)
                         for each in spans
                     )
     assert told >= 10
 
 
 NARROW = Machine(
-    "narrow",
-    axes=(Axis("C", "rotary", "part", (0, 0, 1), (-1.2, 2.0)), Axis("A", "rotary", "part", (1, 0, 0), (-0.1, 0.5))),
+    "narrow", axes=(Axis("C", "rotary", "part", (0, 0, 1), (-1.2, 2.0)), Axis("A", "rotary", "part", (1, 0, 0), (-0.1, 0.5)))
 )
 
 

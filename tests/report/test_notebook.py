@@ -155,10 +155,7 @@ def test_page_of_a_card_runs_and_reaches_nothing_of_the_notebook(card, browser, 
         page.frame_locator("iframe").locator("html[data-ready]").wait_for(timeout=60_000)
         frame = page.frames[-1]
         assert frame.evaluate("document.title") != "notebook"
-        assert (
-            frame.evaluate("() => { try { return parent.document.title } catch (e) { return e.name } }")
-            == "SecurityError"
-        )
+        assert frame.evaluate("() => { try { return parent.document.title } catch (e) { return e.name } }") == "SecurityError"
         assert [line for line in page.said if line.startswith("error")] == []
     finally:
         context.close()
@@ -177,12 +174,7 @@ def ran():
 
 def test_notebook_of_the_docs_runs(ran):
     outputs = [output for cell in ran for output in cell.outputs]
-    assert [output.output_type for output in outputs] == [
-        "execute_result",
-        "stream",
-        *["execute_result"] * 3,
-        "display_data",
-    ]
+    assert [output.output_type for output in outputs] == ["execute_result", "stream", *["execute_result"] * 3, "display_data"]
     card, *tables = [output.data["text/html"] for output in outputs if output.output_type == "execute_result"]
     assert [tag for tag, _ in Seen(card).elements if tag in ("table", "img", "iframe")] == ["table", "img", "iframe"]
     assert all(Seen(table).of("table") for table in tables)

@@ -34,10 +34,7 @@ from tests.support.shapes import ridge
 
 BALL = "R1L60rc1"
 CASES = {
-    "ridge": (
-        lambda: ridge(10.0, 10.0),
-        {"cutters": BALL, "faces": "all", "grid": 15, "tilt": (0.0, math.radians(31.0))},
-    ),
+    "ridge": (lambda: ridge(10.0, 10.0), {"cutters": BALL, "faces": "all", "grid": 15, "tilt": (0.0, math.radians(31.0))}),
     "peaks": (
         lambda: SAMPLES / "peaks_and_valleys.step",
         {"cutters": "R6L80", "grid": 21, "machine": "trunnion-ac", "index_step": math.radians(15.0)},
@@ -76,9 +73,7 @@ def test_regions_part_the_samples_of_their_operation_and_are_connected(written):
             assert all(a.area_mm2 >= b.area_mm2 for a, b in pairwise(each.regions))
             for region, mine in zip(each.regions, rows, strict=True):
                 assert sum(face.samples for face in region.faces) == region.samples == len(mine)
-                assert np.allclose(
-                    [region.low, region.high], [f(samples.point[mine], axis=0) for f in (np.min, np.max)]
-                )
+                assert np.allclose([region.low, region.high], [f(samples.point[mine], axis=0) for f in (np.min, np.max)])
                 met, inside = {mine[0]}, set(mine)
                 while more := {
                     b for a, b in [*samples.neighbours.tolist(), *samples.neighbours[:, ::-1].tolist()]
@@ -113,14 +108,9 @@ def test_the_clearance_of_an_operation_is_the_least_of_its_samples(written):
             if each.axis is None:
                 continue
             there = held_at(
-                each.axis[None],
-                np.where(found.label == number, 0, -1),
-                samples,
-                Context.of(each.cutter, result.ready.setups[0]),
+                each.axis[None], np.where(found.label == number, 0, -1), samples, Context.of(each.cutter, result.ready.setups[0])
             )
-            every = clearances(at_fixed_axis(samples, there), each.cutter, there, result.ready.setups[0]).distance[
-                each.rows
-            ]
+            every = clearances(at_fixed_axis(samples, there), each.cutter, there, result.ready.setups[0]).distance[each.rows]
             assert said.clearance_mm == pytest.approx(every.min(), abs=0.0)
 
 
@@ -227,17 +217,11 @@ def brute(positions, rate):
     for order in permutations(range(len(positions))):
         for ways in product(*(positions[i] for i in order)):
             places = [(0.0, 0.0), *ways]
-            best = min(
-                best, sum(max(abs(b - a) / r for a, b, r in zip(p, q, rate, strict=True)) for p, q in pairwise(places))
-            )
+            best = min(best, sum(max(abs(b - a) / r for a, b, r in zip(p, q, rate, strict=True)) for p, q in pairwise(places)))
     return best
 
 
-@given(
-    st.lists(
-        st.lists(st.tuples(st.floats(-1.5, 1.5), st.floats(-1.5, 1.5)), min_size=1, max_size=2), min_size=1, max_size=4
-    )
-)
+@given(st.lists(st.lists(st.tuples(st.floats(-1.5, 1.5), st.floats(-1.5, 1.5)), min_size=1, max_size=2), min_size=1, max_size=4))
 @settings(max_examples=60, deadline=None)
 def test_index_times_are_those_of_the_best_of_all_orders(positions):
     rate = np.array([0.5, 2.0])
@@ -319,7 +303,5 @@ def test_the_table_has_a_line_for_each_operation(written):
         assert row["faces"].split() == [face.face for face in each.faces]
         assert int(row["setup"]) == each.setup + 1
         found = [row[name] for name in ("axis_x", "axis_y", "axis_z")]
-        assert (
-            found == ["", "", ""] if each.axis is None else np.allclose([float(x) for x in found], each.axis, atol=1e-9)
-        )
+        assert found == ["", "", ""] if each.axis is None else np.allclose([float(x) for x in found], each.axis, atol=1e-9)
         assert "-0.0" not in row.values()

@@ -119,9 +119,7 @@ def test_the_intervals_shown_are_those_of_the_posture_map(page, planned, scene):
         assert certified == {"true"}
         tool = planned.judged(SHOWN)
         point = planned.samples.point[row]
-        found = posture_map(
-            scene, point=point, cutter=tool, rotations=turns, machine="tilt:40", tilt=planned.postures.tilt
-        )
+        found = posture_map(scene, point=point, cutter=tool, rotations=turns, machine="tilt:40", tilt=planned.postures.tilt)
         for turn, wanted in zip(np.degrees(turns).round(6), clear(found), strict=True):
             mine = [each for each in shown[turn] if each[1] - each[0] > 0.3]
             assert len(mine) == len(wanted), (row, turn, mine, wanted)
@@ -141,9 +139,7 @@ def forbidding(found, k):
     """By cause, the tilts that it alone forbids at a rotation of a map, degrees."""
     causes = {word: np.degrees(getattr(found, word)[k]) for word in (*PARTS, "axis_limit", "no_contact")}
     least, most = np.degrees([found.local_gouge[k], found.local_gouge_most[k]])
-    causes["local_gouge"] = np.array(
-        [[-1.0, least - 1e-9], [most + 1e-9, 181.0]] if least == least else [[-1.0, 181.0]]
-    )
+    causes["local_gouge"] = np.array([[-1.0, least - 1e-9], [most + 1e-9, 181.0]] if least == least else [[-1.0, 181.0]])
     return causes
 
 
@@ -154,11 +150,7 @@ def test_the_live_map_agrees_with_the_posture_map_away_from_borders(page, planne
     """
     page.locator(f'#cutters tr[data-cutter="{OTHER}"] button.text').click()
     verdict = planned.reaches[OTHER].verdict
-    rows = [
-        *np.flatnonzero(verdict == 0)[::9],
-        *np.flatnonzero(verdict == 1)[::80],
-        *np.flatnonzero(verdict == 2)[::12],
-    ]
+    rows = [*np.flatnonzero(verdict == 0)[::9], *np.flatnonzero(verdict == 1)[::80], *np.flatnonzero(verdict == 2)[::12]]
     scene = Scene.of(PART, tolerance=page.evaluate("review.liveTool().spared"), **SCENE)
     turns, tilts = planned.postures.rotations[::4], np.arange(0.0, 90.5, 3.0)
     agree, total, met, wrong = 0, 0, set(), []
@@ -291,9 +283,7 @@ def test_a_section_has_a_cap(page, planned):
     image = picture(page)
     height, width, _ = image.shape
     # From the right one looks at the cap alone: brown, not the grey of the check face behind it.
-    middle = (
-        image[int(0.55 * height) : int(0.6 * height), int(0.4 * width) : int(0.6 * width)].reshape(-1, 3).mean(axis=0)
-    )
+    middle = image[int(0.55 * height) : int(0.6 * height), int(0.4 * width) : int(0.6 * width)].reshape(-1, 3).mean(axis=0)
     assert alike(middle, rgb("#8f8577"))
     assert middle[0] > middle[2] + 8
     page.locator("#clip select").select_option("")
@@ -390,9 +380,7 @@ def test_axe_finds_nothing(browser, path, width, scheme):
     axe = ROOT / "page" / "node_modules" / "axe-core" / "axe.min.js"
     if not axe.exists():
         pytest.skip("axe-core is not installed: npm ci in page/")
-    context = browser.new_context(
-        viewport={"width": width, "height": 768}, reduced_motion="reduce", color_scheme=scheme
-    )
+    context = browser.new_context(viewport={"width": width, "height": 768}, reduced_motion="reduce", color_scheme=scheme)
     page = opened(context, path)
     page.evaluate(axe.read_text())
     for step in ("start", "selected", "help"):
@@ -475,9 +463,7 @@ def test_the_page_tells_the_positions_of_the_axes(page, name):
     rng = np.random.default_rng(27)
     seen_from = axes.seen_from(Rotation.from_rotvec([-0.4, 0.9, 0.2]).as_matrix())
     limit = np.clip(axes.limit, -4.0, 4.0)
-    own = (
-        seen_from.axis(rng.uniform(limit[:, 0], limit[:, 1], (100, len(limit)))) if len(limit) else seen_from.tool[None]
-    )
+    own = seen_from.axis(rng.uniform(limit[:, 0], limit[:, 1], (100, len(limit)))) if len(limit) else seen_from.tool[None]
     every = np.concatenate([rng.normal(size=(100, 3)), own])
     every /= np.linalg.norm(every, axis=1)[:, None]
     page.evaluate("kinematics => Object.assign(review.meta, { kinematics })", meta._kinematics(seen_from))
@@ -493,9 +479,7 @@ def test_the_page_tells_the_positions_of_the_axes(page, name):
         # Each of one is one of the other.
         for one, other in ((mine, known), (known, mine)):
             assert all(min(np.abs(a - b).max() for b in other) < 1e-6 for a in one), (mine, known)
-        assert np.abs(mine[0] - angles[which]).sum() < 1e-6 or np.isclose(
-            np.abs(mine[0]).sum(), np.abs(angles[which]).sum()
-        )
+        assert np.abs(mine[0] - angles[which]).sum() < 1e-6 or np.isclose(np.abs(mine[0]).sum(), np.abs(angles[which]).sum())
         held += 1
     assert held >= 100 or len(limit) < 2
     if len(limit) == 2:
@@ -507,9 +491,7 @@ def test_the_page_tells_the_positions_of_the_axes(page, name):
 def test_stored_intervals_are_cut_to_what_rotary_axes_hold(page, planned):
     """As if the part stood on a trunnion: every tilt shown free is held, and none that is held is missing but at ends."""
     axes = machines()["trunnion"]
-    page.evaluate(
-        "kinematics => Object.assign(review.meta, { kinematics, tilt_limit_deg: null })", meta._kinematics(axes)
-    )
+    page.evaluate("kinematics => Object.assign(review.meta, { kinematics, tilt_limit_deg: null })", meta._kinematics(axes))
     row = seen(page, inner(planned, SHOWN, [1, 2], 60))[3]
     choose(page, row)
     shown, _ = intervals(page)
@@ -519,12 +501,9 @@ def test_stored_intervals_are_cut_to_what_rotary_axes_hold(page, planned):
         first, last = whole[1][row * len(turns) + k : row * len(turns) + k + 2]
         stored = whole[0][first:last]
         tilts = np.arange(0.0, 90.0, 0.05)
-        tilt_direction = posture.tilt_direction(
-            planned.samples.normal[row], planned.samples.direction_max[row], np.radians(turn)
-        )
+        tilt_direction = posture.tilt_direction(planned.samples.normal[row], planned.samples.direction_max[row], np.radians(turn))
         axis = (
-            np.cos(np.radians(tilts))[:, None] * planned.samples.normal[row]
-            + np.sin(np.radians(tilts))[:, None] * tilt_direction
+            np.cos(np.radians(tilts))[:, None] * planned.samples.normal[row] + np.sin(np.radians(tilts))[:, None] * tilt_direction
         )
         held = axes.allows(axis) & np.any([(tilts >= a) & (tilts <= b) for a, b in stored] or [tilts < 0], axis=0)
         mine = np.any([(tilts >= a) & (tilts <= b) for a, b in shown[turn]] or [tilts < 0], axis=0)
@@ -537,9 +516,7 @@ def test_stored_intervals_are_cut_to_what_rotary_axes_hold(page, planned):
 
 def test_faces_are_filtered_and_sorted(page, planned):
     page.fill("#faces input[type=search]", "f3")
-    shown = page.evaluate(
-        "[...document.querySelectorAll('#faces tbody tr')].filter(row => !row.hidden).map(r => r.dataset.face)"
-    )
+    shown = page.evaluate("[...document.querySelectorAll('#faces tbody tr')].filter(row => !row.hidden).map(r => r.dataset.face)")
     assert shown == ["3"]
     page.fill("#faces input[type=search]", "")
     head = page.locator("#faces thead button", has_text="Area")

@@ -332,9 +332,7 @@ def test_what_is_left_out_is_said(valley):
     smaller = Page(page(result, maps=result.maps, largest=full - 1))
     assert "tilt.R12L60" not in parts(smaller)
     assert "tilt.R6L80" in parts(smaller)
-    assert [c["has_posture"] for c in smaller.meta["cutters"]] == [
-        c["id"] == result.shown for c in smaller.meta["cutters"]
-    ]
+    assert [c["has_posture"] for c in smaller.meta["cutters"]] == [c["id"] == result.shown for c in smaller.meta["cutters"]]
     assert smaller.meta["maps"]["why"] is None
     assert any("cutter shown alone" in note for note in smaller.of("li"))
     most = full - 6000
@@ -358,9 +356,7 @@ def test_maps_of_some_samples(valley):
     from dataclasses import replace
 
     taken = [slice(maps.offset[r * k], maps.offset[(r + 1) * k]) for r in rows]
-    offset = np.concatenate(
-        [[0], np.cumsum(np.concatenate([np.diff(maps.offset[r * k : (r + 1) * k + 1]) for r in rows]))]
-    )
+    offset = np.concatenate([[0], np.cumsum(np.concatenate([np.diff(maps.offset[r * k : (r + 1) * k + 1]) for r in rows]))])
     some = replace(maps, offset=offset, free=np.concatenate([maps.free[s] for s in taken]), undecided=maps.undecided[rows],
                    normal=maps.normal[rows], direction_max=maps.direction_max[rows], verdict=maps.verdict[rows],
                    reason=maps.reason[rows], inside=maps.inside[rows])  # fmt: skip
@@ -420,9 +416,7 @@ def test_names_stay_text():
 def told(read):
     """The rows of the table of cutters: name, feasible, reached, main reason."""
     rows = [
-        [" ".join(a.split()) for a in text.split("\n")]
-        for tag, a, text in read.elements
-        if tag == "tr" and "data-cutter" in a
+        [" ".join(a.split()) for a in text.split("\n")] for tag, a, text in read.elements if tag == "tr" and "data-cutter" in a
     ]
     return [[cell for cell in row if cell] for row in rows]
 
@@ -448,18 +442,12 @@ def test_only_all_is_told_as_all():
     assert (
         reached(VerdictCounts(accessible=10**6, inaccessible=1), nearly),
         unreached(VerdictCounts(inaccessible=1), nearly),
-    ) == (
-        ">99.9 %",
-        "<0.1 %",
-    )
+    ) == (">99.9 %", "<0.1 %")
     assert reached(VerdictCounts(accessible=3), AreaShare(accessible=1.0 - 1e-12)) == "100 %"
     # A sample that stands for no area is not reached all the same, and so is a face without samples.
     assert reached(VerdictCounts(accessible=3, inaccessible=1), AreaShare(accessible=1.0)) == ">99.9 %"
     assert reached(VerdictCounts(accessible=3), AreaShare(accessible=0.9, unjudged=0.1)) == "90 %"
-    assert (
-        reached(VerdictCounts(), AreaShare()),
-        unreached(VerdictCounts(accessible=1), AreaShare(accessible=1.0)),
-    ) == (
+    assert (reached(VerdictCounts(), AreaShare()), unreached(VerdictCounts(accessible=1), AreaShare(accessible=1.0))) == (
         "0 %",
         "0 %",
     )
@@ -510,9 +498,7 @@ def test_the_part_keeps_no_mesh(valley):
 
     result, _ = valley
     page(result)
-    assert all(
-        BRep_Tool.Triangulation_s(result.part.face(f.number), TopLoc_Location()) is None for f in result.part.faces
-    )
+    assert all(BRep_Tool.Triangulation_s(result.part.face(f.number), TopLoc_Location()) is None for f in result.part.faces)
 
 
 def test_fewer_triangles_are_drawn_where_asked(rounded):

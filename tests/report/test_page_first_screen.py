@@ -99,12 +99,7 @@ def test_the_verdict_is_told_by_sign_and_word(planned, path):
 
 
 @pytest.mark.parametrize(
-    ("change", "wanted"),
-    [
-        ({}, "Feasible"),
-        ({"unjudged": 1}, "Feasible where judged"),
-        ({"selected": None}, "Not feasible"),
-    ],
+    ("change", "wanted"), [({}, "Feasible"), ({"unjudged": 1}, "Feasible where judged"), ({"selected": None}, "Not feasible")]
 )
 def test_feasible_is_said_only_of_what_is(planned, change, wanted):
     """One sample that could not be judged is enough to say so in the first word."""
@@ -185,9 +180,7 @@ def test_the_first_view_shows_what_is_lost(at, tmp_path):
 
 
 def test_numbers_are_written_as_people_write_them(planned, path):
-    text = re.sub(
-        r"(?s)<script.*?</script>|<style.*?</style>|<code>.*?</code>|<[^>]+>", " ", path.read_text(encoding="utf-8")
-    )
+    text = re.sub(r"(?s)<script.*?</script>|<style.*?</style>|<code>.*?</code>|<[^>]+>", " ", path.read_text(encoding="utf-8"))
     assert not re.search(r"\d[eE][-+]?\d", text)
     assert not re.search(r"\b-0\b|(?<!\d)360°|\bmm2\b", text)
     page = Page(path.read_bytes())

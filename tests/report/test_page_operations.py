@@ -39,9 +39,7 @@ def read(data):
 
 
 def each_plan(planned, read):
-    return zip(
-        planned.answers.operations.plans, planned.plan.operations.plans, read.meta["operations"]["plans"], strict=True
-    )
+    return zip(planned.answers.operations.plans, planned.plan.operations.plans, read.meta["operations"]["plans"], strict=True)
 
 
 def test_every_sample_has_the_operation_of_the_plan(planned, read):
@@ -262,9 +260,7 @@ def test_an_entry_turns_the_part_and_puts_its_tool_there(page, planned, read):
             assert page.evaluate("review.sample.row") == one["sample"]
             assert page.inner_text("#status") == one["text"]
             assert entry(page, told["key"], k).get_attribute("aria-pressed") == "true"
-            tool, back = page.evaluate(
-                "[review.tool.group.matrix.elements.slice(4, 7), review.stage.table.frame().back]"
-            )
+            tool, back = page.evaluate("[review.tool.group.matrix.elements.slice(4, 7), review.stage.table.frame().back]")
             assert np.allclose(tool, one["axis"], atol=1e-3)
             assert np.allclose(back, one["axis"], atol=1e-9)
             assert page.evaluate("[review.state.state, review.state.certified, review.tool.group.visible]") == [

@@ -31,9 +31,7 @@ def planned():
 def seen_at(page, points):
     """Where points of the part are in the picture, pixels, and the picture's size."""
     found = page.evaluate("points => points.map(each => review.stage.project(each))", np.asarray(points).tolist())
-    return np.array(found), np.array(
-        page.evaluate("[review.stage.canvas.clientWidth, review.stage.canvas.clientHeight]")
-    )
+    return np.array(found), np.array(page.evaluate("[review.stage.canvas.clientWidth, review.stage.canvas.clientHeight]"))
 
 
 def outlined(page):

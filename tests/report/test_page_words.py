@@ -75,11 +75,7 @@ def test_what_would_help_is_told_once_and_in_sentences(planned, text):
 
 @pytest.mark.parametrize(
     ("helps", "doubted", "said"),
-    [
-        (True, False, "helps: is not decided."),
-        (None, True, "may help: is not decided."),
-        (None, False, "is not decided."),
-    ],
+    [(True, False, "helps: is not decided."), (None, True, "may help: is not decided."), (None, False, "is not decided.")],
 )
 def test_a_change_is_told_by_its_fields_and_not_by_its_words(helps, doubted, said):
     entry = ChangeEntry(thing="radius", helps=helps, now=6.0, asked=4.0, beyond=None, left=0, looked=1, verified=1, cutter=None,

@@ -12,11 +12,7 @@ from tests.support.cad_parts import CAD
 
 
 def drawn(corner, brightness, owner, height, width):
-    depth, seen, shade = (
-        np.full((height, width), -np.inf),
-        np.full((height, width), -1, np.int32),
-        np.zeros((height, width)),
-    )
+    depth, seen, shade = (np.full((height, width), -np.inf), np.full((height, width), -1, np.int32), np.zeros((height, width)))
     draw(corner, brightness, owner, depth, seen, shade)
     return depth, seen, shade
 
@@ -103,9 +99,7 @@ def test_verdicts_have_their_colours_and_what_is_not_reached_a_pattern_too(tmp_p
         assert like(views, verdict).sum() > 500, verdict
     assert not like(views, "unjudged").sum() > 50
     # The pattern: of what is not reached a part is far darker than the rest; of what is reached only lines between faces are.
-    not_reached, reached = (
-        np.linalg.norm(views[like(views, verdict)], axis=1) for verdict in ("inaccessible", "accessible")
-    )
+    not_reached, reached = (np.linalg.norm(views[like(views, verdict)], axis=1) for verdict in ("inaccessible", "accessible"))
     assert 0.1 < (not_reached < 0.55 * not_reached.max()).mean() < 0.5
     assert (reached < 0.45 * reached.max()).mean() < 0.05
     result.write(tmp_path, ["json", "png"])

@@ -51,11 +51,7 @@ def words(root):
 def size(root):
     """On paper, mm; the unit of what is drawn is the mm."""
     width, height = (float(root.get(side).removesuffix("mm")) for side in ("width", "height"))
-    assert root.get("viewBox").split() == [
-        "0",
-        "0",
-        *(root.get(side).removesuffix("mm") for side in ("width", "height")),
-    ]
+    assert root.get("viewBox").split() == ["0", "0", *(root.get(side).removesuffix("mm") for side in ("width", "height"))]
     return width, height
 
 
@@ -306,9 +302,7 @@ def test_any_cutter_is_drawn(kind, seed):
 @given(st.floats(-6, 6), st.floats(-6, 6), st.floats(-6, 6), st.floats(0.0, 1.0))
 def test_any_size_is_drawn(radius, high, nose, corner):
     radius = 10.0**radius
-    cutter = Cutter(
-        radius, 10.0**high, corner * min(radius, 10.0**high), holder=Holder((Stage(radius + 10.0**nose, 3.0),))
-    )
+    cutter = Cutter(radius, 10.0**high, corner * min(radius, 10.0**high), holder=Holder((Stage(radius + 10.0**nose, 3.0),)))
     root = read(draw(cutter))
     check_a4(root)
     assert not re.search("nan|inf", draw(cutter))

@@ -55,9 +55,7 @@ def test_ascii_stl_and_meshes_of_several_bodies(tmp_path):
     scene = trimesh.Scene()
     scene.add_geometry(solid(np.zeros(3), np.ones(3)), node_name="one")
     scene.add_geometry(
-        solid(np.zeros(3), np.ones(3)),
-        node_name="two",
-        transform=[[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]],
+        solid(np.zeros(3), np.ones(3)), node_name="two", transform=[[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
     )
     scene.export(tmp_path / "two.glb")
     found = read_mesh(tmp_path / "two.glb")
@@ -203,9 +201,7 @@ def test_a_cad_fixture_is_in_the_step_model_in_its_colour(tmp_path):
     coloured = [face for face in again.faces if face.colour == pytest.approx(blue, abs=2e-3)]
     # All twelve faces of both boxes.
     assert sum(face.area for face in coloured) == pytest.approx(2 * (500 + 150 + 750) + 6 * 25)
-    assert (
-        "Only the GLB model, the review page and pictures show what is no CAD body: fixture:table." in result.plan.notes
-    )
+    assert "Only the GLB model, the review page and pictures show what is no CAD body: fixture:table." in result.plan.notes
 
 
 def test_the_schema_is_that_of_the_model():
@@ -252,9 +248,6 @@ def test_a_glb_whose_numbers_lie_in_another_file_is_refused_by_the_name_of_that_
         text,
     )
     (tmp_path / "box.glb").write_bytes(b"".join(parts))
-    with (
-        noted() as files,
-        pytest.raises(ReadError, match=r"has its numbers in another file \(box\.bin\): export it as one file"),
-    ):
+    with noted() as files, pytest.raises(ReadError, match=r"has its numbers in another file \(box\.bin\): export it as one file"):
         read_mesh(tmp_path / "box.glb")
     assert list(files) == [str(tmp_path / "box.glb")]

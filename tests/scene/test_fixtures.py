@@ -162,9 +162,7 @@ def test_rows_are_judged_alike_with_fixtures(pocket):
     from plan_cutters.pipeline import prepare
     from plan_cutters.stages.judge import judge
 
-    ready = prepare(
-        pocket, Options.of({"cutters": "R9L30", "spacing": 1.5, "fixtures": "box:20,50,60@60.5,-5,0"} | FLAT)
-    )
+    ready = prepare(pocket, Options.of({"cutters": "R9L30", "spacing": 1.5, "fixtures": "box:20,50,60@60.5,-5,0"} | FLAT))
     cutter = Cutter.parse("R9L30")
     whole = judge(ready, cutter)
     assert (whole.reason == FIXTURE).any()

@@ -117,9 +117,7 @@ def test_a_part_without_its_loose_face_decides_no_less_elsewhere(planned):
     own = loose.samples.face == LOOSE
     pairs = [
         (verdict, decided[point])
-        for point, verdict in zip(
-            map(tuple, loose.samples.point[~own].tolist()), verdicts(loose)[~own].tolist(), strict=True
-        )
+        for point, verdict in zip(map(tuple, loose.samples.point[~own].tolist()), verdicts(loose)[~own].tolist(), strict=True)
         if point in decided
     ]
     assert len(pairs) == (~own).sum()
@@ -149,9 +147,7 @@ def test_a_hole_whose_wall_is_loose_counts_as_no_material(monkeypatch):
 @pytest.mark.parametrize("path", [PROPELLER], ids=lambda path: path.stem)
 def test_stored_maps_leave_undecided_what_was_undecided(path, tmp_path, monkeypatch):
     """Whatever is asked of them: less freedom decides nothing that was in doubt."""
-    monkeypatch.setattr(
-        surroundings, "tessellate", lambda *given, **words: tessellate(*given, **words | {"budget": BUDGET})
-    )
+    monkeypatch.setattr(surroundings, "tessellate", lambda *given, **words: tessellate(*given, **words | {"budget": BUDGET}))
     result = plan(path, **ASKED | {"spacing": 6}, posture_maps=True)
     undecided = verdicts(result) == UNDECIDED
     assert undecided.any()

@@ -115,10 +115,7 @@ def test_a_clamp_on_a_wavy_top_covers_what_is_under_it():
 
 def test_touching_overlapping_and_repeated_bodies():
     apart = judged(box(40, 40, 20))
-    for shape in (
-        compound(box(40, 40, 20), box(40, 40, 20)),
-        compound(box(40, 40, 20), box(40, 20, 10, at=(0, 10, 5))),
-    ):
+    for shape in (compound(box(40, 40, 20), box(40, 40, 20)), compound(box(40, 40, 20), box(40, 20, 10, at=(0, 10, 5)))):
         result = judged(shape)
         mine = result.samples.face <= 6
         # The same body twice, and one within it, cover nothing of its outside.
@@ -127,9 +124,9 @@ def test_touching_overlapping_and_repeated_bodies():
     assert not reached(inner)[inner.samples.face > 6].any()
     # Side by side: the wall between is not reached from either side, but for its rim.
     beside = judged(compound(box(40, 40, 20), box(40, 40, 20, at=(40, 0, 0))))
-    wall = (np.abs(beside.samples.point[:, 0] - 40) < 1e-9) & (
-        np.abs(beside.samples.point[:, 1:] - (20, 10)) < (19, 9)
-    ).all(axis=1)
+    wall = (np.abs(beside.samples.point[:, 0] - 40) < 1e-9) & (np.abs(beside.samples.point[:, 1:] - (20, 10)) < (19, 9)).all(
+        axis=1
+    )
     assert wall.sum() == 18
     assert not reached(beside)[wall].any()
     # Fused, there is no such wall.
@@ -193,11 +190,7 @@ def test_at_the_foot_of_a_wall_only_postures_outside_it_count():
         for tilt in np.concatenate([np.linspace(*ends, 7) for ends in found.free[i]] or [[]]):
             axis = found.axis(i, tilt)
             tilt_direction = found.axis(i, math.pi / 2)
-            middle = (
-                found.point
-                - 2 * (math.cos(tilt) * tilt_direction - math.sin(tilt) * found.normal)
-                + points[:, None] * axis
-            )
+            middle = found.point - 2 * (math.cos(tilt) * tilt_direction - math.sin(tilt) * found.normal) + points[:, None] * axis
             # Not one point of the cutter's axis is in the wall by more than the tolerance.
             assert not ((middle[:, 0] > 20.011) & (middle[:, 2] > 20.011)).any()
             seen += 1
@@ -345,9 +338,7 @@ def exact_winding(points, triangles, weight):
 
 def test_winding_numbers_are_those_of_the_sum():
     around = solids_of(
-        compound(
-            ball(10), box(8, 8, 30, at=(3, -4, -5)), cut(box(60, 60, 20, at=(-30, -30, -30)), ball(5, at=(0, 0, -20)))
-        )
+        compound(ball(10), box(8, 8, 30, at=(3, -4, -5)), cut(box(60, 60, 20, at=(-30, -30, -30)), ball(5, at=(0, 0, -20))))
     )
     assert around.possible is around.certain
     rng = np.random.default_rng(5)

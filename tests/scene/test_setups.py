@@ -74,9 +74,7 @@ def test_a_face_that_is_held_in_one_setup_alone_is_a_target_and_lost_there_to_wh
 def test_what_is_held_in_all_setups_is_no_target():
     part = box()
     bottom, top = name_of(part, (0, 0, -1)), name_of(part, (0, 0, 1))
-    found = plan(
-        part, setup=Placement(UP, clamped=(bottom, top)), other_setups=[Placement(DOWN, clamped=(bottom,))], **HOW
-    )
+    found = plan(part, setup=Placement(UP, clamped=(bottom, top)), other_setups=[Placement(DOWN, clamped=(bottom,))], **HOW)
     assert bottom not in found.plan.effective.target_faces
     assert top in found.plan.effective.target_faces
     assert f"1 face is clamped and therefore no target: {bottom}." in found.plan.notes

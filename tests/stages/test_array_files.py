@@ -197,9 +197,7 @@ def test_a_bomb_is_not_unpacked(good, tmp_path):
         data = [(each, header.getvalue() if each == "free_R1L9.npy" else old) for each, old in good.items()]
         assert not check(made.packed(data), tmp_path)
         # Zeros without end, of a shape that fits to nothing else: told by the headers.
-        zeros = [
-            (each, made.npy(np.zeros((1 << 21, 2))) if each == "free_R1L9.npy" else old) for each, old in good.items()
-        ]
+        zeros = [(each, made.npy(np.zeros((1 << 21, 2))) if each == "free_R1L9.npy" else old) for each, old in good.items()]
         tracemalloc.reset_peak()
         before = tracemalloc.get_traced_memory()[0]
         assert not check(made.packed(zeros), tmp_path)

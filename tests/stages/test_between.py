@@ -57,9 +57,7 @@ def test_flat_surfaces_are_served_by_their_samples():
     """On planes and ridges nothing changes between the samples."""
     from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
 
-    found, _, _ = served(
-        BRepPrimAPI_MakeBox(40, 30, 10).Solid(), Cutter.flat(radius=5, length=60), budget=0, spacing=3.0
-    )
+    found, _, _ = served(BRepPrimAPI_MakeBox(40, 30, 10).Solid(), Cutter.flat(radius=5, length=60), budget=0, spacing=3.0)
     assert found.share == 1
 
 

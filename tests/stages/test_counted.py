@@ -129,10 +129,7 @@ def test_the_share_is_that_of_random_points_of_all_faces():
 TURNED = {
     "rod, hole across the seam": (MOULDS["rod with a hole across the seam"], {"grid": 61}),
     "ball, hole at the pole": (MOULDS["ball with a hole at the pole"], {"grid": 41}),
-    "ring, hole": (
-        lambda: cut(ring(60, 20), put(rod(8, 200, (0, 0, -100)), 0.5, (0, 1, 0), (76, 4, 0))),
-        {"spacing": 2.5},
-    ),
+    "ring, hole": (lambda: cut(ring(60, 20), put(rod(8, 200, (0, 0, -100)), 0.5, (0, 1, 0), (76, 4, 0))), {"spacing": 2.5}),
 }
 
 

@@ -22,8 +22,7 @@ def hills(rng):
     z = -(x**2 + y**2) / rng.uniform(120, 300) + rng.normal(0, 0.05, x.shape)
     z += rng.uniform(0, 0.7) * np.cos(x / rng.uniform(6, 9)) * np.cos(y / rng.uniform(6, 9))
     walls = [
-        shapes.plane((-8, 8), (-2, 20), (*rng.uniform(-15, 15, 2), 0), (*rng.normal(size=2), 0), (0, 0, 1))
-        for _ in range(2)
+        shapes.plane((-8, 8), (-2, 20), (*rng.uniform(-15, 15, 2), 0), (*rng.normal(size=2), 0), (0, 0, 1)) for _ in range(2)
     ]
     return shapes.shell(shapes.Patch(np.stack([x, y, z], axis=-1)).face(), *walls)
 

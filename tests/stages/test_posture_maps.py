@@ -61,9 +61,7 @@ def test_every_tilt_in_a_free_interval_is_safe(found):
 def test_the_one_point_map_says_the_same(found):
     samples, maps = found.samples, found.maps
     for sample in range(0, len(samples), 17):
-        one = posture_map(
-            found.part, point=samples.point[sample], cutter=CUTTER, rotations=maps.rotations, tolerance=0.01
-        )
+        one = posture_map(found.part, point=samples.point[sample], cutter=CUTTER, rotations=maps.rotations, tolerance=0.01)
         if not np.allclose(one.direction_max, samples.direction_max[sample], atol=1e-6):
             continue  # on an edge the nearest face may be another
         for j in range(0, len(maps.rotations), 5):
@@ -184,9 +182,7 @@ def test_maps_keep_to_an_amount_of_work(monkeypatch):
     for more in ({}, {"map_budget": 50}):
         few = plan(whole.part, **options, **more)
         n, maps = len(few.samples), few.maps
-        left = (maps.undecided == np.float32(np.pi / 2)).all(axis=1) & (np.diff(maps.offset).reshape(n, -1) == 0).all(
-            axis=1
-        )
+        left = (maps.undecided == np.float32(np.pi / 2)).all(axis=1) & (np.diff(maps.offset).reshape(n, -1) == 0).all(axis=1)
         assert 0 < maps.unmapped < n
         assert left.sum() >= maps.unmapped
         (note,) = [note for note in few.plan.notes if "not mapped" in note]

@@ -110,9 +110,7 @@ def test_a_fixture_that_an_axis_limit_could_avoid_comes_second():
 
 def test_nothing_is_searched_where_nothing_could_be_taken_away(plate, monkeypatch):
     calls, real = [], finding.search_postures
-    monkeypatch.setattr(
-        finding, "search_postures", lambda *given, **more: calls.append(len(given[1])) or real(*given, **more)
-    )
+    monkeypatch.setattr(finding, "search_postures", lambda *given, **more: calls.append(len(given[1])) or real(*given, **more))
     bare = plan(plate, cutters=["R13L40", "R2L30"], **HOW)
     assert bare.reaches["R13L40"].not_reached.any()
     assert not calls
@@ -199,9 +197,7 @@ def test_the_headline_is_that_of_the_union(capsys):
     assert not below.here["R3L30"].reached.any()
     summary(below.plan)
     said = " ".join("".join(capsys.readouterr()).split())
-    assert said.startswith(
-        "Take flat end D6 x 30. For the face asked for of the part (31.2 % of the area), in setup 0,0,-1:"
-    )
+    assert said.startswith("Take flat end D6 x 30. For the face asked for of the part (31.2 % of the area), in setup 0,0,-1:")
     names = short_names(both.plan)
     assert headline(both.plan, names).about.startswith("For the part, in 2 setups: ")
     assert headline(below.plan, names).why == "It reaches every sample there, and needs no other setup."

@@ -13,16 +13,7 @@ from cad_io import SurfaceSamples, Triangles, read_part
 from cad_io.part.orient import orient
 from cad_io.sample import sample
 from plan_cutters import Cutter, Machine, PostureRange
-from plan_cutters.domain.verdicts import (
-    CONCAVE,
-    CONVEX,
-    INACCESSIBLE,
-    REASONS,
-    SADDLE,
-    UNDECIDED,
-    UNJUDGED,
-    blank,
-)
+from plan_cutters.domain.verdicts import CONCAVE, CONVEX, INACCESSIBLE, REASONS, SADDLE, UNDECIDED, UNJUDGED, blank
 from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.spacing import BUDGET, default_spacing
@@ -41,10 +32,7 @@ def samples(curvature, shape=None, normal=UP):
     """Samples with curvatures (n, 2), on a grid of a shape (rows, columns) if there is one."""
     n = len(curvature)
     number = np.arange(n).reshape(shape or (n, 1))
-    pairs = [
-        np.stack([number[:-1].ravel(), number[1:].ravel()], 1),
-        np.stack([number[:, :-1].ravel(), number[:, 1:].ravel()], 1),
-    ]
+    pairs = [np.stack([number[:-1].ravel(), number[1:].ravel()], 1), np.stack([number[:, :-1].ravel(), number[:, 1:].ravel()], 1)]
     rows, columns = np.divmod(np.arange(n), number.shape[1])
     normal = np.array(normal, float) / np.linalg.norm(normal)
     direction = np.array([normal[2], 0.0, -normal[0]]) / math.hypot(normal[2], normal[0])
@@ -152,9 +140,7 @@ def test_default_spacing_follows_cutter_curvature_and_budget():
     side = orient(bent, towards=UP, flip=False)
     curved = next(f.number for f in bent.faces if f.shape == "cylinder")
     assert default_spacing(bent, side, [curved], [large])[0][curved] == pytest.approx(0.2 * 5)
-    assert default_spacing(bent, side, [curved], [Cutter.flat(radius=40, length=99)])[0][curved] == pytest.approx(
-        10 / 4
-    )
+    assert default_spacing(bent, side, [curved], [Cutter.flat(radius=40, length=99)])[0][curved] == pytest.approx(10 / 4)
     # Too many: coarser on all faces alike.
     wide = read_part(shapes.plane((0, 4000), (0, 1000)))
     spacing, coarser = default_spacing(wide, orient(wide, towards=UP, flip=False), [1], [small])
@@ -177,9 +163,7 @@ def test_reasons_are_handed_up_but_for_what_the_larger_cutter_has_of_its_own():
     assert [REASONS[r] for r in found.reason] == ["collision", "local_gouge", "collision"]
     # Normals along x, a machine that holds its axis near z.
     aside = samples(curvature, normal=(1.0, 0.0, 0.01))
-    tilted = Conditions(
-        Machine.parse("tilt:5"), np.array(UP), PostureRange(tilt=(0.0, 0.5)), Surroundings.sheet(far), 0.01, 1
-    )
+    tilted = Conditions(Machine.parse("tilt:5"), np.array(UP), PostureRange(tilt=(0.0, 0.5)), Surroundings.sheet(far), 0.01, 1)
     found = access(aside, np.zeros(3, bool), Context.of(cutter, tilted), known=known)
     assert [REASONS[r] for r in found.reason] == ["axis_limit"] * 3
 

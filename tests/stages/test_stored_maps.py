@@ -175,18 +175,10 @@ def test_the_subcommand_answers_as_the_option_does(file, tmp_path, capsys):
     """With and without the part; it knows no options about files, and says no defaults that it does not have."""
 
     def subcommand(*words):
-        line = guarded(
-            lambda: (invoked(stored_maps.command, "plan-cutters stored", [str(word) for word in words]), ""), False
-        )
+        line = guarded(lambda: (invoked(stored_maps.command, "plan-cutters stored", [str(word) for word in words]), ""), False)
         return *line, "".join(capsys.readouterr())
 
-    for words in (
-        [],
-        ["--machine", "tilt:25"],
-        ["--setup", "1,0.3,0.2", "--jobs", "1"],
-        ["--faces", "F2"],
-        ["--tilt", "0:120"],
-    ):
+    for words in ([], ["--machine", "tilt:25"], ["--setup", "1,0.3,0.2", "--jobs", "1"], ["--faces", "F2"], ["--tilt", "0:120"]):
         code, line = told(PART, "--postures", file, *words)
         said = "".join(capsys.readouterr())
         assert subcommand(file, PART, *words) == (code, line, said)
@@ -204,9 +196,7 @@ def test_the_subcommand_answers_as_the_option_does(file, tmp_path, capsys):
     assert subcommand(file, tmp_path / "none.step")[0] == 3
     assert "No such option" in subcommand(file, "-o", "out")[1]
     assert subcommand("--help")[0] == 0
-    assert not any(
-        "default" in (each.help or "") for each in stored_maps.command.params if isinstance(each, click.Option)
-    )
+    assert not any("default" in (each.help or "") for each in stored_maps.command.params if isinstance(each, click.Option))
 
 
 def kept(file, folder, maps, **more):
@@ -249,9 +239,7 @@ def test_missing_obstacles_leave_stored_answers_in_doubt(tmp_path, capsys, which
     from tests.support.bodies import lidded
     from tests.support.cad_parts import box
 
-    part = (
-        Part(lidded(gap=500.0)) if which == "face" else Part(box(40, 40, 10), lost=(LostFace("#7", "lid", "is gone"),))
-    )
+    part = Part(lidded(gap=500.0)) if which == "face" else Part(box(40, 40, 10), lost=(LostFace("#7", "lid", "is gone"),))
     result = plan(part, cutters="R4L40", faces="6", grid=3, area_budget=0, rotation_step=1.0, posture_maps=True)
     assert result.plan.missing
     file = written(tmp_path / "postures.npz", result.maps)
@@ -293,9 +281,7 @@ def test_the_bytes_of_a_fixture_are_compared_not_its_name(tmp_path):
 
     file = tmp_path / "vise.stl"
     trimesh.creation.box((4, 4, 4)).apply_translation((0, 0, 80)).export(file)
-    maps = plan(
-        PART, cutters="R4L40", grid=3, area_budget=0, posture_maps=True, rotation_step=1.0, fixtures=str(file)
-    ).maps
+    maps = plan(PART, cutters="R4L40", grid=3, area_budget=0, posture_maps=True, rotation_step=1.0, fixtures=str(file)).maps
     maps.asked(PART, fixtures=str(file))
     other = tmp_path / "other.stl"
     other.write_bytes(file.read_bytes())

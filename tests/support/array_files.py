@@ -92,9 +92,7 @@ def changed(draw, good):
                     flat = flat.view(bool)
                 else:
                     info = np.iinfo(array.dtype)
-                    flat[row] = draw(
-                        st.one_of(st.sampled_from([info.min, info.max, 0, 1]), st.integers(info.min, info.max))
-                    )
+                    flat[row] = draw(st.one_of(st.sampled_from([info.min, info.max, 0, 1]), st.integers(info.min, info.max)))
             found[at] = name, npy(flat.reshape(array.shape))
         elif kind == "type" and array.dtype.kind in "biuf":
             wanted = draw(st.sampled_from(["<f8", ">f8", "<f4", "<i8", "<i4", "|u1", "|b1", "<c16", "<M8[s]", "<U3"]))

@@ -33,9 +33,7 @@ def within(result, low, high):
         middle = samples.point[i] - cutter.radius * x_t
         heights = np.linspace(0.02, cutter.length - 0.02, 9)[:, None, None]
         ring = np.cos(turn)[:, None] * x_t + np.sin(turn)[:, None] * np.cross(axis, x_t)
-        points = np.concatenate(
-            [middle + heights * axis + r * ring for r in (0.0, 0.5 * cutter.radius, cutter.radius - 0.02)]
-        )
+        points = np.concatenate([middle + heights * axis + r * ring for r in (0.0, 0.5 * cutter.radius, cutter.radius - 0.02)])
         if (np.minimum(points - low, np.array(high) - points).min(axis=2) > 0.02).any():
             found.append(int(i))
     return found

@@ -5,11 +5,7 @@ import math
 import numpy as np
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
-from OCP.BRepBuilderAPI import (
-    BRepBuilderAPI_MakeFace,
-    BRepBuilderAPI_NurbsConvert,
-    BRepBuilderAPI_Transform,
-)
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_NurbsConvert, BRepBuilderAPI_Transform
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.BRepPrimAPI import (
     BRepPrimAPI_MakeBox,
@@ -91,10 +87,7 @@ def compound(*shapes):
 def loose(shape, gap=0.0):
     """Its faces with edges of their own, every second one moved so far off along z."""
     return compound(
-        *(
-            BRepBuilderAPI_Transform(face, moved(0, by=(0, 0, gap * (i % 2))), True).Shape()
-            for i, face in enumerate(faces(shape))
-        )
+        *(BRepBuilderAPI_Transform(face, moved(0, by=(0, 0, gap * (i % 2))), True).Shape() for i, face in enumerate(faces(shape)))
     )
 
 
@@ -138,17 +131,7 @@ def holed_patch(seed=1):
 def spring(turns=6, radius=10.0, wire=1.5, pitch=5.0, count=99):
     """A tube along a helix without its ends: rational, 9 poles around, cubic along."""
     half = math.sqrt(0.5)
-    around = [
-        (1, 0, 1),
-        (1, 1, half),
-        (0, 1, 1),
-        (-1, 1, half),
-        (-1, 0, 1),
-        (-1, -1, half),
-        (0, -1, 1),
-        (1, -1, half),
-        (1, 0, 1),
-    ]
+    around = [(1, 0, 1), (1, 1, half), (0, 1, 1), (-1, 1, half), (-1, 0, 1), (-1, -1, half), (0, -1, 1), (1, -1, half), (1, 0, 1)]
     poles, weights = TColgp_Array2OfPnt(1, 9, 1, count), TColStd_Array2OfReal(1, 9, 1, count)
     for j, angle in enumerate(np.linspace(0, 2 * np.pi * turns, count).tolist()):
         out = np.array([math.cos(angle), math.sin(angle), 0.0])

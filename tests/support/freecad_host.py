@@ -17,14 +17,7 @@ def run(words, script, folder, **more):
     (folder / "home").mkdir()
     (folder / "script.py").write_text(script + "\njson.dump(found, open('found.json', 'w'))\n", encoding="utf-8")
     # The command is that of this Python, and not one that FreeCAD's could import; compiled code is where it always is.
-    ours = [
-        "env",
-        f"HOME={Path.home()}",
-        f"PYTHONPATH={ROOT / 'plugin'}{os.pathsep}{ROOT}",
-        sys.executable,
-        "-m",
-        "plan_cutters",
-    ]
+    ours = ["env", f"HOME={Path.home()}", f"PYTHONPATH={ROOT / 'plugin'}{os.pathsep}{ROOT}", sys.executable, "-m", "plan_cutters"]
     environment = {**os.environ, "PLAN_CUTTERS": " ".join(ours), "HOME": str(folder / "home"), **more}
     done = subprocess.run([*words, "script.py"], cwd=folder, env=environment, stdin=subprocess.DEVNULL, capture_output=True,
                           text=True, timeout=200)  # fmt: skip

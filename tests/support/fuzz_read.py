@@ -108,9 +108,7 @@ def mutated(data: bytes, rng: np.random.Generator) -> bytes:
         return data
     # One number, or the same damage at a few.
     out = data
-    picked = sorted(
-        (found[int(k)] for k in rng.integers(len(found), size=int(rng.integers(1, 4)))), key=lambda m: -m.start()
-    )
+    picked = sorted((found[int(k)] for k in rng.integers(len(found), size=int(rng.integers(1, 4)))), key=lambda m: -m.start())
     for match in picked:
         out = out[: match.start()] + _other(match[0], rng) + out[match.end() :]
     return out
@@ -150,13 +148,7 @@ class Case:
 
     def run(self) -> int:
         """Exit code of the command."""
-        words = [
-            str(self.file),
-            "-o",
-            str(self.folder / "out"),
-            *([] if self.models else ["--formats", "json"]),
-            *WORDS,
-        ]
+        words = [str(self.file), "-o", str(self.folder / "out"), *([] if self.models else ["--formats", "json"]), *WORDS]
         with (self.folder / "said").open("w") as said, (self.folder / "printed").open("w") as printed:
             sys.stderr, sys.stdout = said, printed
             code, line = codes.guarded(lambda: (codes.invoked(cli.command, "plan-cutters", words), ""), False)
@@ -245,9 +237,7 @@ def _judged(code: int, case: Case) -> Outcome:
             return Outcome("NO PLAN", f"exit {code}: {error}")
         if said:
             # What fails of the models is said, and stands in the plan.
-            missing = [
-                line for line in said.splitlines() if not any(why in line for why in plan["not_written"].values())
-            ]
+            missing = [line for line in said.splitlines() if not any(why in line for why in plan["not_written"].values())]
             if missing:
                 return Outcome("TALKS", said)
         text, part = case.file.read_bytes(), json.loads((case.folder / "facts").read_text())
@@ -372,9 +362,7 @@ def main() -> int:
                 rng = np.random.default_rng([given.seed, i])
                 source, whole, part = files[int(rng.integers(len(files)))]
                 text = mutated(source.read_bytes(), rng)
-                cases.append(
-                    _case(Path(folder) / str(i), source.name, text, whole=whole, part=part, models=i % MODELS == 0)
-                )
+                cases.append(_case(Path(folder) / str(i), source.name, text, whole=whole, part=part, models=i % MODELS == 0))
             for i, case, outcome in zip(numbers, cases, attempt(cases), strict=True):
                 kind = outcome.kind + (" with models" if case.models and outcome.plan else "")
                 outcomes[kind] += 1

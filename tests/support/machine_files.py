@@ -54,11 +54,7 @@ def fcm_axis(role, direction, low=-90, high=90, parent=None, **more):
 
 
 def mch_axis(name, direction, *inner, kind="rotary", **more):
-    where = (
-        {"direction": direction}
-        if kind == "linear"
-        else {"axis_of_rotation": {"direction": direction, "point": [1, 2, 3]}}
-    )
+    where = {"direction": direction} if kind == "linear" else {"axis_of_rotation": {"direction": direction, "point": [1, 2, 3]}}
     return {"id": name, "name": name, "type": kind, "control": "driven", "parts": list(inner), **where, **more}
 
 
@@ -72,9 +68,7 @@ def mch(*parts, units=None, **more):
 
 
 def ini(kinematics, coordinates, *lines, units="mm", limits=(-500, 500)):
-    sections = [
-        f"[AXIS_{each}]\nMIN_LIMIT = {limits[0]}\nMAX_LIMIT = {limits[1]}" for each in dict.fromkeys(coordinates)
-    ]
+    sections = [f"[AXIS_{each}]\nMIN_LIMIT = {limits[0]}\nMAX_LIMIT = {limits[1]}" for each in dict.fromkeys(coordinates)]
     return "\n".join(["[EMC]", "MACHINE = mill", "[KINS]", f"KINEMATICS = {kinematics}", "[TRAJ]", f"COORDINATES = {coordinates}",
                       f"LINEAR_UNITS = {units}", *sections, *lines, ""])  # fmt: skip
 

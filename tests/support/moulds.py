@@ -68,9 +68,7 @@ MOULDS = {
     "ring, Villarceau": lambda: cut(ring(20, 5), half(0.2526802551420787, by=(0, 0, 0))),
     "ring, top off": lambda: cut(ring(20, 5), half(0.0, by=(0, 0, 4.99))),
     "ring with a hole": lambda: cut(ring(20, 5), put(rod(2, 60, (0, 0, -30)), 0.5, (0, 1, 0), (19, 1, 0))),
-    "rod with a hole across the seam": lambda: cut(
-        rod(10, 40), put(rod(4, 60, (0, 0, -30)), 1.57, (0, 1, 0), (0, 0, 20))
-    ),
+    "rod with a hole across the seam": lambda: cut(rod(10, 40), put(rod(4, 60, (0, 0, -30)), 1.57, (0, 1, 0), (0, 0, 20))),
     "rod with an oblique hole": lambda: cut(rod(10, 40), put(rod(9.9, 80, (0, 0, -40)), 1.0, (0.1, 1, 0), (0, 0, 20))),
     "rods of one radius": lambda: fuse(rod(5, 40), put(rod(5, 40, (0, 0, -20)), 1.0, (0, 1, 0), (0, 0, 20))),
     "cone and ball": lambda: cut(cone(10, 3, 30), ball(9, (6, 2, 14))),

@@ -1,15 +1,6 @@
 """Plans without a part: made of faces and of the shares that cutters reach of them."""
 
-from plan_cutters.plan_file.model import (
-    CutterEntry,
-    Effective,
-    FaceEntry,
-    MachineEntry,
-    Plan,
-    Run,
-    SampleCounts,
-    Selection,
-)
+from plan_cutters.plan_file.model import CutterEntry, Effective, FaceEntry, MachineEntry, Plan, Run, SampleCounts, Selection
 from plan_cutters.plan_file.part_info import OrientationInfo, PartInfo
 from plan_cutters.plan_file.shares import AreaShare, FaceVerdicts
 

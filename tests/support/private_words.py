@@ -66,12 +66,7 @@ INSTEAD = {
 #: Plain English in a sentence.
 ONLY_NAMES = {"found", "given", "left"}
 
-SOURCES = (
-    ("plugin/plan_cutters", "*.py"),
-    ("cad_io", "*.py"),
-    ("plugin/plan_cutters", "*.jinja"),
-    ("page/src", "*.ts"),
-)
+SOURCES = (("plugin/plan_cutters", "*.py"), ("cad_io", "*.py"), ("plugin/plan_cutters", "*.jinja"), ("page/src", "*.ts"))
 
 #: Kind ("names" or "texts"), room, word -> places, as `file:line: name`.
 Places = dict[tuple[str, str, str], list[str]]
@@ -134,12 +129,7 @@ def texts(tree: ast.Module) -> Iterator[tuple[str, int]]:
     """Strings with a space in them, and their lines, without docstrings and other strings that stand alone."""
     alone = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
     for node in ast.walk(tree):
-        if (
-            isinstance(node, ast.Constant)
-            and isinstance(node.value, str)
-            and id(node) not in alone
-            and " " in node.value.strip()
-        ):
+        if isinstance(node, ast.Constant) and isinstance(node.value, str) and id(node) not in alone and " " in node.value.strip():
             yield node.value, node.lineno
 
 
@@ -186,12 +176,7 @@ def ceiling() -> Counter[tuple[str, str, str]]:
     """The most of each word in each room, by kind."""
     stored = tomllib.loads(CEILING.read_text(encoding="utf-8"))
     return Counter(
-        {
-            (kind, room, word): most
-            for kind, rooms in stored.items()
-            for room, by in rooms.items()
-            for word, most in by.items()
-        }
+        {(kind, room, word): most for kind, rooms in stored.items() for room, by in rooms.items() for word, most in by.items()}
     )
 
 
@@ -207,18 +192,14 @@ def write(places: Places) -> None:
     """Store counts as the ceiling; a word may move to another room, but none may be used more often than before."""
     counts = Counter({key: len(each) for key, each in places.items()})
     if CEILING.exists() and (more := by_word(counts) - by_word(ceiling())):
-        raise SystemExit(
-            "more private words than before: " + ", ".join(f"{word} in {kind}" for kind, word in sorted(more))
-        )
+        raise SystemExit("more private words than before: " + ", ".join(f"{word} in {kind}" for kind, word in sorted(more)))
     lines = [
         "# Private words by kind, room and word: they may only fall. `python -m tests.support.private_words --write` stores them."
     ]
     for kind in ("names", "texts"):
         lines += ["", f"[{kind}]"]
         for room in sorted({room for k, room, _ in counts if k == kind}):
-            cells = ", ".join(
-                f"{word} = {number}" for (k, r, word), number in sorted(counts.items()) if (k, r) == (kind, room)
-            )
+            cells = ", ".join(f"{word} = {number}" for (k, r, word), number in sorted(counts.items()) if (k, r) == (kind, room))
             lines.append(f'"{room}" = {{ {cells} }}')
     CEILING.write_text("\n".join(lines) + "\n", encoding="utf-8")
 

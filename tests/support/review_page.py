@@ -47,9 +47,7 @@ class Page(HTMLParser):
 
     def of(self, tag, **wanted):
         """Texts of the elements with a tag and attributes."""
-        return [
-            " ".join(text.split()) for found, a, text in self.elements if found == tag and wanted.items() <= a.items()
-        ]
+        return [" ".join(text.split()) for found, a, text in self.elements if found == tag and wanted.items() <= a.items()]
 
     def array(self, name):
         entry = self.meta["arrays"][name]

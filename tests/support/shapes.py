@@ -45,11 +45,7 @@ def ridge(radius, half_length):
 
 def bowl(radius):
     """The lower half of a sphere through the origin; material outside."""
-    return (
-        BRepBuilderAPI_MakeFace(gp_Sphere(axes((0, 0, radius)), radius), 0.0, 2 * math.pi, -math.pi / 2, 0.0)
-        .Face()
-        .Reversed()
-    )
+    return BRepBuilderAPI_MakeFace(gp_Sphere(axes((0, 0, radius)), radius), 0.0, 2 * math.pi, -math.pi / 2, 0.0).Face().Reversed()
 
 
 def dome(radius):

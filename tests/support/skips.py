@@ -17,7 +17,5 @@ def strict(report):
         reason = report.longrepr[2] if isinstance(report.longrepr, tuple) else str(report.longrepr)
         if not any(each in reason for each in NOT_BROUGHT):
             report.outcome = "failed"
-            report.longrepr = (
-                f"{reason}\nNothing that setup.sh dev brings may be missing in CI (tests/support/skips.py)."
-            )
+            report.longrepr = f"{reason}\nNothing that setup.sh dev brings may be missing in CI (tests/support/skips.py)."
     return report

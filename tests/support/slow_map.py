@@ -79,9 +79,7 @@ def tool_map(rows, contacts, ranges, tool, narrowest, tree, part, count_out, und
             for mode in range(len(tool.mode)):
                 _, left = permitted(contacts, row, ranges, tool, mode, f, intervals)
                 for i in range(left):
-                    done = divide(
-                        Frame(p, n, f, t), intervals[i, 0], intervals[i, 1], tool, mode, narrowest, tree, work
-                    )
+                    done = divide(Frame(p, n, f, t), intervals[i, 0], intervals[i, 1], tool, mode, narrowest, tree, work)
                     for k in range(done):
                         width = work.parts[k, 1] - work.parts[k, 0]
                         if work.parts[k, 2] == UNSURE:

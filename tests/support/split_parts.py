@@ -29,9 +29,7 @@ def patch() -> Any:
     for i in range(12):
         for j in range(10):
             points.SetValue(i + 1, j + 1, gp_Pnt(10.0 * i, 10.0 * j, float(height[i, j])))
-    return BRepBuilderAPI_MakeFace(
-        GeomAPI_PointsToBSplineSurface(points, 3, 3, GeomAbs_C2, 1e-3).Surface(), 1e-6
-    ).Face()
+    return BRepBuilderAPI_MakeFace(GeomAPI_PointsToBSplineSurface(points, 3, 3, GeomAbs_C2, 1e-3).Surface(), 1e-6).Face()
 
 
 def block(holes: int = 3) -> Any:
@@ -43,9 +41,7 @@ def block(holes: int = 3) -> Any:
     return solid
 
 
-def labels(
-    part: Part, number: int, field: Field, n: int = 61, closed: tuple[bool, bool] = (False, False)
-) -> FaceLabels:
+def labels(part: Part, number: int, field: Field, n: int = 61, closed: tuple[bool, bool] = (False, False)) -> FaceLabels:
     """Labels field(x, y) on n x n nodes, x and y from 0 to 1 over the face's box of parameters; a seam once."""
     a = BRepAdaptor_Surface(part.face(number))
     u = np.linspace(a.FirstUParameter(), a.LastUParameter(), n + closed[0])[:n]

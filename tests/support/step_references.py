@@ -24,10 +24,7 @@ def write_assembly(folder: Path, unit: str = "MM") -> Path:
     document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
     shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     whole = shapes.NewShape()
-    solids = {
-        "box": BRepPrimAPI_MakeBox(10.0, 10.0, 10.0).Shape(),
-        "ball": BRepPrimAPI_MakeSphere(gp_Pnt(), 4.0).Shape(),
-    }
+    solids = {"box": BRepPrimAPI_MakeBox(10.0, 10.0, 10.0).Shape(), "ball": BRepPrimAPI_MakeSphere(gp_Pnt(), 4.0).Shape()}
     for place, (name, solid) in zip((0.0, 25.0), solids.items(), strict=True):
         label = shapes.AddShape(solid, False)
         TDataStd_Name.Set_s(label, TCollection_ExtendedString(name))

@@ -27,15 +27,7 @@ ID = "R3L40F12N2.8x4N2.8:4x4S4HR12:15L20+R20L10"
 
 
 def fusion(
-    kind="flat end mill",
-    *,
-    number=1,
-    holder=HOLDER,
-    shaft=SHAFT,
-    unit="millimeters",
-    name="a tool",
-    tapered=None,
-    **geometry,
+    kind="flat end mill", *, number=1, holder=HOLDER, shaft=SHAFT, unit="millimeters", name="a tool", tapered=None, **geometry
 ):
     """A Fusion tool; a dimension of None is left out. `tapered`: which tip a tapered mill has."""
     numbers = {key.replace("_", "-"): value for key, value in geometry.items()}
@@ -50,10 +42,7 @@ def in_inches(tool):
 
     def turned(value):
         if isinstance(value, dict):
-            return {
-                k: ("inches" if k == "unit" else v if k in ("TA", "post-process") else turned(v))
-                for k, v in value.items()
-            }
+            return {k: ("inches" if k == "unit" else v if k in ("TA", "post-process") else turned(v)) for k, v in value.items()}
         if isinstance(value, list):
             return [turned(each) for each in value]
         return value / 25.4 if isinstance(value, int | float) and not isinstance(value, bool) else value
@@ -84,9 +73,7 @@ def write_csv(path, tools, *, delimiter=",", comma=False):
 
     def segments(item):
         rows = (item or {}).get("segments", [])
-        return "; ".join(
-            f"H{said(s['height'])} U{said(s['upper-diameter'])} L{said(s['lower-diameter'])}" for s in rows
-        )
+        return "; ".join(f"H{said(s['height'])} U{said(s['upper-diameter'])} L{said(s['lower-diameter'])}" for s in rows)
 
     out = io.StringIO()
     writer = csv.writer(out, delimiter=delimiter, lineterminator="\n")
@@ -118,14 +105,10 @@ _BODY = {"diameter": "DC", "corner-radius": "RE", "flute-length": "LCF", "body-l
 def hsmlib(tools, before=""):
     lines = ['<?xml version="1.0" encoding="UTF-16"?>', before, '<tool-library xmlns="http://www.hsmworks.com/xml">']
     for tool in tools:
-        lines.append(
-            f'<tool type="{tool["type"]}" unit="{tool["unit"]}"><description>{tool["description"]}</description>'
-        )
+        lines.append(f'<tool type="{tool["type"]}" unit="{tool["unit"]}"><description>{tool["description"]}</description>')
         lines.append(f'<nc number="{tool["post-process"]["number"]}"/>')
         given = tool["geometry"] | {"tapered-type": tool.get("tapered-type", "")}
-        lines.append(
-            "<body " + " ".join(f'{word}="{given[key]}"' for word, key in _BODY.items() if key in given) + "/>"
-        )
+        lines.append("<body " + " ".join(f'{word}="{given[key]}"' for word, key in _BODY.items() if key in given) + "/>")
         for tag in ("holder", "shaft"):
             lines.append(f"<{tag}>")
             for each in tool.get(tag, {}).get("segments", []):
@@ -145,9 +128,7 @@ def write_bit(path, shape="Endmill", **parameters):
     path.parent.mkdir(parents=True, exist_ok=True)
     given = {"Diameter": "6.0000 mm", "CuttingEdgeHeight": "12.0 mm", "Length": "60 mm", "ShankDiameter": "6.0 mm"}
     table = {key: value for key, value in {**given, **parameters}.items() if value is not None}
-    path.write_text(
-        json.dumps({"version": 2, "name": path.stem, "shape-type": shape, "parameter": table}), encoding="utf-8"
-    )
+    path.write_text(json.dumps({"version": 2, "name": path.stem, "shape-type": shape, "parameter": table}), encoding="utf-8")
     return path
 
 

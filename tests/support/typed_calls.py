@@ -61,9 +61,7 @@ def known(result: Result) -> None:
 
 def as_given(words: Mapping[str, Any]) -> None:
     """What a constructor takes is more than what it keeps."""
-    assert_type(
-        Options(cutters="R6L80", setup="Z", machine="tilt:60", fixtures="vise.step").setup, tuple[float, float, float]
-    )
+    assert_type(Options(cutters="R6L80", setup="Z", machine="tilt:60", fixtures="vise.step").setup, tuple[float, float, float])
     assert_type(Options(tilt=[0, 1]).tilt, tuple[float, float])
     assert_type(Cutter.ball(radius=4, length=50, holder="er32", neck=[]).holder is None, bool)
     assert_type(Placement("Z", x=[1, 0, 0], clamped="F1").z, tuple[float, float, float])

@@ -79,10 +79,7 @@ def outline(part):
 
 def test_products_instances_names_layers_and_colours_are_read(file):
     part = read_part(file)
-    assert outline(part) == {
-        "stand/twins/left": (FACES, [10, 20, 30], 0),
-        "stand/twins/right": (FACES, [310, 40, 35], 0.5),
-    }
+    assert outline(part) == {"stand/twins/left": (FACES, [10, 20, 30], 0), "stand/twins/right": (FACES, [310, 40, 35], 0.5)}
     bottoms = [f for f in part.faces if f.name == "bottom"]
     assert len(bottoms) == 2
     assert all(f.colour == pytest.approx(BLUE, abs=2e-3) for f in bottoms)

@@ -72,9 +72,7 @@ def test_plane_alone_is_free_at_every_posture():
     assert found.local_gouge == pytest.approx(0)
 
 
-@pytest.mark.parametrize(
-    ("a", "radius", "length"), [(6.0, 5.0, 50.0), (2.0, 5.0, 50.0), (9.0, 5.0, 12.0), (20.0, 5.0, 50.0)]
-)
+@pytest.mark.parametrize(("a", "radius", "length"), [(6.0, 5.0, 50.0), (2.0, 5.0, 50.0), (9.0, 5.0, 12.0), (20.0, 5.0, 50.0)])
 def test_plane_with_a_wall(a, radius, length):
     """A wall x = a, higher than the cutter is long. Leaning to it, the generator through the contact reaches x = L sin(tilt);
     leaning from it, the far rim is at 2R cos(tilt); leaning along it, the cutter is R wide."""
@@ -146,9 +144,7 @@ def test_axis_limit_cuts_the_plane():
         assert np.degrees(found.axis_limit[i]) == pytest.approx(np.array([[25.0, 90.0]]))
     # The setup axis leant by 40 deg towards x: along x, tilts from 15 to 65 deg.
     setup = (math.sin(math.radians(40)), 0.0, math.cos(math.radians(40)))
-    _, (along, against) = free(
-        part, Cutter.flat(radius=5, length=50), [0, 180], machine=Machine.parse("tilt:25"), setup=setup
-    )
+    _, (along, against) = free(part, Cutter.flat(radius=5, length=50), [0, 180], machine=Machine.parse("tilt:25"), setup=setup)
     assert_intervals(along, (15, 65))
     assert_intervals(against)
 
@@ -172,9 +168,7 @@ def test_flat_and_convex_faces_are_interference_free():
 def test_a_hole_narrower_than_the_cutter_is_out_of_reach():
     """A trough of radius 5 that closes over its bottom: R 6 cannot touch the bottom line, R 2 can."""
     part = shapes.shell(shapes.trough(5.0, 60, span=4.2))
-    small, large = (
-        plan(part, cutters=[Cutter.flat(radius=r, length=60)], grid=15, area_budget=0).cutters[0] for r in (2, 6)
-    )
+    small, large = (plan(part, cutters=[Cutter.flat(radius=r, length=60)], grid=15, area_budget=0).cutters[0] for r in (2, 6))
     assert small.feasible
     assert large.feasible is False
     assert large.by_reason["local_gouge"] + large.by_reason["rear_gouge"] > 0

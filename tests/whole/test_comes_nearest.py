@@ -46,9 +46,7 @@ def test_all_name_the_one_that_leaves_the_least_area(uneven, capsys):
     assert {uneven.shown, document.shown, story.shown, nearest(document.cutters).id} == {wide.id}
     assert "flat end D10 x 60 (D10L60" in story.headline.why
     assert "comes nearest: it leaves 1.1 % of the area (15 of 50 samples)" in story.headline.why
-    assert document.selection.why == (
-        f"no cutter reaches every sample; {wide.id} comes nearest and leaves 1.1 % of the area"
-    )
+    assert document.selection.why == (f"no cutter reaches every sample; {wide.id} comes nearest and leaves 1.1 % of the area")
     row = row_of(document, name="part", file="part.step", code=1)
     assert (row.cutter, row.share) == (story.names[wide.id], pytest.approx(1.0 - wide.area_share.not_reached))
     # An agent reads the file alone, and so it does where an older one does not say which cutter is shown.

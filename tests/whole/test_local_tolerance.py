@@ -141,9 +141,7 @@ def test_a_flat_end_in_a_slot_beside_rises_of_so_many_tolerances(share):
     sides = [shapes.plane((half, out), (-20, 20), (0, 0, rise)), shapes.plane((-out, -half), (-20, 20), (0, 0, rise))]
     walls = [shapes.plane((0, rise), (-20, 20), (x, 0, 0), (-x, 0, 0), (0, 0, 1)) for x in (half, -half)]
     part = shapes.shell(slot, *sides, *walls)
-    result, reach = asked(
-        part, Cutter.flat(radius=5, length=30), tilt=(0.0, 0.0), faces="1,2,3", spacing=0.5, grid=None
-    )
+    result, reach = asked(part, Cutter.flat(radius=5, length=30), tilt=(0.0, 0.0), faces="1,2,3", spacing=0.5, grid=None)
     # At the slot's open ends the cutter stands beside it.
     within = np.abs(result.samples.point[:, 1]) < 20 - 10
     inside = within & (result.samples.face == 1)

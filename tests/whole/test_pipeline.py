@@ -69,10 +69,7 @@ def test_a_scene_is_tessellated_once(monkeypatch):
     alone = plan(SAMPLES / "v_groove.step", setup=(0, 0, 2), tolerance=0.02, **SMALL)
     assert told(alone) == told(result)
     assert alone.reaches == result.reaches
-    assert (
-        posture_map(SAMPLES / "v_groove.step", point=point, cutter="R3L40", rotations=[0.0, 1.0], tolerance=0.02)
-        == shared
-    )
+    assert posture_map(SAMPLES / "v_groove.step", point=point, cutter="R3L40", rotations=[0.0, 1.0], tolerance=0.02) == shared
 
 
 @pytest.mark.parametrize(
@@ -100,11 +97,7 @@ def test_parts_and_results_can_be_kept(tmp_path):
         assert (tmp_path / "one" / file).read_bytes() == (tmp_path / "two" / file).read_bytes()
     part = pickle.loads(pickle.dumps(result.part))
     assert part is not result.part
-    assert (part.faces, part.warnings, part.tree[0].name) == (
-        result.part.faces,
-        result.part.warnings,
-        result.part.tree[0].name,
-    )
+    assert (part.faces, part.warnings, part.tree[0].name) == (result.part.faces, result.part.warnings, result.part.tree[0].name)
     second = plan(part, spacing=3.0, **{k: SMALL[k] for k in ("cutters", "area_budget")})
     assert told(second) == told(result)
 

@@ -55,9 +55,7 @@ def test_verdicts_equal_those_of_the_exact_surface_outside_the_band(seed):
     radius, length = 5.0, 40.0
     for i in range(n):
         normal[i], direction = random_frame(rng)
-        axis[i], tilt_direction[i] = posture(
-            normal[i], direction, rng.uniform(0, math.pi / 2), rng.uniform(0, 2 * math.pi)
-        )
+        axis[i], tilt_direction[i] = posture(normal[i], direction, rng.uniform(0, math.pi / 2), rng.uniform(0, 2 * math.pi))
     exact = np.array([
         refined_depth(patch, point[i], normal[i], axis[i], tilt_direction[i], radius, length, grid, lines) for i in range(n)
     ])  # fmt: skip
@@ -69,9 +67,7 @@ def test_verdicts_equal_those_of_the_exact_surface_outside_the_band(seed):
         triangle = np.full(n, -1, np.int32)
         for i in range(n):
             tool = waves.flat(radius, length, depths[i])
-            search.probe(
-                np.array([i]), point, normal, axis, tilt_direction, tool, obstacles.tree, triangle, triangle.copy()
-            )
+            search.probe(np.array([i]), point, normal, axis, tilt_direction, tool, obstacles.tree, triangle, triangle.copy())
         assert (triangle[exact > depths + 2 * error] >= 0).all()
         assert (triangle[exact < depths - 2 * error] < 0).all()
 

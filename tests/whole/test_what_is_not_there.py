@@ -196,22 +196,12 @@ def test_kernels_take_what_is_no_number_for_a_hit():
         *((x, n, e1) for x in spoilt(p)), *((p, x, e1) for x in spoilt(n)), *((p, n, x) for x in spoilt(e1)),
     ]:  # fmt: skip
         free = np.ones(1, bool)
-        search.dummy_clear(
-            one, Contacts(point[None], normal[None], tilt_direction[None], straight), dummy, tool, far, free
-        )
+        search.dummy_clear(one, Contacts(point[None], normal[None], tilt_direction[None], straight), dummy, tool, far, free)
         if tilt_direction is e1:
             assert not free[0]
         triangle = np.full(1, -1, np.int32)
         search.probe(
-            one,
-            point[None],
-            normal[None],
-            normal[None],
-            tilt_direction[None],
-            tool,
-            far.tree,
-            triangle,
-            triangle.copy(),
+            one, point[None], normal[None], normal[None], tilt_direction[None], tool, far.tree, triangle, triangle.copy()
         )
         # What has no tilt touches nowhere, which is no way clear either.
         assert triangle[0] >= 0 or triangle[0] == -2
@@ -240,9 +230,7 @@ def test_the_door_refuses_what_is_no_number():
         Obstacles(replace(good, vertex=bad))
     with pytest.raises(UnjudgeableError):
         Obstacles(replace(good, chord_error=math.nan))
-    conditions = Conditions(
-        Machine(), np.array([0, 0, 1.0]), PostureRange(), Surroundings.sheet(Obstacles(good)), 0.01, 1
-    )
+    conditions = Conditions(Machine(), np.array([0, 0, 1.0]), PostureRange(), Surroundings.sheet(Obstacles(good)), 0.01, 1)
     context = Context.of(SMALL, conditions)
     contact = Contacts(np.zeros((1, 3)), n[None], e1[None], np.zeros((1, 2)))
     for which in range(4):

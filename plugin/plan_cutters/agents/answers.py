@@ -33,9 +33,7 @@ class Witness(Entry):
     face: str
     verdict: Literal["inaccessible", "undecided"] = "inaccessible"
     reason: str = Field(description="code, as in `reasons`")
-    obstacle_face: str | None = Field(
-        default=None, description="in the way at the best posture: a face, or `fixture:NAME`"
-    )
+    obstacle_face: str | None = Field(default=None, description="in the way at the best posture: a face, or `fixture:NAME`")
     obstacle_point: Vector | None = None
     best_posture: Posture | None = None
     depth_mm: float | None = Field(default=None, description="how deep the obstacle is in the tool at the best posture")
@@ -122,9 +120,7 @@ class OfPlan(Answer):
     samples: Samples
     cutters: list[CutterAnswer] = Field(description="those that reach most first")
     more_cutters: int = 0
-    not_judged: list[Note] = Field(
-        default=[], description="target faces that could not be judged, and why: `code` is the face"
-    )
+    not_judged: list[Note] = Field(default=[], description="target faces that could not be judged, and why: `code` is the face")
     more_not_judged: int = 0
     missing: list[Missing] = Field(default=[])
     more_missing: int = 0
@@ -161,13 +157,9 @@ class LeastSet(Entry):
 
 class Comparison(OfPlan):
     format: Literal["plan-cutters-agent-comparison"] = "plan-cutters-agent-comparison"
-    differ: list[FaceRow] = Field(
-        description="faces of which cutters reach different shares, the widest difference first"
-    )
+    differ: list[FaceRow] = Field(description="faces of which cutters reach different shares, the widest difference first")
     more_differ: int = 0
-    together: LeastSet | None = Field(
-        default=None, description="the fewest of them that reach all that any of them reaches"
-    )
+    together: LeastSet | None = Field(default=None, description="the fewest of them that reach all that any of them reaches")
 
 
 class RotationRow(Entry):
@@ -239,9 +231,7 @@ class Explanation(Answer):
     help_is_about: About = "nothing"
     no_help: str = Field(default="", description="why `would_help` is empty")
     postures: Postures | None = Field(default=None, description="at the point, where a part was given")
-    sample: Sample | None = Field(
-        default=None, description="nearest to the point, where a plan with samples.npz was given"
-    )
+    sample: Sample | None = Field(default=None, description="nearest to the point, where a plan with samples.npz was given")
     missing: list[Missing] = Field(default=[])
     more_missing: int = 0
 

@@ -49,7 +49,5 @@ def chosen(name: str, known: list[tuple[str, str]]) -> str:
         if len(matches) == 1:
             return matches[0]
         if matches:
-            raise CallError(
-                f"{len(matches)} cutters may be meant by {name!r}: {', '.join(matches[:8])}; give the whole id"
-            )
+            raise CallError(f"{len(matches)} cutters may be meant by {name!r}: {', '.join(matches[:8])}; give the whole id")
     raise CallError(f"no cutter is called {name!r}; there is {listed([id for id, _ in known])}")

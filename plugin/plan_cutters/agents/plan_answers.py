@@ -47,9 +47,7 @@ def planned(plan: Plan, code: int, most: int, files: Mapping[str, str]) -> PlanA
     codes = [*plan.note_codes, *[""] * len(plan.notes)]
     every = [*zip(codes, plan.notes, strict=False), *(("warning", text) for text in plan.part.warnings)]
     notes, more = first([Note(code=c, text=t) for c, t in every], most)
-    return PlanAnswer(
-        **_of_plan(plan, code, most), notes=notes, more_notes=more, files=dict(files), not_written=plan.not_written
-    )
+    return PlanAnswer(**_of_plan(plan, code, most), notes=notes, more_notes=more, files=dict(files), not_written=plan.not_written)
 
 
 def compared(plan: Plan, code: int, most: int) -> Comparison:
@@ -99,11 +97,7 @@ def _missing(plan: Plan) -> list[Missing]:
 def _cutter(plan: Plan, c: CutterEntry, text: str, most: int) -> CutterAnswer:
     by_face = sorted((-v.area_share.not_reached, name) for name, v in c.faces.items() if v.not_reached)
     faces, more = first(
-        [
-            Lost(face=name, share=-share, reason=main_reason(c.faces[name].area_share) or None)
-            for share, name in by_face
-        ],
-        most,
+        [Lost(face=name, share=-share, reason=main_reason(c.faces[name].area_share) or None) for share, name in by_face], most
     )
     steps = helps(plan, c)
     share = c.area_share
@@ -145,9 +139,7 @@ def explained(
     if entry is None:
         raise CallError(f"there is no such face; the part has {len(plan.faces)}", file=plan.part.file, face=face)
     if not entry.target:
-        raise CallError(
-            "was not judged in this plan, it is an obstacle only: ask with `part`", file=plan.part.file, face=face
-        )
+        raise CallError("was not judged in this plan, it is an obstacle only: ask with `part`", file=plan.part.file, face=face)
     counts = cutter.faces.get(face, FaceVerdicts())
     mine = _witnesses(cutter, face, point)
     unsure = bool(counts.undecided or counts.unjudged or entry.unjudged or plan.missing or not counts.reached)

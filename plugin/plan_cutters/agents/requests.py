@@ -12,9 +12,7 @@ Path = Annotated[str, Field(min_length=1, max_length=4000)]
 Point = Annotated[tuple[float, float, float], Field(description="x, y, z in part coordinates, mm")]
 _NUMBER = r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?"
 Axis = Annotated[str, Field(pattern=rf"^([+-]?[xyzXYZ]|auto|{_NUMBER},{_NUMBER},{_NUMBER})$", max_length=200)]
-Face = Annotated[
-    str, Field(pattern=r"^F[1-9]\d{0,6}$", description="as `F12`: faces are numbered as the CAD kernel lists them")
-]
+Face = Annotated[str, Field(pattern=r"^F[1-9]\d{0,6}$", description="as `F12`: faces are numbered as the CAD kernel lists them")]
 
 
 def _answer(word: str) -> str:
@@ -44,9 +42,7 @@ class Conditions(Question):
     holder: Word | None = Field(
         default=None, description="of cutters without one: er32, hsk63a-er32, D30L30, none, or a file with a holder"
     )
-    machine: Word = Field(
-        default="unlimited", description="unlimited, tilt:DEG, a built-in machine, or a machine file in a root"
-    )
+    machine: Word = Field(default="unlimited", description="unlimited, tilt:DEG, a built-in machine, or a machine file in a root")
     fixtures: list[Word] = Field(
         default=[],
         max_length=50,
@@ -59,9 +55,7 @@ class Conditions(Question):
     flip: bool = Field(default=False, description="machine the other side of open shells")
     tolerance_mm: float = Field(default=0.01, gt=0.0, le=10.0, description="gouge tolerance")
     allowance_mm: float = Field(default=0.0, ge=-100.0, le=100.0, description="stock left on the surface")
-    holder_clearance_mm: float = Field(
-        default=0.0, ge=0.0, le=1000.0, description="clearance required of neck, shank and holder"
-    )
+    holder_clearance_mm: float = Field(default=0.0, ge=0.0, le=1000.0, description="clearance required of neck, shank and holder")
 
 
 class Sampling(Question):
@@ -90,9 +84,7 @@ class PartQuestion(Conditions, Sampling):
         default=["0,0,1"], min_length=1, max_length=12,
         description="directions of the part along the machine's spindle: +z, -y, or x,y,z; every cutter is judged in each",
     )  # fmt: skip
-    faces: Word = Field(
-        default="sculptured,blends", description="faces to machine: sculptured, blends, all, F3,7-12, name:REGEX"
-    )
+    faces: Word = Field(default="sculptured,blends", description="faces to machine: sculptured, blends, all, F3,7-12, name:REGEX")
 
 
 class PlanQuestion(PartQuestion):
@@ -132,9 +124,7 @@ class ExplainQuestion(Conditions, Sampling):
             raise ValueError("give either `part` or `plan`")
         if (self.face is None) == (self.point is None):
             raise ValueError("give either `face` or `point`")
-        if self.plan is not None and (
-            others := self.model_fields_set - {"plan", "cutter", "face", "point", "within_mm"}
-        ):
+        if self.plan is not None and (others := self.model_fields_set - {"plan", "cutter", "face", "point", "within_mm"}):
             raise ValueError(f"`{min(others)}` is for a part, and a plan has its own: leave it out, or give `part`")
         return self
 

@@ -64,9 +64,7 @@ class Roots:
             It ends outside all roots, or is no name of a file.
         """
         if not self.folders:
-            raise CallError(
-                "there is no root: start the server with --root DIR, and files in DIR can be named", file=text
-            )
+            raise CallError("there is no root: start the server with --root DIR, and files in DIR can be named", file=text)
         try:
             ways = [(root / text).resolve() for root in self.folders]
             inside = [way for way in ways if any(way.is_relative_to(root) for root in self.folders)]

@@ -109,9 +109,7 @@ class Service:
             async with self._turns:
                 require_temporary()
                 with tempfile.TemporaryDirectory(prefix="plan-cutters-mcp-") as folder:
-                    return await tool.work(
-                        question, Call(Permissions(roots, self.limits), Path(folder).resolve(), tell)
-                    )
+                    return await tool.work(question, Call(Permissions(roots, self.limits), Path(folder).resolve(), tell))
 
     async def _roots(self, context: Any, params: "types.CallToolRequestParams") -> Any:
         """The roots of this call; where the client is to be asked for its own in an answer, that answer."""
@@ -148,9 +146,7 @@ def _question(tool: Tool, arguments: dict[str, Any]) -> Any:
         faults = error.errors()
         place = ".".join(map(str, faults[0]["loc"]))
         more = f" (and {len(faults) - 1} more)" if len(faults) > 1 else ""
-        raise CallError(
-            f"{place + ': ' if place else ''}{faults[0]['msg'].removeprefix('Value error, ')}{more}"
-        ) from None
+        raise CallError(f"{place + ': ' if place else ''}{faults[0]['msg'].removeprefix('Value error, ')}{more}") from None
 
 
 def _schema(model: Any, **more: Any) -> Any:

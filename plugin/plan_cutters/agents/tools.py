@@ -10,16 +10,7 @@ from typing import Any
 
 import anyio.to_thread
 
-from plan_cutters.agents.answers import (
-    Answer,
-    Comparison,
-    Explanation,
-    MapAnswer,
-    Picture,
-    PlanAnswer,
-    Sample,
-    Vector,
-)
+from plan_cutters.agents.answers import Answer, Comparison, Explanation, MapAnswer, Picture, PlanAnswer, Sample, Vector
 from plan_cutters.agents.child import Ended, ProgressListener, run
 from plan_cutters.agents.cutter_names import chosen, cutter_of
 from plan_cutters.agents.limits import CallError
@@ -65,9 +56,7 @@ class Call:
     tell: ProgressListener
 
     async def _run(self, words: Sequence[str], **more: Any) -> Ended:
-        return await run(
-            words, self.cwd, self.permissions.limits, self.tell, within=self.permissions.roots.folders, **more
-        )
+        return await run(words, self.cwd, self.permissions.limits, self.tell, within=self.permissions.roots.folders, **more)
 
     async def plan(self, words: Sequence[str]) -> tuple[Plan, int]:
         """Plan a part; the plan and the exit code."""
@@ -133,9 +122,7 @@ def fitting(make: Callable[[int], Answer], characters: int, picture: bytes | Non
         answer = make(most)
         if len(answer.model_dump_json()) <= characters:
             return Reply(answer.model_dump(mode="json"), picture)
-    raise CallError(
-        f"the answer has more than {characters} characters even without its lists: ask about fewer faces or cutters"
-    )
+    raise CallError(f"the answer has more than {characters} characters even without its lists: ask about fewer faces or cutters")
 
 
 async def plan_part(question: PlanQuestion, call: Call) -> Reply:
@@ -199,9 +186,7 @@ async def explain_sample(question: ExplainQuestion, call: Call) -> Reply:
         plan = plan_of(await anyio.to_thread.run_sync(path.read_bytes), question.plan, CallError)
         cutter, face = cutter_of(plan, question.cutter), question.face
         if question.point is not None:
-            sample = await anyio.to_thread.run_sync(
-                _nearest, question.plan, plan, cutter.id, question, call.permissions
-            )
+            sample = await anyio.to_thread.run_sync(_nearest, question.plan, plan, cutter.id, question, call.permissions)
             face = sample.face
     else:
         plan, name, face, postures = await _judged(question, call)
@@ -227,12 +212,7 @@ async def _judged(question: ExplainQuestion, call: Call) -> tuple[Plan, str, str
         if question.setup[0] == "auto":
             raise CallError("setup: `auto` proposes one for a plan; for a point, name the direction")
         at = MapQuestion(
-            part=question.part,
-            cutter=spec,
-            point=question.point,
-            within_mm=question.within_mm,
-            setup=question.setup[0],
-            **under,
+            part=question.part, cutter=spec, point=question.point, within_mm=question.within_mm, setup=question.setup[0], **under
         )
         postures, _ = await call.map(at, 0)
         face = json.loads(postures)["face"]

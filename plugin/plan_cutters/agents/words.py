@@ -51,12 +51,7 @@ class Permissions:
             raise CallError(
                 f"cutters: {len(question.cutters)} are given, and this server judges at most {self.limits.cutters} in a call"
             )
-        options = [
-            self.file(question.part),
-            *self.conditions(question),
-            *self.sampling(question),
-            f"--faces={question.faces}",
-        ]
+        options = [self.file(question.part), *self.conditions(question), *self.sampling(question), f"--faces={question.faces}"]
         options += [f"--cutter={each}" for each in question.cutters]
         return options + [f"--setup={each}" for each in question.setup]
 

@@ -83,12 +83,7 @@ def _what_if(
         within = int((ready.inside_bodies & not_reached).sum())
         unfinished = not_reached & ready.finished
         return WhatIfAnswer(
-            cutter.id,
-            int(unfinished.sum()) + within,
-            within,
-            (),
-            why,
-            Finished.of(ready).of_rows(np.flatnonzero(unfinished)),
+            cutter.id, int(unfinished.sum()) + within, within, (), why, Finished.of(ready).of_rows(np.flatnonzero(unfinished))
         )
     alone = mend(ready, cutter, reaches[cutter], progress=part_of(tell, 0, 2))
     return steps(ready, alone, cutter, reaches, other_setups, progress=part_of(tell, 1, 2))

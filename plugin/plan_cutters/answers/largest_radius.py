@@ -82,18 +82,14 @@ def largest_radius(
                      reach.axis, reach.tilt_direction, reach.tilt, reach.rotation)  # fmt: skip
 
 
-def _cutters(
-    ready: Prepared, shape: Shape, ratio: float, step: float, least: float | None, most: float | None
-) -> list[Cutter]:
+def _cutters(ready: Prepared, shape: Shape, ratio: float, step: float, least: float | None, most: float | None) -> list[Cutter]:
     """The end mills to try, each larger than the one before, of which the tolerance lets something be said."""
     if shape not in _ENDS:
         raise OptionError(f"the shape of an end mill is flat or ball, not {shown(shape)}")
     ratio, step = number(ratio, "length over radius"), number(step, "step of radii")
     lowest = 1.0 if shape == "ball" else _RATIOS[0]
     if not lowest <= ratio <= _RATIOS[1]:
-        raise OptionError(
-            f"length over radius {ratio:g} of a {shape} end must lie between {lowest:g} and {_RATIOS[1]:g}"
-        )
+        raise OptionError(f"length over radius {ratio:g} of a {shape} end must lie between {lowest:g} and {_RATIOS[1]:g}")
     if not _STEPS[0] <= step <= _STEPS[1]:
         raise OptionError(f"step of radii {step:g} must lie between {_STEPS[0]:g} and {_STEPS[1]:g}")
     conditions, part = ready.conditions, ready.scene.part

@@ -18,9 +18,7 @@ _SECONDS = 10.0
 
 
 def least_set(
-    ready: Prepared,
-    reaches: Mapping[Cutter, Verdicts],
-    other_setups: Sequence[tuple[Axis, Mapping[str, Verdicts]]] = (),
+    ready: Prepared, reaches: Mapping[Cutter, Verdicts], other_setups: Sequence[tuple[Axis, Mapping[str, Verdicts]]] = ()
 ) -> LeastSet | None:
     """Find the fewest runs, a cutter in a setup each, that reach all that any of them reaches of the finished surface.
 
@@ -58,12 +56,7 @@ def least_set(
         ))  # fmt: skip
     open_rows = np.flatnonzero(finished.wanted & ~done)
     return LeastSet(
-        tuple(runs),
-        int(done.sum()),
-        len(open_rows),
-        finished.of_rows(np.flatnonzero(done)),
-        finished.of_rows(open_rows),
-        proven,
+        tuple(runs), int(done.sum()), len(open_rows), finished.of_rows(np.flatnonzero(done)), finished.of_rows(open_rows), proven
     )
 
 

@@ -95,11 +95,7 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
     state, known, ready = scan.state, scan.known, scan.state.ready
     blocked = np.setdiff1d(scan.few, gained, assume_unique=True)
     retained = np.setdiff1d(np.flatnonzero(scan.finished.wanted), scan.left, assume_unique=True)
-    axes = [
-        axis
-        for axis in directions(ready, Trials(scan.left, retained))
-        if all(angle(axis, own) > 1.0 for own in state.axes)
-    ]
+    axes = [axis for axis in directions(ready, Trials(scan.left, retained)) if all(angle(axis, own) > 1.0 for own in state.axes)]
     now = state.axes[0]
     if plain:
         axes = [axis for axis in axes if _own(axis)]

@@ -61,9 +61,7 @@ class Candidates(Record):
         surroundings, part = ready.conditions.surroundings, ready.scene.part
         triangles = (surroundings.alone or surroundings).certain.triangles
         planar = [face.number for face in part.faces if face.shape == "plane"]
-        axis = distinct(
-            np.concatenate([cube(), _normals(triangles.vertex, triangles.face, planar), fibonacci(_SPREAD)])
-        )
+        axis = distinct(np.concatenate([cube(), _normals(triangles.vertex, triangles.face, planar), fibonacci(_SPREAD)]))
         height = triangles.vertex.reshape(-1, 3) @ axis.T
         lowest, flat = height.min(axis=0), triangles.chord_error + 1e-6 * float(np.linalg.norm(part.size))
         face = np.repeat(triangles.face, 3)
@@ -74,9 +72,7 @@ class Candidates(Record):
 
 def cube() -> Floats:
     """Directions (26, 3) of a cube's faces, edges and corners; the part's own axes come first, +z as the first of all."""
-    every = np.array(
-        [(x, y, z) for z in (1, 0, -1) for y in (0, 1, -1) for x in (0, 1, -1) if (x, y, z) != (0, 0, 0)], float
-    )
+    every = np.array([(x, y, z) for z in (1, 0, -1) for y in (0, 1, -1) for x in (0, 1, -1) if (x, y, z) != (0, 0, 0)], float)
     every = every[np.argsort(np.abs(every).sum(axis=1), kind="stable")]
     return np.asarray(every / np.linalg.norm(every, axis=1)[:, None])
 
@@ -314,9 +310,7 @@ def ranked(ready: Prepared, most: int) -> Ranking:
     ranking.search(np.ones(len(ranking.rows), bool), _FIRST)
     for number in range(1, most):
         chosen = ranking.choose(number)
-        done = (
-            np.logical_or.reduce([ranking.served[k] for k in chosen]) if chosen else np.zeros(len(ranking.rows), bool)
-        )
+        done = np.logical_or.reduce([ranking.served[k] for k in chosen]) if chosen else np.zeros(len(ranking.rows), bool)
         if done.all():
             break
         ranking.search(~done, _MORE)

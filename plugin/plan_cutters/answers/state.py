@@ -72,10 +72,7 @@ class Judgements:
 
     @classmethod
     def of(
-        cls,
-        ready: Prepared,
-        reaches: Mapping[Cutter, Verdicts],
-        other_setups: Sequence[tuple[Axis, Mapping[str, Verdicts]]] = (),
+        cls, ready: Prepared, reaches: Mapping[Cutter, Verdicts], other_setups: Sequence[tuple[Axis, Mapping[str, Verdicts]]] = ()
     ) -> "Judgements":
         """Those of a plan."""
         judgements, wanted = cls(), ready.finished

@@ -161,9 +161,7 @@ def _name(move: Move) -> Named:
     return move.means, str(move.asked)
 
 
-def _step(
-    base: tuple[Prepared, Cutter, State], finished: Finished, open_rows: Rows, candidate: Candidate, rows: Rows
-) -> Step:
+def _step(base: tuple[Prepared, Cutter, State], finished: Finished, open_rows: Rows, candidate: Candidate, rows: Rows) -> Step:
     ready, cutter, state = base
     after = candidate.state
     result = option(

@@ -208,9 +208,7 @@ class _Search:
         contact = Contacts(samples.point[one], samples.normal[one], samples.direction_max[one], samples.curvature[one])
         best, start = blank(1), (max(0, int(self.found.rotation[row])), float(self.found.tilt[row]))
         turns, solids = len(ranges.rotation_cos), self.conditions.obstacles.solids
-        if not posture(
-            contact, ranges, self.tool(stick_out), _NARROWEST, start, turns, solids, verdict_arrays_of(best)
-        ):
+        if not posture(contact, ranges, self.tool(stick_out), _NARROWEST, start, turns, solids, verdict_arrays_of(best)):
             return False
         self.found.take_posture(row, best, 0)
         return True

@@ -105,10 +105,7 @@ class Trials:
     @classmethod
     def of(cls, verdicts: Verdicts, finished: NDArray[np.bool_]) -> "Trials":
         """The samples of a reach that are of the finished surface (n,)."""
-        not_reached, reached_rows = (
-            np.flatnonzero(verdicts.not_reached & finished),
-            np.flatnonzero(verdicts.reached & finished),
-        )
+        not_reached, reached_rows = (np.flatnonzero(verdicts.not_reached & finished), np.flatnonzero(verdicts.reached & finished))
         return cls(not_reached, reached_rows, blocked=int((verdicts.verdict[not_reached] == INACCESSIBLE).sum()))
 
     @property

@@ -46,9 +46,7 @@ def search(thing: Thing, what: WhatIf, trials: Trials) -> Change:
         result, beyond = value(step.steps), None if step.beyond is None else value(step.beyond)
         words, options = what.serves(result, step.case)
         (cutter,) = options.get("cutters", (None,))
-        return Change(
-            thing, what.now, result, True, 0, len(trials.not_reached), trials.count, beyond, cutter, words, options
-        )
+        return Change(thing, what.now, result, True, 0, len(trials.not_reached), trials.count, beyond, cutter, words, options)
     end = what.ends[0] if what.nested else trials.closest(what.ends)
     remaining = remaining or StillMissed.by(end, trials.not_reached)
     why = what.fails(end, remaining)

@@ -35,9 +35,7 @@ def stick_out(case: Case, trials: Trials) -> WhatIf | Change:
     cutter, not_reached = case.cutter, len(trials.not_reached)
     now, how = cutter.length, notation(cutter.name)
     if cutter.holder is None:
-        return none(
-            "stick_out", now, not_reached, "no holder is stated, and a longer cutter only adds to what is in the way"
-        )
+        return none("stick_out", now, not_reached, "no holder is stated, and a longer cutter only adds to what is in the way")
     most = math.ceil((highest(case.ready, cutter) - now) / GRAIN)
     if most < 1:
         return none("stick_out", now, not_reached, f"its {how.mm(now)} already hold the holder above all obstacles")

@@ -55,15 +55,11 @@ def setup(case: Case, trials: Trials) -> WhatIf | Change:
     if not tried:
         return none("setup", now, not_reached, "under every other axis a plan would work on other sides of open faces")
     ends = (axis for axis, made in tried.items() if not trials.stopped(made, everywhere=True))
-    ways = (
-        Way(math.ceil(angle(now, end) / TURN - 1e-9), partial(_towards, now, end)) for end in islice(ends, _APPROACHED)
-    )
+    ways = (Way(math.ceil(angle(now, end) / TURN - 1e-9), partial(_towards, now, end)) for end in islice(ends, _APPROACHED))
 
     def fails(_: Case, rest: StillMissed) -> str:
         if rest.count and not rest.blocked:
-            return (
-                f"the best of {len(tried)} directions tried leaves {rest.count:,} of {rest.looked:,} samples undecided"
-            )
+            return f"the best of {len(tried)} directions tried leaves {rest.count:,} of {rest.looked:,} samples undecided"
         why = f"the best leaves {rest.count:,} of {rest.looked:,} samples" if rest.count else "each loses some samples"
         return f"none of {len(tried)} directions tried serves, {why}"
 
@@ -84,8 +80,7 @@ def directions(ready: Prepared, trials: Trials) -> list[Axis]:
     """
     now = ready.scene.setup
     means = [
-        ready.samples.normal[rows].mean(axis=0)
-        for rows in (trials.not_reached, np.sort([*trials.not_reached, *trials.kept]))
+        ready.samples.normal[rows].mean(axis=0) for rows in (trials.not_reached, np.sort([*trials.not_reached, *trials.kept]))
     ]
     cube = [np.array(each, float) for each in product((-1, 0, 1), repeat=3) if any(each)]
     axes: list[Axis] = []
@@ -177,9 +172,7 @@ def closer(case: Case, requested: float) -> Case:
     scene = replace(ready.scene, asked=requested)
     surroundings = scene.surround(jobs=ready.conditions.jobs)
     conditions = replace(ready.conditions, surroundings=surroundings, tolerance=surroundings.tolerance(requested))
-    within = inside_material(
-        ready.samples, scene.orientation, surroundings.enclosing, surroundings.certain, conditions.tolerance
-    )
+    within = inside_material(ready.samples, scene.orientation, surroundings.enclosing, surroundings.certain, conditions.tolerance)
     inside = inside_bodies(within, surroundings.bodies, scene.orientation)
     return replace(case, ready=replace(ready, scene=scene, conditions=conditions, inside=within, inside_bodies=inside))
 

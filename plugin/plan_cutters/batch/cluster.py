@@ -153,9 +153,7 @@ def differs(client: Mapping[str, str], worker: Mapping[str, str]) -> str:
     for name, here in client.items():
         if worker.get(name) != here:
             there = worker.get(name)
-            return f"{name if there not in (None, 'None') else f'no {name}'} {there}, this machine {here}".replace(
-                " None,", ","
-            )
+            return f"{name if there not in (None, 'None') else f'no {name}'} {there}, this machine {here}".replace(" None,", ",")
     return ""
 
 

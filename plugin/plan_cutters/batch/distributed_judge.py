@@ -98,9 +98,7 @@ class DistributedJudge:
             self._require_scheduler()
             time.sleep(_PAUSE)
         else:
-            raise PlanError(
-                "the cluster loses its workers again and again: look into their logs; their memory may be too small"
-            )
+            raise PlanError("the cluster loses its workers again and again: look into their logs; their memory may be too small")
         if work is not None:
             work.add(sum(looked for _, looked in results.values()))
         return _joined(results, n)
@@ -128,9 +126,7 @@ class DistributedJudge:
         size = CHUNK * max(1, -(-size // CHUNK))
         return ((first, min(first + size, n)) for first in range(0, n, size))
 
-    def _asked(
-        self, blocks: list[Block], cutter: Cutter, known: Verdicts | None
-    ) -> Iterator[tuple[Block, tuple[Verdicts, int]]]:
+    def _asked(self, blocks: list[Block], cutter: Cutter, known: Verdicts | None) -> Iterator[tuple[Block, tuple[Verdicts, int]]]:
         """What workers find at blocks, in the order in which it comes, without what is lost."""
         from dask import config
         from distributed import as_completed

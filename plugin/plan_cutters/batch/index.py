@@ -25,12 +25,7 @@ _HERE = Path(__file__).parent
 
 
 def write_index(
-    rows: Sequence[PartRow],
-    put: Callable[[str, bytes], None],
-    *,
-    title: str,
-    seconds: float,
-    cluster: Mapping[str, object],
+    rows: Sequence[PartRow], put: Callable[[str, bytes], None], *, title: str, seconds: float, cluster: Mapping[str, object]
 ) -> None:
     """Write the index of all parts; all is made before anything is written, and the summary comes last.
 

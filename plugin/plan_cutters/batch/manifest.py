@@ -166,9 +166,7 @@ def _line(text: str, word: str) -> int:
 def _csv(file: str, text: str) -> Iterator[tuple[int, dict[str, Any] | str]]:
     head = text.partition("\n")[0]
     # Where a comma parts decimals, tables are written with semicolons.
-    rows = csv.reader(
-        io.StringIO(text, newline=""), delimiter=";" if ";" in head and "," not in head else ",", strict=True
-    )
+    rows = csv.reader(io.StringIO(text, newline=""), delimiter=";" if ";" in head and "," not in head else ",", strict=True)
     names: list[str] = []
     try:
         for row in rows:
@@ -182,10 +180,7 @@ def _csv(file: str, text: str) -> Iterator[tuple[int, dict[str, Any] | str]]:
                                     file=f"{file}:{rows.line_num}")  # fmt: skip
                 continue
             if len(cells) > len(names):
-                yield (
-                    rows.line_num,
-                    f"has {len(cells)} cells for {len(names)} columns: a cell with a comma needs quotes",
-                )
+                yield (rows.line_num, f"has {len(cells)} cells for {len(names)} columns: a cell with a comma needs quotes")
                 continue
             yield rows.line_num, {name: _cell(name, cell) for name, cell in zip(names, cells, strict=False) if cell}
     except csv.Error as error:
@@ -205,8 +200,6 @@ def _list(file: str, text: str) -> Iterator[tuple[int, dict[str, Any]]]:
 def _why(error: ValidationError) -> str:
     """One line of what is wrong with a table."""
     first = error.errors()[0]
-    place = ".".join(
-        str(each) for each in first["loc"] if not isinstance(each, int) and each not in ("bool", "int", "str")
-    )
+    place = ".".join(str(each) for each in first["loc"] if not isinstance(each, int) and each not in ("bool", "int", "str"))
     word = "is missing" if first["type"] == "missing" else first["msg"][:1].lower() + first["msg"][1:]
     return f"{place}: {word}" if place else word

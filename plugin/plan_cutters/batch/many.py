@@ -129,9 +129,7 @@ def _jobs(parts: Iterable[Any], settings: Settings, terms: "Terms", faults: list
     """Jobs of parts as they are requested; those that cannot be planned are put aside."""
     names: set[str] = set()
     for number, entry in enumerate(parts, 1):
-        name, part = (
-            entry if isinstance(entry, tuple) and len(entry) == 2 and isinstance(entry[0], str) else (None, entry)
-        )
+        name, part = entry if isinstance(entry, tuple) and len(entry) == 2 and isinstance(entry[0], str) else (None, entry)
         is_file = isinstance(part, str | PurePath)
         file = str(part) if is_file else f"part {number}"
         name = name or (Path(file).stem if is_file else f"part-{number}")
@@ -147,13 +145,9 @@ def _jobs(parts: Iterable[Any], settings: Settings, terms: "Terms", faults: list
                 own, packed = _packed(part, settings)
                 yield Job(name, file, own, packed)
         except PlanError as error:
-            faults.append(
-                Fault(f"{name} ({number})" if name.casefold() in names else name, file, str(error), USAGE).row
-            )
+            faults.append(Fault(f"{name} ({number})" if name.casefold() in names else name, file, str(error), USAGE).row)
         except Exception as error:
-            faults.append(
-                Fault(name, file, f"{file}: {' '.join(str(error).split()) or type(error).__name__}", UNREADABLE).row
-            )
+            faults.append(Fault(name, file, f"{file}: {' '.join(str(error).split()) or type(error).__name__}", UNREADABLE).row)
 
 
 def _packed(part: Any, settings: Settings) -> tuple[Settings, bytes]:

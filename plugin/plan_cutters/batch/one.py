@@ -63,9 +63,7 @@ def plan(
     return pipeline.plan(part, progress=progress, judged=judging(client, verdicts, key=key), **options)
 
 
-def judging(
-    client: Any = None, verdicts: str | None = None, otherwise: Judge | None = None, key: bytes | None = None
-) -> Judge:
+def judging(client: Any = None, verdicts: str | None = None, otherwise: Judge | None = None, key: bytes | None = None) -> Judge:
     """What judges with a cluster, with kept verdicts, with both, or with neither: then `otherwise`."""
     judged: Judge = otherwise or judge
     if client is not None:

@@ -36,9 +36,7 @@ class Source:
     place: str = ""
 
 
-def sources(
-    words: Sequence[str], out: str, manifest: Callable[[str], Sequence[Source | Fault]]
-) -> list[Source | Fault]:
+def sources(words: Sequence[str], out: str, manifest: Callable[[str], Sequence[Source | Fault]]) -> list[Source | Fault]:
     """The parts that are meant, in the order of the words and, within each, of the names.
 
     Parameters
@@ -87,9 +85,7 @@ def _listed(word: str, base: str, files: Sequence[str], fs: Any, nothing: str) -
     if not files:
         return [Fault(word, word, f"{word}: {nothing}")]
     whole = "://" in word
-    return [
-        Source(_stem(file[len(base) :].lstrip("/")), fs.unstrip_protocol(file) if whole else file) for file in files
-    ]
+    return [Source(_stem(file[len(base) :].lstrip("/")), fs.unstrip_protocol(file) if whole else file) for file in files]
 
 
 def _stem(path: str) -> str:

@@ -123,10 +123,7 @@ class Store(Folder):
             They cannot be written: the part is not done.
         """
         try:
-            options = {
-                "row": row.model_dump(mode="json"),
-                "sha256": {name: checksum_of(what) for name, what in files.items()},
-            }
+            options = {"row": row.model_dump(mode="json"), "sha256": {name: checksum_of(what) for name, what in files.items()}}
             marker = json.dumps(options | {"seal": seal(options, self._key)}, indent=1).encode()
             if self.local:
                 self._rename(folder, files, marker)

@@ -61,9 +61,7 @@ class Counts(_Entry):
 
     failed: int = 0
     not_finished: int = Field(default=0, description="no cutter reaches all that could be judged")
-    not_sure: int = Field(
-        default=0, description="a cutter would, but something could not be judged or obstacles are missing"
-    )
+    not_sure: int = Field(default=0, description="a cutter would, but something could not be judged or obstacles are missing")
     finished: int = Field(default=0, description="a cutter reaches every judged sample")
 
 
@@ -135,9 +133,7 @@ def summary_of(
         if row.cutter is not None:
             cutters.setdefault(row.cutter, Counter())[result] += 1
     failed = [row for row, result in zip(rows, outcomes, strict=True) if result == "failed"]
-    reasons = Counter(
-        row.reason for row, result in zip(rows, outcomes, strict=True) if row.reason and result != "finished"
-    )
+    reasons = Counter(row.reason for row, result in zip(rows, outcomes, strict=True) if row.reason and result != "finished")
     made = Counter(row.status for row in rows)
     return Summary(
         title=title,
@@ -148,8 +144,7 @@ def summary_of(
             for name, result in sorted(cutters.items(), key=lambda each: (-each[1].total(), each[0]))
         ],
         by_reason=[
-            ReasonParts(reason=code, parts=parts)
-            for code, parts in sorted(reasons.items(), key=lambda each: (-each[1], each[0]))
+            ReasonParts(reason=code, parts=parts) for code, parts in sorted(reasons.items(), key=lambda each: (-each[1], each[0]))
         ],
         failures=[Failure(name=row.name, file=row.file, code=code_of(row), error=cause(row)) for row in failed[:NAMED]],
         files=dict(files),
@@ -164,10 +159,7 @@ def _counts(counts: Mapping[str, int]) -> dict[str, int]:
 
 def schema() -> dict[str, Any]:
     """JSON Schema of `summary.json` (draft 2020-12), made from the model."""
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        **Summary.model_json_schema(mode="serialization"),
-    }
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **Summary.model_json_schema(mode="serialization")}
 
 
 def schema_text() -> str:

@@ -29,8 +29,7 @@ def values(row: PartRow) -> dict[str, Any]:
     result = outcome(row)
     cells = {**row.model_dump(), "outcome": result, "error": cause(row) if result == "failed" else row.error}
     return {
-        name: None if isinstance(cells[name], float) and not math.isfinite(cells[name]) else cells[name]
-        for name in columns()
+        name: None if isinstance(cells[name], float) and not math.isfinite(cells[name]) else cells[name] for name in columns()
     }
 
 

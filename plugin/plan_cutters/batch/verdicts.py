@@ -175,9 +175,7 @@ class VerdictCache:
 
 def packed(verdicts: Verdicts, looked: int, key: str, secret: bytes | None = None) -> bytes:
     """Write verdicts, the work that they took and the key that they belong to as one entry, stamped with a secret if any."""
-    columns = b"".join(
-        np.ascontiguousarray(getattr(verdicts, name), kind).tobytes() for name, (kind, _) in _COLUMNS.items()
-    )
+    columns = b"".join(np.ascontiguousarray(getattr(verdicts, name), kind).tobytes() for name, (kind, _) in _COLUMNS.items())
     content = zlib.compress(columns, 1)
     head = {"key": key, "samples": len(verdicts.verdict), "looked": looked}
     header = json.dumps(head, sort_keys=True).encode()

@@ -51,9 +51,7 @@ class Bench:
         ]
         #: Faces that are not among the surfaces: nothing is known of what they are in the way of.
         self.unread = [
-            f"F{face.number}"
-            for face in part.faces
-            if face.number not in question.ignored and part.trim(face.number) is None
+            f"F{face.number}" for face in part.faces if face.number not in question.ignored and part.trim(face.number) is None
         ]
         #: Fixtures of which is not known whether a point lies within.
         self.hollow: list[str] = []
@@ -117,9 +115,7 @@ class Bench:
             words.append(f"sample {rows[mine[k]]}: {where} is {hits.depth[k]:.4g} mm deep in the {solid.part}")
         return verdict, words
 
-    def serves(
-        self, setup: int, tool: Tool, rows: Rows, axis: Floats, clock: Clock, *, surely: bool
-    ) -> NDArray[np.int8]:
+    def serves(self, setup: int, tool: Tool, rows: Rows, axis: Floats, clock: Clock, *, surely: bool) -> NDArray[np.int8]:
         """The same for a fixed axis at samples (m,), (m, 3): where the axis is the normal, with any side of the bottom."""
         normal = self.normal[rows]
         tilt_direction = self.own_tilt_direction(rows, axis)
@@ -148,9 +144,7 @@ class Bench:
     ) -> tuple[float, str] | None:
         """The least distance of what does not cut from anything, mm, at samples (m,), and which part comes nearest."""
         tip = tool.tips(self.point[rows], self.normal[rows], axis, tilt_direction)
-        return nearest(
-            self.cells, self.root[setup], tool.above(2.0 * tool.radius), tip, axis, beyond, self.grain, clock
-        )
+        return nearest(self.cells, self.root[setup], tool.above(2.0 * tool.radius), tip, axis, beyond, self.grain, clock)
 
     def named(self, index: int) -> Tool:
         """The tool of an index into the plan's cutters."""

@@ -355,11 +355,7 @@ def other_angles(question: Question, setup: int, degrees: Floats) -> tuple[float
         for turn in (a, a - 360.0, a + 360.0):
             candidate = (turn, b)
             apart = sum(abs((x - y + 180.0) % 360.0 - 180.0) for x, y in zip(candidate, degrees.tolist(), strict=True))
-            if (
-                _within(turn, machine.limits[0])
-                and apart > 0.01
-                and (best is None or _size(candidate) < _size(best) - 1e-9)
-            ):
+            if _within(turn, machine.limits[0]) and apart > 0.01 and (best is None or _size(candidate) < _size(best) - 1e-9):
                 best = candidate
     return None if best is None else tuple(round(x, 3) + 0.0 for x in best)
 

@@ -34,9 +34,7 @@ class Answer:
         count = Counter(UNCHECKED.get(pattern(each), "they are empty") for each in self.entries.unchecked)
         for why, number in count.items():
             names = dict.fromkeys(
-                pattern(each)
-                for each in self.entries.unchecked
-                if UNCHECKED.get(pattern(each), "they are empty") == why
+                pattern(each) for each in self.entries.unchecked if UNCHECKED.get(pattern(each), "they are empty") == why
             )
             lines.append(f"not checked: {', '.join(names)} ({number}): {why}")
         return lines

@@ -56,9 +56,7 @@ class PlacedFixture:
         read = _read(body)
         if isinstance(read, Part):
             self.sources = [
-                Face(read, face.number, self.name, rotation, shift)
-                for face in read.faces
-                if read.trim(face.number) is not None
+                Face(read, face.number, self.name, rotation, shift) for face in read.faces if read.trim(face.number) is not None
             ]
         else:
             self._vertex = read.vertex @ rotation.T + shift

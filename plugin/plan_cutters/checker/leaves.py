@@ -151,9 +151,7 @@ def _compare(expected: Any, actual: Any, path: str, comparison: Compared) -> Non
 def _unchecked(value: Any, path: str, comparison: Compared) -> None:
     for leaf, each in leaves(value, path):
         plain = pattern(leaf)
-        empty = isinstance(each, dict | list) and any(
-            known.startswith((f"{plain}[", f"{plain}.")) for known in UNCHECKED
-        )
+        empty = isinstance(each, dict | list) and any(known.startswith((f"{plain}[", f"{plain}.")) for known in UNCHECKED)
         (comparison.unchecked if plain in UNCHECKED or empty else comparison.unknown).append(leaf)
 
 

@@ -96,9 +96,7 @@ class Paper:
         known &= np.isfinite(angle).all(axis=1)
         if not known.all():
             unknown = int((~known).sum())
-            yield Finding(
-                False, f"{unknown} candidates are of cutters or setups that there are not, or have no angles."
-            )
+            yield Finding(False, f"{unknown} candidates are of cutters or setups that there are not, or have no angles.")
             return
         wrong = beyond = 0
         for s, each in enumerate(question.setups):
@@ -171,7 +169,5 @@ class Paper:
 
 def _inside(trim: Any, u: Floats, v: Floats) -> NDArray[np.bool_]:
     """Which parameters (n,) lie in a face, by few at a time."""
-    parts = [
-        trim.inside(u[start : start + _AT_ONCE], v[start : start + _AT_ONCE]) for start in range(0, len(u), _AT_ONCE)
-    ]
+    parts = [trim.inside(u[start : start + _AT_ONCE], v[start : start + _AT_ONCE]) for start in range(0, len(u), _AT_ONCE)]
     return np.concatenate([*parts, np.zeros(0, bool)])

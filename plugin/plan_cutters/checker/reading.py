@@ -7,13 +7,7 @@ from typing import Any
 from plan_cutters.checker.question import Question
 
 #: Arrays of operations.npz that are of each plan, of samples and of candidates: their last axes, and kinds.
-_OF_PLAN = {
-    "operation": ((), "i"),
-    "strip_mm": ((), "f"),
-    "seconds": ((), "f"),
-    "exclusive": ((), "b"),
-    "lean": ((3,), "f"),
-}
+_OF_PLAN = {"operation": ((), "i"), "strip_mm": ((), "f"), "seconds": ((), "f"), "exclusive": ((), "b"), "lean": ((3,), "f")}
 _OF_CANDIDATES = {"candidate_cutter": ((), "i"), "candidate_setup": ((), "i"), "candidate_angle": ((2,), "f"),
                   "candidate_axis": ((3,), "f")}  # fmt: skip
 _OF_SAMPLES = {"point": ((3,), "f"), "normal": ((3,), "f"), "direction_max": ((3,), "f"), "uv": ((2,), "f"), "face": ((), "i"),
@@ -46,9 +40,7 @@ def faults(question: Question) -> Iterator[str]:
     yield from _shaped("operations.npz", arrays, _OF_CANDIDATES, m)
     yield from _shaped("operations.npz", arrays, {"chosen": ((), "i")}, len(arrays.get("chosen", ())))
     for k, plan in enumerate(entry["plans"]):
-        yield from _shaped(
-            "operations.npz", arrays, {f"{a}{suffix(k, plan['name'])}": b for a, b in _OF_PLAN.items()}, n
-        )
+        yield from _shaped("operations.npz", arrays, {f"{a}{suffix(k, plan['name'])}": b for a, b in _OF_PLAN.items()}, n)
     every = {
         f"{name}{suffix(k, plan['name'])}" for k, plan in enumerate(entry["plans"]) for name in _OF_PLAN
     } | {*_OF_CANDIDATES, "chosen"}  # fmt: skip

@@ -39,9 +39,7 @@ class MeasuredCells:
 class Face:
     """A face of a part, perhaps placed: `rotation @ point + shift`."""
 
-    def __init__(
-        self, part: Part, number: int, name: str, rotation: Floats | None = None, shift: Floats | None = None
-    ) -> None:
+    def __init__(self, part: Part, number: int, name: str, rotation: Floats | None = None, shift: Floats | None = None) -> None:
         self.name, self._part, self._number = name, part, number
         self._rotation = np.eye(3) if rotation is None else rotation
         self._shift = np.zeros(3) if shift is None else shift
@@ -103,13 +101,7 @@ class Face:
                 proper[some] = self._trim.inside(u[some], v[some])
         unusable = ~np.isfinite(point).all(axis=1) | ~np.isfinite(slack)
         # Where the kernel has no value there is nothing to look at.
-        point[unusable], offset[unusable], slack[unusable], proper[unusable], state[unusable] = (
-            0.0,
-            0.0,
-            0.0,
-            False,
-            OUTSIDE,
-        )
+        point[unusable], offset[unusable], slack[unusable], proper[unusable], state[unusable] = (0.0, 0.0, 0.0, False, OUTSIDE)
         return MeasuredCells(point @ self._rotation.T + self._shift, offset @ self._rotation.T, slack, state, proper)
 
     def _state(self, form: Floats) -> NDArray[np.int8]:
@@ -172,11 +164,7 @@ class Triangles:
         offset = form - point[:, None]
         n = len(form)
         return MeasuredCells(
-            point,
-            np.concatenate([offset, offset[:, :1]], axis=1),
-            np.zeros(n),
-            np.full(n, INSIDE, np.int8),
-            np.ones(n, bool),
+            point, np.concatenate([offset, offset[:, :1]], axis=1), np.zeros(n), np.full(n, INSIDE, np.int8), np.ones(n, bool)
         )
 
 
@@ -266,15 +254,9 @@ class Cells:
 
     def _links(self, cells: Rows) -> int:
         """Copies of cells that follow each other, with the pieces of the cells: the number of the first."""
-        contacts = MeasuredCells(
-            self.point[cells], self.offset[cells], self.slack[cells], self.state[cells], self.proper[cells]
-        )
+        contacts = MeasuredCells(self.point[cells], self.offset[cells], self.slack[cells], self.state[cells], self.proper[cells])
         new = self._append(self._form[cells], contacts, 0)
-        self.source[new], self._first[new], self._count[new] = (
-            self.source[cells],
-            self._first[cells],
-            self._count[cells],
-        )
+        self.source[new], self._first[new], self._count[new] = (self.source[cells], self._first[cells], self._count[cells])
         return int(new[0])
 
     def _append(self, form: Floats, contacts: MeasuredCells, source: int) -> Rows:

@@ -187,9 +187,7 @@ def _cut(solid: Solid, height: float) -> Solid:
     )
     wide = min((q for a, b, c, d in border for q, h in ((a, b), (c, d)) if h == height), default=solid.wide)
     wide = max([wide, *(arc.q + arc.radius * math.cos(arc.first) for arc in arcs)])
-    return Solid(
-        solid.part, lines, arcs, np.array([*border, (0.0, height, wide, height)]), height, solid.high, solid.wide
-    )
+    return Solid(solid.part, lines, arcs, np.array([*border, (0.0, height, wide, height)]), height, solid.high, solid.wide)
 
 
 def _line(a: tuple[float, float], b: tuple[float, float]) -> tuple[float, float, float]:
@@ -199,18 +197,13 @@ def _line(a: tuple[float, float], b: tuple[float, float]) -> tuple[float, float,
     return n_q / size, n_h / size, (n_q * a[0] + n_h * a[1]) / size
 
 
-def _solid(
-    part: str, points: list[tuple[float, float]], arcs: tuple[Arc, ...] = (), bent: frozenset[int] = frozenset()
-) -> Solid:
+def _solid(part: str, points: list[tuple[float, float]], arcs: tuple[Arc, ...] = (), bent: frozenset[int] = frozenset()) -> Solid:
     """A body from the points of its outline, from the axis below to the axis above; `bent`: sides that are arcs."""
     sides = [(k, a, b) for k, (a, b) in enumerate(pairwise(points)) if math.dist(a, b) > 1e-12]
     straight = [(a, b) for k, a, b in sides if k not in bent]
     heights = [h for _, h in points]
     wide = max(
-        [
-            *(q for q, _ in points),
-            *(arc.q + arc.radius * max(0.0, math.cos(max(arc.first, min(arc.last, 0.0)))) for arc in arcs),
-        ]
+        [*(q for q, _ in points), *(arc.q + arc.radius * max(0.0, math.cos(max(arc.first, min(arc.last, 0.0)))) for arc in arcs)]
     )
     return Solid(part, np.array([_line(a, b) for a, b in straight]), tuple(arc for arc in arcs if arc.radius > 0.0),
                  np.array([(*a, *b) for a, b in straight]), min(heights), max(heights), wide)  # fmt: skip
@@ -238,9 +231,7 @@ def tool_of(sizes: ToolSizes) -> Tool:
         bottom = Arc(0.0, sizes.arc_radius, sizes.arc_radius, _DOWN, _DOWN + joint)
         side = Arc(inner, high, corner, _DOWN + joint, _OUT)
         foot = (sizes.arc_radius * math.sin(joint), sizes.arc_radius * (1.0 - math.cos(joint)))
-        cutting = [
-            _solid("flutes", [(0.0, 0.0), foot, (r, high), (r, top), (0.0, top)], (bottom, side), frozenset({0, 1}))
-        ]
+        cutting = [_solid("flutes", [(0.0, 0.0), foot, (r, high), (r, top), (0.0, top)], (bottom, side), frozenset({0, 1}))]
         contacts = (bottom, side)
     elif sizes.shape == "barrel":
         wide, centre = sizes.arc_radius, sizes.arc_height
@@ -248,10 +239,7 @@ def tool_of(sizes: ToolSizes) -> Tool:
         end = (r - wide + wide * math.cos(last), top)
         if corner:
             joint = math.asin(min(1.0, (wide - r) / (wide - corner)))
-            tip, flank = (
-                Arc(0.0, corner, corner, _DOWN, _DOWN + joint),
-                Arc(r - wide, centre, wide, _DOWN + joint, last),
-            )
+            tip, flank = (Arc(0.0, corner, corner, _DOWN, _DOWN + joint), Arc(r - wide, centre, wide, _DOWN + joint, last))
             foot = (corner * math.sin(joint), corner * (1.0 - math.cos(joint)))
             cutting = [_solid("flutes", [(0.0, 0.0), foot, end, (0.0, top)], (tip, flank), frozenset({0, 1}))]
             contacts = (tip, flank)
@@ -259,10 +247,7 @@ def tool_of(sizes: ToolSizes) -> Tool:
             first = math.asin(max(-1.0, -centre / wide))
             flank = Arc(r - wide, centre, wide, first, last)
             foot = (r - wide + wide * math.cos(first), 0.0)
-            cutting, contacts = (
-                [_solid("flutes", [(0.0, 0.0), foot, end, (0.0, top)], (flank,), frozenset({1}))],
-                (flank,),
-            )
+            cutting, contacts = ([_solid("flutes", [(0.0, 0.0), foot, end, (0.0, top)], (flank,), frozenset({1}))], (flank,))
     else:
         arc = Arc(r - corner, corner, corner, _DOWN, -sizes.taper)
         foot = (arc.q + corner * math.cos(sizes.taper), corner * (1.0 - math.sin(sizes.taper)))

@@ -73,11 +73,7 @@ class Trials:
         """Each operation, put down at each of its samples."""
         clock = self.clock("placed")
         for k, plan in enumerate(self.plans):
-            label, tilt_direction, words = (
-                self.reckoned.array(k, "operation"),
-                self.reckoned.array(k, "lean"),
-                list[str](),
-            )
+            label, tilt_direction, words = (self.reckoned.array(k, "operation"), self.reckoned.array(k, "lean"), list[str]())
             tested, wrong, open_, wrong_tilts = 0, 0, 0, 0
             for i, each in enumerate(plan["operations"]):
                 self.tell(f"{plan['name']}: putting {each['id']} down ({i + 1} of {len(plan['operations'])})")
@@ -168,9 +164,7 @@ class Trials:
         if len(used) > few["found"]:
             yield Finding(False, f"The fewest operations are {few['found']} by the plan, and there are {len(used)}.")
         if fewest is not None and len(used) == len(fewest["operations"]) and len(used) < few["at_least"]:
-            words = (
-                f"At least {few['at_least']} orientations are needed by the plan, and it finishes all with {len(used)}."
-            )
+            words = f"At least {few['at_least']} orientations are needed by the plan, and it finishes all with {len(used)}."
             yield Finding(False, words)
         clock, rows = self.clock("covered"), np.flatnonzero(self.reckoned.reached)
         self.tell(f"the {len(chosen)} chosen candidates at all samples")
@@ -244,9 +238,7 @@ class Trials:
             each = plan["operations"][i]
             mine = np.flatnonzero((label[rows] != i) & ~served)
             axis, there = self._axes(each, rows[mine])
-            verdict = self.bench.serves(
-                each["setup"], self.bench.tools[each["cutter"]], there, axis, clock, surely=surely
-            )
+            verdict = self.bench.serves(each["setup"], self.bench.tools[each["cutter"]], there, axis, clock, surely=surely)
             served[mine[verdict == FREE]] = True
         return served
 

@@ -26,15 +26,7 @@ if TYPE_CHECKING:
 
 _SELF = "plan-cutters batch"
 #: Groups of options that a part of a manifest may have of its own.
-_OF_A_PART = {
-    "Cutters",
-    "Machine and setup",
-    "Faces",
-    "Sampling and tolerances",
-    "Postures",
-    "Answers",
-    "Plan of operations",
-}
+_OF_A_PART = {"Cutters", "Machine and setup", "Faces", "Sampling and tolerances", "Postures", "Answers", "Plan of operations"}
 #: The picture is what the table shows of a part.
 
 _many = heading("Many parts")
@@ -48,10 +40,7 @@ _many = heading("Many parts")
         (f"{_SELF} 's3://shop/in/*.step' --out s3://shop/plans", "From a bucket to a bucket:"),
         (f"{_SELF} parts --out plans --cluster tcp://10.0.0.5:8786", "On a running Dask cluster:"),
     ),
-    codes=(
-        *((code, what) for code, what in CODES if code != "130"),
-        ("130", "interrupted; parts that are done are stored"),
-    ),
+    codes=(*((code, what) for code, what in CODES if code != "130"), ("130", "interrupted; parts that are done are stored")),
 )
 @click.argument("sources", nargs=-1, required=True, metavar="SRC...", type=File("SRC"))
 @options(
@@ -149,9 +138,7 @@ def _all(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", request: 
         out.end()
     if not request.quiet:
         many = ", ".join(f"{totals[each]} {word}" for each, word in reversed(OUTCOMES.items()) if totals[each])
-        terminal.show(
-            f"{counted(totals.total(), 'part')}: {many}.", f"Look at them in a browser: {out.root_url}/{PAGE}"
-        )
+        terminal.show(f"{counted(totals.total(), 'part')}: {many}.", f"Look at them in a browser: {out.root_url}/{PAGE}")
         terminal.all_shown()
     return code
 

@@ -63,9 +63,7 @@ class Row:
         at = RULES.index(rule)
         worse = self.difference is not None and self.difference.lost
         doubtful = bool(self.unread) or (self.difference is not None and not self.difference.comparable)
-        return (
-            (at >= 1 and (worse or bool(self.failed))) or (at >= 2 and bool(self.unreachable)) or (at >= 3 and doubtful)
-        )
+        return (at >= 1 and (worse or bool(self.failed))) or (at >= 2 and bool(self.unreachable)) or (at >= 3 and doubtful)
 
 
 @dataclass(frozen=True)
@@ -151,12 +149,8 @@ class PartRequest:
     default="plan-cutters-changed",
     help="Plans before and after, summary.md and changed.json.  [default: plan-cutters-changed]",
 )
-@_output(
-    "--cache", type=Folder("DIR"), help="Plans of earlier runs, by content; parts that are there are not planned again."
-)
-@_output(
-    "--pictures-branch", metavar="NAME", help="Push pictures to this branch of origin and show them in the summary."
-)
+@_output("--cache", type=Folder("DIR"), help="Plans of earlier runs, by content; parts that are there are not planned again.")
+@_output("--pictures-branch", metavar="NAME", help="Push pictures to this branch of origin and show them in the summary.")
 @options("debug")
 @takes(ChangedRequest)
 def command(request: ChangedRequest) -> int:
@@ -288,9 +282,7 @@ def _artifacts() -> str:
     return f"{server}/{repository}/actions/runs/{run_id}#artifacts" if server and repository and run_id else ""
 
 
-def _summary(
-    rows: Sequence[Row], rule: str, failing: Sequence[Row], links: dict[Path, str], began: str, artifacts: str
-) -> str:
+def _summary(rows: Sequence[Row], rule: str, failing: Sequence[Row], links: dict[Path, str], began: str, artifacts: str) -> str:
     """The summary: with links to the files beside it, or to the artifacts of the job, which have them."""
     if not rows:
         return f"## plan-cutters\n\nNo part changed since {began[:12]}.\n"
@@ -299,26 +291,17 @@ def _summary(
 
     lines = ["## plan-cutters", ""]
     many = count(len(rows), "part")
-    text = (
-        f"{len(failing)} of {many} fail{'s' if len(failing) == 1 else ''}" if failing else f"{many} changed, none fails"
-    )
+    text = f"{len(failing)} of {many} fail{'s' if len(failing) == 1 else ''}" if failing else f"{many} changed, none fails"
     lines += [f"**{text}** by the rule `{rule}`, since {began[:12]}."]
-    lines += table(
-        ("", "part", "how", "result", "reached before", "reached now"), (_line(row, row in failing) for row in rows)
-    )
+    lines += table(("", "part", "how", "result", "reached before", "reached now"), (_line(row, row in failing) for row in rows))
     for row in rows:
         if row.difference is not None and not row.difference.same:
             lines += ["", *section(row.difference)]
         if row.beside is not None:
             lines += ["", page_link(row.beside.as_posix(), artifacts)]
         if row.unreachable:
-            lines += [
-                "",
-                f"No cutter reaches all of {listed(row.unreachable, 20)} of {escaped(row.part.name)}.",
-            ]
-        shown = [
-            (side, links[folder]) for side, folder in (("before", row.before), ("now", row.after)) if folder in links
-        ]
+            lines += ["", f"No cutter reaches all of {listed(row.unreachable, 20)} of {escaped(row.part.name)}."]
+        shown = [(side, links[folder]) for side, folder in (("before", row.before), ("now", row.after)) if folder in links]
         lines += [line for side, link in shown for line in ("", f"![{escaped(row.part.name)} {side}]({link})")]
     if not links:
         lines += [
@@ -332,13 +315,7 @@ def _line(row: Row, fails: bool) -> tuple[str, ...]:
     from plan_cutters.comparison.wording import mark_of
 
     text = row.failed or row.unread or (mark_of(row.difference) if row.difference else "")
-    return (
-        "fails" if fails else "",
-        row.part.name,
-        row.part.how,
-        text,
-        *(_bar(folder) for folder in (row.before, row.after)),
-    )
+    return ("fails" if fails else "", row.part.name, row.part.how, text, *(_bar(folder) for folder in (row.before, row.after)))
 
 
 def _bar(folder: Path | None) -> str:
@@ -362,12 +339,7 @@ def _hand_on(rows: Sequence[Row], out: Path, text: str, job: str, failing: Seque
     (out / "summary.md").write_text(text, encoding="utf-8")
     (out / "changed.json").write_text(json.dumps(facts, indent=2) + "\n", encoding="utf-8")
     hand_out(text)
-    outputs = {
-        "parts": len(rows),
-        "lost": sum(row.breaks("lost") for row in rows),
-        "failing": len(failing),
-        "folder": out,
-    }
+    outputs = {"parts": len(rows), "lost": sum(row.breaks("lost") for row in rows), "failing": len(failing), "folder": out}
     assignments = "".join(f"{name}={value}\n" for name, value in outputs.items())
     for variable, what in (("GITHUB_STEP_SUMMARY", job), ("GITHUB_OUTPUT", assignments)):
         if os.environ.get(variable):

@@ -52,9 +52,7 @@ def checked(part: str, file: str, options: "Options", *, quiet: bool, read_timeo
     except OptionError as error:
         raise OptionError(error.cause, file=file) from None
     except (KeyError, TypeError, ValueError, IndexError, OverflowError, AttributeError) as error:
-        raise OptionError(
-            f"the plan of operations cannot be understood ({type(error).__name__}: {error})", file=file
-        ) from None
+        raise OptionError(f"the plan of operations cannot be understood ({type(error).__name__}: {error})", file=file) from None
     finally:
         if display is not None:
             display.clear()
@@ -150,10 +148,7 @@ def _fits(
     effective = document["effective"]
     # A plan may keep a tolerance that is coarser than the one asked for, as its triangles allow.
     tolerance, wanted = float(effective["tolerance_mm"]), options.tolerance
-    if (
-        tolerance > wanted
-        and abs(tolerance - effective_tolerance(0.0, effective["chord_error_mm"])) <= 1e-9 * tolerance
-    ):
+    if tolerance > wanted and abs(tolerance - effective_tolerance(0.0, effective["chord_error_mm"])) <= 1e-9 * tolerance:
         wanted = tolerance
     pairs = [*_of_part(part, document),
              ("cutters (--cutter, --holder)", sorted(effective["cutters"]), sorted(cutters)),
@@ -165,9 +160,7 @@ def _fits(
         pairs.append((f"{name}s (--{name})", [round(x, 6) for x in effective[f"{name}_deg"]], degrees))
     for what, was, now in pairs:
         if was != now:
-            raise OptionError(
-                f"the plan of operations does not fit: {what}: {_short(was)} in the plan, {_short(now)} here"
-            )
+            raise OptionError(f"the plan of operations does not fit: {what}: {_short(was)} in the plan, {_short(now)} here")
     return tolerance
 
 
@@ -185,9 +178,7 @@ def _of_part(part: "Part", document: Mapping[str, Any]) -> list[_Pair]:
 def _of_setups(options: "Options", document: Mapping[str, Any], setups: "tuple[Setup, ...]") -> list[_Pair]:
     effective = document["effective"]
     places = (effective["placement"], *(effective["other_placements"] or [None] * len(effective["other_setups"])))
-    named = [
-        [each["name"] for each in document["fixtures"] if s in each.get("setups", [0])] for s in range(len(setups))
-    ]
+    named = [[each["name"] for each in document["fixtures"] if s in each.get("setups", [0])] for s in range(len(setups))]
     return [
         (
             "setups (--setup)",

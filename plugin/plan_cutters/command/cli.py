@@ -20,15 +20,7 @@ from plan_cutters.command.option_groups import CODES, EXAMPLES, options
 from plan_cutters.command.request import PlanRequest, takes
 from plan_cutters.command.values import File
 from plan_cutters.files.terminal_text import clean
-from plan_cutters.workers.assignment import (
-    INTERRUPTED,
-    assignment,
-    began,
-    is_child,
-    limit_memory,
-    report,
-    wait_to_begin,
-)
+from plan_cutters.workers.assignment import INTERRUPTED, assignment, began, is_child, limit_memory, report, wait_to_begin
 from plan_cutters.workers.child import can_supervise
 from plan_cutters.workers.errors import Unfinished
 from plan_cutters.workers.supervise import default_memory
@@ -37,10 +29,7 @@ _SELF = "plan-cutters"
 
 
 @click.command(
-    cls=help_groups.Command,
-    subcommands=[(name, what) for name, (_, what) in SUBCOMMANDS.items()],
-    examples=EXAMPLES,
-    codes=CODES,
+    cls=help_groups.Command, subcommands=[(name, what) for name, (_, what) in SUBCOMMANDS.items()], examples=EXAMPLES, codes=CODES
 )
 @click.argument("parts", nargs=-1, required=True, metavar="PART...", type=File("PART"))
 @options()
@@ -63,9 +52,7 @@ def command(request: PlanRequest) -> int:
     if request.check_operations is not None:
         from plan_cutters.command.check_operations import checked
 
-        return checked(
-            parts[0], request.check_operations, requested, quiet=request.quiet, read_timeout=request.read_timeout
-        )
+        return checked(parts[0], request.check_operations, requested, quiet=request.quiet, read_timeout=request.read_timeout)
     codes = []
     outs = folders(request)
     since: float | None = began()

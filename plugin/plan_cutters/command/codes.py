@@ -88,10 +88,7 @@ def guarded(work: Callable[[], tuple[int, str]], debug: bool) -> tuple[int, str]
             case click.ClickException():
                 return USAGE, f"plan-cutters: {error.format_message()}"
             case _:
-                return (
-                    UNREADABLE,
-                    f"plan-cutters: internal error ({type(error).__name__}: {error}); --debug shows where",
-                )
+                return (UNREADABLE, f"plan-cutters: internal error ({type(error).__name__}: {error}); --debug shows where")
 
 
 def faults(names: Sequence[str], work: Callable[[str], None], debug: bool) -> list[str]:

@@ -63,8 +63,7 @@ def requested_words() -> Sequence[str]:
     type=click.FloatRange(0.0, 100.0),
     default=0.1,
     metavar="PERCENT",
-    help="Shares of an area that differ by no more are the same: samples of a changed part lie in other places.  "
-    "[default: 0.1]",
+    help="Shares of an area that differ by no more are the same: samples of a changed part lie in other places.  [default: 0.1]",
 )
 @_rules(
     "--despite",
@@ -129,9 +128,7 @@ def _pages(old: Path, new: Path, comparison: "Comparison", out: Path) -> dict[st
     for name, page in pages(old, new, comparison):
         path = out / name / PAGE
         if (path.parent / PLAN).exists():
-            raise PlanError(
-                "holds a plan, whose page would be overwritten: give another folder to -o", file=str(path.parent)
-            )
+            raise PlanError("holds a plan, whose page would be overwritten: give another folder to -o", file=str(path.parent))
         try:
             if page is None:
                 # What an earlier comparison left says what is not so any more.

@@ -83,9 +83,7 @@ class Command(click.Command):
         return super().make_context(*words, **{**settings, **more})
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        groups = (
-            {"Commands": [(name.ljust(_NAMES), what) for name, what in self.subcommands]} if self.subcommands else {}
-        )
+        groups = {"Commands": [(name.ljust(_NAMES), what) for name, what in self.subcommands]} if self.subcommands else {}
         title = "Options"
         for param in self.get_params(ctx):
             record, title = param.get_help_record(ctx), getattr(param, "group", title)

@@ -40,12 +40,8 @@ _questions, _output = heading("Questions"), heading("Output")
     codes=(("0", "each machine is understood"), ("2", "one is not, or the command line is wrong"), ENDED),
 )
 @click.argument("machines", nargs=-1, metavar="[NAME|FILE]...", type=Words("NAME|FILE", machine_names, files=True))
-@_questions(
-    "--angles", metavar="X,Y,Z", help="Angles that hold this tool axis, from the tip to the spindle: both solutions."
-)
-@_questions(
-    "--axis", type=Words("A=DEG,C=DEG", listed=True), help="The tool axis at these angles; those not named are 0."
-)
+@_questions("--angles", metavar="X,Y,Z", help="Angles that hold this tool axis, from the tip to the spindle: both solutions.")
+@_questions("--axis", type=Words("A=DEG,C=DEG", listed=True), help="The tool axis at these angles; those not named are 0.")
 @_output("--json", "as_json", is_flag=True, help="All that was understood, as JSON on standard output.")
 @_output("--to-toml", type=File("FILE"), help="Write the machine in our own format.")
 @options("debug")
@@ -172,8 +168,7 @@ def _list(machines: "Sequence[Machine]", console: "Console") -> None:
         table.add_row(machine.name, ", ".join(axes) or "none", share_text(machine, share(machine).held))
     console.print(table)
     console.print(
-        "Others: unlimited, tilt:DEG (within DEG of the setup axis), or a machine file. Names explain one.",
-        soft_wrap=True,
+        "Others: unlimited, tilt:DEG (within DEG of the setup axis), or a machine file. Names explain one.", soft_wrap=True
     )
 
 
@@ -201,12 +196,7 @@ def _explain(facts: dict[str, Any], machine: "Machine", console: "Console") -> N
             )
             moves = f"{'about' if rotary else 'along'} {vector_text(axis.direction)}"
             table.add_row(
-                clean(axis.name),
-                axis.carries,
-                moves,
-                limits_text(axis),
-                vector_text(axis.point) if rotary else "",
-                rate,
+                clean(axis.name), axis.carries, moves, limits_text(axis), vector_text(axis.point) if rotary else "", rate
             )
         console.print(table)
         say("  Directions are those of the tool relative to the part (ISO 841), at zero positions.")

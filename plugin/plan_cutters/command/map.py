@@ -44,10 +44,7 @@ _point = heading("Point")
     cls=Command,
     examples=(
         (f"{_SELF} samples/v_groove.step --at 0,0,0 --cutter R8L90 --tilt 0:60", "A cutter at the bottom of a groove:"),
-        (
-            f"{_SELF} blade.step --at 12,3,4 --cutter R6L80 --machine trunnion-ac",
-            "The tilts that a machine holds there:",
-        ),
+        (f"{_SELF} blade.step --at 12,3,4 --cutter R6L80 --machine trunnion-ac", "The tilts that a machine holds there:"),
     ),
     codes=(
         ("0", "some tilt is free"),
@@ -264,9 +261,7 @@ def _draw(result: "PostureMap", tilt: tuple[float, float], about: list[str], out
     try:
         with contextlib.ExitStack() as stack:
             for out in outs:
-                temporary[
-                    stack.enter_context(whole(out, named=lambda path: report("staging", str(path.absolute()))))
-                ] = out
+                temporary[stack.enter_context(whole(out, named=lambda path: report("staging", str(path.absolute()))))] = out
             draw_map(result, tilt, about[0], about[1:], list(temporary))
     except OSError as error:
         out = next((out for path, out in temporary.items() if error.filename == str(path)), outs[0])

@@ -24,10 +24,7 @@ _access, _limits = heading("Access"), heading("Limits of a call")
     cls=Command,
     examples=(
         (f"{_SELF} --root parts", "What a client starts; parts and libraries in this folder can be named:"),
-        (
-            f"{_SELF} --root parts --root tools --most-cutters 20 --timeout 300",
-            "Two folders, and a lower limit for a call:",
-        ),
+        (f"{_SELF} --root parts --root tools --most-cutters 20 --timeout 300", "Two folders, and a lower limit for a call:"),
     ),
     codes=(
         ("0", "the client closed the connection"),
@@ -40,40 +37,19 @@ _access, _limits = heading("Access"), heading("Limits of a call")
          "[default: those that the client offers]")  # fmt: skip
 @_access("--client-roots", is_flag=True, help="With --root: folders that the client offers are roots as well.")
 @_limits(
-    "--most-mb",
-    type=click.FloatRange(0, min_open=True),
-    default=200.0,
-    metavar="MB",
-    help="Size of a file.  [default: 200]",
+    "--most-mb", type=click.FloatRange(0, min_open=True), default=200.0, metavar="MB", help="Size of a file.  [default: 200]"
 )
+@_limits("--most-samples", type=click.IntRange(1), default=200_000, metavar="N", help="Samples of a plan.  [default: 200000]")
 @_limits(
-    "--most-samples", type=click.IntRange(1), default=200_000, metavar="N", help="Samples of a plan.  [default: 200000]"
-)
-@_limits(
-    "--most-cutters",
-    type=click.IntRange(1),
-    default=50,
-    metavar="N",
-    help="Cutters, with those of a library.  [default: 50]",
+    "--most-cutters", type=click.IntRange(1), default=50, metavar="N", help="Cutters, with those of a library.  [default: 50]"
 )
 @_limits("--most-characters", type=click.IntRange(2000), default=40_000, metavar="N",
          help="Length of an answer: lists are cut, and the answer says how much is left out.  [default: 40000]")  # fmt: skip
+@_limits("--timeout", type=click.FloatRange(0, min_open=True), default=900.0, metavar="S", help="Seconds.  [default: 900]")
 @_limits(
-    "--timeout", type=click.FloatRange(0, min_open=True), default=900.0, metavar="S", help="Seconds.  [default: 900]"
+    "--memory", type=click.FloatRange(2), metavar="GB", help="Memory of each process that plans.  [default: 3/4 of the machine's]"
 )
-@_limits(
-    "--memory",
-    type=click.FloatRange(2),
-    metavar="GB",
-    help="Memory of each process that plans.  [default: 3/4 of the machine's]",
-)
-@_limits(
-    "--calls",
-    type=click.IntRange(1, 64),
-    default=2,
-    metavar="N",
-    help="Calls that work at the same time.  [default: 2]",
-)
+@_limits("--calls", type=click.IntRange(1, 64), default=2, metavar="N", help="Calls that work at the same time.  [default: 2]")
 @options("debug")
 @takes(McpRequest)
 def command(request: McpRequest) -> int:

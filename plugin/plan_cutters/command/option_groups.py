@@ -14,16 +14,10 @@ from plan_cutters.report.folder import DEFAULT_FORMATS, FORMATS
 
 EXAMPLES = (
     ("plan-cutters blade.step", "The sculptured faces and fillets, with the built-in cutters:"),
-    (
-        "plan-cutters blade.step --cutter D12L80 --cutter D6L60rc3 --holder er32",
-        "Two cutters, flat and ball, in a holder:",
-    ),
+    ("plan-cutters blade.step --cutter D12L80 --cutter D6L60rc3 --holder er32", "Two cutters, flat and ball, in a holder:"),
     ("plan-cutters mould.step --cutters shop.tools --machine trunnion-ac", "Your tool library on a machine:"),
     ("plan-cutters mould.step --faces F3,7-12 --fixture vise.stl@0,0,-20", "Some faces, the part in a vise:"),
-    (
-        "plan-cutters blade.step --cutter R6L80 --answers stick-out,mend",
-        "How short it can be held, and what would help:",
-    ),
+    ("plan-cutters blade.step --cutter R6L80 --answers stick-out,mend", "How short it can be held, and what would help:"),
     ("plan-cutters map blade.step --at 12,3,40 --cutter R6L80", "A picture of all postures of a cutter at one point:"),
     ("plan-cutters blade.step --cutter R6L80 --json - --quiet", "For a script, the plan on standard output:"),
 )
@@ -49,9 +43,7 @@ def _list_cutters(ctx: click.Context, param: click.Parameter, requested: bool) -
         return
     from plan_cutters.domain.default_tools import builtin
 
-    click.echo(
-        "Built-in cutters: usual metric sizes in plain holders, for a first look; nobody's tools. Lengths in mm."
-    )
+    click.echo("Built-in cutters: usual metric sizes in plain holders, for a first look; nobody's tools. Lengths in mm.")
     for cutter in builtin():
         click.echo(f"{cutter.id:36}  {cutter.name}")
     ctx.exit()
@@ -159,15 +151,12 @@ _OPTIONS = (
         metavar="MM",
         help="Largest distance of neighbouring samples.  [default: from curvature, the smallest cutter and a budget]",
     ),
-    _samples(
-        "--grid", type=int, metavar="N", help="N x N samples in the parameters of each face, instead of a spacing."
-    ),
+    _samples("--grid", type=int, metavar="N", help="N x N samples in the parameters of each face, instead of a spacing."),
     _samples(
         "--area-budget",
         type=int,
         metavar="N",
-        help="Contacts to look at between the samples, for the selected cutter; 0: none.  [default: 24 a sample, at "
-        "most 100000]",
+        help="Contacts to look at between the samples, for the selected cutter; 0: none.  [default: 24 a sample, at most 100000]",
     ),
     _samples("--tolerance", type=float, default=0.01, metavar="MM", help="Gouge tolerance.  [default: 0.01]"),
     _samples("--allowance", type=float, default=0.0, metavar="MM", help="Stock left on the surface.  [default: 0]"),
@@ -178,18 +167,14 @@ _OPTIONS = (
         metavar="MM",
         help="Clearance that neck, shank and holder must keep.  [default: 0]",
     ),
-    _postures(
-        "--tilt", type=Range(), default="0:90", help="Tilts to search, degrees from the normal.  [default: 0:90]"
-    ),
+    _postures("--tilt", type=Range(), default="0:90", help="Tilts to search, degrees from the normal.  [default: 0:90]"),
     _postures(
         "--rotation",
         type=Range(),
         default="0:360",
         help="Rotations to search, degrees from the direction of the largest curvature.  [default: 0:360]",
     ),
-    _postures(
-        "--rotation-step", type=float, default=10.0, metavar="DEG", help="Step between rotations.  [default: 10]"
-    ),
+    _postures("--rotation-step", type=float, default=10.0, metavar="DEG", help="Step between rotations.  [default: 10]"),
     _postures(
         "--posture-maps",
         is_flag=True,
@@ -201,11 +186,7 @@ _OPTIONS = (
         metavar="N",
         help="Samples to map, at most, evenly spread; the others are undecided there.  [default: as many as some minutes allow]",
     ),
-    _postures(
-        "--postures",
-        type=File("FILE"),
-        help="Answer from the part's postures.npz alone, as the command `stored` does.",
-    ),
+    _postures("--postures", type=File("FILE"), help="Answer from the part's postures.npz alone, as the command `stored` does."),
     _output("-o", "--out", type=Folder("DIR"), help="Folder for the files.  [default: <part>-plan]"),
     _output(
         "--formats",
@@ -254,15 +235,9 @@ _OPTIONS = (
         help="Feed of all cutters.  [default: the libraries' finishing presets; without them "
         "cut lengths are reported, and no times]",
     ),
+    _operations("--scallop", type=float, default=0.01, metavar="MM", help="Height of the cusps between passes.  [default: 0.01]"),
     _operations(
-        "--scallop", type=float, default=0.01, metavar="MM", help="Height of the cusps between passes.  [default: 0.01]"
-    ),
-    _operations(
-        "--stepover",
-        type=float,
-        default=0.75,
-        metavar="N",
-        help="Widest distance of passes, in diameters.  [default: 0.75]",
+        "--stepover", type=float, default=0.75, metavar="N", help="Widest distance of passes, in diameters.  [default: 0.75]"
     ),
     _operations(
         "--index-step",
@@ -276,24 +251,13 @@ _OPTIONS = (
         metavar="S",
         help="Seconds that another orientation takes.  [default: by the rates of the machine's rotary axes, else 5]",
     ),
+    _operations("--change-time", type=float, default=20.0, metavar="S", help="Seconds that another cutter takes.  [default: 20]"),
+    _operations("--setup-time", type=float, default=300.0, metavar="S", help="Seconds that another setup takes.  [default: 300]"),
     _operations(
-        "--change-time", type=float, default=20.0, metavar="S", help="Seconds that another cutter takes.  [default: 20]"
+        "--overlap", type=float, default=2.0, metavar="MM", help="Overlap of operations at a common border.  [default: 2]"
     ),
     _operations(
-        "--setup-time", type=float, default=300.0, metavar="S", help="Seconds that another setup takes.  [default: 300]"
-    ),
-    _operations(
-        "--overlap",
-        type=float,
-        default=2.0,
-        metavar="MM",
-        help="Overlap of operations at a common border.  [default: 2]",
-    ),
-    _operations(
-        "--most-operations",
-        type=int,
-        metavar="N",
-        help="Fixed orientations, at most; simultaneous motion finishes the rest.",
+        "--most-operations", type=int, metavar="N", help="Fixed orientations, at most; simultaneous motion finishes the rest."
     ),
     _operations(
         "--check-operations",
@@ -337,9 +301,7 @@ _OPTIONS = (
 )
 
 
-def options(
-    *names: str, defaults: bool = True, **changes: dict[str, Any]
-) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+def options(*names: str, defaults: bool = True, **changes: dict[str, Any]) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Declare these options, all of them where none is named, in the order above; `changes`: what is otherwise, by name.
 
     A name is that of the option on the command line, without the dashes and with `_` for `-`. `defaults`: whether help says

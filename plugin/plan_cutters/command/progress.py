@@ -152,9 +152,7 @@ class Display:
                     seconds = int(time.monotonic() - began)
                     return Text(f"{seconds // 60}:{seconds % 60:02d}", style="progress.elapsed")
 
-            doing = TextColumn(
-                "{task.description}", markup=False, table_column=Column(no_wrap=True, overflow="ellipsis")
-            )
+            doing = TextColumn("{task.description}", markup=False, table_column=Column(no_wrap=True, overflow="ellipsis"))
             much = TextColumn("{task.fields[percent]}", markup=False)
             self.bar = Progress(doing, BarColumn(bar_width=20), much, Clock(), console=terminal.console(),
                                 transient=True, auto_refresh=self.itself)  # fmt: skip

@@ -60,9 +60,7 @@ def commit(name: str) -> str:
     try:
         return git("rev-parse", "--verify", "--quiet", f"{name}^{{commit}}").decode().strip()
     except PlanError:
-        raise PlanError(
-            f"commit {name!r} is not in this repository: fetch it (actions/checkout with fetch-depth: 0)"
-        ) from None
+        raise PlanError(f"commit {name!r} is not in this repository: fetch it (actions/checkout with fetch-depth: 0)") from None
 
 
 def changed(base: str, head: str | None) -> tuple[str, str, list[Changed]]:
@@ -77,9 +75,7 @@ def changed(base: str, head: str | None) -> tuple[str, str, list[Changed]]:
         try:
             began = git("merge-base", first, until).decode().strip()
         except PlanError:
-            raise PlanError(
-                f"{base} and {head} have no common commit here: fetch all of them (fetch-depth: 0)"
-            ) from None
+            raise PlanError(f"{base} and {head} have no common commit here: fetch all of them (fetch-depth: 0)") from None
     words = git("diff", "--name-status", "-z", "--find-renames", began, until).decode("utf-8", "surrogateescape")
     each, paths = iter(words.split("\0")), []
     for status in each:
@@ -100,9 +96,7 @@ def _referring(at: str, files: Collection[str]) -> set[str]:
     if not files:
         return set()
     words = [part for word in references.WORDS for part in ("-e", word.decode())]
-    output = git(
-        "grep", "-lzaF", "--full-name", *words, at, "--", ":(top,icase)*.step", ":(top,icase)*.stp", codes=(0, 1)
-    )
+    output = git("grep", "-lzaF", "--full-name", *words, at, "--", ":(top,icase)*.step", ":(top,icase)*.stp", codes=(0, 1))
     paths = [each.partition(":")[2] for each in output.decode("utf-8", "surrogateescape").split("\0") if each]
     refers = {
         path: {posixpath.normpath(posixpath.join(posixpath.dirname(path), name))
@@ -150,12 +144,7 @@ def publish(pictures: dict[str, bytes], branch: str, remote: str) -> str:
             blob = git("hash-object", "-w", "--stdin", stdin=data).decode().strip()
             entries += f"100644 blob {blob}\t{name}\0".encode()
     tree = git("mktree", "-z", stdin=entries).decode().strip()
-    by = [
-        "-c",
-        f"user.name={os.environ.get('GITHUB_ACTOR', 'plan-cutters')}",
-        "-c",
-        "user.email=plan-cutters@localhost",
-    ]
+    by = ["-c", f"user.name={os.environ.get('GITHUB_ACTOR', 'plan-cutters')}", "-c", "user.email=plan-cutters@localhost"]
     made = git(*by, "commit-tree", tree, *(["-p", tip[0]] if tip else []), "-m", "Pictures of plans").decode().strip()
     git("push", "--quiet", remote, f"{made}:refs/heads/{branch}")
     return made

@@ -248,9 +248,7 @@ def planning_options(request: PlanningRequest) -> "PlanOptions":
 def judging_options(request: JudgingRequest) -> "PlanOptions":
     """The options among them that judge the samples of a part."""
     options = posture_options(request)
-    tools = read_tools(
-        request.cutter, request.cutters, request.holder, request.assume_stickout, skip_bad=request.skip_bad
-    )
+    tools = read_tools(request.cutter, request.cutters, request.holder, request.assume_stickout, skip_bad=request.skip_bad)
     return options | {
         "cutters": tools.cutters,
         "libraries": tools.libraries,
@@ -307,9 +305,7 @@ def read_tools(
         from plan_cutters.library.read import holder_of, read_library
 
         of_all = None if holder is None else holder_of(holder)
-        read = [
-            read_library(file, assume_stickout=assume_stickout, holder=of_all, skip_bad=skip_bad) for file in libraries
-        ]
+        read = [read_library(file, assume_stickout=assume_stickout, holder=of_all, skip_bad=skip_bad) for file in libraries]
     if not libraries and (assume_stickout is not None or skip_bad):
         word = "--skip-bad" if skip_bad else "--assume-stickout"
         raise OptionError(f"{word} is about the tools of a library: give it with --cutters")

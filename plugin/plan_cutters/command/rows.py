@@ -22,12 +22,7 @@ if TYPE_CHECKING:
     from plan_cutters.plan_file.words.story import Story
 
 #: Verdicts, what a column calls them.
-WORDS = {
-    "interference_free": "free",
-    "accessible": "accessible",
-    "undecided": "undecided",
-    "inaccessible": "inaccessible",
-}
+WORDS = {"interference_free": "free", "accessible": "accessible", "undecided": "undecided", "inaccessible": "inaccessible"}
 #: Rows that are shown unless all are requested.
 MOST_ROWS = 40
 #: Widest line of a cutter's name beside its numbers, so that 80 columns hold all; what is longer has a second line.
@@ -75,15 +70,11 @@ def worst_faces(story: "Story") -> list[Any]:
     if not c.faces:
         return []
     few = c.failing > len(c.faces)
-    which = (
-        f"the {len(c.faces)} worst of {c.failing} faces" if few else f"{c.failing} face{'s' if c.failing > 1 else ''}"
-    )
+    which = f"the {len(c.faces)} worst of {c.failing} faces" if few else f"{c.failing} face{'s' if c.failing > 1 else ''}"
     lines: list[Any] = [cell(f"Where {c.name} {'fails' if c.feasible is False else 'is not sure'}, {which}:")]
     table = _table(("  face", "mainly", "in the way"), ("mm2 not reached", "of the face", "mm too deep"))
     for f in c.faces:
-        table.add_row(
-            f"  {f.id}", f.reason, cell(_distinct([f.obstacle or "-"], _OBSTACLE)[0]), f.area, f.share, f.depth or "-"
-        )
+        table.add_row(f"  {f.id}", f.reason, cell(_distinct([f.obstacle or "-"], _OBSTACLE)[0]), f.area, f.share, f.depth or "-")
     return [*lines, _Fitting(table, [cell(f"  {worst_face_text(f)}") for f in c.faces])]
 
 

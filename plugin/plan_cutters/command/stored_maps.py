@@ -33,10 +33,7 @@ _LISTED = 3
     cls=Command,
     examples=(
         (f"{_SELF} blade-plan/postures.npz --machine trunnion-ac", "On another machine:"),
-        (
-            f"{_SELF} blade-plan/postures.npz blade.step --setup +x",
-            "In another setup, if blade.step is still that part:",
-        ),
+        (f"{_SELF} blade-plan/postures.npz blade.step --setup +x", "In another setup, if blade.step is still that part:"),
     ),
     codes=(
         ("0", "the cutter reaches every sample"),
@@ -150,9 +147,7 @@ def _counted(counts: dict[str, int]) -> str:
     return ", ".join(f"{count} {word.replace('_', ' ')}" for word, count in counts.items() if count)
 
 
-def _remarks(
-    maps: "PostureMaps", inside: int, undecided: int, missing: Sequence[str], unjudged: Sequence[str]
-) -> Iterator[str]:
+def _remarks(maps: "PostureMaps", inside: int, undecided: int, missing: Sequence[str], unjudged: Sequence[str]) -> Iterator[str]:
     """What must be said of an answer from posture maps."""
     from plan_cutters.plan_file.numbers import listed
 

@@ -214,9 +214,7 @@ def paper(width: int) -> Iterator["Console"]:
         # Names and frames of tables may have no place in the terminal's encoding.
         sys.stdout.reconfigure(errors="replace")
     seen = sys.stdout is not None and sys.stdout.isatty()
-    console = Console(
-        file=(text := _Paper()), highlight=False, markup=False, width=None if seen else width, force_terminal=seen
-    )
+    console = Console(file=(text := _Paper()), highlight=False, markup=False, width=None if seen else width, force_terminal=seen)
     yield console
     hand_out(text.getvalue())
 

@@ -39,15 +39,9 @@ _cutters, _output = heading("Cutters"), heading("Output")
     examples=(
         (f"{_SELF} shop.tools", "The tools of a library that can be judged, and why the rest cannot:"),
         (f"{_SELF} shop.tools --assume-stickout 35 --holder R15L40", "With what the library leaves out:"),
-        (
-            f"{_SELF} --cutter D12L80 --holder hsk63a-er32 --draw drawings",
-            "A picture of an assembly given by words:",
-        ),
+        (f"{_SELF} --cutter D12L80 --holder hsk63a-er32 --draw drawings", "A picture of an assembly given by words:"),
         (f"{_SELF} --list-holders", "The built-in holders:"),
-        (
-            f"{_SELF} shop.tools --draw drawings --to-toml shop.toml",
-            "Drawings to scale, and the tools as TOML:",
-        ),
+        (f"{_SELF} shop.tools --draw drawings --to-toml shop.toml", "Drawings to scale, and the tools as TOML:"),
     ),
     codes=(
         ("0", "each file holds a tool that can be judged, or a holder"),
@@ -58,9 +52,7 @@ _cutters, _output = heading("Cutters"), heading("Output")
 @click.argument("files", nargs=-1, metavar="[FILE]...", type=File("FILE"))
 @options("holder", "assume_stickout", "skip_bad",
          cutter={"help": "A cutter by words, D12L80 and so on, to be shown, also as a picture. Repeatable."})  # fmt: skip
-@_cutters(
-    "--list-holders", is_flag=True, help="List the built-in holders; with --draw, draw each with its largest shank."
-)
+@_cutters("--list-holders", is_flag=True, help="List the built-in holders; with --draw, draw each with its largest shank.")
 @_output("--json", "as_json", is_flag=True, help="All that was understood, as JSON on standard output.")
 @_output("--to-toml", type=File("FILE"), help="Write the tools that can be judged in our own format.")
 @_output("--draw", type=Folder("DIR"), help="Draw each assembly to scale (SVG) into a folder.")
@@ -97,11 +89,7 @@ def command(request: ToolsRequest) -> int:
         if request.draw is not None:
             _draw(libraries, Path(request.draw))
     if request.as_json:
-        document = {
-            "format": "plan-cutters-tools",
-            "format_version": 1,
-            "libraries": [_plain(library) for library in libraries],
-        }
+        document = {"format": "plan-cutters-tools", "format_version": 1, "libraries": [_plain(library) for library in libraries]}
         hand_out(json.dumps(document, indent=2, ensure_ascii=False) + "\n")
     else:
         with paper(200) as console:
@@ -123,9 +111,7 @@ def _holders(request: ToolsRequest) -> int:
     if request.draw is not None:
         _draw(pinned(), Path(request.draw))
     if request.as_json:
-        plain = [
-            {"word": word, "name": each.name, "id": each.id, "bore": each.bore} for word, each in standard().items()
-        ]
+        plain = [{"word": word, "name": each.name, "id": each.id, "bore": each.bore} for word, each in standard().items()]
         document = {"format": "plan-cutters-holders", "format_version": 1, "holders": plain}
         hand_out(json.dumps(document, indent=2) + "\n")
         return 0

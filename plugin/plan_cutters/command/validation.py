@@ -62,9 +62,7 @@ def folders(request: PlanRequest) -> list[Path]:
         outs = [Path(request.out or f"{Path(p).stem}-plan") for p in request.parts]
     if len(set(outs)) < len(outs):
         twice = next(str(out) for out in outs if outs.count(out) > 1)
-        raise OptionError(
-            f"two parts have the same name and would write to the same folder, {twice}; plan them one by one"
-        )
+        raise OptionError(f"two parts have the same name and would write to the same folder, {twice}; plan them one by one")
     return outs
 
 

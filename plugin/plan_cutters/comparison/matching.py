@@ -69,10 +69,7 @@ def match_cutters(old: Plan, new: Plan) -> list[tuple[CutterEntry, CutterEntry, 
         matched = list(_alone(*open_cutters, key))
         pairs += [(a, b, how) for a, b in matched]
         mine, theirs = {a.id for a, _ in matched}, {b.id for _, b in matched}
-        open_cutters = (
-            [c for c in open_cutters[0] if c.id not in mine],
-            [c for c in open_cutters[1] if c.id not in theirs],
-        )
+        open_cutters = ([c for c in open_cutters[0] if c.id not in mine], [c for c in open_cutters[1] if c.id not in theirs])
     return sorted(pairs, key=lambda pair: pair[0].id)
 
 

@@ -43,12 +43,8 @@ class FaceState(Frozen):
 class FaceDifference(Frozen):
     """A face whose answer differs, or that only one plan has."""
 
-    old: str | None = Field(
-        default=None, description="its id in the old plan, as F12; null: it is new, or was not known again"
-    )
-    new: str | None = Field(
-        default=None, description="its id in the new plan; null: it is gone, or was not known again"
-    )
+    old: str | None = Field(default=None, description="its id in the old plan, as F12; null: it is new, or was not known again")
+    new: str | None = Field(default=None, description="its id in the new plan; null: it is gone, or was not known again")
     matched_by: FaceMatch | None = None
     name: str
     kind: str
@@ -77,9 +73,7 @@ class CutterDifference(Frozen):
     was: CutterState | None
     now: CutterState | None
     changes: list[Change] = Field(description="of its form: holder, length and the like")
-    faces_lost: list[tuple[str, str]] = Field(
-        description="old and new id of faces that it reached whole, and does not any more"
-    )
+    faces_lost: list[tuple[str, str]] = Field(description="old and new id of faces that it reached whole, and does not any more")
     faces_won: list[tuple[str, str]]
     lost: bool
     won: bool

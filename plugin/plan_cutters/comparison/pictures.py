@@ -87,15 +87,7 @@ def _picture(text: str) -> Picture | None:
     cutters = [{"id": each["id"], "name": each["name"]} for each in meta["cutters"]]
     if any(f"verdict.{each['id']}" not in entries for each in cutters):
         raise LookupError("a cutter has no verdicts")
-    reduced = {
-        **meta,
-        "cutters": cutters,
-        "spots": [],
-        "scalars": [],
-        "operations": None,
-        "maps": None,
-        "arrays": entries,
-    }
+    reduced = {**meta, "cutters": cutters, "spots": [], "scalars": [], "operations": None, "maps": None, "arrays": entries}
     return Picture(reduced, data, "")
 
 

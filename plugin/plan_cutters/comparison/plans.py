@@ -30,9 +30,7 @@ _FORM = (
 )
 
 
-def compare(
-    old: Plan, new: Plan, *, name: str = "", slack: float = SLACK, despite: Collection[str] = ()
-) -> PlanDifference:
+def compare(old: Plan, new: Plan, *, name: str = "", slack: float = SLACK, despite: Collection[str] = ()) -> PlanDifference:
     """Compare two plans; the same plan twice gives no difference, and in reverse order what was lost is won.
 
     Parameters
@@ -177,9 +175,7 @@ def _open(state: FaceState) -> bool:
 def _face_difference(face: FaceEntry, **fields: Any) -> FaceDifference:
     """A face as the last plan has it that has it."""
     area = face.area_mm2 if math.isfinite(face.area_mm2) else None
-    return FaceDifference(
-        name=face.name, kind=face.kind or face.shape, area_mm2=area, centre_mm=face.centre_mm, **fields
-    )
+    return FaceDifference(name=face.name, kind=face.kind or face.shape, area_mm2=area, centre_mm=face.centre_mm, **fields)
 
 
 def _cutter(
@@ -208,10 +204,7 @@ def _form(cutter: CutterEntry, name: str) -> str:
     if name != "stages":
         return _text(getattr(cutter, name))
     return _text(
-        [
-            f"{s.part} R{s.radius_mm:.6g}-{s.upper_radius_mm:.6g} x {s.length_mm:.6g} from {s.low_mm:.6g}"
-            for s in cutter.stages
-        ]
+        [f"{s.part} R{s.radius_mm:.6g}-{s.upper_radius_mm:.6g} x {s.length_mm:.6g} from {s.low_mm:.6g}" for s in cutter.stages]
     )
 
 

@@ -92,8 +92,7 @@ def page(difference: PlanDifference, old: Side, new: Side) -> bytes:
     data = {
         "marks": {word: dict(zip(("label", "colour", "pattern"), row, strict=True)) for word, row in MARKS.items()},
         "states": {
-            word: _states(side.plan, {getattr(f, word): mark(f) for f in difference.faces})
-            for word, side in sides.items()
+            word: _states(side.plan, {getattr(f, word): mark(f) for f in difference.faces}) for word, side in sides.items()
         },
         "pairs": [(a.id, b.id) for a, b, _ in match_faces(old.plan, new.plan)],
         "cutters": list(_cutters(old.plan, new.plan)),

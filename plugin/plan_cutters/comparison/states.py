@@ -34,10 +34,7 @@ def cutter_state(plan: Plan, cutter: CutterEntry) -> CutterState:
     """How a cutter is answered for, over all setups that were requested."""
     over = plan.selected_over_setups is not None and cutter.lost_in_all == 0
     return CutterState(
-        id=cutter.id,
-        finishes=True if over else cutter.feasible,
-        share=reached(cutter),
-        reason=worst(cutter.area_share.lost_by),
+        id=cutter.id, finishes=True if over else cutter.feasible, share=reached(cutter), reason=worst(cutter.area_share.lost_by)
     )
 
 

@@ -25,10 +25,7 @@ def headline(difference: PlanDifference) -> str:
     """One sentence on two plans."""
     if difference.same:
         return f"{difference.name}: nothing changed."
-    parts = [
-        *_counted(difference, "lost"),
-        *_counted(difference, "won"),
-    ]
+    parts = [*_counted(difference, "lost"), *_counted(difference, "won")]
     text = "; ".join(parts) if parts else "nothing lost and nothing won"
     doubt = "" if difference.comparable else "not comparable; "
     return f"{difference.name}: {doubt}{text}."
@@ -51,10 +48,7 @@ def known(difference: PlanDifference) -> str:
     if difference.same:
         return ""
     how = {name: number for name, number in difference.matched.items() if name != "same file"}
-    sides = (
-        ("old", [f for f in difference.faces if f.new is None]),
-        ("new", [f for f in difference.faces if f.old is None]),
-    )
+    sides = (("old", [f for f in difference.faces if f.new is None]), ("new", [f for f in difference.faces if f.old is None]))
     alone = [f"{count(len(faces), 'face')} of the {word} plan alone" for word, faces in sides if faces]
     if not how and not alone:
         return ""

@@ -83,9 +83,7 @@ def what_if_entry(what_if: WhatIfAnswer) -> MendEntry:
 
 def least_set_entry(least: LeastSet, *, doubtful: bool = False) -> LeastSetEntry:
     """The fewest runs."""
-    runs = [
-        filled(RunEntry, each, cutter=each.cutter.id, area_mm2=each.area, faces=list(each.faces)) for each in least.runs
-    ]
+    runs = [filled(RunEntry, each, cutter=each.cutter.id, area_mm2=each.area, faces=list(each.faces)) for each in least.runs]
     return filled(LeastSetEntry, least, runs=runs, doubtful=doubtful)
 
 

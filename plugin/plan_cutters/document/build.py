@@ -15,21 +15,9 @@ from plan_cutters.document.fixtures import references
 from plan_cutters.document.shares import counts, face_verdicts, whole_share
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.shapes import flute_length, modes
-from plan_cutters.domain.verdicts import (
-    INACCESSIBLE,
-    REASONS,
-    UNDECIDED,
-    Verdicts,
-    Witness,
-)
+from plan_cutters.domain.verdicts import INACCESSIBLE, REASONS, UNDECIDED, Verdicts, Witness
 from plan_cutters.plan_file.frozen import filled, posture, vector
-from plan_cutters.plan_file.model import (
-    CutterEntry,
-    FaceEntry,
-    MissingEntry,
-    SegmentEntry,
-    WitnessEntry,
-)
+from plan_cutters.plan_file.model import CutterEntry, FaceEntry, MissingEntry, SegmentEntry, WitnessEntry
 from plan_cutters.plan_file.numbers import listed
 from plan_cutters.plan_file.part_info import OrientationInfo, PartInfo, Scope, SewingInfo
 from plan_cutters.scene.faces import Chosen

@@ -39,9 +39,7 @@ def effective(ready: Prepared) -> Effective:
         "area_budget": options.contacts_between(len(ready.samples)),
         "index_time_s": INDEX_TIME if options.index_time is None else options.index_time,
     }
-    return Effective(
-        **{name: _as_requested(options, name) for name in Effective.model_fields if name not in made}, **made
-    )
+    return Effective(**{name: _as_requested(options, name) for name in Effective.model_fields if name not in made}, **made)
 
 
 def _local(ready: Prepared) -> list[LocalTolerance]:

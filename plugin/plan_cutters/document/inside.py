@@ -45,7 +45,5 @@ def inside_entry(ready: Prepared, faces: Mapping[str, FaceVerdicts]) -> InsideEn
     names = ready.conditions.surroundings.on_bodies
     on_bodies = None
     if len(lying):
-        on_bodies = SheetsEntry(
-            faces=on(lying), samples=len(lying), area_mm2=of(lying), option=f"--ignore {numbers(names)}"
-        )
+        on_bodies = SheetsEntry(faces=on(lying), samples=len(lying), area_mm2=of(lying), option=f"--ignore {numbers(names)}")
     return InsideEntry(samples=int(inside.sum()), area_mm2=area, share=share, bodies=bodies, sheets=on_bodies)

@@ -100,9 +100,7 @@ def on_face(
         for code, word in _words(verdict):
             shares[word] = float(area[verdict == code].sum()) / whole
         why = reach.reason[mine]
-        not_reached = {
-            REASONS[code]: float(area[why == code].sum()) / whole for code in np.unique(why[why != NO_REASON])
-        }
+        not_reached = {REASONS[code]: float(area[why == code].sum()) / whole for code in np.unique(why[why != NO_REASON])}
         reasons = dict(sorted(not_reached.items(), key=lambda each: (-each[1], each[0])))
     deepest = [w for w in cutter.witnesses if w.face == entry.id and not w.inside_bodies]
     least, unknown = _least(entry, mine, reach, stick_out)
@@ -118,9 +116,7 @@ def _words(verdict: NDArray[np.uint8]) -> list[tuple[int, str]]:
     return [(code, WORDS[code]) for code in np.unique(verdict).tolist()]
 
 
-def _least(
-    entry: FaceEntry, mine: NDArray[np.bool_], reach: Verdicts, stick_out: StickOut | None
-) -> tuple[float | None, str]:
+def _least(entry: FaceEntry, mine: NDArray[np.bool_], reach: Verdicts, stick_out: StickOut | None) -> tuple[float | None, str]:
     """The least stick-out for the face, or why it is not known."""
     if not mine.any():
         return None, "the face has no samples"

@@ -79,9 +79,7 @@ def operations_entry(
 
 
 def _fewest(fewest: Fewest) -> FewestEntry:
-    weights = [
-        (row, weight) for row, weight in zip(fewest.rows.tolist(), fewest.weight.tolist(), strict=True) if weight
-    ]
+    weights = [(row, weight) for row, weight in zip(fewest.rows.tolist(), fewest.weight.tolist(), strict=True) if weight]
     return FewestEntry(
         found=len(fewest.chosen), at_least=fewest.at_least, proof=fewest.proof, weights=sorted(weights), bound=fewest.bound,
         lp=fewest.relaxed, samples=fewest.samples, candidates=len(fewest.columns), spacing_deg=float(np.degrees(fewest.spacing)),
@@ -110,8 +108,7 @@ def _fastest(operations: Operations) -> FastestEntry | None:
 
 def _use(worth: Worth, plans: list[OperationPlanEntry], area: Floats) -> CutterUse:
     takes: dict[str, float] = {
-        str(plan.name): sum(each.area_mm2 for each in plan.operations if each.cutter == worth.cutter.id)
-        for plan in plans
+        str(plan.name): sum(each.area_mm2 for each in plan.operations if each.cutter == worth.cutter.id) for plan in plans
     }
     return CutterUse(id=worth.cutter.id, takes_mm2=takes, only_mm2=float(area[worth.only].sum()), saves_seconds=worth.saves,
                      change_seconds=worth.change)  # fmt: skip

@@ -10,14 +10,7 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Ints
 from plan_cutters.document.answers import least_set_entry, radius_entry, stick_out_entry, what_if_entry
-from plan_cutters.document.build import (
-    degrees,
-    face_entries,
-    missing_entries,
-    part_info,
-    scope_of,
-    versions,
-)
+from plan_cutters.document.build import degrees, face_entries, missing_entries, part_info, scope_of, versions
 from plan_cutters.document.effective import effective
 from plan_cutters.document.fixtures import fixture_entries
 from plan_cutters.document.inside import inside_entry
@@ -33,15 +26,7 @@ from plan_cutters.domain.over_setups import positions
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE, Verdicts
 from plan_cutters.plan_file.frozen import Vector, vector
-from plan_cutters.plan_file.model import (
-    CutterEntry,
-    MachineEntry,
-    Plan,
-    RotaryEntry,
-    Run,
-    SampleCounts,
-    Selection,
-)
+from plan_cutters.plan_file.model import CutterEntry, MachineEntry, Plan, RotaryEntry, Run, SampleCounts, Selection
 from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.operations import OperationsEntry
 from plan_cutters.plan_file.palette import MEANING, PALETTE
@@ -60,14 +45,8 @@ def plan_of(
     """The plan of a part from the entries of its cutters, and what was answered after them."""
     scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
     part, surroundings = scene.part, ready.conditions.surroundings
-    faces, remarks = (
-        face_entries(part, samples, choice, dict(surroundings.certain.triangles.errors)),
-        notes_of(ready, entries),
-    )
-    absent = {
-        *(() if _anything_held(ready) else ("fixture",)),
-        *(() if ready.inside_bodies.any() else ("inside_bodies",)),
-    }
+    faces, remarks = (face_entries(part, samples, choice, dict(surroundings.certain.triangles.errors)), notes_of(ready, entries))
+    absent = {*(() if _anything_held(ready) else ("fixture",)), *(() if ready.inside_bodies.any() else ("inside_bodies",))}
     return Plan(
         part=part_info(scene, surroundings),
         effective=effective(ready),
@@ -95,14 +74,10 @@ def plan_of(
         selected=selected,
         shown=selected or nearest(entries).id,
         selection=selection,
-        selected_over_setups=None
-        if surroundings.doubtful
-        else next((e.id for e in entries if e.lost_in_all == 0), None),
+        selected_over_setups=None if surroundings.doubtful else next((e.id for e in entries if e.lost_in_all == 0), None),
         selected_for_setup=None if selected else for_setup(entries),
         setups=list(setups),
-        least_set=None
-        if answers.least_set is None
-        else least_set_entry(answers.least_set, doubtful=surroundings.doubtful),
+        least_set=None if answers.least_set is None else least_set_entry(answers.least_set, doubtful=surroundings.doubtful),
         operations=_operations(ready, answers),
         not_mended=list(answers.not_mended),
         largest_radius=[radius_entry(radii, samples, doubtful=surroundings.doubtful) for radii in answers.radius_maps],
@@ -179,9 +154,7 @@ def _singular(ready: Prepared, name: str, over: OverSetups) -> int | None:
     kinematics = ready.conditions.kinematics
     if kinematics is None or len(kinematics.turning()[1]) < 2:
         return None
-    _, _, singular = positions(
-        [each.kinematics for each in ready.setups], over.reaches[name].axis, over.served_in[name]
-    )
+    _, _, singular = positions([each.kinematics for each in ready.setups], over.reaches[name].axis, over.served_in[name])
     return int(singular[over.reaches[name].reached].sum())
 
 
@@ -202,9 +175,7 @@ def completed(
             "singular": _singular(ready, entry.id, over),
             "travel": None if moved is None else travel_entry(ready.options.machine, moved, here, samples),
             "sources": [source_entry(*place) for place in sources.get(entry.id, ())],
-            "least_stick_out": None
-            if stick_out is None
-            else stick_out_entry(stick_out, samples, ready.conditions.surroundings),
+            "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples, ready.conditions.surroundings),
             "mend": None if mend is None else what_if_entry(mend),
         }
         completed_entries.append(entry.model_copy(update=more))

@@ -18,9 +18,7 @@ def counts(verdict: NDArray[np.uint8], inside: NDArray[np.bool_] | None = None) 
     return {**{name: int((verdict == code).sum()) for code, name in WORDS.items()}, "inside_bodies": covered}
 
 
-def face_verdicts(
-    samples: SurfaceSamples, reach: Verdicts, inside: NDArray[np.bool_] | None = None
-) -> dict[str, FaceVerdicts]:
+def face_verdicts(samples: SurfaceSamples, reach: Verdicts, inside: NDArray[np.bool_] | None = None) -> dict[str, FaceVerdicts]:
     """Sum up the verdicts on each face that has samples, by its id; `inside` as in `counts`."""
     entries, inside = {}, np.zeros(len(samples.face), bool) if inside is None else inside
     for number, mine in samples.by_face().items():

@@ -15,9 +15,7 @@ def placement_entry(placement: Placement | None) -> PlacementEntry | None:
     """How a part stands."""
     if placement is None:
         return None
-    return PlacementEntry(
-        file=placement.file or None, x=placement.x, origin_mm=placement.origin, clamped=list(placement.clamped)
-    )
+    return PlacementEntry(file=placement.file or None, x=placement.x, origin_mm=placement.origin, clamped=list(placement.clamped))
 
 
 def travel_entry(machine: Machine, travel: Travel, reach: Verdicts, samples: SurfaceSamples) -> TravelEntry:

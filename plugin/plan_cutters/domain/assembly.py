@@ -100,10 +100,7 @@ class Assembly(Record):
     def depth(self, points: Floats, contact: Floats, normal: Floats, tilt_direction: Floats, tilt: float) -> Floats:
         """Bound from below how deep points (n, 3) lie in the tool at a contact and posture; negative outside."""
         offset, rise, *_ = self.mode[(mode := int(self.at(np.array([tilt]))[0]))]
-        axis, x_t = (
-            np.cos(tilt) * normal + np.sin(tilt) * tilt_direction,
-            np.cos(tilt) * tilt_direction - np.sin(tilt) * normal,
-        )
+        axis, x_t = (np.cos(tilt) * normal + np.sin(tilt) * tilt_direction, np.cos(tilt) * tilt_direction - np.sin(tilt) * normal)
         from_centre = points - (contact + rise * normal - offset * x_t)
         height = (from_centre @ axis)[:, None]
         q = np.linalg.norm(from_centre - height * axis, axis=1)[:, None]

@@ -75,9 +75,7 @@ def items(value: Any, what: str, of: str, *, error: type[OptionError] = OptionEr
         raise error(f"{what} must be a list of {of}, not {shown(value)}") from None
 
 
-def numbers(
-    value: Any, what: str, count: int | None = None, *, error: type[OptionError] = OptionError
-) -> tuple[float, ...]:
+def numbers(value: Any, what: str, count: int | None = None, *, error: type[OptionError] = OptionError) -> tuple[float, ...]:
     """Real numbers, `count` of them if that is given."""
     of = "numbers" if count is None else f"{count} numbers"
     values = tuple(number(each, what, error=error) for each in items(value, what, of, error=error))

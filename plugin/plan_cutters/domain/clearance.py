@@ -33,9 +33,7 @@ def grown(cutter: Cutter, by: float) -> Assembly:
     by : float
         Not negative.
     """
-    rows = [
-        _from(row, working_height(cutter) - by) for row in flute_rows(cutter, -by, flute_length(cutter) + by, "outer")
-    ]
+    rows = [_from(row, working_height(cutter) - by) for row in flute_rows(cutter, -by, flute_length(cutter) + by, "outer")]
     if flute_length(cutter) <= working_height(cutter):
         rows = []
     for part, low, stage in stages(cutter):

@@ -122,9 +122,7 @@ class Cutter(Dimensions):
 
     @classmethod
     @spelled_out(Attributes, Dimensions)
-    def form(
-        cls, outline: Sequence[Sequence[float]] | Floats, *, length: float, **more: Unpack[Attributes]
-    ) -> "Cutter":
+    def form(cls, outline: Sequence[Sequence[float]] | Floats, *, length: float, **more: Unpack[Attributes]) -> "Cutter":
         """Any revolved outline of points (radius, height), from the tip to the end of the flutes."""
         points = points_of(outline)
         return cls(max((r for r, _ in points), default=0.0), length, shape="form", outline=points, **more)

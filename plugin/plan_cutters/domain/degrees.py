@@ -49,9 +49,7 @@ def in_radians(
     Traceback (most recent call last):
     plan_cutters.errors.OptionError: tilt and tilt_deg are one angle, in radians and in degrees: give one of them
     """
-    result = {
-        word: value for word, value in values.items() if word in angles or word.removesuffix("_deg") not in angles
-    }
+    result = {word: value for word, value in values.items() if word in angles or word.removesuffix("_deg") not in angles}
     for word, angle in angles.items():
         value = values.get(f"{word}_deg")
         if value is None:

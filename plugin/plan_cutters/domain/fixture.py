@@ -180,9 +180,7 @@ class Fixture:
         drive = len(head) == 1 and head.isalpha()
         if colon and not drive and head.lower() not in WORDS and (tail.isalpha() or not tail):
             if tail not in UNITS:
-                raise FixtureError(
-                    f"fixture {text!r}: no length unit is called {tail!r}; give one of {', '.join(UNITS)}"
-                )
+                raise FixtureError(f"fixture {text!r}: no length unit is called {tail!r}; give one of {', '.join(UNITS)}")
             rest, unit = head, tail
         head, at, tail = rest.rpartition("@")
         if not at or re.search(r"[/\\]", tail) or tail.lower().endswith((*CAD, *MESH)):

@@ -10,10 +10,7 @@ from plan_cutters.domain.lengths import LENGTH, Notation, across, length
 from plan_cutters.domain.standard_holders import chuck
 from plan_cutters.errors import CutterError
 
-_STAGE = re.compile(
-    rf"(?P<by>[RD])(?P<lower>{LENGTH})(?::(?P<upper>{LENGTH}))?L(?P<length>{LENGTH})",
-    re.IGNORECASE,
-)
+_STAGE = re.compile(rf"(?P<by>[RD])(?P<lower>{LENGTH})(?::(?P<upper>{LENGTH}))?L(?P<length>{LENGTH})", re.IGNORECASE)
 
 
 def positive(value: Any, what: str, *, zero: bool = False) -> float:

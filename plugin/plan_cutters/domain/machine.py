@@ -92,14 +92,10 @@ class Machine:
         if len(turning) == 2:
             first, second = (np.array(axis.direction) for axis in turning)
             if np.linalg.norm(np.cross(first, second)) <= PARALLEL:
-                raise MachineError(
-                    f"machine {self.name}: its rotary axes {turning[0].name} and {turning[1].name} are parallel"
-                )
+                raise MachineError(f"machine {self.name}: its rotary axes {turning[0].name} and {turning[1].name} are parallel")
         if turning and np.linalg.norm(np.cross(np.array(turning[-1].direction), tool)) <= PARALLEL:
             last = turning[-1].name
-            raise MachineError(
-                f"machine {self.name}: its axis {last} lies along the tool, which it only turns about itself"
-            )
+            raise MachineError(f"machine {self.name}: its axis {last} lies along the tool, which it only turns about itself")
 
     @property
     def rotary(self) -> tuple[Axis, ...]:
@@ -184,9 +180,7 @@ class Machine:
         known = builtin_machines()
         if text in known:
             return known[text]
-        raise MachineError(
-            f"machine {text!r} is not known: give unlimited, tilt:DEG, {', '.join(known)}, or a machine file"
-        )
+        raise MachineError(f"machine {text!r} is not known: give unlimited, tilt:DEG, {', '.join(known)}, or a machine file")
 
     @classmethod
     def of(cls, given: Any) -> "Machine":
@@ -222,9 +216,6 @@ def builtin_machines() -> dict[str, Machine]:
             Axis.rotary("C", "tool", Z, limits_deg=(-360.0, 360.0)),
             Axis.rotary("A", "tool", X, limits_deg=(-110.0, 110.0)),
         ),
-        "nutating-bc": (
-            Axis.rotary("C", "part", Z),
-            Axis.rotary("B", "tool", (0.0, 1.0, 1.0), limits_deg=(-180.0, 180.0)),
-        ),
+        "nutating-bc": (Axis.rotary("C", "part", Z), Axis.rotary("B", "tool", (0.0, 1.0, 1.0), limits_deg=(-180.0, 180.0))),
     }
     return {name: Machine(name, axes=axes, fixed=not axes) for name, axes in table.items()}

@@ -264,10 +264,7 @@ class OperationPlan:
     def like(self, other: "OperationPlan") -> bool:
         """Whether each sample goes with the same cutter, setup and axis in another plan."""
         mine, others = (
-            [
-                (each.cutter, each.setup, None if each.axis is None else tuple(each.axis.tolist()))
-                for each in plan.operations
-            ]
+            [(each.cutter, each.setup, None if each.axis is None else tuple(each.axis.tolist())) for each in plan.operations]
             for plan in (self, other)
         )
         return mine == others and np.array_equal(self.label, other.label)

@@ -58,9 +58,7 @@ class Band:
         return math.atan(self.stage.slope)
 
 
-def row_of(
-    kind: float, low: float, high: float, radius: float, slope: float, ring_radius: float, part: int
-) -> list[float]:
+def row_of(kind: float, low: float, high: float, radius: float, slope: float, ring_radius: float, part: int) -> list[float]:
     if kind == ARC:
         bottom, top = max(low, slope - ring_radius), min(high, slope + ring_radius)
         return [kind, low, high, radius, slope, ring_radius, 1.0, bottom, top, radius + ring_radius, part]
@@ -112,9 +110,7 @@ def between(
         # A kink: sides that are nearly along the axis.
         side = radius - inset * math.cos(max(abs(lower_flank_angle), abs(upper_flank_angle)))
         return [band_row(low, high, side, 0.0, part)] if upper_flank_angle > lower_flank_angle else []
-    flank_angle, other = (
-        (lower_flank_angle, upper_flank_angle) if upper > lower else (upper_flank_angle, lower_flank_angle)
-    )
+    flank_angle, other = (lower_flank_angle, upper_flank_angle) if upper > lower else (upper_flank_angle, lower_flank_angle)
     # The wider side may be nearer than the corner: what is deep enough is as far from it.
     wide = max(lower, upper) + inset * (abs(math.tan(other)) - 1.0 / math.cos(other))
     least = inset * math.cos(0.25 * math.pi + 0.5 * abs(flank_angle))
@@ -242,11 +238,7 @@ def _lens(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list
         # The eroded bottom goes on until it meets the eroded side.
         joint = bottom - math.sqrt(max(0.0, (bottom - inset) ** 2 - side**2))
         rows, centre = [], joint
-    return [
-        row_of(ARC, -math.inf, joint, 0.0, bottom, bottom - inset, FLUTES),
-        *rows,
-        band_row(centre, top, side, 0.0, FLUTES),
-    ]
+    return [row_of(ARC, -math.inf, joint, 0.0, bottom, bottom - inset, FLUTES), *rows, band_row(centre, top, side, 0.0, FLUTES)]
 
 
 def _form(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list[float]]:

@@ -77,9 +77,7 @@ class Placement:
         if self.x is not None:
             x = unit(self.x, "setup x")
             if float(np.linalg.norm(np.cross(x, z))) <= _PARALLEL:
-                raise OptionError(
-                    "setup x is parallel to the setup axis; give the direction of the part along the machine's X"
-                )
+                raise OptionError("setup x is parallel to the setup axis; give the direction of the part along the machine's X")
             across = x - (x @ z) * z
             # One that has length 1 across z up to rounding stays as it is: what is kept is kept when it is given again.
             across_x = x if abs(x @ z) <= 1e-15 else across / np.linalg.norm(across)
@@ -87,9 +85,7 @@ class Placement:
         if self.origin is not None:
             origin = numbers(self.origin, "setup origin", 3)
             if not all(abs(each) <= _FARTHEST for each in origin):
-                raise OptionError(
-                    f"setup origin must be three finite numbers, up to {_FARTHEST:g} mm; is its unit right?"
-                )
+                raise OptionError(f"setup origin must be three finite numbers, up to {_FARTHEST:g} mm; is its unit right?")
             object.__setattr__(self, "origin", origin)
         words = [self.clamped] if isinstance(self.clamped, str) else items(self.clamped, "clamped faces", "texts")
         for each in words:

@@ -94,17 +94,13 @@ def _envelope(line: Floats, exact: NDArray[np.bool_], low: float, high: float) -
                 for lines, least in ((mine, -1.0), (near[across], level)) for height in (z, to)]  # fmt: skip
         first, last = max(ends[0], ends[2]), max(ends[1], ends[3])
         if first < 0.0:
-            raise CutterError(
-                f"a holder's outline has a gap between the heights {z:.3g} and {to:.3g} mm: give one body"
-            )
+            raise CutterError(f"a holder's outline has a gap between the heights {z:.3g} and {to:.3g} mm: give one body")
         pieces.append(((z, to, float(first), float(last)), ends[0] >= ends[2] and ends[1] >= ends[3]))
     all_round = np.array([(first, z, last, to) for (z, to, first, last), _ in pieces])
     for height, radius in line[exact & ~long][:, [1, 2]].tolist():
         adjacent = all_round[(all_round[:, 1] <= height + _SAME) & (all_round[:, 3] >= height - _SAME)]
         if height >= low and _at(adjacent, np.array(height)).max(initial=0.0) < radius - 1e-6:
-            raise CutterError(
-                f"a holder's outline ends in a disk without thickness at the height {height:.3g} mm: close it"
-            )
+            raise CutterError(f"a holder's outline ends in a disk without thickness at the height {height:.3g} mm: close it")
     return pieces
 
 

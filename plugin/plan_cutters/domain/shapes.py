@@ -217,9 +217,7 @@ def _check_shape(cutter: Dimensions, name: str) -> None:
     if cutter.taper and cutter.shape != "end":
         raise CutterError(f"{name}: only end mills are tapered")
     if abs(cutter.taper) > _STEEPEST:
-        raise CutterError(
-            f"{name}: a taper of {math.degrees(cutter.taper):.4g} deg lies beyond 80 deg (the half angle)"
-        )
+        raise CutterError(f"{name}: a taper of {math.degrees(cutter.taper):.4g} deg lies beyond 80 deg (the half angle)")
     if cutter.shape not in ("barrel", "lens") and (cutter.arc_radius or cutter.arc_height):
         raise CutterError(f"{name}: only barrels and lenses have an arc of their own")
     if cutter.shape != "form" and cutter.outline:
@@ -245,22 +243,16 @@ def _check_lollipop(cutter: Dimensions, name: str) -> None:
 def _check_barrel(cutter: Dimensions, name: str) -> None:
     r, corner, top = cutter.radius, cutter.corner_radius, flute_length(cutter)
     if not cutter.arc_radius >= r or not cutter.arc_height >= 0.0 or not math.isfinite(cutter.arc_radius):
-        raise CutterError(
-            f"{name}: a barrel's flank needs a radius of at least its own {r:g}, and a height over its tip"
-        )
+        raise CutterError(f"{name}: a barrel's flank needs a radius of at least its own {r:g}, and a height over its tip")
     if corner and not corner < r:
         raise CutterError(f"{name}: the tip of a barrel must be smaller than its radius {r:g}")
     if corner:
         inner, outer = cutter.arc_radius - r, cutter.arc_radius - corner
         if abs(math.hypot(inner, cutter.arc_height - corner) - outer) > 1e-6 * cutter.arc_radius:
-            raise CutterError(
-                f"{name}: its flank is not tangent to the ball at its tip; Cutter.barrel finds the height"
-            )
+            raise CutterError(f"{name}: its flank is not tangent to the ball at its tip; Cutter.barrel finds the height")
     low = 0.0 if not corner else corner * (1.0 - math.cos(tip_angle(cutter)))
     if not low < top or not flank(cutter, top) > 0.0 or not flank(cutter, low) > 0.0:
-        raise CutterError(
-            f"{name}: its flank must begin below the end of the flutes and be wider than its axis all along"
-        )
+        raise CutterError(f"{name}: its flank must begin below the end of the flutes and be wider than its axis all along")
     if abs(top - cutter.arc_height) >= cutter.arc_radius or cutter.arc_height - low >= cutter.arc_radius:
         raise CutterError(f"{name}: its flank of radius {cutter.arc_radius:g} does not reach so far along its axis")
 
@@ -268,9 +260,7 @@ def _check_barrel(cutter: Dimensions, name: str) -> None:
 def _check_lens(cutter: Dimensions, name: str) -> None:
     top = flute_length(cutter)
     if not (math.isfinite(cutter.arc_radius) and cutter.arc_radius >= cutter.radius > cutter.corner_radius):
-        raise CutterError(
-            f"{name}: a lens needs a bottom of at least its radius {cutter.radius:g}, and a smaller corner"
-        )
+        raise CutterError(f"{name}: a lens needs a bottom of at least its radius {cutter.radius:g}, and a smaller corner")
     if not top >= lens_height(cutter) - SAME:
         raise CutterError(f"{name}: its flutes of {top:g} mm end within its bottom")
 

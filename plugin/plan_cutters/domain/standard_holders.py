@@ -72,11 +72,7 @@ TAPERS = {
 #: How far a nose alone is drawn unless it is said, mm; and the longest holder.
 _ALONE, _LONGEST = 60.0, 500.0
 #: Other spellings: HSK-A63 and A63 for hsk63a, DIN 69871's SK and ISO's own short names.
-_SPELLED = (
-    (r"(?:hsk)?([ae])(32|40|50|63|100)", r"hsk\2\1"),
-    (r"ct(40|50)", r"cat\1"),
-    (r"(?:iso|dv)(30|40|50)", r"sk\1"),
-)
+_SPELLED = ((r"(?:hsk)?([ae])(32|40|50|63|100)", r"hsk\2\1"), (r"ct(40|50)", r"cat\1"), (r"(?:iso|dv)(30|40|50)", r"sk\1"))
 _WORD = re.compile(rf"(?:(?P<taper>[a-z0-9]+?))?(?P<nose>er[0-9]+)(?:x(?P<length>{LENGTH}))?")
 
 

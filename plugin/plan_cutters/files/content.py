@@ -79,11 +79,7 @@ class Content:
     def encoded(self) -> tuple[str, str]:
         """The text and its encoding."""
         data = self.data
-        for mark, encoding in (
-            (codecs.BOM_UTF8, "utf-8-sig"),
-            (codecs.BOM_UTF16_LE, "utf-16"),
-            (codecs.BOM_UTF16_BE, "utf-16"),
-        ):
+        for mark, encoding in ((codecs.BOM_UTF8, "utf-8-sig"), (codecs.BOM_UTF16_LE, "utf-16"), (codecs.BOM_UTF16_BE, "utf-16")):
             if data.startswith(mark):
                 return data.decode(encoding, "replace"), encoding
         if len(data) >= 4 and 0 in data[:2] and data[0] != data[1]:
@@ -142,9 +138,7 @@ class Content:
             with zipfile.ZipFile(io.BytesIO(self.data)) as archive:
                 entries = archive.infolist()
         except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as fault:
-            raise self.error(
-                f"is a zip archive that cannot be read ({fault}); export it anew", file=self.name
-            ) from None
+            raise self.error(f"is a zip archive that cannot be read ({fault}); export it anew", file=self.name) from None
         if len(entries) > _MEMBERS:
             raise self.error(f"is a zip archive of {len(entries)} files: no {self.noun} is", file=self.name)
         members = {each.filename: each for each in entries}
@@ -158,16 +152,7 @@ class Content:
             with zipfile.ZipFile(io.BytesIO(self.data)) as archive, archive.open(member) as packed:
                 most = min(_UNPACKED, (1 << 20) + _RATIO * len(self.data))
                 data = packed.read(most + 1)
-        except (
-            zipfile.BadZipFile,
-            zlib.error,
-            lzma.LZMAError,
-            OSError,
-            EOFError,
-            ValueError,
-            RuntimeError,
-            KeyError,
-        ) as error:
+        except (zipfile.BadZipFile, zlib.error, lzma.LZMAError, OSError, EOFError, ValueError, RuntimeError, KeyError) as error:
             what = " ".join(str(error).split()) or type(error).__name__
             raise self.error(f"its {member} cannot be unpacked ({what}); export it anew", file=self.name) from None
         if len(data) > most:

@@ -23,7 +23,5 @@ def compound(result: "Result", *, at: "int | WitnessEntry | None" = None, cutter
         shape.label, shape.color = each.name, build123d.Color(*each.colour)
         return shape
 
-    inner = [
-        build123d.Compound(label=group, children=[made(each) for each in shapes]) for group, shapes in groups.items()
-    ]
+    inner = [build123d.Compound(label=group, children=[made(each) for each in shapes]) for group, shapes in groups.items()]
     return build123d.Compound(label=name, children=inner)

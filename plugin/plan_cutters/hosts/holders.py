@@ -17,12 +17,7 @@ _MOST = 12
 
 
 def holder(
-    source: Any,
-    *,
-    axis: str | Sequence[Sequence[float]] = "z",
-    enclose: bool = False,
-    tolerance: float = 0.02,
-    name: str = "",
+    source: Any, *, axis: str | Sequence[Sequence[float]] = "z", enclose: bool = False, tolerance: float = 0.02, name: str = ""
 ) -> Holder:
     """A holder that encloses a body of revolution. It is never smaller than the body; bores and undercuts count as filled.
 

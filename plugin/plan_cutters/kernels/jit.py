@@ -17,7 +17,5 @@ def at_hand(name: str) -> bool | None:
     module, _, function = name.rpartition(".")
     *folders, stem = module.split(".")
     package = ".".join([__name__.rpartition(".")[0], *folders])
-    folder, lasts = cache_folder(
-        f"{package}.{stem}", package, str(Path(__file__).parent.joinpath(*folders, f"{stem}.py"))
-    )
+    folder, lasts = cache_folder(f"{package}.{stem}", package, str(Path(__file__).parent.joinpath(*folders, f"{stem}.py")))
     return any(Path(folder).glob(f"{stem}.{function}-*.nbc")) if lasts else None

@@ -25,11 +25,7 @@ def turn_of(n, e1, ranges, rotation):
         return ranges.rotation_cos[rotation], ranges.rotation_sin[rotation]
     a = aim[rotation]
     x = a[0] * e1[0] + a[1] * e1[1] + a[2] * e1[2]
-    y = (
-        a[0] * (n[1] * e1[2] - n[2] * e1[1])
-        + a[1] * (n[2] * e1[0] - n[0] * e1[2])
-        + a[2] * (n[0] * e1[1] - n[1] * e1[0])
-    )
+    y = a[0] * (n[1] * e1[2] - n[2] * e1[1]) + a[1] * (n[2] * e1[0] - n[0] * e1[2]) + a[2] * (n[0] * e1[1] - n[1] * e1[0])
     size = np.hypot(x, y)
     # An axis along the normal is reached at tilt 0, whatever the rotation.
     return (x / size, y / size) if size > 1e-12 else (1.0, 0.0)

@@ -48,14 +48,7 @@ def sheet(tree: Tree) -> Solids:
     """Triangles that enclose nothing."""
     none = np.zeros((0, 0, 0), np.uint8)
     return Solids(
-        tree,
-        np.zeros(len(tree.vertex), np.int8),
-        np.zeros((0, MOMENTS)),
-        none,
-        np.zeros(3),
-        1.0,
-        True,
-        np.zeros((2, 3)),
+        tree, np.zeros(len(tree.vertex), np.int8), np.zeros((0, MOMENTS)), none, np.zeros(3), 1.0, True, np.zeros((2, 3))
     )
 
 
@@ -117,11 +110,7 @@ def _solid_angle(v, x, y, z):
     ax, ay, az = v[0, 0] - x, v[0, 1] - y, v[0, 2] - z
     bx, by, bz = v[1, 0] - x, v[1, 1] - y, v[1, 2] - z
     cx, cy, cz = v[2, 0] - x, v[2, 1] - y, v[2, 2] - z
-    a, b, c = (
-        np.sqrt(ax * ax + ay * ay + az * az),
-        np.sqrt(bx * bx + by * by + bz * bz),
-        np.sqrt(cx * cx + cy * cy + cz * cz),
-    )
+    a, b, c = (np.sqrt(ax * ax + ay * ay + az * az), np.sqrt(bx * bx + by * by + bz * bz), np.sqrt(cx * cx + cy * cy + cz * cz))
     det = ax * (by * cz - bz * cy) + ay * (bz * cx - bx * cz) + az * (bx * cy - by * cx)
     rest = a * b * c + (ax * bx + ay * by + az * bz) * c
     rest += (bx * cx + by * cy + bz * cz) * a + (cx * ax + cy * ay + cz * az) * b

@@ -93,9 +93,7 @@ def _leaning(tool: Listed, taper: float) -> Cutter:
         )
     radius = 0.5 * tool.values["DC"] + corner * (1.0 - (1.0 - math.sin(taper)) / math.cos(taper))
     if corner > radius + slack(radius):
-        raise UnfitError(
-            f"{tool.cite('RE')} does not fit under a flank of {tool.cite('TA')} and {tool.cite('DC')}", broken=True
-        )
+        raise UnfitError(f"{tool.cite('RE')} does not fit under a flank of {tool.cite('TA')} and {tool.cite('DC')}", broken=True)
     if abs(corner - radius) <= slack(radius):
         radius = corner = max(radius, corner)
     else:
@@ -137,9 +135,7 @@ def _face(tool: Listed) -> Cutter:
     v = tool.values
     taper_word = "TA" if "TA" in v else "DCX" if v.get("DCX", 0.0) > v["DC"] + slack(v["DC"]) else ""
     if taper_word:
-        raise UnfitError(
-            f"{tool.cite(taper_word)}: face mills with leaning edges are not read; write its outline as TOML"
-        )
+        raise UnfitError(f"{tool.cite(taper_word)}: face mills with leaning edges are not read; write its outline as TOML")
     if not tool.states("DCX"):
         must_state(tool, "TA", "the angle of its edges from the axis")
     return _end(tool, "face")
@@ -149,9 +145,7 @@ def _chamfer(tool: Listed) -> Cutter:
     """A cone from the tip's diameter on, a cylinder where it has become as wide as the tool."""
     v = tool.values
     if "RE" in v:
-        raise UnfitError(
-            f"{tool.cite('RE')}: chamfer mills with a corner radius are not read; write its outline as TOML"
-        )
+        raise UnfitError(f"{tool.cite('RE')}: chamfer mills with a corner radius are not read; write its outline as TOML")
     must_state(tool, "TIP", "the diameter at its tip")
     radius, tip, slope = 0.5 * v["DC"], 0.5 * v.get("TIP", 0.0), math.tan(math.radians(v["TA"]))
     height = (radius - tip) / slope
@@ -187,16 +181,12 @@ def _lollipop(tool: Listed) -> Cutter:
             raise UnfitError(f"{tool.cite(key)}: a lollipop has neither a cone nor a flat; write its outline as TOML")
     neck = 0.5 * v["DN"]
     if neck >= radius - SAME:
-        raise UnfitError(
-            f"{tool.cite('DN')} is no less than {tool.cite('DC')}: a lollipop's neck is thinner", broken=True
-        )
+        raise UnfitError(f"{tool.cite('DN')} is no less than {tool.cite('DC')}: a lollipop's neck is thinner", broken=True)
     if flutes <= radius:
         raise UnfitError(f"{tool.cite('LCF')} ends below the middle of its ball, {tool.cite('DC')}", broken=True)
     cut = math.sqrt(max(0.0, radius**2 - (flutes - radius) ** 2))
     if cut > neck + slack(neck):
-        tool.notes.append(
-            f"{tool.cite('LCF')} cuts the ball off above its middle: so far up its neck is taken that wide"
-        )
+        tool.notes.append(f"{tool.cite('LCF')} cuts the ball off above its middle: so far up its neck is taken that wide")
         neck = round(cut, 9)
     return Cutter.lollipop(radius=radius, neck_radius=neck, length=10 * radius, name=tool.name)
 

@@ -35,9 +35,7 @@ _MM = {"mm": 1.0, "µm": 1e-3, "μm": 1e-3, "um": 1e-3, "nm": 1e-6, "cm": 10.0, 
        '"': 25.4, "″": 25.4, "inch": 25.4, "mil": 0.0254, "thou": 0.0254, "ft": 304.8, "'": 304.8}  # fmt: skip
 _DEGREES = ("", "°", "deg", "degrees")
 _QUANTITY = re.compile(r"\s*([-+]?[\d.,]+(?:[eE][-+]?\d+)?|[-+]?(?:nan|inf(?:inity)?))\s*([^\s/]*)\s*", re.IGNORECASE)
-_FEED = re.compile(
-    r"\s*([-+]?[\d.,]+(?:[eE][-+]?\d+)?|[-+]?(?:nan|inf))\s*(?:([^\s/\d]+)\s*/\s*(min|s))?\s*", re.IGNORECASE
-)
+_FEED = re.compile(r"\s*([-+]?[\d.,]+(?:[eE][-+]?\d+)?|[-+]?(?:nan|inf))\s*(?:([^\s/\d]+)\s*/\s*(min|s))?\s*", re.IGNORECASE)
 #: Our name of each dimension, and the names that shapes have had for it.
 _PARAMETERS = (
     ("DC", ("Diameter",)),
@@ -73,9 +71,7 @@ _FOLDERS = (".", "Bit", "bit", "../Bit", "../bit", "../Bits", "../bits")
 def is_bit(content: Content) -> bool:
     """An object with `shape` and `parameter`."""
     data = content.json
-    return (
-        isinstance(data, dict) and isinstance(data.get("parameter"), dict) and ("shape" in data or "shape-type" in data)
-    )
+    return isinstance(data, dict) and isinstance(data.get("parameter"), dict) and ("shape" in data or "shape-type" in data)
 
 
 def is_library(content: Content) -> bool:
@@ -181,13 +177,7 @@ def _tool(entry: dict[str, Any], place: str, number: int | None) -> Listed:
         return _length(value, field, imperial, tool)
 
     for key, words in _PARAMETERS:
-        _dimension(
-            tool,
-            key,
-            [word for word in words if parameters.get(word) not in (None, "")] or words[:1],
-            parameters,
-            length,
-        )
+        _dimension(tool, key, [word for word in words if parameters.get(word) not in (None, "")] or words[:1], parameters, length)
     if tool.sort:
         if shape and _plain(shape) != _plain(kind):
             # FreeCAD takes the drawing, and the type only where it has no such drawing.

@@ -10,17 +10,7 @@ from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.library.files import MOST_TOOLS, Content, too_many
 from plan_cutters.library.fusion_json import MOST_SECTIONS
 from plan_cutters.library.presets import Preset, take_feed
-from plan_cutters.library.raw_tool import (
-    FaultError,
-    LibraryContent,
-    Listed,
-    mm,
-    name_of,
-    number_in,
-    sections,
-    unit_of,
-    whole_of,
-)
+from plan_cutters.library.raw_tool import FaultError, LibraryContent, Listed, mm, name_of, number_in, sections, unit_of, whole_of
 from plan_cutters.library.records import Entry
 
 #: Our name of each dimension, and the name in brackets of its column.
@@ -131,8 +121,6 @@ def _sections(text: str, tool: Listed, where: str) -> list[Segment]:
         match = _SECTION.fullmatch(word.strip())
         if not match:
             raise FaultError(f"{where} {i} is {shown(word.strip())}, not of the form H4 U3 L1")
-        height, upper, lower = (
-            mm(number_in(each, f"{where} {i}")[0], tool.scale, f"{where} {i}") for each in match.groups()
-        )
+        height, upper, lower = (mm(number_in(each, f"{where} {i}")[0], tool.scale, f"{where} {i}") for each in match.groups())
         rows.append((height, lower, upper))
     return sections(rows, where)

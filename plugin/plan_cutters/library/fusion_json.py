@@ -8,17 +8,7 @@ from plan_cutters.domain.holder import Holder
 from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.library.files import MOST_TOOLS, Content, lines_of, too_many
 from plan_cutters.library.presets import Preset, take_feed
-from plan_cutters.library.raw_tool import (
-    FaultError,
-    LibraryContent,
-    Listed,
-    mm,
-    name_of,
-    number_of,
-    sections,
-    unit_of,
-    whole_of,
-)
+from plan_cutters.library.raw_tool import FaultError, LibraryContent, Listed, mm, name_of, number_of, sections, unit_of, whole_of
 from plan_cutters.library.records import Entry
 
 #: Our name of each dimension, and the key of `geometry`.

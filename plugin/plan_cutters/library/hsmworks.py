@@ -8,17 +8,7 @@ from plan_cutters.files.xml_tree import Element
 from plan_cutters.library.files import MOST_TOOLS, Content, too_many
 from plan_cutters.library.fusion_json import EXPRESSIONS, MOST_SECTIONS
 from plan_cutters.library.presets import Preset, take_feed
-from plan_cutters.library.raw_tool import (
-    FaultError,
-    LibraryContent,
-    Listed,
-    mm,
-    name_of,
-    number_in,
-    sections,
-    unit_of,
-    whole_of,
-)
+from plan_cutters.library.raw_tool import FaultError, LibraryContent, Listed, mm, name_of, number_in, sections, unit_of, whole_of
 from plan_cutters.library.records import Entry
 
 #: Our name of each dimension, and the attribute of `body`.
@@ -61,9 +51,7 @@ def read_hsmlib(content: Content) -> LibraryContent:
                 library.holders.append(_holder(element, scale))
             except (FaultError, CutterError) as fault:
                 name = name_of(element.given.get("description"))
-                library.faulty.append(
-                    Entry(f"line {element.line}", None, name, "holder", unused=str(fault), broken=True)
-                )
+                library.faulty.append(Entry(f"line {element.line}", None, name, "holder", unused=str(fault), broken=True))
     if any(element.first("expressions") is not None for element in root.below(("tool", "holder"))):
         library.notes.append(EXPRESSIONS)
     return library
@@ -83,11 +71,7 @@ def _tool(element: Element, place: str) -> Listed:
     if shaft is not None:
         tool.shaft = tool.tried(lambda: _sections(shaft, tool.scale, "shaft section"), [])
     if holder is not None and holder.first("section") is not None:
-        scale = (
-            tool.tried(lambda: unit_of(holder.given["unit"], "holder unit")[1], 1.0)
-            if "unit" in holder.given
-            else tool.scale
-        )
+        scale = tool.tried(lambda: unit_of(holder.given["unit"], "holder unit")[1], 1.0) if "unit" in holder.given else tool.scale
         tool.holder = tool.tried(lambda: _holder(holder, scale), None)
         tool.take("LH", holder.given.get("gauge-length"), "holder gauge-length", _number)
         if "LH" in tool.values:
@@ -136,9 +120,7 @@ def _sections(element: Element, scale: float, where: str) -> list[Segment]:
             values.append(mm(_number(each.given[key], field), scale, field))
         height, upper = values
         if lower is None and height:
-            raise FaultError(
-                f"{where} 1 has a length and no diameter at its lower end: put a section of length 0 before it"
-            )
+            raise FaultError(f"{where} 1 has a length and no diameter at its lower end: put a section of length 0 before it")
         rows.append((height, upper if lower is None else lower, upper))
         lower = upper
     return sections(rows, where)

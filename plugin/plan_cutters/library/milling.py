@@ -93,9 +93,7 @@ def _sort(tool: Listed) -> str:
     if not tool.kind:
         raise UnfitError(f"{text}: add one, as flat end mill")
     if kind in _OUTLINE:
-        raise UnfitError(
-            f"{text}: its dimensions here do not say its outline; write it as TOML (docs/tool_libraries.md)"
-        )
+        raise UnfitError(f"{text}: its dimensions here do not say its outline; write it as TOML (docs/tool_libraries.md)")
     if _OTHERS.search(kind):
         raise UnfitError(f"{text}: not a mill that finishes surfaces")
     raise UnfitError(f"{text} is unknown; read are {', '.join(MILLS)}")
@@ -114,9 +112,7 @@ def _cutter(tool: Listed, ask: Ask) -> Cutter:
     bare = CUTTING[sort](tool)
     widest = max(tool.values["DC"], 2.0 * top_radius(bare))
     if tool.values.get("DCX", 0.0) > widest + slack(widest):
-        raise UnfitError(
-            f"{tool.cite('DCX')} is wider than all that its other dimensions say: {widest / tool.scale:.6g}"
-        )
+        raise UnfitError(f"{tool.cite('DCX')} is wider than all that its other dimensions say: {widest / tool.scale:.6g}")
     length = _stickout(tool, ask)
     if length < tool.values["LCF"] - slack(length):
         raise UnfitError(f"the assumed stick-out of {length:g} mm is shorter than its flutes, {tool.cite('LCF')}")
@@ -153,8 +149,7 @@ def _agree(tool: Listed) -> None:
         top = max(v["LCF"], v.get("LN", 0.0)) + math.fsum(stage.length for stage in tool.shaft)
         if top > v["OAL"] + slack(top):
             raise UnfitError(
-                f"its shaft's sections end {top / tool.scale:.10g} over its tip, more than {tool.cite('OAL')}",
-                broken=True,
+                f"its shaft's sections end {top / tool.scale:.10g} over its tip, more than {tool.cite('OAL')}", broken=True
             )
 
 
@@ -205,9 +200,7 @@ def _above(tool: Listed, bare: Cutter, length: float) -> tuple[Segment, ...]:
     if length - at > SAME:
         segments.append(Segment(max(_shank(tool, at, length), neck), round(length - at, 9)))
         if neck:
-            tool.notes.append(
-                f"how high {tool.cite('DN')} reaches is not known: what stands above its flutes is no thinner"
-            )
+            tool.notes.append(f"how high {tool.cite('DN')} reaches is not known: what stands above its flutes is no thinner")
         if v["DMM"] < v["DC"] - slack(v["DC"]):
             tool.notes.append(f"{tool.cite('DMM')} is thinner than {tool.cite('DC')}")
         elif v["DMM"] < 2.0 * top_radius(bare) - slack(v["DMM"]):

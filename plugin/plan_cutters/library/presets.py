@@ -28,9 +28,7 @@ def is_finishing(name: str) -> bool:
     return _FINISHING.search(name) is not None
 
 
-def take_feed(
-    tool: Listed, presets: Iterable[Preset], field: str, number: Callable[[Any, str], float] = number_of
-) -> None:
+def take_feed(tool: Listed, presets: Iterable[Preset], field: str, number: Callable[[Any, str], float] = number_of) -> None:
     """Keep the feed of one preset, mm/min; a feed that no machine has is ignored, and noted.
 
     Parameters

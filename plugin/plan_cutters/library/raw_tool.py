@@ -63,9 +63,7 @@ def number_in(text: str, field: str) -> tuple[float, bool]:
     word, comma = text.strip(), False
     if "," in word:
         if "." in word or word.count(",") > 1:
-            raise FaultError(
-                f"{field} is {shown(text)}: a comma and a point, or several commas, can be read in two ways"
-            )
+            raise FaultError(f"{field} is {shown(text)}: a comma and a point, or several commas, can be read in two ways")
         word, comma = word.replace(",", "."), True
     try:
         if "_" in word:

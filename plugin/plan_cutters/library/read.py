@@ -95,11 +95,7 @@ def nothing(library: Library) -> LibraryError:
     """Why a library has no cutter."""
     if not library.entries:
         held = len(library.holders)
-        what = (
-            f"lists {held} holder{'s' if held > 1 else ''} and no tools; give it with --holder"
-            if held
-            else "lists no tools"
-        )
+        what = f"lists {held} holder{'s' if held > 1 else ''} and no tools; give it with --holder" if held else "lists no tools"
         return LibraryError(f"{library.format}: {what}", file=library.file)
     count = len(library.entries)
     reasons = Counter(entry.unused or "" for entry in library.entries)
@@ -154,6 +150,5 @@ def _holder_in(listed: Library, name: str) -> Holder:
         )
     names = ", ".join(sorted({f'"{holder.name}"' for holder in known.values()}))
     raise LibraryError(
-        f"{len(chosen)} of its {len(known)} holders are meant; choose one as {listed.file}#NAME: {names}",
-        file=listed.file,
+        f"{len(chosen)} of its {len(known)} holders are meant; choose one as {listed.file}#NAME: {names}", file=listed.file
     )

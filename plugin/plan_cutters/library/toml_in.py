@@ -15,22 +15,10 @@ from plan_cutters.errors import CutterError, LibraryError
 from plan_cutters.library.files import MOST_TOOLS, Content, too_many
 from plan_cutters.library.milling import cause_of
 from plan_cutters.library.presets import Preset, take_feed
-from plan_cutters.library.raw_tool import (
-    FaultError,
-    LibraryContent,
-    Listed,
-    Stated,
-    mm,
-    name_of,
-    number_of,
-    unit_of,
-    whole_of,
-)
+from plan_cutters.library.raw_tool import FaultError, LibraryContent, Listed, Stated, mm, name_of, number_of, unit_of, whole_of
 from plan_cutters.library.records import Entry
 
-_LOOKS = re.compile(
-    r"^[ \t]*(\[\[?[ \t]*(tool|holder)s?[ \t]*\]\]?[ \t]*(#.*)?\r?$|unit[ \t]*=)", re.MULTILINE | re.IGNORECASE
-)
+_LOOKS = re.compile(r"^[ \t]*(\[\[?[ \t]*(tool|holder)s?[ \t]*\]\]?[ \t]*(#.*)?\r?$|unit[ \t]*=)", re.MULTILINE | re.IGNORECASE)
 _TABLE = re.compile(r"^[ \t]*\[\[[ \t]*tool[ \t]*\]\]", re.MULTILINE)
 _ENDS = ("flat", "bull", "ball", "taper", "dovetail", "end")
 
@@ -100,9 +88,7 @@ def read_toml(content: Content) -> LibraryContent:
         raise LibraryError(f"is no TOML: {_syntax(error)}", file=content.name) from None
     for key in document:
         if key not in ("unit", "tool", "holder"):
-            raise LibraryError(
-                f"{shown(key)} has no meaning; a library has unit, [[tool]] and [[holder]]", file=content.name
-            )
+            raise LibraryError(f"{shown(key)} has no meaning; a library has unit, [[tool]] and [[holder]]", file=content.name)
     tools, holders = (document.get(key, []) for key in ("tool", "holder"))
     for key, tables in (("tool", tools), ("holder", holders)):
         if not isinstance(tables, list):
@@ -266,9 +252,7 @@ def _holder(value: Any, scale: float, named: dict[str, Holder | None]) -> Holder
         return _outlined(value, unit_of(value.unit, "unit")[1] if value.unit else scale)
     if value == "none":
         if "none" in named:
-            raise FaultError(
-                "holder 'none' means that there is none, but a [[holder]] is called so: call that otherwise"
-            )
+            raise FaultError("holder 'none' means that there is none, but a [[holder]] is called so: call that otherwise")
         return "none"
     if value in named:
         meant = named[value]
@@ -278,9 +262,7 @@ def _holder(value: Any, scale: float, named: dict[str, Holder | None]) -> Holder
     try:
         return Holder.parse(value)
     except CutterError:
-        raise FaultError(
-            f"holder {shown(value)} is neither none, nor of the form R15L30 (mm), nor one of [[holder]]"
-        ) from None
+        raise FaultError(f"holder {shown(value)} is neither none, nor of the form R15L30 (mm), nor one of [[holder]]") from None
 
 
 def _outlined(model: HolderTable, scale: float) -> Holder:

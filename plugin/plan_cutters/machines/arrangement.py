@@ -17,9 +17,7 @@ def arranged(rotary: list[Axis], added: Added, notes: list[str], who: str) -> li
             f"tool, as FILE#{','.join(names[::-1])}, or FILE#{names[-1]}/{names[0]} where the last carries the tool"
         )
     if rotary and not added.sign:
-        notes.append(
-            "its angles are taken as those of the tool relative to the part (ISO 841), for the file does not say"
-        )
+        notes.append("its angles are taken as those of the tool relative to the part (ISO 841), for the file does not say")
     if rotary and not added.order:
         notes.append(f"{names[0]} is taken to carry the part, which matters to linear travel alone")
     by_name = {each.name.upper(): each for each in rotary}
@@ -29,7 +27,5 @@ def arranged(rotary: list[Axis], added: Added, notes: list[str], who: str) -> li
     for side, listed in sides:
         for axis in (by_name[name] for name in listed):
             turned = chain.opposite(axis.direction) if side == "part" and added.sign == TABLE else axis.direction
-            axes.append(
-                chain.axis(axis.name, axis.kind, side, turned, limits=axis.limits, point=axis.point, rate=axis.rate)
-            )
+            axes.append(chain.axis(axis.name, axis.kind, side, turned, limits=axis.limits, point=axis.point, rate=axis.rate))
     return axes

@@ -62,9 +62,7 @@ def read_fcm(content: Content, added: Added) -> Machine:
     # Linear axes stand between the rotary ones: how they follow each other does not matter.
     all_axes = [*part, *(each for side in sides for each in straight if each.carries == side), *tool]
     if part:
-        notes.append(
-            "angles of axes that carry the part are counted as the table turns, which is how FreeCAD solves for them"
-        )
+        notes.append("angles of axes that carry the part are counted as the table turns, which is how FreeCAD solves for them")
     name = data.get("name")
     return chain.machine(name if isinstance(name, str) and name else content.path.stem, all_axes, notes)
 
@@ -78,9 +76,7 @@ def _check_parents(axes: dict[str, Any]) -> None:
             if not isinstance(at, str) or at not in axes:
                 raise MachineError(f"axis {name} stands on {shown(at)}, which is no axis of it: its chain is broken")
             if at in seen:
-                raise MachineError(
-                    f"axis {name} stands on itself: its chain is a circle through {', '.join(sorted(seen))}"
-                )
+                raise MachineError(f"axis {name} stands on itself: its chain is a circle through {', '.join(sorted(seen))}")
             seen.add(at)
             above = axes[at]
             at = above.get("parent") if isinstance(above, dict) else None
@@ -98,8 +94,7 @@ def _axis(name: str, entry: dict[str, Any], kind: str, length: float) -> Axis:
     if not isinstance(ends, dict):
         raise MachineError(f"axis {name}: its limits must be a table of min and max, not {shown(ends)}")
     low, high = (
-        None if ends.get(key) is None else chain.real(ends[key], f"axis {name}: its limit {key}")
-        for key in ("min", "max")
+        None if ends.get(key) is None else chain.real(ends[key], f"axis {name}: its limit {key}") for key in ("min", "max")
     )
     speed = entry.get("max_velocity")
     rate = 0.0 if speed is None else chain.scaled(chain.real(speed, f"axis {name}: its max_velocity") / _MINUTE, size)
@@ -117,15 +112,11 @@ def _joint(entry: Any, name: str, kind: str) -> tuple[chain.Vector, chain.Vector
     if isinstance(entry, dict):
         if entry.get("axis") is None:
             raise MachineError(f"{what} has no axis, the direction")
-        return chain.vector(entry.get("origin", [0, 0, 0]), f"{what} origin"), chain.vector(
-            entry["axis"], f"{what} axis"
-        )
+        return chain.vector(entry.get("origin", [0, 0, 0]), f"{what} origin"), chain.vector(entry["axis"], f"{what} axis")
     if isinstance(entry, list) and len(entry) == 2:
         first, second = chain.vector(entry[0], what), chain.vector(entry[1], what)
         if any(first) and any(second) and kind == "linear":
-            raise MachineError(
-                f"{what} is two vectors, either of which may be the direction; name them origin and axis"
-            )
+            raise MachineError(f"{what} is two vectors, either of which may be the direction; name them origin and axis")
         return (first, second) if any(second) else (second, first)
     raise MachineError(f"{what} must be an origin and an axis, not {shown(entry)}")
 
@@ -145,9 +136,7 @@ def _ordered(rotary: list[Axis], added: Added, notes: list[str]) -> list[Axis]:
             )
         # The one along the tool is the farther from it: the next to it would only turn the tool about itself.
         rotary.sort(key=lambda each: abs(each.direction[2]) <= 1.0 - 1e-12)
-        notes.append(
-            f"{rotary[0].name}, about Z, is next to the part of both, as FreeCAD solves for them, whatever the parents"
-        )
+        notes.append(f"{rotary[0].name}, about Z, is next to the part of both, as FreeCAD solves for them, whatever the parents")
     if added.order:
         raise MachineError(f"it says the order of its axes itself: leave out #{added.text}")
     return rotary

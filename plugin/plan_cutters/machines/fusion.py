@@ -109,9 +109,7 @@ def _only(frames: list[Frame], kind: str) -> Frame:
     if len(matches) != 1:
         count = f"{len(matches)} parts" if matches else "no part"
         ids = ", ".join(shown(frame.end.get("id")) for frame in matches)
-        raise MachineError(
-            f"its kinematics have {count} of type {kind}{f' ({ids})' if ids else ''}: machines of one are read"
-        )
+        raise MachineError(f"its kinematics have {count} of type {kind}{f' ({ids})' if ids else ''}: machines of one are read")
     return matches[0]
 
 
@@ -140,9 +138,7 @@ class _Reading:
             if kind in ("linear", "rotary"):
                 axes.append(self.axis(part, str(name), kind, carries))
             elif kind != "static":
-                self.notes.append(
-                    f"part {shown(name)} of type {shown(kind)} is neither linear nor rotary: it is ignored"
-                )
+                self.notes.append(f"part {shown(name)} of type {shown(kind)} is neither linear nor rotary: it is ignored")
         return axes
 
     def axis(self, part: dict[str, Any], name: str, kind: str, carries: Carried) -> Axis:
@@ -207,7 +203,6 @@ class _Reading:
 
     def _ends(self, entry: dict[str, Any], name: str, size: float) -> tuple[float, float] | None:
         low, high = (
-            None if entry.get(key) is None else chain.real(entry[key], f"axis {name}: its {key}")
-            for key in ("min", "max")
+            None if entry.get(key) is None else chain.real(entry[key], f"axis {name}: its {key}") for key in ("min", "max")
         )
         return chain.ranged(low, high, size)

@@ -79,15 +79,9 @@ class _Reading:
         """The name of the kinematics, and what is given with it."""
         text = self.ini.one("KINS", "KINEMATICS")
         if text is None:
-            others = [
-                (name, self.ini.one(name, "KINEMATICS"))
-                for name, keys in self.ini.values.items()
-                if "KINEMATICS" in keys
-            ]
+            others = [(name, self.ini.one(name, "KINEMATICS")) for name, keys in self.ini.values.items() if "KINEMATICS" in keys]
             if len(others) != 1:
-                raise MachineError(
-                    "it names no kinematics ([KINS]KINEMATICS): how its axes stand on each other is not known"
-                )
+                raise MachineError("it names no kinematics ([KINS]KINEMATICS): how its axes stand on each other is not known")
             section, text = others[0]
             self.notes.append(f"its kinematics are named in [{section}], not in [KINS]")
         words = (text or "").split()
@@ -213,16 +207,12 @@ class _Reading:
             if not all(chain.even(self.limits(letter, False), turns=True) for letter in kins.against):
                 raise MachineError(f"the sense of its angles hangs on {pin}, and {why}: put the HAL file next to it, or a line "
                                    f"HALCMD = setp {pin} 0 (or 1) into [HAL]")  # fmt: skip
-            self.notes.append(
-                f"the sense of its angles hangs on {pin}, and {why}: with its limits it allows the same either way"
-            )
+            self.notes.append(f"the sense of its angles hangs on {pin}, and {why}: with its limits it allows the same either way")
         if result:
             self.notes.append(f"{pin} is set: its angles are counted as in ISO 841")
             return ""
         letters = " and ".join(kins.against)
-        self.notes.append(
-            f"{self.name} counts {letters} against ISO 841: directions are turned, angles are those of the control"
-        )
+        self.notes.append(f"{self.name} counts {letters} against ISO 841: directions are turned, angles are those of the control")
         return kins.against
 
     def points(self, hal: Hal) -> dict[str, chain.Vector]:

@@ -152,9 +152,7 @@ def _ends(element: Element, units: str, kind: str, what: str) -> tuple[float, fl
     if values["Minimum"] is None and values["Maximum"] is None:
         return None
     known = chain.ANGLES if kind == "rotary" else chain.LENGTHS
-    return chain.ranged(
-        values["Minimum"], values["Maximum"], chain.unit(units, known, f"{what}: the unit of its limits")
-    )
+    return chain.ranged(values["Minimum"], values["Maximum"], chain.unit(units, known, f"{what}: the unit of its limits"))
 
 
 def _limits(component: Element, kind: str, name: str) -> tuple[float, float] | None:

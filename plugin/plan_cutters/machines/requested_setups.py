@@ -69,9 +69,7 @@ def setups_requested(
     if any(is_auto(each) for each in listed) or (propose and (listed or placed is not None)):
         raise OptionError("setup auto proposes all setups: leave out the other setups, or auto")
     if propose and common:
-        raise OptionError(
-            "setup auto puts a table under the part in each setup: leave out the fixtures, or name the setup"
-        )
+        raise OptionError("setup auto puts a table under the part in each setup: leave out the fixtures, or name the setup")
     shared = without(common, () if placed is None else placed.fixtures)
     setups = [_own(_setup(each, place), shared) for each, place in zip(listed, places, strict=True)]
     known = any(place is not None for _, place in setups)

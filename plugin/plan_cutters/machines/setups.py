@@ -103,9 +103,7 @@ def _placement(table: SetupTable, read: Content) -> Placement:
         raise OptionError("axis and z are two names of one direction: leave out one of them")
     z = table.z if table.axis is None else table.axis
     if z is None:
-        raise OptionError(
-            "its axis is missing, as axis = [0, 0, 1]: the direction of the part along the machine's spindle"
-        )
+        raise OptionError("its axis is missing, as axis = [0, 0, 1]: the direction of the part along the machine's spindle")
     origin = None if table.origin is None else _three([scaled(each, UNITS[table.unit]) for each in table.origin])
     clamped = (table.clamped,) if isinstance(table.clamped, str) else tuple(table.clamped)
     fixtures = tuple(_fixture(text, table.unit, read.path.parent) for text in table.fixtures)

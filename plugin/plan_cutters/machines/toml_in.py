@@ -152,9 +152,7 @@ def _size(value: float | str, size: float, what: str, turns: bool = True) -> flo
     if isinstance(value, str):
         radians = stated_radians(value)
         if math.isnan(radians) or not turns:
-            raise MachineError(
-                f"{what} is {shown(value)}: it must be a number{', or an angle as 0.5 rad' if turns else ''}"
-            )
+            raise MachineError(f"{what} is {shown(value)}: it must be a number{', or an angle as 0.5 rad' if turns else ''}")
         return radians
     if math.isnan(value):
         raise MachineError(f"{what} must be a number, not nan")

@@ -64,10 +64,7 @@ def fixed_axes(
     open_rows = np.flatnonzero(reached & (number < 0))
     if len(open_rows):
         search = Search(
-            probes,
-            _first(samples, verdicts, conditions, open_rows),
-            open_rows,
-            lambda bare: _columns(verdicts.axis[bare]),
+            probes, _first(samples, verdicts, conditions, open_rows), open_rows, lambda bare: _columns(verdicts.axis[bare])
         )
         cover = search.solve(prove=False)
         chosen = search.columns.of(cover.chosen)

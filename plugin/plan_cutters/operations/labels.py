@@ -46,9 +46,7 @@ def labelled(cost: Floats, edge: Ints, border: Floats) -> Ints:
     pair, weight, price = at[edge[inner]], border[inner], cost[rows]
     cheapest = price.argmin(axis=1)
     # Costs as whole numbers: the largest that a cut can need stays below _MOST.
-    largest = float(price[np.isfinite(price)].max()) + float(
-        np.bincount(pair.ravel(), np.repeat(weight, 2)).max(initial=0.0)
-    )
+    largest = float(price[np.isfinite(price)].max()) + float(np.bincount(pair.ravel(), np.repeat(weight, 2)).max(initial=0.0))
     scale = 0.25 * _MOST / max(largest, 1e-300)
     units, sides = (
         np.where(np.isfinite(price), np.rint(price * scale), _MOST).astype(np.int64),
@@ -69,19 +67,13 @@ def labelled(cost: Floats, edge: Ints, border: Floats) -> Ints:
     return label
 
 
-def _energy(
-    units: NDArray[np.int64], pair: NDArray[np.int64], sides: NDArray[np.int64], label: NDArray[np.int64]
-) -> int:
+def _energy(units: NDArray[np.int64], pair: NDArray[np.int64], sides: NDArray[np.int64], label: NDArray[np.int64]) -> int:
     parted = label[pair[:, 0]] != label[pair[:, 1]]
     return int(units[np.arange(len(label)), label].sum() + sides[parted].sum())
 
 
 def _expanded(
-    units: NDArray[np.int64],
-    pair: NDArray[np.int64],
-    sides: NDArray[np.int64],
-    label: NDArray[np.int64],
-    operation: int,
+    units: NDArray[np.int64], pair: NDArray[np.int64], sides: NDArray[np.int64], label: NDArray[np.int64], operation: int
 ) -> NDArray[np.int64]:
     """The best labels of which each is kept or becomes one operation."""
     n = len(label)

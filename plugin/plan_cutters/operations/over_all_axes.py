@@ -78,9 +78,7 @@ class Cells:
         point = np.array([np.roll((0.0, a, b * golden), k) for k in range(3) for a in (-1, 1) for b in (-1, 1)])
         point /= np.linalg.norm(point[0])
         near = point @ point.T > 0.4
-        sides = [
-            (i, j, k) for i in range(12) for j in range(i) for k in range(j) if near[i, j] and near[j, k] and near[i, k]
-        ]
+        sides = [(i, j, k) for i in range(12) for j in range(i) for k in range(j) if near[i, j] and near[j, k] and near[i, k]]
         cells = cls(point[np.array(sides)])
         for _ in range(halvings):
             cells = cells.parted()
@@ -102,9 +100,7 @@ class Cells:
         """Four cells (4 m) in place of each, by the middles of its sides; those of one stand together."""
         a, b, c = (self.corner[:, k] for k in range(3))
         ab, bc, ca = (_unit(p + q) for p, q in ((a, b), (b, c), (c, a)))
-        four = np.stack(
-            [np.stack(each, axis=1) for each in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))], axis=1
-        )
+        four = np.stack([np.stack(each, axis=1) for each in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))], axis=1)
         return Cells(four.reshape(-1, 3, 3))
 
     def of(self, which: NDArray[np.int64]) -> "Cells":
@@ -174,9 +170,7 @@ class OpenCells:
                 open_rows = np.flatnonzero(touching & (turn == psi) & ~free)
                 for tool in self._bodies(c, s, number, psi):
                     decided = np.full(len(open_rows), -1, np.int8)
-                    self.made += served(
-                        self.rows[mine[open_rows]], axis, contacts, -1.0, math.pi + 1.0, tool, solids, 0, decided
-                    )
+                    self.made += served(self.rows[mine[open_rows]], axis, contacts, -1.0, math.pi + 1.0, tool, solids, 0, decided)
                     open_rows = open_rows[decided >= 0]
                 free[open_rows] = True
         return free
@@ -240,13 +234,7 @@ def bodies(context: Context, mode: int, turn: float) -> list[Tool]:
     anywhere = whole.mode[mode : mode + 1].copy()
     anywhere[0, [TILT_FROM, TILT_TO]] = -1.0, 4.0
     return [
-        Tool(
-            np.array(result[k : k + _PIECES], float).reshape(1, -1, COLUMNS),
-            anywhere,
-            whole.reach,
-            whole.inner,
-            whole.end,
-        )
+        Tool(np.array(result[k : k + _PIECES], float).reshape(1, -1, COLUMNS), anywhere, whole.reach, whole.inner, whole.end)
         for k in range(0, len(result), _PIECES)
     ]
 
@@ -266,9 +254,7 @@ def _cut_off(row: Floats, low: float, high: float) -> list[float]:
     first, last = max(float(row[LOW]), low), min(float(row[HIGH]), high)
     if row[KIND] == ARC:
         return row_of(ARC, first, last, row[RADIUS], row[SLOPE], row[ROUND], int(row[PART]))
-    return row_of(
-        row[KIND], first, last, row[RADIUS] + row[SLOPE] * (first - row[LOW]), row[SLOPE], 0.0, int(row[PART])
-    )
+    return row_of(row[KIND], first, last, row[RADIUS] + row[SLOPE] * (first - row[LOW]), row[SLOPE], 0.0, int(row[PART]))
 
 
 def apart(normal: Floats, tilt: float) -> Rows:

@@ -90,9 +90,7 @@ def plan_with(
     place = np.full(len(columns) + 1, -1, np.int32)
     place[order] = np.arange(len(order))
     number, table = place[label], finite[:, order]
-    strip = (
-        np.where(label >= 0, width[np.arange(n), np.maximum(label, 0)], np.nan) if len(columns) else np.full(n, np.nan)
-    )
+    strip = np.where(label >= 0, width[np.arange(n), np.maximum(label, 0)], np.nan) if len(columns) else np.full(n, np.nan)
     number, table, strip, others = _simultaneous(task, len(operations), number, table, strip)
     operations += others
     speed = np.full(n, np.nan)
@@ -109,9 +107,7 @@ def plan_with(
     region = regions_of(number, edge, area)
     planes = workplanes(operations, task.ready, task.indexing)
     cutting, other = float(seconds[number >= 0].sum()), _other(task, operations, planes)
-    return OperationPlan(
-        name, tuple(operations), number, table, strip, seconds, region, planes, tilt_direction, cutting, other
-    )
+    return OperationPlan(name, tuple(operations), number, table, strip, seconds, region, planes, tilt_direction, cutting, other)
 
 
 def _other(task: Task, operations: Sequence[Operation], planes: Sequence[Workplane | None]) -> float:

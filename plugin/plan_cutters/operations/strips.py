@@ -125,9 +125,7 @@ def _section(width: Floats, curvature: Floats, offset: Floats, radius: Floats, s
     # The ellipse of the largest half width: w^2 = w2^2 - (w2 / 2)^4 / a^2, until its sides are reached.
     half = np.maximum(np.abs(radius + offset), radius)
     section = np.where(
-        width >= math.sqrt(8.0) * half,
-        2.0 * half,
-        width * np.sqrt(np.maximum(0.0, 1.0 - (0.25 * width / half) ** 2)),
+        width >= math.sqrt(8.0) * half, 2.0 * half, width * np.sqrt(np.maximum(0.0, 1.0 - (0.25 * width / half) ** 2))
     )
     ball = offset == 0.0
     section[ball] = _circles(radius[ball], curvature[ball, 0], scallop)

@@ -105,9 +105,7 @@ class Problems:
         self._width: Floats = np.zeros((0, 0))
         self._known: NDArray[np.bool_] = np.zeros((0, 0), bool)
 
-    def of(
-        self, columns: Columns, active: Rows, table: NDArray[np.bool_], rows: Rows, area: Floats, costs: Costs
-    ) -> Problem:
+    def of(self, columns: Columns, active: Rows, table: NDArray[np.bool_], rows: Rows, area: Floats, costs: Costs) -> Problem:
         """Say what some samples, weighted by area, cost with columns.
 
         Parameters
@@ -134,7 +132,5 @@ class Problems:
         cost = costs_of(columns, width, table, area, self._cutters, self._paths)
         turning = None
         if self._indexing.rate is not None:
-            turning = Turning(
-                lambda chosen: self._indexing.together(columns.of(chosen)), self._indexing.from_zero(columns)
-            )
+            turning = Turning(lambda chosen: self._indexing.together(columns.of(chosen)), self._indexing.from_zero(columns))
         return Problem(cost, columns.cutter, columns.setup, costs, turning)

@@ -27,9 +27,7 @@ def workplanes(operations: Sequence[Operation], ready: Prepared, indexing: Index
         where = indexing.orientations[s]
         conditions, moved = where.conditions, where.kinematics
         known = [[each for each in (operations[i].angle, operations[i].other_angle) if each is not None] for i in mine]
-        origin = (
-            np.zeros(3) if (place := placements[s]) is None or place.origin is None else np.array(place.origin, float)
-        )
+        origin = np.zeros(3) if (place := placements[s]) is None or place.origin is None else np.array(place.origin, float)
         across = conditions.frame[0]
         for i, seconds in zip(mine, indexing.times(s, known).tolist(), strict=True):
             axis, angle = operations[i].axis, operations[i].angle

@@ -38,9 +38,7 @@ class RadiusEntry(Frozen):
     step: float = Field(description="by which share each radius that was tried is larger than the one before")
     least_mm: float = Field(description="radii that were tried, from")
     most_mm: float = Field(description="and to")
-    percentiles_mm: dict[str, float] = Field(
-        description="q -> at least q % of the samples' area has this one or a smaller one"
-    )
+    percentiles_mm: dict[str, float] = Field(description="q -> at least q % of the samples' area has this one or a smaller one")
     below: int = Field(description="samples that not even the least one reaches")
     no_less: int = Field(description="samples that the largest one reaches: theirs is no less")
     doubtful: bool = Field(default=False, description="obstacles are missing, which might leave less")
@@ -55,30 +53,19 @@ class ChangeEntry(Frozen):
     """One thing changed, all else as it is."""
 
     thing: str
-    helps: bool | None = Field(
-        description="true: all target samples were judged with it and are reached; null: not decided"
-    )
+    helps: bool | None = Field(description="true: all target samples were judged with it and are reached; null: not decided")
     now: float | tuple[float, ...] | tuple[str, ...] | None = Field(description="mm, deg, a direction, or faces")
-    asked: float | tuple[float, ...] | tuple[str, ...] | None = Field(
-        description="the least change with which it finishes"
-    )
-    beyond: float | tuple[float, ...] | tuple[str, ...] | None = Field(
-        description="a step less, which was tried and fails"
-    )
+    asked: float | tuple[float, ...] | tuple[str, ...] | None = Field(description="the least change with which it finishes")
+    beyond: float | tuple[float, ...] | tuple[str, ...] | None = Field(description="a step less, which was tried and fails")
     left: int = Field(description="samples that stay unreached with the best value tried, of those looked at")
     looked: int = Field(description="samples that are not reached now on which values were tried")
     verified: int = Field(description="target samples that were judged with `asked`")
     cutter: str | None = Field(description="id of the cutter with it, where that is another one")
     why: str
-    lost_before: float | None = Field(
-        default=None, description="share of the finished area that is not reached now, 0 to 1"
-    )
-    lost_after: float | None = Field(
-        default=None, description="and with `asked`; null where nothing is requested or known"
-    )
+    lost_before: float | None = Field(default=None, description="share of the finished area that is not reached now, 0 to 1")
+    lost_after: float | None = Field(default=None, description="and with `asked`; null where nothing is requested or known")
     option: str | None = Field(
-        default=None,
-        description="what to write on the command line; null where nothing is requested, or no option says it",
+        default=None, description="what to write on the command line; null where nothing is requested, or no option says it"
     )
     doubted: bool = Field(
         default=False, description="it would help, unless a face that is missing from the obstacles is in the way"
@@ -131,9 +118,7 @@ class MendEntry(Frozen):
     buried: int = Field(description="those of them that lie within another body: no change is looked for")
     why: str
     changes: list[ChangeEntry]
-    lost_share: float = Field(
-        default=0.0, description="of the finished area that is not reached now in all setups, 0 to 1"
-    )
+    lost_share: float = Field(default=0.0, description="of the finished area that is not reached now in all setups, 0 to 1")
     steps: list[StepEntry] = Field(
         default=[],
         description="by what stays unreached, the least first; of those alike what asks least; an area to leave out last",
@@ -158,9 +143,7 @@ class RunEntry(Frozen):
 class LeastSetEntry(Frozen):
     """The fewest runs, a given cutter in a setup of the plan each, that reach all that any of them reaches."""
 
-    runs: list[RunEntry] = Field(
-        description="by setup, then by rank; of sets of as many that in the fewest setups was taken"
-    )
+    runs: list[RunEntry] = Field(description="by setup, then by rank; of sets of as many that in the fewest setups was taken")
     reached: int = Field(description="samples of the finished surface")
     left: int = Field(description="samples that nothing given reaches for sure")
     share: float = Field(description="of the finished area that they reach, 0 to 1")

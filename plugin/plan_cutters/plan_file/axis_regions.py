@@ -96,8 +96,6 @@ class AxisRegions(Frozen):
     setup: Vector = Field(description="the first one, where there are several")
     tolerance_mm: float
     axes: list[FixedAxis] = Field(description="the one that serves most of what is left comes next")
-    regions: list[Region] = Field(
-        description="the largest area first; every reached sample is in one region or in `rest`"
-    )
+    regions: list[Region] = Field(description="the largest area first; every reached sample is in one region or in `rest`")
     rest: Rest = Field(description="reached, each with its own axis of axes.csv, but with none of these")
     not_reached: Rest = Field(description="inaccessible, undecided or unjudged")

@@ -35,17 +35,13 @@ class Effective(Frozen):
     placement: PlacementEntry | None = Field(default=None, description="null where the axis alone was given")
     other_setups: list[Vector] = Field(default=[], description="in which every cutter was judged, too")
     propose: bool = Field(default=False, description="always false: what was proposed is in `setup_proposal`")
-    other_placements: list[PlacementEntry | None] = Field(
-        default=[], description="of these; empty if only axes were given"
-    )
+    other_placements: list[PlacementEntry | None] = Field(default=[], description="of these; empty if only axes were given")
     faces: str
     ignore: list[str] = Field(default=[], description="faces that are neither targets nor obstacles, as requested")
     target_faces: list[str]
     grid: int | None = Field(description="samples a side and face; null where sampled by spacing")
     spacing_mm: float | None = Field(description="largest spacing requested; null where sampled by grid")
-    sampled_by: Literal["default", "spacing", "grid"] = Field(
-        default="default", description="the option that set the density"
-    )
+    sampled_by: Literal["default", "spacing", "grid"] = Field(default="default", description="the option that set the density")
     tilt_deg: tuple[float, float]
     rotation_deg: tuple[float, float]
     rotation_step_deg: float
@@ -73,9 +69,7 @@ class Effective(Frozen):
     scallop_mm: float = 0.01
     stepover: float = Field(default=0.75, description="widest distance of passes, in diameters")
     index_step_deg: float | None = Field(default=None, description="rotary axes lock at whole multiples of it alone")
-    index_time_s: float = Field(
-        default=5.0, description="of an orientation, unless rates of the machine's rotary axes say more"
-    )
+    index_time_s: float = Field(default=5.0, description="of an orientation, unless rates of the machine's rotary axes say more")
     change_time_s: float = 20.0
     setup_time_s: float = 300.0
     overlap_mm: float = Field(default=2.0, description="of operations at a common border")

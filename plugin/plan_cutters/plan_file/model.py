@@ -38,8 +38,7 @@ class SampleCounts(Frozen):
     unjudged: int
     regions: int
     inside_bodies: int = Field(
-        default=0,
-        description="inside other bodies of the part: no surface of the finished part (`inside_other_bodies`)",
+        default=0, description="inside other bodies of the part: no surface of the finished part (`inside_other_bodies`)"
     )
 
     @property
@@ -101,13 +100,9 @@ class WitnessEntry(Frozen):
     obstacle_face: str | None = Field(description="or `fixture:NAME`")
     obstacle_point: Vector | None = Field(description="a point of that face in the cutter at the best posture")
     best_posture: Posture | None
-    depth_mm: float | None = Field(
-        description="how deep the part reaches into the cutter at the best posture, or may do"
-    )
+    depth_mm: float | None = Field(description="how deep the part reaches into the cutter at the best posture, or may do")
     inside_bodies: bool = Field(default=False, description="it lies inside another body of the part")
-    samples: int = Field(
-        default=1, description="of its face that are not reached for its reason, inside the same body if any"
-    )
+    samples: int = Field(default=1, description="of its face that are not reached for its reason, inside the same body if any")
 
 
 class AreaEntry(Frozen):
@@ -121,8 +116,7 @@ class AreaEntry(Frozen):
     left: int = Field(description="contacts whose cells were not shown to be served when the budget ended")
     short: int = Field(description="those of them for which the budget was spent")
     dropped: int = Field(
-        default=0,
-        description="those of them that were not looked at more closely, for too little area was to be gained",
+        default=0, description="those of them that were not looked at more closely, for too little area was to be gained"
     )
     left_out: list[str] = Field(default=[], description="target faces whose area is not known: they are not in `share`")
 
@@ -142,9 +136,7 @@ class RotaryEntry(Frozen):
 
     name: str
     carries: Literal["part", "tool"]
-    direction: Vector = Field(
-        description="in the part's frame at zero angles; positive is the tool's turn relative to the part"
-    )
+    direction: Vector = Field(description="in the part's frame at zero angles; positive is the tool's turn relative to the part")
     limits_deg: tuple[float, float] | None
 
 
@@ -208,8 +200,7 @@ class CutterEntry(VerdictCounts):
     allowance_mm: float = 0.0
     clearance_mm: float = Field(default=0.0, description="clearance required of neck, shank and holder")
     slack_mm: float = Field(
-        default=0.0,
-        description="how far from what counts a point may be and still count, where a shape is held in a larger one",
+        default=0.0, description="how far from what counts a point may be and still count, where a shape is held in a larger one"
     )
     feasible: bool | None = Field(
         description="null: undecided samples alone are left, or it reaches all that could be judged but obstacles are missing"
@@ -251,9 +242,7 @@ class CutterEntry(VerdictCounts):
         description="reached samples whose posture lies within 2 deg of the rotary axis next to the part, which then turns fast; "
         "null without two rotary axes",
     )
-    travel: TravelEntry | None = Field(
-        default=None, description="null where linear travel is not judged: see the notes"
-    )
+    travel: TravelEntry | None = Field(default=None, description="null where linear travel is not judged: see the notes")
     least_stick_out: StickOutEntry | None = Field(default=None, description="null where it was not requested")
     mend: MendEntry | None = Field(
         default=None, description="what would make it feasible; null where it is, or where that was not requested"
@@ -282,9 +271,7 @@ class TextEntry(Frozen):
 
     headline: str = Field(description="which cutter to take for what, or that none does")
     tone: Tone
-    lines: list[str] = Field(
-        description="why, what is not judged, what is left: at most 25 lines of at most 80 columns"
-    )
+    lines: list[str] = Field(description="why, what is not judged, what is left: at most 25 lines of at most 80 columns")
     cutters: dict[str, str] = Field(description="id of a cutter -> how much it reaches, or does not reach and why")
     verdicts: dict[str, VerdictText] = Field(description="id of a cutter -> whether it is feasible")
     shares: dict[str, dict[str, str]] = Field(
@@ -332,8 +319,7 @@ class Plan(Frozen):
     cutters: list[CutterEntry]
     selected: str | None
     shown: str | None = Field(
-        default=None,
-        description="id of the cutter that models show: `selected`, else the one that leaves the least area",
+        default=None, description="id of the cutter that models show: `selected`, else the one that leaves the least area"
     )
     selected_over_setups: str | None = Field(
         default=None,
@@ -346,12 +332,9 @@ class Plan(Frozen):
     )
     selection: Selection
     setup_proposal: SetupProposal | None = Field(default=None, description="null unless requested (--setup auto)")
-    setups: list[SetupEntry] = Field(
-        default=[], description="this setup axis first; empty where any tool axis is possible"
-    )
+    setups: list[SetupEntry] = Field(default=[], description="this setup axis first; empty where any tool axis is possible")
     largest_radius: list[RadiusEntry] = Field(
-        default=[],
-        description="of bare flat and ball ends, whatever cutters there are; empty where it was not requested",
+        default=[], description="of bare flat and ball ends, whatever cutters there are; empty where it was not requested"
     )
     least_set: LeastSetEntry | None = Field(
         default=None,
@@ -360,16 +343,13 @@ class Plan(Frozen):
     )
     operations: OperationsEntry | None = Field(default=None, description="null unless requested (--operations)")
     not_mended: list[str] = Field(
-        default=[],
-        description="ids of cutters that fail and were left out of `mend`, as others come nearer: mend-all has them",
+        default=[], description="ids of cutters that fail and were left out of `mend`, as others come nearer: mend-all has them"
     )
     notes: list[str] = Field(description="what these verdicts do not say")
     note_codes: list[str] = Field(default=[], description="what each note is about; empty in older files")
     legend: dict[str, str] = Field(description="colour of each verdict in the STEP and GLB files, sRGB")
     legend_words: dict[str, str] = Field(default={}, description="what those colours mean, in words for people")
     split: dict[str, SplitEntry] = Field(default={}, description="faces of mixed verdicts: how the models show them")
-    files: dict[str, FileEntry] = Field(
-        default={}, description="what was written into the folder of this file, by format"
-    )
+    files: dict[str, FileEntry] = Field(default={}, description="what was written into the folder of this file, by format")
     not_written: dict[str, str] = Field(default={}, description="requested formats whose file is missing, and why")
     run: Run

@@ -31,8 +31,7 @@ class Note(NamedTuple):
 def cutters_built_in() -> Note:
     return Note(
         "cutters_built_in",
-        "The cutters are the built-in set, of usual metric sizes in plain holders: give your own with --cutter or "
-        "--cutters.",
+        "The cutters are the built-in set, of usual metric sizes in plain holders: give your own with --cutter or --cutters.",
     )
 
 
@@ -135,9 +134,7 @@ def open_faces(faces: Sequence[str]) -> Note:
 
 
 def all_faces_open() -> Note:
-    return Note(
-        "open_faces", "No face encloses material: only the surfaces are in the way, not what may lie behind them."
-    )
+    return Note("open_faces", "No face encloses material: only the surfaces are in the way, not what may lie behind them.")
 
 
 # Of targets.
@@ -164,24 +161,19 @@ def faces_clamped(faces: Sequence[str]) -> Note:
 
 
 def faces_clamped_there(faces: Sequence[str], setup: str) -> Note:
-    return Note(
-        "faces_clamped_there", f"{', '.join(faces)}: clamped in the setup {setup}, and to be machined in another one."
-    )
+    return Note("faces_clamped_there", f"{', '.join(faces)}: clamped in the setup {setup}, and to be machined in another one.")
 
 
 # Of setups and fixtures.
 
 
 def setup_proposed(setups: Sequence[str], why: str) -> Note:
-    return Note(
-        "setup_proposed", f"Proposed {'setup' if len(setups) == 1 else 'setups'}: {' and '.join(setups)}. {why}"
-    )
+    return Note("setup_proposed", f"Proposed {'setup' if len(setups) == 1 else 'setups'}: {' and '.join(setups)}. {why}")
 
 
 def setup_without_fixtures(setup: str) -> Note:
     return Note(
-        "setup_without_fixtures",
-        f"No fixture stands in the setup {setup}: nothing that holds the part there was in the way.",
+        "setup_without_fixtures", f"No fixture stands in the setup {setup}: nothing that holds the part there was in the way."
     )
 
 
@@ -196,8 +188,7 @@ def fixture_stays(name: str) -> Note:
 
 def fixture_not_cad(names: Sequence[str]) -> Note:
     return Note(
-        "fixture_not_cad",
-        f"Only the GLB model, the review page and pictures show what is no CAD body: {', '.join(names)}.",
+        "fixture_not_cad", f"Only the GLB model, the review page and pictures show what is no CAD body: {', '.join(names)}."
     )
 
 
@@ -210,8 +201,7 @@ def travel_not_judged(why: str) -> Note:
 
 def travel_of_holder() -> Note:
     return Note(
-        "travel_of_holder",
-        "Linear travel is that of the holder's gauge face at the postures found; it changes no verdict.",
+        "travel_of_holder", "Linear travel is that of the holder's gauge face at the postures found; it changes no verdict."
     )
 
 
@@ -231,9 +221,7 @@ def area_proved(cutter: str, *, whole: bool, doubtful: bool) -> Note:
 
 def area_left(cutter: str, *, unserved: int, dropped: int, short: int) -> Note:
     """Cells for which no posture was found, that were not cut up, and for which the budget was spent."""
-    why = (
-        [f"no posture was found that serves the cells about {unserved} contacts, or finer ones"] if unserved > 0 else []
-    )
+    why = [f"no posture was found that serves the cells about {unserved} contacts, or finer ones"] if unserved > 0 else []
     if dropped:
         why.append(f"{dropped} cells were not cut up, for too little of the surface was to be gained")
     if short:

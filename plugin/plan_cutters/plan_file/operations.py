@@ -155,9 +155,7 @@ class FewestEntry(Frozen):
     """
 
     found: int
-    at_least: int = Field(
-        description="no choice among the candidates has fewer; about samples and postures proved free"
-    )
+    at_least: int = Field(description="no choice among the candidates has fewer; about samples and postures proved free")
     proof: Literal["weights", "branch and bound", "not closed"]
     weights: list[tuple[int, int]] = Field(description="row of samples.npz, and its weight")
     bound: float = Field(description="sum of the weights over 1,000,000")
@@ -209,18 +207,14 @@ class CurveStepEntry(Frozen):
 
     orientations: int
     share: float
-    at_most: float | None = Field(
-        description="no choice of as many candidates serves more; null where that is not known"
-    )
+    at_most: float | None = Field(description="no choice of as many candidates serves more; null where that is not known")
 
 
 class ForcedStepEntry(Frozen):
     """Some step of the rotary axes between neighbours of a grid line is at least so large, whatever postures are taken."""
 
     along: Literal["u", "v"] = Field(description="the direction of the grid lines")
-    deg: float = Field(
-        description="the larger angle of the two axes; the first one does not count within 2 deg of its direction"
-    )
+    deg: float = Field(description="the larger angle of the two axes; the first one does not count within 2 deg of its direction")
     turning_deg: float = Field(description="the same where that counts, too")
     face: str = Field(description="where that line is")
     looked_at: int = Field(description="lines that were looked at")

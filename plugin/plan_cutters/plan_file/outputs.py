@@ -72,9 +72,7 @@ class StoredOutput(Frozen):
     machine: str
     setup: Vector
     samples: VerdictsOutput
-    inside_bodies: int = Field(
-        description="samples inside other bodies of the part, which are not counted in `samples`"
-    )
+    inside_bodies: int = Field(description="samples inside other bodies of the part, which are not counted in `samples`")
     missing: list[str]
     unjudged_faces: list[str]
     asked: dict[str, Any] = Field(description="what the maps were made with")

@@ -8,9 +8,7 @@ from plan_cutters.plan_file.frozen import Frozen, Vector
 class ReferenceEntry(Frozen):
     """A file that a CAD file refers to."""
 
-    file: str = Field(
-        description="path from the folder of the file that refers to it, or of the one that refers to that"
-    )
+    file: str = Field(description="path from the folder of the file that refers to it, or of the one that refers to that")
     sha256: str | None = Field(description="null: it is not there")
 
 

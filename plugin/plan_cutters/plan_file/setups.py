@@ -45,6 +45,4 @@ class SetupReach(VerdictCounts):
     """The verdicts of a cutter in one setup are counted in samples."""
 
     axis: Vector
-    serves: int = Field(
-        default=0, description="samples whose posture is that of this setup: the first one that reaches them"
-    )
+    serves: int = Field(default=0, description="samples whose posture is that of this setup: the first one that reaches them")

@@ -80,8 +80,7 @@ class FaceVerdicts(VerdictCounts):
     """The verdicts of a cutter on a face are counted in samples and in shares of its area."""
 
     area_share: AreaShare = Field(
-        default=AreaShare(),
-        description="of the face's area, without what of it lies inside other bodies; 0 where all does",
+        default=AreaShare(), description="of the face's area, without what of it lies inside other bodies; 0 where all does"
     )
     inside_share: float = Field(default=0.0, description="of the face's area that lies inside other bodies of the part")
 
@@ -94,9 +93,7 @@ def by_share(shares: Mapping[str, float]) -> list[tuple[str, float]]:
 def part_of(counts: VerdictCounts, share: AreaShare, words: Iterable[str]) -> str:
     """How much of an area has one of some verdicts, in percent."""
     mine, there = set(words), _there(counts, share)
-    return percent(
-        sum(getattr(share, word) for word in mine), some=bool(there & mine), whole=bool(there) and there <= mine
-    )
+    return percent(sum(getattr(share, word) for word in mine), some=bool(there & mine), whole=bool(there) and there <= mine)
 
 
 def reached(counts: VerdictCounts, share: AreaShare) -> str:

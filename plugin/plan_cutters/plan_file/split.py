@@ -14,9 +14,7 @@ class SplitEntry(Frozen):
         description="split in its place; split as a separate copy of the face; coloured whole"
     )
     why: str | None = Field(description="why it could not be split in its place")
-    joined: int = Field(
-        default=0, description="slivers coloured as the worst of their neighbours, or that hold no sample"
-    )
+    joined: int = Field(default=0, description="slivers coloured as the worst of their neighbours, or that hold no sample")
     dropped: int = Field(
         default=0,
         description="samples without a piece of their label, coloured as their neighbours: of operations those beyond a "

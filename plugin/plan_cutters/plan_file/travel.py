@@ -9,9 +9,7 @@ class PlacementEntry(Frozen):
     """How the part stands in a setup, where more than the axis was given."""
 
     file: str | None
-    x: Vector | None = Field(
-        description="direction of the part along the machine's X; null: as near to the part's X as can be"
-    )
+    x: Vector | None = Field(description="direction of the part along the machine's X; null: as near to the part's X as can be")
     origin_mm: Vector | None = Field(description="point of the part at the machine's zero; null: not known")
     clamped: list[str] = Field(description="faces that are held, in the words for faces: no targets")
 
@@ -42,6 +40,4 @@ class TravelEntry(Frozen):
     unknown: int = Field(description="reached samples at which they were not: there linear axes are in one plane")
     outside: int = Field(description="reached samples at which an axis is beyond its limits")
     axes: list[AxisTravel]
-    worst: list[BeyondTravel] = Field(
-        description="one for each axis that is ever beyond its limits, the farthest first"
-    )
+    worst: list[BeyondTravel] = Field(description="one for each axis that is ever beyond its limits, the farthest first")

@@ -96,7 +96,6 @@ def _machine(result: Judged, name: str) -> list[Column]:
     ]
     if moved is not None:
         table += [
-            Column(f"{axis.name}_mm", np.ascontiguousarray(moved.position[:, k]), _MM)
-            for k, axis in enumerate(machine.linear)
+            Column(f"{axis.name}_mm", np.ascontiguousarray(moved.position[:, k]), _MM) for k, axis in enumerate(machine.linear)
         ]
     return table

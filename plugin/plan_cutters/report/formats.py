@@ -80,9 +80,7 @@ class Making:
         The part with its faces split, once that is done: along the verdicts (None), or the operations of a plan.
     """
 
-    def __init__(
-        self, result: Judged, folder: Path, schema: str, clock: "Clock", begins: Callable[[str], None]
-    ) -> None:
+    def __init__(self, result: Judged, folder: Path, schema: str, clock: "Clock", begins: Callable[[str], None]) -> None:
         self.splits: dict[int | None, Any] = {}
         self._result, self._folder, self._schema, self._clock, self._begins = result, folder, schema, clock, begins
         self._errors: dict[int | None, Exception] = {}
@@ -141,9 +139,7 @@ class Making:
             self._begins("split")
             with self._clock.stage("split" if which is None else "split_operations", shown=False):
                 try:
-                    self.splits[which] = (
-                        split_result(self._result) if which is None else split_operations(self._result, which)
-                    )
+                    self.splits[which] = split_result(self._result) if which is None else split_operations(self._result, which)
                 except Exception as error:
                     self._errors[which] = error
 

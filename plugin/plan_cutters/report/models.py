@@ -158,9 +158,7 @@ def write_styled_step(result: Judged, split: Any, path: Path, style: Callable[[A
     """Write a split part with names and colours, and the fixtures that are CAD files beside it."""
     part = result.part
     others = [
-        Product(
-            each.name, each.source.shape, np.column_stack([each.fixture.rotation, each.fixture.shift]), rgb("fixture")
-        )
+        Product(each.name, each.source.shape, np.column_stack([each.fixture.rotation, each.fixture.shift]), rgb("fixture"))
         for each in result.conditions.surroundings.fixtures
         if isinstance(each.source, Part)
     ]

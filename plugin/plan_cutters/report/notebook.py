@@ -35,24 +35,14 @@ class _Chip(NamedTuple):
     ink: str
 
 
-_CHIPS = {
-    True: _Chip("✓", "#00664b", "#ffffff"),
-    False: _Chip("✗", "#a33c00", "#ffffff"),
-    None: _Chip("?", "#f0e442", "#000000"),
-}
+_CHIPS = {True: _Chip("✓", "#00664b", "#ffffff"), False: _Chip("✗", "#a33c00", "#ffffff"), None: _Chip("?", "#f0e442", "#000000")}
 
 
 def text_of(plan: Plan) -> str:
     """The plan in words: what to take and why, what makes it unsure, a line for each cutter, what is not reached."""
     story = story_of(plan)
     headline = story.headline
-    lines = [
-        f"{headline.title}. {headline.about} {headline.why}".replace("  ", " "),
-        *_lines(story),
-        "",
-        *_table(story),
-        "",
-    ]
+    lines = [f"{headline.title}. {headline.about} {headline.why}".replace("  ", " "), *_lines(story), "", *_table(story), ""]
     lines += [each.left for each in story.cutters if each.left]
     lines += further(story)
     return "\n".join(plain(line).rstrip() for line in lines).strip() + "\n"
@@ -99,9 +89,7 @@ def show(result: Judged, height: int = HEIGHT) -> Path | None:
     path = Path(tempfile.mkdtemp(prefix="plan-cutters-")) / "review.html"
     path.write_bytes(data)
     if not webbrowser.open(path.as_uri()):
-        raise PlanError(
-            "no browser was found to show this page: open it yourself, or name one in BROWSER", file=str(path)
-        )
+        raise PlanError("no browser was found to show this page: open it yourself, or name one in BROWSER", file=str(path))
     return path
 
 
@@ -120,9 +108,7 @@ def _lines(story: Story) -> list[str]:
 def _table(story: Story) -> list[str]:
     """A line for each cutter, in columns that are as wide as they must be; `>` marks the one to take."""
     rows = [["cutter", "finishes", *_COLUMNS.values()]]
-    rows += [
-        [plain(each.name), FEASIBLE[each.feasible], *(each.shares[word] for word in _COLUMNS)] for each in story.cutters
-    ]
+    rows += [[plain(each.name), FEASIBLE[each.feasible], *(each.shares[word] for word in _COLUMNS)] for each in story.cutters]
     wide = [max(len(row[k]) for row in rows) for k in range(len(rows[0]))]
     marks = [" ", *(">" if each.id == story.taken else " " for each in story.cutters)]
     return [

@@ -17,13 +17,7 @@ from cad_io.write.gltf import Other as Drawn
 from plan_cutters.document.fixtures import fixture_entry
 from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry
 from plan_cutters.plan_file.palette import LABELS, MEANING, parts, rgb
-from plan_cutters.report.models import (
-    face_facts,
-    face_labels,
-    fixture_meshes,
-    verdict_labels,
-    write_styled_step,
-)
+from plan_cutters.report.models import face_facts, face_labels, fixture_meshes, verdict_labels, write_styled_step
 from plan_cutters.report.protocol import Judged
 
 

@@ -10,16 +10,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from plan_cutters.operations.fixed_axes import fixed_axes
 from plan_cutters.operations.labels import pieces
-from plan_cutters.plan_file.axis_regions import (
-    AxisFound,
-    AxisRegions,
-    FixedAxis,
-    FreeTilts,
-    Region,
-    RegionFace,
-    Rest,
-    Span,
-)
+from plan_cutters.plan_file.axis_regions import AxisFound, AxisRegions, FixedAxis, FreeTilts, Region, RegionFace, Rest, Span
 from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.operations import runs
 from plan_cutters.report.protocol import Judged
@@ -92,10 +83,7 @@ def axis_regions(result: Judged) -> AxisRegions:
 
 def schema() -> dict[str, Any]:
     """JSON Schema of the file (draft 2020-12), made from the model."""
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        **AxisRegions.model_json_schema(mode="serialization"),
-    }
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **AxisRegions.model_json_schema(mode="serialization")}
 
 
 def schema_text() -> str:
@@ -122,9 +110,7 @@ def _axis_of_region(rows: NDArray[np.int64], samples: Any, verdicts: Any) -> Axi
     mean = mean / length if length > 1e-9 * float(area.sum()) else axis[0]
     apart = 2.0 * np.arcsin(np.clip(0.5 * np.linalg.norm(axis - mean, axis=1), 0.0, 1.0))
     return AxisFound(
-        mean=vector(mean),
-        half_angle_deg=float(np.degrees(apart.max())),
-        tilt_deg=_span(np.degrees(verdicts.tilt[rows])),
+        mean=vector(mean), half_angle_deg=float(np.degrees(apart.max())), tilt_deg=_span(np.degrees(verdicts.tilt[rows]))
     )
 
 

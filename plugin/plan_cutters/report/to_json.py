@@ -24,10 +24,7 @@ def schema() -> dict[str, Any]:
     """JSON Schema of the plan file (draft 2020-12), made from the model."""
     from plan_cutters.plan_file.model import Plan
 
-    return {
-        "$schema": "https://json-schema.org/draft/2020-12/schema",
-        **Plan.model_json_schema(mode="serialization"),
-    }
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **Plan.model_json_schema(mode="serialization")}
 
 
 def schema_text() -> str:

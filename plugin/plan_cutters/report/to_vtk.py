@@ -19,14 +19,7 @@ from plan_cutters.domain.verdicts import REASONS, WORDS
 from plan_cutters.report.axes import CLASSES, columns
 from plan_cutters.report.protocol import Judged
 
-_TYPE = {
-    "float64": "Float64",
-    "float32": "Float32",
-    "int64": "Int64",
-    "int32": "Int32",
-    "int8": "Int8",
-    "uint8": "UInt8",
-}
+_TYPE = {"float64": "Float64", "float32": "Float32", "int64": "Int64", "int32": "Int32", "int8": "Int8", "uint8": "UInt8"}
 #: Bytes of a block that is deflated by itself.
 _BLOCK = 1 << 20
 

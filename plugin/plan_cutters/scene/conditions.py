@@ -139,9 +139,7 @@ def ranges_of(machine: Machine, setup: Floats, postures: PostureRange, kinematic
     if len(rotary.aim):
         # Each sample leans towards the axes that there are: rotations asked for would miss them.
         rotations = np.zeros(len(rotary.aim))
-    return Ranges(
-        np.cos(rotations), np.sin(rotations), max(0.0, low), min(np.pi, high), setup, machine.limit_cos, rotary
-    )
+    return Ranges(np.cos(rotations), np.sin(rotations), max(0.0, low), min(np.pi, high), setup, machine.limit_cos, rotary)
 
 
 def rotations_of(normal: Floats, direction_max: Floats, tilt_direction: Floats) -> Floats:
@@ -157,8 +155,7 @@ def rotary_of(kinematics: Kinematics | None) -> Rotary:
     kinematics, _ = kinematics.turning()
     swing = kinematics.swing if len(kinematics.direction) == 2 else (0.0, 1.0, 0.0)
     circle, direction, limit, tool, aim = map(
-        np.ascontiguousarray,
-        (kinematics.circles(), kinematics.direction, kinematics.limit, kinematics.tool, kinematics.aims()),
+        np.ascontiguousarray, (kinematics.circles(), kinematics.direction, kinematics.limit, kinematics.tool, kinematics.aims())
     )
     return Rotary(circle, direction, limit, tool, np.array(swing), aim)
 

@@ -49,9 +49,7 @@ class Deepest(Record):
 def deepest_of(cutter: Cutter) -> float:
     """The largest depth that anything can have in a cutter and leave some of it, mm."""
     stages = [min(stage.radius, stage.upper_radius, 0.5 * stage.length) for _, _, stage in cutter.stages]
-    return (
-        min(cutter.radius, 0.5 * cutter.length) * (1 - 1e-9) if not stages else max(cutter.radius, *stages) * (1 - 1e-9)
-    )
+    return min(cutter.radius, 0.5 * cutter.length) * (1 - 1e-9) if not stages else max(cutter.radius, *stages) * (1 - 1e-9)
 
 
 def deepest_on(triangle: Floats, depth: Callable[[Floats], Floats]) -> Floats:
@@ -68,13 +66,7 @@ def deepest_on(triangle: Floats, depth: Callable[[Floats], Floats]) -> Floats:
 
 
 def deepest(
-    part: Part | None,
-    obstacles: Obstacles,
-    cutter: Cutter,
-    contact: Floats,
-    normal: Floats,
-    posture: Verdicts,
-    guess: float,
+    part: Part | None, obstacles: Obstacles, cutter: Cutter, contact: Floats, normal: Floats, posture: Verdicts, guess: float
 ) -> Deepest | None:
     """Find the deepest point of the obstacles in a cutter at a contact; None if nothing is in it.
 
@@ -137,9 +129,7 @@ def deepest(
     return Deepest(face, triangle, point, depth_of(point, depth))
 
 
-def _foot(
-    part: Part, face: int, point: Floats, size: float, within: float, depth: Callable[[Floats], Floats]
-) -> Floats | None:
+def _foot(part: Part, face: int, point: Floats, size: float, within: float, depth: Callable[[Floats], Floats]) -> Floats | None:
     """The point of a face itself that is deepest in something, near a point of one of its triangles; None if it is not found."""
     try:
         foot, trim = foot_on(part, face, point, within), part.trim(face)

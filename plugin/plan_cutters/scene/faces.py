@@ -216,9 +216,7 @@ def grammar(text: str, option: str) -> None:
         raise OptionError(f"{where}: give {_WORDS}")
 
 
-def _selected(
-    faces: Sequence[FaceInfo], text: str, tree: "Sequence[Node]", option: str, blends: Collection[int]
-) -> set[int]:
+def _selected(faces: Sequence[FaceInfo], text: str, tree: "Sequence[Node]", option: str, blends: Collection[int]) -> set[int]:
     """Numbers that a text selects: the one grammar of face selections."""
     where = f"{option} {_brief(text)}"
     word = text.strip()

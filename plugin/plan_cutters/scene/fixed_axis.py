@@ -25,9 +25,7 @@ def serves(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, conte
     return np.asarray(served_by(rows, np.asarray(axis)[None], samples, context)[0][0])
 
 
-def served_by(
-    rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, context: Context
-) -> tuple[NDArray[np.bool_], int]:
+def served_by(rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, context: Context) -> tuple[NDArray[np.bool_], int]:
     """At which of some samples (m,) a cutter stands free with each of some axes (k, 3).
 
     Returns
@@ -40,9 +38,7 @@ def served_by(
     return column >= 0, made
 
 
-def _tested(
-    rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, context: Context
-) -> tuple[NDArray[np.int8], int]:
+def _tested(rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, context: Context) -> tuple[NDArray[np.int8], int]:
     """How a cutter stands at samples with axes (k, m), in the numbers of the kernel, and how many times it was put down."""
     from plan_cutters.kernels.search.fixed_axis import DIRECTIONS, served
 
@@ -75,9 +71,7 @@ def _tested(
     return column, made
 
 
-def _turned(
-    rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, conditions: Conditions
-) -> NDArray[np.bool_]:
+def _turned(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, conditions: Conditions) -> NDArray[np.bool_]:
     """At which samples (m,) an axis leans as the rotations that were requested let it."""
     first, last = conditions.postures.rotation
     turn = rotations_of(samples.normal[rows], samples.direction_max[rows], tilt_direction_of(rows, axis, samples))
@@ -90,9 +84,7 @@ def tilt_direction_of(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSam
     normal = samples.normal[rows]
     tilt_direction = axis - (normal @ axis)[:, None] * normal
     length = np.linalg.norm(tilt_direction, axis=1)[:, None]
-    return np.asarray(
-        np.where(length > 1e-12, tilt_direction / np.maximum(length, 1e-300), samples.direction_max[rows])
-    )
+    return np.asarray(np.where(length > 1e-12, tilt_direction / np.maximum(length, 1e-300), samples.direction_max[rows]))
 
 
 def held_at(axes: Floats, number: Ints, samples: SurfaceSamples, context: Context) -> Verdicts:

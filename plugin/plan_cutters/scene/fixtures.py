@@ -85,9 +85,7 @@ def _read(fixture: Fixture, timeout: float) -> Part | Mesh:
         return read_mesh(source, fixture.unit)
     if suffix not in CAD:
         what = f"{suffix!r} is no format of fixtures" if suffix else "its name does not say its format"
-        raise ReadError(
-            f"{what}: give STEP, IGES, BREP, STL, OBJ, PLY or GLB, or box:, cylinder: or table:", file=source
-        )
+        raise ReadError(f"{what}: give STEP, IGES, BREP, STL, OBJ, PLY or GLB, or box:, cylinder: or table:", file=source)
     return read_part(source, unit=fixture.unit, timeout=timeout)
 
 
@@ -137,9 +135,7 @@ def joined(
     certain = possible
     if surroundings.certain is not surroundings.possible or any(body.certain is not body.possible for body in bodies):
         certain = _together(surroundings.certain, placed_fixtures, [body.certain for body in bodies], near)
-    return replace(
-        surroundings, possible=possible, certain=certain, fixtures=tuple(placed_fixtures), alone=surroundings
-    )
+    return replace(surroundings, possible=possible, certain=certain, fixtures=tuple(placed_fixtures), alone=surroundings)
 
 
 def _placed(
@@ -160,9 +156,7 @@ def _placed(
                     tuple(notes), shown)  # fmt: skip
 
 
-def _together(
-    own: Obstacles, placed_fixtures: Sequence[PlacedFixture], bodies: Sequence[Obstacles], near: Floats
-) -> Obstacles:
+def _together(own: Obstacles, placed_fixtures: Sequence[PlacedFixture], bodies: Sequence[Obstacles], near: Floats) -> Obstacles:
     """One set of obstacles, with one tree."""
     vertex, face, weight = [own.triangles.vertex], [own.triangles.face], [own.weight]
     boxes, gaps, errors = [own.open_boxes], [own.gap], [own.triangles.chord_error]
@@ -175,9 +169,7 @@ def _together(
         errors.append(body.triangles.chord_error)
         measured += [each.number] * bool(body.triangles.measured)
         for low, high in body.open_boxes:
-            corners = np.array(
-                [[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])]
-            )
+            corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
             placed = each.fixture.placed(corners)
             boxes.append(np.array([[placed.min(axis=0), placed.max(axis=0)]]))
     triangles = Triangles(
@@ -205,9 +197,7 @@ def _of_part(part: Part, fixture: Fixture, chord: float) -> _Body:
     except UnjudgeableError as error:
         raise UnjudgeableError(error.cause, file=f"{fixture}") from None
     missing: list[tuple[str, str, StandIn]] = [(f"F{number}", why, how) for number, why, how in boundary.missing]
-    missing += [
-        (str(each.entity or each.name), each.why, "none" if each.box is None else "box") for each in boundary.lost
-    ]
+    missing += [(str(each.entity or each.name), each.why, "none" if each.box is None else "box") for each in boundary.lost]
     notes = [] if boundary.certain.weight.any() else ["encloses nothing: only its surface is in the way"]
     return _Body(boundary.possible, boundary.certain, tuple(missing), (*part.warnings, *notes))
 
@@ -225,9 +215,7 @@ def _of_mesh(mesh: Mesh, error: float) -> _Body:
     return _Body(whole, whole, (), tuple(notes))
 
 
-def _bed(
-    fixture: Fixture, surroundings: Surroundings, setup: Sequence[float], near: Floats
-) -> Callable[[float], Floats]:
+def _bed(fixture: Fixture, surroundings: Surroundings, setup: Sequence[float], near: Floats) -> Callable[[float], Floats]:
     """A table in its own frame, as a slab that goes so far beyond the part as is asked, mm, and is as thick.
 
     It lies across the setup axis; if it is turned by angles, across its own z. Without a height it lies right below the part.

@@ -136,11 +136,7 @@ def balls_inside(points: Floats, radius: float, obstacles: Obstacles, jobs: int)
 def voids(bodies: Sequence[Body], orientation: Orientation) -> NDArray[np.bool_]:
     """Which bodies (m,) are voids: the material is on the outer side of all their faces."""
     return np.array(
-        [
-            all(n > 0 and orientation.sign[n - 1] == -side for n, side in zip(b.faces, b.sign, strict=True))
-            for b in bodies
-        ],
-        bool,
+        [all(n > 0 and orientation.sign[n - 1] == -side for n, side in zip(b.faces, b.sign, strict=True)) for b in bodies], bool
     )
 
 

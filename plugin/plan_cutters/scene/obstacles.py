@@ -157,8 +157,7 @@ class Obstacles(Record):
         point = origin + (np.stack(np.unravel_index(first, region.shape), axis=1) + 0.5) * size
         mine = self.triangles.face < 0
         fixtures = Obstacles(
-            replace(self.triangles, vertex=self.triangles.vertex[mine], face=self.triangles.face[mine]),
-            self.weight[mine],
+            replace(self.triangles, vertex=self.triangles.vertex[mine], face=self.triangles.face[mine]), self.weight[mine]
         )
         distance = np.zeros(len(point))
         if fixtures.weight.any():

@@ -69,9 +69,7 @@ def overlap(part: Obstacles, placed: PlacedFixture, tolerance: float) -> Overlap
     if (high - low < 0).any():
         return None
     apart = max(_APART * float(np.linalg.norm(high - low)), deep)
-    overlaps = [
-        _deepest(_points(one, low, high, apart), other, deep) for one, other in ((fixture, part), (part, fixture))
-    ]
+    overlaps = [_deepest(_points(one, low, high, apart), other, deep) for one, other in ((fixture, part), (part, fixture))]
     return max((each for each in overlaps if each is not None), key=lambda each: each.depth, default=None)
 
 

@@ -112,9 +112,7 @@ class Prepared(Record):
         """The body that each sample (n,) lies within, -1 for none; of a clamped face, one more than there are."""
         if self.held is None or not self.held.any():
             return self.inside
-        return np.where(self.held & (self.inside < 0), len(self.conditions.surroundings.enclosing), self.inside).astype(
-            np.int32
-        )
+        return np.where(self.held & (self.inside < 0), len(self.conditions.surroundings.enclosing), self.inside).astype(np.int32)
 
     @property
     def machinable(self) -> tuple[NDArray[np.bool_], ...]:
@@ -131,8 +129,7 @@ class Prepared(Record):
     def alike(self) -> bool:
         """Whether the part stands among the same obstacles in all setups, held at the same faces."""
         return not self.clamped.any() and not any(
-            each.conditions.surroundings is not self.conditions.surroundings or each.clamped.any()
-            for each in self.others
+            each.conditions.surroundings is not self.conditions.surroundings or each.clamped.any() for each in self.others
         )
 
     @property

@@ -65,8 +65,7 @@ def question(ready: Prepared, cutter: Cutter) -> dict[str, Any]:
         "x": None if options.placement is None or options.placement.x is None else list(options.placement.x),
         "sides_follow_setup": _sides_follow(scene),
         "fixtures": [
-            _fixture(each.fixture, None if each.source is None else _bytes(each.source))
-            for each in surroundings.fixtures
+            _fixture(each.fixture, None if each.source is None else _bytes(each.source)) for each in surroundings.fixtures
         ],
         "tolerance": scene.asked,
         "tolerance_kept": ready.conditions.tolerance,
@@ -119,9 +118,7 @@ def refuse_others(about: Mapping[str, Any], options: Options, stated: Collection
                 raise OptionError(f"these maps are of {fault}: plan again")
         _places(about, options)
         if ({"cutters", "libraries"} & set(stated)) and cutter not in (ids := _ids(about, options, stated)):
-            raise OptionError(
-                f"these maps are of cutter {cutter}, which was not requested ({', '.join(ids[:3])}): plan again"
-            )
+            raise OptionError(f"these maps are of cutter {cutter}, which was not requested ({', '.join(ids[:3])}): plan again")
     except (KeyError, TypeError, ValueError, AttributeError):
         # The file was checked as arrays, not as words.
         raise OptionError(_UNSAID) from None
@@ -249,11 +246,7 @@ def _selection(word: str, numbers: str) -> Callable[[Mapping[str, Any], Options]
     def differs(about: Mapping[str, Any], options: Options) -> str:
         stored, requested = about[word], getattr(options, word)
         texts = (
-            [requested]
-            if isinstance(requested, str)
-            else list(requested)
-            if isinstance(requested, list | tuple)
-            else [requested]
+            [requested] if isinstance(requested, str) else list(requested) if isinstance(requested, list | tuple) else [requested]
         )
         before = [stored] if isinstance(stored, str) else list(stored)
         if all(isinstance(each, str) for each in texts):

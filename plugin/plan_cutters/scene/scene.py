@@ -136,9 +136,7 @@ class Scene(Record):
     def turned_faces(self) -> tuple[str, ...]:
         """List the faces whose side is a guess towards the setup axis, and would be the other with the part's own Z as setup."""
         other = orient(self.part, towards=(0.0, 0.0, 1.0), flip=self.flip).sign
-        return tuple(
-            f.id for f, one, two in zip(self.part.faces, self.orientation.sign, other, strict=True) if one != two
-        )
+        return tuple(f.id for f, one, two in zip(self.part.faces, self.orientation.sign, other, strict=True) if one != two)
 
     # The former names, for scripts: the program itself asks `surround` and `turned_faces`.
     @property
@@ -191,9 +189,7 @@ class Scene(Record):
             memory.around = obstacles
         return memory.around
 
-    def surround_in(
-        self, setup: tuple[float, float, float], shared: Sequence[Fixture], own: Sequence[Fixture]
-    ) -> Surroundings:
+    def surround_in(self, setup: tuple[float, float, float], shared: Sequence[Fixture], own: Sequence[Fixture]) -> Surroundings:
         """Gather the obstacles of another setup, with the same triangles of the part; `surround` must have been called.
 
         Parameters

@@ -184,18 +184,11 @@ def surroundings(
     missing = tuple((n, why, stand.how[n]) for n, why in triangles.missing if stand.how[n] != "edges")
     unread = tuple(each for each in part.lost if each.face is None)
     return Surroundings(
-        _possible(part, triangles, stand, result, certain),
-        certain,
-        result,
-        missing,
-        _on_bodies(certain, result),
-        unread,
+        _possible(part, triangles, stand, result, certain), certain, result, missing, _on_bodies(certain, result), unread
     )
 
 
-def _possible(
-    part: Part, triangles: Triangles, stand: StandIns, result: Sequence[Body], certain: Obstacles
-) -> Obstacles:
+def _possible(part: Part, triangles: Triangles, stand: StandIns, result: Sequence[Body], certain: Obstacles) -> Obstacles:
     """Everything that may be in the way: the certain obstacles themselves where nothing is guessed."""
     loose, everything = dict(triangles.loose), weights(triangles, result)
     caps = np.concatenate([np.zeros((0, 3, 3)), *(body.cap for body in result)])

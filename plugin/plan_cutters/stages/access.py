@@ -70,9 +70,7 @@ def access(
     within = np.zeros(n, bool) if inside is None else judged & (inside >= 0)
     verdicts.verdict[within], verdicts.reason[within] = INACCESSIBLE, INSIDE
     # On a face that may be anywhere within so many tolerances each posture is in doubt, and a search tries them all.
-    loose = [
-        number for number, error in conditions.surroundings.loose.items() if error > _HOPELESS * conditions.tolerance
-    ]
+    loose = [number for number, error in conditions.surroundings.loose.items() if error > _HOPELESS * conditions.tolerance]
     if loose:
         doubtful = judged & ~within & np.isin(samples.face, loose)
         verdicts.verdict[doubtful], verdicts.reason[doubtful] = UNDECIDED, TOLERANCE

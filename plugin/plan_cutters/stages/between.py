@@ -278,9 +278,7 @@ def _covered(field: Field, grid: FaceGrid, covered_samples: NDArray[np.bool_]) -
     on = (field.index >= 0) & (field.index < len(rows))
     covered = on & covered_samples[rows[np.where(on, field.index, 0)]]
     square = np.ones((3, 3), bool)
-    return np.asarray(
-        ndimage.binary_erosion(covered | ~on, square, border_value=1) & ndimage.binary_dilation(covered, square)
-    )
+    return np.asarray(ndimage.binary_erosion(covered | ~on, square, border_value=1) & ndimage.binary_dilation(covered, square))
 
 
 def _cells(faces: Sequence[FaceCells]) -> Cells:
@@ -291,9 +289,7 @@ def _cells(faces: Sequence[FaceCells]) -> Cells:
     for face_cells in faces:
         if not face_cells.found:
             continue
-        each = CellContacts(
-            *(np.concatenate([getattr(c, n) for c in face_cells.found]) for n in CellContacts.__slots__)
-        )
+        each = CellContacts(*(np.concatenate([getattr(c, n) for c in face_cells.found]) for n in CellContacts.__slots__))
         level = np.repeat(np.array(face_cells.levels, np.int64), [len(c) for c in face_cells.found])
         piece = last + connected(face_cells.field, each, level)
         last += len(each)

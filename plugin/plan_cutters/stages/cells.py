@@ -128,12 +128,7 @@ class Field:
 
 
 def laid(
-    part: Part,
-    orientation: Orientation,
-    samples: SurfaceSamples,
-    grid: FaceGrid,
-    reach: Verdicts,
-    conditions: Conditions,
+    part: Part, orientation: Orientation, samples: SurfaceSamples, grid: FaceGrid, reach: Verdicts, conditions: Conditions
 ) -> tuple[Field, CellContacts, CellContacts]:
     """The cells of a face.
 
@@ -298,9 +293,6 @@ def _add_nodes(field: Field, strips: CellContacts, low: Floats, high: Floats) ->
     radius, variation = field.around(low, high, strips.point, tensor) if len(strips) else (np.zeros(0), np.zeros(0))
     field.index[strips.tile[:, 0], strips.tile[:, 1]] = len(field.point) + np.arange(len(strips))
     strips.patch[:] = radius
-    field.point, field.normal = (
-        np.concatenate([field.point, strips.point]),
-        np.concatenate([field.normal, strips.normal]),
-    )
+    field.point, field.normal = (np.concatenate([field.point, strips.point]), np.concatenate([field.normal, strips.normal]))
     field.tensor = np.concatenate([field.tensor, tensor])
     field.variation, field.radius = np.concatenate([field.variation, variation]), np.concatenate([field.radius, radius])

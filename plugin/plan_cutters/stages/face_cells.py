@@ -264,13 +264,7 @@ def _served(contacts: CellContacts, face_cells: FaceCells, rooms: Sequence[float
         rows = open_rows[verdicts.reached[open_rows]]
         if len(rows):
             new = _cover(
-                contacts,
-                tensor,
-                verdicts.axis,
-                np.zeros(len(contacts), bool),
-                face_cells,
-                rows,
-                verdicts.tilt_direction,
+                contacts, tensor, verdicts.axis, np.zeros(len(contacts), bool), face_cells, rows, verdicts.tilt_direction
             )
             better = (new <= status[rows]) | ~known[rows]
             rows, new = rows[better], new[better]
@@ -280,12 +274,7 @@ def _served(contacts: CellContacts, face_cells: FaceCells, rooms: Sequence[float
 
 
 def _tilt_more(
-    contacts: CellContacts,
-    tensor: Floats,
-    status: CellStatus,
-    rows: NDArray[np.intp],
-    face_cells: FaceCells,
-    upto: float,
+    contacts: CellContacts, tensor: Floats, status: CellStatus, rows: NDArray[np.intp], face_cells: FaceCells, upto: float
 ) -> NDArray[np.bool_]:
     """Try one posture more on cells that their own does not serve, with most room for the contact to move.
 
@@ -326,18 +315,14 @@ def _free(
     return np.asarray(met[rows] == -1)
 
 
-def _among(
-    fixed: Fixed, contacts: CellContacts, tensor: Floats, status: CellStatus, face_cells: FaceCells, upto: float
-) -> None:
+def _among(fixed: Fixed, contacts: CellContacts, tensor: Floats, status: CellStatus, face_cells: FaceCells, upto: float) -> None:
     """Try fixed axes in turn on cells that their own does not serve; the one with the best outlook is kept."""
     able = (contacts.sample >= 0)[:, None] & fixed.serves[contacts.sample]
     own = contacts.axis.copy()
     for k, axis in enumerate(fixed.axis):
         if face_cells.work.looked >= upto:
             return
-        rows = np.flatnonzero(
-            (status > 0) & able[:, k] & np.isfinite(own[:, 0]) & (own != axis).any(axis=1) & _whole(contacts)
-        )
+        rows = np.flatnonzero((status > 0) & able[:, k] & np.isfinite(own[:, 0]) & (own != axis).any(axis=1) & _whole(contacts))
         if not len(rows):
             continue
         tried, side = np.broadcast_to(axis, own.shape), contacts.direction_max

@@ -182,15 +182,13 @@ def _intervals(maps: Any, low: float, high: float, refuse: Fault) -> None:
     if offset[0] != 0 or offset[-1] != len(free):
         raise refuse(f"offset, row {0 if offset[0] else len(offset) - 1}: it must run from 0 to {len(free)}")
     # A difference of far numbers may wrap: what is within both ends and ascends is right.
-    for cell in np.flatnonzero((offset[1:] < offset[:-1]) | (offset[1:] > len(free)) | (count > _INTERVALS))[
-        :1
-    ].tolist():
+    for cell in np.flatnonzero((offset[1:] < offset[:-1]) | (offset[1:] > len(free)) | (count > _INTERVALS))[:1].tolist():
         raise refuse(f"offset, row {cell + 1}: no place of an interval")
     for cell in np.flatnonzero((count > 0) & np.repeat(maps.verdict == UNJUDGED, k))[:1].tolist():
         raise refuse(f"offset, row {cell + 1}: sample {cell // k} was not judged and has free tilts")
-    for row in np.flatnonzero(
-        ~((free[:, 0] >= low - _ANGLE) & (free[:, 0] <= free[:, 1]) & (free[:, 1] <= high + _ANGLE))
-    )[:1].tolist():
+    for row in np.flatnonzero(~((free[:, 0] >= low - _ANGLE) & (free[:, 0] <= free[:, 1]) & (free[:, 1] <= high + _ANGLE)))[
+        :1
+    ].tolist():
         raise refuse(f"free, row {row}: no interval of tilts within {low:g} and {high:g} rad")
     if len(free) > 1:
         first = np.zeros(len(free) + 1, bool)

@@ -37,9 +37,7 @@ def margin(axis: Floats, normal: Floats, tensor: Floats, context: Context) -> ND
     return np.asarray(np.where(cosine > -1e-9, context.cutter.radius * remainder, -np.inf))
 
 
-def roomiest(
-    normal: Floats, direction: Floats, tensor: Floats, axis: Floats, context: Context
-) -> tuple[Floats, Floats]:
+def roomiest(normal: Floats, direction: Floats, tensor: Floats, axis: Floats, context: Context) -> tuple[Floats, Floats]:
     """Of some postures the one with most room that is not far from a known one; that one where there is none.
 
     Parameters

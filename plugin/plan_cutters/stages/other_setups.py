@@ -10,13 +10,7 @@ from plan_cutters.stages.judge import Judge, judge
 
 
 def in_setup(
-    ready: Prepared,
-    cutter: Cutter,
-    setup: int,
-    verdicts: Verdicts,
-    *,
-    progress: Progress | None = None,
-    judged: Judge = judge,
+    ready: Prepared, cutter: Cutter, setup: int, verdicts: Verdicts, *, progress: Progress | None = None, judged: Judge = judge
 ) -> Verdicts:
     """Find the verdicts of a cutter in another setup.
 

@@ -189,14 +189,7 @@ def _gouge_bounds(curvature: Floats, rotation: float, tool: Assembly) -> Floats:
 
 
 def _parts(
-    obstacles: Obstacles | None,
-    tool: Assembly,
-    p: Floats,
-    n: Floats,
-    f: Floats,
-    first: float,
-    last: float,
-    narrowest: float,
+    obstacles: Obstacles | None, tool: Assembly, p: Floats, n: Floats, f: Floats, first: float, last: float, narrowest: float
 ) -> Floats:
     """Free, forbidden and undecided parts (k, 3) of a range of tilts, as `free_tilts` gives them."""
     from plan_cutters.kernels.maps.free_tilts import OPEN, free_tilts
@@ -208,16 +201,7 @@ def _parts(
         if max(first, low) <= min(last, high):
             parts.append(
                 free_tilts(
-                    p,
-                    n,
-                    f,
-                    max(first, low),
-                    min(last, high),
-                    tool_of(tool),
-                    mode,
-                    narrowest,
-                    obstacles.tree,
-                    _MOST_INTERVALS,
+                    p, n, f, max(first, low), min(last, high), tool_of(tool), mode, narrowest, obstacles.tree, _MOST_INTERVALS
                 )
             )
     return np.concatenate(parts)

@@ -139,9 +139,7 @@ class PostureMaps(Record):
             A range lies beyond that of the maps; the machine has fewer than two rotary axes, so that it needs other rotations;
             or the setup would turn the side of open faces.
         """
-        bounds = in_radians(
-            {"tilt": tilt, "rotation": rotation, "tilt_deg": tilt_deg, "rotation_deg": rotation_deg}, ANGLES
-        )
+        bounds = in_radians({"tilt": tilt, "rotation": rotation, "tilt_deg": tilt_deg, "rotation_deg": rotation_deg}, ANGLES)
         tilt, rotation = bounds["tilt"], bounds["rotation"]
         low, high = self.tilt if tilt is None else pair(tilt, "tilt range")
         if not self.tilt[0] - _END <= low <= high <= self.tilt[1] + _END:
@@ -191,9 +189,7 @@ class PostureMaps(Record):
         place = requested.placement or Placement(requested.setup)
         if not {"setup", "placement"} & stated:
             place = setup_of(self.about)
-        return self._laid(
-            requested.machine, place, turns, (max(low, self.tilt[0]), min(high, self.tilt[1])), requested.jobs
-        )
+        return self._laid(requested.machine, place, turns, (max(low, self.tilt[0]), min(high, self.tilt[1])), requested.jobs)
 
     @property
     def missing(self) -> tuple[str, ...]:
@@ -256,9 +252,7 @@ class PostureMaps(Record):
         if not machine.limited:
             return self
         rotary = conditions.ranges.rotary
-        ranges = Ranges(
-            np.cos(self.rotations), np.sin(self.rotations), *self.tilt, conditions.setup, machine.limit_cos, rotary
-        )
+        ranges = Ranges(np.cos(self.rotations), np.sin(self.rotations), *self.tilt, conditions.setup, machine.limit_cos, rotary)
         rows, place = np.arange(len(self.normal)), np.zeros(len(self.offset) - 1, np.int64)
         maps = self.normal, self.direction_max, ranges, self.offset, self.free, place
         in_chunks(lambda piece: held_free(piece, *maps, np.zeros((0, 2))), rows, conditions.jobs)
@@ -283,9 +277,7 @@ class PostureMaps(Record):
             if error.file:
                 raise
             cause = error.cause.removeprefix("these are no posture maps: ")
-            raise OptionError(
-                f"holds no posture maps, or is damaged ({cause}): write it again", file=Path(path).name
-            ) from None
+            raise OptionError(f"holds no posture maps, or is damaged ({cause}): write it again", file=Path(path).name) from None
 
 
 def posture_maps(
@@ -333,9 +325,7 @@ def posture_maps(
         tree, wide = obstacles.tree, obstacles.wide_tree
         looked = free_map(rows, contacts, ranges, tool, NARROWEST, tree, wide, _MOST_INTERVALS, part, mine, unsure)
         if obstacles.solids.cell.size:
-            _leave_bodies(
-                samples, rows, outer_tool, rotations, obstacles, part, mine, certain=obstacles is not possible
-            )
+            _leave_bodies(samples, rows, outer_tool, rotations, obstacles, part, mine, certain=obstacles is not possible)
         return part, mine, unsure, looked
 
     def work(rows: NDArray[np.int64]) -> None:

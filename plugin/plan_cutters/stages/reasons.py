@@ -104,9 +104,7 @@ class Reasons:
             reason[rows[free]] = AXIS_LIMIT
             # Where the limit leaves nothing by itself, and so does something without it, both take part.
             other = np.where(free, before[rows], searched.reason[rows])
-            besides[rows] = np.where(
-                (free & (other != AXIS_LIMIT)) | (before[rows] == AXIS_LIMIT) & ~free, other, NO_REASON
-            )
+            besides[rows] = np.where((free & (other != AXIS_LIMIT)) | (before[rows] == AXIS_LIMIT) & ~free, other, NO_REASON)
             rows = rows[~free]
         tell(2, 3)
         if less:

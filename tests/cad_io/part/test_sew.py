@@ -78,9 +78,7 @@ def test_the_part_is_not_changed_by_joining():
     part = read_part(loose(box(), 0.01))
 
     def edges():
-        return [
-            (edge.TShape(), BRep_Tool.Tolerance_s(TopoDS.Edge_s(edge))) for edge in explore(part.shape, TopAbs_EDGE)
-        ]
+        return [(edge.TShape(), BRep_Tool.Tolerance_s(TopoDS.Edge_s(edge))) for edge in explore(part.shape, TopAbs_EDGE)]
 
     before = edges()
     assert sew(part.shape, faces(part.shape), math.hypot(*part.size)).open_edges == 0
@@ -150,9 +148,7 @@ def by_kernel(shapes, tolerance):
     for face in shapes:
         sewing.Add(face)
     sewing.Perform()
-    return [
-        TopoDS.Face_s(sewing.ModifiedSubShape(face) if sewing.IsModifiedSubShape(face) else face) for face in shapes
-    ]
+    return [TopoDS.Face_s(sewing.ModifiedSubShape(face) if sewing.IsModifiedSubShape(face) else face) for face in shapes]
 
 
 def stacked():

@@ -240,16 +240,10 @@ def test_faces_lost_in_iges_are_named(mode, tmp_path):
 @pytest.mark.parametrize(
     ("told", "line"),
     [
-        (
-            "stage tessellate\nwork kernel\nwork own F12\n",
-            r"^part: F12: our own tessellation did not end within 5 s; try",
-        ),
+        ("stage tessellate\nwork kernel\nwork own F12\n", r"^part: F12: our own tessellation did not end within 5 s; try"),
         ("stage tessellate\nwork kernel F3\n", r"^part: F3: the CAD kernel did not end its tessellation"),
         ("stage sample\n", r"^part: the CAD kernel did not end its sampling"),
-        (
-            "stage tessellate\nwork own F12\nstage write\n",
-            r"^part: the CAD kernel did not end its splitting and writing",
-        ),
+        ("stage tessellate\nwork own F12\nstage write\n", r"^part: the CAD kernel did not end its splitting and writing"),
         ("stage read\n", r"^part: not read within 1 s"),
     ],
 )

@@ -16,21 +16,7 @@ from scipy.spatial import cKDTree
 from cad_io import read_part
 from cad_io.part.orient import orient
 from cad_io.sample import sample
-from tests.support.cad_parts import (
-    ball,
-    box,
-    compound,
-    cone,
-    cut,
-    drilled,
-    holed_patch,
-    moved,
-    patch,
-    pocketed,
-    real,
-    ring,
-    rod,
-)
+from tests.support.cad_parts import ball, box, compound, cone, cut, drilled, holed_patch, moved, patch, pocketed, real, ring, rod
 
 
 def polygon(*corners):
@@ -75,9 +61,7 @@ SHAPES = {
     "pocket": pocketed,
     "ball without an eighth": lambda: cut(ball(), box(20, 20, 20)),
     "ring without a quarter": lambda: cut(ring(), box(50, 50, 50)),
-    "rod cut askew": lambda: cut(
-        rod(), box(40, 40, 40, (-20, -20, 0)).Moved(TopLoc_Location(moved(0.9, (1, 0, 0), (0, 0, 9))))
-    ),
+    "rod cut askew": lambda: cut(rod(), box(40, 40, 40, (-20, -20, 0)).Moved(TopLoc_Location(moved(0.9, (1, 0, 0), (0, 0, 9))))),
     "cone": cone,
     "tip of 4 degrees": lambda: tip(4),
     "tip of 0.5 degrees": lambda: tip(0.5),
@@ -109,9 +93,7 @@ def test_the_gap_of_a_grid_is_told(name, grid):
     if name.startswith("tip"):  # which the twin does not see to its end
         return
     # Nor is it made larger than it is.
-    pairs = samples.point[
-        samples.neighbours[(samples.face[samples.neighbours[:, 0]] == samples.face[samples.neighbours[:, 1]])]
-    ]
+    pairs = samples.point[samples.neighbours[(samples.face[samples.neighbours[:, 0]] == samples.face[samples.neighbours[:, 1]])]]
     between = np.linalg.norm(pairs[:, 0] - pairs[:, 1], axis=1).max(initial=0.0)
     assert samples.max_gap <= 1.1 * max(between, *farthest(part, samples, 60).values())
 
@@ -143,9 +125,7 @@ def test_a_needle_that_no_grid_hits_well_is_sampled_along_it(width):
 
 
 @pytest.mark.parametrize(
-    "path",
-    real("hard/turbo3d_impeller.step", "asitus_control_arm.step", "asitus_repatch-hpdc-colored.stp"),
-    ids=lambda p: p.name,
+    "path", real("hard/turbo3d_impeller.step", "asitus_control_arm.step", "asitus_repatch-hpdc-colored.stp"), ids=lambda p: p.name
 )
 def test_real_faces_are_sampled_as_densely_as_asked(path):
     """5.63, 7.93 and 4.41 mm before, at about the same number of samples."""

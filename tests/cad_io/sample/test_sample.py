@@ -179,9 +179,7 @@ def test_agrees_with_the_kernels_local_properties(turned, seed):
 
 
 @settings(max_examples=10, deadline=None)
-@given(
-    angle=st.floats(-3, 3), x=st.floats(-1, 1), y=st.floats(-1, 1), shift=st.floats(-500, 500), mirrored=st.booleans()
-)
+@given(angle=st.floats(-3, 3), x=st.floats(-1, 1), y=st.floats(-1, 1), shift=st.floats(-500, 500), mirrored=st.booleans())
 def test_rigid_motion_moves_samples_and_keeps_curvature(angle, x, y, shift, mirrored):
     place = moved(angle, (x, y, 1), (shift, 2 * shift, -shift))
     if mirrored:

@@ -42,9 +42,7 @@ def hollow():
 
 def drilled():
     axis = gp_Ax2(gp_Pnt(20, 15, -5), gp_Dir(0, 0, 1))
-    return BRepAlgoAPI_Cut(
-        BRepPrimAPI_MakeBox(40, 30, 20).Shape(), BRepPrimAPI_MakeCylinder(axis, 8, 40).Shape()
-    ).Shape()
+    return BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(40, 30, 20).Shape(), BRepPrimAPI_MakeCylinder(axis, 8, 40).Shape()).Shape()
 
 
 def moved():
@@ -151,9 +149,7 @@ def test_any_field_of_blocks_tiles_its_face(seed, size, closed):
 def test_a_field_that_is_left_whole():
     part = Part(patch())
     blocks = np.random.default_rng(2439).integers(0, 4, (6, 6))
-    field = labels(
-        part, 1, lambda x, y: blocks[np.minimum((x * 6).astype(int), 5), np.minimum((y * 6).astype(int), 5)], n=45
-    )
+    field = labels(part, 1, lambda x, y: blocks[np.minimum((x * 6).astype(int), 5), np.minimum((y * 6).astype(int), 5)], n=45)
     assert split(part, [field]).whole == {}
 
 
@@ -169,10 +165,7 @@ def test_slivers_join_the_worse_label_around_them_alone():
     part = Part(patch())
 
     def field(x, y):
-        island = (
-            (np.abs(x - 0.25) < 0.01) & (np.abs(y - 0.5) < 0.02),
-            (np.abs(x - 0.75) < 0.01) & (np.abs(y - 0.5) < 0.02),
-        )
+        island = ((np.abs(x - 0.25) < 0.01) & (np.abs(y - 0.5) < 0.02), (np.abs(x - 0.75) < 0.01) & (np.abs(y - 0.5) < 0.02))
         return np.where(x < 0.5, 1 + 2 * island[0], 3 - 2 * island[1])
 
     fields = [labels(part, 1, field, n=61)]

@@ -151,9 +151,7 @@ def test_no_triangle_is_farther_than_its_bound(seed, degrees, rational):
             reach = size * np.array([box[1] - box[0], box[3] - box[2]])
             corners = np.clip(middle + rng.uniform(-0.5, 0.5, (3, 2)) * reach, (box[0], box[2]), (box[1], box[3]))
             (u0, v0), (u1, v1) = corners.min(axis=0), corners.max(axis=0)
-            if any(
-                a < line < b for kinks, a, b in ((table.kink_u, u0, u1), (table.kink_v, v0, v1)) for line in kinks[:, 0]
-            ):
+            if any(a < line < b for kinks, a, b in ((table.kink_u, u0, u1), (table.kink_v, v0, v1)) for line in kinks[:, 0]):
                 continue
             tried += 1
             assert farthest_found(surface, corners) <= bound_of(table, corners) * (1 + 1e-9) + 1e-12

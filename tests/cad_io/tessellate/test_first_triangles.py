@@ -94,9 +94,7 @@ BOW = np.array([(0, 0), (1, 1), (1, 0), (0, 1)])
 SQUARE = np.array([(0, 0), (1, 0), (1, 1), (0, 1)])
 
 
-@pytest.mark.parametrize(
-    "points", [BOW, SQUARE[[0, 1]], np.array([(0, 0), (1, 0), (0.5, 0)])], ids=["crosses", "line", "flat"]
-)
+@pytest.mark.parametrize("points", [BOW, SQUARE[[0, 1]], np.array([(0, 0), (1, 0), (0.5, 0)])], ids=["crosses", "line", "flat"])
 def test_what_encloses_nothing_or_crosses_is_refused(points):
     assert triangulated(*loop(points), (np.array([0.0, 1.0]),) * 2, np.ones(2)) is None
 
@@ -236,9 +234,7 @@ def test_holes_that_nearly_touch_are_seen_apart():
 # --- the kernel's mesher ----------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
-    "make", [ring, pocketed, lambda: as_nurbs(ball(10))], ids=["ring", "pocketed", "ball as B-spline"]
-)
+@pytest.mark.parametrize("make", [ring, pocketed, lambda: as_nurbs(ball(10))], ids=["ring", "pocketed", "ball as B-spline"])
 def test_the_second_way_keeps_the_promise_too(make, monkeypatch):
     monkeypatch.setattr(start, "own_start", lambda *_: None)
     part = read_part(make())

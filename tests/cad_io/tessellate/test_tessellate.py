@@ -15,20 +15,7 @@ from OCP.TopoDS import TopoDS_Face
 from cad_io import read_part
 from cad_io.tessellate import tessellate
 from cad_io.tessellate import triangles as module
-from tests.support.cad_parts import (
-    SHAPES,
-    as_nurbs,
-    ball,
-    box,
-    compound,
-    drilled,
-    holed_patch,
-    patch,
-    pocketed,
-    real,
-    ring,
-    rod,
-)
+from tests.support.cad_parts import SHAPES, as_nurbs, ball, box, compound, drilled, holed_patch, patch, pocketed, real, ring, rod
 from tests.support.distances import ROUNDING, farthest
 
 

@@ -58,9 +58,7 @@ def test_colours_are_linear_light(halves, tmp_path):
     for mesh in document["meshes"]:
         linear_rgb = arrays[mesh["primitives"][0]["attributes"]["COLOR_0"]] / 65535
         assert (linear_rgb == linear_rgb[0]).all()
-        seen = np.where(linear_rgb[0] <= 0.0031308, 12.92 * linear_rgb[0], 1.055 * linear_rgb[0] ** (1 / 2.4) - 0.055)[
-            :3
-        ]
+        seen = np.where(linear_rgb[0] <= 0.0031308, 12.92 * linear_rgb[0], 1.055 * linear_rgb[0] ** (1 / 2.4) - 0.055)[:3]
         (label,) = (k for k, c in COLOURS.items() if np.allclose(seen, c, atol=1e-4))
         assert mesh["name"].endswith(f"_{label}")
         shown.add(label)

@@ -270,11 +270,7 @@ def test_a_located_solid_and_a_single_face(tmp_path):
     move = gp_Trsf()
     move.SetTranslation(gp_Vec(100, 0, 0))
     solid = BRepPrimAPI_MakeCylinder(5, 10).Solid()
-    for shape in (
-        solid.Located(TopLoc_Location(move)),
-        patch(),
-        compound([solid, solid.Located(TopLoc_Location(move))]),
-    ):
+    for shape in (solid.Located(TopLoc_Location(move)), patch(), compound([solid, solid.Located(TopLoc_Location(move))])):
         part = Part(shape)
         found = split(part, [])
         write_step(found, tmp_path / "part.step", style, product="part")

@@ -306,9 +306,7 @@ def _status_by(rule, row, patches, nodes, sweeping, obstacles, body, workspace):
     mode = 0 if flat else mode_at(sweeping.tool, np.arctan2(stance.sine, stance.cosine))
     stance = Stance(rule, stance.upright, stance.along, stance.sine, stance.cosine, stance.steepness, mode)
     frame, seen_nodes = Frame(patches.point[row], n, f, t), workspace.seen
-    if not _touches(stance, flat, sweeping) or not begin(
-        frame, patches.patch[row], patches.home[row], nodes, seen_nodes
-    ):
+    if not _touches(stance, flat, sweeping) or not begin(frame, patches.patch[row], patches.home[row], nodes, seen_nodes):
         return NEVER, -1
     if rule == _LEVEL:
         if not STRETCH * seen_nodes.most[0, 3] * _SMALLEST * patches.patch[row] <= _ALONG:
@@ -358,9 +356,7 @@ def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, status):
                            seen(), hit.scratch())  # fmt: skip
     body, blocker = np.empty(BODY), -1
     for row in rows:
-        status[row], blocking = _cell_status(
-            row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, workspace
-        )
+        status[row], blocking = _cell_status(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, workspace)
         # What was in the way of one contact is likely in the way of the next.
         blocker = blocking if blocking >= 0 else blocker
     return workspace.scratch.looked[0] + workspace.seen.looked[0] // _NODES

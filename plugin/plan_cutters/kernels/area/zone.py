@@ -125,9 +125,7 @@ class Seen(NamedTuple):
 @maker
 def seen():
     """Make a record for it."""
-    return Seen(
-        np.empty((EXTENTS, 7)), np.empty(4, np.int64), np.empty(4), np.empty(4, np.bool_), np.zeros(1, np.int64)
-    )
+    return Seen(np.empty((EXTENTS, 7)), np.empty(4, np.int64), np.empty(4), np.empty(4, np.bool_), np.zeros(1, np.int64))
 
 
 @kernel
@@ -235,9 +233,7 @@ def _outer(frame, h, home, nodes, out, side):
         line %= length
     low, high = 2 * other, 2 * other + 1
     out.looked[0] += lines[low] + lines[high] + 1
-    nearest, first, last, gap = _line(
-        frame, h, nodes, axis, line, home[other] - lines[low], home[other] + lines[high], out.most
-    )
+    nearest, first, last, gap = _line(frame, h, nodes, axis, line, home[other] - lines[low], home[other] + lines[high], out.most)
     out.nearest[side], out.gap[side] = nearest, gap
     # The ends of the line lie on the sides beside it, too.
     out.nearest[low], out.nearest[high] = min(out.nearest[low], first), min(out.nearest[high], last)

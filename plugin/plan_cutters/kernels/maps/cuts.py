@@ -8,22 +8,7 @@ from plan_cutters.kernels.codes import HIGH, LOW, RADIUS
 from plan_cutters.kernels.jit import kernel, maker
 from plan_cutters.kernels.linear.lanes import LANES
 from plan_cutters.kernels.maps.bounds import FAR, FLOOR, LATERAL, NEAR, flutes
-from plan_cutters.kernels.maps.intervals import (
-    CF,
-    CL,
-    FIRST,
-    INTERVALS,
-    LAST,
-    SF,
-    SL,
-    UF,
-    UL,
-    _begin,
-    _cuts,
-    _end,
-    _part,
-    _take,
-)
+from plan_cutters.kernels.maps.intervals import CF, CL, FIRST, INTERVALS, LAST, SF, SL, UF, UL, _begin, _cuts, _end, _part, _take
 from plan_cutters.kernels.maps.passes import _passes
 from plan_cutters.kernels.maps.planes import BOXES, ENDS, all_ends, distances, put_ends, triangles_clear
 from plan_cutters.kernels.rows import Scratch
@@ -202,9 +187,7 @@ def _in_the_way(met, tilt, workspace):
     """Whether a triangle reaches into a piece at a tilt."""
     workspace.spent[0] += 1
     stand(workspace.body, met.frame, np.cos(tilt), np.sin(tilt), met.turning.offset, 0.0)
-    return (
-        triangle_hit(met.vertex, met.i, workspace.body, met.turning.piece, 1 << met.k, 0.0, workspace.scratch)[0] >= 0
-    )
+    return triangle_hit(met.vertex, met.i, workspace.body, met.turning.piece, 1 << met.k, 0.0, workspace.scratch)[0] >= 0
 
 
 @kernel

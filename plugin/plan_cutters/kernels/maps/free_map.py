@@ -267,10 +267,7 @@ def _ball(turning):
     """The piece that is the same body at all tilts, -1 if there is none: a ball about the centre."""
     piece = turning.piece
     for k in range(len(piece)):
-        if (
-            piece[k, codes.KIND] == codes.ARC
-            and piece[k, codes.RADIUS] == piece[k, codes.SLOPE] == turning.offset == 0.0
-        ):
+        if piece[k, codes.KIND] == codes.ARC and piece[k, codes.RADIUS] == piece[k, codes.SLOPE] == turning.offset == 0.0:
             return k
     return -1
 
@@ -365,10 +362,7 @@ def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, most, part, co
                 stand(work.body, Frame(c, n, e1, e2), 1.0, 0.0, 0.0, 0.0)
                 if tree_hit(tree, work.body, alone, 0.0, -1, work.scratch)[0] < 0:
                     whole ^= 1 << ball
-                elif (
-                    piece[ball, codes.BOTTOM] == alone[0, codes.BOTTOM]
-                    and piece[ball, codes.TOP] == alone[0, codes.TOP]
-                ):
+                elif piece[ball, codes.BOTTOM] == alone[0, codes.BOTTOM] and piece[ball, codes.TOP] == alone[0, codes.TOP]:
                     # In the way at every posture.
                     continue
             floor = np.inf

@@ -56,9 +56,7 @@ def divide(frame, low, high, tool, mode, narrowest, tree, work):
             triangle, which, height, px, py = tree_hit(tree, body, piece, 0.0, hint, walk)
             if triangle >= 0:
                 hint = triangle
-                arc_first, arc_last = arc_of(
-                    which, height, px, py, tilt, tool.mode[mode, OFFSET_OF], piece, 0.0, work.arcs
-                )
+                arc_first, arc_last = arc_of(which, height, px, py, tilt, tool.mode[mode, OFFSET_OF], piece, 0.0, work.arcs)
                 kind = FORBIDDEN
                 cut_first, cut_last = max(first, min(arc_first, tilt)), min(last, max(arc_last, tilt))
             if last - first <= narrowest or top + done + 3 > most:

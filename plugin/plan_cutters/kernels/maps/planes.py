@@ -72,9 +72,7 @@ def _between(least, reach, my, y_most, nearest, farthest, cosine):
     """
     level, arm = reach - y_most, np.sqrt(max(0.0, 1.0 - my * my))
     return (least > reach + HAIR) & (
-        (level >= 0.0)
-        | (-level + HAIR <= arm * nearest * cosine)
-        | (least >= reach + HAIR + arm * farthest * (1.0 - cosine))
+        (level >= 0.0) | (-level + HAIR <= arm * nearest * cosine) | (least >= reach + HAIR + arm * farthest * (1.0 - cosine))
     )
 
 
@@ -95,9 +93,7 @@ def _least_of_box(gx, gy, gz, box, lane):
     least = gx * box[AT, lane] + gy * box[AT + 1, lane] + gz * box[AT + 2, lane]
     least -= abs(gx * box[ALONG_F, lane] + gy * box[ALONG_T, lane] + gz * box[ALONG_N, lane])
     other = abs(gx * box[ALONG_F + 1, lane] + gy * box[ALONG_T + 1, lane] + gz * box[ALONG_N + 1, lane])
-    return least - (
-        other + abs(gx * box[ALONG_F + 2, lane] + gy * box[ALONG_T + 2, lane] + gz * box[ALONG_N + 2, lane])
-    )
+    return least - (other + abs(gx * box[ALONG_F + 2, lane] + gy * box[ALONG_T + 2, lane] + gz * box[ALONG_N + 2, lane]))
 
 
 @kernel
@@ -218,11 +214,7 @@ def turn_boxes(view, block, cosine, sine, box):
     """Turn a block of boxes, as `lanes._see` gives them, into the frame of a rotation."""
     for lane in range(LANES):
         x, y, square = view[block, 0, lane], view[block, 1, lane], 0.0
-        box[AT, lane], box[AT + 1, lane], box[AT + 2, lane] = (
-            cosine * x + sine * y,
-            cosine * y - sine * x,
-            view[block, 2, lane],
-        )
+        box[AT, lane], box[AT + 1, lane], box[AT + 2, lane] = (cosine * x + sine * y, cosine * y - sine * x, view[block, 2, lane])
         wide = 0.0
         for k in range(3):
             f, t, z = view[block, 3 + k, lane], view[block, 6 + k, lane], view[block, 9 + k, lane]

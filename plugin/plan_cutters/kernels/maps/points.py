@@ -8,9 +8,7 @@ from plan_cutters.kernels.rows import Ranges
 from plan_cutters.kernels.tool.arcs import local_gouge
 
 
-def local_gouge_range(
-    kappa_max: float, kappa_min: float, rotation: float, offset: float, radius: float
-) -> tuple[float, float]:
+def local_gouge_range(kappa_max: float, kappa_min: float, rotation: float, offset: float, radius: float) -> tuple[float, float]:
     """Least and largest tilt without local gouging, rad; nan if there is none. Curvatures 1/mm; the others as in
     `arcs.local_gouge`.
     """

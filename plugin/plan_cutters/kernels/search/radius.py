@@ -115,17 +115,11 @@ def largest(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, r
     rotations = len(ranges.rotation_cos)
     pasts, workspaces = both(rotations, outer_tool.mode.shape[1])
     met, _ = both(rotations, inner_tool.mode.shape[1])
-    outer = _Sides(
-        outer_tool, outer_tool.piece[0].copy(), outer_tool.mode[0].copy(), possible, MAYBE_INSIDE, _FINEST, pasts
-    )
-    inner = _Sides(
-        inner_tool, inner_tool.piece[0].copy(), inner_tool.mode[0].copy(), certain, SURELY_INSIDE, _NO_INTERVAL, met
-    )
+    outer = _Sides(outer_tool, outer_tool.piece[0].copy(), outer_tool.mode[0].copy(), possible, MAYBE_INSIDE, _FINEST, pasts)
+    inner = _Sides(inner_tool, inner_tool.piece[0].copy(), inner_tool.mode[0].copy(), certain, SURELY_INSIDE, _NO_INTERVAL, met)
     guess, last, freed = len(outer_tool.reach) // 2, START, START
     for row in rows:
-        low, verdict, last, freed = _largest(
-            contacts, row, ranges, outer, inner, guess, last, freed, workspaces, results
-        )
+        low, verdict, last, freed = _largest(contacts, row, ranges, outer, inner, guess, last, freed, workspaces, results)
         level[row], guess = low, max(low, 0)
         if low + 1 < len(outer_tool.reach):
             beyond[row] = verdict

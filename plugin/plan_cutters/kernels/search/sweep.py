@@ -81,11 +81,7 @@ def memory(rotations, modes, bent):
 @kernel
 def _see(obstacle_cache, slot, p, e1, e2, n):
     """Write a point of the pool as seen from the contact."""
-    x, y, z = (
-        obstacle_cache.pool[0, slot] - p[0],
-        obstacle_cache.pool[1, slot] - p[1],
-        obstacle_cache.pool[2, slot] - p[2],
-    )
+    x, y, z = (obstacle_cache.pool[0, slot] - p[0], obstacle_cache.pool[1, slot] - p[1], obstacle_cache.pool[2, slot] - p[2])
     obstacle_cache.seen[0, slot] = x * e1[0] + y * e1[1] + z * e1[2]
     obstacle_cache.seen[1, slot] = x * e2[0] + y * e2[1] + z * e2[2]
     obstacle_cache.seen[2, slot] = x * n[0] + y * n[1] + z * n[2]
@@ -136,20 +132,7 @@ def _deepest(obstacle_cache, count, turn, tilt, tool, mode):
 
 @kernel
 def _rotation(
-    contacts,
-    row,
-    ranges,
-    rotation,
-    tool,
-    mode,
-    solids,
-    within,
-    narrowest,
-    wish,
-    frame,
-    obstacle_cache,
-    pooled,
-    workspace,
+    contacts, row, ranges, rotation, tool, mode, solids, within, narrowest, wish, frame, obstacle_cache, pooled, workspace
 ):
     """`sweep` at one rotation and mode: (a tilt, -1 for none; how many points of the pool are seen from this contact)."""
     p, n, e1, e2, f, t = frame.p, frame.n, contacts.direction_max[row], workspace.e2, workspace.f, workspace.t
@@ -291,17 +274,13 @@ def sweep_both(contacts, row, ranges, side, starts, turns, workspaces):
     the starts for the next sample.
     """
     tool, solids, within, narrowest, pasts = side
-    rotation, tilt = sweep(
-        contacts, row, ranges, tool, solids, within, narrowest, starts[0], turns, pasts[0], workspaces[0]
-    )
+    rotation, tilt = sweep(contacts, row, ranges, tool, solids, within, narrowest, starts[0], turns, pasts[0], workspaces[0])
     if rotation >= 0:
         return rotation, tilt, ((rotation, tilt), starts[1])
     if ranges.strict:
         workspaces[1].tally[:] = 0.0
         return -1, 0.0, starts
-    rotation, tilt = sweep(
-        contacts, row, ranges, tool, solids, within, narrowest, starts[1], turns, pasts[1], workspaces[1]
-    )
+    rotation, tilt = sweep(contacts, row, ranges, tool, solids, within, narrowest, starts[1], turns, pasts[1], workspaces[1])
     if rotation >= 0:
         return rotation, tilt, (starts[0], (rotation, tilt))
     return -1, 0.0, starts

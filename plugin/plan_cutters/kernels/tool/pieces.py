@@ -7,21 +7,7 @@ polygon, cut off at the heights, reaches in exactly if the least value over it i
 
 import numpy as np
 
-from plan_cutters.kernels.codes import (
-    ARC,
-    BOTTOM,
-    CONE,
-    CYLINDER,
-    HIGH,
-    KIND,
-    LOW,
-    RADIUS,
-    ROUND,
-    SCALE,
-    SLOPE,
-    TOP,
-    WIDE,
-)
+from plan_cutters.kernels.codes import ARC, BOTTOM, CONE, CYLINDER, HIGH, KIND, LOW, RADIUS, ROUND, SCALE, SLOPE, TOP, WIDE
 from plan_cutters.kernels.jit import kernel
 
 #: Polygons thinner than this share of their length have no normal.
@@ -56,10 +42,7 @@ def support(piece, k, along, across):
     if piece[k, KIND] == ARC:
         if piece[k, RADIUS] >= 0.0:
             whole = piece[k, SLOPE] * along + piece[k, RADIUS] * across + piece[k, ROUND]
-            if (
-                piece[k, BOTTOM] == piece[k, SLOPE] - piece[k, ROUND]
-                and piece[k, TOP] == piece[k, SLOPE] + piece[k, ROUND]
-            ):
+            if piece[k, BOTTOM] == piece[k, SLOPE] - piece[k, ROUND] and piece[k, TOP] == piece[k, SLOPE] + piece[k, ROUND]:
                 return whole
             return min(whole, max(piece[k, BOTTOM] * along, piece[k, TOP] * along) + piece[k, WIDE] * across)
         return max(piece[k, BOTTOM] * along, piece[k, TOP] * along) + piece[k, WIDE] * across
@@ -223,9 +206,7 @@ def _side_in_arc(aw, ax, ay, ew, ex, ey, radius, square):
     value_low, slope_low = _end_of_side(aw, ew, np.sqrt(e0), e1, np.sqrt(e2), radius)
     if slope_low >= 0.0:
         return -1.0
-    value_high, slope_high = _end_of_side(
-        aw + ew, ew, np.sqrt(max(0.0, e0 + 2.0 * e1 + e2)), e1 + e2, -np.sqrt(e2), radius
-    )
+    value_high, slope_high = _end_of_side(aw + ew, ew, np.sqrt(max(0.0, e0 + 2.0 * e1 + e2)), e1 + e2, -np.sqrt(e2), radius)
     if slope_high <= 0.0:
         return -1.0
     weight_low, weight_high, last, part = slope_low, slope_high, 0, 0.5

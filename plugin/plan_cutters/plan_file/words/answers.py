@@ -43,9 +43,7 @@ def limit(stick_out: StickOutEntry) -> str:
     if stick_out.limited_by == "floor" or stick_out.face is None:
         return "Its flutes and neck are that long."
     met = stick_out.obstacle_face or "the part"
-    return (
-        f"Held shorter, its holder meets {met} when the tool stands at ({place(stick_out.point)}) on {stick_out.face}."
-    )
+    return f"Held shorter, its holder meets {met} when the tool stands at ({place(stick_out.point)}) on {stick_out.face}."
 
 
 def _stick_outs(plan: Plan) -> Iterator[Line]:
@@ -59,9 +57,7 @@ def _stick_outs(plan: Plan) -> Iterator[Line]:
         elif stick_out.limited_by == "floor":
             short.append(f"{c.id} {up(stick_out.least_mm)} (judged with {stick_out.longest_mm:g} mm)")
         elif stick_out.longest_mm - stick_out.least_mm < SAME:
-            yield Line(
-                f"{c.id} cannot be held shorter than the {stick_out.longest_mm:g} mm that were judged. {limit(stick_out)}"
-            )
+            yield Line(f"{c.id} cannot be held shorter than the {stick_out.longest_mm:g} mm that were judged. {limit(stick_out)}")
         else:
             yield Line(
                 f"{c.id} can be held shorter: {up(stick_out.least_mm)} of its {stick_out.longest_mm:g} mm stick-out are enough "

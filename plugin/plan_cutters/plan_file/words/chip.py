@@ -17,11 +17,7 @@ class Chip(NamedTuple):
 
 
 #: Of a cutter: feasible, not, undecided.
-CHIPS = {
-    True: Chip("good", "✓", "Feasible"),
-    False: Chip("bad", "✕", "Not feasible"),
-    None: Chip("unsure", "?", "Undecided"),
-}
+CHIPS = {True: Chip("good", "✓", "Feasible"), False: Chip("bad", "✕", "Not feasible"), None: Chip("unsure", "?", "Undecided")}
 #: Where it says more than that.
 _WHERE_JUDGED = Chip("unsure", "!", "Feasible where judged")
 _IN_PART = Chip("unsure", "◐", "Feasible in part")

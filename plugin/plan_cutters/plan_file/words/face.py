@@ -97,9 +97,7 @@ def _gain(change: StepEntry | ChangeEntry) -> str:
     return f"{change.why}: lost {percent(change.lost_before)} to {percent(change.lost_after)} of the area{option}"
 
 
-def posture_text(
-    face: str, free: float, undecided: float, forbidden: Sequence[tuple[str, float]], *, certified: bool
-) -> str:
+def posture_text(face: str, free: float, undecided: float, forbidden: Sequence[tuple[str, float]], *, certified: bool) -> str:
     """Say how many of the postures at a point are free, or what forbids the most of them; shares are 0 to 1."""
     place = f"At the point, on {face}, "
     if free > 0.0:

@@ -58,11 +58,7 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
     if not best.not_reached:
         why = f"{capital(name)} reaches {every(plan)}, but obstacles are missing (see below) that may be in its way."
         return Headline(unsure, None, "", why + could_not(plan))
-    which = (
-        f"{capital(name)} was judged: it"
-        if len(entries) == 1
-        else f"Of {len(entries)} cutters, {name} comes nearest: it"
-    )
+    which = f"{capital(name)} was judged: it" if len(entries) == 1 else f"Of {len(entries)} cutters, {name} comes nearest: it"
     much = f"{unreached(best, best.area_share)} of {area(plan)} ({best.not_reached:,} of {plan.samples.finished:,} samples)"
     ask = "" if "mend" in plan.effective.answers else " Ask what would help: --answers mend."
     if best.blocked == 0:

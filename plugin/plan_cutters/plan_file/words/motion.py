@@ -38,9 +38,7 @@ def _parts(motion: MotionEntry) -> str:
         return "all its postures hang together"
     outside = f", {motion.outside} samples lie outside of it" if motion.outside else ""
     least = "" if motion.needed == motion.needed_at_least else f", at least {motion.needed_at_least},"
-    needed = (
-        "one touches" if motion.needed == 1 else f"{motion.needed} of them{least} together touch"
-    ) + " all that is reached"
+    needed = ("one touches" if motion.needed == 1 else f"{motion.needed} of them{least} together touch") + " all that is reached"
     largest = f"the largest touches {some(motion.largest_share)} of the area{outside}"
     return f"its postures fall into {motion.components} parts; {largest}; {needed}"
 

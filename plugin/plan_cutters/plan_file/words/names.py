@@ -71,9 +71,7 @@ def short_names(plan: "Plan") -> dict[str, str]:
         ways.append([name, *held, f"{name} ({head})", c.id])
     # A name that is another's id would be taken for it.
     taken = Counter(each for way in ways for each in dict.fromkeys(way))
-    return {
-        c.id: next((each for each in way if taken[each] == 1), c.id) for c, way in zip(plan.cutters, ways, strict=True)
-    }
+    return {c.id: next((each for each in way if taken[each] == 1), c.id) for c, way in zip(plan.cutters, ways, strict=True)}
 
 
 def _numbers(plan: "Plan") -> dict[str, list[str]]:

@@ -31,9 +31,7 @@ def together(plan: Plan) -> str:
         each[0] += " of the area"
         more = len(least.runs) - 1 - len(named)
         if more:
-            each.append(
-                f"{more} more cutters for {percent(sum(r.share for r in least.runs[_RUNS:-1]), some=True, whole=False)}"
-            )
+            each.append(f"{more} more cutters for {percent(sum(r.share for r in least.runs[_RUNS:-1]), some=True, whole=False)}")
         every = "all of it" if judged else "all of it that could be judged"
         text = f"{', '.join(each)} and {_run(last, several)} for the rest reach {whole if least.left else every}"
     if least.left:
@@ -88,11 +86,7 @@ def cures(what_if: MendEntry) -> list[ChangeEntry]:
 
     Whole faces to leave out say nothing more where steps name the area that is left.
     """
-    return [
-        change
-        for change in what_if.changes
-        if change.helps is not False and not (change.thing == "faces" and what_if.steps)
-    ]
+    return [change for change in what_if.changes if change.helps is not False and not (change.thing == "faces" and what_if.steps)]
 
 
 def remaining(what_if: MendEntry) -> str:

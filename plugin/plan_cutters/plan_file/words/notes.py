@@ -100,11 +100,7 @@ def setups(plan: Plan, best: CutterEntry) -> Iterator[Line]:
     if number > 1:
         each = "; ".join(f"{s.interference_free + s.accessible:,} with {axis_words(s.axis)}" for s in best.setups)
         what = f"leaves {best.lost_in_all:,}" if best.lost_in_all else "reaches all"
-        yield Line(
-            named(
-                plan, f"Over the {number} setups {best.id} {what} of {samples.finished:,} samples. It reaches {each}."
-            )
-        )
+        yield Line(named(plan, f"Over the {number} setups {best.id} {what} of {samples.finished:,} samples. It reaches {each}."))
     not_reached = max((c.beyond_setup for c in plan.cutters), default=0)
     if not not_reached:
         return
@@ -124,9 +120,7 @@ def travel(plan: Plan, best: CutterEntry) -> Iterator[Line]:
     if entry is None:
         return
     if entry.outside:
-        each = "; ".join(
-            f"{w.axis} by up to {w.beyond_mm:.4g} mm, at ({place(w.point)}) on {w.face}" for w in entry.worst
-        )
+        each = "; ".join(f"{w.axis} by up to {w.beyond_mm:.4g} mm, at ({place(w.point)}) on {w.face}" for w in entry.worst)
         yield Line(named(plan, f"Beyond the travel: at {entry.outside} of {entry.judged} samples reached by {best.id} the "
                          f"posture found needs more than the machine's: {each}."))  # fmt: skip
     elif entry.judged:

@@ -6,13 +6,7 @@ from typing import NamedTuple
 
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.numbers import ROUNDING, bound, duration, figure, listed, percent, some
-from plan_cutters.plan_file.operations import (
-    CutterUse,
-    FewestEntry,
-    OperationEntry,
-    OperationPlanEntry,
-    OperationsEntry,
-)
+from plan_cutters.plan_file.operations import CutterUse, FewestEntry, OperationEntry, OperationPlanEntry, OperationsEntry
 from plan_cutters.plan_file.words.line import Line
 from plan_cutters.plan_file.words.motion import motion, whatever_the_axes
 from plan_cutters.plan_file.words.names import named
@@ -71,11 +65,7 @@ def _fewest(operations: OperationsEntry) -> Iterator[str]:
     yield from whatever_the_axes(few)
     part = next((step for step in operations.curve if step.share >= _KNEE * operations.curve[-1].share), None)
     if part is not None and part.orientations < few.found:
-        end = (
-            ""
-            if part.at_most is None
-            else f" (no choice of {part.orientations} serves more than {bound(part.at_most)})"
-        )
+        end = "" if part.at_most is None else f" (no choice of {part.orientations} serves more than {bound(part.at_most)})"
         yield f"{part.orientations} of them finish{'es' * (part.orientations == 1)} {some(part.share)} of the area{end}."
 
 
@@ -157,11 +147,7 @@ def _fastest(operations: OperationsEntry) -> Iterator[str]:
             cutting = sum(each.seconds or 0.0 for each in plan.operations if each.mode == "fixed")
             times = f"at most {_factor(plan.ratio_at_most)} times as long as five axes at once"
             yield f"3+2 ({plan.name}) takes {duration(cutting)} of cutting, {times}."
-    some_of = (
-        f" of {operations.fewest.samples}"
-        if timed.samples < operations.fewest.samples - operations.fewest.alone
-        else ""
-    )
+    some_of = f" of {operations.fewest.samples}" if timed.samples < operations.fewest.samples - operations.fewest.alone else ""
     near = f"the best of {timed.candidates} candidates, by {timed.samples}{some_of} samples"
     if timed.gap is None:
         yield "How far the fastest plan is above the best is not known: a width of a pass is not known."
@@ -173,11 +159,7 @@ def _fastest(operations: OperationsEntry) -> Iterator[str]:
 
 def _assumed(operations: OperationsEntry) -> Iterator[str]:
     """That nobody knows how long an orientation takes, where it counts."""
-    if (
-        operations.fastest is not None
-        and operations.assumed.index_from == "assumed"
-        and operations.plans[0].orientations > 1
-    ):
+    if operations.fastest is not None and operations.assumed.index_from == "assumed" and operations.plans[0].orientations > 1:
         guess = f"Each orientation counts {operations.assumed.index_s:g} s, which is a guess"
         yield f"{guess}: the machine does not say how fast its rotary axes turn; --index-time tells it."
 
@@ -225,9 +207,7 @@ def _setups(operations: OperationsEntry) -> bool:
 def _listed(each: OperationEntry, setups: bool) -> str:
     took = "" if each.seconds is None else f", {duration(each.seconds)}"
     where = f" in setup {each.setup + 1}" if setups else ""
-    return (
-        f"{each.id}: {each.cutter}{where}, {_turned(each)}: {share_text(each.share)} of the area{took}, {_faces(each)}."
-    )
+    return f"{each.id}: {each.cutter}{where}, {_turned(each)}: {share_text(each.share)} of the area{took}, {_faces(each)}."
 
 
 class OperationText(NamedTuple):
@@ -247,9 +227,7 @@ def operation_text(plan: Plan, each: OperationEntry) -> OperationText:
     took = length if each.seconds is None else duration(each.seconds)
     setups = plan.operations is not None and _setups(plan.operations)
     where = f"setup {each.setup + 1}" if setups else ""
-    return OperationText(
-        each, where, _turned(each).removesuffix(" deg"), took, _faces(each), named(plan, _listed(each, setups))
-    )
+    return OperationText(each, where, _turned(each).removesuffix(" deg"), took, _faces(each), named(plan, _listed(each, setups)))
 
 
 def of_the_whole(lines: Iterable[Line], above: Iterable[str] = ()) -> list[Line]:

@@ -51,11 +51,7 @@ def _listed(kinds: dict[str, int]) -> str:
     plane = kinds.get("plane", 0)
     others = sum(kinds.values()) - free - blends
     simple = "plane and round" if 0 < plane < others else "plane" if plane else "round"
-    each = [
-        _counted(free, "free-form face"),
-        _counted(others, f"{simple} face"),
-        _counted(blends, "fillet"),
-    ]
+    each = [_counted(free, "free-form face"), _counted(others, f"{simple} face"), _counted(blends, "fillet")]
     texts = [text for text in each if text]
     return " and ".join([", ".join(texts[:-1]), texts[-1]]) if len(texts) > 1 else texts[0]
 

@@ -34,9 +34,7 @@ def _where(plan: Plan, entry: CutterEntry) -> str:
         return mm2 if math.isfinite(mm2) else 0.0
 
     sizes = {face.id: face.area_mm2 for face in plan.faces}
-    faces = sorted(
-        (name for name, face_entry in entry.faces.items() if face_entry.undecided), key=lambda name: -area(name)
-    )
+    faces = sorted((name for name, face_entry in entry.faces.items() if face_entry.undecided), key=lambda name: -area(name))
     each = [f"{part_of(entry.faces[f], entry.faces[f].area_share, ['undecided'])} of {f}" for f in faces]
     return listed(each, _FACES)
 

@@ -125,12 +125,7 @@ def _viewers(part: Body, pieces: _Pieces, up: Floats) -> list[tuple[str, Floats]
     # The views that there are already show as much of the rest as can be seen: then look from below.
     front, words = (others[int(np.argmax(seen))], "where most of what is not reached is seen") if max(seen) > 0.0 else (
         right - back - 0.9 * up, "from below, from a corner")  # fmt: skip
-    return [
-        ("along the setup axis", up),
-        ("from a corner", first),
-        ("from the opposite corner", second),
-        (words, front),
-    ]
+    return [("along the setup axis", up), ("from a corner", first), ("from the opposite corner", second), (words, front)]
 
 
 def _not_reached_seen(part: Body, pieces: _Pieces, viewer: Floats, up: Floats) -> float:
@@ -167,9 +162,7 @@ def _put(axes: Any, views: list[View], pieces: _Pieces) -> None:
     # Lines between faces, between verdicts, and around the part.
     image[borders(np.where(hit, pieces.face[piece], -1) * len(LABELS) + verdict)] = _LINE
     # One pixel of the image is one of the sheet: nothing is smoothed.
-    axes.imshow(
-        np.round(averaged(image) * 255).astype(np.uint8), extent=_EXTENT, interpolation="nearest", aspect="auto"
-    )
+    axes.imshow(np.round(averaged(image) * 255).astype(np.uint8), extent=_EXTENT, interpolation="nearest", aspect="auto")
     for word, hatch in _HATCHES.items():
         _lay(axes, verdict == LABELS.index(word), (0.0, 0.0, 0.0, 0.0), hatch, "#000000AA")
     for body in views[1:]:
@@ -180,9 +173,7 @@ def _put(axes: Any, views: list[View], pieces: _Pieces) -> None:
 def _lay(axes: Any, there: NDArray[np.bool_], fill: Any, hatch: str, edge: Any, line: float = 0.0) -> None:
     """Lay a colour and a hatch over fine pixels (h, w), with a line around them, points wide."""
     if there.any():
-        laid = axes.contourf(
-            averaged(there), [0.4, 2.0], colors=[fill], hatches=[hatch], origin="upper", extent=_EXTENT
-        )
+        laid = axes.contourf(averaged(there), [0.4, 2.0], colors=[fill], hatches=[hatch], origin="upper", extent=_EXTENT)
         laid.set(edgecolor=edge, linewidth=line)
 
 
@@ -229,11 +220,7 @@ def _words(sheet: Any, result: Judged, there: set[int], fixtures: bool) -> None:
         share, glass = shares.get(word), word == "fixture"
         if not (fixtures if glass else LABELS.index(word) in there or share):
             continue
-        text = (
-            label(word)
-            if share is None
-            else f"{label(word)}: {part_of(entry, entry.area_share, [word])} of the target area"
-        )
+        text = label(word) if share is None else f"{label(word)}: {part_of(entry, entry.area_share, [word])} of the target area"
         colour = (*rgb(word), _GLASS) if glass else tuple(_PALE) if word in _PLAIN else rgb(word)
         looks.append(Look(text, colour, _HATCHES.get(word, ""), rgb(word) if glass else "#222222"))
     legend(sheet, looks, loc="lower left", bbox_to_anchor=(0.1 / _SHEET[0], 0.02), ncols=3, columnspacing=2.0)

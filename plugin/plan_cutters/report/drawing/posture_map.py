@@ -68,9 +68,7 @@ def _gouged(posture_map: Any, i: int, low: float, high: float) -> Floats:
     return complement(np.array([[least, most]]), low, high)
 
 
-def draw_map(
-    posture_map: Any, tilt: tuple[float, float], title: str, notes: Sequence[str], paths: Sequence[Path]
-) -> None:
+def draw_map(posture_map: Any, tilt: tuple[float, float], title: str, notes: Sequence[str], paths: Sequence[Path]) -> None:
     """Draw a posture map, once for each path: PNG or SVG by its ending.
 
     Parameters
@@ -121,14 +119,7 @@ def draw_map(
     plot.set_yticks(_ticks(low, high))
     plot.set_xlim(left, right)
     plot.set_ylim(low, high if high > low else low + 1.0)
-    legend(
-        sheet,
-        used,
-        loc="upper left",
-        bbox_to_anchor=(0.785, (foot + _PLOT[2]) / high_sheet),
-        title="tilts",
-        alignment="left",
-    )
+    legend(sheet, used, loc="upper left", bbox_to_anchor=(0.785, (foot + _PLOT[2]) / high_sheet), title="tilts", alignment="left")
     write(sheet, head, (_SIDE, high_sheet - 0.12), _TITLE)
     write(sheet, below, (_SIDE, foot - 0.55), _NOTE)
     for path in paths:

@@ -69,9 +69,7 @@ def scalar_arrays(result: Judged) -> tuple[Arrays, list[dict[str, Any]]]:
         key = f"largest_{each.shape}"
         # What is told must not be more than what reaches.
         scalars[f"scalar.{key}"] = Stored.of(halves(each.radius, "down"))
-        legends.append(
-            _scalar(key, f"largest {each.shape} end (radius, up to {mm(each.most)} tried)", "mm", each.radius)
-        )
+        legends.append(_scalar(key, f"largest {each.shape} end (radius, up to {mm(each.most)} tried)", "mm", each.radius))
     for name, stick_out in result.answers.stick_outs.items():
         if stick_out.each is not None:
             key = f"stick_out.{name}"

@@ -43,9 +43,7 @@ def turned_by(samples: Any, tilt_direction: Any) -> NDArray[np.int16]:
     """Angles (n,) from `direction_max` to directions (n, 3) about the normal, in hundredths of degrees; 0 where there is none."""
     known = np.isfinite(tilt_direction).all(axis=1)
     tilt_direction, first, normal = (np.nan_to_num(a) for a in (tilt_direction, samples.direction_max, samples.normal))
-    angle = np.degrees(
-        np.arctan2((tilt_direction * np.cross(normal, first)).sum(axis=1), (tilt_direction * first).sum(axis=1))
-    )
+    angle = np.degrees(np.arctan2((tilt_direction * np.cross(normal, first)).sum(axis=1), (tilt_direction * first).sum(axis=1)))
     return np.where(known, np.round(100 * angle), 0).astype(np.int16)
 
 

@@ -30,9 +30,7 @@ FORMAT = 1
 _CHORD = 0.005
 
 
-def meta_of(
-    result: Judged, surface: Surface, atlas: Atlas, box: tuple[Floats, Floats], spots: list[Spot]
-) -> dict[str, Any]:
+def meta_of(result: Judged, surface: Surface, atlas: Atlas, box: tuple[Floats, Floats], spots: list[Spot]) -> dict[str, Any]:
     """All of it but the arrays, and what was left out of them."""
     plan, effective, names = result.plan, result.plan.effective, short_names(result.plan)
     low, high = box
@@ -47,9 +45,7 @@ def meta_of(
         "reasons": plan.reasons,
         "verdicts": {str(code): word for code, word in WORDS.items()},
         "words": {word: {"name": label(word), "colour": PALETTE[word]} for word in MEANING},
-        "causes": {
-            each.code: _of(each, "name", "sentence", "colour", "pattern") for each in (*REASONS.values(), NO_CONTACT)
-        },
+        "causes": {each.code: _of(each, "name", "sentence", "colour", "pattern") for each in (*REASONS.values(), NO_CONTACT)},
         "rotation_deg": np.degrees(result.postures.rotations).round(6).tolist(),
         "tilt_deg": list(degrees(result.postures.tilt)),
         "tilt_limit_deg": plan.machine.tilt_limit_deg,

@@ -133,9 +133,7 @@ def tables(plan: Plan, story: Story) -> OperationTables | None:
         )
         for each in operations.plans
     ]
-    steps = [
-        (s.orientations, share_text(s.share), "" if s.at_most is None else bound(s.at_most)) for s in operations.curve
-    ]
+    steps = [(s.orientations, share_text(s.share), "" if s.at_most is None else bound(s.at_most)) for s in operations.curve]
     return OperationTables(of_the_whole(story.operations, story.in_short), plans, steps, curve(operations.curve))
 
 
