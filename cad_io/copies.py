@@ -121,8 +121,10 @@ def each(call: Callable[[Item], Done], items: Sequence[Item], *, seconds: float,
         if first < len(items):
             remaining -= 1
             first += 1
-            yield Ended(why or (f"does not come to an end within {seconds:g} s" if copy.out_of_time
-                                else f"crashes (status {copy.status})"))  # fmt: skip
+            yield Ended(
+                why
+                or (f"does not come to an end within {seconds:g} s" if copy.out_of_time else f"crashes (status {copy.status})")
+            )
 
 
 def _work(call: Callable[[Item], Done], items: Sequence[Item], seconds: float, pipe: BinaryIO) -> None:

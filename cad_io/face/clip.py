@@ -65,10 +65,13 @@ def clipped(trim: Trim, u: Floats, v: Floats, tile: Indices) -> Clipped:
     first, last, beyond = pieces.of(tile)
     size = high - low
     area = pieces.sums(first, last, 0) + size[:, 0] * pieces.sums(last, beyond, 3)
-    moment = np.stack([
-        pieces.sums(first, last, 1) + 0.5 * size[:, 0] ** 2 * pieces.sums(last, beyond, 3),
-        pieces.sums(first, last, 2) + size[:, 0] * pieces.sums(last, beyond, 4),
-    ], axis=1)  # fmt: skip
+    moment = np.stack(
+        [
+            pieces.sums(first, last, 1) + 0.5 * size[:, 0] ** 2 * pieces.sums(last, beyond, 3),
+            pieces.sums(first, last, 2) + size[:, 0] * pieces.sums(last, beyond, 4),
+        ],
+        axis=1,
+    )
     area = np.where(area <= _NOTHING * full, 0.0, area)
     whole = area >= (1 - _NOTHING) * full
     with np.errstate(all="ignore"):
@@ -120,13 +123,15 @@ class _Pieces:
         corner = np.stack([u[np.clip(column[order], 0, len(u) - 2)], v[row[order]]], axis=1)
         (x0, y0), (x1, y1) = (self.start - corner).T, (self.end - corner).T
         step = y1 - y0
-        sums = np.stack([
-            0.5 * (x0 + x1) * step,
-            (x0 * x0 + x0 * x1 + x1 * x1) * step / 6,
-            (2 * x0 * y0 + 2 * x1 * y1 + x0 * y1 + x1 * y0) * step / 6,
-            step,
-            0.5 * (y0 + y1) * step,
-        ])  # fmt: skip
+        sums = np.stack(
+            [
+                0.5 * (x0 + x1) * step,
+                (x0 * x0 + x0 * x1 + x1 * x1) * step / 6,
+                (2 * x0 * y0 + 2 * x1 * y1 + x0 * y1 + x1 * y0) * step / 6,
+                step,
+                0.5 * (y0 + y1) * step,
+            ]
+        )
         # A border that runs the wrong way round makes all of it negative.
         p, q = segments[:, 0], segments[:, 1]
         turn = np.sign((p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]).sum()) or 1.0

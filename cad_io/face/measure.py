@@ -136,9 +136,7 @@ def _table(surface: Surface, cell: tuple[float, float, float, float], origin: Fl
     return along_v @ (along_u @ density.reshape(n, -1)).reshape(n, m, 5)
 
 
-def _integrals(
-    table: Floats, cell: tuple[float, float, float, float], u: Floats, v: Floats, step: Floats
-) -> Floats:  # fmt: skip
+def _integrals(table: Floats, cell: tuple[float, float, float, float], u: Floats, v: Floats, step: Floats) -> Floats:
     """Line integral around the border, dv, of the u-antiderivative of a density that is zero outside the cell."""
     u0, u1, v0, v1 = cell
     here = (v >= v0) & (v <= v1) & (u > u0)

@@ -87,9 +87,10 @@ def _agreements(
 def _edges_between(shape: Sequence[Any], rounded: list[bool]) -> list[Any]:
     """Edges of two different faces, one of them at least of a round shape, and their users."""
     return [
-        (edge, users) for edge, users in edge_uses(shape)
+        (edge, users)
+        for edge, users in edge_uses(shape)
         if len(users) == 2 and users[0][0] != users[1][0] and (rounded[users[0][0]] or rounded[users[1][0]])
-    ]  # fmt: skip
+    ]
 
 
 def blends(faces: Sequence[Bare], size: float) -> frozenset[int]:
@@ -167,8 +168,12 @@ def _side(face: Bare, size: float, edges: list[TopoDS_Edge]) -> _Side | None:
         # Where the surface rises round the point, its own normal points at its axis.
         away = -np.sign(geometry.curvature[n:].sum(axis=1))[:, None] * geometry.normal[n:]
     shaped = (len(edges), points)
-    return _Side(geometry.normal[:n].reshape(*shaped, 3), geometry.curvature[:n].reshape(*shaped, 2),
-                 across.reshape(shaped), away[np.isfinite(away).all(axis=1)])  # fmt: skip
+    return _Side(
+        geometry.normal[:n].reshape(*shaped, 3),
+        geometry.curvature[:n].reshape(*shaped, 2),
+        across.reshape(shaped),
+        away[np.isfinite(away).all(axis=1)],
+    )
 
 
 def _parameters(edge: TopoDS_Edge, face: TopoDS_Face) -> Floats:

@@ -97,9 +97,14 @@ def _each_once(loose: dict[int, TopoDS_Face]) -> list[int]:
 
 
 def _body(
-    part: Part, numbers: Sequence[int], shapes: Sequence[TopoDS_Face], sign: NDArray[np.int64], *, solid: bool,
+    part: Part,
+    numbers: Sequence[int],
+    shapes: Sequence[TopoDS_Face],
+    sign: NDArray[np.int64],
+    *,
+    solid: bool,
     touching: bool = False,
-) -> Iterator[Body]:  # fmt: skip
+) -> Iterator[Body]:
     """The body that faces with these signs enclose; none if they are a sheet.
 
     `solid`: the file calls them one. `touching`: they are open only where other faces meet them at their edges.

@@ -22,8 +22,9 @@ def box_of(faces: list[TopoDS_Face], excluded: Container[int]) -> tuple[Floats, 
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     if not usable.any():
         return low, high
-    stick = np.concatenate([loose[:, 0] - np.nanmin(loose[usable, 0], axis=0),
-                            np.nanmax(loose[usable, 1], axis=0) - loose[:, 1]], axis=1)  # fmt: skip
+    stick = np.concatenate(
+        [loose[:, 0] - np.nanmin(loose[usable, 0], axis=0), np.nanmax(loose[usable, 1], axis=0) - loose[:, 1]], axis=1
+    )
     for i in np.argsort(np.where(usable, stick.min(axis=1), np.inf), kind="stable")[: usable.sum()]:
         if (loose[i, 0] < low).any() or (loose[i, 1] > high).any():
             tight = loose[i] if i + 1 in excluded else face_box(faces[i], tight=True)

@@ -72,8 +72,9 @@ def coinciding(curves: Curves, faces: list[tuple[int, ...]], groups: list[Group]
     # What fits as a whole is not cut. At each joint, one side at least is what one face has alone.
     moving = _joined(curves, faces, moving, tolerance)
     table, alone = _Table.of(moving), _alone(faces, moving)
-    parts = [part for group, cuts in zip(moving, _cuts(curves, table, alone, tolerance), strict=True)
-             for part in _cut(group, cuts)]  # fmt: skip
+    parts = [
+        part for group, cuts in zip(moving, _cuts(curves, table, alone, tolerance), strict=True) for part in _cut(group, cuts)
+    ]
     if len(parts) > len(moving):
         moving = _joined(curves, faces, parts, tolerance)
     return [*still, *_whole(moving)]
@@ -212,16 +213,18 @@ def _joined(curves: Curves, faces: list[tuple[int, ...]], groups: list[Group], t
         if g == h:
             continue
         turn = same * ways[g][members[g].index(p)] * ways[h][members[h].index(q)]
-        if all(w * turn * v in allowed.get((min(a, b), max(a, b)), ())
-               for a, w in zip(members[g], ways[g], strict=True) for b, v in zip(members[h], ways[h], strict=True)):  # fmt: skip
+        if all(
+            w * turn * v in allowed.get((min(a, b), max(a, b)), ())
+            for a, w in zip(members[g], ways[g], strict=True)
+            for b, v in zip(members[h], ways[h], strict=True)
+        ):
             members[g] += members[h]
             ways[g] += [turn * v for v in ways[h]]
             for m in members[h]:
                 owner[table.group[m]] = g
             members[h], ways[h] = [], []
     pieces = [piece for group in groups for piece in group.pieces]
-    return [Group(tuple(pieces[m] for m in mine), tuple(way))
-            for mine, way in zip(members, ways, strict=True) if mine]  # fmt: skip
+    return [Group(tuple(pieces[m] for m in mine), tuple(way)) for mine, way in zip(members, ways, strict=True) if mine]
 
 
 def _candidates(curves: Curves, table: _Table, alone: NDArray[np.bool_], tolerance: float) -> tuple[Indices, Indices, Indices]:

@@ -33,9 +33,13 @@ _EVERY = 4
 
 
 def on_common_edges(
-    shapes: Sequence[TopoDS_Face], sources: Sequence[Use], curves: Curves, groups: Sequence[Group], gone: Sequence[Piece],
+    shapes: Sequence[TopoDS_Face],
+    sources: Sequence[Use],
+    curves: Curves,
+    groups: Sequence[Group],
+    gone: Sequence[Piece],
     tolerance: float,
-) -> list[TopoDS_Face]:  # fmt: skip
+) -> list[TopoDS_Face]:
     """Faces that use one edge for each group of pieces.
 
     Parameters
@@ -101,8 +105,7 @@ def _lie_on(edge: TopoDS_Edge, face: TopoDS_Face, fit: "_Fit", source: TopoDS_Ed
 
 def _fits(curves: Curves, groups: Sequence[Group]) -> "list[_Fit]":
     """How each piece but the first of each group runs along that first one."""
-    rows = [(group.pieces[0], piece, way) for group in groups
-            for piece, way in zip(group.pieces[1:], group.way[1:], strict=True)]  # fmt: skip
+    rows = [(group.pieces[0], piece, way) for group in groups for piece, way in zip(group.pieces[1:], group.way[1:], strict=True)]
     if not rows:
         return []
     spans = [curves.breaks(*first) for first, _, _ in rows]

@@ -90,9 +90,7 @@ def _orient_solid(part: Part, members: Sequence[tuple[int, TopoDS_Face]], sign: 
     return closed and enclosed != 0
 
 
-def _orient_rest(
-    part: Part, rest: Sequence[int], sign: Floats, notes: list[str], towards: Floats, flip: bool
-) -> bool:  # fmt: skip
+def _orient_rest(part: Part, rest: Sequence[int], sign: Floats, notes: list[str], towards: Floats, flip: bool) -> bool:
     """Set the signs of faces outside solids; True if all belong to closed shells."""
     direction = towards / np.linalg.norm(towards)
     sure, guessed, weakest = True, False, 1.0

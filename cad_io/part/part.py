@@ -150,9 +150,12 @@ class Part:
         reported = {each.face for each in lost}
         self.lost = (
             *lost,
-            *(LostFace("", self._names.get(n, ""), "it has no finite size", n)
-              for n in (np.flatnonzero(~finite) + 1).tolist() if n not in reported),
-        )  # fmt: skip
+            *(
+                LostFace("", self._names.get(n, ""), "it has no finite size", n)
+                for n in (np.flatnonzero(~finite) + 1).tolist()
+                if n not in reported
+            ),
+        )
 
     @classmethod
     def of(cls, content: PartContent) -> "Part":

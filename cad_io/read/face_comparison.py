@@ -73,8 +73,9 @@ def _measured(face: TopoDS_Face) -> tuple[float, Floats]:
         uv = np.array([flat.Value(t).Coord() for t in parameters])
         distance = np.linalg.norm(surface.values(uv[:, 0], uv[:, 1]) - there, axis=1)
         ends = [TopExp.FirstVertex_s(edge), TopExp.LastVertex_s(edge)]
-        beyond = [0.0 if v.IsNull() else BRep_Tool.Pnt_s(v).Distance(gp_Pnt(*there[k]))
-                  for v, k in zip(ends, (0, -1), strict=True)]  # fmt: skip
+        beyond = [
+            0.0 if v.IsNull() else BRep_Tool.Pnt_s(v).Distance(gp_Pnt(*there[k])) for v, k in zip(ends, (0, -1), strict=True)
+        ]
         off = max(off, *beyond, float(distance.max() if np.isfinite(distance).all() else np.inf))
         seen.append(there)
     return off, np.concatenate(seen)

@@ -103,8 +103,9 @@ class Model:
         reader = self.work.TransferReader()
         if len(shapes) * self.process.NbMapped() > _MOST_STEPS:
             return None
-        numbers = {key: self.number(reader.EntityFromShapeResult(shape.Located(TopLoc_Location()), 1))
-                 for key, shape in shapes.items()}  # fmt: skip
+        numbers = {
+            key: self.number(reader.EntityFromShapeResult(shape.Located(TopLoc_Location()), 1)) for key, shape in shapes.items()
+        }
         return {key: number for key, number in numbers.items() if number}
 
     def results(self) -> dict[int, str]:

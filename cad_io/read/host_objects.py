@@ -103,8 +103,10 @@ def _shape(source: Any, held: Held) -> None:
         held.parents[id(parent)] = parent, shape_map(_wrapped(parent), TopAbs_FACE)
         held.add(_item(parent, held))
     if not held.parents[id(parent)][1].Contains(shape):
-        raise ReadError("a face does not stand in the shape that it was taken from (topo_parent): pick it again, or set "
-                        "its topo_parent to None to plan it alone")  # fmt: skip
+        raise ReadError(
+            "a face does not stand in the shape that it was taken from (topo_parent): pick it again, or set "
+            "its topo_parent to None to plan it alone"
+        )
     held.picked.append(Mark(shape, _label(source), _colour(source)))
 
 
@@ -129,8 +131,9 @@ def _workplane(source: Any, held: Held) -> None:
     if not faces:
         bodies = list(filter(_is_body, on_stack))
         if not bodies:
-            raise ReadError(f"the stack of the {type(source).__name__} holds no solid and no face: plan after a solid, "
-                            "or after faces(...)")  # fmt: skip
+            raise ReadError(
+                f"the stack of the {type(source).__name__} holds no solid and no face: plan after a solid, or after faces(...)"
+            )
         _add(bodies, held)
         return
     missing, before, node = list(faces), 0, source
@@ -193,8 +196,9 @@ def _item(source: Any, held: Held, shape: TopoDS_Shape | None = None) -> Item:
             ]
             inner = tuple(_item(child, held, s) for child, s in pairs)
         else:
-            held.warnings.append(f"the children of {_label(source) or 'a compound'} are not what its shape holds: "
-                                 "their names are left out")  # fmt: skip
+            held.warnings.append(
+                f"the children of {_label(source) or 'a compound'} are not what its shape holds: their names are left out"
+            )
     return Item(shape, _label(source), _colour(source), inner)
 
 

@@ -33,8 +33,9 @@ def guarded(find: Callable[[], PartContent], timeout: float, file: str | None) -
     try:
         answer = pickle.loads(limited(lambda: _answer(find), timeout))
     except TimeLimit:
-        raise ReadError(f"not read within {timeout:g} s: it may be damaged; give more time or export it again",
-                        file=file) from None  # fmt: skip
+        raise ReadError(
+            f"not read within {timeout:g} s: it may be damaged; give more time or export it again", file=file
+        ) from None
     except ChildDied as died:
         raise Crashed(f"the CAD kernel cannot read it ({died}): export it again", file=file) from None
     if "error" in answer:

@@ -126,8 +126,9 @@ def _triangles(data: bytes, kind: str, file: str) -> Floats:
     except Exception as error:
         # Whatever a broken file makes of the reader's code.
         cause = " ".join(str(error).split())[:80]
-        raise ReadError(f"is not a whole {kind.upper()} file ({cause or type(error).__name__}): export it again",
-                        file=file) from None  # fmt: skip
+        raise ReadError(
+            f"is not a whole {kind.upper()} file ({cause or type(error).__name__}): export it again", file=file
+        ) from None
     return np.concatenate([np.zeros((0, 3, 3)), *parts])
 
 

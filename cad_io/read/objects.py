@@ -45,9 +45,14 @@ def from_object(source: Any) -> dict[str, Any]:
     picked = {walk.map.FindIndex(mark.shape) for mark in held.picked}
     named = any(item.name or item.inner for item in held.items)
     return {
-        "shape": shape, "names": walk.names, "colours": walk.colours, "layers": walk.layers,
-        "tree": tree if named else (), "picked": tuple(sorted(picked)), "warnings": tuple(held.warnings),
-    }  # fmt: skip
+        "shape": shape,
+        "names": walk.names,
+        "colours": walk.colours,
+        "layers": walk.layers,
+        "tree": tree if named else (),
+        "picked": tuple(sorted(picked)),
+        "warnings": tuple(held.warnings),
+    }
 
 
 def face_numbers(part: Part, value: Any) -> tuple[int, ...]:

@@ -155,9 +155,14 @@ def _content(read: Read, others: Referred | None = None) -> PartContent:
     reported = {each.face for each in read.lost}
     read.lost += [LostFace("", read.names.get(n, ""), "it has no edges", n) for n in edgeless if n not in reported]
     return {
-        "shape": read.shape, "names": read.names, "colours": read.colours, "layers": read.layers, "tree": read.tree,
-        "warnings": tuple(read.warnings), "lost": tuple(read.lost),
-    }  # fmt: skip
+        "shape": read.shape,
+        "names": read.names,
+        "colours": read.colours,
+        "layers": read.layers,
+        "tree": read.tree,
+        "warnings": tuple(read.warnings),
+        "lost": tuple(read.lost),
+    }
 
 
 def _read_brep(file: str, kind: str) -> TopoDS_Shape:

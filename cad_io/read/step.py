@@ -51,9 +51,7 @@ _FACE_KINDS = (b"ADVANCED_FACE", b"FACE_SURFACE", b"FACE", b"ORIENTED_FACE", b"S
 _HUGE = [re.compile(rb"%s\+?0*[1-9]\d\d" % letter) for letter in (b"E", b"e")]
 _BEFORE = tuple(b"%c" % byte for byte in b"0123456789.")
 #: What shapes are made of, or placed by.
-_SHAPES = (
-    StepShape_TopologicalRepresentationItem, StepRepr_ItemDefinedTransformation, StepRepr_RepresentationMap,
-)  # fmt: skip
+_SHAPES = (StepShape_TopologicalRepresentationItem, StepRepr_ItemDefinedTransformation, StepRepr_RepresentationMap)
 _SUBSHAPES = "read.stepcaf.subshapes.name"
 #: Entities named in one warning.
 _MOST_NAMED = 3
@@ -93,7 +91,7 @@ class Loaded:
 
     def __init__(
         self, file: str, data: bytes, unit: str | None = None, *, names: bool = True, careful: bool = False, foreign: int = 0
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.file, self.data, self.unit, self.names, self.careful = file, data, unit, names, careful
         self.foreign = foreign
         STEPCAFControl_Controller.Init_s()
@@ -202,8 +200,9 @@ class Loaded:
             except files.OutsideError:
                 there = True
             if there:
-                raise ReadError(f"refers to {name} in a form that is not known here: save the assembly as one file",
-                                file=self.file)  # fmt: skip
+                raise ReadError(
+                    f"refers to {name} in a form that is not known here: save the assembly as one file", file=self.file
+                )
 
     def _shape(self) -> Read:
         nothing = "holds no shape that can be read"
@@ -279,8 +278,10 @@ class Loaded:
             groups[where][fault.short].append(lost.ident(fault.number))
         for where, texts in sorted(groups.items()):
             lines = [f"{text}{_at(idents)}" for text, idents in texts.items()]
-            yield (f"the file has faults {where} ({sum(map(len, texts.values()))}): "
-                   f"{'; '.join(lines[:_MOST_NAMED])}{_more(len(lines) - _MOST_NAMED)}")  # fmt: skip
+            yield (
+                f"the file has faults {where} ({sum(map(len, texts.values()))}): "
+                f"{'; '.join(lines[:_MOST_NAMED])}{_more(len(lines) - _MOST_NAMED)}"
+            )
 
 
 def _at(idents: list[str]) -> str:

@@ -206,8 +206,11 @@ class UnreadFaces:
                 here = self.numbers.get(number, ())
                 if not here and not (number in self.results and self._unnamed):
                     unread += self._gone(number)
-                unread += [LostFace(self.ident(number), name_of(entity), self._said(why, number), n)
-                          for n in here if (why := self._altered(number, self.shapes[n - 1]))]  # fmt: skip
+                unread += [
+                    LostFace(self.ident(number), name_of(entity), self._said(why, number), n)
+                    for n in here
+                    if (why := self._altered(number, self.shapes[n - 1]))
+                ]
         for number, count in missing_faces(self.model):
             why = self._cause("a face that the shell lists is missing, or is none", [number])
             unread += [LostFace(self.ident(number), "", why)] * count

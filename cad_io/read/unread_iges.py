@@ -89,8 +89,9 @@ def _edges(model: Model, number: int) -> int:
     for i in range(face.NbLoops() if face.TypeNumber() == _FACE else 0):
         loop = face.Loop(i + 1)
         if loop is not None and loop.TypeNumber() == _LOOP:
-            edges |= {(model.number(loop.Edge(k)), loop.ListIndex(k)) for k in range(1, loop.NbEdges() + 1)
-                      if loop.EdgeType(k) == 0}  # fmt: skip
+            edges |= {
+                (model.number(loop.Edge(k)), loop.ListIndex(k)) for k in range(1, loop.NbEdges() + 1) if loop.EdgeType(k) == 0
+            }
     return len(edges)
 
 

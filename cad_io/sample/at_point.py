@@ -57,8 +57,11 @@ def locate(
     if place.shape != (3,) or not np.isfinite(place).all():
         raise SampleError(f"a point has three finite coordinates, not {point}", file=part.file)
     target = gp_Pnt(*place.tolist())
-    near = [f.number for f in part.faces if f.number not in ignore and f.unjudged is None
-            and _may_be_near(part, f.number, target, within)]  # fmt: skip
+    near = [
+        f.number
+        for f in part.faces
+        if f.number not in ignore and f.unjudged is None and _may_be_near(part, f.number, target, within)
+    ]
 
     def projected(number: int) -> tuple[float, tuple[float, float]] | None:
         with translated("projecting a point", error=SampleError, file=part.file, face=f"F{number}"):

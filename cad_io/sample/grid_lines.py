@@ -110,9 +110,7 @@ def _cumulative(speed: Floats, share: Floats) -> Floats:
     return np.concatenate([[0.0], np.cumsum(np.maximum(speed[1:], speed[:-1]) * np.diff(share))])
 
 
-def _ranges(
-    surface: Surface, trim: Trim, bounds: tuple[float, float, float, float]
-) -> tuple[_Range, _Range]:  # fmt: skip
+def _ranges(surface: Surface, trim: Trim, bounds: tuple[float, float, float, float]) -> tuple[_Range, _Range]:
     adaptor = surface.adaptor
     u0, u1, v0, v1 = bounds
     if adaptor.IsUPeriodic():

@@ -24,9 +24,7 @@ REACH = 1.5
 _POINTS = (3, 200)  # least and most points looked at along one edge
 
 
-def smooth_joints(
-    part: Part, orientation: Orientation, point: Floats, face: Ints, gap: Mapping[int, float]
-) -> NDArray[np.intp]:  # fmt: skip
+def smooth_joints(part: Part, orientation: Orientation, point: Floats, face: Ints, gap: Mapping[int, float]) -> NDArray[np.intp]:
     """Pairs (m, 2) of samples of different faces, nearest to the same point of a smooth common edge.
 
     Parameters
@@ -113,9 +111,7 @@ def _shares(curve: _Curve, reach: float) -> Floats | None:
     return (np.arange(count) + 0.5) / count
 
 
-def _side(
-    part: Part, orientation: Orientation, number: int, curve: _Curve, share: Floats
-) -> tuple[Floats, Floats]:  # fmt: skip
+def _side(part: Part, orientation: Orientation, number: int, curve: _Curve, share: Floats) -> tuple[Floats, Floats]:
     """Points (k, 3) along an edge and one face's normals (k, 3) there, out of the material."""
     d = curve.derivatives(share)
     with np.errstate(all="ignore"):

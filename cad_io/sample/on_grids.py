@@ -257,8 +257,9 @@ def _together(
     within = [f.pairs + s for f, s in zip(taken, start[:-1], strict=True)]
     gaps = [_gap(point, pairs) for pairs in within]
     whole = [max(gap, f.gap) for f, gap in zip(taken, gaps, strict=True)]
-    neighbours = np.concatenate([*within, smooth_joints(part, orientation, point, face, dict(
-        zip([f.number for f in taken], gaps, strict=True)))]).astype(np.int32)  # fmt: skip
+    neighbours = np.concatenate(
+        [*within, smooth_joints(part, orientation, point, face, dict(zip([f.number for f in taken], gaps, strict=True)))]
+    ).astype(np.int32)
     bad = np.concatenate([g.bad for g in geometry]) if geometry else np.zeros(0, bool)
     return SurfaceSamples(
         point=point,
@@ -275,7 +276,7 @@ def _together(
         max_gap=max(whole, default=0.0),
         empty=empty,
         face_gaps=tuple((f.number, gap) for f, gap in zip(taken, whole, strict=True)),
-    )  # fmt: skip
+    )
 
 
 def _density(derivatives: Floats) -> Floats:

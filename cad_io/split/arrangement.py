@@ -233,9 +233,12 @@ class Arrangement:
 
 
 def _refined(
-    at: Callable[[float], tuple[Floats, Floats]], side: Side, scale: Floats, start: tuple[float, float],
+    at: Callable[[float], tuple[Floats, Floats]],
+    side: Side,
+    scale: Floats,
+    start: tuple[float, float],
     reach: tuple[float, float],
-) -> tuple[float, float]:  # fmt: skip
+) -> tuple[float, float]:
     """Parameters on a curve and a side where they cross, by Newton's steps; those of the chords where these lead away."""
     point, tangent = gp_Pnt2d(), gp_Vec2d()
     x, s = start

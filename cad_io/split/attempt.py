@@ -119,8 +119,9 @@ class Attempt:
         """Faces that stay whole and have edges that others cut, and those others."""
         cutters = {
             number: {n for e in edges_of(face) for n in self._cutters.get(self._net.edges.FindIndex(e), ())}
-            for number, face in fresh.items() if number not in self._cut
-        }  # fmt: skip
+            for number, face in fresh.items()
+            if number not in self._cut
+        }
         return {number: those for number, those in cutters.items() if those}
 
     def _ask(self, changed: dict[int, list[Any]], neighbours: dict[int, set[int]]) -> None:

@@ -251,8 +251,9 @@ def _nested(loops: list[list[Half]], size: float) -> list[Region]:
         if not enclosing:
             raise CannotSplit("a hole lies in none of its regions")
         holes[min(enclosing, key=lambda o: areas[o])].append(i)
-    return [Region([loops[k] for k in (o, *inner)], np.concatenate([rings[k] for k in (o, *inner)]))
-            for o, inner in holes.items()]  # fmt: skip
+    return [
+        Region([loops[k] for k in (o, *inner)], np.concatenate([rings[k] for k in (o, *inner)])) for o, inner in holes.items()
+    ]
 
 
 def _inside(region: Region, scale: Floats, grid: LabelGrid) -> tuple[Ints, Ints]:

@@ -70,9 +70,7 @@ def _one(d, sign, size, parallel, umbilic, a, b, normal, curvature, direction):
 @kernel
 def _all(derivatives, sign, size, parallel, umbilic, a, b, normal, curvature, direction, bad):
     for i in range(len(derivatives)):
-        good = _one(
-            derivatives[i], sign, size, parallel, umbilic, a, b, normal[i], curvature[i], direction[i]
-        )  # fmt: skip
+        good = _one(derivatives[i], sign, size, parallel, umbilic, a, b, normal[i], curvature[i], direction[i])
         bad[i] = not good
         if not good:
             normal[i], curvature[i], direction[i] = np.nan, np.nan, np.nan

@@ -180,13 +180,17 @@ def _of_net(net: "Net") -> Form:
 
     across = np.swapaxes(net.pole, 0, 1)
     along = [
-        _lines(net.knot_u, net.degree_u, net.pole, net.period_u > 0), _lines(net.knot_v, net.degree_v, across, net.period_v > 0)
-    ]  # fmt: skip
+        _lines(net.knot_u, net.degree_u, net.pole, net.period_u > 0),
+        _lines(net.knot_v, net.degree_v, across, net.period_v > 0),
+    ]
     return Form(
-        evaluate, lambda u, v: net_bends(net, u, v),
-        (along[0][0], along[1][0]), (along[0][1], along[1][1]), (net.period_u, net.period_v),
+        evaluate,
+        lambda u, v: net_bends(net, u, v),
+        (along[0][0], along[1][0]),
+        (along[0][1], along[1][1]),
+        (net.period_u, net.period_v),
         (net.degree_u, net.degree_v),
-    )  # fmt: skip
+    )
 
 
 def _lines(knot: Floats, degree: int, pole: Floats, closed: bool) -> tuple[Floats, Floats]:
@@ -198,8 +202,11 @@ def _lines(knot: Floats, degree: int, pole: Floats, closed: bool) -> tuple[Float
             jump[k] = _TORN
         elif count[k] == degree:
             row = degree + int(first[k]) - 1
-            jump[k] = _jump(pole[row - 1 : row + 2], degree / (knot[row + degree] - knot[row]),
-                            degree / (knot[row + degree + 1] - knot[row + 1]))  # fmt: skip
+            jump[k] = _jump(
+                pole[row - 1 : row + 2],
+                degree / (knot[row + degree] - knot[row]),
+                degree / (knot[row + degree + 1] - knot[row + 1]),
+            )
     if closed:
         ends = degree / (value[-1] - value[-2]), degree / (value[1] - value[0])
         jump[0] = jump[-1] = _jump(np.stack([pole[-2], pole[0], pole[1]]), *ends)

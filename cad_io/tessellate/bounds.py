@@ -195,8 +195,9 @@ def _bends(of: Any, u: Floats, v: Floats) -> Bends:
         middle = 0.5 * (high + low)
         each = np.repeat(middle, np.diff(np.append(groups_v, len(v) - 1)), axis=0)
         off = (np.linalg.norm(fine.middle - each, axis=3) + fine.spread).max(axis=0)
-        strips.append((middle, np.maximum.reduceat(off, groups_v, axis=0),
-                       np.maximum.reduceat(fine.first.max(axis=0), groups_v, axis=0)))  # fmt: skip
+        strips.append(
+            (middle, np.maximum.reduceat(off, groups_v, axis=0), np.maximum.reduceat(fine.first.max(axis=0), groups_v, axis=0))
+        )
     return Bends(*(np.stack(column) for column in zip(*strips, strict=True)))
 
 
@@ -261,8 +262,12 @@ def _fill(table):
             other = min(i + 1 if k == 1 else 2 * i + 2, along_u[k - 1] - 1)
             for j in range(along_v[0]):
                 below = start[k - 1, 0]
-                _join(node[below + step * i * along_v[0] + j], node[below + other * along_v[0] + j], 0,
-                      node[start[k, 0] + i * along_v[0] + j])  # fmt: skip
+                _join(
+                    node[below + step * i * along_v[0] + j],
+                    node[below + other * along_v[0] + j],
+                    0,
+                    node[start[k, 0] + i * along_v[0] + j],
+                )
     for k in range(len(along_u)):
         for m in range(1, len(along_v)):
             step = 1 if m == 1 else 2

@@ -100,9 +100,9 @@ def _taken(face: Any, mesh: Any, place: TopLoc_Location) -> _Taken | None:
         if polygon is None or not polygon.HasParameters():
             return None  # how far its triangles stay from this edge could not be told
         count = range(1, polygon.NbNodes() + 1)
-        runs.append((
-            np.array([polygon.Node(i) for i in count], dtype=np.int32) - 1, np.array([polygon.Parameter(i) for i in count])
-        ))  # fmt: skip
+        runs.append(
+            (np.array([polygon.Node(i) for i in count], dtype=np.int32) - 1, np.array([polygon.Parameter(i) for i in count]))
+        )
     uv, corner = uv_triangles(mesh)
     return uv, corner.astype(np.int32), runs
 

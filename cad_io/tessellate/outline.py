@@ -99,9 +99,9 @@ def joined(sampled: Sequence[Sampled], scale: Floats) -> Outline:
     """The outline of sampled uses: nodes at one place are one, and each use ends where the one that continues it starts."""
     start, end = (np.array([each.on_curve[k] for each in sampled]) for k in (0, -1))
     following = continuing(start, end, scale)
-    at = np.concatenate([
-        np.concatenate([each.on_curve[:-1], start[next_][None]]) for each, next_ in zip(sampled, following, strict=True)
-    ])  # fmt: skip
+    at = np.concatenate(
+        [np.concatenate([each.on_curve[:-1], start[next_][None]]) for each, next_ in zip(sampled, following, strict=True)]
+    )
     first, row = places(at)
     ends = np.cumsum([len(each.parameter) for each in sampled])
     return Outline(at[first], tuple(np.split(row.astype(np.int32), ends[:-1])), tuple(sampled))

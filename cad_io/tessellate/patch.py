@@ -65,8 +65,9 @@ class Patch(NamedTuple):
     def of(part: Part, number: int, mesh: UVMesh, chord: float = np.inf) -> "Patch":
         """The patch of a face that begins with a mesh; for a chord error, mm, its bounds need not be much closer than that."""
         surface = part.surface(number)
-        curves, exact = packed([b.curve for b in mesh.border],
-                               [(float(b.parameter.min()), float(b.parameter.max())) for b in mesh.border])  # fmt: skip
+        curves, exact = packed(
+            [b.curve for b in mesh.border], [(float(b.parameter.min()), float(b.parameter.max())) for b in mesh.border]
+        )
         curve, ends = _edges(mesh)
         start = Start(np.ascontiguousarray(mesh.uv), mesh.corner.astype(np.int64), curve, ends)
         low, high = reach(curves, mesh.uv, curve, ends)

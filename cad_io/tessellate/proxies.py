@@ -95,9 +95,11 @@ def stand_ins(part: Part, missing: Sequence[tuple[int, str]], chord: float) -> S
         owner.append(np.zeros(len(caps), np.int32))
         weight += [turned, np.ones(len(caps), np.int8)]
     return StandIns(
-        np.concatenate([np.zeros((0, 3, 3)), *vertex]), np.concatenate([np.zeros(0, np.int32), *owner]),
-        np.concatenate([np.zeros(0, np.int8), *weight]), how,
-    )  # fmt: skip
+        np.concatenate([np.zeros((0, 3, 3)), *vertex]),
+        np.concatenate([np.zeros(0, np.int32), *owner]),
+        np.concatenate([np.zeros(0, np.int8), *weight]),
+        how,
+    )
 
 
 def _own_triangles(part: Part, number: int) -> Floats | None:

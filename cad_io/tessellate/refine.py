@@ -113,9 +113,11 @@ def _border(stack, k, table, curves, box):
 def _look(stack, k, table, curves, chord):
     uv = stack.uv[k]
     box = (
-        min(uv[0, 0], min(uv[1, 0], uv[2, 0])), max(uv[0, 0], max(uv[1, 0], uv[2, 0])),
-        min(uv[0, 1], min(uv[1, 1], uv[2, 1])), max(uv[0, 1], max(uv[1, 1], uv[2, 1])),
-    )  # fmt: skip
+        min(uv[0, 0], min(uv[1, 0], uv[2, 0])),
+        max(uv[0, 0], max(uv[1, 0], uv[2, 0])),
+        min(uv[0, 1], min(uv[1, 1], uv[2, 1])),
+        max(uv[0, 1], max(uv[1, 1], uv[2, 1])),
+    )
     row = table.node[window(table, box[0], box[1], box[2], box[3])]
     strayed, border = 0.0, -1
     if stack.curve[k, 0] >= 0 or stack.curve[k, 1] >= 0 or stack.curve[k, 2] >= 0:
@@ -251,7 +253,10 @@ def refined(start, table, curves, chord, most, result):
     """
     high = _DEEPEST + 2
     stack = Stack(
-        np.empty((high, 3, 2)), np.empty((high, 3), np.int64), np.empty((high, 3), np.int64), np.empty((high, 3, 2)),
+        np.empty((high, 3, 2)),
+        np.empty((high, 3), np.int64),
+        np.empty((high, 3), np.int64),
+        np.empty((high, 3, 2)),
         np.empty(high, np.int64),
-    )  # fmt: skip
+    )
     return _refined(start, table, curves, chord, most, stack, workspace(), result)

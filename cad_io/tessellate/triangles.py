@@ -83,9 +83,14 @@ def _gathered(
 
 
 def tessellate(
-    part: Part, chord: float, *, budget: int = 2_000_000, faces: Sequence[int] | None = None,
-    jobs: int = 1, at: At = lambda who, face: None,
-) -> Triangles:  # fmt: skip
+    part: Part,
+    chord: float,
+    *,
+    budget: int = 2_000_000,
+    faces: Sequence[int] | None = None,
+    jobs: int = 1,
+    at: At = lambda who, face: None,
+) -> Triangles:
     """Triangles whose distance from the surface is at most `chord`.
 
     Parameters

@@ -248,13 +248,12 @@ class _Glb:
             "meshes": self.meshes,
             # White: vertex colours are multiplied by it. Open shells are looked at from both sides.
             "materials": [
-                {"name": "verdicts", "doubleSided": True,
-                 "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.8}}
+                {"name": "verdicts", "doubleSided": True, "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.8}}
             ],
             "accessors": self.accessors,
             "bufferViews": self.views,
             "buffers": [{"byteLength": len(self.data)}],
-        }  # fmt: skip
+        }
         text = json.dumps(document, sort_keys=True, separators=(",", ":"), allow_nan=False).encode()
         text += b" " * (-len(text) % 4)
         data = bytes(self.data)

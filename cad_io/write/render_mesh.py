@@ -86,8 +86,9 @@ def render_mesh(part: Part, sides: Sequence[float] | Floats, *, most: int, defle
                 meshes[number] = mesh[0]
                 surface = BRep_Tool.Surface_s(part.face(number))
                 periods[number] = (
-                    surface.UPeriod() if surface.IsUPeriodic() else 0.0, surface.VPeriod() if surface.IsVPeriodic() else 0.0
-                )  # fmt: skip
+                    surface.UPeriod() if surface.IsUPeriodic() else 0.0,
+                    surface.VPeriod() if surface.IsVPeriodic() else 0.0,
+                )
     if not meshes:
         raise WriteError("the CAD kernel made no triangle of the part", file=part.file)
     return RenderMesh(meshes, periods, max(wanted, off), tuple(f.number for f in part.faces if f.number not in meshes))

@@ -220,8 +220,10 @@ class Options:
         self._check_numbers()
         if self.operations is not None and self.machine.turns and self.machine.turning < 2:
             axes = "one rotary axis turns" if self.machine.turning else "no rotary axis turns"
-            raise OptionError(f"on machine {self.machine.name} {axes} the tool: a plan of operations chooses the angles of two; "
-                              "leave out --operations, or name a machine that has them")  # fmt: skip
+            raise OptionError(
+                f"on machine {self.machine.name} {axes} the tool: a plan of operations chooses the angles of two; "
+                "leave out --operations, or name a machine that has them"
+            )
         if not self.held_alike and (self.posture_maps or {"mend", "mend-all"} & set(self.answers)):
             answer = "posture maps are" if self.posture_maps else "the answer mend is"
             raise OptionError(

@@ -137,8 +137,7 @@ def run(
             # In the order of rank, whatever the order of work.
             earlier = {c: here[c] for c in ready.cutters if c in here}
             began = time.perf_counter()
-            here[cutter] = judged(ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell,
-                                  work=searched)  # fmt: skip
+            here[cutter] = judged(ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell, work=searched)
             seconds[cutter] = time.perf_counter() - began
     others = [(axis, _in_other_setup(ready, here, k, clock, judged)) for k, axis in enumerate(options.other_setups, 1)]
     reported = _judged(ready, here, others, seconds, clock)
@@ -213,9 +212,13 @@ def prepare(
         _ = whole.sewn
     with clock.stage("orient"):
         scene = Scene.of(
-            stands, setup=options.setup, flip=options.flip, tolerance=options.tolerance, ignore=options.ignore,
+            stands,
+            setup=options.setup,
+            flip=options.flip,
+            tolerance=options.tolerance,
+            ignore=options.ignore,
             fixtures=options.fixtures,
-        )  # fmt: skip
+        )
     if scene.fixtures:
         with clock.stage("fixtures"):
             scene.read_fixtures(read_timeout)
@@ -257,8 +260,9 @@ def prepare(
     if not ready.finished.any():
         raise UnjudgeableError(
             "every target sample lies inside another body of the part, so there is no surface to finish: leave a body out with "
-            "--ignore, or choose other faces with --faces", file=whole.file,
-        )  # fmt: skip
+            "--ignore, or choose other faces with --faces",
+            file=whole.file,
+        )
     return ready
 
 
@@ -294,9 +298,12 @@ class Judged:
 
 
 def _judged(
-    ready: Prepared, here: Mapping[Cutter, Verdicts], other_setups: Sequence[OtherSetup], seconds: Mapping[Cutter, float],
+    ready: Prepared,
+    here: Mapping[Cutter, Verdicts],
+    other_setups: Sequence[OtherSetup],
+    seconds: Mapping[Cutter, float],
     clock: Clock,
-) -> dict[Cutter, Judged]:  # fmt: skip
+) -> dict[Cutter, Judged]:
     """Combine the verdicts of each cutter over all setups, find the reasons, and make its line in the plan."""
     samples, convex, surroundings = ready.samples, ready.surface_class == CONVEX, ready.conditions.surroundings
     reasons = Reasons(samples, ready.setups, ready.somewhere, ready.machinable)
@@ -331,11 +338,15 @@ def _judged(
 
 
 def assemble(
-    ready: Prepared, judged: Mapping[Cutter, Judged], clock: Clock | None = None,
-    started: datetime.datetime | None = None, answers: Answers | None = None,
-    other_setups: Sequence[OtherSetup] = (), searched: Work | None = None,
+    ready: Prepared,
+    judged: Mapping[Cutter, Judged],
+    clock: Clock | None = None,
+    started: datetime.datetime | None = None,
+    answers: Answers | None = None,
+    other_setups: Sequence[OtherSetup] = (),
+    searched: Work | None = None,
     compiling: Callable[[str], None] = lambda entry: None,
-) -> Result:  # fmt: skip
+) -> Result:
     """The result of all cutters: the choice, the area between the samples for the one chosen, what was answered, the plan.
 
     `searched`: the work of all searches, which bounds that between the samples unless a budget was requested.

@@ -28,7 +28,7 @@ _ROUNDING = 1e-9
 
 def plan_proposed(
     prepare: Callable[[Options, Clock], Prepared], run: Callable[..., Result], options: Options, clock: Clock
-) -> Result:  # fmt: skip
+) -> Result:
     """Propose setups and plan them; with a plan of operations the fewest of up to three, else the best one.
 
     Parameters
@@ -78,8 +78,10 @@ def plan_proposed(
         return best[1]
     if why:
         raise OptionError(f"setup auto: no proposal can be planned: {why}")
-    raise OptionError(f"setup auto: over a table, no cutter reaches any of {len(ranking.rows)} samples in the "
-                      f"{len(ranking.served)} best directions; name a setup with its fixtures")  # fmt: skip
+    raise OptionError(
+        f"setup auto: over a table, no cutter reaches any of {len(ranking.rows)} samples in the "
+        f"{len(ranking.served)} best directions; name a setup with its fixtures"
+    )
 
 
 def _axis(ranking: Ranking, k: int) -> tuple[float, float, float]:
@@ -120,26 +122,28 @@ def _compared(result: Result, ranking: Ranking, chosen: tuple[int, ...]) -> tupl
     )
 
 
-def _texts(
-    result: Result, ranking: Ranking, chosen: tuple[int, ...], clock: Clock, shares: tuple[float, float, int]
-) -> Result:  # fmt: skip
+def _texts(result: Result, ranking: Ranking, chosen: tuple[int, ...], clock: Clock, shares: tuple[float, float, int]) -> Result:
     """The same plan with its proposal."""
     served = np.stack([ranking.served[k] for k in chosen], axis=1)
     alone, any_of = ranking.share(served), np.asarray(served.any(axis=1))
     together = exact(float(ranking.share(any_of[:, None])[0]), some=bool(any_of.any()), whole=bool(any_of.all()))
     share, held_share, tried = shares
     setups = [
-        ProposedSetup(axis=_axis(ranking, k), stands_on=[f"F{n}" for n in ranking.candidates.stands_on[k]],
-                      promised=min(1.0, float(each)))
+        ProposedSetup(
+            axis=_axis(ranking, k), stands_on=[f"F{n}" for n in ranking.candidates.stands_on[k]], promised=min(1.0, float(each))
+        )
         for k, each in zip(chosen, alone, strict=True)
-    ]  # fmt: skip
+    ]
     held = held_share >= _ENOUGH
-    where = [axis_words(each.axis) + (f" (on {', '.join(each.stands_on)})" if each.stands_on else " (on no plane)")
-             for each in setups]  # fmt: skip
+    where = [
+        axis_words(each.axis) + (f" (on {', '.join(each.stands_on)})" if each.stands_on else " (on no plane)") for each in setups
+    ]
     of = f"{len(ranking.served)} of {len(ranking.candidates.axis)} directions searched at {len(ranking.rows)} samples"
-    why = (f"With {of} over a table, {'this one serves' if len(setups) == 1 else 'these serve'} {percent(together)} of the "
-           f"samples' area. The plan reaches {percent(share)} of the target area"
-           f"{'' if held else f', and holds only {percent(held_share)} of what was promised'}.")  # fmt: skip
+    why = (
+        f"With {of} over a table, {'this one serves' if len(setups) == 1 else 'these serve'} {percent(together)} of the "
+        f"samples' area. The plan reaches {percent(share)} of the target area"
+        f"{'' if held else f', and holds only {percent(held_share)} of what was promised'}."
+    )
     entry = SetupProposal(setups=setups, directions=len(ranking.candidates.axis), searched=len(ranking.served),
                           samples=len(ranking.rows), promised=together, found=share, kept=held_share, held=held, tried=tried,
                           why=why)  # fmt: skip

@@ -224,8 +224,9 @@ class Result:
         """
         numbers = face_numbers(self.part, which)
         if len(numbers) != 1:
-            raise OptionError(f"{len(numbers)} faces were given, {', '.join(f'F{n}' for n in numbers[:5])}: ask for one, or "
-                              "use faces(...)")  # fmt: skip
+            raise OptionError(
+                f"{len(numbers)} faces were given, {', '.join(f'F{n}' for n in numbers[:5])}: ask for one, or use faces(...)"
+            )
         return self._on_face(numbers[0], cutter, stick_out)
 
     def faces(self, which: Any = None, cutter: str | None = None, *, stick_out: bool = False) -> tuple[OnFace, ...]:

@@ -59,8 +59,9 @@ def compared(plan: Plan, code: int, most: int) -> Comparison:
             rows.append(FaceRow(face=face.id, reached=shares))
     rows.sort(key=lambda row: min(row.reached.values()) - max(row.reached.values()))
     ids = {c.id for c in ranked(plan)[:most]}
-    differ, more = first([row.model_copy(update={"reached": {i: s for i, s in row.reached.items() if i in ids}}) for row in rows],
-                         most)  # fmt: skip
+    differ, more = first(
+        [row.model_copy(update={"reached": {i: s for i, s in row.reached.items() if i in ids}}) for row in rows], most
+    )
     together = None if plan.least_set is None else LeastSet.model_validate(plan.least_set)
     return Comparison(**_of_plan(plan, code, most), differ=differ, more_differ=more, together=together)
 
@@ -178,14 +179,16 @@ def _of_point(postures: Postures | None, sample: Sample | None) -> Iterator[str]
         yield sample_text(sample.distance_mm, sample.verdict, sample.reason)
     if postures is not None:
         free = postures.free_share or float(any(row.free for row in postures.rotations))
-        yield posture_text(postures.face, free, postures.undecided_share, by_share(postures.forbidden),
-                           certified=postures.certified)  # fmt: skip
+        yield posture_text(
+            postures.face, free, postures.undecided_share, by_share(postures.forbidden), certified=postures.certified
+        )
 
 
 def _reason(code: str, share: float) -> Reason:
     known = REASONS.get(code)
-    return Reason(code=code, name=reason(code), meaning=known.sentence if known else "", try_first=known.hint if known else "",
-                  share=share)  # fmt: skip
+    return Reason(
+        code=code, name=reason(code), meaning=known.sentence if known else "", try_first=known.hint if known else "", share=share
+    )
 
 
 def _helping(plan: Plan, cutter: CutterEntry, *, alone: bool, lost: bool) -> tuple[list[Help], About, str]:

@@ -39,9 +39,12 @@ def _below(least: float | None, tilt: tuple[float, float]) -> float:
 
 def _row(row: dict[str, Any]) -> RotationRow:
     return RotationRow(
-        deg=round(row["deg"], _DIGITS), free=_inward(row["free"]), undecided=_rounded(row["undecided"]),
-        local_gouge_below=row["local_gouge"], forbidden={word: _rounded(row[word]) for word in INTERVALS if row[word]},
-    )  # fmt: skip
+        deg=round(row["deg"], _DIGITS),
+        free=_inward(row["free"]),
+        undecided=_rounded(row["undecided"]),
+        local_gouge_below=row["local_gouge"],
+        forbidden={word: _rounded(row[word]) for word in INTERVALS if row[word]},
+    )
 
 
 def _rounded(intervals: list[list[float]]) -> list[tuple[float, float]]:

@@ -76,14 +76,17 @@ class PartQuestion(Conditions, Sampling):
 
     part: Path = Field(description="STEP, IGES or BREP, in a root")
     cutters: list[Word] = Field(
-        default=[], max_length=200,
+        default=[],
+        max_length=200,
         description="D12L80 (diameter, length from tip to holder) or R6L80 (radius); rc1 corner radius (rc6: ball), T5 taper, "
         "F20 flutes, N11x40 neck, S12 shank; without any, the built-in tool set is judged",
-    )  # fmt: skip
+    )
     setup: list[Axis] = Field(
-        default=["0,0,1"], min_length=1, max_length=12,
+        default=["0,0,1"],
+        min_length=1,
+        max_length=12,
         description="directions of the part along the machine's spindle: +z, -y, or x,y,z; every cutter is judged in each",
-    )  # fmt: skip
+    )
     faces: Word = Field(default="sculptured,blends", description="faces to machine: sculptured, blends, all, F3,7-12, name:REGEX")
 
 

@@ -77,8 +77,10 @@ class Service:
         except PlanError as error:
             return _failed(str(error))
         except TimeoutError:
-            return _failed(f"no answer within {self.limits.seconds:g} s: sample more coarsely, choose fewer faces or "
-                           "cutters, or start the server with a longer --timeout")  # fmt: skip
+            return _failed(
+                f"no answer within {self.limits.seconds:g} s: sample more coarsely, choose fewer faces or "
+                "cutters, or start the server with a longer --timeout"
+            )
         except Exception as error:
             logging.getLogger(__name__).debug("internal error", exc_info=True)
             return _failed(f"internal error ({type(error).__name__}: {error})")
@@ -164,11 +166,15 @@ def _declared(tool: Tool) -> "types.Tool":
     import mcp.types as types
 
     return types.Tool(
-        name=tool.name, title=tool.title, description=tool.description,
-        input_schema=_schema(tool.question), output_schema=_schema(tool.answer, mode="serialization"),
-        annotations=types.ToolAnnotations(read_only_hint=not tool.writes, destructive_hint=tool.writes, idempotent_hint=True,
-                                          open_world_hint=False),
-    )  # fmt: skip
+        name=tool.name,
+        title=tool.title,
+        description=tool.description,
+        input_schema=_schema(tool.question),
+        output_schema=_schema(tool.answer, mode="serialization"),
+        annotations=types.ToolAnnotations(
+            read_only_hint=not tool.writes, destructive_hint=tool.writes, idempotent_hint=True, open_world_hint=False
+        ),
+    )
 
 
 def _failed(line: str) -> "types.CallToolResult":
@@ -192,8 +198,13 @@ def made(service: Service) -> "Server[Any]":
     """The server of a service."""
     from mcp.server.lowlevel import Server
 
-    return Server("plan-cutters", version=__version__, instructions=_INSTRUCTIONS, on_list_tools=service.list_tools,
-                  on_call_tool=service.call_tool)  # fmt: skip
+    return Server(
+        "plan-cutters",
+        version=__version__,
+        instructions=_INSTRUCTIONS,
+        on_list_tools=service.list_tools,
+        on_call_tool=service.call_tool,
+    )
 
 
 def serve(service: Service, interrupted: Callable[[], None]) -> None:

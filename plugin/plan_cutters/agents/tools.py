@@ -253,8 +253,10 @@ async def _spec(name: str, question: Conditions, call: Call) -> str:
             return mine
     except CutterError:
         pass
-    raise CallError(f"{mine} has no form that words can say: plan the part with the library, `faces` and `answers`, and ask with "
-                    "`plan`", file=question.library)  # fmt: skip
+    raise CallError(
+        f"{mine} has no form that words can say: plan the part with the library, `faces` and `answers`, and ask with `plan`",
+        file=question.library,
+    )
 
 
 def _nearest(file: str, plan: Plan, cutter: str, question: ExplainQuestion, permissions: Permissions) -> Sample:
@@ -286,15 +288,21 @@ def _nearest(file: str, plan: Plan, cutter: str, question: ExplainQuestion, perm
     row = int(np.nanargmin(off))
     most, face = max(question.within_mm, plan.samples.max_gap_mm or 0.0), f"F{int(faces[row])}"
     if not off[row] <= most:
-        raise CallError(f"the nearest sample is {off[row]:.4g} mm from the point, on {face}; give a point within {most:.3g} mm "
-                        "of one, or a face", file=file)  # fmt: skip
+        raise CallError(
+            f"the nearest sample is {off[row]:.4g} mm from the point, on {face}; give a point within {most:.3g} mm "
+            "of one, or a face",
+            file=file,
+        )
     axis: Vector | None = tuple(axes[row].tolist()) if np.isfinite(axes[row]).all() else None
     code = int(reasons[row])
     return Sample(
-        point=tuple(points[row].tolist()), distance_mm=float(off[row]), face=face,
-        verdict=WORDS.get(int(verdicts[row]), "unknown"), axis=axis,
+        point=tuple(points[row].tolist()),
+        distance_mm=float(off[row]),
+        face=face,
+        verdict=WORDS.get(int(verdicts[row]), "unknown"),
+        axis=axis,
         reason=None if code == NO_REASON or code >= len(plan.reasons) else plan.reasons[code],
-    )  # fmt: skip
+    )
 
 
 @contextlib.contextmanager

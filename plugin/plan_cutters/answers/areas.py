@@ -82,9 +82,13 @@ def _patch(samples: SurfaceSamples, finished: Finished, rows: Rows) -> Patch:
     numbers, inverse = np.unique(samples.face[rows], return_inverse=True)
     by_face = np.argsort(-np.bincount(inverse, weight), kind="stable")
     return Patch(
-        float(area.sum()), finished.of_rows(rows), len(rows), tuple(f"F{n}" for n in numbers[by_face].tolist()), (x, y, z),
+        float(area.sum()),
+        finished.of_rows(rows),
+        len(rows),
+        tuple(f"F{n}" for n in numbers[by_face].tolist()),
+        (x, y, z),
         _across(point),
-    )  # fmt: skip
+    )
 
 
 def _across(point: Floats) -> float:

@@ -32,9 +32,11 @@ NEAREST = 3
 
 
 def ask(
-    ready: Prepared, reaches: Mapping[Cutter, Verdicts], stage: Callable[[str], AbstractContextManager[Progress]],
+    ready: Prepared,
+    reaches: Mapping[Cutter, Verdicts],
+    stage: Callable[[str], AbstractContextManager[Progress]],
     other_setups: OtherSetups = (),
-) -> Answers:  # fmt: skip
+) -> Answers:
     """Answer what is asked, and what costs nothing.
 
     Parameters
@@ -76,7 +78,7 @@ def ask(
 
 def _what_if(
     ready: Prepared, cutter: Cutter, reaches: Mapping[Cutter, Verdicts], other_setups: OtherSetups, tell: Progress
-) -> WhatIfAnswer:  # fmt: skip
+) -> WhatIfAnswer:
     why = "" if other_setups else undecidable(ready, cutter, reaches[cutter])
     if why:
         not_reached = reaches[cutter].not_reached

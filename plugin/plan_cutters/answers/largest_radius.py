@@ -101,14 +101,19 @@ def _cutters(ready: Prepared, shape: Shape, ratio: float, step: float, least: fl
         raise OptionError(f"radii to try, from {first:g} to {last:g} mm, must be positive and ascend", file=part.file)
     steps = int(math.log(last / first) / math.log1p(step) + 1e-9)
     if steps > _MOST:
-        raise OptionError(f"{steps:,} radii from {first:g} to {last:g} mm are too many to try, at most {_MOST:,} are: "
-                          "take a larger step", file=part.file)  # fmt: skip
+        raise OptionError(
+            f"{steps:,} radii from {first:g} to {last:g} mm are too many to try, at most {_MOST:,} are: take a larger step",
+            file=part.file,
+        )
     radii = [first * (1.0 + step) ** k for k in range(steps + 1)]
     made = [_ENDS[shape](radius=r, length=ratio * r).asked(ready.options.allowance, 0.0, None) for r in radii]
     cutters = [cutter for cutter in made if conditions.judges(cutter)]
     if not cutters:
-        raise OptionError(f"the tolerance that is kept, {conditions.tolerance:g} mm, is too coarse for radii up to "
-                          f"{last:g} mm: take a finer one, or radii over {finest:g} mm", file=part.file)  # fmt: skip
+        raise OptionError(
+            f"the tolerance that is kept, {conditions.tolerance:g} mm, is too coarse for radii up to "
+            f"{last:g} mm: take a finer one, or radii over {finest:g} mm",
+            file=part.file,
+        )
     return cutters
 
 

@@ -127,9 +127,7 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
             yield Candidate((move,), made, estimate, nested=False)
 
 
-def _plain(
-    second: list[tuple[float, float, Axis, State, Rows]], whole: float
-) -> tuple[float, float, Axis, State, Rows] | None:  # fmt: skip
+def _plain(second: list[tuple[float, float, Axis, State, Rows]], whole: float) -> tuple[float, float, Axis, State, Rows] | None:
     """Of setups that miss least that which faces the samples; one along the part's own axes, if that gains nearly as much."""
     gaining = [each for each in second if each[0] < whole]
     if not gaining:

@@ -25,7 +25,7 @@ _WHAT_IFS: dict[Thing, Callable[[Case, Trials], WhatIf | Change]] = {
 
 def mend(
     ready: Prepared, cutter: Cutter, verdicts: Verdicts, *, progress: Callable[[int, int], None] | None = None
-) -> WhatIfAnswer:  # fmt: skip
+) -> WhatIfAnswer:
     """Find for each thing that could be changed alone the change that asks least and lets a cutter finish the part.
 
     Values are tried on the samples that are not reached now; one that serves there is judged on all samples (`judge`), and so is
@@ -96,10 +96,15 @@ def _with_option(case: Case, change: Change, share: float) -> Change:
     if "tilt" in words:
         conditions = replace(conditions, postures=replace(conditions.postures, tilt=words["tilt"]))
     answer = option(
-        case.ready, case.cutter, cutters=words.get("cutters", (case.cutter,)), conditions=conditions,
-        setups=(words["setup"],) if "setup" in words else None, flip=words.get("flip"), tolerance=words.get("tolerance"),
+        case.ready,
+        case.cutter,
+        cutters=words.get("cutters", (case.cutter,)),
+        conditions=conditions,
+        setups=(words["setup"],) if "setup" in words else None,
+        flip=words.get("flip"),
+        tolerance=words.get("tolerance"),
         faces=[int(each[1:]) for each in faces.split(",")] if faces else None,
-    )  # fmt: skip
+    )
     return replace(change, before=share, after=0.0, option=answer)
 
 

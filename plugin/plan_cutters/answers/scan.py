@@ -64,9 +64,7 @@ class Scan:
     given: tuple[Cutter, ...]
 
     @classmethod
-    def of(
-        cls, state: State, open_rows: Rows, finished: Finished, known: Judgements, cutters: tuple[Cutter, ...]
-    ) -> "Scan":  # fmt: skip
+    def of(cls, state: State, open_rows: Rows, finished: Finished, known: Judgements, cutters: tuple[Cutter, ...]) -> "Scan":
         """With every so-manieth of the samples that are left."""
         return cls(state, open_rows, spread(open_rows), finished, known, cutters)
 
@@ -83,7 +81,7 @@ class Scan:
 
     def least(
         self, make: Callable[[int], State | None], most: int, shares: Sequence[float] = (NEARLY,)
-    ) -> Iterator[tuple[int, State, Rows]]:  # fmt: skip
+    ) -> Iterator[tuple[int, State, Rows]]:
         """Of values 0 to `most`, each of which reaches what those before it reach, the least that gains shares of what the most
         gains: its number, its state, and what it misses of the few."""
         while most >= 0 and (end := make(most)) is None:

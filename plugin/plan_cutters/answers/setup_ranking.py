@@ -113,9 +113,13 @@ def _normals(vertex: Floats, face: NDArray[np.int32], planar: Sequence[int]) -> 
 
 
 def holdable(
-    samples: SurfaceSamples, cutters: Sequence[Cutter], conditions: Conditions, axis: Floats, table: float | None = None,
+    samples: SurfaceSamples,
+    cutters: Sequence[Cutter],
+    conditions: Conditions,
+    axis: Floats,
+    table: float | None = None,
     rows: Rows | None = None,
-) -> NDArray[np.bool_]:  # fmt: skip
+) -> NDArray[np.bool_]:
     """Judged samples (n,) at which the machine holds some tool axis at which a cutter touches, were `axis` the setup axis.
 
     Parameters

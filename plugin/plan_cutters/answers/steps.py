@@ -37,14 +37,22 @@ _ALIKE = 4
 #: Areas that are told: of a cutter, of a step.
 _AREAS, _REMAINS = 20, 3
 #: What of a step is not to be changed by another one.
-_APART = {"setup": {"second_setup", "tilt_limit"}, "second_setup": {"setup", "tilt_limit"},
-          "tilt_limit": {"setup", "second_setup"}}  # fmt: skip
+_APART = {
+    "setup": {"second_setup", "tilt_limit"},
+    "second_setup": {"setup", "tilt_limit"},
+    "tilt_limit": {"setup", "second_setup"},
+}
 
 
 def steps(
-    ready: Prepared, what_if: WhatIfAnswer, cutter: Cutter, reaches: Mapping[Cutter, Verdicts],
-    other_setups: Sequence[tuple[Axis, Mapping[str, Verdicts]]] = (), *, progress: Progress | None = None,
-) -> WhatIfAnswer:  # fmt: skip
+    ready: Prepared,
+    what_if: WhatIfAnswer,
+    cutter: Cutter,
+    reaches: Mapping[Cutter, Verdicts],
+    other_setups: Sequence[tuple[Axis, Mapping[str, Verdicts]]] = (),
+    *,
+    progress: Progress | None = None,
+) -> WhatIfAnswer:
     """Find what to do next, and what it gains.
 
     Values are compared on a few samples; each of those that may gain most is judged on all samples that are not reached and,
@@ -97,9 +105,13 @@ def steps(
     result = [_step(base, finished, open_rows, each, rows) for each, rows in (*singles, *pairs)]
     result.sort(key=lambda step: (round(step.after, _ALIKE), *effort(step.moves)))
     return replace(
-        what_if, share=before, steps=(*result, _excluded(base, finished, open_rows, areas)), areas=tuple(areas[:_AREAS]),
-        more_areas=len(areas[_AREAS:]), unsure=ready.conditions.surroundings.doubtful,
-    )  # fmt: skip
+        what_if,
+        share=before,
+        steps=(*result, _excluded(base, finished, open_rows, areas)),
+        areas=tuple(areas[:_AREAS]),
+        more_areas=len(areas[_AREAS:]),
+        unsure=ready.conditions.surroundings.doubtful,
+    )
 
 
 def effort(moves: Sequence[Move]) -> tuple[int, int]:
@@ -165,10 +177,13 @@ def _step(base: tuple[Prepared, Cutter, State], finished: Finished, open_rows: R
     ready, cutter, state = base
     after = candidate.state
     result = option(
-        ready, cutter, cutters=after.cutters, setups=after.axes if after.axes != state.axes else None,
+        ready,
+        cutter,
+        cutters=after.cutters,
+        setups=after.axes if after.axes != state.axes else None,
         conditions=after.ready.conditions,
         tolerance=after.ready.scene.asked if after.ready.scene.asked != ready.scene.asked else None,
-    )  # fmt: skip
+    )
     freed = len(np.setdiff1d(open_rows, rows, assume_unique=True))
     return Step(
         candidate.moves, finished.of_rows(open_rows), finished.of_rows(rows), freed, len(rows), after.cutters, after.axes, result,
@@ -187,7 +202,4 @@ def _excluded(base: tuple[Prepared, Cutter, State], finished: Finished, open_row
     result = option(ready, cutter, cutters=(cutter,), faces=rest.tolist()) if whole else None
     area, share = float(finished.area[open_rows].sum()), finished.of_rows(open_rows)
     move = Move("area", None, round(area, 6), change_text.excluded_areas(areas, area))
-    return Step(
-        (move,), share, 0.0, 0, len(open_rows), (cutter,), state.axes, result,
-        tuple(areas[:_REMAINS]),
-    )  # fmt: skip
+    return Step((move,), share, 0.0, 0, len(open_rows), (cutter,), state.axes, result, tuple(areas[:_REMAINS]))

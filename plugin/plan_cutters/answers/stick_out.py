@@ -66,8 +66,9 @@ def least_stick_out(
         least, limiting = min(longest, max(longer, least + EXACT)), row
     least, limiting = search.lowered(rows, least, limiting)
     each = None if step is None else search.each(rows, step)
-    stick_out = StickOut(least, search.floor, longest, "floor" if limiting < 0 else "obstacle", served=len(rows), each=each,
-                     step=step or np.nan)  # fmt: skip
+    stick_out = StickOut(
+        least, search.floor, longest, "floor" if limiting < 0 else "obstacle", served=len(rows), each=each, step=step or np.nan
+    )
     return stick_out if limiting < 0 else _limited(ready, cutter, search, stick_out, limiting)
 
 

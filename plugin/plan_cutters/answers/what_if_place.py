@@ -69,9 +69,14 @@ def setup(case: Case, trials: Trials) -> WhatIf | Change:
         return change_text.setup(requested, angle(now, requested), changes.get("flip")), {"setup": requested, **changes}
 
     return WhatIf(
-        now=now, ways=ways, make=lambda axis: _turned(case, axis), ends=[*tried.values()],
-        reads=lambda end: _axis(end.ready.conditions.setup), fails=fails, serves=serves,
-    )  # fmt: skip
+        now=now,
+        ways=ways,
+        make=lambda axis: _turned(case, axis),
+        ends=[*tried.values()],
+        reads=lambda end: _axis(end.ready.conditions.setup),
+        fails=fails,
+        serves=serves,
+    )
 
 
 def directions(ready: Prepared, trials: Trials) -> list[Axis]:

@@ -29,13 +29,18 @@ def tilt_limit(case: Case, trials: Trials) -> WhatIf | Change:
     most = math.ceil(180.0 / GRAIN) - base
     way = Way(most, lambda at: min(180.0, round((base + at) * GRAIN, 6)) if at else now or 0.0)
     return WhatIf(
-        now=now, ways=[way], ends=[_within(case, machine=Machine())], nested=True,
-        make=lambda limit: _within(case, machine=Machine.parse(f"tilt:{limit:.6g}")), reads=lambda _: 180.0,
-        fails=lambda _, rest: f"without any limit {rest.words}" if rest.count else
-        "no limit was found that serves all samples",
+        now=now,
+        ways=[way],
+        ends=[_within(case, machine=Machine())],
+        nested=True,
+        make=lambda limit: _within(case, machine=Machine.parse(f"tilt:{limit:.6g}")),
+        reads=lambda _: 180.0,
+        fails=lambda _, rest: f"without any limit {rest.words}" if rest.count else "no limit was found that serves all samples",
         serves=lambda requested, made: (
-            change_text.tilt_limit(requested, now, machine.name), {"machine": made.ready.conditions.machine}),
-    )  # fmt: skip
+            change_text.tilt_limit(requested, now, machine.name),
+            {"machine": made.ready.conditions.machine},
+        ),
+    )
 
 
 def tilt_range(case: Case, trials: Trials) -> WhatIf | Change:

@@ -66,8 +66,11 @@ def opened(address: str | None, workers: int = 1) -> Iterator[Any]:
 def _quiet() -> Iterator[None]:
     """Keep the lines and tracebacks of dask from people: what goes wrong is said here, once."""
     # Dask gives some of its loggers levels of their own.
-    loggers = [logging.getLogger(name) for name in ("distributed", *logging.root.manager.loggerDict)
-               if name.partition(".")[0] == "distributed"]  # fmt: skip
+    loggers = [
+        logging.getLogger(name)
+        for name in ("distributed", *logging.root.manager.loggerDict)
+        if name.partition(".")[0] == "distributed"
+    ]
     before = [logger.level for logger in loggers]
     for logger in loggers:
         logger.setLevel(logging.CRITICAL)
@@ -115,16 +118,18 @@ def _reached(distributed: Any, address: str) -> Iterator[Any]:
         client = distributed.Client(**words, timeout=_ANSWER)
     except (OSError, ValueError, TypeError) as error:
         why = "it did not answer" if isinstance(error, TimeoutError) or not str(error) else "it cannot be reached"
-        raise PlanError(f"{why} within {_ANSWER} s: does the scheduler run, and can this machine reach it?",
-                        file=f"--cluster {address}") from None  # fmt: skip
+        raise PlanError(
+            f"{why} within {_ANSWER} s: does the scheduler run, and can this machine reach it?", file=f"--cluster {address}"
+        ) from None
     except Exception as error:
         raise PlanError(f"no scheduler ({type(error).__name__})", file=f"--cluster {address}") from None
     try:
         try:
             client.wait_for_workers(1, timeout=_JOIN)
         except TimeoutError:
-            raise PlanError(f"the scheduler has no worker, and none joined within {_JOIN} s: start some",
-                            file=f"--cluster {address}") from None  # fmt: skip
+            raise PlanError(
+                f"the scheduler has no worker, and none joined within {_JOIN} s: start some", file=f"--cluster {address}"
+            ) from None
         yield client
     finally:
         client.close()
@@ -160,8 +165,12 @@ def differs(client: Mapping[str, str], worker: Mapping[str, str]) -> str:
 def facts(client: Any) -> dict[str, object]:
     """Say of a cluster what the table names: its address, workers and threads, and where dask shows it."""
     threads = client.nthreads()
-    return {"address": client.scheduler.address, "workers": len(threads), "threads": sum(threads.values()),
-            "dashboard": dashboard(client)}  # fmt: skip
+    return {
+        "address": client.scheduler.address,
+        "workers": len(threads),
+        "threads": sum(threads.values()),
+        "dashboard": dashboard(client),
+    }
 
 
 def dashboard(client: Any) -> str | None:

@@ -153,8 +153,10 @@ class DistributedJudge:
                 try:
                     judged = future.result()
                 except KilledWorker as error:
-                    raise PlanError(f"{cutter.id}: {error.allowed_failures + 1} workers ended at the same samples: look into "
-                                    "their logs; their memory may be too small") from None  # fmt: skip
+                    raise PlanError(
+                        f"{cutter.id}: {error.allowed_failures + 1} workers ended at the same samples: look into "
+                        "their logs; their memory may be too small"
+                    ) from None
                 if isinstance(judged, str):
                     raise PlanError(judged)
                 yield requests.pop(future), judged
@@ -192,8 +194,7 @@ def judged_block(
         Of the block, and the work done. Or one line on why this worker must not judge.
     """
     if version != made_by():
-        return (f"a worker has another version ({made_by()}) than this program ({version}): install the same one on all "
-                "machines")  # fmt: skip
+        return f"a worker has another version ({made_by()}) than this program ({version}): install the same one on all machines"
     with _unpacking:
         if token not in _grounds:
             while len(_grounds) >= _CACHED:

@@ -130,8 +130,12 @@ def handed(options: Options) -> Handed:
     def placed(place: Placement | None) -> Placement | None:
         return None if place is None else _with(place, fixtures=tuple(map(moved, place.fixtures)))
 
-    there = _with(options, fixtures=tuple(map(moved, options.fixtures)), placement=placed(options.placement),
-                  other_placements=tuple(map(placed, options.other_placements)))  # fmt: skip
+    there = _with(
+        options,
+        fixtures=tuple(map(moved, options.fixtures)),
+        placement=placed(options.placement),
+        other_placements=tuple(map(placed, options.other_placements)),
+    )
     try:
         packed = pickle.dumps(there, protocol=5)
     except Exception as error:

@@ -27,8 +27,11 @@ def version() -> str:
 
 def versions() -> dict[str, str]:
     """The versions that must be the same on all machines of a batch."""
-    return {"plan-cutters": version(), "python": platform.python_version(),
-            **{name: _installed(name) for name in ("numba", "dask", "distributed", "cadquery-ocp-proxy")}}  # fmt: skip
+    return {
+        "plan-cutters": version(),
+        "python": platform.python_version(),
+        **{name: _installed(name) for name in ("numba", "dask", "distributed", "cadquery-ocp-proxy")},
+    }
 
 
 def _installed(name: str) -> str:

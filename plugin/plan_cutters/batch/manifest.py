@@ -176,8 +176,9 @@ def _csv(file: str, text: str) -> Iterator[tuple[int, dict[str, Any] | str]]:
             if not names:
                 names = cells
                 if "file" not in names or len(set(names)) < len(names) or "" in names:
-                    raise PlanError("its first line must name the columns, each once, with `file` among them",
-                                    file=f"{file}:{rows.line_num}")  # fmt: skip
+                    raise PlanError(
+                        "its first line must name the columns, each once, with `file` among them", file=f"{file}:{rows.line_num}"
+                    )
                 continue
             if len(cells) > len(names):
                 yield (rows.line_num, f"has {len(cells)} cells for {len(names)} columns: a cell with a comma needs quotes")

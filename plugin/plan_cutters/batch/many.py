@@ -102,8 +102,9 @@ def plan_many(
         raise OptionError("parts is one path: give a list of parts, or use the command `batch` for folders")
     with noted() as files:
         base = Options.of({"jobs": 1, **options})
-    settings = Settings(base, tuple(dict.fromkeys(("json", *read_formats(",".join(formats))))),
-                        read=tuple(filter(None, files.values())))  # fmt: skip
+    settings = Settings(
+        base, tuple(dict.fromkeys(("json", *read_formats(",".join(formats))))), read=tuple(filter(None, files.values()))
+    )
     secret = None if verdicts_key is None else key_of(os.fspath(verdicts_key))
     store = None if out is None else Store(os.fspath(out), secret)
     token = store.begin() if store else ""

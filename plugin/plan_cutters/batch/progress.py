@@ -138,8 +138,9 @@ class Board:
 
     def _draw(self) -> None:
         words = TextColumn("{task.description}", markup=False)
-        self._bar = Progress(words, BarColumn(bar_width=20), TimeElapsedColumn(), TimeRemainingColumn(),
-                             console=self.console, transient=True)  # fmt: skip
+        self._bar = Progress(
+            words, BarColumn(bar_width=20), TimeElapsedColumn(), TimeRemainingColumn(), console=self.console, transient=True
+        )
         with contextlib.suppress(OSError, ValueError):
             self._bar.start()
         self._task = self._bar.add_task(self._counts, total=self.total)

@@ -68,9 +68,14 @@ class Terms:
 
 
 def run_batch(
-    parts: Sequence[Job | Fault], client: Any, out: Store, terms: Terms, *, board: ProgressListener | None = None,
+    parts: Sequence[Job | Fault],
+    client: Any,
+    out: Store,
+    terms: Terms,
+    *,
+    board: ProgressListener | None = None,
     title: str = "plan-cutters batch",
-) -> Iterator[PartRow]:  # fmt: skip
+) -> Iterator[PartRow]:
     """Plan parts on a cluster, and write the table of all when the last one is done.
 
     Parameters

@@ -64,8 +64,13 @@ def _of(word: str, out: str, manifest: Callable[[str], Sequence[Source | Fault]]
     try:
         if _MAGIC & set(word) and not fs.exists(path):
             base = PurePosixPath(*_plain(path)).as_posix()
-            return _listed(word, base, [each for each in sorted(fs.glob(path)) if _is_part(each)], fs,
-                           "no STEP, IGES or BREP file is called so")  # fmt: skip
+            return _listed(
+                word,
+                base,
+                [each for each in sorted(fs.glob(path)) if _is_part(each)],
+                fs,
+                "no STEP, IGES or BREP file is called so",
+            )
         if word.lower().endswith(MANIFESTS):
             return manifest(word)
         if fs.isdir(path):
@@ -138,8 +143,10 @@ def _unusable(source: Source, same: Sequence[str]) -> str:
     if len(same) > 1:
         others = [file for file in same if file != source.file] or [source.file]
         more = f" and {len(others) - 1} more" if len(others) > 1 else ""
-        return (f"has the name {source.name!r}, as {others[0]}{more}: none of them is planned; rename one, or give names in "
-                "a manifest")  # fmt: skip
+        return (
+            f"has the name {source.name!r}, as {others[0]}{more}: none of them is planned; rename one, or give names in "
+            "a manifest"
+        )
     parts = source.name.split("/")
     if any(part in ("", ".", "..") or part != part.strip() for part in parts) or not source.name.isprintable():
         return f"the name {source.name!r} cannot be a folder's; give another in a manifest"

@@ -109,8 +109,12 @@ def work(task: Task) -> Outcome:
 
     def failed(why: str, code: int, key: str = "") -> Outcome:
         line = " ".join(why.split())[:_LONGEST]
-        return Outcome(PartRow(name=task.name, file=task.file, key=key, status="failed", code=code, error=line,
-                               seconds=time.monotonic() - began), {})  # fmt: skip
+        return Outcome(
+            PartRow(
+                name=task.name, file=task.file, key=key, status="failed", code=code, error=line, seconds=time.monotonic() - began
+            ),
+            {},
+        )
 
     def unfit(why: str) -> Outcome:
         worker = _worker()
@@ -122,8 +126,10 @@ def work(task: Task) -> Outcome:
             return unfit(why)
         output = None if task.store is None else store.Store(task.store, task.secret)
         if output is not None and not output.seen(task.token):
-            return unfit(f"{_here()}: this worker does not see {task.store} (give a folder that all machines share, or a URL), "
-                          "or another batch has begun there since")  # fmt: skip
+            return unfit(
+                f"{_here()}: this worker does not see {task.store} (give a folder that all machines share, or a URL), "
+                "or another batch has begun there since"
+            )
         try:
             content = content_of(task)
         except PlanError as error:
@@ -173,8 +179,9 @@ def _unfit(versions: Mapping[str, str]) -> str:
     """Why this worker cannot plan as the others do; empty where it can."""
     for name, here in keys.versions().items():
         if name in versions and versions[name] != here:
-            return (f"{_here()}: {name} {here} on this worker, {versions[name]} where the batch was begun: "
-                    "install the same on both")  # fmt: skip
+            return (
+                f"{_here()}: {name} {here} on this worker, {versions[name]} where the batch was begun: install the same on both"
+            )
     return _ready()
 
 
@@ -288,8 +295,10 @@ def planned(task: Task, content: Content, folder: Path) -> tuple[int, str]:
         ends = time.monotonic() + (task.timeout or float("inf"))
         while (code := child.ended(_LOOK)) is None:
             if time.monotonic() > ends:
-                return TIMED_OUT, (f"{task.file}: not done within {task.timeout:g} s: sample more coarsely "
-                                   "(--spacing), or give more time (--timeout-part)")  # fmt: skip
+                return TIMED_OUT, (
+                    f"{task.file}: not done within {task.timeout:g} s: sample more coarsely "
+                    "(--spacing), or give more time (--timeout-part)"
+                )
             if not wanted():
                 return INTERRUPTED, f"{task.file}: interrupted"
             if offer is not None and not shared and os.path.exists(offer.said):

@@ -127,8 +127,9 @@ class Bench:
             first = first / max(float(np.linalg.norm(first)), 1e-300)
             turn = 2.0 * math.pi / _SIDES * np.arange(_SIDES)[:, None]
             about = np.cos(turn) * first + np.sin(turn) * np.cross(axis[k], first)
-            every = self.stands(setup, tool, np.full(_SIDES, rows[k]), np.repeat(axis[k][None], _SIDES, axis=0), about, clock,
-                                surely=surely)  # fmt: skip
+            every = self.stands(
+                setup, tool, np.full(_SIDES, rows[k]), np.repeat(axis[k][None], _SIDES, axis=0), about, clock, surely=surely
+            )
             verdict[k] = FREE if (every == FREE).any() else max(every)
         return verdict
 

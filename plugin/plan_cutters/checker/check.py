@@ -74,6 +74,9 @@ def _compared(question: Question, findings: Iterable[Finding], entry: dict[str, 
     entries = compared(entry, question.document["operations"])
     unknown = [f"operations.{path} is an entry that this checker does not know." for path in entries.unknown]
     wrong = [Finding(False, words) for words in (*unknown, *(f"operations.{line}." for line in entries.differ))]
-    right = Finding(True, f"{len(entries.agree)} numbers and words of the plan follow from its samples and labels, "
-                          f"{len(entries.unchecked)} are not checked.")  # fmt: skip
+    right = Finding(
+        True,
+        f"{len(entries.agree)} numbers and words of the plan follow from its samples and labels, "
+        f"{len(entries.unchecked)} are not checked.",
+    )
     return Answer((*findings, *(wrong or [right])), entries)

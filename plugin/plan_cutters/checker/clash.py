@@ -122,7 +122,7 @@ def _some_met(
 
 def nearest(
     cells: Cells, root: int, solids: Sequence[Solid], tip: Floats, axis: Floats, beyond: float, grain: float, clock: Clock
-) -> tuple[float, str] | None:  # fmt: skip
+) -> tuple[float, str] | None:
     """The least distance, mm, of any point of the surface from solids at tips and axes (n, 3), and the part of the tool there.
 
     Negative where a point lies within; to within `grain`; `beyond` where all is farther away; None where the time was over.

@@ -149,10 +149,11 @@ class Reckoned:
             takes = {
                 plan["name"]: sum(
                     float(self.area[self.array(k, "operation") == i].sum())
-                    for i, each in enumerate(plan["operations"]) if each["cutter"] == name
+                    for i, each in enumerate(plan["operations"])
+                    if each["cutter"] == name
                 )
                 for k, plan in enumerate(written["plans"])
-            }  # fmt: skip
+            }
             others = np.logical_or.reduce([each for other, each in self.reached_by.items() if other != name])
             only = float(self.area[self.reached_by[name] & ~others].sum())
             entry = {
@@ -174,9 +175,12 @@ class Reckoned:
         timed = written["fastest"] or {}
         best, bound = timed.get("at_best_seconds"), timed.get("bound_seconds")
         fastest: dict[str, Any] = {
-            "seconds": seconds, "bound_seconds": Loose(0.0, math.inf), "at_best_seconds": Loose(0.0, math.inf),
-            "samples": Loose(0, len(self.area)), "candidates": Loose(0, len(self.question.operations["candidate_cutter"])),
-        }  # fmt: skip
+            "seconds": seconds,
+            "bound_seconds": Loose(0.0, math.inf),
+            "at_best_seconds": Loose(0.0, math.inf),
+            "samples": Loose(0, len(self.area)),
+            "candidates": Loose(0, len(self.question.operations["candidate_cutter"])),
+        }
         if seconds is None or not isinstance(bound, float | int):
             return fastest | {"gap": None}
         fastest["bound_seconds"] = Loose(best if isinstance(best, float | int) else 0.0, seconds * (1 + 1e-9))
@@ -223,8 +227,12 @@ class Reckoned:
         words = self.question.document["reasons"]
         known = [c for c in np.unique(first).tolist() if c != _NO_REASON and c < len(words)]
         counts = {words[c]: int((first == c).sum()) for c in known}
-        return {"samples": int(rest.sum()), "area_mm2": area, "share": area / self.whole if self.whole > 0.0 else 0.0,
-                "reason_counts": counts}  # fmt: skip
+        return {
+            "samples": int(rest.sum()),
+            "area_mm2": area,
+            "share": area / self.whole if self.whole > 0.0 else 0.0,
+            "reason_counts": counts,
+        }
 
     def _ratio(self, fixed: Sequence[Mapping[str, Any]]) -> Any:
         timed = self.question.document["operations"]["fastest"]
@@ -278,11 +286,12 @@ class Reckoned:
             "axis": axis.tolist(),
             "angles_deg": {name: float(each["angles_deg"][name]) for name in names},
             "frame": {
-                "origin": list(setup.origin or (0.0, 0.0, 0.0)), "z": axis.tolist(),
+                "origin": list(setup.origin or (0.0, 0.0, 0.0)),
+                "z": axis.tolist(),
                 "x": (x / np.linalg.norm(x)).tolist() if np.linalg.norm(x) > 1e-6 else [Loose(-1.0, 1.0)] * 3,
             },
             "index_from": written["assumed"]["index_from"],
-        }  # fmt: skip
+        }
         if written["assumed"]["index_from"] != "rates":
             entry["index_s"] = written["assumed"]["index_s"]
         else:
@@ -319,12 +328,17 @@ class Reckoned:
             mine = np.concatenate([np.arange(first, last + 1) for first, last in runs] or [np.zeros(0, np.int64)])
             seen.append(mine)
             point = self.question.samples["point"][mine]
-            regions.append({
-                "id": number, "samples": len(mine), "area_mm2": float(self.area[mine].sum()),
-                "faces": self._faces(mine, region["faces"]),
-                "low": point.min(axis=0, initial=np.inf).tolist(), "high": point.max(axis=0, initial=-np.inf).tolist(),
-                "rows": _runs(mine),
-            })  # fmt: skip
+            regions.append(
+                {
+                    "id": number,
+                    "samples": len(mine),
+                    "area_mm2": float(self.area[mine].sum()),
+                    "faces": self._faces(mine, region["faces"]),
+                    "low": point.min(axis=0, initial=np.inf).tolist(),
+                    "high": point.max(axis=0, initial=-np.inf).tolist(),
+                    "rows": _runs(mine),
+                }
+            )
         if not np.array_equal(np.sort(np.concatenate([*seen, np.zeros(0, np.int64)])), rows):
             return f"regions with the {len(rows)} samples that operations.npz gives it"
         sizes = [one["area_mm2"] for one in regions]

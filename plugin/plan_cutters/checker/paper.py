@@ -81,8 +81,11 @@ class Paper:
         direction = samples["direction_max"][rows]
         odd += int((np.abs((direction * samples["normal"][rows]).sum(axis=1)) > _SAME).sum())
         holds = far <= _SAME_MM and not odd and not area_off
-        yield Finding(holds, f"{len(rows)} samples lie on the kernel's surface, the farthest {far:.2g} mm away; {odd} have "
-                             f"another normal than it or lie beyond its border.{area_off}")  # fmt: skip
+        yield Finding(
+            holds,
+            f"{len(rows)} samples lie on the kernel's surface, the farthest {far:.2g} mm away; {odd} have "
+            f"another normal than it or lie beyond its border.{area_off}",
+        )
 
     def _candidates(self) -> Iterator[Finding]:
         """Candidates have the axes of their angles, within the limits of the machine, and leave out no part of them."""
@@ -104,8 +107,11 @@ class Paper:
             axis = axes_of(question.machine, each, angle[mine])
             wrong += int((~(np.abs(axis - arrays["candidate_axis"][mine]).max(axis=1, initial=0.0) <= _SAME)).sum())
             beyond += int((~allowed(question.machine, each, angle[mine])).sum())
-        yield Finding(not wrong and not beyond, f"{len(cutter)} candidates: {wrong} have other axes than their angles "
-                                                f"give, {beyond} are beyond the machine's limits.")  # fmt: skip
+        yield Finding(
+            not wrong and not beyond,
+            f"{len(cutter)} candidates: {wrong} have other axes than their angles "
+            f"give, {beyond} are beyond the machine's limits.",
+        )
         if not wrong and not beyond:
             yield self._complete(cutter, setup, arrays["candidate_axis"])
 
@@ -129,8 +135,10 @@ class Paper:
                 away = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
                 missing, tried = missing + int((away > near).sum()), tried + len(away)
                 worst = max(worst, float(away.max(initial=0.0)))
-        words = (f"Of {tried} tool axes that face a sample, taken by seed 0 for each setup and cutter, {missing} are more than "
-                 f"{near:g} deg from a candidate; the farthest is {worst:.3g} deg away.")  # fmt: skip
+        words = (
+            f"Of {tried} tool axes that face a sample, taken by seed 0 for each setup and cutter, {missing} are more than "
+            f"{near:g} deg from a candidate; the farthest is {worst:.3g} deg away."
+        )
         return Finding(missing == 0, words)
 
     def _labels(self, k: int) -> Iterator[Finding]:
@@ -140,8 +148,11 @@ class Paper:
         bad |= (label < 0) & self.reckoned.reached
         bad |= (label < 0) & (np.isfinite(tilt_direction).any(axis=1) | self.reckoned.array(k, "exclusive"))
         if bad.any():
-            yield Finding(False, f"The {plan['name']} plan: {int(bad.sum())} of {len(label)} samples go with operations "
-                                 "that there are not, or with none though they are reached.")  # fmt: skip
+            yield Finding(
+                False,
+                f"The {plan['name']} plan: {int(bad.sum())} of {len(label)} samples go with operations "
+                "that there are not, or with none though they are reached.",
+            )
 
     def _times(self, k: int) -> Iterator[Finding]:
         """Seconds of each sample are its area over the width of a pass and the feed."""
@@ -163,8 +174,11 @@ class Paper:
         same &= not np.isfinite(seconds[~own]).any() and not np.isfinite(strip[~own]).any()
         fits = (np.isnan(strip[own]) | ((strip[own] > 0.0) & (strip[own] <= widest[own] * (1.0 + _SAME)))).all()
         if not (same and fits):
-            yield Finding(False, f"The {plan['name']} plan: seconds of samples in operations.npz are not their area over "
-                                 "width and feed, or widths are beyond the step-over.")  # fmt: skip
+            yield Finding(
+                False,
+                f"The {plan['name']} plan: seconds of samples in operations.npz are not their area over "
+                "width and feed, or widths are beyond the step-over.",
+            )
 
 
 def _inside(trim: Any, u: Floats, v: Floats) -> NDArray[np.bool_]:

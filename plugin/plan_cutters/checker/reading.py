@@ -8,8 +8,12 @@ from plan_cutters.checker.question import Question
 
 #: Arrays of operations.npz that are of each plan, of samples and of candidates: their last axes, and kinds.
 _OF_PLAN = {"operation": ((), "i"), "strip_mm": ((), "f"), "seconds": ((), "f"), "exclusive": ((), "b"), "lean": ((3,), "f")}
-_OF_CANDIDATES = {"candidate_cutter": ((), "i"), "candidate_setup": ((), "i"), "candidate_angle": ((2,), "f"),
-                  "candidate_axis": ((3,), "f")}  # fmt: skip
+_OF_CANDIDATES = {
+    "candidate_cutter": ((), "i"),
+    "candidate_setup": ((), "i"),
+    "candidate_angle": ((2,), "f"),
+    "candidate_axis": ((3,), "f"),
+}
 _OF_SAMPLES = {"point": ((3,), "f"), "normal": ((3,), "f"), "direction_max": ((3,), "f"), "uv": ((2,), "f"), "face": ((), "i"),
                "area": ((), "f"), "inside_bodies": ((), "b")}  # fmt: skip
 _OF_CUTTERS = {"verdict": ((), "u"), "axis": ((3,), "f"), "lean": ((3,), "f"), "reason": ((), "u")}
@@ -41,9 +45,10 @@ def faults(question: Question) -> Iterator[str]:
     yield from _shaped("operations.npz", arrays, {"chosen": ((), "i")}, len(arrays.get("chosen", ())))
     for k, plan in enumerate(entry["plans"]):
         yield from _shaped("operations.npz", arrays, {f"{a}{suffix(k, plan['name'])}": b for a, b in _OF_PLAN.items()}, n)
-    every = {
-        f"{name}{suffix(k, plan['name'])}" for k, plan in enumerate(entry["plans"]) for name in _OF_PLAN
-    } | {*_OF_CANDIDATES, "chosen"}  # fmt: skip
+    every = {f"{name}{suffix(k, plan['name'])}" for k, plan in enumerate(entry["plans"]) for name in _OF_PLAN} | {
+        *_OF_CANDIDATES,
+        "chosen",
+    }
     if more := sorted({*arrays} - every):
         yield f"operations.npz has arrays that no plan has: {', '.join(more)}"
     yield from (f"plan.json: {path} is no finite number" for path in _not_finite(entry, "operations"))

@@ -46,9 +46,14 @@ class Trials:
     """
 
     def __init__(
-        self, question: Question, reckoned: Reckoned, bench: Bench, rng: np.random.Generator, clock: Callable[[str], Clock],
+        self,
+        question: Question,
+        reckoned: Reckoned,
+        bench: Bench,
+        rng: np.random.Generator,
+        clock: Callable[[str], Clock],
         tell: Callable[[str], None],
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.question, self.reckoned, self.bench, self.rng = question, reckoned, bench, rng
         self.clock, self.tell = clock, tell
         self.plans: list[dict[str, Any]] = question.document["operations"]["plans"]
@@ -91,9 +96,11 @@ class Trials:
             text += f" {'; '.join(words[:3])}." if words else ""
             late = f" of {tested + open_} (taken by seed 0)" if open_ else ""
             holds = wrong == 0 and wrong_tilts == 0
-            yield Finding(None if holds and not tested and open_ else holds,
-                          f"The {plan['name']} plan: its operations were put down at {tested} samples{late}; at {wrong} the tool "
-                          f"is too deep in something, or cannot stand.{text}")  # fmt: skip
+            yield Finding(
+                None if holds and not tested and open_ else holds,
+                f"The {plan['name']} plan: its operations were put down at {tested} samples{late}; at {wrong} the tool "
+                f"is too deep in something, or cannot stand.{text}",
+            )
 
     def _axes(self, each: dict[str, Any], rows: Rows) -> tuple[Floats, Rows]:
         """The axes of an operation at some of its samples, and which these are: all, unless an axis is not written."""
@@ -147,9 +154,11 @@ class Trials:
         total = int(weight.sum())
         part = "" if done == len(order) else f" (checked {done} of {len(order)}, taken by seed 0)"
         proof = "" if few["proof"] == "weights" else f" ({few['proof']}, which is not checked)"
-        words = (f"The weights of {len(rows)} samples sum up to {total / _UNIT:.6f}; no candidate{part} carries more than "
-                 f"{most / _UNIT:.6f}: at least {-(-total // _UNIT)} orientations are needed, the plan says {few['at_least']}"
-                 f"{proof}.")  # fmt: skip
+        words = (
+            f"The weights of {len(rows)} samples sum up to {total / _UNIT:.6f}; no candidate{part} carries more than "
+            f"{most / _UNIT:.6f}: at least {-(-total // _UNIT)} orientations are needed, the plan says {few['at_least']}"
+            f"{proof}."
+        )
         return Finding(None if done == 0 else most <= _UNIT, words)
 
     def covered(self, entry: dict[str, Any]) -> Iterator[Finding]:
@@ -178,8 +187,10 @@ class Trials:
             entry["fewest"]["alone"] = Between(not_served, int((strictly != FREE).all(axis=0).sum()))
             self._steps(entry, table, self.reckoned.area[rows])
         late = f"; {open_} were not looked at" if open_ else ""
-        words = (f"The {len(chosen)} chosen candidates serve {int(served.sum())} of the {len(rows)} samples that are reached"
-                 f"{late}; {not_served} are left, and the plan says that {few['alone']} need simultaneous motion.")  # fmt: skip
+        words = (
+            f"The {len(chosen)} chosen candidates serve {int(served.sum())} of the {len(rows)} samples that are reached"
+            f"{late}; {not_served} are left, and the plan says that {few['alone']} need simultaneous motion."
+        )
         yield Finding(not_served <= few["alone"], words)
 
     def _chosen(self, chosen: Rows, rows: Rows, clock: Clock, *, surely: bool) -> NDArray[np.int8]:
@@ -225,9 +236,11 @@ class Trials:
                 bad = np.where(alone[some], surely, ~perhaps & ~moving[some])
                 wrong, done = wrong + int(bad.sum()), done + len(some)
             part = "" if done == len(rows) else f" of {len(rows)} (taken by seed 0)"
-            yield Finding(None if len(rows) and not done else wrong == 0,
-                          f"The {plan['name']} plan: {done} samples{part} go with the only operation that serves them, or with "
-                          f"one of several, as operations.npz says; {wrong} do not.")  # fmt: skip
+            yield Finding(
+                None if len(rows) and not done else wrong == 0,
+                f"The {plan['name']} plan: {done} samples{part} go with the only operation that serves them, or with "
+                f"one of several, as operations.npz says; {wrong} do not.",
+            )
 
     def _others(
         self, plan: dict[str, Any], fixed: list[int], label: NDArray[Any], rows: Rows, surely: bool, clock: Clock

@@ -49,23 +49,38 @@ _many = heading("Many parts")
     "rotation_step", "posture_maps", "map_budget",
 )  # fmt: skip
 @options(
-    "step_schema", "quiet",
+    "step_schema",
+    "quiet",
     out={"required": True, "help": "Folder or URL for the table of all parts, and the folder NAME-plan of each."},
-    formats={"help": "As of a single plan; json is always among them, for the table is made of it.  "
-             f"[default: {','.join(DEFAULT_FORMATS)}, and png where the extra pictures is installed]"},
-)  # fmt: skip
+    formats={
+        "help": "As of a single plan; json is always among them, for the table is made of it.  "
+        f"[default: {','.join(DEFAULT_FORMATS)}, and png where the extra pictures is installed]"
+    },
+)
 @options(
     "answers", "length_over_radius", "operations", "feed", "scallop", "stepover", "index_step", "index_time", "change_time",
     "setup_time", "overlap", "most_operations",
 )  # fmt: skip
-@_many("--cluster", metavar="tcp://HOST:PORT|FILE", type=Words("ADDRESS", files=True),
-       help="Scheduler of a running Dask cluster, or its scheduler file.  [default: workers of this machine]")  # fmt: skip
-@_many("--workers", type=click.IntRange(min=1), metavar="N",
-       help="Workers of this machine, each for one part at a time.  [default: by its cores and memory]")  # fmt: skip
+@_many(
+    "--cluster",
+    metavar="tcp://HOST:PORT|FILE",
+    type=Words("ADDRESS", files=True),
+    help="Scheduler of a running Dask cluster, or its scheduler file.  [default: workers of this machine]",
+)
+@_many(
+    "--workers",
+    type=click.IntRange(min=1),
+    metavar="N",
+    help="Workers of this machine, each for one part at a time.  [default: by its cores and memory]",
+)
 @_many("--timeout-part", "--timeout", "timeout_part", type=float, metavar="S",
        help="Seconds for the whole of a part; one that takes longer has failed, with exit code 124.")  # fmt: skip
-@_many("--limit-memory", type=float, metavar="GB",
-       help="Most memory of a part.  [default: an equal share of 3/4 of this machine's, at least 4]")  # fmt: skip
+@_many(
+    "--limit-memory",
+    type=float,
+    metavar="GB",
+    help="Most memory of a part.  [default: an equal share of 3/4 of this machine's, at least 4]",
+)
 @_many("--force", is_flag=True, help="Plan again what is done already.")
 @_many("--dry-run", is_flag=True, help="Say what would be planned, and do nothing.")
 @options("verdicts_key", "read_timeout", "debug", jobs={"help": "Threads of each part.  [default: 1]"})
@@ -127,8 +142,10 @@ def _all(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", request: 
             terms.memory = share
         with cluster.opened(request.cluster, count) as client:
             facts = cluster.facts(client)
-            board.say(f"{len(parts)} parts on {facts['workers']} workers of {facts['address']}"
-                      + (f"; dashboard {facts['dashboard']}" if facts["dashboard"] else ""))  # fmt: skip
+            board.say(
+                f"{len(parts)} parts on {facts['workers']} workers of {facts['address']}"
+                + (f"; dashboard {facts['dashboard']}" if facts["dashboard"] else "")
+            )
             for row in run_batch(parts, client, out, terms, board=board, title=" ".join(request.sources)):
                 code = max(code, row.code)
                 totals[outcome(row)] += 1
@@ -228,5 +245,10 @@ def _settings(request: BatchRequest) -> "Settings":
         requested = options_of(replace(request, jobs=request.jobs or 1))
     look_at(requested)
     formats = _formats() if request.formats is None else read_formats(request.formats)
-    return Settings(requested, tuple(dict.fromkeys(("json", *formats))), request.step_schema, request.read_timeout,
-                    tuple(filter(None, files.values())))  # fmt: skip
+    return Settings(
+        requested,
+        tuple(dict.fromkeys(("json", *formats))),
+        request.step_schema,
+        request.read_timeout,
+        tuple(filter(None, files.values())),
+    )

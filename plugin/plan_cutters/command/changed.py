@@ -35,8 +35,7 @@ _SELF = "plan-cutters changed"
 #: Rules by which the command fails, each one stricter than the one before it.
 RULES = ("none", "lost", "unreachable", "not-comparable")
 #: Options of a plan that this command gives itself.
-_OURS = ("-o", "--out", "--formats", "--json", "--quiet", "--postures", "--check-operations", "--help", "-h",
-         "--version")  # fmt: skip
+_OURS = ("-o", "--out", "--formats", "--json", "--quiet", "--postures", "--check-operations", "--help", "-h", "--version")
 _PLANNED = (0, 1, 4)
 
 _commits, _output, _rules = heading("Commits"), heading("Output"), heading("Rule")
@@ -158,7 +157,7 @@ def command(request: ChangedRequest) -> int:
 
     Each part is planned as it was and as it is, with the same options: those after --. The summary is Markdown, on standard
     output and in the file that GITHUB_STEP_SUMMARY names.
-    """  # fmt: skip
+    """
     for word in request.plan_options:
         if word.partition("=")[0] in _OURS or re.match("-o.", word):
             raise OptionError(f"{word} cannot stand after --: this command gives it itself")
@@ -226,11 +225,15 @@ def _compared(part: Changed, began: str, head: str, request: PartRequest | None,
             sides = [Side(names[side], plans[side], picture_of(pages[side] / PLAN, plans[side])) for side in names]
             temporary.write_bytes(page(difference, *sides))
     return Row(
-        part, pages.get("before"), pages.get("after"), difference=difference,
+        part,
+        pages.get("before"),
+        pages.get("after"),
+        difference=difference,
         beside=side_page if (out / side_page).is_file() else None,
         unreachable=tuple(unreachable(plans["after"])) if "after" in plans else (),
-        failed=why.get("after", ""), unread=why.get("before", ""),
-    )  # fmt: skip
+        failed=why.get("after", ""),
+        unread=why.get("before", ""),
+    )
 
 
 def _planned(content: "Content", path: str, request: PartRequest, cache: Path) -> Path:
@@ -267,8 +270,12 @@ def _planned(content: "Content", path: str, request: PartRequest, cache: Path) -
 
 def _links(rows: Sequence[Row], branch: str) -> dict[Path, str]:
     """Addresses of the pictures of folders, once they are pushed."""
-    data = {folder: (folder / "review.png").read_bytes() for row in rows for folder in (row.before, row.after)
-            if folder is not None and (folder / "review.png").is_file()}  # fmt: skip
+    data = {
+        folder: (folder / "review.png").read_bytes()
+        for row in rows
+        for folder in (row.before, row.after)
+        if folder is not None and (folder / "review.png").is_file()
+    }
     names = {folder: f"{hashlib.sha256(each).hexdigest()[:32]}.png" for folder, each in data.items()}
     made = publish({names[folder]: each for folder, each in data.items()}, branch, "origin")
     where = f"{os.environ.get('GITHUB_SERVER_URL', '')}/{os.environ.get('GITHUB_REPOSITORY', '')}/raw/{made}"

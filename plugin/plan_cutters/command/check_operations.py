@@ -115,10 +115,11 @@ def _axes(machine: "Machine") -> "MachineAxes":
     return MachineAxes(
         tuple(axis.name for axis in turning) or ("azimuth", "tilt"),
         np.array([axis.direction for axis in turning] or [(0.0, 0.0, 1.0), (0.0, 1.0, 0.0)], float),
-        np.array([axis.limits or free for axis in turning] or [free, free], float), np.array(machine.tool_axis, float),
+        np.array([axis.limits or free for axis in turning] or [free, free], float),
+        np.array(machine.tool_axis, float),
         math.pi if machine.tilt_limit is None else machine.tilt_limit,
         bool(turning) and all(axis.rate is not None for axis in turning),
-    )  # fmt: skip
+    )
 
 
 def _body(fixture: "Fixture") -> "Body":
@@ -150,11 +151,14 @@ def _fits(
     tolerance, wanted = float(effective["tolerance_mm"]), options.tolerance
     if tolerance > wanted and abs(tolerance - effective_tolerance(0.0, effective["chord_error_mm"])) <= 1e-9 * tolerance:
         wanted = tolerance
-    pairs = [*_of_part(part, document),
-             ("cutters (--cutter, --holder)", sorted(effective["cutters"]), sorted(cutters)),
-             ("list of cutters", sorted(each["id"] for each in document["cutters"]), sorted(cutters)),
-             ("machine (--machine)", effective["machine"], options.machine.name),
-             *_of_setups(options, document, setups), ("tolerance (--tolerance)", tolerance, wanted)]  # fmt: skip
+    pairs = [
+        *_of_part(part, document),
+        ("cutters (--cutter, --holder)", sorted(effective["cutters"]), sorted(cutters)),
+        ("list of cutters", sorted(each["id"] for each in document["cutters"]), sorted(cutters)),
+        ("machine (--machine)", effective["machine"], options.machine.name),
+        *_of_setups(options, document, setups),
+        ("tolerance (--tolerance)", tolerance, wanted),
+    ]
     for name, angles in (("tilt", options.postures.tilt), ("rotation", options.postures.rotation)):
         degrees = [round(math.degrees(x), 6) for x in angles]
         pairs.append((f"{name}s (--{name})", [round(x, 6) for x in effective[f"{name}_deg"]], degrees))

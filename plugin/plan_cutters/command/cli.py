@@ -138,9 +138,14 @@ def _watched(words: list[str], name: str) -> int:
     display.stage("start")
     try:
         code = supervised(
-            words, parts=request.parts, read_timeout=request.read_timeout, memory=memory, display=display,
-            timeout=math.inf if request.timeout is None else request.timeout, since=began(),
-        )  # fmt: skip
+            words,
+            parts=request.parts,
+            read_timeout=request.read_timeout,
+            memory=memory,
+            display=display,
+            timeout=math.inf if request.timeout is None else request.timeout,
+            since=began(),
+        )
     except Unfinished as stopped:
         from plan_cutters.command.partial_plan import without_models
 

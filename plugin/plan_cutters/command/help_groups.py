@@ -69,9 +69,13 @@ class Command(click.Command):
     """
 
     def __init__(
-        self, *words: Any, subcommands: Sequence[tuple[str, str]] = (), examples: Sequence[tuple[str, str]] = (),
-        codes: Sequence[tuple[str, str]] = (), **more: Any,
-    ) -> None:  # fmt: skip
+        self,
+        *words: Any,
+        subcommands: Sequence[tuple[str, str]] = (),
+        examples: Sequence[tuple[str, str]] = (),
+        codes: Sequence[tuple[str, str]] = (),
+        **more: Any,
+    ) -> None:
         more["context_settings"] = {"help_option_names": ["-h", "--help"]}
         super().__init__(*words, **more)
         click.version_option(__version__, prog_name="plan-cutters")(self)

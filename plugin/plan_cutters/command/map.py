@@ -120,9 +120,13 @@ def command(request: MapRequest) -> int:
 
     tolerance = {"tolerance": request.tolerance} if request.tolerance > 0 else {}
     scene = Scene.of(
-        read_part(part, unit=options.unit, guarded=hasattr(os, "fork")), setup=options.setup, flip=options.flip,
-        ignore=options.ignore, fixtures=options.fixtures, **tolerance,
-    )  # fmt: skip
+        read_part(part, unit=options.unit, guarded=hasattr(os, "fork")),
+        setup=options.setup,
+        flip=options.flip,
+        ignore=options.ignore,
+        fixtures=options.fixtures,
+        **tolerance,
+    )
     foot, off = nearest(scene.part, place, ignore=scene.ignored)
     if off > request.within:
         raise OptionError(
@@ -218,8 +222,9 @@ def _about(result: "PostureMap", face: str, off: float, cutter: "Cutter", reques
             f"Not certified: obstacles are missing or guessed ({len(result.missing)}), first {printable(result.missing[0])}."
         )
     elif result.tolerance:
-        lines.append("A free tilt is safe for the true surface to the tolerance; of several causes the first in the legend is "
-                     "shown.")  # fmt: skip
+        lines.append(
+            "A free tilt is safe for the true surface to the tolerance; of several causes the first in the legend is shown."
+        )
     return lines
 
 

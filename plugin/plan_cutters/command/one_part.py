@@ -26,9 +26,13 @@ if TYPE_CHECKING:
 
 
 def one_part(
-    part: str, out: Path | None, options: "Options", request: "PlanRequest", began: float | None = None,
+    part: str,
+    out: Path | None,
+    options: "Options",
+    request: "PlanRequest",
+    began: float | None = None,
     omitted: Mapping[int, str] | None = None,
-) -> tuple[int, str]:  # fmt: skip
+) -> tuple[int, str]:
     """Plan one part into a folder, None for none; exit code and a line about it.
 
     `began`: when the command did, for the first part (`time.monotonic`); `omitted`: why faces are not to be worked on, by number.
@@ -61,8 +65,7 @@ def one_part(
             watch.summarise(document)
         else:
             watch.tell("files", 0, 1)
-            document = write_all(result, out, formats, staging, step_schema=request.step_schema, listener=watch,
-                                 clock=clock)  # fmt: skip
+            document = write_all(result, out, formats, staging, step_schema=request.step_schema, listener=watch, clock=clock)
     except KeyboardInterrupt:
         if watch.plan is None or out is None:
             raise

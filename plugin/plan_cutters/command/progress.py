@@ -64,7 +64,7 @@ class Display:
 
     def __init__(
         self, quiet: bool, cutters: int, began: float, *, itself: bool = False, names: Mapping[str, str] | None = None
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.names = names or {}
         self.quiet, self.cutters, self.began, self.itself = quiet, cutters, began, itself
         self.words, self.doing, self.spoke = "", "", 0.0

@@ -99,10 +99,12 @@ def _referring(at: str, files: Collection[str]) -> set[str]:
     output = git("grep", "-lzaF", "--full-name", *words, at, "--", ":(top,icase)*.step", ":(top,icase)*.stp", codes=(0, 1))
     paths = [each.partition(":")[2] for each in output.decode("utf-8", "surrogateescape").split("\0") if each]
     refers = {
-        path: {posixpath.normpath(posixpath.join(posixpath.dirname(path), name))
-               for name in references.names(git("cat-file", "--filters", f"{at}:{path}"))}
+        path: {
+            posixpath.normpath(posixpath.join(posixpath.dirname(path), name))
+            for name in references.names(git("cat-file", "--filters", f"{at}:{path}"))
+        }
         for path in paths
-    }  # fmt: skip
+    }
     reached = set(files)
     while new := {path for path, names in refers.items() if path not in reached and names & reached}:
         reached |= new

@@ -291,9 +291,13 @@ class Tools(NamedTuple):
 
 
 def read_tools(
-    cutters: Sequence[str], libraries: Sequence[str], holder: str | None, assume_stickout: float | None = None, *,
+    cutters: Sequence[str],
+    libraries: Sequence[str],
+    holder: str | None,
+    assume_stickout: float | None = None,
+    *,
     skip_bad: bool = False,
-) -> Tools:  # fmt: skip
+) -> Tools:
     """Read what the command line says of tools; a PlanError for what has no meaning."""
     from plan_cutters.domain.cutter import Cutter
     from plan_cutters.errors import OptionError

@@ -50,8 +50,11 @@ def cutter_rows(plan: "Plan", story: "Story", *, verbose: bool) -> list[Any]:
     table = _table(("  cutter", "feasible"), tuple(WORDS.values()), apart=1)
     for c, name in zip(rows, short, strict=True):
         taken = c.id == story.taken
-        table.add_row(Text(f"{'>' if taken else ' '} {_in_lines(name)}", "bold" if taken else ""),
-                      Text(FEASIBLE[c.feasible], _COLOURS[c.feasible]), *(c.shares[word] for word in WORDS))  # fmt: skip
+        table.add_row(
+            Text(f"{'>' if taken else ' '} {_in_lines(name)}", "bold" if taken else ""),
+            Text(FEASIBLE[c.feasible], _COLOURS[c.feasible]),
+            *(c.shares[word] for word in WORDS),
+        )
     lines.append(_Fitting(table, [_listed(c, c.id == story.taken) for c in rows]))
     if len(rows) < len(plan.cutters):
         lines.append(f"  and {len(plan.cutters) - len(rows)} more cutters that reach less: -v or plan.json.")
@@ -60,8 +63,11 @@ def cutter_rows(plan: "Plan", story: "Story", *, verbose: bool) -> list[Any]:
 
 def _listed(c: "CutterStory", taken: bool) -> Text:
     text = ", ".join(f"{word} {c.shares[key]}" for key, word in WORDS.items() if c.shares[key] != "0 %")
-    return Text.assemble(cell(f"{'>' if taken else ' '} {c.name}: ", "bold" if taken else ""),
-                         (FEASIBLE[c.feasible], _COLOURS[c.feasible]), f"; {text}")  # fmt: skip
+    return Text.assemble(
+        cell(f"{'>' if taken else ' '} {c.name}: ", "bold" if taken else ""),
+        (FEASIBLE[c.feasible], _COLOURS[c.feasible]),
+        f"; {text}",
+    )
 
 
 def worst_faces(story: "Story") -> list[Any]:

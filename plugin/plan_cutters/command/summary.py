@@ -38,7 +38,7 @@ def summary(plan: "Plan", *, verbose: bool = False, tells: Callable[..., None] =
         *_apart([cell(line.text) for line in story.operations]),
         *_apart([cell(line.text + line.typed) for line in story.answers]),
         *_apart([*_doubts(story, verbose), *_lines(story.notes, verbose), *(map(cell, details(plan)) if verbose else ())]),
-    )  # fmt: skip
+    )
 
 
 def written(plan: "Plan", out: Path | None, formats: Sequence[str]) -> list[Any]:

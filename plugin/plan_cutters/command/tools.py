@@ -50,8 +50,12 @@ _cutters, _output = heading("Cutters"), heading("Output")
     ),
 )
 @click.argument("files", nargs=-1, metavar="[FILE]...", type=File("FILE"))
-@options("holder", "assume_stickout", "skip_bad",
-         cutter={"help": "A cutter by words, D12L80 and so on, to be shown, also as a picture. Repeatable."})  # fmt: skip
+@options(
+    "holder",
+    "assume_stickout",
+    "skip_bad",
+    cutter={"help": "A cutter by words, D12L80 and so on, to be shown, also as a picture. Repeatable."},
+)
 @_cutters("--list-holders", is_flag=True, help="List the built-in holders; with --draw, draw each with its largest shank.")
 @_output("--json", "as_json", is_flag=True, help="All that was understood, as JSON on standard output.")
 @_output("--to-toml", type=File("FILE"), help="Write the tools that can be judged in our own format.")

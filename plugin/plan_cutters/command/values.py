@@ -41,8 +41,9 @@ class Words(click.ParamType):
     def shell_complete(self, ctx: click.Context, param: click.Parameter, incomplete: str) -> list[CompletionItem]:
         before, comma, last = incomplete.rpartition(",") if self.listed else ("", "", incomplete)
         words = before.split(",")
-        items = [CompletionItem(f"{before}{comma}{word}") for word in self.offered()
-                 if word.startswith(last) and word not in words]  # fmt: skip
+        items = [
+            CompletionItem(f"{before}{comma}{word}") for word in self.offered() if word.startswith(last) and word not in words
+        ]
         return items or ([FILE] if self.files else [])
 
 

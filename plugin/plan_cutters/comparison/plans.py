@@ -104,11 +104,14 @@ def _requested(plan: Plan) -> dict[str, Any]:
         "postures": (*e.tilt_deg, *e.rotation_deg, e.rotation_step_deg),
         "tolerance": round(e.tolerance_mm, 9),
         "clearance": (e.allowance_mm, e.holder_clearance_mm),
-        "machine": (plan.machine.name, plan.machine.tilt_limit_deg,
-                    *((a.name, a.carries, a.direction, a.limits_deg) for a in plan.machine.rotary or ())),
+        "machine": (
+            plan.machine.name,
+            plan.machine.tilt_limit_deg,
+            *((a.name, a.carries, a.direction, a.limits_deg) for a in plan.machine.rotary or ()),
+        ),
         "setup": [(e.setup, e.placement), *zip(e.other_setups, e.other_placements or [None] * len(e.other_setups), strict=False)],
         "fixtures": [(f.name, _bytes(f), f.unit, f.placement, tuple(f.setups)) for f in plan.fixtures],
-    }  # fmt: skip
+    }
 
 
 def _bytes(entry: PartInfo | FixtureEntry) -> str:
@@ -149,9 +152,12 @@ def _faces(
 
 
 def _cutters(
-    old: Plan, new: Plan, tools: Sequence[tuple[CutterEntry, CutterEntry, Any]],
-    pairs: Sequence[tuple[FaceEntry, FaceEntry, Any]], slack: float,
-) -> Iterator[CutterDifference | None]:  # fmt: skip
+    old: Plan,
+    new: Plan,
+    tools: Sequence[tuple[CutterEntry, CutterEntry, Any]],
+    pairs: Sequence[tuple[FaceEntry, FaceEntry, Any]],
+    slack: float,
+) -> Iterator[CutterDifference | None]:
     yield from (_cutter(old, a, new, b, how, pairs, slack) for a, b, how in tools)
     yield from (_one_sided(old, c, None) for c in _rest(old.cutters, [a.id for a, _, _ in tools]))
     yield from (_one_sided(new, None, c) for c in _rest(new.cutters, [b.id for _, b, _ in tools]))
@@ -179,9 +185,14 @@ def _face_difference(face: FaceEntry, **fields: Any) -> FaceDifference:
 
 
 def _cutter(
-    old: Plan, a: CutterEntry, new: Plan, b: CutterEntry, how: Any, pairs: Iterable[tuple[FaceEntry, FaceEntry, Any]],
+    old: Plan,
+    a: CutterEntry,
+    new: Plan,
+    b: CutterEntry,
+    how: Any,
+    pairs: Iterable[tuple[FaceEntry, FaceEntry, Any]],
     slack: float,
-) -> CutterDifference | None:  # fmt: skip
+) -> CutterDifference | None:
     """A cutter that both have; None where its form and its answer are the same."""
     was, now = cutter_state(old, a), cutter_state(new, b)
     gone, won = list[tuple[str, str]](), list[tuple[str, str]]()
@@ -196,8 +207,9 @@ def _cutter(
     wins = cutter_falls(now, was, slack) or bool(won)
     if not (loses or wins or changes):
         return None
-    return CutterDifference(name=called(b), matched_by=how, was=was, now=now, changes=changes, faces_lost=gone,
-                            faces_won=won, lost=loses, won=wins)  # fmt: skip
+    return CutterDifference(
+        name=called(b), matched_by=how, was=was, now=now, changes=changes, faces_lost=gone, faces_won=won, lost=loses, won=wins
+    )
 
 
 def _form(cutter: CutterEntry, name: str) -> str:

@@ -75,10 +75,14 @@ def radius_entry(radius_map: RadiusMap, samples: SurfaceSamples, *, doubtful: bo
 def what_if_entry(what_if: WhatIfAnswer) -> MendEntry:
     """Make the entry of a what-if answer: the changes that would make a cutter feasible, and the next steps."""
     return filled(
-        MendEntry, what_if, changes=[_change_entry(each) for each in what_if.changes], lost_share=what_if.share,
-        steps=[_step_entry(each) for each in what_if.steps], lost_areas=[_area_entry(each) for each in what_if.areas],
+        MendEntry,
+        what_if,
+        changes=[_change_entry(each) for each in what_if.changes],
+        lost_share=what_if.share,
+        steps=[_step_entry(each) for each in what_if.steps],
+        lost_areas=[_area_entry(each) for each in what_if.areas],
         more_lost_areas=what_if.more_areas,
-    )  # fmt: skip
+    )
 
 
 def least_set_entry(least: LeastSet, *, doubtful: bool = False) -> LeastSetEntry:
@@ -88,8 +92,9 @@ def least_set_entry(least: LeastSet, *, doubtful: bool = False) -> LeastSetEntry
 
 
 def _area_entry(area: Patch) -> LostAreaEntry:
-    return filled(LostAreaEntry, area, area_mm2=area.area, faces=list(area.faces), point=area.place, across_mm=area.across,
-                  why=patch(area))  # fmt: skip
+    return filled(
+        LostAreaEntry, area, area_mm2=area.area, faces=list(area.faces), point=area.place, across_mm=area.across, why=patch(area)
+    )
 
 
 def _joined(words: list[str]) -> str:
@@ -101,12 +106,16 @@ def _joined(words: list[str]) -> str:
 
 def _step_entry(step: Step) -> StepEntry:
     return filled(
-        StepEntry, step,
+        StepEntry,
+        step,
         changes=[MoveEntry(thing=each.means, now=each.now, asked=each.asked, why=each.words) for each in step.moves],
-        lost_before=step.before, lost_after=step.after, cutters=[each.id for each in step.cutters],
-        setups=[vector(each) for each in step.setups], why=_joined([each.words for each in step.moves]),
+        lost_before=step.before,
+        lost_after=step.after,
+        cutters=[each.id for each in step.cutters],
+        setups=[vector(each) for each in step.setups],
+        why=_joined([each.words for each in step.moves]),
         remains=[_area_entry(each) for each in step.remains],
-    )  # fmt: skip
+    )
 
 
 def _change_entry(change: Change) -> ChangeEntry:

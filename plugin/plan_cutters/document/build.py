@@ -32,10 +32,11 @@ def missing_entries(part: Part, surroundings: Surroundings) -> list[MissingEntry
         for number, why, how in surroundings.missing
     ]
     entries += [
-        MissingEntry(face=None, entity=each.entity or None, name=each.name, why=each.why,
-                     stand_in="none" if each.box is None else "box")
+        MissingEntry(
+            face=None, entity=each.entity or None, name=each.name, why=each.why, stand_in="none" if each.box is None else "box"
+        )
         for each in surroundings.lost
-    ]  # fmt: skip
+    ]
     entries += [
         MissingEntry(face=None, entity=None, name=f"{each.name} {face}".strip(), why=why, stand_in=how)
         for each in surroundings.fixtures
@@ -71,8 +72,9 @@ def cutter_entry(
         flutes_mm=flute_length(cutter),
         holder=cutter.holder.name if cutter.holder else "",
         stages=[
-            SegmentEntry(part=part, low_mm=low, length_mm=stage.length, radius_mm=stage.radius,
-                         upper_radius_mm=stage.upper_radius)
+            SegmentEntry(
+                part=part, low_mm=low, length_mm=stage.length, radius_mm=stage.radius, upper_radius_mm=stage.upper_radius
+            )
             for part, low, stage in cutter.stages
         ],
         touches_deg=[degrees((mode.low, mode.high)) for mode in modes(cutter)],
@@ -91,7 +93,7 @@ def cutter_entry(
         witnesses=[_witness_entry(w, samples, surroundings, reach, inside) for w in witnesses],
         witnesses_untried=sum(w.untried for w in witnesses),
         seconds=seconds,
-    )  # fmt: skip
+    )
 
 
 def _witness_entry(
@@ -120,12 +122,16 @@ def part_info(scene: Scene, surroundings: Surroundings) -> PartInfo:
     warnings = list(part.warnings)
     # Without the faces that are left out on purpose there are openings, too.
     for body in () if scene.ignored else (body for body in surroundings.bodies if not body.closed):
-        warnings.append(f"{listed([f'F{number}' for number in body.faces])} enclose a body with openings: what lies within it is "
-                        "not known for sure; a face or an edge may be missing")  # fmt: skip
+        warnings.append(
+            f"{listed([f'F{number}' for number in body.faces])} enclose a body with openings: what lies within it is "
+            "not known for sure; a face or an edge may be missing"
+        )
     if surroundings.on_bodies:
         names = listed([f"F{number}" for number in surroundings.on_bodies])
-        warnings.append(f"{names} lie on faces of solids, as construction geometry does, and are judged and in the way like "
-                        "all others: --ignore leaves them out")  # fmt: skip
+        warnings.append(
+            f"{names} lie on faces of solids, as construction geometry does, and are judged and in the way like "
+            "all others: --ignore leaves them out"
+        )
     return PartInfo(
         file=Path(part.file).name if part.file else None,
         sha256=part.sha256,

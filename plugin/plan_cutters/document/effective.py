@@ -47,12 +47,14 @@ def _local(ready: Prepared) -> list[LocalTolerance]:
     whole = sum(faces[number - 1].area for number in targets)
     changes = [
         LocalTolerance(
-            face=f"F{number}", chord_error_mm=error, tolerance_mm=effective_tolerance(0.0, error),
+            face=f"F{number}",
+            chord_error_mm=error,
+            tolerance_mm=effective_tolerance(0.0, error),
             area_mm2=faces[number - 1].area,
             share=faces[number - 1].area / whole if number in targets and whole > 0.0 else 0.0,
         )
         for number, error in ready.conditions.surroundings.loose.items()
-    ]  # fmt: skip
+    ]
     return sorted(changes, key=lambda each: (-each.chord_error_mm, int(each.face[1:])))
 
 

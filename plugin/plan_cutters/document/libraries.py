@@ -8,10 +8,14 @@ from plan_cutters.plan_file.model import LibraryEntry, SourceEntry, UnusedEntry
 def library_entry(library: Library) -> LibraryEntry:
     """A library, and what of it was not used."""
     return filled(
-        LibraryEntry, library, tools=len(library.entries), cutters=len(library), notes=list(library.notes),
+        LibraryEntry,
+        library,
+        tools=len(library.entries),
+        cutters=len(library),
+        notes=list(library.notes),
         holders=[holder.name or holder.id for holder in library.holders],
         unused=[filled(UnusedEntry, each, why=each.unused or "") for each in library.unused],
-    )  # fmt: skip
+    )
 
 
 def source_entry(library: Library, entry: Entry) -> SourceEntry:

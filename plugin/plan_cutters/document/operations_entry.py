@@ -56,10 +56,14 @@ def operations_entry(
     area = np.where(wanted, np.nan_to_num(samples.area), 0.0)
     assumed = AssumedEntry(
         feed_mm_min=None if operations.feed is None else {cutter.id: feed for cutter, feed in operations.feed.items()},
-        scallop_mm=options.scallop, stepover=options.stepover, overlap_mm=options.overlap,
-        index_s=INDEX_TIME if options.index_time is None else options.index_time, index_from=operations.index_from,
-        change_s=options.change_time, setup_s=options.setup_time,
-    )  # fmt: skip
+        scallop_mm=options.scallop,
+        stepover=options.stepover,
+        overlap_mm=options.overlap,
+        index_s=INDEX_TIME if options.index_time is None else options.index_time,
+        index_from=operations.index_from,
+        change_s=options.change_time,
+        setup_s=options.setup_time,
+    )
     plans = [_plan(each, operations, samples, area, wanted) for each in operations.plans]
     uses = [_use(each, plans, area) for each in operations.worth]
     steps = [CurveStepEntry(orientations=s.orientations, share=s.share, at_most=s.at_most) for s in operations.curve]
@@ -101,22 +105,31 @@ def _fastest(operations: Operations) -> FastestEntry | None:
         return None
     known = np.isfinite(timed.seconds)
     return FastestEntry(
-        seconds=timed.seconds if known else None, bound_seconds=timed.bound, at_best_seconds=timed.at_best,
-        gap=timed.gap if known else None, samples=timed.samples, candidates=timed.candidates,
-    )  # fmt: skip
+        seconds=timed.seconds if known else None,
+        bound_seconds=timed.bound,
+        at_best_seconds=timed.at_best,
+        gap=timed.gap if known else None,
+        samples=timed.samples,
+        candidates=timed.candidates,
+    )
 
 
 def _use(worth: Worth, plans: list[OperationPlanEntry], area: Floats) -> CutterUse:
     takes: dict[str, float] = {
         str(plan.name): sum(each.area_mm2 for each in plan.operations if each.cutter == worth.cutter.id) for plan in plans
     }
-    return CutterUse(id=worth.cutter.id, takes_mm2=takes, only_mm2=float(area[worth.only].sum()), saves_seconds=worth.saves,
-                     change_seconds=worth.change)  # fmt: skip
+    return CutterUse(
+        id=worth.cutter.id,
+        takes_mm2=takes,
+        only_mm2=float(area[worth.only].sum()),
+        saves_seconds=worth.saves,
+        change_seconds=worth.change,
+    )
 
 
 def _plan(
     plan: OperationPlan, results: Operations, samples: SurfaceSamples, area: Floats, wanted: NDArray[np.bool_]
-) -> OperationPlanEntry:  # fmt: skip
+) -> OperationPlanEntry:
     whole = float(area.sum())
     operations = [
         _operation(i, each, plan, plane, results.names, samples, area, whole, results.index_from)
@@ -191,9 +204,14 @@ def _frame(plane: Workplane) -> WorkplaneEntry:
 def _region(number: int, rows: NDArray[np.int64], samples: SurfaceSamples, area: Floats) -> OperationRegion:
     point = samples.point[rows]
     return OperationRegion(
-        id=number, samples=len(rows), area_mm2=float(area[rows].sum()), faces=_faces(rows, samples, area),
-        low=vector(point.min(axis=0)), high=vector(point.max(axis=0)), rows=runs(rows),
-    )  # fmt: skip
+        id=number,
+        samples=len(rows),
+        area_mm2=float(area[rows].sum()),
+        faces=_faces(rows, samples, area),
+        low=vector(point.min(axis=0)),
+        high=vector(point.max(axis=0)),
+        rows=runs(rows),
+    )
 
 
 def _faces(rows: NDArray[np.int64], samples: SurfaceSamples, area: Floats) -> list[OperationFace]:

@@ -39,9 +39,14 @@ RULE = "largest radius, then smaller corner radius, then shorter length, then li
 
 
 def plan_of(
-    ready: Prepared, entries: Sequence[CutterEntry], selected: str | None, selection: Selection,
-    started: datetime.datetime, answers: Answers, setups: Sequence[SetupEntry] = (),
-) -> Plan:  # fmt: skip
+    ready: Prepared,
+    entries: Sequence[CutterEntry],
+    selected: str | None,
+    selection: Selection,
+    started: datetime.datetime,
+    answers: Answers,
+    setups: Sequence[SetupEntry] = (),
+) -> Plan:
     """The plan of a part from the entries of its cutters, and what was answered after them."""
     scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
     part, surroundings = scene.part, ready.conditions.surroundings
@@ -105,10 +110,14 @@ def machine_entry(machine: Machine, kinematics: Kinematics | None) -> MachineEnt
     rotary = None
     if kinematics is not None:
         rotary = [
-            RotaryEntry(name=axis.name, carries=axis.carries, direction=vector(direction),
-                        limits_deg=None if axis.limits is None else degrees(axis.limits))
+            RotaryEntry(
+                name=axis.name,
+                carries=axis.carries,
+                direction=vector(direction),
+                limits_deg=None if axis.limits is None else degrees(axis.limits),
+            )
             for axis, direction in zip(machine.rotary, kinematics.direction, strict=True)
-        ]  # fmt: skip
+        ]
     limit = None if machine.tilt_limit is None else round(float(np.degrees(machine.tilt_limit)), 9)
     return MachineEntry(name=machine.name, tilt_limit_deg=limit, rotary=rotary, notes=list(machine.notes))
 
@@ -159,9 +168,13 @@ def _singular(ready: Prepared, name: str, over: OverSetups) -> int | None:
 
 
 def completed(
-    entries: Sequence[CutterEntry], ready: Prepared, answers: Answers, over: OverSetups, beyond: NDArray[np.bool_],
+    entries: Sequence[CutterEntry],
+    ready: Prepared,
+    answers: Answers,
+    over: OverSetups,
+    beyond: NDArray[np.bool_],
     travels: Mapping[str, Travel] | None = None,
-) -> list[CutterEntry]:  # fmt: skip
+) -> list[CutterEntry]:
     """The entries of cutters with where they are listed, what the limits lose for all (n,), and what was answered about them."""
     completed_entries, sources, samples = [], ready.options.sources, ready.samples
     reached_by_none = int(beyond.sum())
@@ -203,7 +216,9 @@ def selection(entries: Sequence[CutterEntry]) -> tuple[str | None, Selection]:
         return None, Selection(rule=RULE, runner_up=None, why=why)
     first = feasible[0]
     larger = [e.id for e in entries if e.radius > first.radius]
-    why = f"{', '.join(larger)} {'is' if len(larger) == 1 else 'are'} larger but not feasible" if larger else (
-        "no larger cutter was given"
-    )  # fmt: skip
+    why = (
+        f"{', '.join(larger)} {'is' if len(larger) == 1 else 'are'} larger but not feasible"
+        if larger
+        else ("no larger cutter was given")
+    )
     return first.id, Selection(rule=RULE, runner_up=feasible[1].id if len(feasible) > 1 else None, why=why)

@@ -27,8 +27,12 @@ def setup_table(ready: Prepared, within: Sequence[NDArray[np.bool_]], over: Over
     entries: dict[Vector, SetupEntry] = {}
     for k, (axis, each) in enumerate(over.each()):
         mine = finished & np.logical_or.reduce([verdicts.reached for verdicts in each.values()])
-        entries.setdefault(axis, SetupEntry(axis=axis, within=int(within[k].sum()), share=share(within[k]),
-                                          reached=int(mine.sum()), reached_share=share(mine)))  # fmt: skip
+        entries.setdefault(
+            axis,
+            SetupEntry(
+                axis=axis, within=int(within[k].sum()), share=share(within[k]), reached=int(mine.sum()), reached_share=share(mine)
+            ),
+        )
     for axis in AXES:
         if axis not in entries:
             mine = finished & within_limits(ready.samples, ready.cutters, ready.conditions, axis)

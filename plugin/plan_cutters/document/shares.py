@@ -43,8 +43,10 @@ def whole_share(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part
     Faces without samples are not judged; those of unknown area do not count. Where the area of none is known, every face counts
     as one.
     """
-    targets = [*((name, each.area_share, 1.0 - each.inside_share) for name, each in faces.items()),
-               *((f"F{number}", AreaShare(unjudged=1.0), 1.0) for number, _ in samples.empty)]  # fmt: skip
+    targets = [
+        *((name, each.area_share, 1.0 - each.inside_share) for name, each in faces.items()),
+        *((f"F{number}", AreaShare(unjudged=1.0), 1.0) for number, _ in samples.empty),
+    ]
     areas = _areas([name for name, _, _ in targets], part)
     seen = np.array([areas[name] * finished for name, _, finished in targets])
     weights = (seen / max(1e-300, seen.sum())).tolist()

@@ -26,12 +26,16 @@ def travel_entry(machine: Machine, travel: Travel, reach: Verdicts, samples: Sur
         position, beyond = travel.position[known, k], np.where(known, travel.beyond[:, k], 0.0)
         low, high = (end if np.isfinite(end) else None for end in axis.limits or (np.inf, np.inf))
         least, most = (float(position.min()), float(position.max())) if len(position) else (None, None)
-        axes.append(AxisTravel(name=axis.name, limits_mm=(low, high), least_mm=least, most_mm=most,
-                               outside=int((beyond > 0.0).sum())))  # fmt: skip
+        axes.append(
+            AxisTravel(name=axis.name, limits_mm=(low, high), least_mm=least, most_mm=most, outside=int((beyond > 0.0).sum()))
+        )
         if len(beyond) and beyond.max() > 0.0:
             at = int(beyond.argmax())
-            worst.append(BeyondTravel(point=vector(samples.point[at]), face=f"F{samples.face[at]}", axis=axis.name,
-                                      beyond_mm=float(beyond[at])))  # fmt: skip
+            worst.append(
+                BeyondTravel(
+                    point=vector(samples.point[at]), face=f"F{samples.face[at]}", axis=axis.name, beyond_mm=float(beyond[at])
+                )
+            )
     return TravelEntry(
         judged=int(known.sum()),
         unknown=int((reach.reached & ~known).sum()),

@@ -20,10 +20,13 @@ KINDS = (
     AnswerKind("stick-out", "how short each cutter can be held", "asking for the least stick-out"),
     AnswerKind("stick-out-map", "that for every sample, too", "asking for the least stick-out", long=True),
     AnswerKind("radius", "the largest flat and ball end that reaches each sample", "asking for the largest radius"),
-    AnswerKind("mend", "the next steps where no cutter finishes, and their gain, for the three that come nearest",
-               "asking what to do next"),
+    AnswerKind(
+        "mend",
+        "the next steps where no cutter finishes, and their gain, for the three that come nearest",
+        "asking what to do next",
+    ),
     AnswerKind("mend-all", "that for every cutter", "asking what to do next", long=True),
-)  # fmt: skip
+)
 ANSWERS = tuple(each.word for each in KINDS)
 #: What `all` leaves out.
 LONG = frozenset(each.word for each in KINDS if each.long)

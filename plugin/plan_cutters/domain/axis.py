@@ -58,10 +58,15 @@ class Axis:
 
     @classmethod
     def rotary(
-        cls, name: str, carries: Carried, direction: Sequence[float] | Floats, *,
-        limits_deg: Sequence[float] | Floats | None = None, point: Sequence[float] | Floats = (0.0, 0.0, 0.0),
+        cls,
+        name: str,
+        carries: Carried,
+        direction: Sequence[float] | Floats,
+        *,
+        limits_deg: Sequence[float] | Floats | None = None,
+        point: Sequence[float] | Floats = (0.0, 0.0, 0.0),
         rate_deg: float | None = None,
-    ) -> "Axis":  # fmt: skip
+    ) -> "Axis":
         """A rotary axis by its limits in degrees and its largest speed in degrees a second.
 
         >>> Axis.rotary("A", "part", (1, 0, 0), limits_deg=(-90, 90)).limits

@@ -11,9 +11,7 @@ from plan_cutters.domain.cutter import Cutter
 #: What may be changed, from what asks a planner for least to what asks for most: time to compute, how far the tool is tilted, how
 #: it is held, how the part is clamped, another tool, another machine, something left undone.
 Thing = Literal["tolerance", "tilt_range", "stick_out", "setup", "corner_radius", "radius", "tilt_limit", "faces"]
-THINGS: tuple[Thing, ...] = (
-    "tolerance", "tilt_range", "stick_out", "setup", "corner_radius", "radius", "tilt_limit", "faces"
-)  # fmt: skip
+THINGS: tuple[Thing, ...] = ("tolerance", "tilt_range", "stick_out", "setup", "corner_radius", "radius", "tilt_limit", "faces")
 
 #: How the cause begins of a change that could not be decided.
 UNDECIDED = "is not decided: "

@@ -64,9 +64,14 @@ class Cutter(Dimensions):
     @classmethod
     @spelled_out(Attributes, Dimensions)
     def bull(
-        cls, *, radius: float | None = None, diameter: float | None = None, corner_radius: float, length: float,
+        cls,
+        *,
+        radius: float | None = None,
+        diameter: float | None = None,
+        corner_radius: float,
+        length: float,
         **more: Unpack[Attributes],
-    ) -> "Cutter":  # fmt: skip
+    ) -> "Cutter":
         """A bull nose."""
         return cls(_radius(radius, diameter), length, corner_radius, **more)
 
@@ -104,8 +109,10 @@ class Cutter(Dimensions):
         if tip_radius:
             inner, outer = flank_radius - widest, flank_radius - tip_radius
             if not 0 <= inner <= outer:
-                raise CutterError(f"a flank of radius {flank_radius:g} is tangent to no tip of radius {tip_radius:g} under a "
-                                  f"cutter of radius {widest:g}")  # fmt: skip
+                raise CutterError(
+                    f"a flank of radius {flank_radius:g} is tangent to no tip of radius {tip_radius:g} under a "
+                    f"cutter of radius {widest:g}"
+                )
             height = tip_radius + math.sqrt(outer**2 - inner**2)
         elif height is None:
             raise CutterError("a barrel needs the height of its widest place, or the radius of its tip")

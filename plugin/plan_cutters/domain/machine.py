@@ -86,8 +86,10 @@ class Machine:
             raise MachineError(f"machine {self.name}: axes that carry the part come before those that carry the tool")
         turning = self.rotary
         if len(turning) > 2:
-            raise MachineError(f"machine {self.name}: {len(turning)} rotary axes ({', '.join(a.name for a in turning)}); "
-                               "machines of up to two are judged")  # fmt: skip
+            raise MachineError(
+                f"machine {self.name}: {len(turning)} rotary axes ({', '.join(a.name for a in turning)}); "
+                "machines of up to two are judged"
+            )
         tool = np.array(self.tool_axis)
         if len(turning) == 2:
             first, second = (np.array(axis.direction) for axis in turning)

@@ -46,7 +46,7 @@ def over_setups(each: Sequence[Verdicts]) -> tuple[Verdicts, Ints]:
 
 def positions(
     machines: Sequence[Kinematics | None], axis: Floats, which: Ints
-) -> tuple[Floats, NDArray[np.int8], NDArray[np.bool_]]:  # fmt: skip
+) -> tuple[Floats, NDArray[np.int8], NDArray[np.bool_]]:
     """Positions of rotary axes that hold tool axes, each in the setup that serves its sample.
 
     Parameters

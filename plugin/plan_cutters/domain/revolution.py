@@ -65,9 +65,7 @@ def enclosing_segments(
         keep = keep and len(_merged([each for each in top if each[1]], 0.0, keep=True)) < most - 1
         allowed *= 2.0
         lines = _merged(top, allowed, keep=keep)
-    stages = [
-        Segment(max(r, _THINNEST), to - z, max(s, _THINNEST)) for z, to, r, s in lines if to - z > _SAME
-    ]  # fmt: skip
+    stages = [Segment(max(r, _THINNEST), to - z, max(s, _THINNEST)) for z, to, r, s in lines if to - z > _SAME]
     return tuple(stages), allowed
 
 
@@ -90,8 +88,9 @@ def _envelope(line: Floats, exact: NDArray[np.bool_], low: float, high: float) -
         # What ends within the slice counts all over it with the largest radius that it has there.
         part = near[~across]
         level = max(float(_at(part, np.clip(end, part[:, 1], part[:, 3])).max(initial=-1.0)) for end in (z, to))
-        ends = [_at(lines, height).max(initial=least)
-                for lines, least in ((mine, -1.0), (near[across], level)) for height in (z, to)]  # fmt: skip
+        ends = [
+            _at(lines, height).max(initial=least) for lines, least in ((mine, -1.0), (near[across], level)) for height in (z, to)
+        ]
         first, last = max(ends[0], ends[2]), max(ends[1], ends[3])
         if first < 0.0:
             raise CutterError(f"a holder's outline has a gap between the heights {z:.3g} and {to:.3g} mm: give one body")

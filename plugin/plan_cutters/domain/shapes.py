@@ -279,5 +279,4 @@ def _check_outline(cutter: Dimensions, name: str) -> None:
         raise CutterError(f"{name}: the corners of an outline are its points")
 
 
-_CHECKS = {"end": _check_end, "lollipop": _check_lollipop, "barrel": _check_barrel, "lens": _check_lens,
-           "form": _check_outline}  # fmt: skip
+_CHECKS = {"end": _check_end, "lollipop": _check_lollipop, "barrel": _check_barrel, "lens": _check_lens, "form": _check_outline}

@@ -117,10 +117,14 @@ def _wrong(spec: str) -> str:
     """Say why a text is no valid cutter, and how it should be written."""
     begun = _CUTTER.match(spec.strip())
     if begun is None:
-        return (f"cutter {spec!r} is not of the form R6L80 (radius 6 mm, length 80 mm) or D12L80 (diameter 12 mm, length "
-                "80 mm); D0.5inL3in is in inches")  # fmt: skip
-    return (f"cutter {spec!r}: {spec.strip()[begun.end():]!r} is none of what may follow {begun[0]}: in this order, rc1 corner "
-            "radius, T5 taper, F20 flutes, N5.5x40 neck, S6 shank")  # fmt: skip
+        return (
+            f"cutter {spec!r} is not of the form R6L80 (radius 6 mm, length 80 mm) or D12L80 (diameter 12 mm, length "
+            "80 mm); D0.5inL3in is in inches"
+        )
+    return (
+        f"cutter {spec!r}: {spec.strip()[begun.end() :]!r} is none of what may follow {begun[0]}: in this order, rc1 corner "
+        "radius, T5 taper, F20 flutes, N5.5x40 neck, S6 shank"
+    )
 
 
 def written(cutter: Dimensions, how: Notation = _ID) -> str:

@@ -117,8 +117,10 @@ def chuck(text: str) -> Chuck | None:
     least = nose.length if taper is None else nose.length + taper.depth
     if not least <= high <= _LONGEST:
         what = "its nut takes" if taper is None else "its nut and its flange take"
-        raise CutterError(f"holder {text!r}: {what} {least:g} mm; give a length from that to {_LONGEST:g} mm, as "
-                          f"{match['taper'] or ''}{'-' if taper else ''}{match['nose']}x100")  # fmt: skip
+        raise CutterError(
+            f"holder {text!r}: {what} {least:g} mm; give a length from that to {_LONGEST:g} mm, as "
+            f"{match['taper'] or ''}{'-' if taper else ''}{match['nose']}x100"
+        )
     if taper is None:
         return Chuck(short if not match["length"] else f"{short}x{high:g}", ((nose.diameter / 2, high),), nose.bore)
     body = max(nose.diameter, taper.body)

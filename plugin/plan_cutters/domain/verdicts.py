@@ -30,8 +30,13 @@ __all__ = [
 ]  # fmt: skip
 
 #: Words of verdicts, from best to worst.
-WORDS = {INTERFERENCE_FREE: "interference_free", ACCESSIBLE: "accessible", UNDECIDED: "undecided",
-         INACCESSIBLE: "inaccessible", UNJUDGED: "unjudged"}  # fmt: skip
+WORDS = {
+    INTERFERENCE_FREE: "interference_free",
+    ACCESSIBLE: "accessible",
+    UNDECIDED: "undecided",
+    INACCESSIBLE: "inaccessible",
+    UNJUDGED: "unjudged",
+}
 #: Classes of a surface at a sample; there is UNJUDGED, too.
 CONVEX, CONCAVE, SADDLE = 0, 1, 2
 

@@ -64,8 +64,10 @@ def cause(error: BaseException, doing: str = "reached") -> str:
     if isinstance(error, ImportError):
         return f"{text}: install what reaches it"
     if "Credential" in name or "credential" in text:
-        return (f"no credentials ({text}): set those of the storage in the environment, as AWS_ACCESS_KEY_ID and "
-                "AWS_SECRET_ACCESS_KEY")  # fmt: skip
+        return (
+            f"no credentials ({text}): set those of the storage in the environment, as AWS_ACCESS_KEY_ID and "
+            "AWS_SECRET_ACCESS_KEY"
+        )
     if isinstance(error, FileNotFoundError):
         return "no such file" if doing == "read" else f"cannot be {doing}: there is no such bucket or folder"
     if isinstance(error, IsADirectoryError):

@@ -24,8 +24,11 @@ from plan_cutters.result import Result
 Colour = tuple[float, float, float]
 #: Parts of a tool assembly, from light to dark up to the holder.
 _TOOL: dict[str, Colour] = {
-    "flutes": (0.85, 0.78, 0.35), "neck": (0.72, 0.72, 0.74), "shank": (0.62, 0.62, 0.66), "holder": (0.36, 0.37, 0.42),
-}  # fmt: skip
+    "flutes": (0.85, 0.78, 0.35),
+    "neck": (0.72, 0.72, 0.74),
+    "shank": (0.62, 0.62, 0.66),
+    "holder": (0.36, 0.37, 0.42),
+}
 
 
 @dataclass(frozen=True, slots=True)

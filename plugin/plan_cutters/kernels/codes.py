@@ -9,9 +9,7 @@ INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 2
 #: Why no posture is left, in the order in which the attributes are applied; `Verdicts.reason` is an index into it.
 #: `buried`: under or within a body; `tolerance`: that is too coarse for the cutter, which is undecided everywhere then;
 #: `fixture`: without the fixtures the sample would be reached. Kernels write neither of these two.
-REASONS = (
-    "axis_limit", "local_gouge", "rear_gouge", "collision", "buried", "tolerance", "neck", "shank", "holder", "fixture",
-)  # fmt: skip
+REASONS = ("axis_limit", "local_gouge", "rear_gouge", "collision", "buried", "tolerance", "neck", "shank", "holder", "fixture")
 AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, COLLISION, INSIDE, TOLERANCE, BY_NECK, BY_SHANK, BY_HOLDER, FIXTURE = range(10)
 NO_REASON = 255
 

@@ -159,8 +159,10 @@ def _chamfer(tool: Listed) -> Cutter:
     else:
         wide = tip + v["LCF"] * slope
         if radius - wide > slack(radius):
-            tool.notes.append(f"{tool.cite('DC')} is not reached: a cone of {tool.cite('TA')} deg is {2 * wide / tool.scale:.4g} "
-                              f"wide where {tool.cite('LCF')} ends")  # fmt: skip
+            tool.notes.append(
+                f"{tool.cite('DC')} is not reached: a cone of {tool.cite('TA')} deg is {2 * wide / tool.scale:.4g} "
+                f"wide where {tool.cite('LCF')} ends"
+            )
         points.append((min(radius, wide), v["LCF"]))
     return Cutter.form([(round(r, 9), round(h, 9)) for r, h in points], length=v["LCF"], name=tool.name)
 

@@ -72,14 +72,15 @@ def _estlcam(content: Content) -> bool:
 
 
 FOREIGN = (
-    Foreign("a LinuxCNC tool table", _table,
-            f"it has diameters alone, no flute length, stick-out or holder; {_TOML}"),
-    Foreign("a Vectric tool database", _sqlite(b"tool_geometry", ".vtdb"),
-            f"it has no shank, stick-out or holder; {_TOML}"),
+    Foreign("a LinuxCNC tool table", _table, f"it has diameters alone, no flute length, stick-out or holder; {_TOML}"),
+    Foreign("a Vectric tool database", _sqlite(b"tool_geometry", ".vtdb"), f"it has no shank, stick-out or holder; {_TOML}"),
     Foreign("a Mastercam tool database", _sqlite(b"TlTool", ".tooldb"), _FUSION),
     Foreign("an SQLite database", _sqlite(_SQLITE), _FUSION),
-    Foreign("a DeskProto cutter", lambda c: "[deskproto cutter]" in c.text.lower(),
-            f"it has no holder, and one cutter a file; {_TOML}"),
+    Foreign(
+        "a DeskProto cutter",
+        lambda c: "[deskproto cutter]" in c.text.lower(),
+        f"it has no holder, and one cutter a file; {_TOML}",
+    ),
     Foreign("a Kiri:Moto tool list", _kirimoto, f"it has no stick-out and no holder; {_TOML}"),
     Foreign("a GTC package (ISO 13399)", lambda c: _member("package_meta_data.xml")(c) or _member(".p21")(c), _FUSION),
     Foreign("a FreeCAD document", _member("document.xml"), "give the bit (.fctb) or the library (.fctl), not its shape"),
@@ -89,10 +90,13 @@ FOREIGN = (
     Foreign("MTConnect assets", lambda c: c.head.startswith("<") and "mtconnectassets" in c.head, _FUSION),
     Foreign("a web page (HTML)", _page, "download the library itself: perhaps a log-in stands before it"),
     Foreign("a Carbide 3D tool list", _begins("number,vendor,model,"), f"it has no holder; {_TOML}"),
-    Foreign("a table (CSV) without Fusion's columns", lambda c: c.path.suffix.lower() in (".csv", ".tsv"),
-            f"columns as Type (tool_type), Diameter (tool_diameter) and Unit (tool_unit) are read; {_TOML}"),
+    Foreign(
+        "a table (CSV) without Fusion's columns",
+        lambda c: c.path.suffix.lower() in (".csv", ".tsv"),
+        f"columns as Type (tool_type), Diameter (tool_diameter) and Unit (tool_unit) are read; {_TOML}",
+    ),
     Foreign("a CAM machine or setting of FreeCAD", lambda c: c.path.suffix.lower() == ".fcm", "give its tools (.fctl)"),
-)  # fmt: skip
+)
 
 
 def recognised(content: Content) -> Format[Reader]:
@@ -104,7 +108,10 @@ def recognised(content: Content) -> Format[Reader]:
         It is none that is read; by name, where it is known.
     """
     return formats.recognised(
-        content, FORMATS, FOREIGN, xml="no HSMWorks tool library (tool-library); export it anew",
+        content,
+        FORMATS,
+        FOREIGN,
+        xml="no HSMWorks tool library (tool-library); export it anew",
         archive="without tools.json, no Fusion tool library; give what is in it",
         json='neither a Fusion library ({"data": [tools]}) nor of FreeCAD (tools, parameter, profile)',
-    )  # fmt: skip
+    )

@@ -181,8 +181,10 @@ def _tool(entry: dict[str, Any], place: str, number: int | None) -> Listed:
     if tool.sort:
         if shape and _plain(shape) != _plain(kind):
             # FreeCAD takes the drawing, and the type only where it has no such drawing.
-            tool.doubts.append(f"shape-type {shown(kind)}, but shape {shown(shape)}: another drawing can be another tool; "
-                               f"correct one, or {_AS_TOML}")  # fmt: skip
+            tool.doubts.append(
+                f"shape-type {shown(kind)}, but shape {shown(shape)}: another drawing can be another tool; "
+                f"correct one, or {_AS_TOML}"
+            )
         for word in _STRANGE:
             if re.search("[1-9]", str(parameters.get(word) or "")):
                 tool.doubts.append(f"{word} {shown(parameters[word])}: a {kind} has none; leave it out, or {_AS_TOML}")
@@ -221,8 +223,9 @@ def _cone(tool: Listed, angle: Any) -> None:
     if tool.sort == "chamfer mill":
         tool.take("TA", angle, _ANGLE, _half_angle)
         if tool.kind.lower() == "chamfer" and 0.0 < tool.values.get("TA", 0.0) < 45.0:
-            tool.doubts.append(f"{_ANGLE} {shown(angle)} is the whole angle of its cone or that of its flank from the axis: "
-                               f"{_AS_TOML}")  # fmt: skip
+            tool.doubts.append(
+                f"{_ANGLE} {shown(angle)} is the whole angle of its cone or that of its flank from the axis: {_AS_TOML}"
+            )
     elif angle not in (None, "") and tool.tried(lambda: _angle(angle, _ANGLE), 0.0) not in (0.0, 180.0):
         tool.doubts.append(f"{_ANGLE} {shown(angle)}: a {tool.kind} has no cone; leave it out, or {_AS_TOML}")
 
@@ -268,8 +271,10 @@ def _corner(tool: Listed, value: Any, field: str, length: Callable[[Any, str], f
         tool.words["RE"] = field
     else:
         other = f"whose corner then has {rest:.10g}" if rest >= 0.0 else "which is then wider than the tool"
-        tool.doubts.append(f"{field} {radius:.10g} is the radius of its corner, or of the flat at its tip, {other}: "
-                           "add CornerRadius, which decides")  # fmt: skip
+        tool.doubts.append(
+            f"{field} {radius:.10g} is the radius of its corner, or of the flat at its tip, {other}: "
+            "add CornerRadius, which decides"
+        )
 
 
 def _feed(value: Any, field: str) -> float:

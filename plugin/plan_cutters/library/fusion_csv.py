@@ -106,8 +106,12 @@ def _tool(row: dict[str | None, str], place: str) -> Listed:
             tool.holder = Holder(tuple(stages), name_of(row.get("holder_description")))
     except (FaultError, CutterError) as fault:
         tool.faults.append(str(fault))
-    take_feed(tool, [Preset(row.get("preset_name", ""), row.get("tool_feedCutting", "").strip())], "tool_feedCutting",
-              lambda text, field: number_in(text, field)[0])  # fmt: skip
+    take_feed(
+        tool,
+        [Preset(row.get("preset_name", ""), row.get("tool_feedCutting", "").strip())],
+        "tool_feedCutting",
+        lambda text, field: number_in(text, field)[0],
+    )
     return tool
 
 

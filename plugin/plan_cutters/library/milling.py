@@ -127,8 +127,10 @@ def _complete(tool: Listed, needs: tuple[str, ...], ask: Ask) -> None:
     """All that is missing, at once."""
     lacks = [f"{tool.word(key)} is missing ({_NEEDED[key]})" for key in needs if key not in tool.values]
     if "LPR" not in tool.values and ask.stickout is None:
-        lacks.append(f"{tool.word('LPR')} is missing (the stick-out, from the tip to the holder's nose): add it, or give "
-                     "--assume-stickout MM")  # fmt: skip
+        lacks.append(
+            f"{tool.word('LPR')} is missing (the stick-out, from the tip to the holder's nose): add it, or give "
+            "--assume-stickout MM"
+        )
     if tool.holder is None and ask.holder is None:
         lacks.append("its holder is missing: add it, or give --holder SPEC, as R15L30 (or none)")
     if lacks:
@@ -232,8 +234,10 @@ def _widest(tool: Listed, bare: Cutter) -> str:
 def _shank(tool: Listed, at: float, length: float) -> float:
     """The radius of the shank that is needed between two heights over the tip, mm."""
     if "DMM" not in tool.values:
-        raise UnfitError(f"{tool.word('DMM')} is missing: the diameter of the shank between {at / tool.scale:.10g} and "
-                         f"{length / tool.scale:.10g} {tool.unit} over its tip")  # fmt: skip
+        raise UnfitError(
+            f"{tool.word('DMM')} is missing: the diameter of the shank between {at / tool.scale:.10g} and "
+            f"{length / tool.scale:.10g} {tool.unit} over its tip"
+        )
     return 0.5 * tool.values["DMM"]
 
 

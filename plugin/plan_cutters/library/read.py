@@ -18,8 +18,13 @@ _NAMED = 3
 _SUFFIXES = {suffix for form in FORMATS for suffix in form.suffixes}
 
 
-def read_library(path: str | os.PathLike[str], *, assume_stickout: float | None = None,
-                 holder: Holder | str | None = None, skip_bad: bool = False) -> Library:  # fmt: skip
+def read_library(
+    path: str | os.PathLike[str],
+    *,
+    assume_stickout: float | None = None,
+    holder: Holder | str | None = None,
+    skip_bad: bool = False,
+) -> Library:
     """The cutters of a tool library; every tool that becomes none is in `entries`, with the reason.
 
     Parameters

@@ -179,8 +179,7 @@ def _listed(table: Any, place: str, unit: Any, named: dict[str, Holder | None]) 
 
     flutes = 0.0 if model.LCF == "rest" else length(model.LCF, "LCF")
     outline = tuple((length(r, "outline"), length(z, "outline")) for z, r in model.outline)
-    limits = {word: length(value, word) for word in ("allowance", "clearance")
-             if (value := getattr(model, word)) is not None}  # fmt: skip
+    limits = {word: length(value, word) for word in ("allowance", "clearance") if (value := getattr(model, word)) is not None}
     stated.straight = model.DMM == "same" or (model.LCF == "rest" and model.type != "form")
     stated.attributes = {"shape": "end" if model.type in _ENDS else model.type, "taper": _taper(model, tool),
                          "flutes": flutes or None, "arc_radius": length(model.PRFRAD, "PRFRAD"), "outline": outline,

@@ -26,9 +26,13 @@ ANGLES = {
 }  # fmt: skip
 #: Directions by the names of ISO 841.
 ISO = {
-    "X": (1.0, 0.0, 0.0), "Y": (0.0, 1.0, 0.0), "Z": (0.0, 0.0, 1.0),
-    "A": (1.0, 0.0, 0.0), "B": (0.0, 1.0, 0.0), "C": (0.0, 0.0, 1.0),
-}  # fmt: skip
+    "X": (1.0, 0.0, 0.0),
+    "Y": (0.0, 1.0, 0.0),
+    "Z": (0.0, 0.0, 1.0),
+    "A": (1.0, 0.0, 0.0),
+    "B": (0.0, 1.0, 0.0),
+    "C": (0.0, 0.0, 1.0),
+}
 #: Limits of one axis that are both turned back to front are the same up to this, rad or mm.
 _EVEN = 1e-9
 

@@ -67,6 +67,10 @@ def recognised(content: Content) -> Format[Reader]:
         It is none that is read; by name, where it is known.
     """
     return formats.recognised(
-        content, FORMATS, FOREIGN[1:], first=FOREIGN[:1], xml="no MTConnect probe (MTConnectDevices)",
+        content,
+        FORMATS,
+        FOREIGN[1:],
+        first=FOREIGN[:1],
+        xml="no MTConnect probe (MTConnectDevices)",
         json="no machine of Fusion (kinematics), FreeCAD (machine.axes) or ours (part_chain)",
-    )  # fmt: skip
+    )

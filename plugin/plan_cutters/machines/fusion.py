@@ -123,8 +123,9 @@ def _check_once(table: Frame, head: Frame) -> None:
 class _Reading:
     """The axes of one file being read."""
 
-    def __init__(self, length: float, angle: float, left_handed: bool, sign: str, control: dict[str, dict[str, Any]],
-                 notes: list[str]) -> None:  # fmt: skip
+    def __init__(
+        self, length: float, angle: float, left_handed: bool, sign: str, control: dict[str, dict[str, Any]], notes: list[str]
+    ) -> None:
         self.length, self.angle, self.left, self.sign, self.control, self.notes = (
             length, angle, left_handed, sign, control, notes,
         )  # fmt: skip
@@ -145,15 +146,18 @@ class _Reading:
         """One of them."""
         for key in part:
             if key not in _KEYS and any(word in key.lower() for word in _SUSPECT):
-                raise MachineError(f"axis {name}: its {shown(key)} is not understood, and may be a limit; write the machine as "
-                                   "TOML (docs/machines.md)")  # fmt: skip
+                raise MachineError(
+                    f"axis {name}: its {shown(key)} is not understood, and may be a limit; write the machine as "
+                    "TOML (docs/machines.md)"
+                )
         if part.get("control", "driven") != "driven":
             self.notes.append(f"{name} is {shown(part['control'])}, not driven: it is taken as one that can be set")
         limits = self.limits(part, name, self.angle if kind == "rotary" else self.length)
         if kind == "linear":
             direction = chain.vector(part.get("direction"), f"axis {name}: its direction")
-            return chain.axis(name, "linear", carries, chain.opposite(direction) if carries == "part" else direction,
-                              limits=limits)  # fmt: skip
+            return chain.axis(
+                name, "linear", carries, chain.opposite(direction) if carries == "part" else direction, limits=limits
+            )
         about = part.get("axis_of_rotation")
         if not isinstance(about, dict):
             raise MachineError(f"axis {name} has no axis_of_rotation")
@@ -178,8 +182,10 @@ class _Reading:
                 )
         elif turned or (zero and axis.limits is not None):
             why = "reversed" if turned else f"offset by {shown(zero)}"
-            raise MachineError(f"axis {axis.name} is {why} in the controller, and whether that is so of its limits is not known; "
-                               "write the machine as TOML (docs/machines.md)")  # fmt: skip
+            raise MachineError(
+                f"axis {axis.name} is {why} in the controller, and whether that is so of its limits is not known; "
+                "write the machine as TOML (docs/machines.md)"
+            )
         elif axis.carries == "part" and not self.sign:
             raise MachineError(
                 f"axis {axis.name} carries the part, and whether its limits count the table's own motion is not stated: use "

@@ -111,8 +111,10 @@ class _Reading:
             for section in (f"JOINT_{i}", f"AXIS_{i}"):
                 kind = (self.ini.one(section, "TYPE") or "").upper()
                 if kind and kind != ("ANGULAR" if letter in "ABC" else "LINEAR"):
-                    raise MachineError(f"[{section}] is {shown(kind)}, but joint {i} is {letter} by its kinematics: say so, as "
-                                       f"KINEMATICS = {self.name} coordinates={self.letters}")  # fmt: skip
+                    raise MachineError(
+                        f"[{section}] is {shown(kind)}, but joint {i} is {letter} by its kinematics: say so, as "
+                        f"KINEMATICS = {self.name} coordinates={self.letters}"
+                    )
         return text
 
     def _letters_unsaid(self) -> str:
@@ -123,8 +125,10 @@ class _Reading:
         missing = [key for key in sections if int(key[-1]) >= len(text) or text[int(key[-1])] not in self.letters]
         # Before there were joints, axes were numbered; maxkins numbers all nine, used or not.
         if (self.name == TRIVIAL and missing) or (self.name in KINS and len(text) < len(_LETTERS) and numbered):
-            raise MachineError(f"which axis [{(missing or numbered)[0]}] is of is not known: say so, as KINEMATICS = "
-                               f"{self.name} coordinates={self.letters}")  # fmt: skip
+            raise MachineError(
+                f"which axis [{(missing or numbered)[0]}] is of is not known: say so, as KINEMATICS = "
+                f"{self.name} coordinates={self.letters}"
+            )
         return text
 
     def machine(self) -> Machine:
@@ -186,8 +190,10 @@ class _Reading:
         listed = [letter for letter in self.letters if letter in "ABC"]
         more = [letter for letter in listed if letter not in kins.part + kins.tool]
         if more:
-            raise MachineError(f"it has a third rotary axis, {', '.join(more)}, of which {self.name} says nothing: "
-                               "machines of up to two are judged")  # fmt: skip
+            raise MachineError(
+                f"it has a third rotary axis, {', '.join(more)}, of which {self.name} says nothing: "
+                "machines of up to two are judged"
+            )
         missing = [letter for letter in kins.part + kins.tool if letter not in listed]
         if missing:
             raise MachineError(f"[TRAJ]COORDINATES lacks {', '.join(missing)}, which {self.name} turns")
@@ -205,8 +211,10 @@ class _Reading:
         if result is None or (kins.pin and pin not in hal.pins and pin not in hal.signal_of and hal.missing):
             why = "something else feeds it" if result is None else f"{', '.join(hal.missing)} is not at hand"
             if not all(chain.even(self.limits(letter, False), turns=True) for letter in kins.against):
-                raise MachineError(f"the sense of its angles hangs on {pin}, and {why}: put the HAL file next to it, or a line "
-                                   f"HALCMD = setp {pin} 0 (or 1) into [HAL]")  # fmt: skip
+                raise MachineError(
+                    f"the sense of its angles hangs on {pin}, and {why}: put the HAL file next to it, or a line "
+                    f"HALCMD = setp {pin} 0 (or 1) into [HAL]"
+                )
             self.notes.append(f"the sense of its angles hangs on {pin}, and {why}: with its limits it allows the same either way")
         if result:
             self.notes.append(f"{pin} is set: its angles are counted as in ISO 841")

@@ -80,8 +80,11 @@ def _axis(component: Element, added: Added, notes: list[str]) -> Axis | None:
     """An axis; None, and a note, where it is none that positions."""
     name = (component.given.get("name") or component.given.get("nativeName") or component.given.get("id", "")).strip()
     rotary = component.tag == "Rotary"
-    items = [each.given.get("type", "").rpartition(":")[2].upper() for tag in ("DataItem", "Specification")
-             for each in _own(component, tag)]  # fmt: skip
+    items = [
+        each.given.get("type", "").rpartition(":")[2].upper()
+        for tag in ("DataItem", "Specification")
+        for each in _own(component, tag)
+    ]
     match = _NAME.fullmatch(name.upper())
     letters = "ABC" if rotary else "XYZ"
     if rotary and (name.upper().startswith("S") or any(each in _TURNS for each in items)):
@@ -89,8 +92,9 @@ def _axis(component: Element, added: Added, notes: list[str]) -> Axis | None:
         return None
     if match is None or match[1] not in letters or match[2] not in ("", "1"):
         if rotary:
-            raise MachineError(f"line {component.line}: its rotary axis {shown(name)} is none of A, B, C: what it turns about is "
-                               "not known")  # fmt: skip
+            raise MachineError(
+                f"line {component.line}: its rotary axis {shown(name)} is none of A, B, C: what it turns about is not known"
+            )
         notes.append(f"{name} is none of X, Y, Z: it is ignored")
         return None
     motion = next(_own(component, "Motion"), None)

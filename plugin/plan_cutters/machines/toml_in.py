@@ -173,10 +173,13 @@ def explained(error: ValidationError) -> str:
             "unit": ', as unit = "mm"',
             "units": ', as units = { length = "mm", angle = "deg" }',
             "sign": ', "tool-relative" (ISO 841) or "table"',
-            "length": ', as length = "mm"', "angle": ', as angle = "deg"',
-            "format": f", {json.dumps(FORMAT)}", "version": ", 1",
-            "part_chain": ", [] if no axis carries the part", "tool_chain": ", [] if no axis carries the tool",
-        }.get(last, "")  # fmt: skip
+            "length": ', as length = "mm"',
+            "angle": ', as angle = "deg"',
+            "format": f", {json.dumps(FORMAT)}",
+            "version": ", 1",
+            "part_chain": ", [] if no axis carries the part",
+            "tool_chain": ", [] if no axis carries the tool",
+        }.get(last, "")
         return f"{place}{last} is missing{hint}"
     message = first["msg"][:1].lower() + first["msg"][1:]
     return f"{place}{last} is {shown(first['input'])}: {message}"

@@ -114,9 +114,8 @@ def relax(table: Table) -> Relaxed:
 
 
 def fewest(
-    table: Table, known: Which | None = None, *, relaxed: Relaxed | None = None, prove: bool = True,
-    seconds: float = SECONDS,
-) -> Cover:  # fmt: skip
+    table: Table, known: Which | None = None, *, relaxed: Relaxed | None = None, prove: bool = True, seconds: float = SECONDS
+) -> Cover:
     """Find few columns that cover every row, each row of which some column covers.
 
     Parameters
@@ -168,9 +167,11 @@ def _greedy_covers(table: Table, share: Floats, least: int, tries: int) -> Which
     rng = np.random.default_rng(0)
     held, best = table.astype(np.float32), None
     for attempt in range(tries):
-        lead = 1.0 + (share * rng.uniform(0.5, 2.0) if attempt else 0.0) + (
-            _SPREAD * rng.random(len(share)) * (share > 0.0) if attempt else 0.0
-        )  # fmt: skip
+        lead = (
+            1.0
+            + (share * rng.uniform(0.5, 2.0) if attempt else 0.0)
+            + (_SPREAD * rng.random(len(share)) * (share > 0.0) if attempt else 0.0)
+        )
         open_samples, chosen = np.ones(len(table), np.float32), []
         gain = held.sum(axis=0)
         while open_samples.any():
@@ -210,10 +211,12 @@ def _smaller(table: Table, most: int, seconds: float) -> tuple[Which | None, int
     held = csr_array(table.astype(float))
     few = csr_array(np.ones((1, table.shape[1])))
     solution = milp(
-        np.ones(table.shape[1]), integrality=np.ones(table.shape[1]), bounds=Bounds(0, 1),
+        np.ones(table.shape[1]),
+        integrality=np.ones(table.shape[1]),
+        bounds=Bounds(0, 1),
         constraints=[LinearConstraint(held, 1.0, np.inf), LinearConstraint(few, 0.0, most)],
         options={"time_limit": max(0.1, seconds), "mip_rel_gap": 0.99 / (most + 1), "node_limit": _NODES},
-    )  # fmt: skip
+    )
     if solution.status == 2:
         return None, most + 1
     bound = solution.mip_dual_bound

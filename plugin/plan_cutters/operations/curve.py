@@ -22,7 +22,7 @@ _TESTS = 300_000
 
 def curve(
     probes: Probes, fewest: Fewest, rows: NDArray[np.int64], area: Floats, whole: float, some: Callable[[], Known]
-) -> tuple[Step, ...]:  # fmt: skip
+) -> tuple[Step, ...]:
     """Steps of the greedy choice by area, as many as the cover has columns.
 
     Parameters

@@ -91,9 +91,7 @@ class Problem:
         None: each operation costs the same.
     """
 
-    def __init__(
-        self, cost: Floats, cutter: Ints, setup: Ints, costs: Costs, turning: Turning | None = None
-    ) -> None:  # fmt: skip
+    def __init__(self, cost: Floats, cutter: Ints, setup: Ints, costs: Costs, turning: Turning | None = None) -> None:
         self.cost, self.cutter, self.setup, self.costs, self.turning = cost, cutter, setup, costs, turning
         finite = cost[np.isfinite(cost)]
         #: Costs more than any choice.
@@ -313,9 +311,7 @@ class _Ascent:
         Costs looked at.
     """
 
-    def __init__(
-        self, cost: Floats, operation: float, base: float, price: Floats, reach: Floats, group: Which
-    ) -> None:  # fmt: skip
+    def __init__(self, cost: Floats, operation: float, base: float, price: Floats, reach: Floats, group: Which) -> None:
         self._cost, self._operation, self._base, self.price = cost, operation, base, price
         self._least, self._group, self._reach = reach, group, Reach.of(reach, group)
         self._mean, self._length, self._waited = np.zeros(len(price)), 1.0, 0

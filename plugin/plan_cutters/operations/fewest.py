@@ -206,8 +206,8 @@ class Search:
 
 
 def search_fewest(
-    search: Search, orientations: Sequence[Orientations], spacing: float, finest: float, tell: Callable[[int, int], None],
-) -> Fewest:  # fmt: skip
+    search: Search, orientations: Sequence[Orientations], spacing: float, finest: float, tell: Callable[[int, int], None]
+) -> Fewest:
     """Find the fewest orientations, with candidates that are refined down to a spacing.
 
     Parameters

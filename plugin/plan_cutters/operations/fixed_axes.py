@@ -20,7 +20,7 @@ _DIRECTIONS, _MOST_AXES = 200, 64
 
 def fixed_axes(
     samples: SurfaceSamples, cutter: Cutter, verdicts: Verdicts, conditions: Conditions, plan: OperationPlan | None = None
-) -> tuple[Floats, Ints]:  # fmt: skip
+) -> tuple[Floats, Ints]:
     """Few axes that serve what a cutter reaches: first those that a plan of operations has for it, then as few as are soon found.
 
     Parameters

@@ -42,8 +42,10 @@ def motion(maps: PostureMaps, ready: Prepared) -> MotionEntry | str:
         In words why nothing can be said, where the maps leave samples out.
     """
     if maps.unmapped:
-        return (f"Nothing is said about motion: the postures of {maps.unmapped} samples were not mapped. Give --map-budget, or "
-                "sample more coarsely (--spacing).")  # fmt: skip
+        return (
+            f"Nothing is said about motion: the postures of {maps.unmapped} samples were not mapped. Give --map-budget, or "
+            "sample more coarsely (--spacing)."
+        )
     mine, samples = maps.held(ready.conditions), ready.samples
     area = np.where(ready.finished, np.nan_to_num(samples.area), 0.0)
     # Neighbours on other surfaces than that of the finished part lead nowhere.

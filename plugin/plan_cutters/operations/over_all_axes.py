@@ -34,7 +34,7 @@ from plan_cutters.kernels.codes import (
     TILT_TO,
     TOP,
     WIDE,
-)  # fmt: skip
+)
 from plan_cutters.kernels.rows import Tool
 from plan_cutters.operations.cover import UNIT, fewest, relax
 from plan_cutters.operations.probes import Probes
@@ -369,9 +369,7 @@ def _columns(open_: NDArray[np.bool_]) -> tuple[NDArray[np.bool_], NDArray[np.in
     return flat[first].T, first // open_.shape[1]
 
 
-def _tight(
-    open_: NDArray[np.bool_], weight: NDArray[np.int64], used: Rows, radius: Floats
-) -> NDArray[np.int64]:  # fmt: skip
+def _tight(open_: NDArray[np.bool_], weight: NDArray[np.int64], used: Rows, radius: Floats) -> NDArray[np.int64]:
     """Cells that hold the bound down, and that may still be parted: used by the cover, or as loaded as any; large ones first."""
     load = (open_ @ weight).max(axis=1)
     tight = load >= (1.0 - 1e-4) * UNIT

@@ -50,9 +50,11 @@ _TRIES = 4
 
 
 def plan_operations(
-    ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], least: LeastSet | None,
+    ready: Prepared,
+    everywhere: Sequence[Mapping[Cutter, Verdicts]],
+    least: LeastSet | None,
     stage: Callable[[str], AbstractContextManager[Progress]],
-) -> Operations:  # fmt: skip
+) -> Operations:
     """Plan the operations that finish together all that the cutters reach.
 
     Parameters
@@ -90,16 +92,16 @@ def plan_operations(
     small = tuple(note for each in different for note in small_pieces(each, ready.samples, options.overlap))
     moving = max(sum(len(each.rows) for each in plan.operations if each.mode == "simultaneous") for plan in plans)
     if options.most_operations is None and moving > len(fewest.alone):
-        small += (f"Orientations that add less than {percent(MINOR_AREA)} of the area each are left out of the plans; "
-                  "--most-operations with a large number takes all.",)  # fmt: skip
+        small += (
+            f"Orientations that add less than {percent(MINOR_AREA)} of the area each are left out of the plans; "
+            "--most-operations with a large number takes all.",
+        )
     return Operations(options.operations or "", task.cutters, tuple(plans), fewest, steps, task.orientations[0].names,
                       task.probes.made, task.paths.feed, everywhere[0][task.cutters[0]].reason, timed, worth=worth,
                       notes=small, index_from=task.indexing.source)  # fmt: skip
 
 
-def _plans(
-    task: Task, search: Search, few: Columns
-) -> tuple[list[OperationPlan], Fastest | None, tuple[Worth, ...]]:  # fmt: skip
+def _plans(task: Task, search: Search, few: Columns) -> tuple[list[OperationPlan], Fastest | None, tuple[Worth, ...]]:
     """Make the plans that were requested: the fastest is the one of all plans found here that takes the least time."""
     which = task.ready.options.operations
     fewest = _capped(task, "fewest", _quicker(task, search, few))

@@ -189,8 +189,10 @@ def small_pieces(plan: OperationPlan, samples: SurfaceSamples, overlap: float) -
     if not small.any():
         return ()
     many, them = ("one piece", "it") if small.sum() == 1 else (f"{small.sum()} pieces", "all of one of them")
-    return (f"The {plan.name} plan has {many} of less than {size(_SMALL * overlap**2)}, {size(areas[small].sum())} in all: no "
-            f"neighbouring operation serves {them}.",)  # fmt: skip
+    return (
+        f"The {plan.name} plan has {many} of less than {size(_SMALL * overlap**2)}, {size(areas[small].sum())} in all: no "
+        f"neighbouring operation serves {them}.",
+    )
 
 
 def best_area(task: Task, columns: Columns, most: int | None) -> Columns:

@@ -35,9 +35,12 @@ class Probes:
     """
 
     def __init__(
-        self, samples: SurfaceSamples, cutters: Sequence[Cutter], setups: Sequence[Conditions],
+        self,
+        samples: SurfaceSamples,
+        cutters: Sequence[Cutter],
+        setups: Sequence[Conditions],
         outside: Sequence[NDArray[np.bool_]],
-    ) -> None:  # fmt: skip
+    ) -> None:
         self.samples, self.cutters, self.setups, self.outside, self.made = samples, cutters, setups, outside, 0
         self.contexts = [[Context.of(cutter, setup) for setup in setups] for cutter in cutters]
         self._kept: dict[str, NDArray[np.bool_]] = {}

@@ -96,7 +96,8 @@ def _proved(ready: Prepared, plan: OperationPlan, group: list[int], budget: int,
 def _roomiest(samples: SurfaceSamples, axes: Floats, serves: NDArray[np.bool_], context: Context) -> NDArray[np.int32]:
     """Of axes (k, 3) that serve samples (n, k) the one with most room for the contact to move; -1 where none serves."""
     tensor = tensors(samples.normal, samples.direction_max, samples.curvature)
-    remaining = np.array([margin(np.broadcast_to(axis, samples.normal.shape), samples.normal, tensor, context)
-                     for axis in axes]).T  # fmt: skip
+    remaining = np.array(
+        [margin(np.broadcast_to(axis, samples.normal.shape), samples.normal, tensor, context) for axis in axes]
+    ).T
     remaining = np.where(serves, np.nan_to_num(remaining, nan=-np.inf, neginf=-1e300), -np.inf)
     return np.where(serves.any(axis=1), remaining.argmax(axis=1), -1).astype(np.int32)

@@ -18,7 +18,7 @@ def by_size(task: Task) -> list[int]:
     """Numbers of the cutters, the largest first; of equal radii the one with the larger corner, which leaves wider strips."""
     return sorted(
         range(len(task.cutters)), key=lambda c: (-task.cutters[c].radius, -task.cutters[c].corner_radius, task.cutters[c].id)
-    )  # fmt: skip
+    )
 
 
 def largest_first(problem: Problem, order: Sequence[int]) -> Rows:

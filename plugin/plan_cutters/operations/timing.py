@@ -42,9 +42,13 @@ class Paths:
 
 
 def widths(
-    columns: Columns, rows: Rows, samples: SurfaceSamples, cutters: Sequence[Cutter], paths: Paths,
+    columns: Columns,
+    rows: Rows,
+    samples: SurfaceSamples,
+    cutters: Sequence[Cutter],
+    paths: Paths,
     where: NDArray[np.bool_] | None = None,
-) -> Floats:  # fmt: skip
+) -> Floats:
     """Width of a pass (rows, columns), mm, whether a column serves there or not; nan where the tool does not touch.
 
     With `where` (rows, columns) it is nan elsewhere, too.
@@ -96,9 +100,7 @@ class Problems:
     indexing : Indexing
     """
 
-    def __init__(
-        self, samples: SurfaceSamples, cutters: Sequence[Cutter], paths: Paths, indexing: Indexing
-    ) -> None:  # fmt: skip
+    def __init__(self, samples: SurfaceSamples, cutters: Sequence[Cutter], paths: Paths, indexing: Indexing) -> None:
         self._samples, self._cutters, self._paths, self._indexing = samples, cutters, paths, indexing
         self._rows: Rows = np.zeros(0, np.int64)
         self._active: Rows = np.zeros(0, np.int64)

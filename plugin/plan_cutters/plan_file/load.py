@@ -55,16 +55,18 @@ def plan_of(content: bytes | str, file: str, error: type[PlanError] = PlanError)
     if version is None or data.get("format") != "plan-cutters-plan":
         raise error("is JSON, but no plan of plan-cutters: give a plan.json, or the folder of one", file=file)
     if version != FORMAT_VERSION:
-        raise error(f"has format version {version}, and this program reads {FORMAT_VERSION}: plan the part again with it",
-                    file=file)  # fmt: skip
+        raise error(
+            f"has format version {version}, and this program reads {FORMAT_VERSION}: plan the part again with it", file=file
+        )
     _mark_unknown_areas(data)
     try:
         plan = Plan.model_validate(data)
     except ValidationError as fault:
         first = fault.errors()[0]
         place = ".".join(str(word) for word in first["loc"]) or "the plan"
-        raise error(f"{place}: {first['msg'].lower()}; it was damaged, or made by a newer version: plan the part again",
-                    file=file) from None  # fmt: skip
+        raise error(
+            f"{place}: {first['msg'].lower()}; it was damaged, or made by a newer version: plan the part again", file=file
+        ) from None
     if not plan.cutters:
         raise error("cutters: none was judged; plan the part again", file=file)
     try:

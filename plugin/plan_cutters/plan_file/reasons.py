@@ -55,7 +55,8 @@ REASONS = {each.code: each for each in _ROWS}
 MET = ("local_gouge", "rear_gouge", "collision", "neck", "shank", "holder")
 CAUSES = ("axis_limit", *MET, "buried")
 #: Why a posture map has nothing at a tilt where nothing is in the way: that is no reason for a sample.
-NO_CONTACT = Reason("no_contact", "no contact", "no contact", "The cutter does not touch at this tilt.", "another tilt",
-                    "#E5E5E5", "plain", ".")  # fmt: skip
+NO_CONTACT = Reason(
+    "no_contact", "no contact", "no contact", "The cutter does not touch at this tilt.", "another tilt", "#E5E5E5", "plain", "."
+)
 #: Those whose tilts a map of a point lists as intervals: local gouge is a least and a largest tilt.
 INTERVALS = (*(cause for cause in CAUSES if cause != "local_gouge"), NO_CONTACT.code)

@@ -39,16 +39,22 @@ def finite(value: Any) -> Any:
 
 def policy(script: str, style: str, images: str) -> str:
     """The content security policy of a page: it runs this script, has this style, and loads nothing but such images."""
-    return (f"default-src 'none'; script-src '{_hash(script)}'; style-src '{_hash(style)}'; img-src {images}; "
-            "base-uri 'none'; form-action 'none'")  # fmt: skip
+    return (
+        f"default-src 'none'; script-src '{_hash(script)}'; style-src '{_hash(style)}'; img-src {images}; "
+        "base-uri 'none'; form-action 'none'"
+    )
 
 
 def template(path: Path) -> jinja2.Template:
     """A template of a page: what is put in is escaped, and cleaned as by `plain`; an unknown name is an error."""
     return jinja2.Environment(
-        loader=jinja2.FileSystemLoader(path.parent), autoescape=True, undefined=jinja2.StrictUndefined, finalize=plain,
-        trim_blocks=True, lstrip_blocks=True,
-    ).get_template(path.name)  # fmt: skip
+        loader=jinja2.FileSystemLoader(path.parent),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        finalize=plain,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    ).get_template(path.name)
 
 
 def _hash(text: str) -> str:

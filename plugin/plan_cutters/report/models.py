@@ -162,8 +162,9 @@ def write_styled_step(result: Judged, split: Any, path: Path, style: Callable[[A
         for each in result.conditions.surroundings.fixtures
         if isinstance(each.source, Part)
     ]
-    write_cad(split, path, style, product=product(result), tree=part.tree, layers=part.layers, schema=SCHEMAS[schema],
-              others=others)  # fmt: skip
+    write_cad(
+        split, path, style, product=product(result), tree=part.tree, layers=part.layers, schema=SCHEMAS[schema], others=others
+    )
 
 
 def face_facts(result: Judged, entry: FaceEntry) -> dict[str, Any]:

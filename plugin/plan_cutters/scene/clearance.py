@@ -46,7 +46,7 @@ class Clearances(Record):
 
 def clearances_over(
     samples: SurfaceSamples, cutter: Cutter, verdicts: Verdicts, setups: Sequence[Conditions], served_in: Ints | None
-) -> Clearances:  # fmt: skip
+) -> Clearances:
     """The same over several setups: each posture among the obstacles of the setup that serves its sample, (n,) int32.
 
     A fixture that stands in another setup than the first has no number: its `face` is 0.

@@ -248,5 +248,6 @@ def warm(contacts: Contacts, context: Context) -> None:
     none, verdicts, conditions = np.zeros(0, np.int64), verdict_arrays_of(blank(0)), context.conditions
     solids = conditions.obstacles.solids
     search.dummy_clear(none, contacts, context.dummy, context.outer, solids, np.zeros(0, bool))
-    search.search(none, contacts, conditions.ranges, context.outer, context.inner, solids,
-                  conditions.surroundings.certain.solids, verdicts)  # fmt: skip
+    search.search(
+        none, contacts, conditions.ranges, context.outer, context.inner, solids, conditions.surroundings.certain.solids, verdicts
+    )

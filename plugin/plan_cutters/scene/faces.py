@@ -63,9 +63,13 @@ class Chosen:
 
 
 def choose(
-    part: "Part", faces: Any, ignored: Collection[int], ignore: tuple[str, ...], placed: Placement | None = None,
+    part: "Part",
+    faces: Any,
+    ignored: Collection[int],
+    ignore: tuple[str, ...],
+    placed: Placement | None = None,
     others: Sequence[Placement | None] = (),
-) -> Chosen:  # fmt: skip
+) -> Chosen:
     """Target and ignored faces of a part.
 
     Parameters
@@ -144,9 +148,13 @@ def face_numbers(part: "Part", value: Any) -> tuple[int, ...]:
 
 
 def select_faces(
-    faces: Sequence[FaceInfo], text: str, *, tree: "Sequence[Node]" = (), ignored: Iterable[int] = (),
+    faces: Sequence[FaceInfo],
+    text: str,
+    *,
+    tree: "Sequence[Node]" = (),
+    ignored: Iterable[int] = (),
     blends: Collection[int] = (),
-) -> tuple[int, ...]:  # fmt: skip
+) -> tuple[int, ...]:
     """Numbers of the target faces, ascending.
 
     Parameters

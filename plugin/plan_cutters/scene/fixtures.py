@@ -140,7 +140,7 @@ def joined(
 
 def _placed(
     number: int, fixture: Fixture, body: _Body, source: Part | Mesh | None, extruded: Floats | None, setup: Sequence[float]
-) -> PlacedFixture:  # fmt: skip
+) -> PlacedFixture:
     """A fixture in its place; `extruded`: triangles in its own frame that models show instead of all."""
     vertex = fixture.placed(body.certain.triangles.vertex)
     whole = Obstacles(replace(body.certain.triangles, vertex=vertex), body.certain.weight)
@@ -152,8 +152,9 @@ def _placed(
     if fixture.follows_setup and (not fixture.sizes or tuple(setup) != (0.0, 0.0, 1.0)):
         high = float((vertex @ np.asarray(setup, float)).max())
         notes.append(f"its top is {mm(high)} from the part's origin along the setup axis {axis_words(setup)}")
-    return PlacedFixture(number, fixture, source, whole, enclosing if body.certain.weight.any() else None, body.missing,
-                    tuple(notes), shown)  # fmt: skip
+    return PlacedFixture(
+        number, fixture, source, whole, enclosing if body.certain.weight.any() else None, body.missing, tuple(notes), shown
+    )
 
 
 def _together(own: Obstacles, placed_fixtures: Sequence[PlacedFixture], bodies: Sequence[Obstacles], near: Floats) -> Obstacles:
@@ -205,8 +206,10 @@ def _of_part(part: Part, fixture: Fixture, chord: float) -> _Body:
 def _of_mesh(mesh: Mesh, error: float) -> _Body:
     shells, notes = mesh.shells, list(mesh.notes)
     if shells.open and shells.closed:
-        notes.append(f"{shells.open} of its {shells.open + shells.closed} skins are not watertight: of these, only the surface "
-                     "is in the way, not what may lie within")  # fmt: skip
+        notes.append(
+            f"{shells.open} of its {shells.open + shells.closed} skins are not watertight: of these, only the surface "
+            "is in the way, not what may lie within"
+        )
     elif shells.open:
         notes.append("is not watertight and encloses nothing: only its surface is in the way, not what may lie within")
     if shells.turned:

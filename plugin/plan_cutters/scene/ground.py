@@ -60,8 +60,7 @@ class Ground(Record):
         rows = slice(first, last)
         arrays = ("point", "normal", "direction_max", "curvature", "face", "unjudged")
         samples = replace(self.samples, **{name: getattr(self.samples, name)[rows] for name in arrays})
-        return Ground(samples, self.surface_class[rows], self.inside[rows], self.shut[rows], self.clamped[rows],
-                      self.conditions)  # fmt: skip
+        return Ground(samples, self.surface_class[rows], self.inside[rows], self.shut[rows], self.clamped[rows], self.conditions)
 
 
 def _bare(surroundings: Surroundings) -> Surroundings:

@@ -40,9 +40,8 @@ class Cover(Record):
 
 
 def inside_material(
-    samples: SurfaceSamples, orientation: Orientation, bodies: Sequence[Body], certain: Obstacles, tolerance: float,
-    jobs: int = 1,
-) -> Ints:  # fmt: skip
+    samples: SurfaceSamples, orientation: Orientation, bodies: Sequence[Body], certain: Obstacles, tolerance: float, jobs: int = 1
+) -> Ints:
     """In which body contacts lie so deep that every posture is blocked.
 
     Parameters

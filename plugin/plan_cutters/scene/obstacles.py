@@ -234,7 +234,7 @@ class Obstacles(Record):
 
     def holds(
         self, tool: Assembly, contact: Floats, normal: Floats, tilt_direction: Floats, tilt: Floats, *, certain: bool = False
-    ) -> NDArray[np.bool_]:  # fmt: skip
+    ) -> NDArray[np.bool_]:
         """Whether cutters that touch no skin lie within a body, or may: (n,).
 
         Parameters

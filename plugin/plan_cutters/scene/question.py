@@ -144,8 +144,10 @@ def turns_of(about: Mapping[str, Any], rotations: Any, options: Options, stated:
     matches = np.abs(np.remainder(wanted[:, None] - rotations + math.pi, 2.0 * math.pi) - math.pi) <= _TOLERATED
     if not matches.any(axis=1).all():
         missing = float(np.degrees(wanted[~matches.any(axis=1)][0]))
-        raise OptionError(f"these maps have no rotation of {missing:.6g} deg, which was requested with "
-                          f"{' and '.join(_called(each) for each in sorted(words))}: plan again")  # fmt: skip
+        raise OptionError(
+            f"these maps have no rotation of {missing:.6g} deg, which was requested with "
+            f"{' and '.join(_called(each) for each in sorted(words))}: plan again"
+        )
     return np.flatnonzero(matches.any(axis=0))
 
 
@@ -160,8 +162,10 @@ def require_side(about: Mapping[str, Any], setup: Any) -> None:
         return
     own = setup_of(about).z
     if math.dist(own, setup) > _TOLERATED:
-        raise OptionError("these maps are of a part with open faces, whose sides follow from the setup "
-                          f"{axis_words(own)}: give that as the setup, or plan again")  # fmt: skip
+        raise OptionError(
+            "these maps are of a part with open faces, whose sides follow from the setup "
+            f"{axis_words(own)}: give that as the setup, or plan again"
+        )
 
 
 def setup_of(about: Mapping[str, Any]) -> Placement:
@@ -319,8 +323,10 @@ def _places(about: Mapping[str, Any], options: Options) -> None:
     place = options.placement
     if place is not None:
         if place.clamped and sorted(map(_plain, place.clamped)) != sorted(map(_plain, about["clamped"])):
-            raise OptionError(f"these maps are of clamped faces {', '.join(about['clamped']) or 'none'}, not "
-                              f"{', '.join(place.clamped)}: plan again")  # fmt: skip
+            raise OptionError(
+                f"these maps are of clamped faces {', '.join(about['clamped']) or 'none'}, not "
+                f"{', '.join(place.clamped)}: plan again"
+            )
         if place.fixtures and (fault := _fixtures(about, options)):
             raise OptionError(f"these maps are of {fault}: plan again")
 

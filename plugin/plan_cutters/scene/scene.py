@@ -106,8 +106,9 @@ class Scene(Record):
         if not 0 < tolerance <= MOST_TOLERANCE:
             raise OptionError(f"tolerance {tolerance:g} must lie between 0 and {MOST_TOLERANCE:g} mm")
         if isinstance(result["setup"], Placement) or plane_of(result["setup"]) is not None:
-            raise OptionError("a scene keeps the setup axis alone, and a placement or plane says more: give its z here, and "
-                              "itself to plan")  # fmt: skip
+            raise OptionError(
+                "a scene keeps the setup axis alone, and a placement or plane says more: give its z here, and itself to plan"
+            )
         setup: Any = tuple(unit(result["setup"], "setup axis").tolist())
         fixtures = Fixture.each_of(result["fixtures"])
         if isinstance(part, Scene):
@@ -121,8 +122,7 @@ class Scene(Record):
         whole = part if isinstance(part, Part) else read_part(part)
         words = ignored_words(whole, result["ignore"])
         ignored = tuple(sorted(ignored_faces(whole, words)))
-        return cls(whole, orient(whole, towards=setup, flip=flip), setup, flip, words, ignored, tolerance,
-                   fixtures)  # fmt: skip
+        return cls(whole, orient(whole, towards=setup, flip=flip), setup, flip, words, ignored, tolerance, fixtures)
 
     def clamped(self, fixtures: Any) -> "Scene":
         """The same part with other fixtures, given as in `Options`: it is not tessellated again."""
@@ -157,8 +157,7 @@ class Scene(Record):
     @property
     def options(self) -> dict[str, Any]:
         """Give the requested values as options of a plan."""
-        return {"setup": self.setup, "flip": self.flip, "ignore": self.ignore, "tolerance": self.asked,
-                "fixtures": self.fixtures}  # fmt: skip
+        return {"setup": self.setup, "flip": self.flip, "ignore": self.ignore, "tolerance": self.asked, "fixtures": self.fixtures}
 
     def __getstate__(self) -> dict[str, Any]:
         # Files of fixtures are read again where they are needed.

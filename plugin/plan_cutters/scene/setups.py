@@ -41,8 +41,9 @@ def conditions_of(scene: Scene, options: Options) -> list[Conditions]:
         each_setup.append(scene.surround_in(axis, shared, mine))
         if doubts := [each for each in each_setup[-1].doubts if each not in first.doubts]:
             # What is missing there would have to be told of each setup by itself.
-            raise FixtureError(f"setup {axis_words(axis)}: {doubts[0]}; give a fixture that can be read whole, or make this "
-                               "setup the first")  # fmt: skip
+            raise FixtureError(
+                f"setup {axis_words(axis)}: {doubts[0]}; give a fixture that can be read whole, or make this setup the first"
+            )
     tolerance = max(each.tolerance(scene.asked) for each in each_setup)
     return [
         Conditions(options.machine, np.array(axis), options.postures, each, tolerance, options.jobs, _x(place))

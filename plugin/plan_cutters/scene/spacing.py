@@ -59,9 +59,13 @@ class Sampled(NamedTuple):
 
 
 def sampled(
-    part: Part, orientation: Orientation, options: Options, faces: Sequence[int], cutters: Sequence[Cutter],
+    part: Part,
+    orientation: Orientation,
+    options: Options,
+    faces: Sequence[int],
+    cutters: Sequence[Cutter],
     at: Callable[[int], None] = lambda face: None,
-) -> Sampled:  # fmt: skip
+) -> Sampled:
     """Sample faces as the options ask; `at` as in `sample`."""
     spacing: Spacing = options.spacing
     coarser = 1.0

@@ -172,8 +172,7 @@ def surroundings(
     triangles = tessellate(part, chord, faces=faces, jobs=jobs, at=at)
     if not len(triangles):
         causes = "; ".join(sorted({why for _, why in triangles.missing}))
-        raise UnjudgeableError(f"no face has triangles that could be in the way: {causes or 'all are left out'}",
-                               file=part.file)  # fmt: skip
+        raise UnjudgeableError(f"no face has triangles that could be in the way: {causes or 'all are left out'}", file=part.file)
     result = bodies(part, without=ignored)
     loose = dict(triangles.loose)
     close = triangles.without(loose)
@@ -206,9 +205,12 @@ def _possible(part: Part, triangles: Triangles, stand: StandIns, result: Sequenc
     )
     open_boxes = [_box(triangles, body) for body in result if not body.closed]
     filled = np.ones(len(caps) + len(shell), np.int8)
-    return Obstacles(all_triangles, np.concatenate([everything, stand.weight, filled]),
-                     np.array([box for box in open_boxes if np.isfinite(box).all()]).reshape(-1, 2, 3),
-                     part.looseness)  # fmt: skip
+    return Obstacles(
+        all_triangles,
+        np.concatenate([everything, stand.weight, filled]),
+        np.array([box for box in open_boxes if np.isfinite(box).all()]).reshape(-1, 2, 3),
+        part.looseness,
+    )
 
 
 def _shell(part: Part, number: int, vertex: Floats, error: float) -> Floats:

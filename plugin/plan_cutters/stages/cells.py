@@ -143,9 +143,13 @@ def laid(
     (u, node_u), (v, node_v) = (
         _tiles(line, closed, span, box)
         for line, closed, span, box in zip(
-            (grid.u, grid.v), (grid.closed_u, grid.closed_v), (grid.span[:2], grid.span[2:]),
-            (trim.box[:2], trim.box[2:]), strict=True)
-    )  # fmt: skip
+            (grid.u, grid.v),
+            (grid.closed_u, grid.closed_v),
+            (grid.span[:2], grid.span[2:]),
+            (trim.box[:2], trim.box[2:]),
+            strict=True,
+        )
+    )
     start = int(grid.index[grid.index >= 0].min())
     rows = np.arange(start, start + int((grid.index >= 0).sum()))
     tensor = tensors(samples.normal[rows], samples.direction_max[rows], samples.curvature[rows])
@@ -201,8 +205,7 @@ def quartered(contacts: CellContacts, field: Field, level: int, conditions: Cond
     tile = (2 * contacts.tile[:, None] + four).reshape(-1, 2)
     parent = np.repeat(np.arange(len(contacts)), 4)
     middle, span = _rectangles(lines, tile)
-    clip = Clipped(span.prod(axis=1), middle.copy(), middle - 0.5 * span, middle + 0.5 * span,
-                   np.ones(len(tile), bool))  # fmt: skip
+    clip = Clipped(span.prod(axis=1), middle.copy(), middle - 0.5 * span, middle + 0.5 * span, np.ones(len(tile), bool))
     cut = np.flatnonzero(~contacts.whole[parent])
     if len(cut):
         for column, result in zip(clip, clipped(field.trim, *lines, tile[cut]), strict=True):
@@ -225,9 +228,7 @@ def quartered(contacts: CellContacts, field: Field, level: int, conditions: Cond
                     contacts.side[parent], contacts.sample[parent])  # fmt: skip
 
 
-def _tiles(
-    line: Floats, closed: bool, span: tuple[float, float], box: tuple[float, float]
-) -> tuple[Floats, NDArray[np.intp]]:  # fmt: skip
+def _tiles(line: Floats, closed: bool, span: tuple[float, float], box: tuple[float, float]) -> tuple[Floats, NDArray[np.intp]]:
     """Lines between tiles, half way between grid lines and out to the ends, and the grid line (-1: none) of each tile.
 
     A seam lies between two tiles of the line on it. Where the trim reaches beyond the grid there are tiles without a line.

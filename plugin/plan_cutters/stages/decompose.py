@@ -55,9 +55,7 @@ def decompose(
     return interference_free
 
 
-def march_differs(
-    samples: SurfaceSamples, convex: NDArray[np.bool_], region: Ints, interference_free: NDArray[np.bool_]
-) -> int:  # fmt: skip
+def march_differs(samples: SurfaceSamples, convex: NDArray[np.bool_], region: Ints, interference_free: NDArray[np.bool_]) -> int:
     """Convex samples that the seed's march over boundaries would have put on the other side; `region` as in `regions`."""
     marched = _march(samples, convex, region, interference_free)
     return int((marched[convex] != interference_free[convex]).sum())

@@ -98,8 +98,12 @@ def _about(archive: Archive) -> dict[str, Any]:
         raise archive.fault("its array about says no version")
     if version != VERSION:
         made = "an earlier" if version < VERSION else "a later"
-        raise OptionError(f"was made by {made} version, which did not say all that its maps depend on: plan again"
-                          if version < VERSION else f"was made by {made} version: plan again", file=archive.name)  # fmt: skip
+        raise OptionError(
+            f"was made by {made} version, which did not say all that its maps depend on: plan again"
+            if version < VERSION
+            else f"was made by {made} version: plan again",
+            file=archive.name,
+        )
     for word, kind in (("cutter", str), ("part", str), ("question", dict)):
         if not isinstance(about.get(word), kind):
             raise archive.fault(f"its array about says no {word}")

@@ -26,9 +26,7 @@ def steepest(tensor: Floats, variation: Floats) -> tuple[Floats, Floats]:
     return 0.5 * (np.abs(trace) + spread) + variation, spread + 2.0 * variation
 
 
-def from_neighbours(
-    point: Floats, tensor: Floats, grid: FaceGrid, index: NDArray[np.integer]
-) -> tuple[Floats, Floats]:  # fmt: skip
+def from_neighbours(point: Floats, tensor: Floats, grid: FaceGrid, index: NDArray[np.integer]) -> tuple[Floats, Floats]:
     """How far curvature may differ in each sample's cell, 1/mm, and how far the cell reaches, mm.
 
     Parameters

@@ -122,9 +122,13 @@ def posture_map_of(contact: SurfaceSamples, rotations: Floats, context: Context,
     ranges, surroundings, tolerance = conditions.ranges, conditions.surroundings, conditions.tolerance
     whole, outer_tool, inner_tool = conditions.obstacles, context.outer_tool, context.inner_tool
     near, far = _rear(whole.triangles, p, n, cutter.radius)
-    alone = {"rear_gouge": (near, outer_tool.only(FLUTES)), "collision": (far, outer_tool.only(FLUTES)),
-             "neck": (whole, outer_tool.only(NECK)), "shank": (whole, outer_tool.only(SHANK)),
-             "holder": (whole, outer_tool.only(HOLDER))}  # fmt: skip
+    alone = {
+        "rear_gouge": (near, outer_tool.only(FLUTES)),
+        "collision": (far, outer_tool.only(FLUTES)),
+        "neck": (whole, outer_tool.only(NECK)),
+        "shank": (whole, outer_tool.only(SHANK)),
+        "holder": (whole, outer_tool.only(HOLDER)),
+    }
     free, undecided, axis, inside_bodies, no_contact = [], [], [], [], []
     apart: dict[str, list[Floats]] = {word: [] for word in alone}
     gouge = np.empty((len(rotations), 2))
@@ -239,9 +243,7 @@ def _length(vectors: Floats) -> Floats:
     return np.asarray(np.sqrt(x * x + y * y + z * z))
 
 
-def _rear(
-    triangles: Triangles, p: Floats, n: Floats, radius: float
-) -> tuple[Obstacles | None, Obstacles | None]:  # fmt: skip
+def _rear(triangles: Triangles, p: Floats, n: Floats, radius: float) -> tuple[Obstacles | None, Obstacles | None]:
     """Share obstacles out: within 2R of the contact and above its tangent plane, and all others; None if there are none.
 
     Triangles across the border are halved until they are small; then their centre decides.
@@ -268,8 +270,7 @@ def _rear(
         vertex, face = halved(vertex[rest], sides[rest]), np.tile(face[rest], 2)
 
     def gather(parts: list[tuple[Floats, Any]]) -> Obstacles | None:
-        mine = Triangles(np.concatenate([x for x, _ in parts]), np.concatenate([x for _, x in parts]),
-                         triangles.chord_error, ())  # fmt: skip
+        mine = Triangles(np.concatenate([x for x, _ in parts]), np.concatenate([x for _, x in parts]), triangles.chord_error, ())
         return Obstacles(mine) if len(mine) else None
 
     return gather(near), gather(far)

@@ -183,8 +183,7 @@ class PostureMaps(Record):
         low, high = requested.tilt if "tilt" in stated else self.tilt
         if not self.tilt[0] - _END <= low <= high <= self.tilt[1] + _END:
             ends = ":".join(f"{np.degrees(end):.6g}" for end in self.tilt)
-            raise OptionError(f"these maps are of tilts {ends} deg, not "
-                              f"{np.degrees(low):.6g}:{np.degrees(high):.6g}: plan again")  # fmt: skip
+            raise OptionError(f"these maps are of tilts {ends} deg, not {np.degrees(low):.6g}:{np.degrees(high):.6g}: plan again")
         turns = turns_of(self.about, self.rotations, requested, stated)
         place = requested.placement or Placement(requested.setup)
         if not {"setup", "placement"} & stated:
@@ -215,8 +214,10 @@ class PostureMaps(Record):
         from plan_cutters.kernels.maps.mask import mask
 
         if machine.turns and machine.turning < 2:
-            raise OptionError(f"posture maps say nothing of {machine.name}: with fewer than two rotary axes each sample needs "
-                              "rotations of its own; plan the part with it")  # fmt: skip
+            raise OptionError(
+                f"posture maps say nothing of {machine.name}: with fewer than two rotary axes each sample needs "
+                "rotations of its own; plan the part with it"
+            )
         require_side(self.about, place.z)
         axis, (low, high) = np.array(place.z), tilt
         frame = frame_of(axis, None if place.x is None else np.array(place.x))

@@ -137,8 +137,12 @@ class Reasons:
         served = np.zeros(len(rows), bool)
         for k, conditions in enumerate(self.conditions):
             open_ = self.machinable[k][rows] & ~served
-            verdicts = self._search(f"setup {k}" if limited else f"unlimited {k}", cutter, rows[open_],
-                                 conditions if limited else conditions.without_machine())  # fmt: skip
+            verdicts = self._search(
+                f"setup {k}" if limited else f"unlimited {k}",
+                cutter,
+                rows[open_],
+                conditions if limited else conditions.without_machine(),
+            )
             served |= open_ & verdicts.reached[rows]
         return served
 

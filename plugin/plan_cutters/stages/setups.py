@@ -49,6 +49,7 @@ def within_limits(
         return held
     from plan_cutters.kernels.limits import any_axis
 
-    in_chunks(lambda piece: any_axis(piece, samples.normal, samples.direction_max, ranges, low, high, held), rows,
-              conditions.jobs)  # fmt: skip
+    in_chunks(
+        lambda piece: any_axis(piece, samples.normal, samples.direction_max, ranges, low, high, held), rows, conditions.jobs
+    )
     return held

@@ -49,9 +49,8 @@ class _Group:
 
 
 def witnesses(
-    samples: SurfaceSamples, verdicts: Verdicts, context: Context, *, inside: Ints | None = None,
-    part: Part | None = None,
-) -> tuple[Witness, ...]:  # fmt: skip
+    samples: SurfaceSamples, verdicts: Verdicts, context: Context, *, inside: Ints | None = None, part: Part | None = None
+) -> tuple[Witness, ...]:
     """Samples that are not reached, for each face and reason; `inside` as in `access`.
 
     The deepest one that was tried comes first, then the one farthest from it. Depths are measured on the surface of `part`;

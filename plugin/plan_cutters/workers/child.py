@@ -42,8 +42,9 @@ class Child:
     ) -> None:  # fmt: skip
         known = os.environ if environment is None else environment
         self._session = session
-        self.process = subprocess.Popen([sys.executable, "-P", *words], env={**known, VARIABLE: str(there)},
-                                        start_new_session=session, **streams)  # fmt: skip
+        self.process = subprocess.Popen(
+            [sys.executable, "-P", *words], env={**known, VARIABLE: str(there)}, start_new_session=session, **streams
+        )
 
     def ended(self, seconds: float | None = None) -> int | None:
         """Its exit code once it has ended; None where it has not within some seconds."""

@@ -142,8 +142,7 @@ def supervise(
     if name != "SIGKILL":  # which comes from outside
         watch.why = f"the CAD kernel crashed ({name}) at its {_WORK.get(watch.stage, watch.stage)}"
     at = " ".join(filter(None, (watch.stage, watch.face)))
-    raise watch.ended(f"the CAD kernel crashed ({name}, while it was at '{at}')",
-                      "the file may be damaged: export it again")  # fmt: skip
+    raise watch.ended(f"the CAD kernel crashed ({name}, while it was at '{at}')", "the file may be damaged: export it again")
 
 
 def _stopping() -> list[int]:
@@ -166,9 +165,7 @@ def _processor(child: int | None) -> float:
 class _Watch:
     """Keep all that the child has reported so far."""
 
-    def __init__(
-        self, read_timeout: float, display: Display | None = None, *, began: float | None = None
-    ) -> None:  # fmt: skip
+    def __init__(self, read_timeout: float, display: Display | None = None, *, began: float | None = None) -> None:
         self.pipe, self.read_timeout, self.display = -1, read_timeout, display
         self.part, self.stage, self.since = "part", "start", time.monotonic()
         self.began = self.since if began is None else began
@@ -242,8 +239,10 @@ class _Watch:
             own = f"{where}our own {_WORK.get(self.stage, self.stage)} did not end {within}"
             return own, f"try a coarser --tolerance, or {more}"
         fewer = "--faces, " if self.stage == "sample" else ""
-        return (f"{where}the CAD kernel did not end its {_WORK.get(self.stage, self.stage)} {within}",
-                f"the file may be damaged: export it again, or try {fewer}a coarser --tolerance, or {more}")  # fmt: skip
+        return (
+            f"{where}the CAD kernel did not end its {_WORK.get(self.stage, self.stage)} {within}",
+            f"the file may be damaged: export it again, or try {fewer}a coarser --tolerance, or {more}",
+        )
 
     def ended(self, what: str, advice: str, *, interrupted: bool = False) -> Supervised:
         """Make the error to raise when the child is gone."""

@@ -352,8 +352,9 @@ def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, status):
         How many boxes were looked at, and what else takes as long: triangles and nodes.
     """
     count = sweeping.tool.piece.shape[1]
-    workspace = Workspace(np.empty(3), np.empty(3), np.empty((BODIES, BODY)), np.empty((BODIES, count, COLUMNS)), np.empty(9),
-                           seen(), hit.scratch())  # fmt: skip
+    workspace = Workspace(
+        np.empty(3), np.empty(3), np.empty((BODIES, BODY)), np.empty((BODIES, count, COLUMNS)), np.empty(9), seen(), hit.scratch()
+    )
     body, blocker = np.empty(BODY), -1
     for row in rows:
         status[row], blocking = _cell_status(row, patches, nodes, face, sweeping, tree, triangle_face, blocker, body, workspace)

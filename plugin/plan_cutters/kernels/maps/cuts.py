@@ -74,9 +74,7 @@ def take_point(x, y, z, interval, count, turning, k, arcs):
     if (turning.eight >> k) & 1:
         if not _cuts(x, y, z, interval, count, flutes(turning, k)):
             return count, False
-        left, right = point_arc(
-            z, x + offset, y, 0.0, offset, piece[k, RADIUS], piece[k, LOW], piece[k, HIGH]
-        )  # fmt: skip
+        left, right = point_arc(z, x + offset, y, 0.0, offset, piece[k, RADIUS], piece[k, LOW], piece[k, HIGH])
         return _take(interval, count, left, right), True
     away = x * x + z * z
     if abs(y) >= known[k, LATERAL] or z <= known[k, FLOOR] or away >= known[k, FAR] ** 2 or away <= known[k, NEAR] ** 2:
@@ -318,14 +316,18 @@ def _closely(met, start, end, narrowest, workspace):
     right = _first_in_the_way(met, left, end, -1.0, narrowest, workspace)
     right = left if np.isnan(right) else right
     middle = 0.5 * (left + right)
-    return left, right, bool(
-        (met.turning.eight >> met.k) & 1
-        or (
-            _in_the_way(met, min(left + unsure, middle), workspace)
-            and _in_the_way(met, middle, workspace)
-            and _in_the_way(met, max(right - unsure, middle), workspace)
-        )
-    )  # fmt: skip
+    return (
+        left,
+        right,
+        bool(
+            (met.turning.eight >> met.k) & 1
+            or (
+                _in_the_way(met, min(left + unsure, middle), workspace)
+                and _in_the_way(met, middle, workspace)
+                and _in_the_way(met, max(right - unsure, middle), workspace)
+            )
+        ),
+    )
 
 
 @kernel

@@ -183,12 +183,11 @@ def _rotation(frame, e1, e2, turn, rotation, interval, count, turning, whole, lo
     for k in range(LANES):
         _see_triangle(leaves[_LEAVES + 2], k, vertex, known[rotation, k], p, e1, e2, n)
     count, _ = _leaf(
-        leaves[_LEAVES + 2], known[rotation], vertex, frame, turn, interval, count, turning, whole, narrowest, inside,
-        workspace,
-    )  # fmt: skip
+        leaves[_LEAVES + 2], known[rotation], vertex, frame, turn, interval, count, turning, whole, narrowest, inside, workspace
+    )
     count, _ = _leaf(
-        leaves[_LEAVES + 1], known[-1], vertex, frame, turn, interval, count, turning, whole, narrowest, inside, workspace,
-    )  # fmt: skip
+        leaves[_LEAVES + 1], known[-1], vertex, frame, turn, interval, count, turning, whole, narrowest, inside, workspace
+    )
     queue[0, 0], queue[0, 1], queue[0, 2] = 0, 0, whole
     waiting = 1
     for level in range(levels):

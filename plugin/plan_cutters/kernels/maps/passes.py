@@ -299,10 +299,8 @@ def _triangles_pass(seen, cosine, sine, interval, count, tool, margin):
             highest = max(z0, max(z1, z2))
             top = max(ca * z0 + sa * x0, max(ca * z1 + sa * x1, ca * z2 + sa * x2))
             bottom = min(cb * z0 + sb * x0, min(cb * z1 + sb * x1, cb * z2 + sb * x2))
-            front = max(sb * z0 - cb * x0 - slope * y0,
-                        max(sb * z1 - cb * x1 - slope * y1, sb * z2 - cb * x2 - slope * y2))  # fmt: skip
-            behind = min(sa * z0 - ca * x0 + slope * y0,
-                         min(sa * z1 - ca * x1 + slope * y1, sa * z2 - ca * x2 + slope * y2))  # fmt: skip
+            front = max(sb * z0 - cb * x0 - slope * y0, max(sb * z1 - cb * x1 - slope * y1, sb * z2 - cb * x2 - slope * y2))
+            behind = min(sa * z0 - ca * x0 + slope * y0, min(sa * z1 - ca * x1 + slope * y1, sa * z2 - ca * x2 + slope * y2))
             d = sa * slope
             under = ca * low + sa * rim - max(z0 - d * y0, max(z1 - d * y1, z2 - d * y2))
             d = sb * slope

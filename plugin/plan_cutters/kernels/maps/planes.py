@@ -12,19 +12,7 @@ import numpy as np
 
 from plan_cutters.kernels.jit import kernel
 from plan_cutters.kernels.linear.lanes import LANES
-from plan_cutters.kernels.maps.bounds import (
-    AXIS,
-    FAR,
-    HAIR,
-    LATERAL,
-    NEAR,
-    THERE,
-    WIDENS,
-    edge_of,
-    most,
-    rim_line,
-    swept,
-)  # fmt: skip
+from plan_cutters.kernels.maps.bounds import AXIS, FAR, HAIR, LATERAL, NEAR, THERE, WIDENS, edge_of, most, rim_line, swept
 
 #: Rows of ends: cosine and sine of the first tilt, of the last, of the middle, cosine of half the interval.
 CA, SA, CB, SB, CM, SM, CH, ENDS = 0, 1, 2, 3, 4, 5, 6, 7

@@ -172,8 +172,8 @@ def straight(contacts, row, cosine, sine, tool, mode):
     nan if there are none.
     """
     return local_gouge(
-        contacts.curvature[row, 0], contacts.curvature[row, 1], cosine, sine, tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE],
-    )  # fmt: skip
+        contacts.curvature[row, 0], contacts.curvature[row, 1], cosine, sine, tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE]
+    )
 
 
 @kernel

@@ -120,8 +120,9 @@ def _at_most(box, i, body, outline):
         return -np.inf
     if q > box[i, 15]:
         ux, uy = x / q, y / q
-        near = q - half_width(box, i, ux * body[X] + uy * body[Y], ux * body[X + 1] + uy * body[Y + 1],
-                              ux * body[X + 2] + uy * body[Y + 2])  # fmt: skip
+        near = q - half_width(
+            box, i, ux * body[X] + uy * body[Y], ux * body[X + 1] + uy * body[Y + 1], ux * body[X + 2] + uy * body[Y + 2]
+        )
         if near >= widest:
             return -np.inf
     low = outline[0, V0]

@@ -31,7 +31,7 @@ from plan_cutters.kernels.codes import (
     SIDES,
     SLOPE,
     TOP,
-)  # fmt: skip
+)
 from plan_cutters.kernels.jit import kernel, maker
 from plan_cutters.kernels.rows import Scratch
 from plan_cutters.kernels.tool.pieces import clipped, inset, polygon_hit, support
@@ -147,7 +147,7 @@ def alive(box, i, body, piece, mask, rate):
                 ux, uy = across / distance, sideways / distance
                 wide = half_width(
                     box, i, ux * body[X] + uy * body[Y], ux * body[X + 1] + uy * body[Y + 1], ux * body[X + 2] + uy * body[Y + 2]
-                )  # fmt: skip
+                )
                 if distance - wide > radius:
                     mask ^= gone
                     continue
@@ -184,9 +184,12 @@ def _beyond(box, i, body, piece, k, grow, height, across, sideways, square):
         # On the axis a cone has no tangent but its own height's.
         return False
     wide = half_width(
-        box, i, up * body[A] + ux * body[X] + uy * body[Y], up * body[A + 1] + ux * body[X + 1] + uy * body[Y + 1],
+        box,
+        i,
+        up * body[A] + ux * body[X] + uy * body[Y],
+        up * body[A + 1] + ux * body[X + 1] + uy * body[Y + 1],
         up * body[A + 2] + ux * body[X + 2] + uy * body[Y + 2],
-    )  # fmt: skip
+    )
     return over > wide
 
 

@@ -23,8 +23,12 @@ _WHERE_JUDGED = Chip("unsure", "!", "Feasible where judged")
 _IN_PART = Chip("unsure", "◐", "Feasible in part")
 #: The tone of a text, by its chip.
 TONES: dict[Chip, Tone] = {
-    CHIPS[True]: "good", CHIPS[False]: "bad", CHIPS[None]: "unsure", _WHERE_JUDGED: "unsure", _IN_PART: "partly",
-}  # fmt: skip
+    CHIPS[True]: "good",
+    CHIPS[False]: "bad",
+    CHIPS[None]: "unsure",
+    _WHERE_JUDGED: "unsure",
+    _IN_PART: "partly",
+}
 
 
 def chip(plan: Plan, story: Story) -> Chip:

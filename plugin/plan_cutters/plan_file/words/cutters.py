@@ -151,9 +151,11 @@ def remaining_text(plan: Plan, c: CutterEntry) -> str:
             f"; the worst is on {worst.face} at ({place(worst.point)}), "
             f"where the best posture {sure} {mm(worst.depth_mm)} too deep"
         )
-    return (f"{c.id} does not reach {unreached(c, c.area_share)} of {area(plan)} ({c.not_reached:,} of {plan.samples.finished:,} "
-            "samples): "
-            f"{why or 'no reason'}. They lie on {listed(failing, _FACES)}{where}.")  # fmt: skip
+    return (
+        f"{c.id} does not reach {unreached(c, c.area_share)} of {area(plan)} ({c.not_reached:,} of {plan.samples.finished:,} "
+        "samples): "
+        f"{why or 'no reason'}. They lie on {listed(failing, _FACES)}{where}."
+    )
 
 
 def called(obstacle: str | None) -> str:

@@ -19,16 +19,20 @@ def scene(plan: Plan) -> str:
     """Give the faces to machine, the samples and the machine in a sentence or two."""
     targets, ignored = len(plan.effective.target_faces), sum(f.ignored for f in plan.faces)
     also = f", {ignored} ignored" if ignored else ""
-    return (f"The part has {count(plan.part.faces, 'face')}: {targets} to machine{also}, with "
-            f"{count(plan.samples.count, 'sample')}, at most {mm(plan.samples.max_gap_mm)} apart. {machine(plan)}")  # fmt: skip
+    return (
+        f"The part has {count(plan.part.faces, 'face')}: {targets} to machine{also}, with "
+        f"{count(plan.samples.count, 'sample')}, at most {mm(plan.samples.max_gap_mm)} apart. {machine(plan)}"
+    )
 
 
 def rendered(plan: Plan) -> str:
     """Say whose verdicts a drawing of the part shows, and under which conditions they were found."""
     taken = "is selected" if plan.selected else "is shown because it leaves the least area; none is selected"
-    return (f"This cutter {taken}. Part {_size(plan)}. Machine {plan.effective.machine}, setup axis "
-            f"({place(plan.effective.setup)}), gouge tolerance {mm(plan.effective.tolerance_mm)}, "
-            f"{count(plan.samples.count, 'sample')}.")  # fmt: skip
+    return (
+        f"This cutter {taken}. Part {_size(plan)}. Machine {plan.effective.machine}, setup axis "
+        f"({place(plan.effective.setup)}), gouge tolerance {mm(plan.effective.tolerance_mm)}, "
+        f"{count(plan.samples.count, 'sample')}."
+    )
 
 
 def unjudged_share(plan: Plan) -> str:
@@ -65,18 +69,20 @@ def others(plan: Plan, *, every: bool = False) -> list[str]:
 def details(plan: Plan) -> Iterator[str]:
     """Give what is shown only to users who ask for all of it."""
     e = plan.effective
-    yield (f"Part: {_size(plan)}, {count(plan.part.solids, 'solid')}, SHA-256 "
-           f"{plan.part.sha256}.")  # fmt: skip
+    yield (f"Part: {_size(plan)}, {count(plan.part.solids, 'solid')}, SHA-256 {plan.part.sha256}.")
     yield named(plan, f"Choice: {plan.selection.why}; by {plan.selection.rule}.")
-    yield (f"Samples: {plan.samples.convex} convex, {plan.samples.concave} concave, {plan.samples.saddle} saddle, "
-           f"{plan.samples.unjudged} not judged, in {count(plan.samples.regions, 'region')}.")  # fmt: skip
-    yield (f"Searched: tilts {angle(e.tilt_deg[0])} to {angle(e.tilt_deg[1])}, rotations {_turn(e.rotation_deg[0])} to "
-           f"{_turn(e.rotation_deg[1])} every {angle(e.rotation_step_deg)}; tolerance {mm(e.tolerance_mm)}, of which "
-           f"{mm(e.chord_error_mm)} for {e.obstacle_triangles} obstacle triangles.")  # fmt: skip
+    yield (
+        f"Samples: {plan.samples.convex} convex, {plan.samples.concave} concave, {plan.samples.saddle} saddle, "
+        f"{plan.samples.unjudged} not judged, in {count(plan.samples.regions, 'region')}."
+    )
+    yield (
+        f"Searched: tilts {angle(e.tilt_deg[0])} to {angle(e.tilt_deg[1])}, rotations {_turn(e.rotation_deg[0])} to "
+        f"{_turn(e.rotation_deg[1])} every {angle(e.rotation_step_deg)}; tolerance {mm(e.tolerance_mm)}, of which "
+        f"{mm(e.chord_error_mm)} for {e.obstacle_triangles} obstacle triangles."
+    )
     for c in plan.cutters:
         if c.area:
-            yield (f"Between samples of {c.id}: {c.area.contacts} contacts were looked at, {c.area.left} cells are not "
-                   "proved.")  # fmt: skip
+            yield (f"Between samples of {c.id}: {c.area.contacts} contacts were looked at, {c.area.left} cells are not proved.")
     yield f"Versions: {', '.join(f'{name} {number}' for name, number in plan.versions.items())}."
     slow = sorted(plan.run.seconds.items(), key=lambda item: -item[1])[:_STAGES]
     yield f"Seconds: {', '.join(f'{name} {seconds:.1f}' for name, seconds in slow)}."

@@ -80,8 +80,10 @@ def face_text(plan: Plan, cutter: CutterEntry, face: FaceEntry, unhelped: str) -
 def _loss(cutter: CutterEntry, face: FaceEntry, verdicts: FaceVerdicts) -> str:
     share = verdicts.area_share
     why = ", ".join(f"{reason(code)} {percent(part, some=True, whole=False)}" for code, part in by_share(share.lost_by))
-    text = (f"{cutter.id} does not reach {unreached(verdicts, share)} of {face.id} ({count(verdicts.not_reached, 'sample')}): "
-            f"{why or 'no reason is known'}.")  # fmt: skip
+    text = (
+        f"{cutter.id} does not reach {unreached(verdicts, share)} of {face.id} ({count(verdicts.not_reached, 'sample')}): "
+        f"{why or 'no reason is known'}."
+    )
     if verdicts.undecided:
         much = part_of(verdicts, share, ["undecided"])
         text += f" {much} of it is undecided ({verdicts.undecided:,} samples): neither proved safe nor proved blocked."

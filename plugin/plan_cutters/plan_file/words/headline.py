@@ -48,9 +48,11 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
         return take(plan.selected_over_setups, True, why, where=f", in {setups} setups")
     if plan.selected_for_setup:
         c = entries[plan.selected_for_setup]
-        why = (f"It leaves only what the axis limit keeps from every cutter, {unreached(c, c.area_share)} of {area(plan)}: "
-               "that needs "
-               "another setup.")  # fmt: skip
+        why = (
+            f"It leaves only what the axis limit keeps from every cutter, {unreached(c, c.area_share)} of {area(plan)}: "
+            "that needs "
+            "another setup."
+        )
         return take(c.id, None, why, to=f" in {here}")
     best = nearest(plan.cutters)
     name = f"{names[best.id]} ({described(best, names[best.id])})"
@@ -106,11 +108,15 @@ def _between(area: AreaEntry, of: str) -> str:
     if area.feasible:
         return "Between the samples, too, all of the area is proved safe with the tool axes found."
     if area.share == 1.0 and area.left_out:
-        return (f"Between the samples, all area that is known is proved safe with the tool axes found; that of "
-                f"{listed(area.left_out)} is not known.")  # fmt: skip
+        return (
+            f"Between the samples, all area that is known is proved safe with the tool axes found; that of "
+            f"{listed(area.left_out)} is not known."
+        )
     nothing = area.share <= 0.0
     share = "nothing" if nothing else f"{some(area.share)} of {of}"
     rest = "area" if nothing else some(1.0 - area.share)
-    return (f"Between the samples, {share} is proved safe with the tool axis kept as it was found. The {'other ' * (not nothing)}"
-            f"{rest} is not proved, which does not mean unsafe: the tool axis has to turn there from one sample to the next, or "
-            "the samples are too far apart. Check it in simulation, or ask for more (--spacing, --area-budget).")  # fmt: skip
+    return (
+        f"Between the samples, {share} is proved safe with the tool axis kept as it was found. The {'other ' * (not nothing)}"
+        f"{rest} is not proved, which does not mean unsafe: the tool axis has to turn there from one sample to the next, or "
+        "the samples are too far apart. Check it in simulation, or ask for more (--spacing, --area-budget)."
+    )

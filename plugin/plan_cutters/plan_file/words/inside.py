@@ -14,8 +14,10 @@ def inside(plan: Plan, most: int = 5) -> list[str]:
     if not entry.samples:
         return []
     share = percent(entry.share, some=True, whole=entry.samples == plan.samples.count)
-    lines = [f"{share} of the target area ({entry.samples:,} of {plan.samples.count:,} samples) lies inside other bodies of the "
-             "part: it is no surface of the finished part, and what follows is about the rest."]  # fmt: skip
+    lines = [
+        f"{share} of the target area ({entry.samples:,} of {plan.samples.count:,} samples) lies inside other bodies of the "
+        "part: it is no surface of the finished part, and what follows is about the rest."
+    ]
     covering_bodies = sorted((each for each in entry.bodies if each.how != "overlaps"), key=lambda each: each.largest)
     lines += [_body_text(each) for each in covering_bodies[:most]]
     lines += _more(covering_bodies[most:], "body covers", "bodies cover")
@@ -27,8 +29,9 @@ def inside(plan: Plan, most: int = 5) -> list[str]:
     if entry.sheets is not None:
         sheets, area = entry.sheets, size(entry.sheets.area_mm2)
         what = "is a construction sheet" if len(sheets.faces) == 1 else "are construction sheets"
-        lines.append(f"{listed(sheets.faces)} {what} on the skin of a body: {area} face into it. {sheets.option} leaves such "
-                     "sheets out.")  # fmt: skip
+        lines.append(
+            f"{listed(sheets.faces)} {what} on the skin of a body: {area} face into it. {sheets.option} leaves such sheets out."
+        )
     return lines
 
 
@@ -38,9 +41,11 @@ def _body_text(body: CoveringBody) -> str:
     if body.largest:
         touch = "touches" if len(body.faces) == 1 else "touch"
         return f"{_called(body, first=True)} covers {area} of {on}, which {touch} it."
-    return (f"{_called(body, first=True)} {verb} {on} and covers {area} there. It stays in the way, and what lies under "
-            f"it is not planned. To plan that, as for another clamping, leave the body out (nothing is then checked against it): "
-            f"{body.option}.")  # fmt: skip
+    return (
+        f"{_called(body, first=True)} {verb} {on} and covers {area} there. It stays in the way, and what lies under "
+        f"it is not planned. To plan that, as for another clamping, leave the body out (nothing is then checked against it): "
+        f"{body.option}."
+    )
 
 
 def _called(body: CoveringBody, *, first: bool = False) -> str:

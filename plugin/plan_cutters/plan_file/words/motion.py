@@ -50,8 +50,12 @@ def _step(motion: MotionEntry, each: ForcedStepEntry) -> Iterator[str]:
         lines = f"{each.looked_at} of {each.lines} {lines}"
     exact = f"(to {motion.resolution_deg:g} deg)"
     if each.deg >= _LARGE:
-        yield (f"  On {lines} a rotary axis must turn by {each.deg:g} deg {exact} from one sample to the next, whatever the "
-               f"postures: {each.face}.")  # fmt: skip
+        yield (
+            f"  On {lines} a rotary axis must turn by {each.deg:g} deg {exact} from one sample to the next, whatever the "
+            f"postures: {each.face}."
+        )
     if each.turning_deg >= max(_LARGE, each.deg + motion.resolution_deg):
-        yield (f"  On {lines} the first rotary axis turns by {each.turning_deg:g} deg {exact} between two samples where the tool "
-               "stands along it.")  # fmt: skip
+        yield (
+            f"  On {lines} the first rotary axis turns by {each.turning_deg:g} deg {exact} between two samples where the tool "
+            "stands along it."
+        )

@@ -50,8 +50,10 @@ def _rest(operations: OperationsEntry) -> Iterator[str]:
     first, most = operations.plans[0], operations.fewest.found
     for each in first.operations:
         if each.mode == "simultaneous" and first.orientations < most:
-            yield (f"Simultaneous motion finishes {some(each.share)} of the area, with {each.cutter}: {_faces(each)}. "
-                   f"{_count(first.orientations)} leave{'s' * (first.orientations == 1)} it.")  # fmt: skip
+            yield (
+                f"Simultaneous motion finishes {some(each.share)} of the area, with {each.cutter}: {_faces(each)}. "
+                f"{_count(first.orientations)} leave{'s' * (first.orientations == 1)} it."
+            )
         elif each.mode == "simultaneous":
             yield f"Only simultaneous motion reaches {some(each.share)} of the area, with {each.cutter}: {_faces(each)}."
 

@@ -16,11 +16,15 @@ def proposal(plan: Plan) -> tuple[str, ...]:
     where[0] += " of the part along the spindle"
     text = where[0] if one else "; ".join(f"{k} {each}" for k, each in enumerate(where, 1))
     share = percent(entry.found)
-    lines = [f"Proposed {'setup' if one else 'setups'}: {text}. Over a table and nothing else that holds the part, "
-             f"{'it reaches' if one else 'they reach'} {share} of the area to machine."]  # fmt: skip
+    lines = [
+        f"Proposed {'setup' if one else 'setups'}: {text}. Over a table and nothing else that holds the part, "
+        f"{'it reaches' if one else 'they reach'} {share} of the area to machine."
+    ]
     if not entry.held:
-        lines.append(f"The proposal does not hold: the plan reaches {some(entry.kept)} of what the search promised, and no other "
-                     "proposal did better. Name a setup with its fixtures.")  # fmt: skip
+        lines.append(
+            f"The proposal does not hold: the plan reaches {some(entry.kept)} of what the search promised, and no other "
+            "proposal did better. Name a setup with its fixtures."
+        )
     return tuple(lines)
 
 

@@ -20,8 +20,10 @@ def undecided(plan: Plan, names: Mapping[str, str]) -> list[str]:
     if not entry.undecided:
         return []
     share = part_of(entry, entry.area_share, ["undecided"])
-    where = (f"{capital(names[entry.id])} leaves {share} of the area undecided ({count(entry.undecided, 'sample')}): "
-             f"{_where(plan, entry)}.")  # fmt: skip
+    where = (
+        f"{capital(names[entry.id])} leaves {share} of the area undecided ({count(entry.undecided, 'sample')}): "
+        f"{_where(plan, entry)}."
+    )
     return [where, " ".join(_causes(plan, entry))]
 
 
@@ -45,8 +47,11 @@ def _causes(plan: Plan, entry: CutterEntry) -> Iterator[str]:
     # Of a cutter that is too small, all samples; else those on faces that triangles do not follow.
     coarse = entry.undecided_by_reason.get("tolerance", 0)
     if coarse and coarse >= plan.samples.judged:
-        way = ("No smaller --tolerance can be kept: rebuild in CAD what triangles cannot follow, or judge a larger cutter"
-               if raised else "A smaller --tolerance decides it")  # fmt: skip
+        way = (
+            "No smaller --tolerance can be kept: rebuild in CAD what triangles cannot follow, or judge a larger cutter"
+            if raised
+            else "A smaller --tolerance decides it"
+        )
         yield f"The tolerance, {mm(tolerance)}, is too coarse for this cutter. {way}."
         return
     loose, missing = plan.effective.local_tolerance, plan.missing
@@ -54,12 +59,16 @@ def _causes(plan: Plan, entry: CutterEntry) -> Iterator[str]:
         names, it = listed([each.face for each in loose], _FACES), "it" if len(loose) == 1 else "they"
         share = sum(each.share for each in loose)
         of = f", {percent(share)} of the area to be machined" if share > 0.0 else ""
-        yield (f"Triangles follow {names} only within {mm(loose[0].chord_error_mm)}{of}: what only {it} may forbid stays "
-               "undecided until the model is rebuilt there in CAD.")  # fmt: skip
+        yield (
+            f"Triangles follow {names} only within {mm(loose[0].chord_error_mm)}{of}: what only {it} may forbid stays "
+            "undecided until the model is rebuilt there in CAD."
+        )
     if missing:
         unread = list(dict.fromkeys(each.face or each.name or "a face" for each in missing))
-        yield (f"Obstacles are missing or only guessed ({listed(unread, _FACES)}): what they may forbid stays undecided until "
-               "the file is repaired.")  # fmt: skip
+        yield (
+            f"Obstacles are missing or only guessed ({listed(unread, _FACES)}): what they may forbid stays undecided until "
+            "the file is repaired."
+        )
     if coarse == entry.undecided:
         return
     finer = f"--tolerance {tolerance / _FINER:.3g}"

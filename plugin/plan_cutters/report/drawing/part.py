@@ -123,8 +123,11 @@ def _viewers(part: Body, pieces: _Pieces, up: Floats) -> list[tuple[str, Floats]
     others = [each for each in others if max(float(each @ t) for t in taken) < 0.99]
     seen = [_not_reached_seen(part, pieces, each, up) for each in others]
     # The views that there are already show as much of the rest as can be seen: then look from below.
-    front, words = (others[int(np.argmax(seen))], "where most of what is not reached is seen") if max(seen) > 0.0 else (
-        right - back - 0.9 * up, "from below, from a corner")  # fmt: skip
+    front, words = (
+        (others[int(np.argmax(seen))], "where most of what is not reached is seen")
+        if max(seen) > 0.0
+        else (right - back - 0.9 * up, "from below, from a corner")
+    )
     return [("along the setup axis", up), ("from a corner", first), ("from the opposite corner", second), (words, front)]
 
 

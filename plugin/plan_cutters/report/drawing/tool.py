@@ -257,8 +257,9 @@ def _block_height(names: int, ids: int, facts: int) -> float:
     return 4.5 * names + 3.0 * ids + LINE * facts + LINE + 8.0
 
 
-def _block(sheet: Sheet, names: tuple[str, str], facts: list[str], parts: tuple[AnyPart, ...], scale: float, top: float,
-           width: float) -> float:  # fmt: skip
+def _block(
+    sheet: Sheet, names: tuple[str, str], facts: list[str], parts: tuple[AnyPart, ...], scale: float, top: float, width: float
+) -> float:
     """The title block: name, id, scale, what is true of the whole, and which fill is which part; returns where it ends."""
     left, available = _MARGIN, width - 2 * _MARGIN
     title, id_ = names

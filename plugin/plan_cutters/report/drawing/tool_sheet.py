@@ -81,8 +81,9 @@ class Sheet:
     def __init__(self, title: str, description: str) -> None:
         # Several drawings may stand in one page: their ids must differ.
         self.key = f"d{zlib.crc32((title + description).encode()):08x}"
-        self.root = ET.Element("svg", {"xmlns": "http://www.w3.org/2000/svg", "role": "img",
-                                       "aria-labelledby": f"{self.key}-title {self.key}-desc"})  # fmt: skip
+        self.root = ET.Element(
+            "svg", {"xmlns": "http://www.w3.org/2000/svg", "role": "img", "aria-labelledby": f"{self.key}-title {self.key}-desc"}
+        )
         self._add(self.root, "title", {"id": f"{self.key}-title"}).text = title
         self._add(self.root, "desc", {"id": f"{self.key}-desc"}).text = description
         self._defs = self._add(self.root, "defs")
@@ -95,8 +96,11 @@ class Sheet:
 
     def finished(self, width: float, height: float, **data: str) -> str:
         """The sheet as text, of a size, framed."""
-        self.root.attrib |= {"width": f"{_mm(width)}mm", "height": f"{_mm(height)}mm",
-                             "viewBox": f"0 0 {_mm(width)} {_mm(height)}"}  # fmt: skip
+        self.root.attrib |= {
+            "width": f"{_mm(width)}mm",
+            "height": f"{_mm(height)}mm",
+            "viewBox": f"0 0 {_mm(width)} {_mm(height)}",
+        }
         self.root.attrib |= {f"data-{word}": value for word, value in data.items()}
         paper = ET.Element("rect", {"width": _mm(width), "height": _mm(height), "fill": "#fff"})
         self._lines.insert(0, paper)
@@ -134,8 +138,9 @@ class Sheet:
         self.path("M" + "L".join(at(point) for point in points), pen)
 
     def circle(self, centre: Point, radius: float, pen: str, *, fill: str = "none") -> None:
-        self._add(self._lines, "circle", {"cx": _mm(centre[0]), "cy": _mm(centre[1]), "r": _mm(radius), "fill": fill,
-                                          **_PENS[pen]})  # fmt: skip
+        self._add(
+            self._lines, "circle", {"cx": _mm(centre[0]), "cy": _mm(centre[1]), "r": _mm(radius), "fill": fill, **_PENS[pen]}
+        )
 
     def text(self, x: float, y: float, words: str, *, size: float = FONT, anchor: str = "start", bold: bool = False,
              upright: bool = False) -> None:  # fmt: skip
@@ -165,8 +170,7 @@ class Sheet:
             self.arrow(b, a)
             return
         along = ((b[0] - a[0]) / apart, (b[1] - a[1]) / apart) if apart else (1.0, 0.0)
-        out = [(end[0] + way * 2 * ARROW * along[0], end[1] + way * 2 * ARROW * along[1])
-               for end, way in ((a, -1), (b, 1))]  # fmt: skip
+        out = [(end[0] + way * 2 * ARROW * along[0], end[1] + way * 2 * ARROW * along[1]) for end, way in ((a, -1), (b, 1))]
         self.lines((out[0], out[1]), "fine")
         self.arrow(a, out[0])
         self.arrow(b, out[1])

@@ -130,8 +130,7 @@ def placed_in(
         return mesh, np.round(STEPS * place).astype(np.uint16)
     rows = np.flatnonzero(samples.face == number)
     corner = mesh.triangle.reshape(-1)
-    apart = Mesh(mesh.point[corner], mesh.normal[corner], np.arange(len(corner), dtype=np.uint32).reshape(-1, 3),
-                 mesh.uv[corner])  # fmt: skip
+    apart = Mesh(mesh.point[corner], mesh.normal[corner], np.arange(len(corner), dtype=np.uint32).reshape(-1, 3), mesh.uv[corner])
     _, nearest = cKDTree(samples.point[rows]).query(apart.point.reshape(-1, 3, 3).mean(axis=1))
     width = sheet.index.shape[1]
     place = np.stack([column + nearest % width, row + nearest // width], axis=1)

@@ -75,9 +75,11 @@ def _facets(corner: Floats) -> Mesh:
     corner, normal, length = corner[length > 0], normal[length > 0], length[length > 0]
     count = 3 * len(corner)
     return Mesh(
-        corner.reshape(-1, 3), np.repeat(normal / length[:, None], 3, axis=0),
-        np.arange(count, dtype=np.uint32).reshape(-1, 3), np.zeros((count, 2)),
-    )  # fmt: skip
+        corner.reshape(-1, 3),
+        np.repeat(normal / length[:, None], 3, axis=0),
+        np.arange(count, dtype=np.uint32).reshape(-1, 3),
+        np.zeros((count, 2)),
+    )
 
 
 def box_of(surface: Surface, samples: Any) -> tuple[Floats, Floats]:

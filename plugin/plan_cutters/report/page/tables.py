@@ -94,8 +94,7 @@ def _why(plan: Plan, story: Story, shown: CutterEntry) -> str:
     if least is not None:
         short = taken.length - least < answers.SAME
         held = "It cannot be held shorter." if short else f"It can be held as short as {numbers.up(least)}."
-    return " ".join(filter(None, (about, why, *story.scope, held,
-                                  story.cutter(taken.id).next if taken.not_reached else "")))  # fmt: skip
+    return " ".join(filter(None, (about, why, *story.scope, held, story.cutter(taken.id).next if taken.not_reached else "")))
 
 
 def _bars(plan: Plan, entry: CutterEntry) -> list[tuple[str, float, float, str]]:

@@ -62,9 +62,13 @@ def write_html(result: Judged, _split: object, path: Path) -> None:
 
 
 def page(
-    result: Judged, *, maps: Any = None, rows: NDArray[np.int64] | None = None, largest: int | None = None,
+    result: Judged,
+    *,
+    maps: Any = None,
+    rows: NDArray[np.int64] | None = None,
+    largest: int | None = None,
     triangles: int = TRIANGLES,
-) -> bytes:  # fmt: skip
+) -> bytes:
     """The page of a plan.
 
     Parameters
@@ -102,9 +106,11 @@ def page(
     others = _together(arrays.posture_arrays(result, name) for name in result.reaches if name != result.shown)
     _, overlooked = depths(result.plan.effective.tolerance_mm, faces.deflection)
     meta = {
-        **meta_of(result, surface, atlas, box, spots), "drawn_chord_mm": faces.deflection, "overlooked_mm": overlooked,
+        **meta_of(result, surface, atlas, box, spots),
+        "drawn_chord_mm": faces.deflection,
+        "overlooked_mm": overlooked,
         "scalars": legends,
-    }  # fmt: skip
+    }
     about = Drawing(faces.deflection, faces.missing)
 
     where = np.arange(len(result.samples)) if rows is None else rows
