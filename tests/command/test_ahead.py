@@ -65,9 +65,7 @@ def test_one_that_does_not_end_is_not_waited_for_for_ever(monkeypatch):
 
 def test_machine_code_is_found_where_the_compiler_keeps_it(tmp_path):
     """In a process of its own: where the folder is, is asked once."""
-    look = (
-        "from plan_cutters.kernels.jit import at_hand; print(at_hand('material.none'), at_hand('material.moments'))"
-    )
+    look = "from plan_cutters.kernels.jit import at_hand; print(at_hand('material.none'), at_hand('material.moments'))"
     make = "import numpy as np; from plan_cutters.kernels.material import moments; moments(np.zeros((1, 3, 3)), np.ones(1), 0)"
     environment = {**ENV, "NUMBA_CACHE_DIR": str(tmp_path)}
 
