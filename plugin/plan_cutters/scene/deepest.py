@@ -100,10 +100,7 @@ def deepest(
         return depth
 
     def met(depth: float) -> int:
-        hit, there = (
-            np.full(1, -1, np.int32),
-            (contact[None], normal[None], posture.axis.copy(), posture.tilt_direction.copy()),
-        )
+        hit, there = (np.full(1, -1, np.int32), (contact[None], normal[None], posture.axis.copy(), posture.tilt_direction.copy()))
         tool = tool_of(assembly(cutter, depth, depth))
         probe(np.zeros(1, np.int64), *there, tool, obstacles.tree, hit, hit.copy())
         return int(hit[0])
