@@ -1,6 +1,7 @@
 """A check is about a machine, tools and setups, as the user states them in plain numbers, and about the files of a plan."""
 
-from collections.abc import Mapping
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -165,3 +166,46 @@ def allowed(machine: MachineAxes, setup: Setup, degrees: Floats) -> NDArray[np.b
     within = ((degrees >= low - 1e-6) & (degrees <= high + 1e-6)).all(axis=1)
     tilt = np.arccos(np.clip(axes_of(machine, setup, degrees) @ frame_of(setup)[2], -1.0, 1.0))
     return np.asarray(within & (tilt <= machine.tilt_limit + 1e-9))
+
+
+def other_angles(question: Question, setup: int, degrees: Floats) -> tuple[float, ...] | None:
+    """The other angles, deg, with the same axis within the machine's limits, as a control shows them; None: there are none.
+
+    The second axis turns the tool towards the first axis and away: mirrored about where it is nearest, it is as far off.
+    """
+    machine = question.machine
+    (first, second), tool = machine.direction, machine.tool
+    base = tool - (tool @ second) * second
+    nearest = math.degrees(math.atan2(first @ np.cross(second, base), first @ base))
+    mirrored = 2.0 * nearest - degrees[1]
+    wanted = axes_of(machine, question.setups[setup], degrees[None])[0]
+    best: tuple[float, ...] | None = None
+    for b in (mirrored + 360.0 * k for k in (-2, -1, 0, 1, 2)):
+        if not _within(b, machine.limits[1]):
+            continue
+        at_zero = axes_of(machine, question.setups[setup], np.array([[0.0, b]]))[0]
+        turning = carried_first(question, setup)
+        p, q = (v - (v @ turning) * turning for v in (at_zero, wanted))
+        if np.linalg.norm(p) < 1e-9:
+            return None
+        a = math.degrees(math.atan2(np.cross(p, q) @ turning, p @ q))
+        for turn in (a, a - 360.0, a + 360.0):
+            candidate = (turn, b)
+            apart = sum(abs((x - y + 180.0) % 360.0 - 180.0) for x, y in zip(candidate, degrees.tolist(), strict=True))
+            if _within(turn, machine.limits[0]) and apart > 0.01 and (best is None or _size(candidate) < _size(best) - 1e-9):
+                best = candidate
+    return None if best is None else tuple(round(x, 3) + 0.0 for x in best)
+
+
+def carried_first(question: Question, setup: int) -> Floats:
+    """The direction (3,) of the first rotary axis in the part's coordinates."""
+    return np.asarray(question.machine.direction[0] @ frame_of(question.setups[setup]))
+
+
+def _size(angles: Sequence[float]) -> float:
+    return sum(abs(x) for x in angles)
+
+
+def _within(degrees: float, limits: Floats) -> bool:
+    low, high = np.degrees(limits)
+    return bool(low - 1e-6 <= degrees <= high + 1e-6)
