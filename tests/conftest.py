@@ -20,10 +20,18 @@ from tests.support.skips import strict
 settings.register_profile("suite", settings(), deadline=None)
 settings.load_profile("suite")
 
-#: Files of tests that begin, in this order; the others follow by name, and those of the last folders fill what is left of time:
-#: they are short, so that all processes end together.
-FIRST = ("ahead", "machine_files", "cli", "feel", "files", "lifetime", "setup_ranking", "batch_command")
-LAST = ("document", "domain", "library")
+#: What begins: a file of tests that has all kernels compiled, and beside it folders that need none. Then the longest files.
+COMPILING, BESIDE = "ahead", ("domain", "house", "library", "machines")
+FIRST = ("cli", "feel", "files", "lifetime", "setup_ranking", "batch_command")
+#: Folders of short files, with which all processes end together.
+LAST = ("document", "files", "plan_file")
+
+
+def _rank(path):
+    """The place of a file of tests in the order in which they begin; of equals the one whose name comes first."""
+    stem, folder = path.stem.removeprefix("test_"), path.parent.name
+    order = [stem == COMPILING, folder in BESIDE, *(stem == each for each in FIRST), folder not in LAST, True]
+    return order.index(True)
 
 
 def pytest_sessionstart():
@@ -65,8 +73,7 @@ def pytest_collection_modifyitems(items):
         for value in item.callspec.params.values() if hasattr(item, "callspec") else ():
             if isinstance(value, Path) and not value.exists():
                 item.add_marker(pytest.mark.skip(reason=f"the real file {value.name} is not at hand (shared/data/cad)"))
-    rank = {f"test_{name}": k for k, name in enumerate(FIRST)}
-    items.sort(key=lambda item: rank.get(item.path.stem, len(rank) + (item.path.parent.name in LAST)))
+    items.sort(key=lambda item: _rank(item.path))
 
 
 @pytest.hookimpl(optionalhook=True)
