@@ -1,7 +1,7 @@
 """End mills as they are sold: diameters, flutes, overall lengths, and the stick-outs that are usual.
 
-The lengths are makers' usual catalogue lengths, rounded: flutes and shanks of long solid carbide end mills (as DIN 6527 L has them; of
-inch tools as the common series of makers), and the overall length of their longest usual design. A tool that somebody has may
+The lengths are the usual catalogue lengths of makers, rounded: flutes and shanks of long solid carbide end mills (as in DIN 6527;
+of inch tools as the common series of makers), and the overall length of their longest usual design. A tool that somebody has may
 differ: what stands here is for advice on what to buy.
 """
 
@@ -97,8 +97,8 @@ def is_standard(cutter: Cutter) -> bool:
 def smaller(cutter: Cutter, ratio: float) -> tuple[Cutter, ...]:
     """Sold end mills of the same kind that are thinner, the largest first, in the same holder.
 
-    A ball stays a ball, a flat end a flat end, and a bull nose keeps its corner radius or has the next usual one below. None for a
-    tapered cutter, and for kinds that are no end mills. Between the flutes and a thicker shank there is a relieved neck, as far
+    A ball stays a ball, a flat end a flat end, and a bull nose keeps its corner radius or has the next usual one below. None for
+    a tapered cutter, and for kinds that are no end mills. Between the flutes and a thicker shank there is a relieved neck, as far
     as the stick-out leaves a length for it; the cone to the shank counts as shank.
 
     Parameters
