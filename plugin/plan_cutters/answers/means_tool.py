@@ -65,7 +65,7 @@ def holder(scan: Scan) -> Iterator[Candidate]:
 
 
 def _chucks(now: Holder) -> list[Holder]:
-    """Collet chucks of the table that are slimmer at the nose than a holder, the widest first, on the same taper if it has one."""
+    """Collet chucks of the table that are slimmer at the nose than a holder, the widest first, on its taper if it has one."""
     name = now.name.lower()
     taper, nose, length = name.rpartition("er") if chuck_of(name) else ("", "", "")
     _, times, mm = length.partition("x")

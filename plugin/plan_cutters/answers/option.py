@@ -31,14 +31,10 @@ def option(
     words = [] if tuple(cutters) == (cutter,) else _more(ready, cutters)
     if words is None:
         return None
-    if proposed(ready):
-        # Another cutter might make `auto` choose otherwise.
-        pinned = _pinned(ready, ready.chosen.targets if faces is None else faces)
-        if pinned is None or setups is not None or flip is not None:
-            return None
-        words += pinned
-        faces = None
-    elif setups is not None:
+    auto = proposed(ready)
+    if auto and (setups is not None or flip is not None or options.other_setups):
+        return None
+    if setups is not None:
         if options.placement is not None or any(options.other_placements):
             return None
         words += [word for axis in setups for word in ("--setup", ",".join(f"{each:.6g}" for each in axis))]
@@ -50,7 +46,10 @@ def option(
         if not flip:
             return None
         words.append("--flip")
-    if faces is not None:
+    if auto and (words or faces is not None):
+        # Another cutter might make `auto` choose otherwise.
+        words += _pinned(ready, ready.chosen.targets if faces is None else faces)
+    elif faces is not None:
         words += ["--faces", ",".join(f"F{number}" for number in faces)]
     return " ".join(words) or None
 
@@ -61,11 +60,9 @@ def proposed(ready: Prepared) -> bool:
     return place is not None and not place.file and any(each.follows_setup for each in place.fixtures)
 
 
-def _pinned(ready: Prepared, faces: Sequence[int]) -> list[str] | None:
-    """Name the proposed setup, its table, and the faces to be finished; None where there are several setups."""
-    options, part = ready.options, ready.scene.part
-    if options.other_setups:
-        return None
+def _pinned(ready: Prepared, faces: Sequence[int]) -> list[str]:
+    """Name the proposed setup, its table, and the faces to be finished."""
+    part = ready.scene.part
     words = ["--setup", ",".join(f"{each:.12g}" for each in ready.scene.setup), "--fixture", "table"]
     selected = select_faces(part.faces, ready.chosen.asked, tree=part.tree, ignored=ready.scene.ignored, blends=part.blends)
     return words if tuple(selected) == tuple(faces) else [*words, "--faces", _ranges(faces)]

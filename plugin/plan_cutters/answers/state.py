@@ -29,11 +29,14 @@ class State:
         The one that is mended, or what became of it, first.
     setups : tuple of (axis, x)
         As `Conditions` has them; x may be None.
+    tables : dict
+        Obstacles of setups that are not planned yet, made once, by axis and tolerance.
     """
 
     ready: Prepared
     cutters: tuple[Cutter, ...]
     setups: tuple[tuple[Axis, Axis | None], ...]
+    tables: dict[tuple[Axis, float], Surroundings] = field(default_factory=dict)
 
     @property
     def axes(self) -> tuple[Axis, ...]:
@@ -46,7 +49,10 @@ class State:
         for axis, x in self.setups:
             placed = replace(conditions, setup=np.array(axis), x=None if x is None else np.array(x))
             if axis != self.ready.scene.setup and axis not in self.ready.options.other_setups:
-                placed = replace(placed, surroundings=on_table(self.ready, axis))
+                at = axis, self.ready.scene.asked
+                if at not in self.tables:
+                    self.tables[at] = on_table(self.ready, axis)
+                placed = replace(placed, surroundings=self.tables[at])
             there = replace(self.ready, conditions=placed)
             for cutter in self.cutters:
                 yield key(there, cutter, axis, x), Case(there, cutter)
