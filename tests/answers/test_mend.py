@@ -347,7 +347,11 @@ def test_changes_are_in_the_order_of_how_little_they_ask(wavy):
 def test_one_thing_is_changed(wavy):
     """Another cutter differs in the one dimension, or in what follows it."""
     found, _, (_, options) = wavy
-    follow = {"stick_out": {"length"}, "radius": {"radius", "shank_radius", "length", "flutes", "neck"}, "corner_radius": {"corner_radius"}}
+    follow = {
+        "stick_out": {"length"},
+        "radius": {"radius", "shank_radius", "length", "flutes", "neck"},
+        "corner_radius": {"corner_radius"},
+    }
     for change in found.changes:
         if change.cutter is not None:
             was = options["cutters"][0]
