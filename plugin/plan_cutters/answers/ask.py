@@ -82,8 +82,8 @@ def _what_if(
 ) -> WhatIfAnswer:
     finished, missed = Finished.of(ready), _missed(reaches, other_setups, cutter) & ready.finished
     why = "" if other_setups else undecidable(ready, cutter, reaches[cutter])
-    lost = finished.of_rows(np.flatnonzero(missed & finished.wanted))
-    if not why and missed.any() and not worth(finished, lost):
+    share = finished.of_rows(np.flatnonzero(missed & finished.wanted))
+    if not why and missed.any() and not worth(finished, share):
         why = "what it leaves is too little for advice: less than 0.1 % of the area, or than 1 mm²"
     if why:
         not_reached = reaches[cutter].not_reached

@@ -70,15 +70,15 @@ def _chucks(now: Holder) -> list[Holder]:
     taper, nose, length = name.rpartition("er") if chuck_of(name) else ("", "", "")
     _, times, mm = length.partition("x")
     long = f"x{mm}" if times else "" if nose else f"x{sum(stage.length for stage in now.stages):.10g}"
-    found = []
+    slimmer = []
     for word in NOSES:
         try:
             made = Holder.parse(f"{taper}{word}{long}")
         except CutterError:
             continue
         if made.stages[0].radius < now.stages[0].radius - SAME:
-            found.append(made)
-    return found[::-1]
+            slimmer.append(made)
+    return slimmer[::-1]
 
 
 def chuck_of(name: str) -> bool:

@@ -127,7 +127,7 @@ def worth(finished: Finished, gain: float) -> bool:
     return gain >= max(WORTH, WORTH_AREA / max(1e-300, finished.whole))
 
 
-def in_order(steps: Sequence[Step], given: Sequence[Cutter]) -> list[Step]:
+def in_order(steps: Sequence[Step], known: Sequence[Cutter]) -> list[Step]:
     """Steps in the order in which they are advised.
 
     First those that free at least half of what the best one frees: what is in the drawer, other setups, how a tool is held, a
@@ -136,16 +136,16 @@ def in_order(steps: Sequence[Step], given: Sequence[Cutter]) -> list[Step]:
     enough = _ENOUGH * max((step.before - step.after for step in steps), default=0.0)
 
     def rank(step: Step) -> tuple[float, ...]:
-        needs = needed(step, given) if step.before - step.after >= enough else _LAST
+        needs = needed(step, known) if step.before - step.after >= enough else _LAST
         return needs, round(step.after, _ALIKE), *effort(step.moves)
 
     return sorted(steps, key=rank)
 
 
-def needed(step: Step, given: Sequence[Cutter]) -> int:
+def needed(step: Step, known: Sequence[Cutter]) -> int:
     """What a step asks for, by its costliest change: a place in NEEDS; a new tool held out farther than usual is a place, too."""
-    usual = max([USUAL, *map(slenderness, given)]) * (1.0 + 1e-9)
-    unusual = any(slenderness(each) > usual for each in step.cutters if each not in given)
+    usual = max([USUAL, *map(slenderness, known)]) * (1.0 + 1e-9)
+    unusual = any(slenderness(each) > usual for each in step.cutters if each not in known)
     return max(_UNUSUAL * unusual, *(NEEDS[move.means] for move in step.moves), 0)
 
 
