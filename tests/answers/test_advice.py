@@ -1,4 +1,4 @@
-"""Advice that a shop can follow: usual stick-outs, cutters that are sold, the kind that stays, and options that keep their word."""
+"""Advice that a shop can follow: usual stick-outs, sold cutters of the same kind, and options that keep their word."""
 
 from types import SimpleNamespace
 

@@ -80,18 +80,15 @@ def ask(
 def _what_if(
     ready: Prepared, cutter: Cutter, reaches: Mapping[Cutter, Verdicts], other_setups: OtherSetups, tell: Progress
 ) -> WhatIfAnswer:
-    finished, missed = Finished.of(ready), _missed(reaches, other_setups, cutter) & ready.finished
+    finished, missed = Finished.of(ready), _missed(reaches, other_setups, cutter)
+    unfinished = missed & ready.finished
+    share = finished.of_rows(np.flatnonzero(unfinished))
     why = "" if other_setups else undecidable(ready, cutter, reaches[cutter])
-    share = finished.of_rows(np.flatnonzero(missed & finished.wanted))
-    if not why and missed.any() and not worth(finished, share):
+    if not why and unfinished.any() and not worth(finished, share):
         why = "what it leaves is too little for advice: less than 0.1 % of the area, or than 1 mm²"
     if why:
-        not_reached = reaches[cutter].not_reached
-        within = int((ready.inside_bodies & not_reached).sum())
-        unfinished = not_reached & ready.finished
-        return WhatIfAnswer(
-            cutter.id, int(unfinished.sum()) + within, within, (), why, Finished.of(ready).of_rows(np.flatnonzero(unfinished))
-        )
+        within = int((ready.inside_bodies & missed).sum())
+        return WhatIfAnswer(cutter.id, int(unfinished.sum()) + within, within, (), why, share)
     alone = mend(ready, cutter, reaches[cutter], progress=part_of(tell, 0, 2))
     return steps(ready, alone, cutter, reaches, other_setups, progress=part_of(tell, 1, 2))
 

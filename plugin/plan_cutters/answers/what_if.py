@@ -49,7 +49,9 @@ def search(thing: Thing, what: WhatIf, trials: Trials) -> Change:
         words, options = what.serves(result, step.case)
         (cutter,) = options.get("cutters", (None,))
         values = [None if each is None else what.value_of(each) for each in (result, beyond)]
-        return Change(thing, what.now, values[0], True, 0, len(trials.not_reached), trials.count, values[1], cutter, words, options)
+        return Change(
+            thing, what.now, values[0], True, 0, len(trials.not_reached), trials.count, values[1], cutter, words, options
+        )
     end = what.ends[0] if what.nested else trials.closest(what.ends)
     remaining = remaining or StillMissed.by(end, trials.not_reached)
     why = what.fails(end, remaining)
