@@ -147,8 +147,6 @@ def test_with_a_proposed_setup_the_option_names_it():
 HARD = {
     "hard/gmsh_pump_carter_sup.stp": ("--cutter", "D16L60F32S16", "--cutter", "D6L40rc3F15S6", "--holder", "er25", "--machine",
                                  "trunnion-ac", "--setup", "auto", "--spacing", "14", "--faces", "all"),
-    "hard/ampath_propeller.stp": ("--cutter", "D16L80rc8F32S16", "--holder", "er32", "--machine", "trunnion-ac", "--setup", "+x",
-                             "--spacing", "25"),
     "hard/jack_phone.igs": ("--cutter", "D8L40rc4F16S8", "--cutter", "D4L35rc2F12S6", "--holder", "er20",
                             "--machine", "trunnion-ac", "--spacing", "4"),
 }  # fmt: skip
