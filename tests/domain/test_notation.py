@@ -7,11 +7,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from plan_cutters.answers.option import spoken
-from plan_cutters.answers.what_if_cutter import longer, thinner
+from plan_cutters.answers.what_if_cutter import longer
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.lengths import Notation, across, length
 from plan_cutters.domain.spec import is_spec, spelled, typed
+from plan_cutters.domain.standard_tools import USUAL, smaller
 from plan_cutters.errors import CutterError, PlanError
 from plan_cutters.options import Options
 from plan_cutters.plan_file.words import change_text
@@ -42,18 +43,21 @@ def test_a_number_reads_as_itself(by, inches, value):
 @pytest.mark.parametrize(
     ("word", "thin", "stick_out", "size"),
     [
-        ("D6L40rc3F15S6", "D4L40rc2F15S4", "a stick-out of 45 mm instead of 40 mm", "a diameter of 4 mm instead of 6 mm"),
-        ("R3L40rc3F15S3", "R2L40rc2F15S2", "a stick-out of 45 mm instead of 40 mm", "a radius of 2 mm instead of 3 mm"),
-        ("D0.25inL2in", "D4L2in", "a stick-out of 1.77165 in instead of 2 in", "a diameter of 0.15748 in instead of 0.25 in"),
+        ("D6L40rc3F15S6", "D5L25rc2.5F13N4.75x10S6", "a stick-out of 45 mm (7.5 D, more than the usual 5 D) instead of 40 mm",
+         "a ball end D5 held 25 mm out"),
+        ("R3L20rc3F15S3", "R2.5L25rc2.5F13N2.375x10S3", "a stick-out of 45 mm (7.5 D, more than the usual 5 D) instead of 20 mm",
+         "a ball end R2.5 held 25 mm out"),
+        ("D0.5inL2in", "D0.375inL1.875inF0.875inS0.375in", "a stick-out of 1.77165 in instead of 2 in",
+         "a flat end D0.375in held 1.875 in out"),
     ],
 )  # fmt: skip
 def test_what_is_made_of_a_cutter_is_written_as_the_cutter_was(word, thin, stick_out, size):
     now = Cutter.parse(word)
-    slim = thinner(now, 2.0)
-    assert change_text.head(slim) == thin
-    assert Cutter.parse(thin).id == slim.id
+    made = smaller(now, USUAL)[0]
+    assert change_text.head(made) == thin
+    assert Cutter.parse(thin).id == made.id
     assert change_text.stick_out(45.0, now) == stick_out
-    assert change_text.radius(2.0, now) == size
+    assert change_text.tool(made) == size
 
 
 def test_a_holder_of_the_options_is_not_written_again():
@@ -66,8 +70,8 @@ def test_a_holder_of_the_options_is_not_written_again():
     assert Cutter.parse(spoken(other, options)).asked(0.0, 0.0, options.holder).id == other.id
     slim = replace(other, holder=Holder.parse("D20L60"))
     assert spoken(slim, options) == "D6L55rc1F20S6HD20L60"
-    assert spoken(other, Options(cutters="D6L40")) == "D6L55rc1F20S6HD32L60"
-    assert change_text.holder(slim.holder, held) == "a slimmer holder, D20L60 instead of ER16"
+    assert spoken(other, Options(cutters="D6L40")) == "D6L55rc1F20S6Her16"
+    assert change_text.holder(slim.holder, held) == "the holder D20L60 instead of ER16"
 
 
 def test_a_word_with_its_holder_is_a_word():

@@ -51,6 +51,11 @@ class Finished(Record):
         total = area.sum() + sum(known[number - 1] for number, _ in samples.empty)
         return cls(area, area / max(total, 1e-300), ready.finished)
 
+    @property
+    def whole(self) -> float:
+        """All of the finished area, mm2."""
+        return float(self.area.sum()) / max(1e-300, float(self.share.sum()))
+
     def of_rows(self, rows: Rows) -> float:
         """The share that some samples stand for."""
         return min(1.0, float(self.share[rows].sum()))

@@ -5,12 +5,13 @@ from contextlib import AbstractContextManager
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from plan_cutters.answers.areas import Finished
 from plan_cutters.answers.largest_radius import largest_radius
 from plan_cutters.answers.least_set import least_set
 from plan_cutters.answers.mend import mend
-from plan_cutters.answers.steps import steps
+from plan_cutters.answers.steps import steps, worth
 from plan_cutters.answers.stick_out import least_stick_out
 from plan_cutters.answers.undecidable import undecidable
 from plan_cutters.domain.answers import Answers
@@ -79,16 +80,23 @@ def ask(
 def _what_if(
     ready: Prepared, cutter: Cutter, reaches: Mapping[Cutter, Verdicts], other_setups: OtherSetups, tell: Progress
 ) -> WhatIfAnswer:
+    finished, missed = Finished.of(ready), _missed(reaches, other_setups, cutter)
+    unfinished = missed & ready.finished
+    share = finished.of_rows(np.flatnonzero(unfinished))
     why = "" if other_setups else undecidable(ready, cutter, reaches[cutter])
+    if not why and unfinished.any() and not worth(finished, share):
+        why = "what it leaves is too little for advice: less than 0.1 % of the area, or than 1 mm²"
     if why:
-        not_reached = reaches[cutter].not_reached
-        within = int((ready.inside_bodies & not_reached).sum())
-        unfinished = not_reached & ready.finished
-        return WhatIfAnswer(
-            cutter.id, int(unfinished.sum()) + within, within, (), why, Finished.of(ready).of_rows(np.flatnonzero(unfinished))
-        )
+        within = int((ready.inside_bodies & missed).sum())
+        return WhatIfAnswer(cutter.id, int(unfinished.sum()) + within, within, (), why, share)
     alone = mend(ready, cutter, reaches[cutter], progress=part_of(tell, 0, 2))
     return steps(ready, alone, cutter, reaches, other_setups, progress=part_of(tell, 1, 2))
+
+
+def _missed(reaches: Mapping[Cutter, Verdicts], other_setups: OtherSetups, cutter: Cutter) -> NDArray[np.bool_]:
+    """Samples (n,) that a cutter does not reach in any setup."""
+    each = [reaches[cutter], *(found[cutter.id] for _, found in other_setups)]
+    return np.logical_and.reduce([verdicts.not_reached for verdicts in each])
 
 
 def nearest(ready: Prepared, reaches: Mapping[Cutter, Verdicts], other_setups: OtherSetups) -> list[Cutter]:
@@ -96,8 +104,7 @@ def nearest(ready: Prepared, reaches: Mapping[Cutter, Verdicts], other_setups: O
     finished, missing = Finished.of(ready), ready.conditions.surroundings.doubtful
     unreached = {}
     for cutter in ready.cutters:
-        each = [reaches[cutter], *(found[cutter.id] for _, found in other_setups)]
-        not_reached = np.logical_and.reduce([verdicts.not_reached for verdicts in each]) & finished.wanted
+        not_reached = _missed(reaches, other_setups, cutter) & finished.wanted
         if not_reached.any() or missing:
             unreached[cutter] = finished.of_rows(np.flatnonzero(not_reached))
     return sorted(unreached, key=lambda cutter: round(unreached[cutter], 9))

@@ -6,34 +6,30 @@ from dataclasses import replace
 
 from plan_cutters.answers.scan import HALF, NEARLY, Candidate, Scan
 from plan_cutters.answers.state import State
-from plan_cutters.answers.what_if_cutter import CORNERS, THINNEST, highest, longer, made_of, thinner
+from plan_cutters.answers.what_if_cutter import highest, longer, made_of
 from plan_cutters.domain.change import Move
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.holder import Holder, Segment
+from plan_cutters.domain.holder import Holder
+from plan_cutters.domain.shapes import SAME
+from plan_cutters.domain.standard_holders import NOSES, chuck
+from plan_cutters.domain.standard_tools import MOST, USUAL, corners, is_standard, smaller
+from plan_cutters.errors import CutterError
 from plan_cutters.plan_file.words import change_text
 
-#: Radii that are tried for the rest: those sold, mm, and down to this share of the present one.
-_RADII = (
-    0.1, 0.2, 0.25, 0.3, 0.4, 0.5, 0.75, 1.0, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.5, 16.0, 20.0, 25.0, 31.5, 40.0,
-          50.0)  # fmt: skip
-_THINNER = 0.1
-#: Of their length they are no less: 15 diameters are as much as is sold.
-_SLENDER = 1.0 / 30.0
-#: Shares of its radius to which a holder is slimmed.
-_SLIM = (0.9, 0.8, 0.7, 0.6, 0.5, 0.4)
-#: What a holder is thicker than what it holds, at least, mm.
-_WALL = 2.0
+#: Samples on which the cutters that are sold are compared, at most about so many.
+_LOOKED_AT = 48
 #: Other given cutters that are looked at for the rest, at most.
 _MOST_CUTTERS = 4
 
 
 def stick_out(scan: Scan) -> Iterator[Candidate]:
+    """A longer stick-out: the least that gains nearly all that a usual one gains, and so of the longest that are still in use."""
     cutter = scan.state.cutters[0]
     if cutter.holder is None:
         return
     grain = _round_down(2.0 * cutter.radius)
     first = math.floor(cutter.length / grain + 1e-9) + 1
-    most = math.ceil(highest(scan.state.ready, cutter) / grain) - first
+    high = highest(scan.state.ready, cutter)
 
     def value(at: int) -> float:
         return round((first + at) * grain, 6)
@@ -41,41 +37,62 @@ def stick_out(scan: Scan) -> Iterator[Candidate]:
     def make(at: int) -> State | None:
         return _with_first(scan.state, longer(cutter, value(at)))
 
-    for at, state, missed in scan.least(make, most, (NEARLY, HALF)):
-        words = change_text.stick_out(value(at), cutter)
-        yield scan.found(Move("stick_out", cutter.length, value(at), words), state, missed, nested=False)
+    seen = set[int]()
+    for ratio in (USUAL, MOST):
+        most = math.floor(min(high + grain, ratio * 2.0 * cutter.radius) / grain + 1e-9) - first
+        for at, state, missed in scan.least(make, most, (NEARLY, HALF)):
+            if at not in seen:
+                seen.add(at)
+                words = change_text.stick_out(value(at), cutter)
+                yield scan.found(Move("stick_out", cutter.length, value(at), words), state, missed, nested=False)
 
 
 def holder(scan: Scan) -> Iterator[Candidate]:
+    """A slimmer holder of the table that takes the shank, as long as the present one."""
     cutter = scan.state.cutters[0]
     if cutter.holder is None:
         return
-    stages, below = cutter.holder.stages, cutter.stages
-    least = max((s.upper_radius for part, _, s in below if part != "holder"), default=cutter.radius)
-    least = max(least, cutter.radius) + _WALL
-    now = max(max(s.radius, s.upper_radius) for s in stages)
-
-    def slim(radius: float, share: float) -> float:
-        return max(min(radius, least), round(share * radius, 1))
-
-    def slimmed(at: int) -> Holder:
-        share = _SLIM[at]
-        return Holder(tuple(Segment(slim(s.radius, share), s.length, slim(s.upper_radius, share)) for s in stages))
+    slimmer = [held for each in _chucks(cutter.holder) if (held := made_of(cutter, holder=each)) is not None]
 
     def make(at: int) -> State | None:
-        return _with_first(scan.state, made_of(cutter, holder=slimmed(at)))
+        return _with_first(scan.state, slimmer[at])
 
-    for at, state, missed in scan.least(make, len(_SLIM) - 1):
-        tried = max(max(s.radius, s.upper_radius) for s in slimmed(at).stages)
-        if tried < now:
-            words = change_text.holder(slimmed(at), cutter)
-            yield scan.found(Move("holder", cutter.holder.id, slimmed(at).id, words), state, missed, nested=True)
+    for at, state, missed in scan.least(make, len(slimmer) - 1):
+        other = slimmer[at].holder
+        if other is not None:
+            move = Move("holder", cutter.holder.id, other.id, change_text.holder(other, cutter))
+            yield scan.found(move, state, missed, nested=False)
+
+
+def _chucks(now: Holder) -> list[Holder]:
+    """Collet chucks of the table that are slimmer at the nose than a holder, the widest first, on its taper if it has one."""
+    name = now.name.lower()
+    taper, nose, length = name.rpartition("er") if chuck_of(name) else ("", "", "")
+    _, times, mm = length.partition("x")
+    long = f"x{mm}" if times else "" if nose else f"x{sum(stage.length for stage in now.stages):.10g}"
+    slimmer = []
+    for word in NOSES:
+        try:
+            made = Holder.parse(f"{taper}{word}{long}")
+        except CutterError:
+            continue
+        if made.stages[0].radius < now.stages[0].radius - SAME:
+            slimmer.append(made)
+    return slimmer[::-1]
+
+
+def chuck_of(name: str) -> bool:
+    """Whether a name is the word of a holder of the table."""
+    try:
+        return chuck(name) is not None
+    except CutterError:
+        return False
 
 
 def other_cutters(scan: Scan) -> Iterator[Candidate]:
     """Other given cutters for the rest: the one that leaves least, and the most wanted that leaves hardly more."""
     base, known = scan.state, scan.known
-    others = [cutter for cutter in scan.given if cutter not in base.cutters]
+    others = [each for each in scan.given if each not in base.cutters and of_a_kind(scan, base.cutters[0], each)]
     rows = scan.few
     if len(others) > _MOST_CUTTERS:
         # Those that leave least by what is known already.
@@ -100,45 +117,57 @@ def other_cutters(scan: Scan) -> Iterator[Candidate]:
         yield scan.found(move, state, missed, nested=True)
 
 
+def of_a_kind(scan: Scan, cutter: Cutter, other: Cutter) -> bool:
+    """Whether another cutter may do the rest of one: on free-form faces no sharp end comes after a round one."""
+    sharp = other.shape == "form" or not other.corner_radius
+    return not sharp or not (cutter.corner_radius and scan.sculptured)
+
+
 def radius(scan: Scan) -> Iterator[Candidate]:
-    """A smaller cutter of the same kind for the rest."""
-    cutter, conditions = scan.state.cutters[0], scan.state.ready.conditions
-    if cutter.shape == "form":
-        return
-    least = max(THINNEST * conditions.tolerance, _SLENDER * cutter.length, _THINNER * cutter.radius)
-    radii = [r for r in reversed(_RADII) if least <= r < cutter.radius]
+    """A thinner cutter of the same kind that is sold, for the rest: with a usual stick-out, and with the longest that is in use.
 
-    def make(at: int) -> State | None:
-        made = thinner(cutter, radii[at])
-        usable = made is not None and conditions.judges(made)
-        return replace(scan.state, cutters=(*scan.state.cutters, made)) if usable and made is not None else None
-
-    for _, state, missed in scan.least(make, len(radii) - 1):
+    Each is looked at: a thinner one has a shorter stick-out, and does not reach all that a thicker one reaches.
+    """
+    cutter, known, rows = scan.state.cutters[0], scan.known, scan.few[:: max(1, len(scan.few) // _LOOKED_AT)]
+    whole, content = scan.estimate(rows), math.inf
+    for ratio in (USUAL, MOST):
+        tried = []
+        for made in smaller(cutter, ratio):
+            if made not in scan.given and scan.state.ready.conditions.judges(made):
+                state = replace(scan.state, cutters=(*scan.state.cutters, made))
+                tried.append((scan.estimate(known.glance(state, rows)), state))
+        least = min((each[0] for each in tried), default=whole)
+        if least >= min(whole, content):
+            continue
+        content = whole - NEARLY * (whole - least)
+        # The thickest that leaves hardly more: they come by size.
+        state = next(state for estimate, state in tried if estimate <= content)
         made = state.cutters[-1]
-        if made not in scan.given:
-            move = Move("radius", cutter.radius, made.radius, change_text.rest(change_text.head(made)))
-            yield scan.found(move, state, missed, nested=True)
+        move = Move("radius", cutter.radius, made.radius, f"{change_text.tool(made)}, for the rest")
+        yield scan.found(move, state, known.glance(state, scan.few), nested=True)
 
 
 def corner(scan: Scan) -> Iterator[Candidate]:
-    """Another corner on the same for the rest."""
+    """Another corner on the same for the rest: a bull nose stays one, and a flat end may have a rounder one."""
     cutter = scan.state.cutters[0]
-    if cutter.shape != "end":
+    r, now, few = cutter.radius, cutter.corner_radius, scan.few[:: max(1, len(scan.few) // _LOOKED_AT)]
+    if cutter.shape != "end" or now == r or not is_standard(cutter):
         return
-    r, few = cutter.radius, scan.few[:: max(1, len(scan.few) // 64)]
-    middle = max((c for c in CORNERS if c <= 0.25 * r), default=0.0)
+    usual = [c for c in corners(cutter) if c < r]
+    wanted = {max((c for c in usual if c <= 0.25 * r), default=now)}
+    wanted |= {max((c for c in usual if c < now), default=now)} if now else {r}
     tried = []
-    for corner in dict.fromkeys((0.0, middle, r)):
-        made = None if corner == cutter.corner_radius else made_of(cutter, corner_radius=corner)
+    for corner in sorted(wanted - {now}):
+        made = made_of(cutter, corner_radius=corner)
         if made is not None and made not in scan.given:
             state = replace(scan.state, cutters=(*scan.state.cutters, made))
             estimate = scan.estimate(scan.known.glance(state, few))
-            tried.append((estimate, abs(corner - cutter.corner_radius), state))
+            tried.append((estimate, abs(corner - now), state))
     tried = [each for each in tried if each[0] < scan.estimate(few)]
     if tried:
         _, _, state = min(tried, key=lambda each: each[:2])
         made = state.cutters[-1]
-        move = Move("corner_radius", cutter.corner_radius, made.corner_radius, change_text.rest(change_text.head(made)))
+        move = Move("corner_radius", now, made.corner_radius, f"{change_text.tool(made)}, for the rest")
         yield scan.found(move, state, scan.known.glance(state, scan.few), nested=True)
 
 

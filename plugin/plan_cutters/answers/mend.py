@@ -55,7 +55,7 @@ def mend(
     >>> ready = prepare("samples/v_groove.step", Options(cutters=cutter, grid=9, machine="tilt:10"))
     >>> found = mend(ready, cutter, judge(ready, cutter))
     >>> [(change.thing, change.asked) for change in found.changes if change.helps][1:]
-    [('radius', 1.145), ('tilt_limit', 26.8)]
+    [('radius', 1.0), ('tilt_limit', 26.8)]
     """
     tell = progress or (lambda done, total: None)
     trials = Trials.of(verdicts, ready.finished)

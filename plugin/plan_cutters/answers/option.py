@@ -6,10 +6,11 @@ from dataclasses import replace
 import numpy as np
 
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.spec import spelled, written
+from plan_cutters.domain.spec import is_spec, spelled, written
 from plan_cutters.errors import PlanError
 from plan_cutters.options import Options
 from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.faces import select_faces
 from plan_cutters.scene.preparation import Prepared
 
 Axis = tuple[float, float, float]
@@ -30,6 +31,9 @@ def option(
     words = [] if tuple(cutters) == (cutter,) else _more(ready, cutters)
     if words is None:
         return None
+    auto = proposed(ready)
+    if auto and (setups is not None or flip is not None or options.other_setups):
+        return None
     if setups is not None:
         if options.placement is not None or any(options.other_placements):
             return None
@@ -42,9 +46,40 @@ def option(
         if not flip:
             return None
         words.append("--flip")
-    if faces is not None:
+    if auto and (words or faces is not None):
+        # Another cutter might make `auto` choose otherwise.
+        words += _pinned(ready, ready.chosen.targets if faces is None else faces)
+    elif faces is not None:
         words += ["--faces", ",".join(f"F{number}" for number in faces)]
     return " ".join(words) or None
+
+
+def proposed(ready: Prepared) -> bool:
+    """Whether its setup is one that was proposed: it stands on a table of its own, and no file says so."""
+    place = ready.options.placement
+    return place is not None and not place.file and any(each.follows_setup for each in place.fixtures)
+
+
+def _pinned(ready: Prepared, faces: Sequence[int]) -> list[str]:
+    """Name the proposed setup, its table, and the faces to be finished."""
+    part = ready.scene.part
+    words = ["--setup", ",".join(f"{each:.12g}" for each in ready.scene.setup), "--fixture", "table"]
+    selected = select_faces(part.faces, ready.chosen.asked, tree=part.tree, ignored=ready.scene.ignored, blends=part.blends)
+    return words if tuple(selected) == tuple(faces) else [*words, "--faces", _ranges(faces)]
+
+
+def _ranges(faces: Sequence[int]) -> str:
+    """Numbers of faces, ascending, as they are typed.
+
+    >>> _ranges([1, 2, 3, 5, 8, 9])
+    'F1-3,F5,F8-9'
+    """
+    words, first = list[str](), 0
+    for k, number in enumerate(faces):
+        if k + 1 == len(faces) or faces[k + 1] != number + 1:
+            words.append(f"F{faces[first]}" if first == k else f"F{faces[first]}-{number}")
+            first = k + 1
+    return ",".join(words)
 
 
 def _more(ready: Prepared, cutters: Sequence[Cutter]) -> list[str] | None:
@@ -76,7 +111,10 @@ def spoken(cutter: Cutter, options: Options) -> str | None:
     It is in the notation in which the cutter was given, without a holder that the options say.
     """
     bare = replace(cutter, allowance=None, clearance=None)
-    for text in (spelled(replace(bare, holder=None)), spelled(bare), written(bare)):
+    head = spelled(replace(bare, holder=None))
+    # A holder of the table by its word.
+    named = f"{head}H{cutter.holder.name.lower()}" if cutter.holder and is_spec(f"{head}H{cutter.holder.name}") else head
+    for text in (head, named, spelled(bare), written(bare)):
         try:
             again = Cutter.parse(text).asked(options.allowance, options.holder_clearance, options.holder)
         except PlanError:

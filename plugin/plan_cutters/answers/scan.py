@@ -68,6 +68,12 @@ class Scan:
         """With every so-manieth of the samples that are left."""
         return cls(state, open_rows, spread(open_rows), finished, known, cutters)
 
+    @property
+    def sculptured(self) -> bool:
+        """Whether some of the few lie on free-form faces."""
+        ready = self.state.ready
+        return any(ready.scene.part.faces[n - 1].shape == "sculptured" for n in np.unique(ready.samples.face[self.few]).tolist())
+
     def estimate(self, missed: Rows) -> float:
         """The share of the area that is left, if of the few these are."""
         whole = float(self.finished.area[self.few].sum())

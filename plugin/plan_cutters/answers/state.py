@@ -10,7 +10,9 @@ from numpy.typing import NDArray
 from plan_cutters.answers.trial import Case
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.machines.requested_setups import without
 from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.surroundings import Surroundings
 
 Rows = NDArray[np.int64]
 Axis = tuple[float, float, float]
@@ -27,11 +29,14 @@ class State:
         The one that is mended, or what became of it, first.
     setups : tuple of (axis, x)
         As `Conditions` has them; x may be None.
+    tables : dict
+        Obstacles of setups that are not planned yet, made once, by axis and tolerance.
     """
 
     ready: Prepared
     cutters: tuple[Cutter, ...]
     setups: tuple[tuple[Axis, Axis | None], ...]
+    tables: dict[tuple[Axis, float], Surroundings] = field(default_factory=dict)
 
     @property
     def axes(self) -> tuple[Axis, ...]:
@@ -43,9 +48,23 @@ class State:
         conditions = self.ready.conditions
         for axis, x in self.setups:
             placed = replace(conditions, setup=np.array(axis), x=None if x is None else np.array(x))
+            if axis != self.ready.scene.setup and axis not in self.ready.options.other_setups:
+                at = axis, self.ready.scene.asked
+                if at not in self.tables:
+                    self.tables[at] = on_table(self.ready, axis)
+                placed = replace(placed, surroundings=self.tables[at])
             there = replace(self.ready, conditions=placed)
             for cutter in self.cutters:
                 yield key(there, cutter, axis, x), Case(there, cutter)
+
+
+def on_table(ready: Prepared, axis: Axis) -> Surroundings:
+    """The obstacles of a setup that is not planned yet: a table that the first setup brings itself lies across this axis, too."""
+    place = ready.options.placement
+    own = () if place is None else tuple(each for each in place.fixtures if each.follows_setup)
+    if not own:
+        return ready.conditions.surroundings
+    return ready.scene.surround_in(axis, without(ready.scene.fixtures, own), own)
 
 
 def key(ready: Prepared, cutter: Cutter, axis: Axis, x: Axis | None) -> Any:

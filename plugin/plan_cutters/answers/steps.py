@@ -1,6 +1,6 @@
 """Find the next steps for a cutter that does not finish the part.
 
-The effect of each step is judged on all samples. The step after which the least area is not reached comes first.
+The effect of each step is judged on all samples. What needs no purchase comes first, where it frees enough.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,8 +14,9 @@ from plan_cutters.answers.option import Axis, option
 from plan_cutters.answers.scan import Candidate, Scan
 from plan_cutters.answers.state import Judgements, State
 from plan_cutters.domain.area import Patch
-from plan_cutters.domain.change import MEANS, Move, Step, WhatIfAnswer
+from plan_cutters.domain.change import MEANS, Means, Move, Step, WhatIfAnswer
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.standard_tools import USUAL, slenderness
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.plan_file.words import change_text
 from plan_cutters.scene.preparation import Prepared
@@ -28,12 +29,19 @@ Named = tuple[str, str]
 
 #: Steps of one change that are judged, at most; of two after each of the best so many of one, and of two at once.
 _SINGLES, _PAIRS, _BEST, _JOINED = 5, 1, 2, 2
-#: A second change is worth telling where it frees so much more, of the finished area.
-_WORTH = 0.0005
-#: Nor is a step worth telling that frees less than that, and less than this share of what is not reached.
-_LITTLE = 0.02
+#: What frees less is no advice: share of the finished area, and mm2. Nor is a second change that frees so little more.
+WORTH, WORTH_AREA = 0.001, 1.0
+#: Of what the best step frees, the share with which another one may come before it that asks for less.
+_ENOUGH = 0.5
 #: Shares that differ by less are alike: what asks least comes first.
 _ALIKE = 4
+#: From what is there to what is bought: the drawer, time to compute, setups, how a tool is held, another tool, another machine.
+NEEDS: Mapping[Means, int] = {
+    "tolerance": 0, "tilt_range": 0, "cutter": 0, "setup": 1, "second_setup": 1, "stick_out": 2, "holder": 2, "radius": 3,
+    "corner_radius": 3, "tilt_limit": 5, "area": 5,
+}  # fmt: skip
+#: A tool that is held out farther than usual.
+_UNUSUAL, _LAST = 4, 6
 #: Areas that are told: of a cutter, of a step.
 _AREAS, _REMAINS = 20, 3
 #: What of a step is not to be changed by another one.
@@ -99,11 +107,11 @@ def steps(
     chosen = [each for each in listed if each in dear or each.moves[0].means == "cutter"]
     made = [(each, known.left(each.state, _rows(scan, each))) for each in chosen]
     before = finished.of_rows(open_rows)
-    singles = [each for each in made if before - finished.of_rows(each[1]) > min(_WORTH, _LITTLE * before)]
+    singles = [each for each in made if worth(finished, before - finished.of_rows(each[1]))]
     pairs = _pairs(scan, singles)
     base = (ready, cutter, state)
     result = [_step(base, finished, open_rows, each, rows) for each, rows in (*singles, *pairs)]
-    result.sort(key=lambda step: (round(step.after, _ALIKE), *effort(step.moves)))
+    result = in_order(result, ready.cutters)
     return replace(
         what_if,
         share=before,
@@ -112,6 +120,33 @@ def steps(
         more_areas=len(areas[_AREAS:]),
         unsure=ready.conditions.surroundings.doubtful,
     )
+
+
+def worth(finished: Finished, gain: float) -> bool:
+    """Whether a gain, a share of the finished area, is advice."""
+    return gain >= max(WORTH, WORTH_AREA / max(1e-300, finished.whole))
+
+
+def in_order(steps: Sequence[Step], known: Sequence[Cutter]) -> list[Step]:
+    """Steps in the order in which they are advised.
+
+    First those that free at least half of what the best one frees: what is in the drawer, other setups, how a tool is held, a
+    purchase, and what is unusual; within each, and of all others, those that leave least.
+    """
+    enough = _ENOUGH * max((step.before - step.after for step in steps), default=0.0)
+
+    def rank(step: Step) -> tuple[float, ...]:
+        needs = needed(step, known) if step.before - step.after >= enough else _LAST
+        return needs, round(step.after, _ALIKE), *effort(step.moves)
+
+    return sorted(steps, key=rank)
+
+
+def needed(step: Step, known: Sequence[Cutter]) -> int:
+    """What a step asks for, by its costliest change: a place in NEEDS; a new tool held out farther than usual is a place, too."""
+    usual = max([USUAL, *map(slenderness, known)]) * (1.0 + 1e-9)
+    unusual = any(slenderness(each) > usual for each in step.cutters if each not in known)
+    return max(_UNUSUAL * unusual, *(NEEDS[move.means] for move in step.moves), 0)
 
 
 def effort(moves: Sequence[Move]) -> tuple[int, int]:
@@ -143,7 +178,7 @@ def _pairs(scan: Scan, singles: list[Judged]) -> list[Judged]:
         still = scan.known.left(each.state, rows if each.nested else np.flatnonzero(finished.wanted))
         least = min(alone.get(_name(move), finished.of_rows(scan.left)) for move in each.moves)
         share = finished.of_rows(still)
-        if share < least - _WORTH or (not len(still) and least > 0.0):
+        if worth(finished, least - share):
             pairs[name] = each, still
         return True
 

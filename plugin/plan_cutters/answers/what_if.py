@@ -24,7 +24,8 @@ class WhatIf:
     `make` gives the case with a value, None where there can be none. Of `ways` the one that serves with the fewest steps is
     taken, of equals the first; where each value allows all that those before it allow (`nested`), steps are halved. A value that
     serves has its sentence, and the options of a plan that differ with it (`serves`). Where nothing serves, the best case of
-    `ends` is told (`fails`): as no help if it leaves a sample blocked, else as undecided, with its value (`reads`).
+    `ends` is told (`fails`): as no help if it leaves a sample blocked, else as undecided, with its value (`reads`). `value_of` is
+    told of a value that serves: itself, unless it is a whole cutter.
     """
 
     now: Value
@@ -35,6 +36,7 @@ class WhatIf:
     reads: Callable[[Case], Value]
     fails: Callable[[Case, StillMissed], str]
     serves: Callable[[Any, Case], tuple[str, dict[str, Any]]]
+    value_of: Callable[[Any], Value] = lambda value: value
 
 
 def search(thing: Thing, what: WhatIf, trials: Trials) -> Change:
@@ -46,7 +48,10 @@ def search(thing: Thing, what: WhatIf, trials: Trials) -> Change:
         result, beyond = value(step.steps), None if step.beyond is None else value(step.beyond)
         words, options = what.serves(result, step.case)
         (cutter,) = options.get("cutters", (None,))
-        return Change(thing, what.now, result, True, 0, len(trials.not_reached), trials.count, beyond, cutter, words, options)
+        values = [None if each is None else what.value_of(each) for each in (result, beyond)]
+        return Change(
+            thing, what.now, values[0], True, 0, len(trials.not_reached), trials.count, values[1], cutter, words, options
+        )
     end = what.ends[0] if what.nested else trials.closest(what.ends)
     remaining = remaining or StillMissed.by(end, trials.not_reached)
     why = what.fails(end, remaining)

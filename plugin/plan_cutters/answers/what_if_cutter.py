@@ -1,4 +1,4 @@
-"""Another cutter may serve: held further out, of a smaller radius, with another corner.
+"""Another cutter may serve: held further out, as far as is usual, a thinner one that is sold, or one with another corner.
 
 Lemmas W3 and W4 of `docs/what_if_proof.md`.
 """
@@ -8,26 +8,19 @@ from dataclasses import replace
 
 import numpy as np
 
-from plan_cutters.answers.trial import Case, Trials
+from plan_cutters.answers.trial import Case, StillMissed, Trials
 from plan_cutters.answers.what_if import Way, WhatIf, none
-from plan_cutters.domain.change import Change
+from plan_cutters.domain.change import NO_USUAL, Change
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.holder import Segment
-from plan_cutters.domain.shapes import SAME, flute_length
+from plan_cutters.domain.shapes import flute_length
 from plan_cutters.domain.spec import notation
+from plan_cutters.domain.standard_tools import MOST, USUAL, corners, is_standard, slenderness, smaller
 from plan_cutters.errors import CutterError
 from plan_cutters.plan_file.words import change_text
 from plan_cutters.scene.preparation import Prepared
 
 #: Steps of the stick-out, mm.
 GRAIN = 0.01
-#: Share of the radius that a step takes.
-SHARE = 0.02
-#: The radius is no smaller than so many tolerances, below which verdicts say nothing, and than so little of the length: no cutter
-#: stands out a hundred times its diameter, and searches with needles take long.
-THINNEST, SLIMMEST = 4.0, 0.005
-#: Usual corner radii, mm; flat and ball ends are tried, too.
-CORNERS = (0.2, 0.3, 0.4, 0.5, 0.8, 1.0, 1.2, 1.5, 1.6, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0)
 
 
 def stick_out(case: Case, trials: Trials) -> WhatIf | Change:
@@ -36,20 +29,36 @@ def stick_out(case: Case, trials: Trials) -> WhatIf | Change:
     now, how = cutter.length, notation(cutter.name)
     if cutter.holder is None:
         return none("stick_out", now, not_reached, "no holder is stated, and a longer cutter only adds to what is in the way")
-    most = math.ceil((highest(case.ready, cutter) - now) / GRAIN)
-    if most < 1:
+    high, usual = highest(case.ready, cutter), MOST * 2.0 * cutter.radius
+    if high < now + GRAIN:
         return none("stick_out", now, not_reached, f"its {how.mm(now)} already hold the holder above all obstacles")
 
     def make(length: float) -> Case | None:
         return _with(case, longer(cutter, length))
 
+    def unusual(rest: StillMissed) -> bool:
+        """Whether more is reached with a longer stick-out than any that is usual."""
+        beyond = make(high) if usual < high else None
+        return beyond is not None and StillMissed.by(beyond, trials.not_reached).count < rest.count
+
+    most = math.floor((min(high, usual) - now) / GRAIN + 1e-6)
+    if most < 1:
+        rest = StillMissed.by(case, trials.not_reached)
+        why = f"{NO_USUAL}: its {how.mm(now)} are {slenderness(cutter):.3g} D, and up to {change_text.usual(cutter)}"
+        return none("stick_out", now, rest.count, why if unusual(rest) else f"{rest.words} at every stick-out", rest.looked)
     way = Way(most, lambda at: round(now + at * GRAIN, 6))
     if (end := make(way.value(most))) is None:
         return none("stick_out", now, not_reached, "no shank can go on above it")
+
+    def fails(_: Case, rest: StillMissed) -> str:
+        if not rest.count:
+            return "where the holder is out of the way, something else is"
+        return (
+            f"{NO_USUAL}: with {change_text.usual(cutter)} {rest.words}" if unusual(rest) else f"{rest.words} at every stick-out"
+        )
+
     return WhatIf(
-        now=now, ways=[way], make=make, ends=[end], nested=True, reads=lambda end: end.cutter.length,
-        fails=lambda end, rest: f"{rest.words} at every stick-out" if rest.count else
-        "where the holder is out of the way, something else is",
+        now=now, ways=[way], make=make, ends=[end], nested=True, reads=lambda end: end.cutter.length, fails=fails,
         serves=lambda requested, made: (change_text.stick_out(requested, cutter), {"cutters": (made.cutter,)}),
     )  # fmt: skip
 
@@ -62,46 +71,43 @@ def highest(ready: Prepared, cutter: Cutter) -> float:
 
 
 def radius(case: Case, trials: Trials) -> WhatIf | Change:
-    """Try smaller radii, the largest first, in steps of `SHARE`."""
+    """Try the thinner ones of the same kind that are sold, the largest first, each with its own flutes and a usual stick-out."""
     cutter, conditions, not_reached = case.cutter, case.ready.conditions, len(trials.not_reached)
     now, how = cutter.radius, notation(cutter.name)
-    if cutter.shape == "form":
-        return none("radius", now, not_reached, "the outline of a form cutter has no radius to change alone")
-    least_radius = max(THINNEST * conditions.tolerance, SLIMMEST * cutter.length)
-    most = max(0, math.floor(math.log(least_radius / now) / math.log(1.0 - SHARE)))
-
-    def value(at: int) -> float:
-        return float(f"{now * (1.0 - SHARE) ** at:.4g}")
-
-    def make(radius: float) -> Case | None:
-        made = thinner(cutter, radius)
-        return _with(case, made) if made is not None and conditions.judges(made) else None
-
-    while most and (end := make(value(most))) is None:
-        most -= 1
-    if not most:
-        return none("radius", now, not_reached, "there is no thinner cutter like it that could be judged")
-    assert end is not None
+    sold = [[each for each in smaller(cutter, ratio) if conditions.judges(each)] for ratio in (USUAL, MOST)]
+    if not any(sold):
+        why = "no thinner one like it is sold in a usual size that fits its holder and could be judged"
+        return none("radius", now, not_reached, why)
+    ends = [replace(case, cutter=tools[-1]) for tools in sold if tools]
     return WhatIf(
-        now=now, ways=[Way(most, value)], make=make, ends=[end], reads=lambda end: end.cutter.radius,
-        fails=lambda end, rest: f"with {how.size(end.cutter.radius)}, the least tried, {rest.words}" if rest.count else
-        f"none of {most} sizes down to {how.size(end.cutter.radius)} serves all samples",
-        serves=lambda requested, made: (change_text.radius(requested, cutter), {"cutters": (made.cutter,)}),
+        now=now, make=lambda made: replace(case, cutter=made), ends=ends, reads=lambda end: end.cutter.radius,
+        ways=[Way(len(tools), [cutter, *tools].__getitem__, last_resort=k > 0) for k, tools in enumerate(sold)],
+        fails=lambda end, rest: f"with {how.size(end.cutter.radius)}, the thinnest tried, {rest.words}" if rest.count else
+        f"none of {len(sold[0])} usual sizes down to {how.size(end.cutter.radius)} serves all samples",
+        serves=lambda made, _: (change_text.tool(made), {"cutters": (made,)}), value_of=lambda made: made.radius,
     )  # fmt: skip
 
 
 def corner_radius(case: Case, trials: Trials) -> WhatIf | Change:
-    """Try another corner on an end mill of the same radius, from flat to ball; the nearest that serves is taken."""
+    """Try another usual corner on the same: on a bull nose, or in place of a flat end, there a ball, too;
+    the nearest that serves is taken."""
     cutter = case.cutter
     now, r, how = cutter.corner_radius, cutter.radius, notation(cutter.name)
     if cutter.shape != "end":
         return none("corner_radius", now, len(trials.not_reached), f"a {cutter.shape} has no corner to change alone")
 
+    if now == r:
+        return none("corner_radius", now, len(trials.not_reached), "a ball end stays a ball end")
+    if not is_standard(cutter):
+        return none("corner_radius", now, len(trials.not_reached), "no cutter of its diameter is sold in a usual size")
+
     def make(corner: float) -> Case | None:
         return _with(case, made_of(cutter, corner_radius=corner))
 
-    corners = sorted({0.0, r, *(c for c in CORNERS if c < r)} - {now}, key=lambda c: (abs(c - now), c))
-    ends = [made for corner in corners if (made := make(corner)) is not None]
+    # A bull nose stays one; a flat end asks for a rounder one.
+    kinds = {c for c in corners(cutter) if c < r} | (set() if now else {r})
+    wanted = sorted(kinds - {now}, key=lambda c: (abs(c - now), c))
+    ends = [made for corner in wanted if (made := make(corner)) is not None]
     if not ends:
         return none("corner_radius", now, len(trials.not_reached), "its flutes are too short for any other corner")
     values = [now, *(end.cutter.corner_radius for end in ends)]
@@ -112,26 +118,6 @@ def corner_radius(case: Case, trials: Trials) -> WhatIf | Change:
         if rest.count else f"each of {len(ends)} corner radii tried loses some samples",
         serves=lambda requested, made: (change_text.corner_radius(requested, cutter), {"cutters": (made.cutter,)}),
     )  # fmt: skip
-
-
-def thinner(cutter: Cutter, radius: float) -> Cutter | None:
-    """Make the same of a smaller radius: a ball stays one, another corner stays as it is, and so does what is above; but what was
-    no thicker than the flutes stays so. None if there can be none."""
-
-    def slim(own: float) -> float:
-        return min(own, radius) if own <= cutter.radius + SAME else own
-
-    changes: dict[str, object] = {"radius": radius}
-    if cutter.corner_radius == cutter.radius:
-        changes["corner_radius"] = radius
-    if cutter.shank_radius is not None and cutter.shape != "lollipop":
-        changes["shank_radius"] = slim(cutter.shank_radius)
-    changes["neck"] = [Segment(slim(each.radius), each.length, slim(each.upper_radius)) for each in cutter.necks]
-    if cutter.shape == "barrel" and cutter.corner_radius:
-        # The ball at its tip is tangent to its flank, which stays as round as it is.
-        inner, outer = cutter.arc_radius - radius, cutter.arc_radius - cutter.corner_radius
-        changes["arc_height"] = cutter.corner_radius + math.sqrt(max(0.0, outer**2 - inner**2))
-    return made_of(cutter, **changes)
 
 
 def longer(cutter: Cutter, length: float) -> Cutter | None:

@@ -15,6 +15,8 @@ THINGS: tuple[Thing, ...] = ("tolerance", "tilt_range", "stick_out", "setup", "c
 
 #: How the cause begins of a change that could not be decided.
 UNDECIDED = "is not decided: "
+#: How the cause goes on where the holder would have to stand farther from the tip than any cutter is held.
+NO_USUAL = "no usual stick-out does"
 
 #: Lengths in mm, angles in degrees, a range of them, a direction, or the ids of faces.
 Value = float | tuple[float, ...] | tuple[str, ...] | None

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 
-from plan_cutters.domain.change import UNDECIDED
+from plan_cutters.domain.change import NO_USUAL, UNDECIDED
 from plan_cutters.domain.spec import notation
 from plan_cutters.plan_file.answers import ChangeEntry, MendEntry, RadiusEntry, StickOutEntry
 from plan_cutters.plan_file.model import CutterEntry, Plan
@@ -146,6 +146,9 @@ def _next(c: CutterEntry, what_if: MendEntry) -> Iterator[Line]:
         yield Line(f"  and {len(steps) - _STEPS} more in plan.json.")
     if not steps:
         yield Line("  No step was found that frees any of it.")
+    for each in what_if.changes:
+        if each.thing == "stick_out" and NO_USUAL in each.why:
+            yield Line(f"  A longer stick-out would free more, but {each.why[each.why.index(NO_USUAL) :]}.")
     if rest := remaining(what_if):
         yield Line(f"  After step 1 stays: {rest}.")
     for step in what_if.steps:

@@ -11,6 +11,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.domain.spec import notation, spelled
+from plan_cutters.domain.standard_tools import MOST, USUAL, slenderness
 from plan_cutters.domain.verdicts import REASONS
 from plan_cutters.plan_file.numbers import angle, listed, mm, percent
 from plan_cutters.plan_file.numbers import area as size
@@ -38,14 +39,31 @@ def tilt_limit(requested: float, now: float | None, machine: str) -> str:
 
 
 def stick_out(requested: float, now: Cutter) -> str:
-    how = notation(now.name)
-    return f"a stick-out of {how.mm(requested)} instead of {how.mm(now.length)}"
+    """Name a stick-out; one of more than the usual diameters says so."""
+    how, ratio = notation(now.name), requested / (2.0 * now.radius)
+    return f"a stick-out of {how.mm(requested)}{_ratio(ratio)} instead of {how.mm(now.length)}"
 
 
-def radius(requested: float, now: Cutter) -> str:
-    """Name a radius as the present cutter was given: by its diameter, if that was."""
-    how = notation(now.name)
-    return f"{how.size(requested)} instead of {how.size(now.radius).rpartition(' of ')[2]}"
+def usual(cutter: Cutter) -> str:
+    """Name the longest stick-out that is usual at all."""
+    return f"{notation(cutter.name).mm(2.0 * cutter.radius * MOST)} ({MOST:g} D, the most that is usual)"
+
+
+def tool(cutter: Cutter) -> str:
+    """Name a cutter that is sold, by kind, size and stick-out.
+
+    >>> tool(Cutter.parse("D4L20rc2")), tool(Cutter.parse("R2L40rc0.5"))
+    ('a ball end D4 held 20 mm out', 'a bull nose R2 rc0.5 held 40 mm out (10 D, more than the usual 5 D)')
+    """
+    how = notation(cutter.name)
+    kind = "flat end" if not cutter.corner_radius else "ball end" if cutter.corner_radius == cutter.radius else "bull nose"
+    corner = f" rc{how.length(cutter.corner_radius)}" if kind == "bull nose" else ""
+    size = f"{how.by}{how.across(cutter.radius)}"
+    return f"a {kind} {size}{corner} held {how.mm(cutter.length)} out{_ratio(slenderness(cutter))}"
+
+
+def _ratio(ratio: float) -> str:
+    return f" ({ratio:.3g} D, more than the usual {USUAL:g} D)" if ratio > USUAL * (1.0 + 1e-9) else ""
 
 
 def corner_radius(requested: float, now: Cutter) -> str:
@@ -57,7 +75,7 @@ def corner_radius(requested: float, now: Cutter) -> str:
 
 def holder(requested: Holder, now: Cutter) -> str:
     how = notation(now.name)
-    return f"a slimmer holder, {requested.called(how)} instead of {now.holder.called(how) if now.holder else 'none'}"
+    return f"the holder {requested.called(how)} instead of {now.holder.called(how) if now.holder else 'none'}"
 
 
 def rest(cutter: str) -> str:

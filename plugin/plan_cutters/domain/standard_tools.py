@@ -1,0 +1,144 @@
+"""End mills as they are sold: diameters, flutes, overall lengths, and the stick-outs that are usual.
+
+The lengths are the usual catalogue lengths of makers, rounded: flutes and shanks of long solid carbide end mills (as in DIN 6527;
+of inch tools as the common series of makers), and the overall length of their longest usual design. A tool that somebody has may
+differ: what stands here is for advice on what to buy.
+"""
+
+from typing import NamedTuple
+
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.holder import Segment
+from plan_cutters.domain.shapes import SAME
+from plan_cutters.domain.spec import notation
+from plan_cutters.errors import CutterError
+
+#: Stick-outs over the diameter: as advised, and the most that is usual at all.
+USUAL, MOST = 5.0, 10.0
+#: Of the shank this many diameters are in the holder, at least.
+_CLAMPED = 2.0
+#: A relieved neck is thinner than the flutes by this share; it grows to the shank within a cone of this slope.
+_RELIEF, _SLOPE = 0.95, 0.25
+#: Of the radius, the largest corner of a bull nose.
+_ROUNDEST = 0.5
+
+
+class StandardTool(NamedTuple):
+    """An end mill of a catalogue, mm: cutting diameter, length of the flutes, overall length, diameter of the shank."""
+
+    diameter: float
+    flutes: float
+    overall: float
+    shank: float
+
+
+METRIC = (
+    StandardTool(0.5, 1.5, 50.0, 3.0),
+    StandardTool(1.0, 3.0, 60.0, 4.0),
+    StandardTool(1.5, 4.0, 60.0, 4.0),
+    StandardTool(2.0, 6.0, 80.0, 6.0),
+    StandardTool(3.0, 8.0, 80.0, 6.0),
+    StandardTool(4.0, 11.0, 80.0, 6.0),
+    StandardTool(5.0, 13.0, 100.0, 6.0),
+    StandardTool(6.0, 13.0, 100.0, 6.0),
+    StandardTool(8.0, 19.0, 100.0, 8.0),
+    StandardTool(10.0, 22.0, 120.0, 10.0),
+    StandardTool(12.0, 26.0, 150.0, 12.0),
+    StandardTool(16.0, 32.0, 160.0, 16.0),
+    StandardTool(20.0, 38.0, 200.0, 20.0),
+    StandardTool(25.0, 45.0, 200.0, 25.0),
+)
+_IN = 25.4
+INCH = tuple(
+    StandardTool(diameter * _IN, flutes * _IN, overall * _IN, shank * _IN)
+    for diameter, flutes, overall, shank in (
+        (1 / 32, 3 / 32, 2.5, 1 / 8),
+        (1 / 16, 3 / 16, 2.5, 1 / 8),
+        (3 / 32, 9 / 32, 2.5, 1 / 8),
+        (1 / 8, 1 / 2, 3.0, 1 / 8),
+        (3 / 16, 5 / 8, 3.0, 3 / 16),
+        (1 / 4, 3 / 4, 4.0, 1 / 4),
+        (5 / 16, 13 / 16, 4.0, 5 / 16),
+        (3 / 8, 7 / 8, 4.0, 3 / 8),
+        (1 / 2, 1.0, 6.0, 1 / 2),
+        (5 / 8, 1.25, 6.0, 5 / 8),
+        (3 / 4, 1.5, 6.0, 3 / 4),
+        (1.0, 1.5, 7.0, 1.0),
+    )
+)
+#: Usual corner radii of bull noses, mm.
+CORNERS = (0.1, 0.2, 0.3, 0.4, 0.5, 0.8, 1.0, 1.2, 1.5, 1.6, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0)
+INCH_CORNERS = tuple(each * _IN for each in (0.005, 0.01, 1 / 64, 1 / 32, 3 / 64, 1 / 16, 3 / 32, 1 / 8, 3 / 16, 1 / 4))
+
+
+def slenderness(cutter: Cutter) -> float:
+    """Stick-out over the cutting diameter.
+
+    >>> slenderness(Cutter.parse("D12L60"))
+    5.0
+    """
+    return cutter.length / (2.0 * cutter.radius)
+
+
+def corners(cutter: Cutter) -> tuple[float, ...]:
+    """Usual corner radii in the unit in which a cutter was given, mm."""
+    return INCH_CORNERS if notation(cutter.name).inches else CORNERS
+
+
+def is_standard(cutter: Cutter) -> bool:
+    """Whether its diameter is one of the tables.
+
+    >>> is_standard(Cutter.parse("D12L60")), is_standard(Cutter.parse("D0.5inL2in")), is_standard(Cutter.parse("D7L60"))
+    (True, True, False)
+    """
+    return any(abs(2.0 * cutter.radius - each.diameter) <= SAME for each in (*METRIC, *INCH))
+
+
+def smaller(cutter: Cutter, ratio: float) -> tuple[Cutter, ...]:
+    """Sold end mills of the same kind that are thinner, the largest first, in the same holder.
+
+    A ball stays a ball, a flat end a flat end, and a bull nose keeps its corner radius or has the next usual one below. None for
+    a tapered cutter, and for kinds that are no end mills. Between the flutes and a thicker shank there is a relieved neck, as far
+    as the stick-out leaves a length for it; the cone to the shank counts as shank.
+
+    Parameters
+    ----------
+    cutter : Cutter
+        In inches where its name is.
+    ratio : float
+        Stick-out over the diameter, at most; less where the tool is not so long.
+
+    Examples
+    --------
+    >>> [each.id for each in smaller(Cutter.parse("R3L40rc3"), 10.0)][:2]
+    ['R2.5L50rc2.5F13N2.375x35S3', 'R2L40rc2F11N1.9x25S3']
+    >>> [each.id for each in smaller(Cutter.parse("R6L60rc3F26S6"), 5.0)][:2]
+    ['R5L50rc2.5F22S5', 'R4L40rc2F19S4']
+    """
+    if cutter.shape != "end" or cutter.taper:
+        return ()
+    table = INCH if notation(cutter.name).inches else METRIC
+    made = (_made(cutter, each, ratio) for each in reversed(table) if each.diameter < 2.0 * cutter.radius - SAME)
+    return tuple(each for each in made if each is not None)
+
+
+def _made(cutter: Cutter, tool: StandardTool, ratio: float) -> Cutter | None:
+    """A tool of the table in place of a cutter; None where it has no usual corner, or does not fit the holder."""
+    radius, shank = 0.5 * tool.diameter, 0.5 * tool.shank
+    corner = 0.0 if not cutter.corner_radius else radius
+    if 0.0 < cutter.corner_radius < cutter.radius:
+        usual = [each for each in corners(cutter) if each <= min(cutter.corner_radius, _ROUNDEST * radius) + SAME]
+        if not usual:
+            return None
+        corner = usual[-1]
+    length = min(ratio * tool.diameter, tool.overall - _CLAMPED * tool.shank)
+    flutes = min(tool.flutes, length)
+    neck = length - flutes - (shank - radius) / _SLOPE if shank > radius else 0.0
+    try:
+        return Cutter(
+            radius, length, corner, cutter.name, flutes=flutes, neck=Segment(_RELIEF * radius, neck) if neck > SAME else None,
+            shank_radius=shank if length - flutes > SAME else None, holder=cutter.holder, allowance=cutter.allowance,
+            clearance=cutter.clearance,
+        )  # fmt: skip
+    except CutterError:
+        return None

@@ -1,0 +1,69 @@
+"""Plans by the words of a command line, their next steps, and what a step that is followed leaves."""
+
+import numpy as np
+
+from plan_cutters.answers.areas import Finished
+from plan_cutters.command.cli import command
+from plan_cutters.command.request import PlanRequest
+from plan_cutters.command.validation import options_of
+from plan_cutters.document.clock import Clock
+from plan_cutters.pipeline import run
+from plan_cutters.plan_file.words.answers import answers
+from plan_cutters.plan_file.words.next_steps import is_excluded
+from tests.support import shapes
+
+LONG = (-60, 60)
+
+
+def options(*words):
+    """Options of a plan, from the words of a command line."""
+    return options_of(PlanRequest(**command.make_context("plan-cutters", ["part", *words]).params))
+
+
+def asked(part, *words):
+    """A plan by the words of a command line, with its steps."""
+    return run(part, options(*words, "--answers", "mend", "--area-budget", "0"), Clock())
+
+
+def followed(part, step, *words):
+    """A plan with what a step says: `--cutter` beside what is said, all else in place of its like."""
+    typed = step.option.split()
+    given_now = [words[k : k + 2] for k in range(0, len(words), 2)]
+    kept = [word for pair in given_now if pair[0] == "--cutter" or pair[0] not in typed for word in pair]
+    return run(part, options(*kept, *typed, "--area-budget", "0"), Clock())
+
+
+def answered(plan):
+    return [line.text + line.typed for line in answers(plan)]
+
+
+def left(result, step):
+    """The share of the finished area that the cutters and setups of a step leave in a plan."""
+    finished = Finished.of(result.ready)
+    not_reached = finished.wanted.copy()
+    here = {(0, result.ready.scene.setup): result.reaches}
+    here |= {(k, axis): found for k, (axis, found) in enumerate(result.elsewhere, 1)}
+    used = [found for (_, axis), found in here.items() if any(np.allclose(axis, each, atol=1e-5) for each in step.setups)]
+    assert len(used) == len(step.setups)
+    for found in used:
+        for name in step.cutters:
+            not_reached &= found[name].not_reached
+    return finished.of_rows(np.flatnonzero(not_reached))
+
+
+def steps_of(result, cutter=None):
+    entries = [c for c in result.plan.cutters if c.mend and (cutter is None or c.id == cutter)]
+    return [step for step in entries[0].mend.steps if not is_excluded(step)]
+
+
+def single(result, thing):
+    """The steps that change one thing alone."""
+    return [step for step in steps_of(result) if [change.thing for change in step.changes] == [thing]]
+
+
+def strip(low, high):
+    return shapes.plane((low, high), (-40, 40), (0, 0, 0))
+
+
+def wall(x, height, way):
+    return shapes.plane((0, height), LONG, (x, 0, 0), (way, 0, 0), (0, 0, 1))
