@@ -73,7 +73,8 @@ def inside_edges(part: Part, orientation: Orientation) -> tuple[InsideEdge, ...]
     orientation : Orientation
         The side of each face.
     """
-    joined, found = part.sewn.faces, []
+    joined = part.sewn.faces
+    edges: list[InsideEdge] = []
     shapes = [joined.get(info.number) or part.face(info.number) for info in part.faces]
     usable = [info.unjudged is None for info in part.faces]
     for edge, users in edge_uses(shapes):
@@ -92,10 +93,8 @@ def inside_edges(part: Part, orientation: Orientation) -> tuple[InsideEdge, ...]
         sharp = inside & opened
         if (sharp & known).any():
             numbers = (users[0][0] + 1, users[1][0] + 1)
-            found.append(
-                InsideEdge(numbers, point[known], normal[:, known], inward[:, known], bend[:, known], sharp[known])
-            )
-    return tuple(found)
+            edges.append(InsideEdge(numbers, point[known], normal[:, known], inward[:, known], bend[:, known], sharp[known]))
+    return tuple(edges)
 
 
 def _side(

@@ -375,8 +375,8 @@ def assemble(
     with clock.stage("plan", shown=False):
         began = started or datetime.datetime.now(datetime.UTC)
         shown = selected or nearest(entries).id
-        left = next(each.strips for cutter, each in judged.items() if cutter.id == shown)
-        document = plan_of(ready, entries, selected, chosen, began, answers, setup_table(ready, within, over), left)
+        remaining = next(each.strips for cutter, each in judged.items() if cutter.id == shown)
+        document = plan_of(ready, entries, selected, chosen, began, answers, setup_table(ready, within, over), remaining)
     return Result(clock.stamp(with_text(document)), ready, over, moved, answers)
 
 

@@ -50,21 +50,21 @@ def strips(samples: SurfaceSamples, verdicts: Verdicts, cutter: Cutter, edges: S
     """
     result = np.full(len(samples), -1, np.int32)
     radius = least_radius(cutter)
-    lost = verdicts.not_reached & np.isin(verdicts.reason, (REAR_GOUGE, COLLISION))
+    losses = verdicts.not_reached & np.isin(verdicts.reason, (REAR_GOUGE, COLLISION))
     reached = np.flatnonzero(verdicts.reached)
-    if radius is None or not lost.any() or not len(reached):
+    if radius is None or not losses.any() or not len(reached):
         return result
     tree, gaps = cKDTree(samples.point[reached]), dict(samples.face_gaps)
     rows_of = samples.by_face()
     for place, edge in enumerate(edges):
         for side, number in enumerate(edge.faces):
             rows = rows_of.get(number)
-            if rows is None or not lost[rows].any():
+            if rows is None or not losses[rows].any():
                 continue
             rows, at = _within(samples, rows, edge, side, radius)
             if not len(rows) or verdicts.reached[rows].mean() > _ENTERS:
                 continue
-            open_rows = lost[rows] & (result[rows] < 0)
+            open_rows = losses[rows] & (result[rows] < 0)
             rows, at = rows[open_rows], at[open_rows]
             served = _served(samples, reached, tree, edge, side, radius, _NEAR * gaps.get(number, 0.0))
             result[rows[served[at]]] = place

@@ -34,7 +34,9 @@ def test_a_pocket_has_its_floor_and_its_corners():
         assert not edge.curvature.any()
 
 
-@pytest.mark.parametrize("shape", [box(), ball(), rod(), drilled(), pocketed()], ids=["box", "ball", "rod", "hole", "round pocket"])
+@pytest.mark.parametrize(
+    "shape", [box(), ball(), rod(), drilled(), pocketed()], ids=["box", "ball", "rod", "hole", "round pocket"]
+)
 def test_outside_edges_and_seams_are_none(shape):
     assert edges_of(shape) == ()
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import count, figure, listed
+from plan_cutters.plan_file.numbers import count, figure
 
 #: Pairs of faces that are named.
 _PAIRS = 3
@@ -15,9 +15,9 @@ def sharp_edges(plan: Plan, names: Mapping[str, str]) -> Iterator[str]:
     if not edges or plan.shown is None:
         return
     pairs = [f"{one} meets {other}" for one, other in (each.faces for each in edges[:_PAIRS])]
-    if more := len(edges) - len(pairs):
-        pairs.append(f"at {count(more, 'more pair')} of faces")
+    more = len(edges) - len(pairs)
+    others = f" and at {count(more, 'more pair')} of faces" if more else ""
     yield (
-        f"The model has sharp inside edges where {listed(pairs, len(pairs))}: {names[plan.shown]} leaves a fillet of "
+        f"The model has sharp inside edges where {', '.join(pairs)}{others}: {names[plan.shown]} leaves a fillet of "
         f"R{edges[0].radius_mm:.4g} there, {figure(sum(each.area_mm2 for each in edges))} mm²."
     )
