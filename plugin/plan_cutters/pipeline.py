@@ -18,6 +18,7 @@ from cad_io.tessellate.triangles import At
 from plan_cutters.answers.ask import ask
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock, Progress
+from plan_cutters.document.inside_radii import inside_radius_entries
 from plan_cutters.document.notes import noted
 from plan_cutters.document.operations_entry import with_motion
 from plan_cutters.document.plan import OtherSetup, OverSetups, completed, plan_of, selection
@@ -375,8 +376,9 @@ def assemble(
     with clock.stage("plan", shown=False):
         began = started or datetime.datetime.now(datetime.UTC)
         shown = selected or nearest(entries).id
-        remaining = next(each.strips for cutter, each in judged.items() if cutter.id == shown)
-        document = plan_of(ready, entries, selected, chosen, began, answers, setup_table(ready, within, over), remaining)
+        tool, its = next((cutter, each) for cutter, each in judged.items() if cutter.id == shown)
+        radii, table = inside_radius_entries(ready, tool, its.verdicts), setup_table(ready, within, over)
+        document = plan_of(ready, entries, selected, chosen, began, answers, table, its.strips, radii)
     return Result(clock.stamp(with_text(document)), ready, over, moved, answers)
 
 

@@ -11,6 +11,7 @@ from plan_cutters.plan_file.answers import LeastSetEntry, MendEntry, RadiusEntry
 from plan_cutters.plan_file.effective import Effective
 from plan_cutters.plan_file.frozen import Frozen, Posture, Vector
 from plan_cutters.plan_file.inside import InsideEntry
+from plan_cutters.plan_file.inside_radii import InsideRadiusEntry
 from plan_cutters.plan_file.operations import OperationsEntry
 from plan_cutters.plan_file.part_info import FixtureEntry, PartInfo, Scope
 from plan_cutters.plan_file.setups import SetupEntry, SetupProposal, SetupReach
@@ -334,6 +335,9 @@ class Plan(Frozen):
     selection: Selection
     sharp_edges: list[SharpEdgeEntry] = Field(
         default=[], description="sharp inside edges at which the cutter `shown` leaves a fillet, the largest area first"
+    )
+    inside_radii: list[InsideRadiusEntry] = Field(
+        default=[], description="faces that bend inwards more than the cutter `shown`, the smallest radius first"
     )
     setup_proposal: SetupProposal | None = Field(default=None, description="null unless requested (--setup auto)")
     setups: list[SetupEntry] = Field(default=[], description="this setup axis first; empty where any tool axis is possible")

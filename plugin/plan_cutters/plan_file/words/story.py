@@ -11,6 +11,7 @@ from plan_cutters.plan_file.words.answers import answers
 from plan_cutters.plan_file.words.cutters import CutterStory, cutter_story
 from plan_cutters.plan_file.words.headline import Headline, headline
 from plan_cutters.plan_file.words.inside import inside
+from plan_cutters.plan_file.words.inside_radii import inside_radii
 from plan_cutters.plan_file.words.line import Line
 from plan_cutters.plan_file.words.names import named, short_names
 from plan_cutters.plan_file.words.next_steps import together
@@ -79,6 +80,7 @@ def story_of(plan: Plan) -> Story:
         scope=(
             *undecided(plan, names),
             *sharp_edges(plan, names),
+            *inside_radii(plan, names),
             *not_judged(plan),
             *not_seen(plan, names),
             *([sentence(named(plan, pair))] if pair else []),
