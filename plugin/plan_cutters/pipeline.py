@@ -12,15 +12,18 @@ import numpy as np
 from cad_io import Part, read_part
 from cad_io.arrays import Ints
 from cad_io.copies import SideProcess
+from cad_io.part.inside_edges import inside_edges
 from cad_io.read.read import TIMEOUT
 from cad_io.tessellate.triangles import At
 from plan_cutters.answers.ask import ask
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock, Progress
+from plan_cutters.document.inside_radii import inside_radius_entries
 from plan_cutters.document.notes import noted
 from plan_cutters.document.operations_entry import with_motion
 from plan_cutters.document.plan import OtherSetup, OverSetups, completed, plan_of, selection
 from plan_cutters.document.setup_table import setup_table
+from plan_cutters.document.sharp_edges import sharp_edge_entries
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
@@ -32,7 +35,9 @@ from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.option_types import PlanOptions
 from plan_cutters.options import Options
 from plan_cutters.plan_file.model import AreaEntry, CutterEntry
+from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.notes import maps_partial
+from plan_cutters.plan_file.sharp_edges import SharpEdgeEntry
 from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.proposal import plan_proposed
 from plan_cutters.result import Result
@@ -55,6 +60,7 @@ from plan_cutters.stages.posture_maps import posture_maps
 from plan_cutters.stages.reasons import Reasons
 from plan_cutters.stages.select_cutters import ranked
 from plan_cutters.stages.setups import within_limits
+from plan_cutters.stages.sharp_edges import strips, with_sharp_edges
 from plan_cutters.stages.travel import travels
 from plan_cutters.stages.witness import witnesses
 
@@ -289,12 +295,15 @@ class Judged:
         In the first setup alone; the same where there is no other one.
     entry : CutterEntry
         Its line in the plan.
+    strips : list of SharpEdgeEntry
+        Sharp inside edges at which it leaves a fillet.
     """
 
     verdicts: Verdicts
     which: Ints
     here: Verdicts
     entry: CutterEntry
+    strips: list[SharpEdgeEntry]
 
 
 def _judged(
@@ -312,28 +321,22 @@ def _judged(
         for k, (cutter, mine) in enumerate(here.items()):
             over, which = over_setups([mine, *(verdicts_there[cutter.id] for _, verdicts_there in other_setups)])
             by_cutter[cutter] = reasons.of(cutter, over, part_of(tell, k, len(here))), which
+        edges = inside_edges(ready.scene.part, ready.scene.orientation)
     judged = {}
     for cutter, mine in here.items():
         explained, which = by_cutter[cutter]
-        verdicts = explained.verdicts
+        verdicts, at_edge = explained.verdicts, strips(samples, explained.verdicts, cutter, edges)
+        verdicts = with_sharp_edges(verdicts, at_edge)
         with clock.stage(cutter.id, shown=False):
             context, part = Context.of(cutter, ready.conditions), ready.scene.part
             witness_list = witnesses(samples, verdicts, context, inside=ready.shut, part=part)
             marched = march_differs(samples, convex, ready.region, mine.interference_free)
             entry = cutter_entry(
-                cutter,
-                samples,
-                verdicts,
-                witness_list,
-                marched,
-                seconds[cutter],
-                part=part,
-                surroundings=surroundings,
-                slack=context.outer_tool.slack,
-                inside=ready.inside_bodies,
-                besides=explained.besides,
-            )
-            judged[cutter] = Judged(verdicts, which, mine if other_setups else verdicts, entry)
+                cutter, samples, verdicts, witness_list, marched, seconds[cutter], part=part, surroundings=surroundings,
+                slack=context.outer_tool.slack, inside=ready.inside_bodies, besides=explained.besides,
+            )  # fmt: skip
+            fillets = sharp_edge_entries(edges, at_edge, samples, cutter)
+            judged[cutter] = Judged(verdicts, which, mine if other_setups else verdicts, entry, fillets)
     return judged
 
 
@@ -372,7 +375,10 @@ def assemble(
         entries = [e.model_copy(update={"area": area, "seen": e.seen or area.feasible}) if e.id == best else e for e in entries]
     with clock.stage("plan", shown=False):
         began = started or datetime.datetime.now(datetime.UTC)
-        document = plan_of(ready, entries, selected, chosen, began, answers, setup_table(ready, within, over))
+        shown = selected or nearest(entries).id
+        tool, its = next((cutter, each) for cutter, each in judged.items() if cutter.id == shown)
+        radii, table = inside_radius_entries(ready, tool, its.verdicts), setup_table(ready, within, over)
+        document = plan_of(ready, entries, selected, chosen, began, answers, table, its.strips, radii)
     return Result(clock.stamp(with_text(document)), ready, over, moved, answers)
 
 

@@ -26,6 +26,7 @@ from plan_cutters.domain.over_setups import positions
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE, Verdicts
 from plan_cutters.plan_file.frozen import Vector, vector
+from plan_cutters.plan_file.inside_radii import InsideRadiusEntry
 from plan_cutters.plan_file.model import CutterEntry, MachineEntry, Plan, RotaryEntry, Run, SampleCounts, Selection
 from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.operations import OperationsEntry
@@ -33,6 +34,7 @@ from plan_cutters.plan_file.palette import MEANING, PALETTE
 from plan_cutters.plan_file.reasons import REASONS as WORDS
 from plan_cutters.plan_file.setups import SetupEntry, SetupReach
 from plan_cutters.plan_file.shares import unreached
+from plan_cutters.plan_file.sharp_edges import SharpEdgeEntry
 from plan_cutters.scene.preparation import Prepared
 
 RULE = "largest radius, then smaller corner radius, then shorter length, then library order, among the feasible"
@@ -46,6 +48,8 @@ def plan_of(
     started: datetime.datetime,
     answers: Answers,
     setups: Sequence[SetupEntry] = (),
+    sharp_edges: Sequence[SharpEdgeEntry] = (),
+    inside_radii: Sequence[InsideRadiusEntry] = (),
 ) -> Plan:
     """The plan of a part from the entries of its cutters, and what was answered after them."""
     scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
@@ -81,6 +85,8 @@ def plan_of(
         selection=selection,
         selected_over_setups=None if surroundings.doubtful else next((e.id for e in entries if e.lost_in_all == 0), None),
         selected_for_setup=None if selected else for_setup(entries),
+        sharp_edges=list(sharp_edges),
+        inside_radii=list(inside_radii),
         setups=list(setups),
         least_set=None if answers.least_set is None else least_set_entry(answers.least_set, doubtful=surroundings.doubtful),
         operations=_operations(ready, answers),

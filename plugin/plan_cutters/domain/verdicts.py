@@ -10,13 +10,16 @@ from cad_io.arrays import Floats, Ints, Record
 from plan_cutters.kernels.codes import (
     ACCESSIBLE,
     AXIS_LIMIT,
+    COLLISION,
     FIXTURE,
     INACCESSIBLE,
     INSIDE,
     INTERFERENCE_FREE,
     LOCAL_GOUGE,
     NO_REASON,
+    REAR_GOUGE,
     REASONS,
+    SHARP_EDGE,
     TOLERANCE,
     UNDECIDED,
     UNJUDGED,
@@ -24,9 +27,9 @@ from plan_cutters.kernels.codes import (
 
 # The codes of verdicts and reasons are this module's as well.
 __all__ = [
-    "ACCESSIBLE", "AXIS_LIMIT", "CONCAVE", "CONVEX", "FIXTURE", "INACCESSIBLE", "INSIDE", "INTERFERENCE_FREE", "LOCAL_GOUGE",
-    "NO_REASON", "REASONS", "SADDLE", "TOLERANCE", "UNDECIDED", "UNJUDGED", "WORDS", "Bytes", "VerdictBuffer", "Verdicts",
-    "Witness", "blank", "not_reached",
+    "ACCESSIBLE", "AXIS_LIMIT", "COLLISION", "CONCAVE", "CONVEX", "FIXTURE", "INACCESSIBLE", "INSIDE", "INTERFERENCE_FREE",
+    "LOCAL_GOUGE", "NO_REASON", "REAR_GOUGE", "REASONS", "SADDLE", "SHARP_EDGE", "TOLERANCE", "UNDECIDED", "UNJUDGED", "WORDS",
+    "Bytes", "VerdictBuffer", "Verdicts", "Witness", "blank", "not_reached",
 ]  # fmt: skip
 
 #: Words of verdicts, from best to worst.

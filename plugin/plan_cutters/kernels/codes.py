@@ -8,9 +8,15 @@ INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED = 0, 1, 2, 3, 2
 
 #: Why no posture is left, in the order in which the attributes are applied; `Verdicts.reason` is an index into it.
 #: `buried`: under or within a body; `tolerance`: that is too coarse for the cutter, which is undecided everywhere then;
-#: `fixture`: without the fixtures the sample would be reached. Kernels write neither of these two.
-REASONS = ("axis_limit", "local_gouge", "rear_gouge", "collision", "buried", "tolerance", "neck", "shank", "holder", "fixture")
-AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, COLLISION, INSIDE, TOLERANCE, BY_NECK, BY_SHANK, BY_HOLDER, FIXTURE = range(10)
+#: `fixture`: without the fixtures the sample would be reached; `sharp_edge`: the fillet beside a sharp inside edge. Kernels
+#: write none of these three.
+REASONS = (
+    "axis_limit", "local_gouge", "rear_gouge", "collision", "buried", "tolerance", "neck", "shank", "holder", "fixture",
+    "sharp_edge",
+)  # fmt: skip
+(
+    AXIS_LIMIT, LOCAL_GOUGE, REAR_GOUGE, COLLISION, INSIDE, TOLERANCE, BY_NECK, BY_SHANK, BY_HOLDER, FIXTURE, SHARP_EDGE,
+) = range(11)  # fmt: skip
 NO_REASON = 255
 
 #: Kinds of a piece: below `radius + slope (w - low)` for the first two; the third has a cross section of an arc: what is

@@ -11,10 +11,12 @@ from plan_cutters.plan_file.answers import LeastSetEntry, MendEntry, RadiusEntry
 from plan_cutters.plan_file.effective import Effective
 from plan_cutters.plan_file.frozen import Frozen, Posture, Vector
 from plan_cutters.plan_file.inside import InsideEntry
+from plan_cutters.plan_file.inside_radii import InsideRadiusEntry
 from plan_cutters.plan_file.operations import OperationsEntry
 from plan_cutters.plan_file.part_info import FixtureEntry, PartInfo, Scope
 from plan_cutters.plan_file.setups import SetupEntry, SetupProposal, SetupReach
 from plan_cutters.plan_file.shares import AreaShare, FaceVerdicts, VerdictCounts
+from plan_cutters.plan_file.sharp_edges import SharpEdgeEntry
 from plan_cutters.plan_file.split import SplitEntry
 from plan_cutters.plan_file.travel import TravelEntry
 
@@ -331,6 +333,12 @@ class Plan(Frozen):
         "where a cutter is selected, where none does, or where nothing is within the limit",
     )
     selection: Selection
+    sharp_edges: list[SharpEdgeEntry] = Field(
+        default=[], description="sharp inside edges at which the cutter `shown` leaves a fillet, the largest area first"
+    )
+    inside_radii: list[InsideRadiusEntry] = Field(
+        default=[], description="faces that bend inwards more than the cutter `shown`, the smallest radius first"
+    )
     setup_proposal: SetupProposal | None = Field(default=None, description="null unless requested (--setup auto)")
     setups: list[SetupEntry] = Field(default=[], description="this setup axis first; empty where any tool axis is possible")
     largest_radius: list[RadiusEntry] = Field(

@@ -1,4 +1,4 @@
-"""The ten reasons for which a sample is not reached: the only table of their words, colours and patterns.
+"""The reasons for which a sample is not reached: the only table of their words, colours and patterns.
 
 It stands below all who tell of them: the answers in `plan.json`, the terminal, the review page (through its data) and pictures.
 To add a reason, add its row here, its place in `verdicts.REASONS`, and the kernel or stage that finds it.
@@ -48,6 +48,9 @@ _ROWS = (
            "a longer stick-out or a slimmer holder", "#332288", "hatch", "oo"),
     Reason("fixture", "fixture", "the fixtures", "Without the fixtures the sample would be reached.",
            "another place for the fixture", "#117733", "lines", "--"),
+    Reason("sharp_edge", "sharp inside edge", "sharp inside edges",
+           "Two faces meet without a fillet, and the cutter leaves one of its own radius there.",
+           "a fillet in the model, or a smaller radius or corner radius", "#44AA99", "dots", ".."),
 )  # fmt: skip
 REASONS = {each.code: each for each in _ROWS}
 #: What a cutter gouges or meets, from its lower end up, and all that forbids tilts in the map of a point: where several forbid

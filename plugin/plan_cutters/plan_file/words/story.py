@@ -11,12 +11,14 @@ from plan_cutters.plan_file.words.answers import answers
 from plan_cutters.plan_file.words.cutters import CutterStory, cutter_story
 from plan_cutters.plan_file.words.headline import Headline, headline
 from plan_cutters.plan_file.words.inside import inside
+from plan_cutters.plan_file.words.inside_radii import inside_radii
 from plan_cutters.plan_file.words.line import Line
 from plan_cutters.plan_file.words.names import named, short_names
 from plan_cutters.plan_file.words.next_steps import together
 from plan_cutters.plan_file.words.operations import in_short, operations
 from plan_cutters.plan_file.words.proposal import proposal
 from plan_cutters.plan_file.words.scope import not_judged, not_seen
+from plan_cutters.plan_file.words.sharp_edges import sharp_edges
 from plan_cutters.plan_file.words.undecided import undecided
 
 
@@ -77,6 +79,8 @@ def story_of(plan: Plan) -> Story:
         in_short=tuple(in_short(plan)),
         scope=(
             *undecided(plan, names),
+            *sharp_edges(plan, names),
+            *inside_radii(plan, names),
             *not_judged(plan),
             *not_seen(plan, names),
             *([sentence(named(plan, pair))] if pair else []),

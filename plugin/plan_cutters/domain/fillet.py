@@ -1,0 +1,32 @@
+"""Which fillet does a cutter leave beside a sharp inside edge, and which cutters fit into one?"""
+
+from plan_cutters.domain.cutter import Cutter
+
+#: Usual diameters of metric end mills, mm.
+_DIAMETERS = (0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 25.0)
+#: What the kernel's curvature is off by, as a share.
+_ROUNDING = 1e-6
+
+
+def largest_fitting(radius: float, allowance: float = 0.0) -> float | None:
+    """Largest usual diameter of a cutter that fits into an inside radius and leaves an allowance, mm; None where none does.
+
+    >>> largest_fitting(1.916), largest_fitting(3.0), largest_fitting(0.2)
+    (3.0, 6.0, None)
+    """
+    return max((size for size in _DIAMETERS if 0.5 * size + allowance <= radius * (1.0 + _ROUNDING)), default=None)
+
+
+def least_radius(cutter: Cutter) -> float | None:
+    """Least radius of the fillet that a cutter leaves beside an edge, mm, its allowance included; None for shapes without one.
+
+    It is the corner radius, or of a flat end the radius, with which it goes along an edge.
+
+    >>> least_radius(Cutter.parse("R6L80")), least_radius(Cutter.parse("R6L80rc1")), least_radius(Cutter.parse("R6L80rc6"))
+    (6.0, 1.0, 6.0)
+    """
+    if cutter.shape == "lollipop":
+        return cutter.radius + (cutter.allowance or 0.0)
+    if cutter.shape != "end":
+        return None
+    return (cutter.corner_radius or cutter.radius) + (cutter.allowance or 0.0)

@@ -1,0 +1,123 @@
+"""Which samples are lost to a sharp inside edge? Beside one, a round cutter leaves a fillet whatever its posture.
+
+No verdict is changed: a reason gets another name. A sample of a face A is lost to its edge with a face B where all of this holds:
+
+- it is not reached, for rear gouge or collision (local gouge is the curvature of A itself);
+- the ball of the cutter's least radius that touches A there reaches into B as that runs on from the edge, its curvature across
+  the edge included: between planes that is nearer to the edge than r / tan(angle / 2);
+- farther from the edge the cutter does its work: it reaches a sample near the place where the ball touches both faces. In a
+  slot that is too narrow for the cutter it does not;
+- the cutter does not enter the edge: it reaches less than half of the samples that near. A flat end does, between wall and floor.
+
+A sample counts as it is: no spacing is added to the width.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from cad_io.arrays import Floats, Ints, SurfaceSamples
+from cad_io.part.inside_edges import InsideEdge
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.fillet import least_radius
+from plan_cutters.domain.verdicts import COLLISION, REAR_GOUGE, SHARP_EDGE, Verdicts
+
+#: A reached sample is near the end of a strip within so many gaps of its face; its normal turns less than this cosine says.
+_NEAR, _FACING = 2.0, 0.7
+#: Strips are looked for up to so many times the width between planes: faces may bend.
+_WIDER = 1.5
+#: Share of the samples of a strip from which on a cutter enters the edge.
+_ENTERS = 0.5
+
+
+def strips(samples: SurfaceSamples, verdicts: Verdicts, cutter: Cutter, edges: Sequence[InsideEdge]) -> Ints:
+    """Find the sharp inside edge that loses each sample.
+
+    Parameters
+    ----------
+    samples : SurfaceSamples
+    verdicts : Verdicts
+    cutter : Cutter
+    edges : sequence of InsideEdge
+
+    Returns
+    -------
+    (n,) int32
+        Place in `edges`, -1 where it is none of them.
+    """
+    result = np.full(len(samples), -1, np.int32)
+    radius = least_radius(cutter)
+    losses = verdicts.not_reached & np.isin(verdicts.reason, (REAR_GOUGE, COLLISION))
+    reached = np.flatnonzero(verdicts.reached)
+    if radius is None or not losses.any() or not len(reached):
+        return result
+    tree, gaps = cKDTree(samples.point[reached]), dict(samples.face_gaps)
+    rows_of = samples.by_face()
+    for place, edge in enumerate(edges):
+        for side, number in enumerate(edge.faces):
+            rows = rows_of.get(number)
+            if rows is None or not losses[rows].any():
+                continue
+            rows, at = _within(samples, rows, edge, side, radius)
+            if not len(rows) or verdicts.reached[rows].mean() > _ENTERS:
+                continue
+            open_rows = losses[rows] & (result[rows] < 0)
+            rows, at = rows[open_rows], at[open_rows]
+            served = _served(samples, reached, tree, edge, side, radius, _NEAR * gaps.get(number, 0.0))
+            result[rows[served[at]]] = place
+    return result
+
+
+def with_sharp_edges(verdicts: Verdicts, at_edge: Ints) -> Verdicts:
+    """The verdicts with the reason SHARP_EDGE where a sharp inside edge loses the sample; `at_edge` (n,) as `strips` gives it."""
+    if (at_edge < 0).all():
+        return verdicts
+    return replace(verdicts, reason=np.where(at_edge >= 0, SHARP_EDGE, verdicts.reason).astype(np.uint8))
+
+
+def width(edge: InsideEdge, side: int, radius: float) -> Floats:
+    """Distance (k,) from the edge at which a ball between two planes at its angle touches them, mm; nan where it is not sharp."""
+    return np.where(edge.sharp, radius / np.tan(0.5 * edge.angle), np.nan)
+
+
+def _within(
+    samples: SurfaceSamples, rows: NDArray[np.int64], edge: InsideEdge, side: int, radius: float
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Rows of a face's samples at which the ball reaches into the other face, and the point of the edge next to each."""
+    line, wide = cKDTree(edge.point), width(edge, side, radius)
+    step = np.linalg.norm(np.diff(edge.point, axis=0), axis=1).max(initial=0.0)
+    away, at = line.query(samples.point[rows], distance_upper_bound=_WIDER * float(np.nanmax(wide)) + step)
+    near = np.isfinite(away)
+    rows, at = rows[near], at[near]
+    other = 1 - side
+    # Along the edge the foot is as near as its points are: what lies along it does not count.
+    v = samples.point[rows] + radius * samples.normal[rows] - edge.point[at]
+    normal, inward = edge.normal[other, at], edge.inward[other, at]
+    along = (v * inward).sum(axis=1)
+    height = (v * normal).sum(axis=1) - 0.5 * edge.curvature[other, at] * along**2
+    out = (samples.point[rows] - edge.point[at]) * edge.inward[side, at]
+    mine = edge.sharp[at] & (height < radius) & (along > 0.0) & (out.sum(axis=1) <= _WIDER * wide[at])
+    return rows[mine], at[mine]
+
+
+def _served(
+    samples: SurfaceSamples, reached: NDArray[np.int64], tree: cKDTree, edge: InsideEdge, side: int, radius: float, near: float
+) -> NDArray[np.bool_]:
+    """Points (k,) of an edge beside which, or no farther along it than a strip is wide, the cutter reaches the surface where the
+    ball touches both faces.
+    """
+    wide = width(edge, side, radius)
+    served = np.zeros(len(wide), bool)
+    for k in np.flatnonzero(edge.sharp).tolist():
+        rise = 0.5 * edge.curvature[side, k] * wide[k] ** 2
+        place = edge.point[k] + wide[k] * edge.inward[side, k] + rise * edge.normal[side, k]
+        rows = reached[tree.query_ball_point(place, near)]
+        served[k] = bool((samples.normal[rows] @ edge.normal[side, k] > _FACING).any())
+    if not served.any():
+        return served
+    # Where edges meet, strips cross: there the place lies in the strip of another edge.
+    away = cKDTree(edge.point[served]).query(edge.point)[0]
+    return np.asarray(edge.sharp & (away <= wide + near))

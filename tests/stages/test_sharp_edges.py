@@ -1,0 +1,123 @@
+"""Losses beside sharp inside edges by name, on parts whose strips are known in closed form."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from cad_io import Part
+from cad_io.part.inside_edges import inside_edges
+from cad_io.part.orient import orient
+from plan_cutters import Cutter, plan
+from plan_cutters.document.sharp_edges import sharp_edge_entries
+from plan_cutters.domain.verdicts import LOCAL_GOUGE, SHARP_EDGE
+from plan_cutters.options import Options
+from plan_cutters.pipeline import prepare
+from plan_cutters.stages.judge import judge
+from plan_cutters.stages.sharp_edges import strips
+from tests.support.cad_parts import box, cut
+from tests.support.profiles import grooved, slotted
+
+HOW = {"area_budget": 0, "jobs": 2, "tolerance": 0.01}
+
+
+def planned(shape, cutter, faces, spacing):
+    return plan(Part(shape), cutters=[cutter], faces=faces, spacing=spacing, **HOW)
+
+
+def named(result, cutter):
+    return result.reaches[cutter].reason == SHARP_EDGE
+
+
+@pytest.mark.parametrize("degrees", [60.0, 90.0, 120.0])
+def test_a_groove_loses_what_its_opening_angle_says(degrees):
+    """Within r / tan(phi / 2) of the bottom all is lost to the edge, and beyond nothing is."""
+    result = planned(grooved(math.radians(degrees)), "R2L60rc2", "!1,2,3,6,7,8,9", 0.5)
+    assert set(np.unique(result.samples.face)) == {4, 5}
+    away = np.hypot(*result.samples.point[:, [0, 2]].T)
+    wide = 2.0 / math.tan(0.5 * math.radians(degrees))
+    slack = 0.02 / math.sin(math.radians(degrees))
+    mine = named(result, "R2L60rc2")
+    assert mine[away < wide - slack].all()
+    assert not mine[away > wide + 1e-6].any()
+    assert (result.reaches["R2L60rc2"].not_reached == mine).all()
+    (entry,) = result.plan.sharp_edges
+    assert set(entry.faces) == {"F4", "F5"}
+    assert entry.angle_deg == pytest.approx(degrees)
+    assert entry.width_mm == pytest.approx(wide)
+    assert entry.length_mm == pytest.approx(40.0, rel=1e-4)
+    # Samples stand for half a spacing each way.
+    assert entry.area_mm2 == pytest.approx(2 * 40 * wide, abs=2 * 40 * 0.3)
+
+
+def pocket(x=40.0, y=34.0):
+    return cut(box(x + 20, y + 16, 20), box(x, y, 20, (10, 8, 8)))
+
+
+def test_a_pocket_loses_a_strip_all_along_its_edges():
+    """Of a floor 40 x 34 and walls 12 high, a ball R3 leaves what lies within 3 mm of an edge: 1,068 mm2."""
+    result = planned(pocket(), "R3L40rc3", "7-11", 0.25)
+    mine = named(result, "R3L40rc3")
+    assert (mine == result.reaches["R3L40rc3"].not_reached).all()
+    entries = result.plan.sharp_edges
+    assert len(entries) == 8
+    assert sum(each.area_mm2 for each in entries) == pytest.approx(1068.0, rel=0.06)
+    line = next(line for line in result.summary().splitlines() if "sharp inside edges where" in line)
+    assert "ball end D6 x 40 leaves a fillet of R3 there" in line
+    share = result.plan.cutters[0].area_share.lost_by
+    assert set(share) == {"sharp_edge"}
+    assert result.plan.selected is None
+
+
+def test_a_flat_end_enters_the_floor_edge():
+    result = planned(pocket(), "R3L40", "11", 0.5)
+    assert not named(result, "R3L40").any()
+    assert result.plan.sharp_edges == []
+
+
+def test_a_slot_that_is_too_narrow_is_no_sharp_edge():
+    """A ball R6 in a slot 8 mm wide loses the whole floor: no fillet in the model would help."""
+    result = planned(slotted(8.0, 8.0), "R6L60rc6", "all", 1.0)
+    floor = (np.abs(result.samples.point[:, 2]) < 1e-6) & (result.samples.normal[:, 2] > 0.9)
+    assert floor.any()
+    assert not result.reaches["R6L60rc6"].reached[floor].any()
+    assert not named(result, "R6L60rc6")[floor].any()
+
+
+def test_a_dovetail_is_named_within_its_strips_alone():
+    """phi = 60 deg: 1.73 r on the floor and on the undercut walls."""
+    bottom = 40.0
+    result = planned(slotted(bottom, bottom - 2 * 12 / math.tan(math.radians(60))), "R2L60rc2", "all", 0.75)
+    mine, point = named(result, "R2L60rc2"), result.samples.point
+    away = np.hypot(np.abs(point[:, 0]) - 0.5 * bottom, point[:, 2])
+    wide = 2.0 / math.tan(math.radians(30))
+    assert mine.any()
+    assert (away[mine] < wide + 1e-6).all()
+    floor = (np.abs(point[:, 2]) < 1e-6) & (away < wide - 0.03) & (np.abs(point[:, 0]) < 0.5 * bottom + 1e-6)
+    assert mine[floor].all()
+
+
+def test_names_change_no_verdict():
+    ready = prepare(Part(pocket()), Options(cutters=("R3L40rc3",), faces="7-11", spacing=1.0, **HOW))
+    result = planned(pocket(), "R3L40rc3", "7-11", 1.0)
+    assert (judge(ready, ready.cutters[0]).verdict == result.reaches["R3L40rc3"].verdict).all()
+
+
+def test_what_the_surface_itself_gouges_is_no_sharp_edge():
+    """The same losses, called local gouge, keep their reason; and a cutter that reaches nothing loses nothing to an edge."""
+    shape = grooved(math.radians(90))
+    part = Part(shape)
+    result = plan(part, cutters=["R2L60rc2"], faces="4,5", spacing=1.0, **HOW)
+    reach, edges = result.here["R2L60rc2"], inside_edges(part, orient(part))
+    cutter = Cutter.parse("R2L60rc2")
+    gouged = replace(reach, reason=np.where(reach.not_reached, LOCAL_GOUGE, reach.reason).astype(np.uint8))
+    assert (strips(result.samples, gouged, cutter, edges) == -1).all()
+    nothing = replace(reach, verdict=np.zeros_like(reach.verdict))
+    assert (strips(result.samples, nothing, cutter, edges) == -1).all()
+
+
+def test_no_strip_makes_no_entry():
+    result = planned(grooved(math.radians(90)), "R2L60rc2", "4,5", 2.0)
+    none = np.full(len(result.samples), -1, np.int32)
+    assert sharp_edge_entries([], none, result.samples, Cutter.parse("R2L60rc2")) == []
