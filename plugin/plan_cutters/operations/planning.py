@@ -110,9 +110,10 @@ def _plans(task: Task, search: Search, few: Columns) -> tuple[list[OperationPlan
     if which == "fewest":
         return [fewest], None, ()
     columns, problem, area, chosen = _fastest(task, search, few)
-    plans = [_capped(task, "fastest", columns.of(each)) for each in (chosen, *with_and_without(problem, chosen))]
+    others = [_capped(task, "fastest", columns.of(each)) for each in (chosen, *with_and_without(problem, chosen))]
     largest_first = [_capped(task, "largest first", _largest_first(task, search, few))] if len(task.cutters) > 1 else []
-    plans += [fewest, *largest_first]
+    # Of those that take the same time the fewest.
+    plans = [fewest, *others, *largest_first]
     fastest = replace(min(plans, key=lambda plan: np.nan_to_num(plan.total, nan=np.inf)), name="fastest")
     at_best = float(problem.cost.min(axis=1, initial=np.inf).sum())
     # Canonical orientations need not be candidates: what the plan that is printed takes bounds the best from above.
