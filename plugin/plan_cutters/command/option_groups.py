@@ -246,9 +246,12 @@ _OPTIONS = (
         help="Rotary axes lock at whole multiples of this angle alone.  [default: they lock anywhere]",
     ),
     _operations(
-        "--axis-accuracy", type=float, default=0.05, metavar="DEG",
+        "--axis-accuracy",
+        type=float,
+        default=0.05,
+        metavar="DEG",
         help="Of the rotary axes: orientations of one setup that are nearer than this are one.  [default: 0.05]",
-    ),  # fmt: skip
+    ),
     _operations(
         "--index-time",
         type=float,

@@ -98,8 +98,8 @@ class _Choice:
 def canonical(task: Task, columns: Columns, rule: Rule | None = None) -> Columns:
     """Exchange orientations of a choice for canonical ones.
 
-    The setup axis comes first, then normals of floors, directions of walls, and whole multiples of 90, 45, 30, 15, 5, 1 and 0.1 deg
-    next to the angles. Of those of one rank that take the same time the one with the largest least clearance is taken. What lies
+    The setup axis comes first, then normals of floors, directions of walls, and whole multiples of 90, 45, 30, 15, 5, 1 and
+    0.1 deg next to the angles. Of those of one rank that take the same time the one with the largest least clearance is taken. What lies
     within the accuracy of the axes is one orientation then, and is written as short as serves.
 
     Parameters
@@ -209,10 +209,10 @@ def _merged(choice: _Choice, most: float) -> _Choice:
                 good = _as_good(choice, j, columns.angle[[k]], columns.axis[[k]], most)
                 choice = good[0] if good else choice
                 continue
-            left = choice
+            fewer = choice
             for each in sorted([*gone, j], reverse=True):
-                left = left.without(each)
-            if left.as_good(choice, most):
+                fewer = fewer.without(each)
+            if fewer.as_good(choice, most):
                 gone.append(j)
     for each in sorted(gone, reverse=True):
         choice = choice.without(each)
