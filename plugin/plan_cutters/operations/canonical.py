@@ -99,8 +99,8 @@ def canonical(task: Task, columns: Columns, rule: Rule | None = None) -> Columns
     """Exchange orientations of a choice for canonical ones.
 
     The setup axis comes first, then normals of floors, directions of walls, and whole multiples of 90, 45, 30, 15, 5, 1 and
-    0.1 deg next to the angles. Of those of one rank that take the same time the one with the largest least clearance is taken. What lies
-    within the accuracy of the axes is one orientation then, and is written as short as serves.
+    0.1 deg next to the angles. Of those of one rank that take the same time the one with the largest least clearance is taken.
+    What lies within the accuracy of the axes is one orientation then, and is written as short as serves.
 
     Parameters
     ----------
