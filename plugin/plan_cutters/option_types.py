@@ -15,7 +15,8 @@ from plan_cutters.library.records import Library
 
 Setup = Heading | HostPlane | Placement | os.PathLike[str]
 #: Options that are angles, and what each may be in degrees.
-ANGLES = {"tilt": TILTS, "rotation": ROTATIONS, "rotation_step": STEP, "index_step": Angle(0.5, 90.0)}
+ANGLES = {"tilt": TILTS, "rotation": ROTATIONS, "rotation_step": STEP, "index_step": Angle(0.5, 90.0),
+          "axis_accuracy": Angle(0.0, 1.0)}  # fmt: skip
 
 
 class PointOptions(TypedDict, total=False):
@@ -64,6 +65,8 @@ class PlanOptions(SceneOptions, total=False):
     stepover: float
     index_step: float | None
     index_step_deg: float | None
+    axis_accuracy: float
+    axis_accuracy_deg: float | None
     index_time: float | None
     change_time: float
     setup_time: float

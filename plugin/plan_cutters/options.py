@@ -32,7 +32,7 @@ _LONGEST, _MOST_JOBS = 1e6, 1024
 #: The least and the largest value of options, and their unit: the tolerance, and what the plan of operations reckons with.
 _RECKONED = {"tolerance": (LEAST_TOLERANCE, MOST_TOLERANCE, "mm"), "feed": (0.1, 1e6, "mm/min"),
              "scallop": (1e-5, 10.0, "mm"), "stepover": (0.01, 1.0, "diameters"),
-             "index_step": (0.5, 90.0, "deg"), "index_time": (0.0, 1e5, "s"),
+             "index_step": (0.5, 90.0, "deg"), "axis_accuracy": (0.0, 1.0, "deg"), "index_time": (0.0, 1e5, "s"),
              "change_time": (0.0, 1e5, "s"), "setup_time": (0.0, 1e6, "s"), "overlap": (0.0, 1e3, "mm")}  # fmt: skip
 #: The least and the largest value of the other numbers, and what is said of one beyond them.
 _LIMITS = {
@@ -71,7 +71,8 @@ _BETWEEN, _MOST_BETWEEN = 24, 100_000
 @degrees_too(ANGLES)
 @dataclass(frozen=True, slots=True)
 class Options:
-    """Options of a plan. Lengths mm, angles rad; degrees as `tilt_deg`, `rotation_deg`, `rotation_step_deg`, `index_step_deg`.
+    """Options of a plan. Lengths mm, angles rad; degrees as `tilt_deg`, `rotation_deg`, `rotation_step_deg`, `index_step_deg`,
+    `axis_accuracy_deg`.
 
     Attributes
     ----------
@@ -132,6 +133,8 @@ class Options:
         Height of the cusps between passes, mm, and the widest distance of passes, in diameters.
     index_step : float, optional
         Rotary axes lock at whole multiples of this angle alone, rad. None: anywhere.
+    axis_accuracy : float
+        Of the rotary axes, rad: orientations of one setup that are nearer than this are one.
     index_time : float, optional
         Seconds that another orientation takes. None: what the machine's rotary axes need by their rates, else 5 s.
     change_time, setup_time : float
@@ -196,6 +199,7 @@ class Options:
     scallop: float = 0.01
     stepover: float = 0.75
     index_step: float | None = None
+    axis_accuracy: float = math.radians(0.05)
     index_time: float | None = None
     change_time: float = 20.0
     setup_time: float = 300.0

@@ -14,6 +14,7 @@ COMMANDS = {
              "--assume-stickout", "30", "--skip-bad", "--setup", "+z", "--setup", "auto", "--fixture", "table", "--ignore", "F3",
              "--unit", "mm", "--spacing", "1", "--grid", "5", "--area-budget", "9", "--map-budget", "9", "--postures", "m.npz",
              "-o", "out", "--formats", "json", "--json", "-", "--operations", "both", "--feed", "900", "--index-step", "15",
+             "--axis-accuracy", "0.1",
              "--index-time", "3", "--most-operations", "2", "--check-operations", "plan.json", "--jobs", "2", "--cluster", "tcp://h:1",
              "--verdicts", "kept", "--verdicts-key", "key", "--timeout", "9", "--memory", "3"]),
     "map": (request.MapRequest, ["p.step", "--at", "0,0,0", "--cutter", "R6L80"],

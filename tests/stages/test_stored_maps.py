@@ -56,6 +56,7 @@ CASES = {
     "scallop": [(0.02, None)],
     "stepover": [(0.5, None)],
     "index_step": [(0.1, None)],
+    "axis_accuracy": [(0.001, None)],
     "index_time": [(1.0, None)],
     "change_time": [(1.0, None)],
     "setup_time": [(1.0, None)],

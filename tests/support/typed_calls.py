@@ -93,7 +93,8 @@ def kept(part: Scene, known: Options) -> None:
         area_budget=known.area_budget, posture_maps=known.posture_maps, map_budget=known.map_budget, answers=known.answers,
         length_over_radius=known.length_over_radius, unit=known.unit, fixtures=known.fixtures, placement=known.placement,
         other_placements=known.other_placements, propose=known.propose, operations=known.operations, feed=known.feed,
-        scallop=known.scallop, stepover=known.stepover, index_step=known.index_step, index_time=known.index_time,
+        scallop=known.scallop, stepover=known.stepover, index_step=known.index_step, axis_accuracy=known.axis_accuracy,
+        index_time=known.index_time,
         change_time=known.change_time, setup_time=known.setup_time, overlap=known.overlap,
         most_operations=known.most_operations,
     )  # fmt: skip

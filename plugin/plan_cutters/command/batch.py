@@ -58,8 +58,8 @@ _many = heading("Many parts")
     },
 )
 @options(
-    "answers", "length_over_radius", "operations", "feed", "scallop", "stepover", "index_step", "index_time", "change_time",
-    "setup_time", "overlap", "most_operations",
+    "answers", "length_over_radius", "operations", "feed", "scallop", "stepover", "index_step", "axis_accuracy", "index_time",
+    "change_time", "setup_time", "overlap", "most_operations",
 )  # fmt: skip
 @_many(
     "--cluster",

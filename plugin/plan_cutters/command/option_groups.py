@@ -246,6 +246,13 @@ _OPTIONS = (
         help="Rotary axes lock at whole multiples of this angle alone.  [default: they lock anywhere]",
     ),
     _operations(
+        "--axis-accuracy",
+        type=float,
+        default=0.05,
+        metavar="DEG",
+        help="Of the rotary axes: orientations of one setup that are nearer than this are one.  [default: 0.05]",
+    ),
+    _operations(
         "--index-time",
         type=float,
         metavar="S",

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from dataclasses import fields
 from difflib import get_close_matches
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from cad_io.errors import CadIoError, ReadError
 from plan_cutters.command.entry import SUBCOMMANDS
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 #: Parameters of the commands that `Options` names otherwise.
 NAMED = {"cutter": "cutters", "cutters": "libraries", "fixture": "fixtures"}
 #: Options that count in a plan of operations alone: without one they must not be ignored.
-OF_OPERATIONS = ("feed", "scallop", "stepover", "index_step", "index_time", "change_time", "setup_time", "overlap",
-                 "most_operations")  # fmt: skip
+OF_OPERATIONS = ("feed", "scallop", "stepover", "index_step", "axis_accuracy", "index_time", "change_time", "setup_time",
+                 "overlap", "most_operations")  # fmt: skip
 #: Bytes of memory below which nothing can be planned.
 LEAST_MEMORY = 2e9
 
@@ -139,7 +139,9 @@ def refuse_unplanned_operations(request: PlanningRequest) -> None:
         return
     from plan_cutters.options import Options
 
-    defaults = {each.name: each.default for each in fields(Options)}
+    defaults: dict[str, Any] = {each.name: each.default for each in fields(Options)}
+    # The command takes degrees.
+    defaults["axis_accuracy"] = round(math.degrees(defaults["axis_accuracy"]), 9)
     for name in OF_OPERATIONS:
         if getattr(request, name) != defaults[name]:
             word = f"--{name.replace('_', '-')}"

@@ -107,18 +107,23 @@ def _multiples(limit: Floats, step: float) -> Floats:
 
 def directions(samples: SurfaceSamples, setup: Floats) -> Floats:
     """Directions (n, 3) that a tool axis may well have: the part's axes, normals of planes, axes of revolved and ruled faces."""
-    candidates = [setup, *np.eye(3), *-np.eye(3)]
+    return np.concatenate([setup[None], np.eye(3), -np.eye(3), *face_directions(samples)])
+
+
+def face_directions(samples: SurfaceSamples) -> tuple[Floats, Floats]:
+    """Normals (n, 3) of plane faces, and directions (m, 3) of walls: axes of revolved and ruled faces. The largest face first."""
+    floors, walls = list[Floats](), list[Floats]()
     judged = samples.unjudged < 0
     area = np.bincount(samples.face[judged], np.nan_to_num(samples.area[judged]))
     for number in np.argsort(-area, kind="stable")[:_FACES]:
         normal = samples.normal[judged & (samples.face == number)]
         if len(normal) and np.ptp(normal, axis=0).max() <= _EVEN:
-            candidates.append(normal[0])
+            floors.append(normal[0])
         elif len(normal) > 3:
             spread, axes = np.linalg.svd(normal - normal.mean(axis=0), full_matrices=False)[1:]
             if spread[2] <= _EVEN * math.sqrt(len(normal)):
-                candidates += [axes[2], -axes[2]]
-    return np.array(candidates)
+                walls += [axes[2], -axes[2]]
+    return np.array(floors).reshape(-1, 3), np.array(walls).reshape(-1, 3)
 
 
 def apart(axis: Floats, least: float = _SAME, old: Floats | None = None) -> NDArray[np.int64]:

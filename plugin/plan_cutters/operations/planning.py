@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import AbstractContextManager
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,7 @@ from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.errors import OptionError
 from plan_cutters.library.presets import feed_of
 from plan_cutters.operations.candidates import STEP, apart, candidates
+from plan_cutters.operations.canonical import canonical
 from plan_cutters.operations.curve import curve
 from plan_cutters.operations.fastest import Costs, Problem, bounded, cheap, exchanged
 from plan_cutters.operations.fewest import FINEST, Search, search_fewest
@@ -108,12 +110,15 @@ def _plans(task: Task, search: Search, few: Columns) -> tuple[list[OperationPlan
     if which == "fewest":
         return [fewest], None, ()
     columns, problem, area, chosen = _fastest(task, search, few)
-    plans = [_capped(task, "fastest", columns.of(each)) for each in (chosen, *with_and_without(problem, chosen))]
+    others = [_capped(task, "fastest", columns.of(each)) for each in (chosen, *with_and_without(problem, chosen))]
     largest_first = [_capped(task, "largest first", _largest_first(task, search, few))] if len(task.cutters) > 1 else []
-    plans += [fewest, *largest_first]
+    # Of those that take the same time the fewest.
+    plans = [fewest, *others, *largest_first]
     fastest = replace(min(plans, key=lambda plan: np.nan_to_num(plan.total, nan=np.inf)), name="fastest")
     at_best = float(problem.cost.min(axis=1, initial=np.inf).sum())
-    timed = Fastest(fastest.total, bounded(problem, chosen).bound, at_best, area, len(problem.cost), len(columns))
+    # Canonical orientations need not be candidates: what the plan that is printed takes bounds the best from above.
+    bound = min(bounded(problem, chosen).bound, np.nan_to_num(fastest.total, nan=np.inf))
+    timed = Fastest(fastest.total, bound, min(at_best, bound), area, len(problem.cost), len(columns))
     return [*([fewest] if which == "both" else []), fastest, *largest_first], timed, worths(task, plans)
 
 
@@ -177,12 +182,17 @@ def _stored(task: Task, rows: Rows) -> Columns:
 
 
 def _capped(task: Task, name: str, columns: Columns) -> OperationPlan:
+    rule = partial(allowed, task) if name == "largest first" else None
+    columns = _worth(task, name, canonical(task, _worth(task, name, columns), rule))
+    return plan_with(task, name, columns, None if rule is None else partial(rule, columns))
+
+
+def _worth(task: Task, name: str, columns: Columns) -> Columns:
+    """Those columns that are worth an orientation, as many as were requested at most."""
     most = task.ready.options.most_operations
     timed = most is None and name != "fewest"
     selected = worth_their_turn(task, columns) if timed else best_area(task, columns, most)
-    columns = selected if len(selected) < len(columns) else columns
-    is_largest_first = name == "largest first"
-    return plan_with(task, name, columns, (lambda serves: allowed(task, columns, serves)) if is_largest_first else None)
+    return selected if len(selected) < len(columns) else columns
 
 
 def _even(task: Task, search: Search) -> tuple[Columns, Rows, NDArray[np.bool_], Floats]:

@@ -174,6 +174,11 @@ def _held(task: Task, operation: Operation) -> Verdicts:
     return replace(verdicts, verdict=np.where(number == 0, verdicts.verdict, UNJUDGED).astype(np.uint8))
 
 
+def clearance_of(task: Task, operation: Operation) -> float | None:
+    """The least clearance of an operation at its samples, mm; None where nothing is known."""
+    return _clearance(task, operation, _held(task, operation))
+
+
 def _clearance(task: Task, operation: Operation, held: Verdicts) -> float | None:
     """The least clearance of postures of an operation; None where nothing is known."""
     samples = at_fixed_axis(task.ready.samples, held)
@@ -200,7 +205,7 @@ def best_area(task: Task, columns: Columns, most: int | None) -> Columns:
 
     `most` None: as many as add each at least `CRUMB` of the area that all serve.
     """
-    area, cost = _costs(task, columns)
+    area, cost = costs_with(task, columns)
     serves, now, picked = np.isfinite(cost), np.full(len(cost), np.inf), list[int]()
     least = MINOR_AREA * float(area @ serves.any(axis=1))
     for _ in range(len(columns) if most is None else min(most, len(columns))):
@@ -216,7 +221,7 @@ def best_area(task: Task, columns: Columns, most: int | None) -> Columns:
     return columns.of(np.array(picked, np.int64))
 
 
-def _costs(task: Task, columns: Columns) -> tuple[Floats, Floats]:
+def costs_with(task: Task, columns: Columns) -> tuple[Floats, Floats]:
     """The area (r,) of the samples of a task, and what each costs with columns (r, k), infinite where one does not serve it."""
     rows = task.rows
     area, serves = np.nan_to_num(task.ready.samples.area[rows]), task.probes.kept(rows, columns)
@@ -229,7 +234,7 @@ def worth_their_turn(task: Task, columns: Columns) -> Columns:
 
     The one that saves least goes first; what it served goes with the others.
     """
-    (area, cost), columns_left = _costs(task, columns), np.arange(len(columns))
+    (area, cost), columns_left = costs_with(task, columns), np.arange(len(columns))
     least = MINOR_AREA * float(area @ np.isfinite(cost).any(axis=1))
     turn = task.indexing.together(columns) / max(1, len(columns))
     while len(columns_left) > 1:

@@ -69,6 +69,7 @@ class Effective(Frozen):
     scallop_mm: float = 0.01
     stepover: float = Field(default=0.75, description="widest distance of passes, in diameters")
     index_step_deg: float | None = Field(default=None, description="rotary axes lock at whole multiples of it alone")
+    axis_accuracy_deg: float = Field(default=0.05, description="orientations of one setup that are nearer than this are one")
     index_time_s: float = Field(default=5.0, description="of an orientation, unless rates of the machine's rotary axes say more")
     change_time_s: float = 20.0
     setup_time_s: float = 300.0

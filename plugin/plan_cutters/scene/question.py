@@ -32,8 +32,8 @@ METHOD = 2
 #: none of these sets asks for what maps do not hold: it is refused.
 ANSWERED = frozenset({"machine", "setup", "placement", "tilt", "rotation", "rotation_step"})
 #: Options that change nothing that maps say.
-IRRELEVANT = frozenset({"jobs", "area_budget", "length_over_radius", "feed", "scallop", "stepover", "index_step", "index_time",
-                        "change_time", "setup_time", "overlap", "most_operations"})  # fmt: skip
+IRRELEVANT = frozenset({"jobs", "area_budget", "length_over_radius", "feed", "scallop", "stepover", "index_step",
+                        "axis_accuracy", "index_time", "change_time", "setup_time", "overlap", "most_operations"})  # fmt: skip
 
 _WORDS = {"libraries": "--cutters", "cutters": "--cutter", "fixtures": "--fixture", "other_setups": "a second --setup"}
 _TOLERATED = 1e-9

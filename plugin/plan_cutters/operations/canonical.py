@@ -1,0 +1,224 @@
+"""Canonical orientations: those that a machinist would write stand for those of a choice wherever they serve the same.
+
+An orientation goes only for another one that was judged, with the axis of its angles as they are written, at every sample that no
+other one of the choice serves: a choice serves afterwards what it served before. All exchanges together cost at most 2 % of the
+time.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
+from plan_cutters.domain.columns import Columns, columns_of
+from plan_cutters.domain.operations import Operation
+from plan_cutters.operations.candidates import Orientations, face_directions
+from plan_cutters.operations.plans import Task, clearance_of, costs_with
+
+Served = NDArray[np.bool_]
+Rows = NDArray[np.int64]
+#: Says which columns, of those that serve (r, k), a sample may go with.
+Rule = Callable[[Columns, Served], Served]
+#: Times that differ by less are equal, as a share.
+_EQUAL = 0.02
+#: Whole multiples of these that are tried, deg, in this order; and those to which an axis is written within its accuracy.
+_STEPS, _SHORT = (90.0, 45.0, 30.0, 15.0, 5.0, 1.0, 0.1), (1.0, 0.1)
+#: Samples at which candidates are judged first, and candidates of one rank whose clearances are compared.
+_FIRST, _COMPARED = 48, 3
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Choice:
+    """Columns with what each sample of a task costs with each (r, k): infinite where it does not serve, or may not."""
+
+    task: Task
+    rule: Rule | None
+    columns: Columns
+    cost: Floats
+
+    @property
+    def ruled(self) -> Floats:
+        """The costs that the rule leaves."""
+        if self.rule is None:
+            return self.cost
+        return np.where(self.rule(self.columns, np.isfinite(self.cost)), self.cost, np.inf)
+
+    @property
+    def served(self) -> Served:
+        """Which samples (r,) some column serves."""
+        return np.asarray(np.isfinite(self.cost).any(axis=1))
+
+    @property
+    def cutting(self) -> float:
+        """The cost of all samples that are served, each with its best column."""
+        return float(self.ruled[self.served].min(axis=1, initial=np.inf).sum())
+
+    @property
+    def seconds(self) -> float:
+        """The same with the time of the rotary axes; without a feed the length of the cuts alone."""
+        return self.cutting + (0.0 if self.task.paths.feed is None else self.task.indexing.together(self.columns))
+
+    def own(self, k: int) -> Rows:
+        """Samples, numbers in the task's rows, that are cheapest with a column."""
+        cost = self.ruled
+        return np.flatnonzero(np.isfinite(cost[:, k]) & (cost.argmin(axis=1) == k))
+
+    def needed(self, k: int) -> Rows:
+        """Samples that no other column serves; where there are none, those that are cheapest with this one."""
+        serves = np.isfinite(self.ruled)
+        alone = np.flatnonzero(serves[:, k] & (serves.sum(axis=1) == 1))
+        return alone if len(alone) else self.own(k)
+
+    def order(self) -> list[int]:
+        """The columns, that with the most samples first."""
+        return sorted(range(len(self.columns)), key=lambda k: -len(self.own(k)))
+
+    def without(self, k: int) -> "_Choice":
+        """The choice without one of its columns."""
+        others = np.delete(np.arange(len(self.columns)), k)
+        return replace(self, columns=self.columns.of(others), cost=self.cost[:, others])
+
+    def exchanged(self, k: int, other: Columns) -> "_Choice":
+        """The choice with another column in the place of one."""
+        place = np.arange(len(self.columns))
+        place[k] = len(self.columns)
+        cost = self.cost.copy()
+        cost[:, k] = costs_with(self.task, other)[1][:, 0]
+        return replace(self, columns=self.columns.and_(other).of(place), cost=cost)
+
+    def as_good(self, before: "_Choice", most: float) -> bool:
+        """Whether it serves all that another choice does, and cuts it at no more than a cost."""
+        return bool(self.served[before.served].all()) and self.cutting <= most
+
+
+def canonical(task: Task, columns: Columns, rule: Rule | None = None) -> Columns:
+    """Exchange orientations of a choice for canonical ones.
+
+    The setup axis comes first, then normals of floors, directions of walls, and whole multiples of 90, 45, 30, 15, 5, 1 and
+    0.1 deg next to the angles. Of those of one rank that take the same time the one with the largest least clearance is taken.
+    What lies within the accuracy of the axes is one orientation then, and is written as short as serves.
+
+    Parameters
+    ----------
+    task : Task
+    columns : Columns
+    rule : callable, optional
+        Says which of the columns that serve a sample it may go with.
+
+    Returns
+    -------
+    Columns
+        At most as many, in their order: the same where rotary axes lock at whole multiples of an angle alone.
+    """
+    if not len(columns) or task.ready.options.index_step is not None:
+        return columns
+    first = choice = _Choice(task, rule, columns, costs_with(task, columns)[1])
+    most, faces = (1.0 + _EQUAL) * choice.cutting, face_directions(task.ready.samples)
+    for k in choice.order():
+        choice = _preferred(choice, k, most, faces)
+    for k in choice.order():
+        choice = _shortened(choice, k, most)
+    choice = _merged(choice, most)
+    return choice.columns if choice.seconds <= (1.0 + _EQUAL) * first.seconds else columns
+
+
+def _preferred(choice: _Choice, k: int, most: float, faces: tuple[Floats, Floats]) -> _Choice:
+    """The choice with the orientation of the first rank that serves as well as a column."""
+    where = choice.task.orientations[choice.columns.setup[k]]
+    for angle, axis in _ranks(where, choice.columns.angle[k], faces):
+        if (angle == choice.columns.angle[k]).all(axis=1).any():
+            return choice
+        good = _as_good(choice, k, angle, axis, most)
+        if good:
+            return _clearest(good, k)
+    return choice
+
+
+def _ranks(where: Orientations, angle: Floats, faces: tuple[Floats, Floats]) -> Iterator[tuple[Floats, Floats]]:
+    """Angles (n, 2), deg, and axes (n, 3) of each rank."""
+    yield where.near(where.conditions.setup[None])
+    for directions in faces:
+        yield where.near(directions)
+    for step in _STEPS:
+        yield where.set_to(_multiples(angle, step))
+
+
+def _multiples(angle: Floats, step: float) -> Floats:
+    """Whole multiples (n, 2) of a step on both sides of angles (2,), deg."""
+    sides = [{math.floor(each / step + 1e-9) * step, math.ceil(each / step - 1e-9) * step} for each in angle.tolist()]
+    return np.array(list(product(*map(sorted, sides))))
+
+
+def _as_good(choice: _Choice, k: int, angle: Floats, axis: Floats, most: float) -> list[_Choice]:
+    """The choices with one of some orientations in the place of a column that serve as well at no more than a cost."""
+    task, needed = choice.task, choice.needed(k)
+    others = columns_of(axis, angle, int(choice.columns.cutter[k]), int(choice.columns.setup[k]))
+    # Most of them do not serve: few samples tell.
+    for rows in (needed[:: max(1, len(needed) // _FIRST)], needed):
+        if len(others):
+            others = others.of(np.flatnonzero(task.probes.table(task.rows[rows], others).all(axis=0)))
+    exchanged = (choice.exchanged(k, others.of(np.array([i]))) for i in range(len(others)))
+    return [each for each in exchanged if each.as_good(choice, most)]
+
+
+def _clearest(choices: Sequence[_Choice], k: int) -> _Choice:
+    """Of choices with another column at one place, of those that take the same time, that with the largest clearance there."""
+    times = sorted(choices, key=lambda each: each.cutting)
+    equal = [each for each in times if each.cutting <= (1.0 + _EQUAL) * times[0].cutting][:_COMPARED]
+    return equal[0] if len(equal) == 1 else max(equal, key=lambda each: _clearance(each, k))
+
+
+def _clearance(choice: _Choice, k: int) -> float:
+    """The least clearance, mm, of a column at the samples that are cheapest with it."""
+    columns, rows = choice.columns, choice.task.rows[choice.own(k)]
+    cutter, setup = choice.task.cutters[columns.cutter[k]], int(columns.setup[k])
+    operation = Operation("", "fixed", cutter, setup, columns.axis[k], columns.angle[k], None, rows, rows)
+    clearance = clearance_of(choice.task, operation)
+    return -math.inf if clearance is None else clearance
+
+
+def _shortened(choice: _Choice, k: int, most: float) -> _Choice:
+    """The choice with angles of a column written as short as serves, within the accuracy of the axes."""
+    columns, where = choice.columns, choice.task.orientations[choice.columns.setup[k]]
+    for step in _SHORT:
+        angle, axis = where.set_to(_multiples(columns.angle[k], step))
+        if (angle == columns.angle[k]).all(axis=1).any():
+            return choice
+        near = _within(axis, columns.axis[k], choice.task.ready.options.axis_accuracy)
+        good = _as_good(choice, k, angle[near], axis[near], most)
+        if good:
+            return _clearest(good, k)
+    return choice
+
+
+def _merged(choice: _Choice, most: float) -> _Choice:
+    """The choice with one orientation for those of a setup that are nearer than the accuracy of the axes, where it serves."""
+    accuracy, order = choice.task.ready.options.axis_accuracy, choice.order()
+    gone = list[int]()
+    for place, k in enumerate(order):
+        for j in order[place + 1 :]:
+            columns = choice.columns
+            near = bool(_within(columns.axis[[j]], columns.axis[k], accuracy)[0])
+            if k in gone or j in gone or columns.setup[k] != columns.setup[j] or not near:
+                continue
+            if columns.cutter[k] != columns.cutter[j]:
+                good = _as_good(choice, j, columns.angle[[k]], columns.axis[[k]], most)
+                choice = good[0] if good else choice
+                continue
+            fewer = choice
+            for each in sorted([*gone, j], reverse=True):
+                fewer = fewer.without(each)
+            if fewer.as_good(choice, most):
+                gone.append(j)
+    for each in sorted(gone, reverse=True):
+        choice = choice.without(each)
+    return choice
+
+
+def _within(axis: Floats, other: Floats, angle: float) -> Served:
+    """Which axes (n, 3) are at most an angle, rad, from another one (3,)."""
+    return np.asarray(np.linalg.norm(axis - other, axis=1) <= 2.0 * math.sin(0.5 * angle) + 1e-12)
