@@ -11,7 +11,7 @@ from plan_cutters.scene.preparation import Prepared
 
 
 def inside_radius_entries(ready: Prepared, cutter: Cutter, verdicts: Verdicts) -> list[InsideRadiusEntry]:
-    """List the faces on which a cutter is stopped by gouging, and whose smallest inside radius is below its own; smallest first."""
+    """List the faces on which gouging stops a cutter, and whose smallest inside radius is below its own; smallest first."""
     samples, radius = ready.samples, least_radius(cutter)
     gouged = verdicts.not_reached & np.isin(verdicts.reason, (LOCAL_GOUGE, REAR_GOUGE)) & ready.finished
     if radius is None or not gouged.any():
@@ -33,7 +33,7 @@ def inside_radius_entries(ready: Prepared, cutter: Cutter, verdicts: Verdicts) -
 
 
 def smallest_inside_radius(ready: Prepared, number: int) -> float:
-    """Smallest inside radius of a face, mm, by the kernel's curvature at its samples and its border; infinite where it has none."""
+    """Smallest inside radius of a face, mm, by the kernel's curvature at samples and border; infinite where it has none."""
     samples, part = ready.samples, ready.scene.part
     most = samples.curvature[samples.face == number, 0]
     trim = part.trim(number)

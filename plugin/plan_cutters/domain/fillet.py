@@ -1,9 +1,8 @@
 """Which fillet does a cutter leave beside a sharp inside edge, and which cutters fit into one?"""
 
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.standard_tools import METRIC
 
-#: Usual diameters of metric end mills, mm.
-_DIAMETERS = (0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0, 25.0)
 #: What the kernel's curvature is off by, as a share.
 _ROUNDING = 1e-6
 
@@ -14,7 +13,8 @@ def largest_fitting(radius: float, allowance: float = 0.0) -> float | None:
     >>> largest_fitting(1.916), largest_fitting(3.0), largest_fitting(0.2)
     (3.0, 6.0, None)
     """
-    return max((size for size in _DIAMETERS if 0.5 * size + allowance <= radius * (1.0 + _ROUNDING)), default=None)
+    sizes = (tool.diameter for tool in METRIC)
+    return max((size for size in sizes if 0.5 * size + allowance <= radius * (1.0 + _ROUNDING)), default=None)
 
 
 def least_radius(cutter: Cutter) -> float | None:

@@ -1,8 +1,8 @@
 """End mills as they are sold: diameters, flutes, overall lengths, and the stick-outs that are usual.
 
-The lengths are the usual catalogue lengths of makers, rounded: flutes and shanks of long solid carbide end mills (as in DIN 6527;
-of inch tools as the common series of makers), and the overall length of their longest usual design. A tool that somebody has may
-differ: what stands here is for advice on what to buy.
+The lengths are those at which long solid carbide end mills are usually listed, rounded: flutes, shanks, and the overall length of
+the longest usual design. They follow no one catalogue, and a tool that somebody has may differ: what stands here is for advice on
+what to buy.
 """
 
 from typing import NamedTuple
