@@ -326,6 +326,8 @@ def test_what_counts_in_operations_alone_is_not_ignored(word):
     request = PlanRequest(**cli.command.make_context("plan-cutters", ["part.step"]).params)
     with pytest.raises(OptionError, match=f"--{word.replace('_', '-')} is about a plan of operations"):
         validation.refuse_unplanned_operations(replace(request, **{word: 7}))
+    if word == "axis_accuracy":  # an angle: the command takes degrees
+        default = pytest.approx(math.degrees(default))
     assert getattr(request, word) == default
     validation.refuse_unplanned_operations(request)
     validation.refuse_unplanned_operations(replace(request, **{word: 7}, operations="both"))
