@@ -154,7 +154,7 @@ def test_what_fixtures_keep_is_what_is_reached_without_them(pocket):
     assert entry.by_reason["fixture"] + entry.undecided_by_reason["fixture"] > 0
     found = [w for w in entry.witnesses if w.reason == "fixture"]
     assert any(w.obstacle_face == "fixture:box" and w.depth_mm > 0 for w in found)
-    assert held.plan.reasons[-1] == "fixture"
+    assert held.plan.reasons[FIXTURE] == "fixture"
 
 
 def test_rows_are_judged_alike_with_fixtures(pocket):
