@@ -60,7 +60,7 @@ from plan_cutters.stages.posture_maps import posture_maps
 from plan_cutters.stages.reasons import Reasons
 from plan_cutters.stages.select_cutters import ranked
 from plan_cutters.stages.setups import within_limits
-from plan_cutters.stages.sharp_edges import strips, with_sharp_edges
+from plan_cutters.stages.sharp_edges import may_be_at_edge, strips, with_sharp_edges
 from plan_cutters.stages.travel import travels
 from plan_cutters.stages.witness import witnesses
 
@@ -321,12 +321,12 @@ def _judged(
         for k, (cutter, mine) in enumerate(here.items()):
             over, which = over_setups([mine, *(verdicts_there[cutter.id] for _, verdicts_there in other_setups)])
             by_cutter[cutter] = reasons.of(cutter, over, part_of(tell, k, len(here))), which
-        edges = inside_edges(ready.scene.part, ready.scene.orientation)
+        wanted = any(may_be_at_edge(explained.verdicts, cutter) for cutter, (explained, _) in by_cutter.items())
+        edges = inside_edges(ready.scene.part, ready.scene.orientation) if wanted else ()
     judged = {}
-    for cutter, mine in here.items():
-        explained, which = by_cutter[cutter]
-        verdicts, at_edge = explained.verdicts, strips(samples, explained.verdicts, cutter, edges)
-        verdicts = with_sharp_edges(verdicts, at_edge)
+    for (cutter, mine), (explained, which) in zip(here.items(), by_cutter.values(), strict=True):
+        at_edge = strips(samples, explained.verdicts, cutter, edges)
+        verdicts = with_sharp_edges(explained.verdicts, at_edge)
         with clock.stage(cutter.id, shown=False):
             context, part = Context.of(cutter, ready.conditions), ready.scene.part
             witness_list = witnesses(samples, verdicts, context, inside=ready.shut, part=part)

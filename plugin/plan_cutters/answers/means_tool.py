@@ -67,7 +67,7 @@ def holder(scan: Scan) -> Iterator[Candidate]:
 def _chucks(now: Holder) -> list[Holder]:
     """Collet chucks of the table that are slimmer at the nose than a holder, the widest first, on its taper if it has one."""
     name = now.name.lower()
-    taper, nose, length = name.rpartition("er") if chuck_of(name) else ("", "", "")
+    taper, nose, length = name.rpartition("er") if _is_chuck(name) else ("", "", "")
     _, times, mm = length.partition("x")
     long = f"x{mm}" if times else "" if nose else f"x{sum(stage.length for stage in now.stages):.10g}"
     slimmer = []
@@ -81,7 +81,7 @@ def _chucks(now: Holder) -> list[Holder]:
     return slimmer[::-1]
 
 
-def chuck_of(name: str) -> bool:
+def _is_chuck(name: str) -> bool:
     """Whether a name is the word of a holder of the table."""
     try:
         return chuck(name) is not None

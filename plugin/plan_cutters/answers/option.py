@@ -9,6 +9,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.spec import is_spec, spelled, written
 from plan_cutters.errors import PlanError
 from plan_cutters.options import Options
+from plan_cutters.plan_file.numbers import ranges
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.faces import select_faces
 from plan_cutters.scene.preparation import Prepared
@@ -65,21 +66,7 @@ def _pinned(ready: Prepared, faces: Sequence[int]) -> list[str]:
     part = ready.scene.part
     words = ["--setup", ",".join(f"{each:.12g}" for each in ready.scene.setup), "--fixture", "table"]
     selected = select_faces(part.faces, ready.chosen.asked, tree=part.tree, ignored=ready.scene.ignored, blends=part.blends)
-    return words if tuple(selected) == tuple(faces) else [*words, "--faces", _ranges(faces)]
-
-
-def _ranges(faces: Sequence[int]) -> str:
-    """Numbers of faces, ascending, as they are typed.
-
-    >>> _ranges([1, 2, 3, 5, 8, 9])
-    'F1-3,F5,F8-9'
-    """
-    words, first = list[str](), 0
-    for k, number in enumerate(faces):
-        if k + 1 == len(faces) or faces[k + 1] != number + 1:
-            words.append(f"F{faces[first]}" if first == k else f"F{faces[first]}-{number}")
-            first = k + 1
-    return ",".join(words)
+    return words if tuple(selected) == tuple(faces) else [*words, "--faces", ranges(faces)]
 
 
 def _more(ready: Prepared, cutters: Sequence[Cutter]) -> list[str] | None:

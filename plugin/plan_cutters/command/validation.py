@@ -137,13 +137,15 @@ def refuse_unplanned_operations(request: PlanningRequest) -> None:
 
     if request.operations is not None:
         return
+    from plan_cutters.option_types import ANGLES
     from plan_cutters.options import Options
 
     defaults: dict[str, Any] = {each.name: each.default for each in fields(Options)}
-    # The command takes degrees.
-    defaults["axis_accuracy"] = round(math.degrees(defaults["axis_accuracy"]), 9)
     for name in OF_OPERATIONS:
-        if getattr(request, name) != defaults[name]:
+        default = defaults[name]
+        if name in ANGLES and default is not None:  # the command takes degrees
+            default = round(math.degrees(default), 9)
+        if getattr(request, name) != default:
             word = f"--{name.replace('_', '-')}"
             raise OptionError(f"{word} is about a plan of operations: give it with --operations, or leave it out")
 

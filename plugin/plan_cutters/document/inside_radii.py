@@ -1,6 +1,7 @@
 """Faces that bend inwards more than a cutter become entries of the plan file here."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cad_io.face.curvature import curvature
 from plan_cutters.domain.cutter import Cutter
@@ -17,25 +18,26 @@ def inside_radius_entries(ready: Prepared, cutter: Cutter, verdicts: Verdicts) -
     if radius is None or not gouged.any():
         return []
     entries = []
-    for number in np.unique(samples.face[gouged]).tolist():
-        smallest = smallest_inside_radius(ready, number)
+    for number, rows in samples.by_face().items():
+        if not gouged[rows].any():
+            continue
+        smallest = _smallest_inside_radius(ready, number, rows)
         if smallest < radius * (1.0 - 1e-6):
             entries.append(
                 InsideRadiusEntry(
                     face=f"F{number}",
                     radius_mm=smallest,
                     cutter_radius_mm=radius,
-                    area_mm2=float(np.nansum(samples.area[gouged & (samples.face == number)])),
+                    area_mm2=float(np.nansum(samples.area[rows[gouged[rows]]])),
                     fits_mm=largest_fitting(smallest, cutter.allowance or 0.0),
                 )
             )
     return sorted(entries, key=lambda each: (each.radius_mm, each.face))
 
 
-def smallest_inside_radius(ready: Prepared, number: int) -> float:
-    """Smallest inside radius of a face, mm, by the kernel's curvature at samples and border; infinite where it has none."""
-    samples, part = ready.samples, ready.scene.part
-    most = samples.curvature[samples.face == number, 0]
+def _smallest_inside_radius(ready: Prepared, number: int, rows: NDArray[np.int64]) -> float:
+    """Smallest inside radius of a face, mm, by the kernel's curvature at its samples and border; infinite where it has none."""
+    part, most = ready.scene.part, ready.samples.curvature[rows, 0]
     trim = part.trim(number)
     if trim is not None:
         u, v = trim.segments[:, 0].T

@@ -7,7 +7,7 @@ time.
 
 import math
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
@@ -33,39 +33,38 @@ _FIRST, _COMPARED = 48, 3
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Choice:
-    """Columns with what each sample of a task costs with each (r, k): infinite where it does not serve, or may not."""
+    """Columns with what each sample of a task costs with each: made by `_choice`.
+
+    Attributes
+    ----------
+    cost : (r, k) float
+        Infinite where a column does not serve.
+    ruled : (r, k) float
+        The costs that the rule leaves, infinite where a sample may not go with a column, too.
+    best : (r,) int
+        The cheapest column of each sample, by `ruled`.
+    served : (r,) bool
+        Samples that some column serves.
+    cutting : float
+        The cost of all samples that are served, each with its best column.
+    """
 
     task: Task
     rule: Rule | None
     columns: Columns
     cost: Floats
+    ruled: Floats
+    best: Rows
+    served: Served
+    cutting: float
 
-    @property
-    def ruled(self) -> Floats:
-        """The costs that the rule leaves."""
-        if self.rule is None:
-            return self.cost
-        return np.where(self.rule(self.columns, np.isfinite(self.cost)), self.cost, np.inf)
-
-    @property
-    def served(self) -> Served:
-        """Which samples (r,) some column serves."""
-        return np.asarray(np.isfinite(self.cost).any(axis=1))
-
-    @property
-    def cutting(self) -> float:
-        """The cost of all samples that are served, each with its best column."""
-        return float(self.ruled[self.served].min(axis=1, initial=np.inf).sum())
-
-    @property
     def seconds(self) -> float:
-        """The same with the time of the rotary axes; without a feed the length of the cuts alone."""
+        """The cost with the time of the rotary axes; without a feed the length of the cuts alone."""
         return self.cutting + (0.0 if self.task.paths.feed is None else self.task.indexing.together(self.columns))
 
     def own(self, k: int) -> Rows:
         """Samples, numbers in the task's rows, that are cheapest with a column."""
-        cost = self.ruled
-        return np.flatnonzero(np.isfinite(cost[:, k]) & (cost.argmin(axis=1) == k))
+        return np.flatnonzero(np.isfinite(self.ruled[:, k]) & (self.best == k))
 
     def needed(self, k: int) -> Rows:
         """Samples that no other column serves; where there are none, those that are cheapest with this one."""
@@ -80,7 +79,7 @@ class _Choice:
     def without(self, k: int) -> "_Choice":
         """The choice without one of its columns."""
         others = np.delete(np.arange(len(self.columns)), k)
-        return replace(self, columns=self.columns.of(others), cost=self.cost[:, others])
+        return _choice(self.task, self.rule, self.columns.of(others), self.cost[:, others])
 
     def exchanged(self, k: int, other: Columns) -> "_Choice":
         """The choice with another column in the place of one."""
@@ -88,11 +87,21 @@ class _Choice:
         place[k] = len(self.columns)
         cost = self.cost.copy()
         cost[:, k] = costs_with(self.task, other)[1][:, 0]
-        return replace(self, columns=self.columns.and_(other).of(place), cost=cost)
+        return _choice(self.task, self.rule, self.columns.and_(other).of(place), cost)
 
     def as_good(self, before: "_Choice", most: float) -> bool:
         """Whether it serves all that another choice does, and cuts it at no more than a cost."""
         return bool(self.served[before.served].all()) and self.cutting <= most
+
+
+def _choice(task: Task, rule: Rule | None, columns: Columns, cost: Floats) -> _Choice:
+    """Columns with their costs (r, k), and what follows from these."""
+    serves = np.isfinite(cost)
+    ruled = cost if rule is None else np.where(rule(columns, serves), cost, np.inf)
+    served = np.asarray(serves.any(axis=1))
+    return _Choice(
+        task, rule, columns, cost, ruled, ruled.argmin(axis=1), served, float(ruled[served].min(axis=1, initial=np.inf).sum())
+    )
 
 
 def canonical(task: Task, columns: Columns, rule: Rule | None = None) -> Columns:
@@ -116,14 +125,14 @@ def canonical(task: Task, columns: Columns, rule: Rule | None = None) -> Columns
     """
     if not len(columns) or task.ready.options.index_step is not None:
         return columns
-    first = choice = _Choice(task, rule, columns, costs_with(task, columns)[1])
+    first = choice = _choice(task, rule, columns, costs_with(task, columns)[1])
     most, faces = (1.0 + _EQUAL) * choice.cutting, face_directions(task.ready.samples)
     for k in choice.order():
         choice = _preferred(choice, k, most, faces)
     for k in choice.order():
         choice = _shortened(choice, k, most)
     choice = _merged(choice, most)
-    return choice.columns if choice.seconds <= (1.0 + _EQUAL) * first.seconds else columns
+    return choice.columns if choice.seconds() <= (1.0 + _EQUAL) * first.seconds() else columns
 
 
 def _preferred(choice: _Choice, k: int, most: float, faces: tuple[Floats, Floats]) -> _Choice:

@@ -33,6 +33,11 @@ _WIDER = 1.5
 _ENTERS = 0.5
 
 
+def may_be_at_edge(verdicts: Verdicts, cutter: Cutter) -> bool:
+    """Whether a sharp inside edge may lose a sample: where this is False for all cutters, no edge need be looked for."""
+    return least_radius(cutter) is not None and bool(_losses(verdicts).any())
+
+
 def strips(samples: SurfaceSamples, verdicts: Verdicts, cutter: Cutter, edges: Sequence[InsideEdge]) -> Ints:
     """Find the sharp inside edge that loses each sample.
 
@@ -49,24 +54,26 @@ def strips(samples: SurfaceSamples, verdicts: Verdicts, cutter: Cutter, edges: S
         Place in `edges`, -1 where it is none of them.
     """
     result = np.full(len(samples), -1, np.int32)
-    radius = least_radius(cutter)
-    losses = verdicts.not_reached & np.isin(verdicts.reason, (REAR_GOUGE, COLLISION))
-    reached = np.flatnonzero(verdicts.reached)
+    radius, losses, reached = least_radius(cutter), _losses(verdicts), np.flatnonzero(verdicts.reached)
     if radius is None or not losses.any() or not len(reached):
         return result
     tree, gaps = cKDTree(samples.point[reached]), dict(samples.face_gaps)
     rows_of = samples.by_face()
     for place, edge in enumerate(edges):
+        if not any(number in rows_of and losses[rows_of[number]].any() for number in edge.faces):
+            continue
+        # At this distance from the edge a ball between two planes at its angle touches them.
+        wide = np.where(edge.sharp, radius / np.tan(0.5 * edge.angle), np.nan)
         for side, number in enumerate(edge.faces):
             rows = rows_of.get(number)
             if rows is None or not losses[rows].any():
                 continue
-            rows, at = _within(samples, rows, edge, side, radius)
+            rows, at = _within(samples, rows, edge, side, radius, wide)
             if not len(rows) or verdicts.reached[rows].mean() > _ENTERS:
                 continue
             open_rows = losses[rows] & (result[rows] < 0)
             rows, at = rows[open_rows], at[open_rows]
-            served = _served(samples, reached, tree, edge, side, radius, _NEAR * gaps.get(number, 0.0))
+            served = _served(samples, reached, tree, edge, side, wide, _NEAR * gaps.get(number, 0.0))
             result[rows[served[at]]] = place
     return result
 
@@ -78,16 +85,16 @@ def with_sharp_edges(verdicts: Verdicts, at_edge: Ints) -> Verdicts:
     return replace(verdicts, reason=np.where(at_edge >= 0, SHARP_EDGE, verdicts.reason).astype(np.uint8))
 
 
-def width(edge: InsideEdge, side: int, radius: float) -> Floats:
-    """Distance (k,) from the edge at which a ball between two planes at its angle touches them, mm; nan where it is not sharp."""
-    return np.where(edge.sharp, radius / np.tan(0.5 * edge.angle), np.nan)
+def _losses(verdicts: Verdicts) -> NDArray[np.bool_]:
+    """Samples (n,) that are not reached, for one of the reasons behind which a sharp inside edge may be."""
+    return np.asarray(verdicts.not_reached & np.isin(verdicts.reason, (REAR_GOUGE, COLLISION)))
 
 
 def _within(
-    samples: SurfaceSamples, rows: NDArray[np.int64], edge: InsideEdge, side: int, radius: float
+    samples: SurfaceSamples, rows: NDArray[np.int64], edge: InsideEdge, side: int, radius: float, wide: Floats
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Rows of a face's samples at which the ball reaches into the other face, and the point of the edge next to each."""
-    line, wide = cKDTree(edge.point), width(edge, side, radius)
+    line = cKDTree(edge.point)
     step = np.linalg.norm(np.diff(edge.point, axis=0), axis=1).max(initial=0.0)
     away, at = line.query(samples.point[rows], distance_upper_bound=_WIDER * float(np.nanmax(wide)) + step)
     near = np.isfinite(away)
@@ -104,12 +111,11 @@ def _within(
 
 
 def _served(
-    samples: SurfaceSamples, reached: NDArray[np.int64], tree: cKDTree, edge: InsideEdge, side: int, radius: float, near: float
+    samples: SurfaceSamples, reached: NDArray[np.int64], tree: cKDTree, edge: InsideEdge, side: int, wide: Floats, near: float
 ) -> NDArray[np.bool_]:
     """Points (k,) of an edge beside which, or no farther along it than a strip is wide, the cutter reaches the surface where the
     ball touches both faces.
     """
-    wide = width(edge, side, radius)
     served = np.zeros(len(wide), bool)
     for k in np.flatnonzero(edge.sharp).tolist():
         rise = 0.5 * edge.curvature[side, k] * wide[k] ** 2
