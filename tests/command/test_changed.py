@@ -16,7 +16,7 @@ from plan_cutters.command.changed import RULES, PartRequest, Row
 from plan_cutters.command.repository import Changed, changed, content
 from plan_cutters.errors import PlanError
 from tests.support.forked import ENV
-from tests.support.places import DATA, ROOT
+from tests.support.places import ROOT, real_file
 
 ACTION = yaml.safe_load((ROOT / "action.yml").read_text(encoding="utf-8"))
 POINTER = "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n"
@@ -235,7 +235,7 @@ def shop(folder):
         "Diameter": "4 mm", "CuttingEdgeHeight": "20 mm", "Length": "50 mm", "ShankDiameter": "4 mm"}}  # fmt: skip
     (folder / "tools/Bit/b.fctb").write_text(json.dumps(bit))
     (folder / "tools/Library/l.fctl").write_text(json.dumps({"tools": [{"nr": 1, "path": "b.fctb"}], "version": 1}))
-    (folder / "machine/base.inc").write_bytes((DATA / "machines/linuxcnc_xyzac-trt.ini").read_bytes())
+    (folder / "machine/base.inc").write_bytes(real_file("machines/linuxcnc_xyzac-trt.ini").read_bytes())
     (folder / "machine/m.ini").write_text("[KINS]\nJOINTS = 5\n#INCLUDE base.inc\n")
     return ["--cutters", "tools/Library/l.fctl", "--assume-stickout", "30", "--holder", "none", "--machine", "machine/m.ini"]
 

@@ -16,7 +16,7 @@ from plan_cutters.files.seal import key_of, seal, stamp
 from plan_cutters.library import read_library
 from plan_cutters.machines import read_machine
 from plan_cutters.machines.setups import read_setup
-from tests.support.places import DATA, SAMPLES
+from tests.support.places import SAMPLES, real_file
 
 BIT = {"shape": "endmill.fcstd", "name": "b", "parameter": {"Diameter": "4 mm", "CuttingEdgeHeight": "20 mm", "Length": "50 mm",
                                                             "ShankDiameter": "4 mm"}}  # fmt: skip
@@ -30,7 +30,7 @@ def shop(tmp_path):
     root = tmp_path / "root"
     (root / "Bit/b.fctb").write_text(json.dumps(BIT))
     (root / "Library/l.fctl").write_text(json.dumps({"tools": [{"nr": 1, "path": "b.fctb"}], "version": 1}))
-    (root / "base.inc").write_bytes((DATA / "machines/linuxcnc_xyzac-trt.ini").read_bytes())
+    (root / "base.inc").write_bytes(real_file("machines/linuxcnc_xyzac-trt.ini").read_bytes())
     (root / "m.ini").write_text("[KINS]\nJOINTS = 5\n#INCLUDE base.inc\n")
     (root / "s.toml").write_text('unit = "mm"\nz = "+z"\n')
     return tmp_path

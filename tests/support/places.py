@@ -2,7 +2,16 @@
 
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).resolve().parents[2]
 SAMPLES = ROOT / "samples"
 SHARED = ROOT.parent / "shared"
 DATA = SHARED / "data"
+
+
+def real_file(name: str) -> Path:
+    """A real file by its place below `shared/data`; the test is skipped where it is not at hand."""
+    if not (DATA / name).is_file():
+        pytest.skip(f"the real file {Path(name).name} is not at hand (shared/data/{Path(name).parent})")
+    return DATA / name

@@ -5,9 +5,7 @@ import io
 import json
 import zipfile
 
-import pytest
-
-from tests.support.places import DATA
+from tests.support.places import DATA, real_file
 
 REAL = DATA / "tools"
 
@@ -133,7 +131,4 @@ def write_bit(path, shape="Endmill", **parameters):
 
 
 def real(name):
-    path = REAL / name
-    if not path.exists():
-        pytest.skip(f"the real file {name} is not at hand (shared/data/tools)")
-    return path
+    return real_file(f"tools/{name}")
