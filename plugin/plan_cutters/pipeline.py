@@ -21,7 +21,8 @@ from plan_cutters.document.clock import Clock, Progress
 from plan_cutters.document.inside_radii import inside_radius_entries
 from plan_cutters.document.notes import noted
 from plan_cutters.document.operations_entry import with_motion
-from plan_cutters.document.plan import OtherSetup, OverSetups, completed, plan_of, selection
+from plan_cutters.document.over_setups import OtherSetup, OverSetups
+from plan_cutters.document.plan import completed, plan_of, selection
 from plan_cutters.document.setup_table import setup_table
 from plan_cutters.document.sharp_edges import sharp_edge_entries
 from plan_cutters.domain.answers import Answers
@@ -378,7 +379,7 @@ def assemble(
         shown = selected or nearest(entries).id
         tool, its = next((cutter, each) for cutter, each in judged.items() if cutter.id == shown)
         radii, table = inside_radius_entries(ready, tool, its.verdicts), setup_table(ready, within, over)
-        document = plan_of(ready, entries, selected, chosen, began, answers, table, its.strips, radii)
+        document = plan_of(ready, entries, selected, chosen, began, answers, over, table, its.strips, radii)
     return Result(clock.stamp(with_text(document)), ready, over, moved, answers)
 
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from cad_io import Part, SurfaceSamples
 from cad_io.arrays import Floats, Ints
 from plan_cutters.document.on_face import OnFace, on_face
-from plan_cutters.document.plan import OverSetups
+from plan_cutters.document.over_setups import OverSetups
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.kinematics import Kinematics

@@ -50,7 +50,7 @@ def least_set(
         mine = np.flatnonzero(reached[:, column] & ~done)
         done[mine] = True
         runs.append(Run(
-            cutters[c], setups[s][0], len(mine), float(finished.area[mine].sum()), finished.of_rows(mine),
+            cutters[c], setups[s][0], s, len(mine), float(finished.area[mine].sum()), finished.of_rows(mine),
             tuple(f"F{n}" for n in np.unique(ready.samples.face[mine]).tolist()),
             int((whole[:, k] & (whole.sum(axis=1) == 1)).sum()),
         ))  # fmt: skip

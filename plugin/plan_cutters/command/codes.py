@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from plan_cutters.command import terminal
+from plan_cutters.plan_file.words.scope import unseen
 from plan_cutters.workers.assignment import INTERRUPTED
 from plan_cutters.workers.errors import Supervised
 
@@ -24,17 +25,17 @@ FEASIBLE, NONE_FEASIBLE, USAGE, UNREADABLE, NOT_ALL_JUDGED = 0, 1, 2, 3, 4
 READER_GONE = 141
 
 
-def code_of(plan: "Plan") -> int:
-    """The exit code that a plan asks for."""
-    if plan.selected is None and plan.selected_over_setups is None:
-        # What is missing from the obstacles leaves open whether a cutter that nothing else stops is stopped by it.
-        doubtful = plan.missing and any(c.feasible is None for c in plan.cutters)
-        return NOT_ALL_JUDGED if doubtful else NONE_FEASIBLE
+def code_of(plan: "Plan", fail_under: float | None = None) -> int:
+    """The exit code that a plan asks for; `fail_under`: the percent of what is asked that is enough."""
+    process = plan.process
+    if fail_under is not None and process is not None and 100.0 * process.finished_share >= fail_under:
+        return FEASIBLE
+    finished = process.finished if process is not None else bool(plan.selected or plan.selected_over_setups)
+    if not finished:
+        return NONE_FEASIBLE
     unjudged = plan.samples.unjudged or any(f.target and f.unjudged for f in plan.faces)
-    taken = plan.selected or plan.selected_over_setups
-    # Who says how densely to sample has asked for what lies between.
-    unseen = plan.effective.sampled_by == "default" and any(c.id == taken and not c.seen for c in plan.cutters)
-    return NOT_ALL_JUDGED if unjudged or unseen else FEASIBLE
+    # What is missing from the obstacles leaves open whether a cutter that nothing else stops is stopped by it.
+    return NOT_ALL_JUDGED if plan.missing or unjudged or unseen(plan) else FEASIBLE
 
 
 #: Interrupts that came.

@@ -78,7 +78,9 @@ def one_part(
     if request.json_out == "-":
         terminal.hand_out(dumps(document))
     if not request.quiet:
-        _tells(request)(*written(document, out, formats), *others(document, every=request.verbose))
+        _tells(request)(
+            *(others(document, every=True) if request.verbose else []), *written(document, out, formats, verbose=request.verbose)
+        )
     for name, why in document.not_written.items():
         terminal.error(f"plan-cutters: {file_name(name)} was not written: {why}")
     return code_of(document), ""

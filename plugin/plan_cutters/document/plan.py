@@ -2,13 +2,11 @@
 
 import datetime
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Ints
 from plan_cutters.document.answers import least_set_entry, radius_entry, stick_out_entry, what_if_entry
 from plan_cutters.document.build import degrees, face_entries, missing_entries, part_info, scope_of, versions
 from plan_cutters.document.effective import effective
@@ -17,6 +15,8 @@ from plan_cutters.document.inside import inside_entry
 from plan_cutters.document.libraries import library_entry, source_entry
 from plan_cutters.document.notes import notes_of
 from plan_cutters.document.operations_entry import operations_entry
+from plan_cutters.document.over_setups import OverSetups
+from plan_cutters.document.process import process_entry
 from plan_cutters.document.shares import counts
 from plan_cutters.document.travel import travel_entry
 from plan_cutters.domain.answers import Answers
@@ -24,8 +24,8 @@ from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.over_setups import positions
 from plan_cutters.domain.travel import Travel
-from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE, Verdicts
-from plan_cutters.plan_file.frozen import Vector, vector
+from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE
+from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.inside_radii import InsideRadiusEntry
 from plan_cutters.plan_file.model import CutterEntry, MachineEntry, Plan, RotaryEntry, Run, SampleCounts, Selection
 from plan_cutters.plan_file.nearest import nearest
@@ -47,6 +47,7 @@ def plan_of(
     selection: Selection,
     started: datetime.datetime,
     answers: Answers,
+    over: OverSetups,
     setups: Sequence[SetupEntry] = (),
     sharp_edges: Sequence[SharpEdgeEntry] = (),
     inside_radii: Sequence[InsideRadiusEntry] = (),
@@ -56,7 +57,9 @@ def plan_of(
     part, surroundings = scene.part, ready.conditions.surroundings
     faces, remarks = (face_entries(part, samples, choice, dict(surroundings.certain.triangles.errors)), notes_of(ready, entries))
     absent = {*(() if _anything_held(ready) else ("fixture",)), *(() if ready.inside_bodies.any() else ("inside_bodies",))}
+    operations = _operations(ready, answers)
     return Plan(
+        process=process_entry(ready, entries, answers, over, operations),
         part=part_info(scene, surroundings),
         effective=effective(ready),
         versions=versions(),
@@ -89,7 +92,7 @@ def plan_of(
         inside_radii=list(inside_radii),
         setups=list(setups),
         least_set=None if answers.least_set is None else least_set_entry(answers.least_set, doubtful=surroundings.doubtful),
-        operations=_operations(ready, answers),
+        operations=operations,
         not_mended=list(answers.not_mended),
         largest_radius=[radius_entry(radii, samples, doubtful=surroundings.doubtful) for radii in answers.radius_maps],
         notes=[each.text for each in remarks],
@@ -126,30 +129,6 @@ def machine_entry(machine: Machine, kinematics: Kinematics | None) -> MachineEnt
         ]
     limit = None if machine.tilt_limit is None else round(float(np.degrees(machine.tilt_limit)), 9)
     return MachineEntry(name=machine.name, tilt_limit_deg=limit, rotary=rotary, notes=list(machine.notes))
-
-
-#: A setup axis, and what each cutter reaches there by its id.
-OtherSetup = tuple[Vector, Mapping[str, Verdicts]]
-
-
-@dataclass(frozen=True, slots=True)
-class OverSetups:
-    """The verdicts of each cutter over all setups and in each of them, by its id."""
-
-    #: In one setup or another.
-    reaches: dict[str, Verdicts]
-    #: In the first one.
-    here: dict[str, Verdicts]
-    #: The setup that serves each sample, (n,) int32.
-    served_in: dict[str, Ints]
-    #: (float, float, float); its axis.
-    first: Vector
-    #: In each other setup.
-    elsewhere: tuple[tuple[Vector, dict[str, Verdicts]], ...] = ()
-
-    def each(self) -> tuple[OtherSetup, ...]:
-        """Every setup with what is reached there, the first one first."""
-        return ((self.first, self.here), *self.elsewhere)
 
 
 def _of_setups(ready: Prepared, name: str, over: OverSetups) -> dict[str, Any]:

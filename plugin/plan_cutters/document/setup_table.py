@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from plan_cutters.document.plan import OverSetups
+from plan_cutters.document.over_setups import OverSetups
 from plan_cutters.plan_file.frozen import Vector
 from plan_cutters.plan_file.setups import SetupEntry
 from plan_cutters.scene.preparation import Prepared

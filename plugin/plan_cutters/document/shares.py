@@ -58,6 +58,16 @@ def whole_share(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part
     return AreaShare(**sums, lost_by={reason: share for reason, share in not_reached.items() if share})
 
 
+def sample_areas(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part: Part) -> tuple[NDArray[np.float64], float]:
+    """Give the area that each sample (n,) stands for, and that of faces without samples, mm2, weighed as in `whole_share`."""
+    areas = _areas([*faces, *(f"F{number}" for number, _ in samples.empty)], part)
+    result = np.zeros(len(samples))
+    for number, mine in samples.by_face().items():
+        weight = weights(samples.area[mine])
+        result[mine] = areas[f"F{number}"] * weight / weight.sum()
+    return result, float(sum(areas[f"F{number}"] for number, _ in samples.empty))
+
+
 def _areas(names: Sequence[str], part: Part) -> dict[str, float]:
     """Areas of faces by their ids, mm2; 1 each where none is known."""
     areas = weights(np.array([part.faces[int(name[1:]) - 1].area for name in names]))

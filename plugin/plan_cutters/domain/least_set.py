@@ -14,6 +14,8 @@ class Run:
     cutter : Cutter
     setup : (float, float, float)
         Its axis.
+    number : int
+        Of the setup, 0 for the first one.
     samples : int
     area, share : float
         mm2, and of the finished area, 0 to 1.
@@ -25,6 +27,7 @@ class Run:
 
     cutter: Cutter
     setup: tuple[float, float, float]
+    number: int
     samples: int
     area: float
     share: float

@@ -14,6 +14,7 @@ from plan_cutters.plan_file.inside import InsideEntry
 from plan_cutters.plan_file.inside_radii import InsideRadiusEntry
 from plan_cutters.plan_file.operations import OperationsEntry
 from plan_cutters.plan_file.part_info import FixtureEntry, PartInfo, Scope
+from plan_cutters.plan_file.process import ProcessEntry
 from plan_cutters.plan_file.setups import SetupEntry, SetupProposal, SetupReach
 from plan_cutters.plan_file.shares import AreaShare, FaceVerdicts, VerdictCounts
 from plan_cutters.plan_file.sharp_edges import SharpEdgeEntry
@@ -305,6 +306,7 @@ class Plan(Frozen):
     format_version: int = FORMAT_VERSION
     units: Units = Units()
     text: TextEntry | None = Field(default=None, description="null in older files")
+    process: ProcessEntry | None = Field(default=None, description="null in older files")
     part: PartInfo
     effective: Effective
     versions: dict[str, str]

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 from plan_cutters.plan_file.model import CutterEntry, Plan, Tone
 from plan_cutters.plan_file.words.headline import could_not
-from plan_cutters.plan_file.words.scope import not_seen
+from plan_cutters.plan_file.words.scope import unseen
 from plan_cutters.plan_file.words.story import Story
 
 
@@ -35,9 +35,8 @@ def chip(plan: Plan, story: Story) -> Chip:
     """The verdict on the part. Feasible without more words is only what the exit code calls so, too."""
     good = story.headline.good
     if good:
-        unseen = plan.effective.sampled_by == "default" and not_seen(plan, story.names)
-        return _WHERE_JUDGED if could_not(plan) or unseen else CHIPS[True]
-    if good is None and story.taken:
+        return _WHERE_JUDGED if could_not(plan) or unseen(plan) else CHIPS[True]
+    if good is None and not (plan.process is not None and plan.process.finished) and any(c.blocked for c in plan.cutters):
         return _IN_PART
     return CHIPS[good]
 

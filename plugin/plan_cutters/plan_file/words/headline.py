@@ -1,19 +1,24 @@
-"""The first words: which cutter to take, or why none, of how much that could be judged, and what is known between the samples."""
+"""The first words: which cutter to take, or how much is finished, and what is known between the samples."""
 
+import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.plan_file.model import AreaEntry, CutterEntry, Plan
 from plan_cutters.plan_file.nearest import nearest
-from plan_cutters.plan_file.numbers import capital, count, listed, some
-from plan_cutters.plan_file.shares import unreached
+from plan_cutters.plan_file.numbers import area as area_text
+from plan_cutters.plan_file.numbers import capital, count, duration, listed, percent, some
+from plan_cutters.plan_file.shares import reached_share
 from plan_cutters.plan_file.words.names import described
 from plan_cutters.plan_file.words.scope import judged
 
+#: From this share on a process finishes the part but for some of it; below, it does not.
+_MOST = 0.5
+
 
 class Headline(NamedTuple):
-    """Which cutter to take, or that none does (`good`; None: not for sure, or not all); for what and how it is held; and why.
+    """Which cutter to take, or how much all finish together (`good`; None: not for sure, or not all); for what; and why.
 
     `title` is a sentence without its stop, the others are whole ones; `about` may be empty.
     """
@@ -25,48 +30,59 @@ class Headline(NamedTuple):
 
 
 def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
-    """Which cutter to take, with what holder, and why; or why none."""
+    """Which cutter to take, with what holder, and why; where one alone does not do, how much all do together."""
     entries = {c.id: c for c in plan.cutters}
     part, setups = judged(plan), 1 + len(plan.effective.other_setups)
-    here = "this setup" if setups == 1 else "these setups"
+    process = plan.process
 
-    def take(name: str, good: bool | None, why: str, *, to: str = "", where: str = "") -> Headline:
+    def take(name: str, why: str, *, where: str = "") -> Headline:
         about = f"For {part}{where}: {described(entries[name], names[name])}."
-        return Headline(f"Take {names[name]}{to}", good, about, why + could_not(plan))
+        return Headline(f"Take {names[name]}", True, about, why + could_not(plan))
 
-    if plan.selected:
-        # Of several setups one may do by itself.
-        alone = next((s.axis for s in entries[plan.selected].setups if not s.not_reached), None)
-        if alone not in (None, plan.effective.setup):
-            why = f"It reaches {every(plan)} there, and needs no other setup."
-            return take(plan.selected, True, why, where=f", in setup {axis_words(alone or ())}")
-        if setups == 1 or alone:
-            which = "" if len(entries) == 1 else f"is the largest of {len(entries)} cutters that "
-            return take(plan.selected, True, f"It {which}reaches {every(plan)}.")
-    if plan.selected_over_setups:
-        why = f"Together they reach {every(plan)}; no setup does alone."
-        return take(plan.selected_over_setups, True, why, where=f", in {setups} setups")
-    if plan.selected_for_setup:
-        c = entries[plan.selected_for_setup]
-        why = (
-            f"It leaves only what the axis limit keeps from every cutter, {unreached(c, c.area_share)} of {area(plan)}: "
-            "that needs "
-            "another setup."
-        )
-        return take(c.id, None, why, to=f" in {here}")
+    if process is None or process.finished:
+        if plan.selected:
+            # Of several setups one may do by itself.
+            alone = next((s.axis for s in entries[plan.selected].setups if not s.not_reached), None)
+            if alone not in (None, plan.effective.setup):
+                why = f"It reaches {every(plan)} there, and needs no other setup."
+                return take(plan.selected, why, where=f", in setup {axis_words(alone or ())}")
+            if setups == 1 or alone:
+                which = "" if len(entries) == 1 else f"is the largest of {len(entries)} cutters that "
+                return take(plan.selected, f"It {which}reaches {every(plan)}.")
+        if plan.selected_over_setups:
+            why = f"Together they reach {every(plan)}; no setup does alone."
+            return take(plan.selected_over_setups, why, where=f", in {setups} setups")
     best = nearest(plan.cutters)
-    name = f"{names[best.id]} ({described(best, names[best.id])})"
-    unsure = f"No cutter is sure for {part}"
-    if not best.not_reached:
-        why = f"{capital(name)} reaches {every(plan)}, but obstacles are missing (see below) that may be in its way."
-        return Headline(unsure, None, "", why + could_not(plan))
-    which = f"{capital(name)} was judged: it" if len(entries) == 1 else f"Of {len(entries)} cutters, {name} comes nearest: it"
-    much = f"{unreached(best, best.area_share)} of {area(plan)} ({best.not_reached:,} of {plan.samples.finished:,} samples)"
-    ask = "" if "mend" in plan.effective.answers else " Ask what would help: --answers mend."
-    if best.blocked == 0:
-        why = f"{which} leaves {much} undecided: neither safe nor blocked to the tolerance."
-        return Headline(unsure, None, "", why + could_not(plan) + ask)
-    return Headline(f"No cutter finishes {part}", False, "", f"{which} leaves {much}." + could_not(plan) + ask)
+    finished = process.finished if process else not best.not_reached
+    share = process.finished_share if process else reached_share(best, best.area_share) or 0.0
+    title = f"{_stands(plan)}: {_much(plan, share, finished=finished)}"
+    about = "" if plan.scope is None or not plan.scope.not_judged else f"Judged: {part}."
+    if finished:
+        why = f"{capital(every(plan))} is reached" if every(plan).startswith("every") else f"{capital(every(plan))} are reached"
+        if plan.missing:
+            return Headline(title, None, about, f"{why}, but obstacles are missing that may be in the way.")
+        return Headline(title, True, about, f"{why}.{could_not(plan)}")
+    undecided = not any(c.blocked for c in plan.cutters)
+    return Headline(title, None if undecided or share >= _MOST else False, about, could_not(plan).strip())
+
+
+def _stands(plan: Plan) -> str:
+    """The part, on which machine, and on what it stands where that was proposed."""
+    proposed = plan.setup_proposal.setups if plan.setup_proposal else []
+    machine = "" if plan.machine.name == "unlimited" else f" on {plan.machine.name}"
+    if len(proposed) == 1 and proposed[0].stands_on:
+        return f"{plan.part.file or 'part'}{machine}, stood on {listed(proposed[0].stands_on, 2)}"
+    setups = 1 + len(plan.effective.other_setups)
+    return f"{plan.part.file or 'part'}{machine}{f', in {setups} setups' if setups > 1 else ''}"
+
+
+def _much(plan: Plan, share: float, *, finished: bool) -> str:
+    """How much of what is asked is finished, and in what time."""
+    asked = plan.process.asked_mm2 if plan.process else math.nan
+    of = f"the {area_text(asked)} to machine" if math.isfinite(asked) else "the area to machine"
+    seconds = plan.process.seconds if plan.process else None
+    took = f", {duration(seconds)}" if seconds is not None else ""
+    return f"{percent(share, some=share > 0.0, whole=finished and share >= 1.0)} of {of}{took}"
 
 
 def every(plan: Plan) -> str:

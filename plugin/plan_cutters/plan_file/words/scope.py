@@ -65,6 +65,15 @@ def _share(scope: Scope) -> str:
     return percent(scope.judged_mm2 / whole if whole > 0.0 else 0.0, some=scope.judged > 0, whole=False)
 
 
+def unseen(plan: Plan) -> bool:
+    """Whether a cutter of the process may miss what lies between the samples; who says how densely to sample asked for that."""
+    if plan.effective.sampled_by != "default":
+        return False
+    used = {step.cutter for step in plan.process.steps} if plan.process else set()
+    taken = plan.selected or plan.selected_over_setups
+    return any(not c.seen for c in plan.cutters if c.id == taken or (taken is None and c.id in used))
+
+
 def not_seen(plan: Plan, names: Mapping[str, str]) -> list[str]:
     """Whether more lies between the samples than the cutter to take, or the one that comes nearest, is wide; in a sentence."""
     entry = headline_cutter(plan)

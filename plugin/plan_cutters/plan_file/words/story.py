@@ -16,6 +16,7 @@ from plan_cutters.plan_file.words.line import Line
 from plan_cutters.plan_file.words.names import named, short_names
 from plan_cutters.plan_file.words.next_steps import together
 from plan_cutters.plan_file.words.operations import in_short, operations
+from plan_cutters.plan_file.words.process import ProcessStory, process_story
 from plan_cutters.plan_file.words.proposal import proposal
 from plan_cutters.plan_file.words.scope import not_judged, not_seen
 from plan_cutters.plan_file.words.sharp_edges import sharp_edges
@@ -35,6 +36,8 @@ class Story:
     inside, scope, between : tuple of str
         Surface that does not belong to the finished part, which comes first; what is undecided, which faces were not judged or
         not seen, and how much the cutters reach together; how much is known between the samples.
+    process : ProcessStory, optional
+        Its steps, what is left and what to do next; None where an older file has none.
     proposal, in_short : tuple of str
         Setups that were proposed; what the plan of operations leaves, and how many orientations it needs.
     setups, operations, answers, notes : tuple of Line
@@ -47,6 +50,7 @@ class Story:
     shown: str
     inside: tuple[str, ...]
     headline: Headline
+    process: ProcessStory | None
     proposal: tuple[str, ...]
     in_short: tuple[str, ...]
     scope: tuple[str, ...]
@@ -75,6 +79,7 @@ def story_of(plan: Plan) -> Story:
         shown=best.id,
         inside=tuple(named(plan, line) for line in inside(plan)),
         headline=headline(plan, names),
+        process=process_story(plan, names),
         proposal=proposal(plan),
         in_short=tuple(in_short(plan)),
         scope=(

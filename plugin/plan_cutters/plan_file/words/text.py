@@ -1,38 +1,88 @@
 """The text that stands in a plan file: made once, when the plan is made, and shown by every reader."""
 
-import textwrap
 from collections.abc import Iterator
 
 from plan_cutters.plan_file.model import CutterEntry, Plan, TextEntry, VerdictText
 from plan_cutters.plan_file.numbers import count
 from plan_cutters.plan_file.words.chip import TONES, chip, cutter_chip
+from plan_cutters.plan_file.words.process import told, wrapped
+from plan_cutters.plan_file.words.scope import not_seen, unseen
 from plan_cutters.plan_file.words.story import Story, story_of
+from plan_cutters.plan_file.words.undecided import undecided
 
-#: Columns of a line, and the most lines.
-WIDTH, MOST = 80, 25
+#: Most lines: with the headline and the path of the page they are 25 in a terminal.
+MOST = 22
+#: Doubts, and cutters, that are named.
+_DOUBTS, _CUTTERS = 4, 6
 
 
 def with_text(plan: Plan) -> Plan:
-    """The plan with its text, made anew of all that it says by now."""
+    """The plan with its text and the words of its process, made anew of all that it says by now."""
+    plan = told(plan)
     return plan.model_copy(update={"text": text_of(plan)})
 
 
 def text_of(plan: Plan) -> TextEntry:
-    """Put a plan into a few lines; what stands in short above is not said again below."""
+    """Put a plan into a few lines."""
     story = story_of(plan)
     return TextEntry(
         headline=f"{story.headline.title}.",
         tone=TONES[chip(plan, story)],
-        lines=_lines([*filter(None, dict.fromkeys(each.strip() for each in sentences(story)))]),
+        lines=process_lines(plan, story, MOST),
         cutters={each.id: each.sentence for each in story.cutters},
         verdicts={each.id: _verdict(plan, each) for each in plan.cutters},
         shares={each.id: each.shares for each in story.cutters},
     )
 
 
+def process_lines(plan: Plan, story: Story, most: int) -> list[str]:
+    """The process below the headline, at most so many lines of 80 columns: what makes it unsure, steps, what is left, next."""
+    process = story.process
+    first = [*wrapped([" ".join(story.inside)] if story.inside else [], 2), *wrapped(_doubts(story), 1)[:_DOUBTS]]
+    blocks: list[list[str]] = [
+        [*first, *wrapped([story.headline.about] if story.headline.about else [], 2)],
+        process.table() if process else [],
+        wrapped(list(process.left), 2) if process else [],
+        wrapped(list(process.next), 3) if process else [],
+        wrapped(_unsure(plan, story), 2),
+        wrapped([process.clearance] if process and process.clearance else [], 1),
+        wrapped(_alone(story), 3),
+        wrapped([story.headline.why] if story.headline.why else [], 2),
+        wrapped(list(story.between[:1]), 2),
+        _remaining(plan, story),
+    ]
+    lines: list[str] = []
+    for block in blocks:
+        lines += block
+    return lines if len(lines) <= most else [*lines[: most - 1], "More: -v, or the review page."]
+
+
+def _doubts(story: Story) -> list[str]:
+    return [f"{line.mark} {line.text}" for lines in story.doubts.values() for line in lines]
+
+
+def _unsure(plan: Plan, story: Story) -> list[str]:
+    """What is undecided, and not seen between the samples."""
+    return [*undecided(plan, story.names), *(not_seen(plan, story.names) if unseen(plan) else [])]
+
+
+def _alone(story: Story) -> list[str]:
+    """How much each of several cutters leaves by itself."""
+    if len(story.cutters) < 2:
+        return []
+    each = [f"{c.name} {'all' if c.feasible else c.reached}" for c in story.cutters[:_CUTTERS]]
+    more = f" and {len(story.cutters) - _CUTTERS} more" if len(story.cutters) > _CUTTERS else ""
+    return [f"Each alone reaches: {', '.join(each)}{more}."]
+
+
+def _remaining(plan: Plan, story: Story) -> list[str]:
+    """How many notes there are that are not shown."""
+    number = len(story.notes) + len(story.setups) + len(story.answers)
+    return [f"{count(number, 'note')}: -v, or the review page."] if number else []
+
+
 def sentences(story: Story) -> Iterator[str]:
-    """All that people read of a plan unless they ask for more, below the headline; what makes it unsure comes first."""
-    # It comes first, for what follows is about the rest.
+    """All that people read of a plan where there is room, below the headline; what makes it unsure comes first."""
     yield from story.inside
     yield from (story.headline.about, story.headline.why)
     yield from of_the_plan(story)
@@ -55,15 +105,3 @@ def further(story: Story) -> list[str]:
 def _verdict(plan: Plan, cutter: CutterEntry) -> VerdictText:
     chip = cutter_chip(plan, cutter)
     return VerdictText(tone=TONES[chip], word=chip.word)
-
-
-def _lines(texts: list[str]) -> list[str]:
-    """As many whole texts as there is room for; the last line says how many more there are."""
-    lines: list[str] = []
-    for place, text in enumerate(texts):
-        mine = textwrap.wrap(text, WIDTH, break_on_hyphens=False)
-        last = place == len(texts) - 1
-        if len(lines) + len(mine) > MOST - (not last):
-            return [*lines, f"{count(len(texts) - place, 'more sentence')} in the review page."]
-        lines += mine
-    return lines

@@ -1,0 +1,155 @@
+"""What is given finishes so much together: the steps of the process, and what they leave by cause."""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats, Ints
+from plan_cutters.document.over_setups import OverSetups
+from plan_cutters.document.shares import sample_areas
+from plan_cutters.domain.answers import Answers
+from plan_cutters.domain.operations import OperationPlan
+from plan_cutters.domain.verdicts import NO_REASON, REASONS
+from plan_cutters.plan_file.frozen import vector
+from plan_cutters.plan_file.model import CutterEntry
+from plan_cutters.plan_file.nearest import nearest
+from plan_cutters.plan_file.numbers import exact
+from plan_cutters.plan_file.operations import OperationPlanEntry, OperationsEntry
+from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, LeftEntry, ProcessEntry, ProcessStep
+from plan_cutters.scene.preparation import Prepared
+
+#: Which plan of operations is the process: the first of these that there is.
+_PREFERRED = ("fastest", "fewest")
+
+
+def process_entry(
+    ready: Prepared, entries: Sequence[CutterEntry], answers: Answers, over: OverSetups, operations: OperationsEntry | None
+) -> ProcessEntry:
+    """Put together what the given cutters, setups and operations finish.
+
+    Parameters
+    ----------
+    ready : Prepared
+    entries : sequence of CutterEntry
+        Of all cutters, from the most wanted down.
+    answers : Answers
+        The plan of operations is the process where there is one, else the fewest runs of cutters and setups.
+    over : OverSetups
+    operations : OperationsEntry, optional
+        As it is in the plan file.
+    """
+    sampled, not_sampled = sample_areas(entries[0].faces, ready.samples, ready.scene.part)
+    area = np.where(ready.inside_bodies, 0.0, sampled)
+    asked = float(area.sum()) + not_sampled
+    if answers.operations is not None and operations is not None:
+        found, entry = _preferred(answers.operations.plans, operations.plans)
+        done = (found.label >= 0) & ready.finished
+        steps, seconds = _operated(ready, found, entry, area, asked), entry.seconds
+    else:
+        runs, seconds = list(_runs(ready, entries, answers, over)), None
+        done = np.logical_or.reduce([mine for *_, mine in runs]) if runs else np.zeros(len(area), bool)
+        steps = [
+            _step(ready, area, asked, mine, setup=setup, mode="any", cutter=cutter, angles_deg=None, axis=None, seconds=None,
+                  clearance_mm=None)
+            for setup, cutter, mine in runs
+        ]  # fmt: skip
+    left = _left(ready, done, _reasons(entries, over, steps, done), area, asked)
+    finished = float(area[done].sum())
+    share = exact(finished / max(1e-300, asked), some=bool(done.any()), whole=not left)
+    return ProcessEntry(steps=steps, finished_share=share, finished_mm2=finished, asked_mm2=asked, left=left, seconds=seconds)
+
+
+def _preferred(plans: Sequence[OperationPlan], entries: Sequence[OperationPlanEntry]) -> tuple[OperationPlan, OperationPlanEntry]:
+    """The plan of operations that is recommended, as it was found and as it is in the plan file."""
+    k = min(range(len(plans)), key=lambda k: (*_PREFERRED, plans[k].name).index(plans[k].name))
+    return plans[k], entries[k]
+
+
+def _operated(ready: Prepared, plan: OperationPlan, entry: OperationPlanEntry, area: Floats, asked: float) -> list[ProcessStep]:
+    """The steps of a plan of operations: by setup, fixed orientations first, by cutter, the largest area first."""
+    by_cutter: dict[tuple[int, str], float] = {}
+    for each in entry.operations:
+        key = each.setup, each.cutter
+        by_cutter[key] = by_cutter.get(key, 0.0) + each.area_mm2
+    rank = {id(each): k for k, each in enumerate(entry.operations)}
+    ordered = sorted(
+        entry.operations,
+        key=lambda e: (e.setup, e.mode != "fixed", -by_cutter[e.setup, e.cutter], e.cutter, -e.area_mm2, rank[id(e)]),
+    )
+    return [
+        _step(ready, area, asked, plan.label == rank[id(each)], setup=each.setup, mode=each.mode, cutter=each.cutter,
+              angles_deg=each.angles_deg, axis=each.axis, seconds=each.seconds, clearance_mm=each.clearance_mm)
+        for each in ordered
+    ]  # fmt: skip
+
+
+def _runs(
+    ready: Prepared, entries: Sequence[CutterEntry], answers: Answers, over: OverSetups
+) -> Iterator[tuple[int, str, NDArray[np.bool_]]]:
+    """The fewest runs, each with its setup, its cutter, and the samples (n,) that none before it reaches."""
+    verdicts = [each for _, each in over.each()]
+    if answers.least_set is None:
+        pairs = [(0, nearest(entries).id)]
+    else:
+        pairs = [(run.number, run.cutter.id) for run in answers.least_set.runs]
+    open_, done = ready.machinable, np.zeros(len(ready.samples), bool)
+    for setup, cutter in pairs:
+        mine = verdicts[setup][cutter].reached & open_[setup] & ~done
+        done |= mine
+        if mine.any():
+            yield setup, cutter, mine
+
+
+def _step(ready: Prepared, area: Floats, asked: float, mine: NDArray[np.bool_], **fields: object) -> ProcessStep:
+    """A step that finishes some samples (n,)."""
+    size = float(area[mine].sum())
+    return ProcessStep(faces=_faces(ready, mine, area), area_mm2=size, share=min(1.0, size / max(1e-300, asked)), **fields)  # type: ignore[arg-type]
+
+
+def _faces(ready: Prepared, mine: NDArray[np.bool_], area: Floats) -> list[str]:
+    """Ids of the faces of some samples (n,), the one with the most of their area first."""
+    face = ready.samples.face[mine]
+    size = np.bincount(face, area[mine])
+    return [f"F{number}" for number in sorted(np.unique(face).tolist(), key=lambda number: (-size[number], number))]
+
+
+def _reasons(entries: Sequence[CutterEntry], over: OverSetups, steps: Sequence[ProcessStep], done: NDArray[np.bool_]) -> Ints:
+    """Why each sample (n,) is left: by the finest cutter of the process that has a reason, else by any."""
+    used = {each.cutter for each in steps}
+    finest_first = sorted(entries, key=lambda e: (e.id not in used, e.radius, e.corner_radius))
+    reason = np.full(len(done), NO_REASON, np.int32)
+    for entry in finest_first:
+        verdicts = over.reaches[entry.id]
+        open_ = ~done & (reason == NO_REASON) & verdicts.not_reached
+        reason[open_] = verdicts.reason[open_]
+    return reason
+
+
+def _left(ready: Prepared, done: NDArray[np.bool_], reason: Ints, area: Floats, asked: float) -> list[LeftEntry]:
+    """What is left by cause, the largest area first."""
+    samples, entries = ready.samples, list[LeftEntry]()
+    for code in np.unique(reason[ready.finished & ~done]).tolist():
+        mine = ready.finished & ~done & (reason == code)
+        cause = REASONS[code] if code != NO_REASON else NOT_PLANNED
+        entries.append(_left_entry(ready, cause, mine, area, asked))
+    unjudged = samples.unjudged >= 0
+    if unjudged.any() or samples.empty:
+        entry = _left_entry(ready, UNJUDGED_CAUSE, unjudged, area, asked)
+        missing = sum(ready.scene.part.faces[number - 1].area for number, _ in samples.empty)
+        size = entry.area_mm2 + (missing if np.isfinite(missing) else 0.0)
+        faces = list(dict.fromkeys([*entry.faces, *(f"F{number}" for number, _ in samples.empty)]))
+        share = min(1.0, size / max(1e-300, asked))
+        entries.append(entry.model_copy(update={"area_mm2": size, "share": share, "faces": faces}))
+    return sorted(entries, key=lambda each: (-each.area_mm2, each.cause))
+
+
+def _left_entry(ready: Prepared, cause: str, mine: NDArray[np.bool_], area: Floats, asked: float) -> LeftEntry:
+    samples, size = ready.samples, float(area[mine].sum())
+    faces, place = _faces(ready, mine, area), None
+    if faces:
+        rows = np.flatnonzero(mine & (samples.face == int(faces[0][1:])))
+        middle = samples.point[rows].mean(axis=0)
+        place = vector(samples.point[rows[np.linalg.norm(samples.point[rows] - middle, axis=1).argmin()]])
+    return LeftEntry(cause=cause, area_mm2=size, share=min(1.0, size / max(1e-300, asked)), samples=int(mine.sum()), faces=faces,
+                     place_mm=place)  # fmt: skip

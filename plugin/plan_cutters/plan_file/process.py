@@ -1,0 +1,67 @@
+"""How the process stands in the plan file: what to do in which order, how much that finishes, and what is left."""
+
+from typing import Literal
+
+from pydantic import Field
+
+from plan_cutters.plan_file.frozen import Frozen, Vector
+
+#: Causes beside the reasons for which samples are not reached: not judged, or reached but in no step.
+UNJUDGED_CAUSE, NOT_PLANNED = "unjudged", "not_planned"
+
+
+class ProcessStep(Frozen):
+    """One cutter in one setup, with one orientation, with simultaneous motion, or with any of its postures."""
+
+    setup: int = Field(description="0 for the first setup, then the others in their order")
+    mode: Literal["fixed", "simultaneous", "any"] = Field(
+        description="any: no operations were requested, each sample has a posture of its own"
+    )
+    angles_deg: dict[str, float] | None = Field(description="of the rotary axes by name; null unless fixed")
+    axis: Vector | None = Field(description="unit, from the tip to the spindle, part coordinates; null unless fixed")
+    cutter: str = Field(description="id")
+    strategy: Literal["point", "floor", "wall", "mixed"] = "point"
+    repeat: int = Field(default=1, description="how many times it is done, over a pattern of equal faces")
+    faces: list[str] = Field(description="the one with the most of it first")
+    area_mm2: float
+    share: float = Field(description="of what is asked, 0 to 1")
+    seconds: float | None = Field(description="cutting alone; null where it is not known")
+    clearance_mm: float | None = Field(description="least at any of its samples; 100: that or more; null: not known")
+
+
+class LeftEntry(Frozen):
+    """An area that no step finishes, for one cause."""
+
+    cause: str = Field(description="a code of `reasons`; `unjudged`; or `not_planned`: a cutter reaches it, and no step takes it")
+    area_mm2: float
+    share: float = Field(description="of what is asked, 0 to 1")
+    samples: int = Field(description="0 for faces without samples")
+    faces: list[str] = Field(description="the one with the most of it first")
+    place_mm: Vector | None = Field(description="a sample in the middle of it, on the first of the faces")
+    needs: str = Field(default="", description="what would help, in words")
+
+
+class NextEntry(Frozen):
+    """What to do next."""
+
+    words: str
+    argv: list[str] = Field(description="to add to the command that was given; empty where no option says it")
+    left_share: float | None = Field(description="of what is asked, that stays; null where it was not judged")
+
+
+class ProcessEntry(Frozen):
+    """What the given cutters, setups and operations finish together."""
+
+    steps: list[ProcessStep] = Field(description="in the order of setups, and of cutters in a setup")
+    finished_share: float = Field(description="of what is asked, 0 to 1: 1 only where nothing at all is left")
+    finished_mm2: float
+    asked_mm2: float = Field(description="of the target faces, without what lies inside other bodies")
+    left: list[LeftEntry] = Field(description="the largest area first")
+    seconds: float | None = Field(description="of all steps, with orientations, changes and setups; null without a feed")
+    next: list[NextEntry] = Field(default=[], description="the best first")
+    doubts: list[str] = Field(default=[], description="what changes what one does: a line each, the gravest first")
+
+    @property
+    def finished(self) -> bool:
+        """Whether all that could be judged is finished."""
+        return all(each.cause == UNJUDGED_CAUSE for each in self.left)

@@ -1,0 +1,208 @@
+"""Put the process into words: its steps in a table of 80 columns, what is left by cause, and what to do next."""
+
+import shlex
+import textwrap
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+from plan_cutters.plan_file.model import Plan
+from plan_cutters.plan_file.numbers import area, count, duration, figure, listed, mm, percent, place
+from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, LeftEntry, NextEntry, ProcessEntry, ProcessStep
+from plan_cutters.plan_file.reasons import REASONS
+from plan_cutters.plan_file.words.names import named
+from plan_cutters.plan_file.words.next_steps import is_excluded
+
+#: Columns of a line; steps and causes that are listed; faces that are named of a cause; next steps.
+WIDTH, _STEPS, _CAUSES, _FACES, _NEXT = 80, 9, 4, 3, 2
+#: A clearance that is told as that or more, mm.
+_FAR = 100.0
+_STRATEGIES = {"point": "", "floor": "floor", "wall": "wall", "mixed": ""}
+_OTHER_CAUSES = {UNJUDGED_CAUSE: "not judged", NOT_PLANNED: "in no step"}
+
+
+@dataclass(frozen=True, slots=True)
+class StepRow:
+    """A step as a row of texts; `setup`, `turned` and `took` are empty where there is nothing to tell apart, or not known."""
+
+    number: str
+    setup: str
+    turned: str
+    cutter: str
+    share: str
+    took: str
+    faces: list[str]
+
+    def cells(self) -> list[str]:
+        """All but the faces."""
+        return [self.number, self.setup, self.turned, self.cutter, self.share, self.took]
+
+
+@dataclass(frozen=True, slots=True)
+class ProcessStory:
+    """A process in words: rows of steps and how many more there are, sentences on what is left, next steps, and clearance."""
+
+    rows: tuple[StepRow, ...]
+    more: str
+    left: tuple[str, ...]
+    next: tuple[str, ...]
+    clearance: str
+
+    def table(self) -> list[str]:
+        """Rows in lines of at most 80 columns, as many faces in each as there is room for."""
+        wide = [max((len(row.cells()[k]) for row in self.rows), default=0) for k in range(6)]
+        lines = []
+        for row in self.rows:
+            cells = [
+                f"{text:>{width}}" if k in (0, 4, 5) else f"{text:<{width}}"
+                for k, (text, width) in enumerate(zip(row.cells(), wide, strict=True))
+                if width
+            ]
+            line = "  " + "  ".join(cells)
+            lines.append(f"{line}  {_fitting(row.faces, WIDTH - len(line) - 2)}".rstrip()[:WIDTH])
+        return [*lines, *([f"  {self.more}"] if self.more else [])]
+
+
+def process_story(plan: Plan, names: Mapping[str, str]) -> ProcessStory | None:
+    """Tell the process of a plan; None where an older file has none."""
+    process = plan.process
+    if process is None:
+        return None
+    setups = len({step.setup for step in process.steps}) > 1
+    fixed = any(step.mode != "any" for step in process.steps)
+    shown = process.steps if len(process.steps) <= _STEPS + 1 else process.steps[:_STEPS]
+    rows = tuple(_row(k, step, names, setups=setups, fixed=fixed) for k, step in enumerate(shown, 1))
+    rest = process.steps[len(shown) :]
+    more = ""
+    if rest:
+        many = percent(sum(step.share for step in rest), some=True, whole=False)
+        more = f"and {count(len(rest), 'more step')} for {many}: the review page and plan.json list them."
+    return ProcessStory(
+        rows=rows,
+        more=more,
+        left=tuple(_left(process, plan)),
+        next=tuple(named(plan, _next(each)) for each in process.next[:_NEXT]),
+        clearance=_clearance(process),
+    )
+
+
+def told(plan: Plan) -> Plan:
+    """The plan with the words of its process made anew: what each area that is left needs, and what to do next."""
+    if plan.process is None:
+        return plan
+    left = [each.model_copy(update={"needs": _needs(plan, each)}) for each in plan.process.left]
+    process = plan.process.model_copy(update={"left": left, "next": list(_next_entries(plan))})
+    return plan.model_copy(update={"process": process})
+
+
+def cause_text(cause: str) -> str:
+    """Give the name of a cause; the code itself where a newer plan has an unknown one."""
+    return REASONS[cause].name if cause in REASONS else _OTHER_CAUSES.get(cause, cause.replace("_", " "))
+
+
+def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bool, fixed: bool) -> StepRow:
+    turned = ""
+    if fixed:
+        angles = " ".join(f"{name} {angle:g}" for name, angle in (step.angles_deg or {}).items())
+        turned = angles if step.mode == "fixed" else "simultaneous" if step.mode == "simultaneous" else "any angles"
+    what = " ".join(filter(None, (names.get(step.cutter, step.cutter), _STRATEGIES[step.strategy])))
+    times = f"{step.repeat} x, " if step.repeat > 1 else ""
+    return StepRow(
+        number=str(number),
+        setup=f"setup {step.setup + 1}" if setups else "",
+        turned=times + turned,
+        cutter=what if len(what) <= _name_room(fixed) else f"{what[: _name_room(fixed) - 3]}...",
+        share=percent(step.share, some=True),
+        took=duration(step.seconds),
+        faces=step.faces,
+    )
+
+
+def _name_room(fixed: bool) -> int:
+    return 26 if fixed else 40
+
+
+def _fitting(faces: list[str], room: int) -> str:
+    """As many faces as there is room for, and how many more there are.
+
+    >>> _fitting(["F1", "F22", "F3"], 20), _fitting(["F1", "F22", "F3"], 8), _fitting(["F1"], 1)
+    ('F1 F22 F3', 'F1 +2', '')
+    """
+    for number in range(len(faces), 0, -1):
+        more = len(faces) - number
+        text = " ".join(faces[:number]) + (f" +{more}" if more else "")
+        if len(text) <= room:
+            return text
+    return ""
+
+
+def _left(process: ProcessEntry, plan: Plan) -> Iterator[str]:
+    """Sentences on what is left, the largest first."""
+    listed_causes = process.left[:_CAUSES]
+    for each in listed_causes:
+        faces = listed(each.faces, _FACES)
+        near = f" near ({place(each.place_mm)})" if each.place_mm is not None else ""
+        needs = f": {named(plan, each.needs)}" if each.needs else ""
+        some = percent(each.share, some=True, whole=False) if each.samples else percent(each.share)
+        yield f"Left, {some}, {area(each.area_mm2)}, {cause_text(each.cause)}: {faces}{near}{needs}."
+    if len(process.left) > len(listed_causes):
+        rest = process.left[len(listed_causes) :]
+        yield f"Left besides, {percent(sum(each.share for each in rest), some=True, whole=False)}, for other causes."
+
+
+def _needs(plan: Plan, left: LeftEntry) -> str:
+    """What would help against a cause, by what the plan knows of its place."""
+    faces = set(left.faces)
+    if left.cause == "sharp_edge" and plan.sharp_edges:
+        return f"the model has no fillet there, and the cutter leaves one of R{plan.sharp_edges[0].radius_mm:.4g}"
+    radii = [each for each in plan.inside_radii if each.face in faces]
+    if left.cause in ("local_gouge", "rear_gouge") and radii:
+        least = min(radii, key=lambda each: each.radius_mm)
+        fits = f"D{least.fits_mm:g} fits" if least.fits_mm else "no usual size fits"
+        return f"the inside radius of {least.face} is {mm(least.radius_mm)}, {fits}"
+    if left.cause == UNJUDGED_CAUSE:
+        return next((face.unjudged for face in plan.faces if face.id in faces and face.unjudged), "") or ""
+    return REASONS[left.cause].hint if left.cause in REASONS else ""
+
+
+def _next_entries(plan: Plan) -> Iterator[NextEntry]:
+    """The best next steps of the cutter that the plan shows, or the answer to ask for."""
+    process = plan.process
+    if process is None or process.finished:
+        return
+    entry = next((c for c in plan.cutters if c.id == plan.shown), plan.cutters[0])
+    if entry.mend is not None:
+        for step in entry.mend.steps:
+            if not is_excluded(step):
+                argv = shlex.split(step.option) if step.option else []
+                yield NextEntry(words=step.why, argv=argv, left_share=step.lost_after)
+    elif "mend" not in plan.effective.answers:
+        yield NextEntry(words="ask what would help", argv=["--answers", "mend"], left_share=None)
+
+
+def _next(each: NextEntry) -> str:
+    left = "" if each.left_share is None else f": left {percent(each.left_share, some=each.left_share > 0.0)}"
+    bracket = f" [{shlex.join(each.argv)}]" if each.argv else ""
+    return f"Next: {each.words}{left}{bracket}"
+
+
+def _clearance(process: ProcessEntry) -> str:
+    """The least clearance of all steps, and in which it is; empty where none is known."""
+    known = [(step.clearance_mm, k) for k, step in enumerate(process.steps, 1) if step.clearance_mm is not None]
+    if not known:
+        return ""
+    least, step = min(known)
+    if least >= _FAR:
+        return f"Least clearance: {figure(_FAR)} mm or more."
+    return f"Least clearance: {mm(least)} in step {step}."
+
+
+def wrapped(texts: list[str], most: int) -> list[str]:
+    """Paragraphs in lines of at most 80 columns, of each as many as are allowed."""
+    lines: list[str] = []
+    for text in texts:
+        mine = textwrap.wrap(text, WIDTH, subsequent_indent="  ", break_on_hyphens=False, break_long_words=True)
+        if len(mine) > most:
+            mine = [*mine[: most - 1], textwrap.shorten(" ".join(mine[most - 1 :]).strip(), WIDTH - 2, placeholder=" ...")]
+            mine[-1] = f"  {mine[-1]}" if most > 1 else mine[-1]
+        lines += mine
+    return lines
