@@ -364,8 +364,7 @@ def assemble(
     selected, chosen = selection(entries)
     # Where obstacles are missing, none is selected, but one may reach all that could be judged.
     best = selected or next((e.id for e in entries if not e.not_reached), None)
-    budget = ready.options.contacts_between(len(ready.samples))
-    if best and budget:
+    if best and (budget := ready.options.contacts_between(len(ready.samples))):
         with clock.stage("area"):
             compiling("cover.cover")
             cutter = next(c for c in ready.cutters if c.id == best)

@@ -269,7 +269,7 @@ class Result:
         >>> from plan_cutters import plan
         >>> result = plan("samples/v_groove.step", cutters=["R6L80", "R2L30"], grid=9, area_budget=0)
         >>> print(result.summary().splitlines()[0])
-        Take flat end D12 x 80. For v_groove.step: ... It is the largest of 2 cutters that reaches every sample.
+        Take flat end D12 x 80.
         """
         from plan_cutters.report.notebook import text_of
 

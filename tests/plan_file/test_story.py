@@ -27,6 +27,7 @@ from plan_cutters.plan_file.words.next_steps import effect
 from plan_cutters.plan_file.words.operations import _fewest
 from plan_cutters.plan_file.words.scope import not_judged
 from plan_cutters.plan_file.words.story import story_of
+from plan_cutters.report.notebook import text_of as notebook_text
 from plan_cutters.report.page.write import page
 from plan_cutters.report.witness import row_of
 from tests.support.cad_parts import box, compound
@@ -80,8 +81,8 @@ def test_a_face_that_could_not_be_sampled_is_in_no_share(bare, capsys):
         assert "100 % of the target area" not in each
         assert "100 % of the area" not in each
         assert not re.search("reaches every sample(?! that could be judged)", each)
-        assert "all 150 samples that could be judged" in each
-        assert "F7 could not be sampled" in each
+        assert "All 150 samples that could be judged are reached" in each
+        assert re.search(r"Left, .*, not judged: F7", each)
     assert "not of F7" in text
 
 
@@ -90,12 +91,13 @@ def test_a_code_decides_which_notes_are_shown(whole, capsys):
     assert len(document.note_codes) == len(document.notes)
     assert set(document.note_codes) <= set(get_args(NoteCode))
     reworded = document.model_copy(update={"notes": [f"Reworded {code}" for code in document.note_codes]})
-    said = told(capsys, reworded)
+    said = notebook_text(reworded)
     assert "Reworded samples_apart" not in said
     assert "Reworded no_machine" in said
+    assert "Reworded no_machine" not in told(capsys, reworded)
     assert "Reworded samples_apart" in told(capsys, reworded, verbose=True)
     # A plan of before has no codes: nothing is hidden.
-    assert "Verdicts are about samples" in told(capsys, document.model_copy(update={"note_codes": []}))
+    assert "Verdicts are about samples" in notebook_text(document.model_copy(update={"note_codes": []}))
 
 
 def test_what_is_as_it_should_be_is_no_news(whole):

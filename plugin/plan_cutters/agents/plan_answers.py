@@ -84,7 +84,7 @@ def _of_plan(plan: Plan, code: int, most: int) -> dict[str, Any]:
     missing, more_missing = first(_missing(plan), most)
     text = plan.text or text_of(plan)
     return {
-        "part": plan.part.file or "", "told": " ".join([text.headline, *text.lines]), "exit_code": code,
+        "part": plan.part.file or "", "told": "\n".join([text.headline, *text.lines]), "exit_code": code,
         "samples": Samples.model_validate(plan.samples), "selected": plan.selected or plan.selected_over_setups,
         "cutters": [_cutter(plan, c, text.cutters[c.id], most) for c in cutters], "more_cutters": more, "not_judged": left,
         "more_not_judged": more_left, "missing": missing, "more_missing": more_missing,

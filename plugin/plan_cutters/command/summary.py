@@ -23,7 +23,7 @@ def summary(plan: "Plan", *, verbose: bool = False, tells: Callable[..., None] =
     """Tell the process; with `verbose` all that is found, but not what is not reached: that comes last."""
     story = story_of(plan)
     title, good, about, why = story.headline
-    text = plan.text or text_of(plan)
+    text = text_of(plan)
     tells(Text.assemble(cell(title, _MARKS[good]), cell(".")), *map(cell, text.lines))
     if not verbose:
         return

@@ -1,4 +1,4 @@
-"""What is given finishes so much together: the steps of the process, and what they leave by cause."""
+"""Make the process of a plan: its steps, and what they leave by cause."""
 
 from collections.abc import Iterator, Sequence
 
@@ -16,7 +16,7 @@ from plan_cutters.plan_file.model import CutterEntry
 from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.numbers import exact
 from plan_cutters.plan_file.operations import OperationPlanEntry, OperationsEntry
-from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, LeftEntry, ProcessEntry, ProcessStep
+from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, RemainingEntry, ProcessEntry, ProcessStep
 from plan_cutters.scene.preparation import Prepared
 
 #: Which plan of operations is the process: the first of these that there is.
@@ -41,23 +41,23 @@ def process_entry(
     """
     sampled, not_sampled = sample_areas(entries[0].faces, ready.samples, ready.scene.part)
     area = np.where(ready.inside_bodies, 0.0, sampled)
-    asked = float(area.sum()) + not_sampled
+    requested = float(area.sum()) + not_sampled
     if answers.operations is not None and operations is not None:
-        found, entry = _preferred(answers.operations.plans, operations.plans)
-        done = (found.label >= 0) & ready.finished
-        steps, seconds = _operated(ready, found, entry, area, asked), entry.seconds
+        chosen, entry = _preferred(answers.operations.plans, operations.plans)
+        done = (chosen.label >= 0) & ready.finished
+        steps, seconds = _operated(ready, chosen, entry, area, requested), entry.seconds
     else:
         runs, seconds = list(_runs(ready, entries, answers, over)), None
         done = np.logical_or.reduce([mine for *_, mine in runs]) if runs else np.zeros(len(area), bool)
         steps = [
-            _step(ready, area, asked, mine, setup=setup, mode="any", cutter=cutter, angles_deg=None, axis=None, seconds=None,
+            _step(ready, area, requested, mine, setup=setup, mode="any", cutter=cutter, angles_deg=None, axis=None, seconds=None,
                   clearance_mm=None)
             for setup, cutter, mine in runs
         ]  # fmt: skip
-    left = _left(ready, done, _reasons(entries, over, steps, done), area, asked)
+    remaining = _remaining(ready, done, _reasons(entries, over, steps, done), area, requested)
     finished = float(area[done].sum())
-    share = exact(finished / max(1e-300, asked), some=bool(done.any()), whole=not left)
-    return ProcessEntry(steps=steps, finished_share=share, finished_mm2=finished, asked_mm2=asked, left=left, seconds=seconds)
+    share = exact(finished / max(1e-300, requested), some=bool(done.any()), whole=not remaining)
+    return ProcessEntry(steps=steps, finished_share=share, finished_mm2=finished, asked_mm2=requested, left=remaining, seconds=seconds)
 
 
 def _preferred(plans: Sequence[OperationPlan], entries: Sequence[OperationPlanEntry]) -> tuple[OperationPlan, OperationPlanEntry]:
@@ -66,7 +66,7 @@ def _preferred(plans: Sequence[OperationPlan], entries: Sequence[OperationPlanEn
     return plans[k], entries[k]
 
 
-def _operated(ready: Prepared, plan: OperationPlan, entry: OperationPlanEntry, area: Floats, asked: float) -> list[ProcessStep]:
+def _operated(ready: Prepared, plan: OperationPlan, entry: OperationPlanEntry, area: Floats, requested: float) -> list[ProcessStep]:
     """The steps of a plan of operations: by setup, fixed orientations first, by cutter, the largest area first."""
     by_cutter: dict[tuple[int, str], float] = {}
     for each in entry.operations:
@@ -78,7 +78,7 @@ def _operated(ready: Prepared, plan: OperationPlan, entry: OperationPlanEntry, a
         key=lambda e: (e.setup, e.mode != "fixed", -by_cutter[e.setup, e.cutter], e.cutter, -e.area_mm2, rank[id(e)]),
     )
     return [
-        _step(ready, area, asked, plan.label == rank[id(each)], setup=each.setup, mode=each.mode, cutter=each.cutter,
+        _step(ready, area, requested, plan.label == rank[id(each)], setup=each.setup, mode=each.mode, cutter=each.cutter,
               angles_deg=each.angles_deg, axis=each.axis, seconds=each.seconds, clearance_mm=each.clearance_mm)
         for each in ordered
     ]  # fmt: skip
@@ -101,10 +101,10 @@ def _runs(
             yield setup, cutter, mine
 
 
-def _step(ready: Prepared, area: Floats, asked: float, mine: NDArray[np.bool_], **fields: object) -> ProcessStep:
+def _step(ready: Prepared, area: Floats, requested: float, mine: NDArray[np.bool_], **fields: object) -> ProcessStep:
     """A step that finishes some samples (n,)."""
     size = float(area[mine].sum())
-    return ProcessStep(faces=_faces(ready, mine, area), area_mm2=size, share=min(1.0, size / max(1e-300, asked)), **fields)  # type: ignore[arg-type]
+    return ProcessStep(faces=_faces(ready, mine, area), area_mm2=size, share=min(1.0, size / max(1e-300, requested)), **fields)  # type: ignore[arg-type]
 
 
 def _faces(ready: Prepared, mine: NDArray[np.bool_], area: Floats) -> list[str]:
@@ -126,30 +126,30 @@ def _reasons(entries: Sequence[CutterEntry], over: OverSetups, steps: Sequence[P
     return reason
 
 
-def _left(ready: Prepared, done: NDArray[np.bool_], reason: Ints, area: Floats, asked: float) -> list[LeftEntry]:
+def _remaining(ready: Prepared, done: NDArray[np.bool_], reason: Ints, area: Floats, requested: float) -> list[RemainingEntry]:
     """What is left by cause, the largest area first."""
-    samples, entries = ready.samples, list[LeftEntry]()
+    samples, entries = ready.samples, list[RemainingEntry]()
     for code in np.unique(reason[ready.finished & ~done]).tolist():
         mine = ready.finished & ~done & (reason == code)
         cause = REASONS[code] if code != NO_REASON else NOT_PLANNED
-        entries.append(_left_entry(ready, cause, mine, area, asked))
+        entries.append(_remaining_entry(ready, cause, mine, area, requested))
     unjudged = samples.unjudged >= 0
     if unjudged.any() or samples.empty:
-        entry = _left_entry(ready, UNJUDGED_CAUSE, unjudged, area, asked)
+        entry = _remaining_entry(ready, UNJUDGED_CAUSE, unjudged, area, requested)
         missing = sum(ready.scene.part.faces[number - 1].area for number, _ in samples.empty)
         size = entry.area_mm2 + (missing if np.isfinite(missing) else 0.0)
         faces = list(dict.fromkeys([*entry.faces, *(f"F{number}" for number, _ in samples.empty)]))
-        share = min(1.0, size / max(1e-300, asked))
+        share = min(1.0, size / max(1e-300, requested))
         entries.append(entry.model_copy(update={"area_mm2": size, "share": share, "faces": faces}))
     return sorted(entries, key=lambda each: (-each.area_mm2, each.cause))
 
 
-def _left_entry(ready: Prepared, cause: str, mine: NDArray[np.bool_], area: Floats, asked: float) -> LeftEntry:
+def _remaining_entry(ready: Prepared, cause: str, mine: NDArray[np.bool_], area: Floats, requested: float) -> RemainingEntry:
     samples, size = ready.samples, float(area[mine].sum())
     faces, place = _faces(ready, mine, area), None
     if faces:
         rows = np.flatnonzero(mine & (samples.face == int(faces[0][1:])))
         middle = samples.point[rows].mean(axis=0)
         place = vector(samples.point[rows[np.linalg.norm(samples.point[rows] - middle, axis=1).argmin()]])
-    return LeftEntry(cause=cause, area_mm2=size, share=min(1.0, size / max(1e-300, asked)), samples=int(mine.sum()), faces=faces,
+    return RemainingEntry(cause=cause, area_mm2=size, share=min(1.0, size / max(1e-300, requested)), samples=int(mine.sum()), faces=faces,
                      place_mm=place)  # fmt: skip

@@ -24,17 +24,17 @@ class ProcessStep(Frozen):
     repeat: int = Field(default=1, description="how many times it is done, over a pattern of equal faces")
     faces: list[str] = Field(description="the one with the most of it first")
     area_mm2: float
-    share: float = Field(description="of what is asked, 0 to 1")
+    share: float = Field(description="of what is requested, 0 to 1")
     seconds: float | None = Field(description="cutting alone; null where it is not known")
     clearance_mm: float | None = Field(description="least at any of its samples; 100: that or more; null: not known")
 
 
-class LeftEntry(Frozen):
+class RemainingEntry(Frozen):
     """An area that no step finishes, for one cause."""
 
     cause: str = Field(description="a code of `reasons`; `unjudged`; or `not_planned`: a cutter reaches it, and no step takes it")
     area_mm2: float
-    share: float = Field(description="of what is asked, 0 to 1")
+    share: float = Field(description="of what is requested, 0 to 1")
     samples: int = Field(description="0 for faces without samples")
     faces: list[str] = Field(description="the one with the most of it first")
     place_mm: Vector | None = Field(description="a sample in the middle of it, on the first of the faces")
@@ -42,21 +42,21 @@ class LeftEntry(Frozen):
 
 
 class NextEntry(Frozen):
-    """What to do next."""
+    """A change that would finish more, with its effect."""
 
     words: str
     argv: list[str] = Field(description="to add to the command that was given; empty where no option says it")
-    left_share: float | None = Field(description="of what is asked, that stays; null where it was not judged")
+    left_share: float | None = Field(description="of what is requested, that stays; null where it was not judged")
 
 
 class ProcessEntry(Frozen):
-    """What the given cutters, setups and operations finish together."""
+    """A process says in which steps the given cutters, setups and operations finish how much together."""
 
     steps: list[ProcessStep] = Field(description="in the order of setups, and of cutters in a setup")
-    finished_share: float = Field(description="of what is asked, 0 to 1: 1 only where nothing at all is left")
+    finished_share: float = Field(description="of what is requested, 0 to 1: 1 only where nothing at all is left")
     finished_mm2: float
     asked_mm2: float = Field(description="of the target faces, without what lies inside other bodies")
-    left: list[LeftEntry] = Field(description="the largest area first")
+    left: list[RemainingEntry] = Field(description="the largest area first")
     seconds: float | None = Field(description="of all steps, with orientations, changes and setups; null without a feed")
     next: list[NextEntry] = Field(default=[], description="the best first")
     doubts: list[str] = Field(default=[], description="what changes what one does: a line each, the gravest first")

@@ -14,6 +14,7 @@ from plan_cutters.plan_file.shares import VERDICTS
 from plan_cutters.plan_file.words.cutters import FEASIBLE
 from plan_cutters.plan_file.words.story import Story, story_of
 from plan_cutters.plan_file.words.text import further, of_the_plan
+from plan_cutters.plan_file.words.text import text_of as made_of
 from plan_cutters.report.markup import plain, template
 from plan_cutters.report.page.write import LARGEST_WITHOUT, page
 from plan_cutters.report.protocol import Judged
@@ -41,8 +42,8 @@ _CHIPS = {True: _Chip("✓", "#00664b", "#ffffff"), False: _Chip("✗", "#a33c00
 def text_of(plan: Plan) -> str:
     """The plan in words: what to take and why, what makes it unsure, a line for each cutter, what is not reached."""
     story = story_of(plan)
-    headline = story.headline
-    lines = [f"{headline.title}. {headline.about} {headline.why}".replace("  ", " "), *_lines(story), "", *_table(story), ""]
+    text = plan.text or made_of(plan)
+    lines = [text.headline, *text.lines, "", *_lines(story), "", *_table(story), ""]
     lines += [each.left for each in story.cutters if each.left]
     lines += further(story)
     return "\n".join(plain(line).rstrip() for line in lines).strip() + "\n"
@@ -144,7 +145,8 @@ def _rendered(
         for each in story.cutters
     ]
     return _TEMPLATE.render(
-        chip=_CHIPS[story.headline.good], headline=story.headline, told=_lines(story), columns=list(_COLUMNS.values()),
+        chip=_CHIPS[story.headline.good], headline=story.headline, text="\n".join((result.plan.text or made_of(result.plan)).lines),
+        told=_lines(story), columns=list(_COLUMNS.values()),
         cutters=cutters, taken=story.taken, shown=story.names[result.shown], picture=picture, page=page, open=opened,
         file=result.plan.part.file, height=int(height), missing=missing or [],
     )  # fmt: skip

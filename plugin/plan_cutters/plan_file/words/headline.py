@@ -78,8 +78,8 @@ def _stands(plan: Plan) -> str:
 
 def _much(plan: Plan, share: float, *, finished: bool) -> str:
     """How much of what is asked is finished, and in what time."""
-    asked = plan.process.asked_mm2 if plan.process else math.nan
-    of = f"the {area_text(asked)} to machine" if math.isfinite(asked) else "the area to machine"
+    whole = plan.process.asked_mm2 if plan.process else math.nan
+    of = f"the {area_text(whole)} to machine" if math.isfinite(whole) else "the area to machine"
     seconds = plan.process.seconds if plan.process else None
     took = f", {duration(seconds)}" if seconds is not None else ""
     return f"{percent(share, some=share > 0.0, whole=finished and share >= 1.0)} of {of}{took}"

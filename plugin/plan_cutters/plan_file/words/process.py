@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.numbers import area, count, duration, figure, listed, mm, percent, place
-from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, LeftEntry, NextEntry, ProcessEntry, ProcessStep
+from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, RemainingEntry, NextEntry, ProcessEntry, ProcessStep
 from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters.plan_file.words.names import named
 from plan_cutters.plan_file.words.next_steps import is_excluded
@@ -43,12 +43,12 @@ class ProcessStory:
 
     rows: tuple[StepRow, ...]
     more: str
-    left: tuple[str, ...]
+    remaining: tuple[str, ...]
     next: tuple[str, ...]
     clearance: str
 
     def table(self) -> list[str]:
-        """Rows in lines of at most 80 columns, as many faces in each as there is room for."""
+        """Rows in lines of at most 80 columns, as many faces in each as fit into a width."""
         wide = [max((len(row.cells()[k]) for row in self.rows), default=0) for k in range(6)]
         lines = []
         for row in self.rows:
@@ -79,18 +79,18 @@ def process_story(plan: Plan, names: Mapping[str, str]) -> ProcessStory | None:
     return ProcessStory(
         rows=rows,
         more=more,
-        left=tuple(_left(process, plan)),
+        remaining=tuple(_remaining(process, plan)),
         next=tuple(named(plan, _next(each)) for each in process.next[:_NEXT]),
         clearance=_clearance(process),
     )
 
 
-def told(plan: Plan) -> Plan:
+def with_process_words(plan: Plan) -> Plan:
     """The plan with the words of its process made anew: what each area that is left needs, and what to do next."""
     if plan.process is None:
         return plan
-    left = [each.model_copy(update={"needs": _needs(plan, each)}) for each in plan.process.left]
-    process = plan.process.model_copy(update={"left": left, "next": list(_next_entries(plan))})
+    needed = [each.model_copy(update={"needs": _needs(plan, each)}) for each in plan.process.left]
+    process = plan.process.model_copy(update={"left": needed, "next": list(_next_entries(plan))})
     return plan.model_copy(update={"process": process})
 
 
@@ -110,19 +110,19 @@ def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bo
         number=str(number),
         setup=f"setup {step.setup + 1}" if setups else "",
         turned=times + turned,
-        cutter=what if len(what) <= _name_room(fixed) else f"{what[: _name_room(fixed) - 3]}...",
+        cutter=what if len(what) <= _name_width(fixed) else f"{what[: _name_width(fixed) - 3]}...",
         share=percent(step.share, some=True),
         took=duration(step.seconds),
         faces=step.faces,
     )
 
 
-def _name_room(fixed: bool) -> int:
+def _name_width(fixed: bool) -> int:
     return 26 if fixed else 40
 
 
-def _fitting(faces: list[str], room: int) -> str:
-    """As many faces as there is room for, and how many more there are.
+def _fitting(faces: list[str], width: int) -> str:
+    """As many faces as fit into a width, and how many more there are.
 
     >>> _fitting(["F1", "F22", "F3"], 20), _fitting(["F1", "F22", "F3"], 8), _fitting(["F1"], 1)
     ('F1 F22 F3', 'F1 +2', '')
@@ -130,12 +130,12 @@ def _fitting(faces: list[str], room: int) -> str:
     for number in range(len(faces), 0, -1):
         more = len(faces) - number
         text = " ".join(faces[:number]) + (f" +{more}" if more else "")
-        if len(text) <= room:
+        if len(text) <= width:
             return text
     return ""
 
 
-def _left(process: ProcessEntry, plan: Plan) -> Iterator[str]:
+def _remaining(process: ProcessEntry, plan: Plan) -> Iterator[str]:
     """Sentences on what is left, the largest first."""
     listed_causes = process.left[:_CAUSES]
     for each in listed_causes:
@@ -149,19 +149,19 @@ def _left(process: ProcessEntry, plan: Plan) -> Iterator[str]:
         yield f"Left besides, {percent(sum(each.share for each in rest), some=True, whole=False)}, for other causes."
 
 
-def _needs(plan: Plan, left: LeftEntry) -> str:
+def _needs(plan: Plan, entry: RemainingEntry) -> str:
     """What would help against a cause, by what the plan knows of its place."""
-    faces = set(left.faces)
-    if left.cause == "sharp_edge" and plan.sharp_edges:
+    faces = set(entry.faces)
+    if entry.cause == "sharp_edge" and plan.sharp_edges:
         return f"the model has no fillet there, and the cutter leaves one of R{plan.sharp_edges[0].radius_mm:.4g}"
     radii = [each for each in plan.inside_radii if each.face in faces]
-    if left.cause in ("local_gouge", "rear_gouge") and radii:
+    if entry.cause in ("local_gouge", "rear_gouge") and radii:
         least = min(radii, key=lambda each: each.radius_mm)
         fits = f"D{least.fits_mm:g} fits" if least.fits_mm else "no usual size fits"
         return f"the inside radius of {least.face} is {mm(least.radius_mm)}, {fits}"
-    if left.cause == UNJUDGED_CAUSE:
+    if entry.cause == UNJUDGED_CAUSE:
         return next((face.unjudged for face in plan.faces if face.id in faces and face.unjudged), "") or ""
-    return REASONS[left.cause].hint if left.cause in REASONS else ""
+    return REASONS[entry.cause].hint if entry.cause in REASONS else ""
 
 
 def _next_entries(plan: Plan) -> Iterator[NextEntry]:
@@ -180,9 +180,9 @@ def _next_entries(plan: Plan) -> Iterator[NextEntry]:
 
 
 def _next(each: NextEntry) -> str:
-    left = "" if each.left_share is None else f": left {percent(each.left_share, some=each.left_share > 0.0)}"
+    stays = "" if each.left_share is None else f": left {percent(each.left_share, some=each.left_share > 0.0)}"
     bracket = f" [{shlex.join(each.argv)}]" if each.argv else ""
-    return f"Next: {each.words}{left}{bracket}"
+    return f"Next: {each.words}{stays}{bracket}"
 
 
 def _clearance(process: ProcessEntry) -> str:

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 from plan_cutters.plan_file.model import CutterEntry, Plan, TextEntry, VerdictText
 from plan_cutters.plan_file.numbers import count
 from plan_cutters.plan_file.words.chip import TONES, chip, cutter_chip
-from plan_cutters.plan_file.words.process import told, wrapped
-from plan_cutters.plan_file.words.scope import not_seen, unseen
+from plan_cutters.plan_file.words.process import with_process_words, wrapped
+from plan_cutters.plan_file.words.scope import not_judged, not_seen, unseen
 from plan_cutters.plan_file.words.story import Story, story_of
 from plan_cutters.plan_file.words.undecided import undecided
 
@@ -18,7 +18,7 @@ _DOUBTS, _CUTTERS = 4, 6
 
 def with_text(plan: Plan) -> Plan:
     """The plan with its text and the words of its process, made anew of all that it says by now."""
-    plan = told(plan)
+    plan = with_process_words(plan)
     return plan.model_copy(update={"text": text_of(plan)})
 
 
@@ -38,11 +38,12 @@ def text_of(plan: Plan) -> TextEntry:
 def process_lines(plan: Plan, story: Story, most: int) -> list[str]:
     """The process below the headline, at most so many lines of 80 columns: what makes it unsure, steps, what is left, next."""
     process = story.process
-    first = [*wrapped([" ".join(story.inside)] if story.inside else [], 2), *wrapped(_doubts(story), 1)[:_DOUBTS]]
+    inside = [f"Inside other bodies: {' '.join(story.inside)}"] if story.inside else []
+    judged = " ".join(filter(None, (story.headline.about, *not_judged(plan))))
     blocks: list[list[str]] = [
-        [*first, *wrapped([story.headline.about] if story.headline.about else [], 2)],
+        [*wrapped(inside, 6), *wrapped(_doubts(story), 1)[:_DOUBTS], *wrapped([judged] if judged else [], 3)],
         process.table() if process else [],
-        wrapped(list(process.left), 2) if process else [],
+        wrapped(list(process.remaining), 2) if process else [],
         wrapped(list(process.next), 3) if process else [],
         wrapped(_unsure(plan, story), 2),
         wrapped([process.clearance] if process and process.clearance else [], 1),
