@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from plan_cutters.command import terminal
-from plan_cutters.plan_file.words.scope import unseen
 from plan_cutters.workers.assignment import INTERRUPTED
 from plan_cutters.workers.errors import Supervised
 
@@ -27,6 +26,9 @@ READER_GONE = 141
 
 def code_of(plan: "Plan", fail_under: float | None = None) -> int:
     """The exit code that a plan asks for; `fail_under`: the percent of what is asked that is enough."""
+    # Not before anything is planned: help is shown without what this loads.
+    from plan_cutters.plan_file.words.scope import unseen
+
     process = plan.process
     if fail_under is not None and process is not None and 100.0 * process.finished_share >= fail_under:
         return FEASIBLE

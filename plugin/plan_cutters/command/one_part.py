@@ -83,7 +83,7 @@ def one_part(
         )
     for name, why in document.not_written.items():
         terminal.error(f"plan-cutters: {file_name(name)} was not written: {why}")
-    return code_of(document), ""
+    return code_of(document, request.fail_under), ""
 
 
 def _tells(request: "PlanRequest") -> Callable[..., None]:
@@ -151,7 +151,7 @@ class ProgressListener:
     def safe(self, plan: "Plan") -> None:
         self.plan = plan
         if self.out is not None:
-            report("safe", f"{code_of(plan)} {self.out.absolute()}")
+            report("safe", f"{code_of(plan, self.request.fail_under)} {self.out.absolute()}")
         self.summarise(plan)
 
     def begins(self, what: str) -> None:

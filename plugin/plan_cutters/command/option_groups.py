@@ -23,13 +23,13 @@ EXAMPLES = (
 )
 ENDED = ("130", "interrupted; nothing is half-written")
 CODES = (
-    ("0", "a cutter finishes every judged sample"),
-    ("1", "none does; the plan says where and why"),
+    ("0", "what was given (cutters, setups, operations) finishes every judged sample together, or what --fail-under asks"),
+    ("1", "it does not; the plan says where and why"),
     ("2", "the command line, a library or a machine file is wrong"),
     ("3", "the part or a fixture cannot be read, or holds nothing to judge"),
     (
         "4",
-        "a cutter would finish all that could be judged, but something could not, obstacles are missing, or samples are farther "
+        "it would finish all that could be judged, but something could not, obstacles are missing, or samples are farther "
         "apart than its radius and nobody asked for that",
     ),
     ("124", "a part was not done within --timeout; nothing is half-written"),
@@ -295,6 +295,12 @@ _OPTIONS = (
         default=120.0,
         metavar="S",
         help="Seconds that reading a part may take; from it follow the limits of later stages and single faces.  [default: 120]",
+    ),
+    _run(
+        "--fail-under",
+        type=float,
+        metavar="PERCENT",
+        help="End with 0 where at least so much of the area to machine is finished.  [default: all of it, and all judged]",
     ),
     _run(
         "--timeout",

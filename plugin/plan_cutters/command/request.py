@@ -119,6 +119,7 @@ class PlanRequest(PlanningRequest):
     json_out: str | None
     verbose: bool
     verdicts: str | None
+    fail_under: float | None
     timeout: float | None
     memory: float | None
 

@@ -91,6 +91,8 @@ def _words(request: PlanRequest) -> None:
         if request.verdicts is None:
             raise OptionError("--verdicts-key seals stored verdicts: give it with --verdicts, or leave it out")
         key_of(request.verdicts_key)
+    if request.fail_under is not None and not 0.0 < request.fail_under <= 100.0:
+        raise OptionError("--fail-under must be a percentage above 0 and up to 100")
     if request.timeout is not None and not 0.0 < request.timeout < math.inf:
         raise OptionError("--timeout must be a positive number of seconds")
     if request.memory is not None and not LEAST_MEMORY <= request.memory * 1e9 < 1e18:
