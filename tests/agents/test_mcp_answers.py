@@ -154,7 +154,7 @@ def test_cutters_are_named_by_the_words_that_were_given():
     data["selected"] = "R1L80"
     plan = Plan.model_validate(data)
     found = planned(plan, 0, 9, {})
-    assert found.told.startswith("Take flat end D2 x 80. For part.step: D2L80, judged without a holder, 80 mm up from its tip.")
+    assert found.told.startswith("Take flat end D2 x 80.\nFor part.step: D2L80, judged without a holder, 80 mm up from its tip.")
     assert [c.id for c in found.cutters] == ["R1L80", "R2L80"]
     # A change that could not be decided is no help.
     said = explained(plan, plan.cutters[1], "F1", 9)
@@ -172,13 +172,13 @@ def test_cutters_are_named_by_the_words_that_were_given():
 def test_a_cutter_that_reaches_nothing_leaves_all_and_one_that_reaches_something_does_not():
     data = made_plan(cutters=2)
     for share, counts, told in (
-        ({"inaccessible": 1.0}, {"accessible": 0, "inaccessible": 4}, "100 %"),
-        ({"inaccessible": 1.0}, {"accessible": 1, "inaccessible": 3}, ">99.9 %"),
-        ({"accessible": 1.0}, {"accessible": 3, "inaccessible": 1}, "<0.1 %"),
+        ({"inaccessible": 1.0}, {"accessible": 0, "inaccessible": 4}, "0 %"),
+        ({"inaccessible": 1.0}, {"accessible": 1, "inaccessible": 3}, "<0.1 %"),
+        ({"accessible": 1.0}, {"accessible": 3, "inaccessible": 1}, ">99.9 %"),
     ):
         data["cutters"][1] |= {**counts, "area_share": share}
         data["cutters"] = data["cutters"][1:]
-        assert f"leaves {told} of the area" in planned(Plan.model_validate(data), 1, 9, {}).told
+        assert f": {told} of the area" in planned(Plan.model_validate(data), 1, 9, {}).told
         data = made_plan(cutters=2)
 
 

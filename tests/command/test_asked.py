@@ -158,7 +158,7 @@ def test_ignoring_on_the_command_line(tmp_path):
     writer.Transfer(covered(), STEPControl_AsIs)
     writer.Write(str(tmp_path / "covered.step"))
     words = ("covered.step", "--cutter", "R3L40", "--spacing", "4", "--tolerance", "0.05", "--area-budget", "0")
-    done = run(*words, "--ignore", "F2", cwd=tmp_path)
+    done = run(*words, "--ignore", "F2", "-v", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     assert "1 to machine, 1 ignored" in in_lines(done.stdout)
     assert "No face that can be judged is sculptured" in in_lines(done.stdout)

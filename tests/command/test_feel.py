@@ -59,7 +59,8 @@ def shown(capsys, document, *, verbose=False):
     """What the summary says."""
     capsys.readouterr()
     summaries.summary(document, verbose=verbose)
-    show(*summaries.written(document, Path("out"), ("json",)), *others(document, every=verbose))
+    after = others(document, every=True) if verbose else []
+    show(*after, *summaries.written(document, Path("out"), ("json",), verbose=verbose))
     return capsys.readouterr().out
 
 
@@ -168,27 +169,27 @@ def test_completion_knows_names_and_loads_no_kernel(tmp_path, words, offered):
 
 
 def test_the_first_line_says_which_cutter_to_take(capsys, planned):
-    said = shown(capsys, planned)
-    first = said.split("\n")[1]
-    assert first.startswith("Take flat end D12 x 80. For peaks_and_valleys.step: R6L80, ")
+    said = shown(capsys, planned, verbose=True)
+    assert said.startswith("Take flat end D12 x 80.\nFor peaks_and_valleys.step: R6L80, ")
     assert "without a holder" in in_lines(said)
     assert re.search(r"^> flat end D12 x 80 +yes ", said, re.MULTILINE)
     assert re.search(r"^  flat end D24 x 120 +no ", said, re.MULTILINE)
-    # Last is what is not reached, and why.
-    assert re.search(r"\nFlat end D24 x 120 does not reach (.*\n  )*.*(rear\s+gouge|collision)(.*\n  )*.*\n$", said)
+    # Near the end is what is not reached, and why.
+    assert re.search(r"\nFlat end D24 x 120 does not reach (.*\n  )*.*(rear\s+gouge|collision)(.*\n  )*.*\n", said)
 
 
 def test_what_is_served_between_samples_is_put_in_words(capsys, planned):
     (entry,) = [c for c in planned.cutters if c.area]
-    said = in_lines(shown(capsys, planned))
+    said = in_lines(shown(capsys, planned, verbose=True))
     assert f"{percent(entry.area.share, some=True, whole=False)} of the area is proved safe with the tool axis kept" in said
     assert "is not proved, which does not mean unsafe" in said
 
 
 def test_where_none_is_feasible_the_worst_faces_are_listed(capsys, failing):
-    said = shown(capsys, failing)
-    assert in_lines(said).startswith("No cutter finishes pocket_top.step. Of 3 cutters, ")
+    said = shown(capsys, failing, verbose=True)
+    assert in_lines(said).startswith("pocket_top.step on tilt:20, in 2 setups: 99.6 % of the 9,040 mm² to machine.")
     assert "--answers mend" in in_lines(said)
+    assert "Each alone reaches: " in in_lines(shown(capsys, failing))
     head = next(i for i, line in enumerate(said.splitlines()) if line.startswith("Where "))
     rows = [line.split() for line in takewhile(str.strip, said.splitlines()[head + 2 :])]
     best = max(failing.cutters, key=lambda c: c.interference_free + c.accessible)
@@ -229,6 +230,10 @@ def everywhere(value, text):
             "part",
             "carries",
             "sampled_by",
+            "mode",
+            "strategy",
+            "cutter",
+            "cause",
         }
         return {k: v if k in kept and isinstance(v, str) else everywhere(v, text) for k, v in value.items()}
     if isinstance(value, list):
@@ -275,11 +280,7 @@ def test_it_fits_any_terminal(capsys, monkeypatch, planned, failing, columns):
 def test_many_cutters_are_said_in_few_lines(capsys, failing):
     many = [c.model_copy(update={"id": f"{c.id}S{i}"}) for i in range(60) for c in failing.cutters]
     document = failing.model_copy(update={"cutters": many})
-    said = shown(capsys, document)
-    # 40 rows, each with a name of up to two lines.
-    assert len(said.splitlines()) < 120
-    assert "and 140 more cutters that reach less" in said
-    assert "more cutters leave" in in_lines(said)
+    assert len(shown(capsys, document).splitlines()) <= 25
     whole = in_lines(shown(capsys, document, verbose=True))
     assert all(f" ({c.id})" in whole for c in many)
 
@@ -287,7 +288,7 @@ def test_many_cutters_are_said_in_few_lines(capsys, failing):
 def test_nineteen_cutters_are_one_table_with_their_whole_names(capsys):
     document = plan(GROOVE, cutters=builtin()[:19], grid=3, area_budget=0).plan
     names = [each.name for each in story_of(document).cutters]
-    said = shown(capsys, document).splitlines()
+    said = shown(capsys, document, verbose=True).splitlines()
     head = next(k for k, line in enumerate(said) if line.startswith("  cutter "))
     rows = said[head + 1 : head + 20]
     assert [re.match(r"[> ] (.*?) +(?:yes|no|unsure) ", row)[1] for row in rows] == names
@@ -297,9 +298,9 @@ def test_nineteen_cutters_are_one_table_with_their_whole_names(capsys):
 
 
 def test_a_long_name_has_a_second_line_of_its_own(capsys, planned):
-    said = shown(capsys, long_names(planned))
+    said = shown(capsys, long_names(planned), verbose=True)
     rows = re.findall(r"^[> ] (\S.*?) +(?:yes|no) .*\n +(\S.*)$", said, re.MULTILINE)
-    assert len(set(rows)) == len(planned.cutters)
+    assert len({row for row in rows if "ultra" in row[0] or row[0].startswith("T0")}) == len(planned.cutters)
 
 
 def test_names_that_are_shortened_stay_apart():
@@ -310,17 +311,17 @@ def test_names_that_are_shortened_stay_apart():
 
 
 def test_colours_where_they_help_and_words_always(capsys, monkeypatch, planned):
-    plain = shown(capsys, planned)
+    plain = shown(capsys, planned, verbose=True)
     assert "\x1b" not in plain
     monkeypatch.setattr("plan_cutters.command.terminal.is_terminal", lambda *_: True)
     monkeypatch.setenv("TERM", "xterm-256color")
     monkeypatch.setenv("COLUMNS", "80")
     monkeypatch.delenv("NO_COLOR", raising=False)
-    coloured = shown(capsys, planned)
+    coloured = shown(capsys, planned, verbose=True)
     assert "\x1b[32myes" in coloured
     assert "\x1b[31mno" in coloured
     monkeypatch.setenv("NO_COLOR", "1")
-    bold = shown(capsys, planned)
+    bold = shown(capsys, planned, verbose=True)
     assert not re.search(r"\x1b\[[0-9;]*3[0-9]", bold)
     # The same words in all of them.
     assert COLOUR.sub("", coloured).split() == COLOUR.sub("", bold).split() == plain.split()
@@ -423,13 +424,13 @@ def test_it_speaks_soon_and_shows_a_clock_on_a_terminal(tmp_path):
 
 def test_what_is_found_goes_to_standard_output_and_all_else_to_standard_error(tmp_path):
     done = run(GROOVE, *QUICK, *FILES, cwd=tmp_path)
-    assert done.stdout.startswith("\nTake flat end D12 x 80. For v_groove.step")
+    assert done.stdout.startswith("Take flat end D12 x 80.\nFor v_groove.step")
     assert "\nWritten to out: plan.json" in done.stdout
     assert done.stderr
     assert all(re.fullmatch(r" +\d+\.\d s  .+", line) for line in done.stderr.splitlines())
     done = run(GROOVE, *QUICK, "--json", "-", cwd=tmp_path)
     assert json.loads(done.stdout)["selected"] == "R6L80"
-    assert "\nTake flat end D12 x 80. For v_groove.step" in done.stderr
+    assert "\nTake flat end D12 x 80.\nFor v_groove.step" in done.stderr
 
 
 @pytest.mark.parametrize(("close", "code", "said"), [
@@ -499,7 +500,7 @@ def test_files_with_odd_names(tmp_path):
     done = run(odd, *QUICK, "--formats", "json", "-o", "out", cwd=tmp_path)
     assert done.returncode == 0
     assert "\x1b" not in done.stdout + done.stderr
-    assert r"Take flat end D12 x 80. For a\n\x1b[31mß.step" in done.stdout
+    assert r"For a \x1b[31mß.step" in done.stdout
     (tmp_path / "-x.step").write_bytes(GROOVE.read_bytes())
     assert run("--quiet", "--formats", "json", "-o", "out", *QUICK, "--", "-x.step", cwd=tmp_path).returncode == 0
 

@@ -376,6 +376,6 @@ def test_the_summary_names_faces_that_were_not_split(result, monkeypatch):
     monkeypatch.setattr(attempt, "pieces", refused)
     found = models.split_result(result)
     document = result.plan.model_copy(update={"split": models.rungs(found)})
-    (line,) = [x for x in written(document, Path("missing"), ()) if "could not be split" in x]
+    (line,) = [x for x in written(document, Path("missing"), (), verbose=True) if "could not be split" in x]
     assert f"F{next(iter(found.whole))}" in line
     assert "forced" in line

@@ -57,7 +57,9 @@ def process_entry(
     remaining = _remaining(ready, done, _reasons(entries, over, steps, done), area, requested)
     finished = float(area[done].sum())
     share = exact(finished / max(1e-300, requested), some=bool(done.any()), whole=not remaining)
-    return ProcessEntry(steps=steps, finished_share=share, finished_mm2=finished, asked_mm2=requested, left=remaining, seconds=seconds)
+    return ProcessEntry(
+        steps=steps, finished_share=share, finished_mm2=finished, asked_mm2=requested, left=remaining, seconds=seconds
+    )
 
 
 def _preferred(plans: Sequence[OperationPlan], entries: Sequence[OperationPlanEntry]) -> tuple[OperationPlan, OperationPlanEntry]:
@@ -66,7 +68,9 @@ def _preferred(plans: Sequence[OperationPlan], entries: Sequence[OperationPlanEn
     return plans[k], entries[k]
 
 
-def _operated(ready: Prepared, plan: OperationPlan, entry: OperationPlanEntry, area: Floats, requested: float) -> list[ProcessStep]:
+def _operated(
+    ready: Prepared, plan: OperationPlan, entry: OperationPlanEntry, area: Floats, requested: float
+) -> list[ProcessStep]:
     """The steps of a plan of operations: by setup, fixed orientations first, by cutter, the largest area first."""
     by_cutter: dict[tuple[int, str], float] = {}
     for each in entry.operations:

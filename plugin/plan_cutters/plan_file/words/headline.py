@@ -57,6 +57,9 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
     share = process.finished_share if process else reached_share(best, best.area_share) or 0.0
     title = f"{_stands(plan)}: {_much(plan, share, finished=finished)}"
     about = "" if plan.scope is None or not plan.scope.not_judged else f"Judged: {part}."
+    if len(used := {step.cutter for step in process.steps} if process else {best.id}) == 1:
+        (only,) = used
+        about = " ".join(filter(None, (about, f"{capital(names[only])}: {described(entries[only], names[only])}.")))
     if finished:
         why = f"{capital(every(plan))} is reached" if every(plan).startswith("every") else f"{capital(every(plan))} are reached"
         if plan.missing:
