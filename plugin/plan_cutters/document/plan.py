@@ -173,7 +173,7 @@ def completed(
             "singular": _singular(ready, entry.id, over),
             "travel": None if moved is None else travel_entry(ready.options.machine, moved, here, samples),
             "sources": [source_entry(*place) for place in sources.get(entry.id, ())],
-            "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples, ready.conditions.surroundings),
+            "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples, ready.setups[stick_out.setup].surroundings),
             "mend": None if mend is None else what_if_entry(mend),
         }
         completed_entries.append(entry.model_copy(update=more))
