@@ -145,7 +145,7 @@ def test_posture_maps_are_of_the_first_setup_and_leave_out_what_it_holds():
 
 @pytest.mark.parametrize("machine", ["trunnion-ac"])
 def test_everything_together_is_one_plan(machine):
-    """A proposal of setups, all answers, operations of both kinds and posture maps; and the same with two fixtures of one's own."""
+    """A proposal of setups, all answers, operations of both kinds and posture maps; and the same with fixtures of one's own."""
     words = {"answers": "all", "operations": "both", "feed": 800.0, "posture_maps": True, "machine": machine}
     proposed = plan(box(), **{**HOW, "cutters": ["R2L60rc2F10S2.5HR8L30"], "grid": 3}, setup="auto", **words)
     own = two(box(), **{"cutters": ["R2L60rc2F10S2.5HR8L30"], "grid": 3}, **words)

@@ -83,12 +83,7 @@ def ask(
 
 
 def _what_if(
-    ready: Prepared,
-    cutter: Cutter,
-    over: Verdicts,
-    reaches: Mapping[Cutter, Verdicts],
-    other_setups: OtherSetups,
-    tell: Progress,
+    ready: Prepared, cutter: Cutter, over: Verdicts, reaches: Mapping[Cutter, Verdicts], other_setups: OtherSetups, tell: Progress
 ) -> WhatIfAnswer:
     """Mend one cutter; `over`: what it reaches in all setups together."""
     finished, missed = Finished.of(ready), over.not_reached

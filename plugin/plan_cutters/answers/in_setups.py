@@ -62,9 +62,7 @@ def stick_out_in_each(
 def radius_in_any(ready: Prepared, shape: Shape, *, ratio: float, progress: Progress | None = None) -> RadiusMap:
     """Find the largest radius that reaches each sample in one setup or another, as `largest_radius` does in one."""
     number, tell = len(ready.setups), progress or (lambda done, total: None)
-    best, *others = [
-        largest_radius(ready.alone(k), shape, ratio=ratio, progress=part_of(tell, k, number)) for k in range(number)
-    ]
+    best, *others = [largest_radius(ready.alone(k), shape, ratio=ratio, progress=part_of(tell, k, number)) for k in range(number)]
     for other in others:
         larger = other.radius > best.radius
         taken = {

@@ -89,9 +89,10 @@ def on_table(ready: Prepared, axis: Axis) -> Prepared:
     own = () if place is None else tuple(each for each in place.fixtures if each.follows_setup)
     if not own:
         return replace(ready, conditions=conditions, others=())
-    surroundings = ready.scene.surround_in(axis, without(ready.scene.fixtures, own), own)
+    scene = ready.scene
+    surroundings = scene.surround_in(axis, without(scene.fixtures, own), own)
     inside = inside_material(
-        ready.samples, ready.scene.orientation, surroundings.enclosing, surroundings.certain, conditions.tolerance, conditions.jobs
+        ready.samples, scene.orientation, surroundings.enclosing, surroundings.certain, conditions.tolerance, conditions.jobs
     )
     held = np.isin(ready.samples.face, standing(ready, np.array([axis]))[0][0])
     return replace(ready, conditions=replace(conditions, surroundings=surroundings), inside=inside, held=held, others=())
