@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -65,7 +66,7 @@ def radius_in_any(ready: Prepared, shape: Shape, *, ratio: float, progress: Prog
     best, *others = [largest_radius(ready.alone(k), shape, ratio=ratio, progress=part_of(tell, k, number)) for k in range(number)]
     for other in others:
         larger = other.radius > best.radius
-        taken = {
+        taken: dict[str, Any] = {
             name: np.where(larger if column.ndim == 1 else larger[:, None], getattr(other, name), column)
             for name in ("radius", "beyond", "reason", "axis", "tilt_direction", "tilt", "rotation")
             if isinstance(column := getattr(best, name), np.ndarray)
