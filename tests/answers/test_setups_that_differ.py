@@ -12,8 +12,8 @@ from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.stick_out import held
 from plan_cutters.domain.verdicts import FIXTURE, INACCESSIBLE
 from plan_cutters.stages.judge import judge
-from tests.scene.test_setups import DOWN, HOW, LOWER, UP, faces_at, name_of, two
 from tests.support.cad_parts import box
+from tests.support.two_setups import DOWN, HOW, LOWER, UP, faces_at, name_of, two
 
 TABLE = (Fixture.parse("table"),)
 

@@ -51,7 +51,7 @@ def ask(
         Of each other setup its axis, and what each cutter reaches there by its id.
     """
     requested = ready.options.answers
-    setups = {c: [reaches[c], *(found[c.id] for _, found in other_setups)] for c in reaches}
+    setups = {c: [reaches[c], *(there[c.id] for _, there in other_setups)] for c in reaches}
     together = {cutter: over_setups(each) for cutter, each in setups.items()}
     stick_outs, mends = {}, {}
     radius_maps: list[RadiusMap] = []

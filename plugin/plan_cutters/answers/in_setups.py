@@ -47,17 +47,17 @@ def stick_out_in_each(
     if len(verdicts) == 1:
         return least_stick_out(ready, cutter, verdicts[0], step=step, progress=progress)
     tell = progress or (lambda done, total: None)
-    found = list[StickOut]()
+    results = list[StickOut]()
     for k, there in enumerate(verdicts):
         mine = replace(there, verdict=np.where(there.reached & (which != k), UNJUDGED, there.verdict).astype(np.uint8))
         part = part_of(tell, k, len(verdicts))
-        found.append(replace(least_stick_out(ready.alone(k), cutter, mine, step=step, progress=part), setup=k))
+        results.append(replace(least_stick_out(ready.alone(k), cutter, mine, step=step, progress=part), setup=k))
     # A setup that serves nothing asks for nothing.
-    most = max(found, key=lambda each: -np.inf if np.isnan(each.least) else each.least)
-    maps = [each.each for each in found if each.each is not None]
+    most = max(results, key=lambda each: -np.inf if np.isnan(each.least) else each.least)
+    maps = [each.each for each in results if each.each is not None]
     # Each sample has a stick-out in the setup that serves it alone.
     whole = np.fmax.reduce(maps) if maps else None
-    return replace(most, served=sum(each.served for each in found), each=whole, step=most.step if maps else np.nan)
+    return replace(most, served=sum(each.served for each in results), each=whole, step=most.step if maps else np.nan)
 
 
 def radius_in_any(ready: Prepared, shape: Shape, *, ratio: float, progress: Progress | None = None) -> RadiusMap:

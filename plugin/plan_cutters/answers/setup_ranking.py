@@ -62,7 +62,7 @@ class Candidates(Record):
         """Directions of a cube's corners, edges and faces, normals of planes both ways, and some all over the sphere."""
         triangles, planar = _of_part(ready)
         axis = distinct(np.concatenate([cube(), _normals(triangles.vertex, triangles.face, planar), fibonacci(_SPREAD)]))
-        return cls(axis, *standing(ready, axis))
+        return cls(axis, *planes_below(ready, axis))
 
 
 def _of_part(ready: Prepared) -> tuple[Triangles, list[int]]:
@@ -72,7 +72,7 @@ def _of_part(ready: Prepared) -> tuple[Triangles, list[int]]:
     return (surroundings.alone or surroundings).certain.triangles, planar
 
 
-def standing(ready: Prepared, axis: Floats) -> tuple[tuple[tuple[int, ...], ...], Floats]:
+def planes_below(ready: Prepared, axis: Floats) -> tuple[tuple[tuple[int, ...], ...], Floats]:
     """On which planes a part stands, by their numbers, and the height of its lowest point (m,), along some axes (m, 3)."""
     triangles, planar = _of_part(ready)
     height = triangles.vertex.reshape(-1, 3) @ axis.T

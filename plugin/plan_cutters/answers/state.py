@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from plan_cutters.answers.setup_ranking import standing
+from plan_cutters.answers.setup_ranking import planes_below
 from plan_cutters.answers.trial import Case
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
@@ -94,7 +94,7 @@ def on_table(ready: Prepared, axis: Axis) -> Prepared:
     inside = inside_material(
         ready.samples, scene.orientation, surroundings.enclosing, surroundings.certain, conditions.tolerance, conditions.jobs
     )
-    held = np.isin(ready.samples.face, standing(ready, np.array([axis]))[0][0])
+    held = np.isin(ready.samples.face, planes_below(ready, np.array([axis]))[0][0])
     return replace(ready, conditions=replace(conditions, surroundings=surroundings), inside=inside, held=held, others=())
 
 

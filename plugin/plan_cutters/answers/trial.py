@@ -66,12 +66,12 @@ class Case:
         """
         each, open_rows = list[Verdicts](), np.arange(len(rows))
         for one in self.setups:
-            found = _look(one, self.cutter, rows[open_rows])
+            part = _look(one, self.cutter, rows[open_rows])
             whole = blank(len(rows))
             for name in COLUMNS:
-                getattr(whole, name)[open_rows] = getattr(found, name)
+                getattr(whole, name)[open_rows] = getattr(part, name)
             each.append(whole.freeze())
-            open_rows = open_rows[~found.reached]
+            open_rows = open_rows[~part.reached]
         return over_setups(each)[0]
 
     def misses(self, rows: Rows) -> Rows:

@@ -93,7 +93,7 @@ def maps_partial(unmapped: int, judged: int) -> Note:
 def maps_first_setup() -> Note:
     return Note(
         "maps_first_setup",
-        "The posture maps, and what is said about motion, are about the first setup alone: others hold the part differently.",
+        "The posture maps and the estimate of motion are about the first setup alone: others hold the part differently.",
     )
 
 
