@@ -21,6 +21,7 @@ from plan_cutters.domain.operations import operations_of
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.errors import OptionError
+from plan_cutters.library.presets import feed_of
 from plan_cutters.library.records import Entry, Library, libraries_of
 from plan_cutters.machines.requested_setups import setups_requested, without
 from plan_cutters.option_types import ANGLES, PlanOptions
@@ -228,12 +229,7 @@ class Options:
                 f"on machine {self.machine.name} {axes} the tool: a plan of operations chooses the angles of two; "
                 "leave out --operations, or name a machine that has them"
             )
-        if not self.held_alike and (self.posture_maps or {"mend", "mend-all"} & set(self.answers)):
-            answer = "posture maps are" if self.posture_maps else "the answer mend is"
-            raise OptionError(
-                f"{answer} about one setup, and these differ in fixtures or clamped faces: plan one setup by itself"
-            )
-        if self.operations in ("fastest", "both") and self.feed is None and not self.libraries:
+        if self.operations in ("fastest", "both") and not self.feeds:
             raise OptionError("the fastest operations need a feed: give --feed MM/MIN, or ask for the fewest")
         for cutter in self.judged:
             if not cutter.large_enough(self.tolerance):
@@ -346,6 +342,15 @@ class Options:
                 places = result.setdefault(self._asked(cutter, None).id, [])
                 places += [(library, entry) for entry in library.entries_of(cutter)]
         return {name: tuple(places) for name, places in result.items()}
+
+    @property
+    def feeds(self) -> dict[Cutter, float]:
+        """The feed of each cutter to judge that has one, mm/min."""
+        if self.feed is not None:
+            return dict.fromkeys(self.judged, self.feed)
+        sources = self.sources
+        stated = {cutter: feed_of([entry for _, entry in sources.get(cutter.id, ())]) for cutter in self.judged}
+        return {cutter: feed for cutter, feed in stated.items() if feed is not None}
 
     def _asked(self, cutter: Cutter, holder: Holder | None) -> Cutter:
         return cutter.asked(self.allowance, self.holder_clearance, holder)

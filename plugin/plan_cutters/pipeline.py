@@ -168,7 +168,7 @@ def run(
             verdicts = judge(replace(ready, conditions=ready.conditions.without_machine()), cutter)
         maps = posture_maps(
             ready.samples, Context.of(cutter, ready.conditions), verdicts, part=ready.scene.part.fingerprint, progress=tell,
-            inside=ready.inside_bodies, about=question(ready, cutter), most=options.map_budget,
+            inside=ready.inside_bodies, shut=ready.shut >= 0, about=question(ready, cutter), most=options.map_budget,
         )  # fmt: skip
     document = result.plan
     if maps.unmapped:

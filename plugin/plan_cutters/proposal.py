@@ -29,7 +29,7 @@ _ROUNDING = 1e-9
 def plan_proposed(
     prepare: Callable[[Options, Clock], Prepared], run: Callable[..., Result], options: Options, clock: Clock
 ) -> Result:
-    """Propose setups and plan them; with a plan of operations the fewest of up to three, else the best one.
+    """Propose setups, the fewest of up to three that serve nearly all, and plan them.
 
     Parameters
     ----------
@@ -52,13 +52,12 @@ def plan_proposed(
     """
     unproposed = replace(options, propose=False)
     ready = prepare(unproposed, clock)
-    most = 1 if options.operations is None else MOST
     with clock.stage("proposal"):
-        ranking = ranked(ready, most)
+        ranking = ranked(ready, MOST)
     best: tuple[float, Result] | None = None
     failed, why = frozenset[int](), ""
     for tried in range(1, _TRIES + 1):
-        chosen = ranking.choose(most, failed)
+        chosen = ranking.choose(MOST, failed)
         promised = np.logical_or.reduce([ranking.served[k] for k in chosen]) if chosen else np.zeros(0, bool)
         if not promised.any():
             break
@@ -106,14 +105,14 @@ def _compared(result: Result, ranking: Ranking, chosen: tuple[int, ...]) -> tupl
     reached = np.logical_or.reduce([each.reached for each in result.reaches.values()]) & result.ready.finished
     whole = float(np.nansum(ready.samples.area[ready.finished]))
     reached_share = float(np.nansum(samples.area[reached])) / max(1e-300, whole)
-    # Samples may stand elsewhere where fewer faces are targets: the nearest one answers.
+    # Samples may stand elsewhere, for another tolerance is kept: the nearest one answers.
     near = cKDTree(samples.point).query(ready.samples.point[ranking.rows])[1]
     held = reached[near]
     served = np.stack([ranking.served[k] for k in chosen], axis=1)
     promised = served.any(axis=1)
     held_share = float(ranking.area[promised & held].sum()) / max(1e-300, float(ranking.area[promised].sum()))
     missed = np.asarray(ranking.area @ (served & ~held[:, None]))
-    # Clamped faces are no targets of the plan, but of the area that was to be reached.
+    # Clamped faces are targets of the plan, too: what is clamped in all setups is not reached.
     every = reached_share > 1.0 - _ROUNDING and bool((reached == result.ready.finished).all())
     return (
         exact(reached_share, some=bool(reached.any()), whole=every),

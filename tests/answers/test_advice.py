@@ -136,17 +136,23 @@ def brackets(part, *words, most=2, has=()):
     return count
 
 
-def test_with_a_proposed_setup_the_option_names_it():
-    """Another cutter might make `auto` choose otherwise: the setup, its table and the faces stand in the option."""
+def test_with_several_proposed_setups_no_option_is_said_that_would_not_keep_its_word():
+    """Another cutter might make `auto` choose otherwise, and no option says that each setup stands on a table of its own."""
     part = read_part(cut(box(60, 60, 40), box(5, 40, 20, at=(28, 10, 20))))
     words = ("--cutter", "D12L60rc1F26S12", "--holder", "er20", "--machine", "trunnion-ac", "--setup", "auto", "--faces", "all",
              "--spacing", "12")  # fmt: skip
-    assert brackets(part, *words, most=1, has=("--setup", "--fixture table")) == 1
+    result = asked(part, *words)
+    assert len(result.plan.setup_proposal.setups) > 1
+    (entry,) = result.cutters
+    steps = steps_of(result, entry.id)
+    assert steps
+    assert not any(step.option for step in steps)
+    usual(result)
 
 
 HARD = {
     "hard/gmsh_pump_carter_sup.stp": ("--cutter", "D16L60F32S16", "--cutter", "D6L40rc3F15S6", "--holder", "er25", "--machine",
-                                 "trunnion-ac", "--setup", "auto", "--spacing", "14", "--faces", "all"),
+                                 "trunnion-ac", "--spacing", "14", "--faces", "all"),
     "hard/jack_phone.igs": ("--cutter", "D8L40rc4F16S8", "--cutter", "D4L35rc2F12S6", "--holder", "er20",
                             "--machine", "trunnion-ac", "--spacing", "4"),
 }  # fmt: skip

@@ -116,14 +116,18 @@ def test_names_of_presets():
     assert not any(map(is_finishing, ("", "Roughing", "Aluminum", "Semi-finishing", "semifinish", "Vorschlichten")))
 
 
-def test_the_option_goes_first_and_who_has_no_feed_is_named(tmp_path):
+def test_the_option_goes_first_and_times_without_any_feed_are_refused_at_once(tmp_path):
     library = read_library(write_json(tmp_path / "a.json", [with_presets(fusion(), PRESETS)]))
     others = (Cutter.parse("R6L80"), Cutter.parse("R8L80"))
     cutters = (*others, *library)
     assert feeds(Options(libraries=library, feed=50.0), cutters) == dict.fromkeys(cutters, 50.0)
     assert feeds(Options(libraries=library, operations="fewest"), cutters) is None
-    with pytest.raises(OptionError, match=r"R6L80, R8L80 have none: give --feed"):
-        feeds(Options(libraries=library, operations="fastest"), cutters)
+    assert Options(libraries=library, operations="fastest", cutters=others).feeds == {library[0]: 1200.0}
+    with pytest.raises(OptionError, match="need a feed"):
+        Options(cutters=others, operations="fastest")
+    bare = read_library(write_json(tmp_path / "b.json", [fusion()]))
+    with pytest.raises(OptionError, match="need a feed"):
+        Options(libraries=bare, operations="fastest")
 
 
 def test_what_is_asked_for_the_whole_plan_does_not_lose_the_feed(tmp_path):

@@ -330,16 +330,16 @@ def test_the_command_says_what_is_wrong_with_a_setup_file(tmp_path, text, cause)
     assert sorted(path.name for path in tmp_path.iterdir()) == ["vise.toml"]
 
 
-def test_clamped_faces_are_no_targets_and_fixtures_are_in_the_way(tmp_path):
+def test_clamped_faces_stay_targets_and_fixtures_are_in_the_way(tmp_path):
     write(tmp_path, 'unit = "mm"\naxis = [0, 0, 1]\norigin = [0, 0, 5]\nclamped = ["F1", "F3"]\nfixtures = ["table:-50"]\n')
     done = run(SAMPLES / "v_groove.step", "--cutter", "R2L30rc2", "--setup", "vise.toml", "--faces", "all", "--grid", "5",
                "--json", "-", "--area-budget", "0", cwd=tmp_path)  # fmt: skip
     assert done.returncode in (0, 1), done.stderr
     found = json.loads(done.stdout)
-    assert found["effective"]["target_faces"] == ["F2"]
+    assert found["effective"]["target_faces"] == ["F1", "F2", "F3"]
     assert found["effective"]["fixtures"] == ["table:-50"]
     assert found["effective"]["placement"] == {"file": "vise.toml", "x": None, "origin_mm": [0, 0, 5], "clamped": ["F1", "F3"]}
-    assert "2 faces are clamped and therefore no targets: F1, F3." in found["notes"]
+    assert "2 faces are clamped and left for another setup: F1, F3." in found["notes"]
     assert [each["name"] for each in found["fixtures"]] == ["fixture:table"]
 
 

@@ -198,11 +198,10 @@ def test_a_step_that_gains_hardly_anything_says_so():
     assert effect(step) == "lost 0.7 % of the area, hardly less than now (5 more samples)"
 
 
-def test_all_faces_are_not_asked_for_again_where_one_is_clamped():
+def test_the_option_that_asks_for_all_faces_is_named():
     scope = Scope(judged=1, judged_mm2=90.0, not_judged=1, not_judged_mm2=10.0, judged_by_kind={"sculptured": 1},
                   not_judged_by_kind={"plane": 1})  # fmt: skip
     document = made([face(1), face(2, target=False)], [cutter("R6L80", {"F1": verdicts()})]).model_copy(update={"scope": scope})
-    assert not_judged(document) == ["1 plane face was not judged, only an obstacle: it is clamped."]
     asked = document.effective.model_copy(update={"faces": "sculptured"})
     (line,) = not_judged(document.model_copy(update={"effective": asked}))
     assert line.endswith("only an obstacle: --faces all.")

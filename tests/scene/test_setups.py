@@ -5,36 +5,14 @@ import json
 import numpy as np
 import pytest
 
-from plan_cutters import Options, plan
+from plan_cutters import plan
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.verdicts import FIXTURE, INACCESSIBLE, REASONS
 from plan_cutters.errors import FixtureError, OptionError
 from tests.support.cad_parts import box
 from tests.support.forked import run
-
-HOW = {"cutters": "R2L40rc2", "faces": "all", "grid": 5, "area_budget": 0}
-UP, DOWN = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
-#: Jaws beside a cube of 10 mm, on its sides across x, up to its middle; and the same upside down.
-LOWER = tuple(Fixture.parse(f"box:20,30,25@{x},-10,-20") for x in (10, -20))
-UPPER = tuple(Fixture.parse(f"box:20,30,25@{x},-10,5") for x in (10, -20))
-
-
-def faces_at(found):
-    """Number of the face of each direction."""
-    return {tuple(np.round(found.samples.normal[found.samples.face == n][0]).astype(int).tolist()): n
-            for n in np.unique(found.samples.face).tolist()}  # fmt: skip
-
-
-def name_of(part, normal):
-    return f"F{faces_at(plan(part, **HOW))[normal]}"
-
-
-def two(part, **more):
-    bottom, top = name_of(part, (0, 0, -1)), name_of(part, (0, 0, 1))
-    first = Placement(UP, clamped=(bottom,), fixtures=(*LOWER, Fixture.parse("table")))
-    other = Placement(DOWN, clamped=(top,), fixtures=(*UPPER, Fixture.parse("table")))
-    return plan(part, setup=first, other_setups=[other], **{**HOW, **more})
+from tests.support.two_setups import DOWN, HOW, LOWER, UP, UPPER, faces_at, name_of, two
 
 
 @pytest.mark.parametrize("machine", ["unlimited", "trunnion-ac"])
@@ -71,13 +49,32 @@ def test_a_face_that_is_held_in_one_setup_alone_is_a_target_and_lost_there_to_wh
     assert [c.area for c in both.plan.cutters] == [None]
 
 
-def test_what_is_held_in_all_setups_is_no_target():
+def test_what_is_held_in_all_setups_stays_a_target_and_is_left_by_name():
+    """The area to machine is the same whatever holds the part."""
     part = box()
     bottom, top = name_of(part, (0, 0, -1)), name_of(part, (0, 0, 1))
     found = plan(part, setup=Placement(UP, clamped=(bottom, top)), other_setups=[Placement(DOWN, clamped=(bottom,))], **HOW)
-    assert bottom not in found.plan.effective.target_faces
-    assert top in found.plan.effective.target_faces
-    assert f"1 face is clamped and therefore no target: {bottom}." in found.plan.notes
+    free = plan(part, **HOW)
+    assert found.plan.effective.target_faces == free.plan.effective.target_faces
+    assert found.plan.process.asked_mm2 == free.plan.process.asked_mm2
+    assert np.array_equal(found.samples.point, free.samples.point)
+    assert f"1 face is clamped and left for another setup: {bottom}." in found.plan.notes
+    (name,) = found.reaches
+    mine = found.samples.face == int(bottom[1:])
+    assert not found.reaches[name].reached[mine].any()
+    assert (found.reaches[name].reason[mine] == FIXTURE).all()
+    assert found.plan.selected is None
+    (left,) = [each for each in found.plan.process.left if each.cause == "fixture"]
+    assert left.faces == [bottom]
+    assert left.area_mm2 == pytest.approx(100.0)
+
+
+def test_only_where_all_targets_are_held_nothing_can_be_planned():
+    with pytest.raises(OptionError, match="leaves no target face"):
+        plan(box(), setup=Placement(UP, clamped=("F1",)), **{**HOW, "faces": "F1"})
+    with pytest.raises(OptionError, match="leaves no target face"):
+        plan(box(), setup=Placement(UP, clamped=("F1-6",)), other_setups=[Placement(DOWN, clamped=("F1-6",))], **HOW)
+    assert plan(box(), setup=Placement(UP, clamped=("F1-6",)), other_setups=[DOWN], **HOW).reaches
 
 
 def test_held_without_a_fixture_is_lost_to_what_holds_it_and_has_a_plain_witness():
@@ -146,13 +143,6 @@ def test_operations_of_a_setup_leave_what_it_holds_and_what_its_fixtures_cover()
         assert at[0, 0, -1 if each.setup == 0 else 1] not in found.samples.face[each.rows]
     taken = np.concatenate([each.rows for each in made.operations])
     assert np.array_equal(np.sort(taken), np.flatnonzero(found.reaches[name].reached))
-
-
-@pytest.mark.parametrize("words", [{"answers": "mend"}, {"posture_maps": True}])
-def test_questions_about_one_setup_are_refused_where_setups_differ(words):
-    with pytest.raises(OptionError, match="plan one setup by itself"):
-        Options(setup=UP, other_setups=[Placement(DOWN, clamped=("F1",))], **words)
-    assert Options(setup=UP, other_setups=[DOWN], **words)
 
 
 def test_a_fixture_of_another_setup_that_stands_in_the_part_is_named():

@@ -8,15 +8,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters.answers.areas import Finished
-from plan_cutters.answers.largest_radius import largest_radius
+from plan_cutters.answers.in_setups import radius_in_any, stick_out_in_each
 from plan_cutters.answers.least_set import least_set
 from plan_cutters.answers.mend import mend
 from plan_cutters.answers.steps import steps, worth
-from plan_cutters.answers.stick_out import least_stick_out
 from plan_cutters.answers.undecidable import undecidable
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.change import WhatIfAnswer
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.radius_map import RadiusMap
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.scene.preparation import Prepared
@@ -51,6 +51,8 @@ def ask(
         Of each other setup its axis, and what each cutter reaches there by its id.
     """
     requested = ready.options.answers
+    setups = {c: [reaches[c], *(there[c.id] for _, there in other_setups)] for c in reaches}
+    together = {cutter: over_setups(each) for cutter, each in setups.items()}
     stick_outs, mends = {}, {}
     radius_maps: list[RadiusMap] = []
     if "stick-out" in requested or "stick-out-map" in requested:
@@ -58,12 +60,14 @@ def ask(
         with stage("stick-out") as tell:
             for k, cutter in enumerate(ready.cutters):
                 mine = part_of(tell, k, len(ready.cutters))
-                stick_outs[cutter.id] = least_stick_out(ready, cutter, reaches[cutter], step=step, progress=mine)
+                stick_outs[cutter.id] = stick_out_in_each(
+                    ready, cutter, setups[cutter], together[cutter][1], step=step, progress=mine
+                )
     if "radius" in requested:
         with stage("radius") as tell:
             ratio = ready.options.length_over_radius
             radius_maps = [
-                largest_radius(ready, shape, ratio=ratio, progress=part_of(tell, k, 2)) for k, shape in enumerate(_ENDS)
+                radius_in_any(ready, shape, ratio=ratio, progress=part_of(tell, k, 2)) for k, shape in enumerate(_ENDS)
             ]
     near: list[Cutter] = []
     failing: list[Cutter] = []
@@ -72,24 +76,26 @@ def ask(
         near = failing if "mend-all" in requested else failing[:NEAREST]
         with stage("mend") as tell:
             for k, cutter in enumerate(near):
-                mends[cutter.id] = _what_if(ready, cutter, reaches, other_setups, part_of(tell, k, len(near)))
+                over = together[cutter][0]
+                mends[cutter.id] = _what_if(ready, cutter, over, reaches, other_setups, part_of(tell, k, len(near)))
     rest = tuple(cutter.id for cutter in failing if cutter not in near)
     return Answers(stick_outs, tuple(radius_maps), mends, rest, least_set(ready, reaches, other_setups))
 
 
 def _what_if(
-    ready: Prepared, cutter: Cutter, reaches: Mapping[Cutter, Verdicts], other_setups: OtherSetups, tell: Progress
+    ready: Prepared, cutter: Cutter, over: Verdicts, reaches: Mapping[Cutter, Verdicts], other_setups: OtherSetups, tell: Progress
 ) -> WhatIfAnswer:
-    finished, missed = Finished.of(ready), _missed(reaches, other_setups, cutter)
+    """Mend one cutter; `over`: what it reaches in all setups together."""
+    finished, missed = Finished.of(ready), over.not_reached
     unfinished = missed & ready.finished
     share = finished.of_rows(np.flatnonzero(unfinished))
-    why = "" if other_setups else undecidable(ready, cutter, reaches[cutter])
+    why = undecidable(ready, cutter, over)
     if not why and unfinished.any() and not worth(finished, share):
         why = "what it leaves is too little for advice: less than 0.1 % of the area, or than 1 mm²"
     if why:
         within = int((ready.inside_bodies & missed).sum())
         return WhatIfAnswer(cutter.id, int(unfinished.sum()) + within, within, (), why, share)
-    alone = mend(ready, cutter, reaches[cutter], progress=part_of(tell, 0, 2))
+    alone = mend(ready, cutter, over, progress=part_of(tell, 0, 2))
     return steps(ready, alone, cutter, reaches, other_setups, progress=part_of(tell, 1, 2))
 
 

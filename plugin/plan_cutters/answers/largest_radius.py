@@ -14,7 +14,7 @@ from plan_cutters.domain.checks import number, shown
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.radius_map import RadiusMap, Shape
 from plan_cutters.domain.tolerance import JUDGED_SHARE
-from plan_cutters.domain.verdicts import INACCESSIBLE, INSIDE, UNJUDGED, blank
+from plan_cutters.domain.verdicts import FIXTURE, INACCESSIBLE, INSIDE, UNJUDGED, blank
 from plan_cutters.errors import OptionError
 from plan_cutters.scene.conditions import Context, contacts_of, require_finite, verdict_arrays_of
 from plan_cutters.scene.preparation import Prepared
@@ -64,7 +64,7 @@ def largest_radius(
     cutters = _cutters(ready, shape, ratio, step, least, most)
     radii = np.array([cutter.radius for cutter in cutters])
     samples, conditions = ready.samples, ready.conditions
-    judged, within = samples.unjudged < 0, ready.inside >= 0
+    judged, within, held = samples.unjudged < 0, ready.shut >= 0, ready.clamped & (ready.inside < 0)
     level, beyond, reach = np.full(len(samples), -1), np.full(len(samples), UNJUDGED, np.uint8), blank(len(samples))
     contexts = [Context.of(cutter, conditions) for cutter in cutters]
     outer_tool, inner_tool = _ladder([c.outer_tool for c in contexts]), _ladder([c.inner_tool for c in contexts])
@@ -77,6 +77,7 @@ def largest_radius(
 
     in_chunks(work, rows, conditions.jobs, progress, fixed=True)
     beyond[judged & within], reach.reason[judged & within] = INACCESSIBLE, INSIDE
+    reach.reason[judged & held] = FIXTURE
     radius = np.where(judged, np.where(level >= 0, radii[level], 0.0), np.nan)
     return RadiusMap(shape, float(ratio), float(step), float(radii[0]), float(radii[-1]), radius, beyond, reach.reason,
                      reach.axis, reach.tilt_direction, reach.tilt, reach.rotation)  # fmt: skip

@@ -31,14 +31,14 @@ def joined(scan: Scan) -> list[Candidate]:
     conditions = state.ready.conditions
     if not conditions.machine.limited:
         return []
-    free = under(state, replace(conditions, machine=Machine()))
+    free = under(state, machine=Machine())
     missed = scan.known.glance(free, scan.few)
     if not len(missed):
         return []
     result: list[Candidate] = []
     tools = [each for tool in _TOOLS for each in tool(replace(scan, state=free, left=missed, few=missed))]
     for first in sorted(tools, key=lambda each: each.estimate)[:_JOINED]:
-        held = under(first.state, conditions)
+        held = under(first.state, machine=conditions.machine)
         for second in axis(replace(scan, state=held), plain=True):
             result.append(replace(second, moves=(*first.moves, *second.moves), nested=first.nested and second.nested))
     return sorted(result, key=lambda candidate: candidate.estimate)

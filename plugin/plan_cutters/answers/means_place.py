@@ -9,7 +9,7 @@ import numpy as np
 from cad_io.arrays import Floats
 from plan_cutters.answers.option import Axis
 from plan_cutters.answers.scan import Candidate, Rows, Scan, spread, under
-from plan_cutters.answers.state import State
+from plan_cutters.answers.state import SetupOf, State
 from plan_cutters.answers.trial import Case, Trials
 from plan_cutters.answers.what_if_place import FINER, angle, closer, directions, flip_of
 from plan_cutters.domain.change import Move
@@ -56,7 +56,7 @@ def tilt_range(scan: Scan) -> Iterator[Candidate]:
         return
     tried = (lowest, highest_tilt)
     postures = replace(ready.conditions.postures, tilt=(math.radians(lowest), math.radians(highest_tilt)))
-    state = under(scan.state, replace(ready.conditions, postures=postures))
+    state = under(scan.state, postures=postures)
     missed = scan.known.glance(state, scan.few)
     if len(missed) < len(scan.few):
         move = Move("tilt_range", (low, high), tried, change_text.tilt_range(tried, (low, high)))
@@ -73,7 +73,7 @@ def axis(scan: Scan, *, plain: bool = False) -> Iterator[Candidate]:
     machine = conditions.machine
     if not machine.limited:
         return
-    free = under(state, replace(conditions, machine=Machine()))
+    free = under(state, machine=Machine())
     gained = np.setdiff1d(scan.few, known.glance(free, scan.few), assume_unique=True)
     if not len(gained):
         return
@@ -82,7 +82,7 @@ def axis(scan: Scan, *, plain: bool = False) -> Iterator[Candidate]:
     most = math.floor(_MOST / _TURN) - first
 
     def limit(at: int) -> State:
-        return under(state, replace(conditions, machine=Machine.parse(f"tilt:{(first + at) * _TURN:g}")))
+        return under(state, machine=Machine.parse(f"tilt:{(first + at) * _TURN:g}"))
 
     for at, made, missed in scan.least(limit, most):
         tried = (first + at) * _TURN
@@ -102,7 +102,7 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
     facing = towards(ready.samples.normal[gained].mean(axis=0), now)
     second = []
     for axis in axes:
-        made = replace(state, setups=(*state.setups, (axis, None)))
+        made = replace(state, setups=(*state.setups, SetupOf(axis)))
         missed = known.glance(made, gained)
         second.append((scan.estimate(missed), angle(facing, axis), axis, made, missed))
     best = _plain(second, scan.estimate(gained))
@@ -116,7 +116,7 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
     other = []
     for open_count, _, axis, _, missed in second:
         if open_count < scan.estimate(gained) and flip_of(ready, axis) == ready.options.flip:
-            made = replace(state, setups=((axis, None),))
+            made = replace(state, setups=(SetupOf(axis),))
             worse = known.glance(made, some)
             share = scan.finished.of_rows(retained) * len(worse) / max(1, len(some))
             other.append((scan.estimate(np.union1d(blocked, missed)) + share, angle(now, axis), axis, made))

@@ -28,6 +28,8 @@ def mend(
 ) -> WhatIfAnswer:
     """Find for each thing that could be changed alone the change that asks least and lets a cutter finish the part.
 
+    Of several setups one sample after the other is asked in each: the part is finished where they reach all of it together.
+
     Values are tried on the samples that are not reached now; one that serves there is judged on all samples (`judge`), and so is
     the value a step before it, which must fail. Nothing is told to help that was not judged so.
 
@@ -37,7 +39,7 @@ def mend(
     cutter : Cutter
         One that was judged.
     verdicts : Verdicts
-        What it reaches, of all samples.
+        What it reaches, of all samples, in one setup or another.
     progress : callable, optional
         Called with the number of things done, and the number of all.
 
@@ -100,7 +102,7 @@ def _with_option(case: Case, change: Change, share: float) -> Change:
         case.cutter,
         cutters=words.get("cutters", (case.cutter,)),
         conditions=conditions,
-        setups=(words["setup"],) if "setup" in words else None,
+        setups=(words["setup"], *case.ready.options.other_setups) if "setup" in words else None,
         flip=words.get("flip"),
         tolerance=words.get("tolerance"),
         faces=[int(each[1:]) for each in faces.split(",")] if faces else None,

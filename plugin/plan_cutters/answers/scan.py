@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +11,6 @@ from plan_cutters.answers.areas import Finished
 from plan_cutters.answers.state import Judgements, State
 from plan_cutters.domain.change import Move
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.scene.conditions import Conditions
 
 Rows = NDArray[np.int64]
 
@@ -120,6 +120,6 @@ def spread(rows: Rows, most: int = _FEW) -> Rows:
     return rows[:: 1 + (len(rows) - 1) // most] if len(rows) else rows
 
 
-def under(state: State, conditions: Conditions) -> State:
-    """A state under other conditions."""
-    return replace(state, ready=replace(state.ready, conditions=conditions))
+def under(state: State, **changes: Any) -> State:
+    """A state with other values of its conditions, in every setup."""
+    return replace(state, ready=state.ready.under(**changes))

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, Record, SurfaceSamples
+from cad_io.arrays import Floats, Record, SurfaceSamples, Triangles
 from plan_cutters.answers.least_set import cover
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import blank
@@ -33,6 +33,8 @@ COMPARED, _FIRST, _MORE = 400, 10, 6
 _HEIGHTS, _EVEN = 12, 0.002
 #: A setup that stands on no plane counts so much: it needs more to hold it than a table.
 _ON_NO_PLANE = 0.75
+#: Share of the area that a setup has to serve alone: of a few hundred samples one or two may be served by chance.
+_CLAMPED_FOR = 0.005
 #: Setups that are proposed together, at most.
 MOST = 3
 
@@ -58,16 +60,27 @@ class Candidates(Record):
     @classmethod
     def of(cls, ready: Prepared) -> "Candidates":
         """Directions of a cube's corners, edges and faces, normals of planes both ways, and some all over the sphere."""
-        surroundings, part = ready.conditions.surroundings, ready.scene.part
-        triangles = (surroundings.alone or surroundings).certain.triangles
-        planar = [face.number for face in part.faces if face.shape == "plane"]
+        triangles, planar = _of_part(ready)
         axis = distinct(np.concatenate([cube(), _normals(triangles.vertex, triangles.face, planar), fibonacci(_SPREAD)]))
-        height = triangles.vertex.reshape(-1, 3) @ axis.T
-        lowest, flat = height.min(axis=0), triangles.chord_error + 1e-6 * float(np.linalg.norm(part.size))
-        face = np.repeat(triangles.face, 3)
-        tops = {number: height[face == number].max(axis=0) for number in planar if (face == number).any()}
-        stands = [tuple(number for number, top in tops.items() if top[k] <= lowest[k] + flat) for k in range(len(axis))]
-        return cls(axis, tuple(stands), lowest)
+        return cls(axis, *planes_below(ready, axis))
+
+
+def _of_part(ready: Prepared) -> tuple[Triangles, list[int]]:
+    """The triangles of the part alone, and the numbers of its planes."""
+    surroundings = ready.conditions.surroundings
+    planar = [face.number for face in ready.scene.part.faces if face.shape == "plane"]
+    return (surroundings.alone or surroundings).certain.triangles, planar
+
+
+def planes_below(ready: Prepared, axis: Floats) -> tuple[tuple[tuple[int, ...], ...], Floats]:
+    """On which planes a part stands, by their numbers, and the height of its lowest point (m,), along some axes (m, 3)."""
+    triangles, planar = _of_part(ready)
+    height = triangles.vertex.reshape(-1, 3) @ axis.T
+    lowest, flat = height.min(axis=0), triangles.chord_error + 1e-6 * float(np.linalg.norm(ready.scene.part.size))
+    face = np.repeat(triangles.face, 3)
+    tops = {number: height[face == number].max(axis=0) for number in planar if (face == number).any()}
+    stands = [tuple(number for number, top in tops.items() if top[k] <= lowest[k] + flat) for k in range(len(axis))]
+    return tuple(stands), lowest
 
 
 def cube() -> Floats:
@@ -254,7 +267,18 @@ class Ranking:
         every = sorted(set(self.served) - without)
         flat = self._chosen([k for k in every if self.candidates.stands_on[k]], most)
         free = self._chosen(every, most)
-        return flat if self._together(flat) >= _ON_NO_PLANE * self._together(free) else free
+        return self._worth(flat if self._together(flat) >= _ON_NO_PLANE * self._together(free) else free)
+
+    def _worth(self, chosen: tuple[int, ...]) -> tuple[int, ...]:
+        """Leave out, one after the other, the setup that alone serves least, while that is too little to clamp the part again."""
+        while len(chosen) > 1:
+            table = np.stack([self.served[k] for k in chosen], axis=1)
+            alone = self.share(table & (table.sum(axis=1) == 1)[:, None])
+            least = int(alone.argmin())
+            if alone[least] >= _CLAMPED_FOR:
+                break
+            chosen = chosen[:least] + chosen[least + 1 :]
+        return chosen
 
     def _together(self, chosen: Sequence[int]) -> float:
         """The share of area that some candidates serve together."""

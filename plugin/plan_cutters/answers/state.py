@@ -2,20 +2,33 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from plan_cutters.answers.setup_ranking import planes_below
 from plan_cutters.answers.trial import Case
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.machines.requested_setups import without
+from plan_cutters.scene.inside_material import inside_material
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.scene.surroundings import Surroundings
 
 Rows = NDArray[np.int64]
 Axis = tuple[float, float, float]
+
+
+class SetupOf(NamedTuple):
+    """A setup of a state.
+
+    axis : (float, float, float)
+    number : int or None
+        Its place among those of the plan, from 0; None of one that is not planned yet.
+    """
+
+    axis: Axis
+    number: int | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -27,50 +40,68 @@ class State:
     ready : Prepared
     cutters : tuple of Cutter
         The one that is mended, or what became of it, first.
-    setups : tuple of (axis, x)
-        As `Conditions` has them; x may be None.
+    setups : tuple of SetupOf
     tables : dict
-        Obstacles of setups that are not planned yet, made once, by axis and tolerance.
+        What setups that are not planned yet see, made once, by axis and tolerance.
     """
 
     ready: Prepared
     cutters: tuple[Cutter, ...]
-    setups: tuple[tuple[Axis, Axis | None], ...]
-    tables: dict[tuple[Axis, float], Surroundings] = field(default_factory=dict)
+    setups: tuple[SetupOf, ...]
+    tables: dict[tuple[Axis, float], Prepared] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, ready: Prepared, cutter: Cutter) -> "State":
+        """One cutter in the setups of a plan."""
+        return cls(ready, (cutter,), tuple(SetupOf(axis, k) for k, (axis, _) in enumerate(ready.axes)))
 
     @property
     def axes(self) -> tuple[Axis, ...]:
         """The setup axes."""
-        return tuple(axis for axis, _ in self.setups)
+        return tuple(each.axis for each in self.setups)
 
     def cases(self) -> Iterator[tuple[Any, Case]]:
         """Each cutter in each setup, and a key by which it is known."""
-        conditions = self.ready.conditions
-        for axis, x in self.setups:
-            placed = replace(conditions, setup=np.array(axis), x=None if x is None else np.array(x))
-            if axis != self.ready.scene.setup and axis not in self.ready.options.other_setups:
-                at = axis, self.ready.scene.asked
-                if at not in self.tables:
-                    self.tables[at] = on_table(self.ready, axis)
-                placed = replace(placed, surroundings=self.tables[at])
-            there = replace(self.ready, conditions=placed)
+        for setup in self.setups:
+            there = self._in(setup)
             for cutter in self.cutters:
-                yield key(there, cutter, axis, x), Case(there, cutter)
+                yield key(there, cutter, setup), Case(there, cutter)
+
+    def _in(self, setup: SetupOf) -> Prepared:
+        """The part in one setup alone."""
+        ready = self.ready
+        if setup.number is not None:
+            return ready.alone(setup.number)
+        at = setup.axis, ready.scene.asked
+        if at not in self.tables:
+            self.tables[at] = on_table(ready, setup.axis)
+        table, conditions = self.tables[at], ready.conditions
+        placed = replace(conditions, setup=table.conditions.setup, x=None, surroundings=table.conditions.surroundings)
+        return replace(ready, conditions=placed, inside=table.inside, held=table.held, others=())
 
 
-def on_table(ready: Prepared, axis: Axis) -> Surroundings:
-    """The obstacles of a setup that is not planned yet: a table that the first setup brings itself lies across this axis, too."""
-    place = ready.options.placement
+def on_table(ready: Prepared, axis: Axis) -> Prepared:
+    """A part in a setup that is not planned yet, and in no other: it is held as in the first one.
+
+    A table that the first setup brings itself lies across this axis, and holds the faces that stand on it here, no others.
+    """
+    place, conditions = ready.options.placement, replace(ready.conditions, setup=np.array(axis), x=None)
     own = () if place is None else tuple(each for each in place.fixtures if each.follows_setup)
     if not own:
-        return ready.conditions.surroundings
-    return ready.scene.surround_in(axis, without(ready.scene.fixtures, own), own)
+        return replace(ready, conditions=conditions, others=())
+    scene = ready.scene
+    surroundings = scene.surround_in(axis, without(scene.fixtures, own), own)
+    inside = inside_material(
+        ready.samples, scene.orientation, surroundings.enclosing, surroundings.certain, conditions.tolerance, conditions.jobs
+    )
+    held = np.isin(ready.samples.face, planes_below(ready, np.array([axis]))[0][0])
+    return replace(ready, conditions=replace(conditions, surroundings=surroundings), inside=inside, held=held, others=())
 
 
-def key(ready: Prepared, cutter: Cutter, axis: Axis, x: Axis | None) -> Any:
+def key(ready: Prepared, cutter: Cutter, setup: SetupOf) -> Any:
     """Make the key of a case: the verdicts on the samples of a part depend on these values."""
     conditions = ready.conditions
-    return cutter, axis, x, conditions.machine, conditions.postures, conditions.tolerance
+    return cutter, setup, conditions.machine, conditions.postures, conditions.tolerance
 
 
 @dataclass(slots=True)
@@ -95,10 +126,10 @@ class Judgements:
     ) -> "Judgements":
         """Those of a plan."""
         judgements, wanted = cls(), ready.finished
-        for (axis, x), each in zip(ready.axes, (None, *(verdicts for _, verdicts in other_setups)), strict=False):
+        for k, ((axis, _), each) in enumerate(zip(ready.axes, (None, *(there for _, there in other_setups)), strict=False)):
             for cutter, verdicts in reaches.items():
                 mine = verdicts if each is None else each[cutter.id]
-                name = key(ready, cutter, axis, x)
+                name = key(ready, cutter, SetupOf(axis, k))
                 judgements.looked[name], judgements.missed[name] = wanted.copy(), mine.not_reached & wanted
         return judgements
 

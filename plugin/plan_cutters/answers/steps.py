@@ -86,7 +86,7 @@ def steps(
         With `share`, `steps` and `areas`.
     """
     finished, known = Finished.of(ready), Judgements.of(ready, reaches, other_setups)
-    state = State(ready, (cutter,), ready.axes)
+    state = State.of(ready, cutter)
     open_rows = known.left(state, np.flatnonzero(finished.wanted))
     if not len(open_rows):
         return what_if

@@ -12,7 +12,19 @@ from numpy.typing import NDArray
 
 from plan_cutters.domain.change import Change, Thing
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.verdicts import ACCESSIBLE, CONVEX, INACCESSIBLE, INSIDE, TOLERANCE, UNDECIDED, Verdicts, blank
+from plan_cutters.domain.over_setups import over_setups
+from plan_cutters.domain.verdicts import (
+    ACCESSIBLE,
+    COLUMNS,
+    CONVEX,
+    FIXTURE,
+    INACCESSIBLE,
+    INSIDE,
+    TOLERANCE,
+    UNDECIDED,
+    Verdicts,
+    blank,
+)
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.plan_file.words.change_text import reasons, samples
 from plan_cutters.scene.conditions import Context, contacts_of, search_postures
@@ -37,34 +49,30 @@ _ROUNDS = 8
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Case:
-    """A part that is ready, and a cutter, one thing of either changed."""
+    """A part that is ready, in all its setups, and a cutter, one thing of either changed."""
 
     ready: Prepared
     cutter: Cutter
 
+    @property
+    def setups(self) -> Iterator[Prepared]:
+        """The part in each of its setups, the first one first."""
+        return (self.ready.alone(k) for k in range(len(self.ready.setups)))
+
     def look(self, rows: Rows) -> Verdicts:
-        """Judge some of the judged samples again, for this part and cutter.
+        """Judge some of the judged samples again, for this part and cutter, in one setup after the other.
 
         The verdicts are those of `judge`, except that a search from another start may differ by its angular resolution.
         """
-        from plan_cutters.kernels.search.search import dummy_clear
-
-        ready, conditions, verdicts = self.ready, self.ready.conditions, blank(len(rows))
-        context = Context.of(self.cutter, conditions)
-        if not context.judges:
-            verdicts.verdict[:], verdicts.reason[:] = UNDECIDED, TOLERANCE
-            return verdicts.freeze()
-        contacts = Contacts(*(np.ascontiguousarray(column[rows]) for column in contacts_of(ready.samples)))
-        free = np.zeros(len(rows), bool)
-        if len(context.dummy):
-            upright = np.flatnonzero((ready.surface_class[rows] == CONVEX) & conditions.upright(contacts.normal))
-            dummy_clear(upright, contacts, context.dummy, context.outer, conditions.obstacles.solids, free)
-        verdicts.verdict[free] = ACCESSIBLE
-        # Of the finished surface these lie within a fixture.
-        within = ready.inside[rows] >= 0
-        search_postures(contacts, np.flatnonzero(~free & ~within), context, verdicts)
-        verdicts.verdict[within], verdicts.reason[within] = INACCESSIBLE, INSIDE
-        return verdicts.freeze()
+        each, open_rows = list[Verdicts](), np.arange(len(rows))
+        for one in self.setups:
+            part = _look(one, self.cutter, rows[open_rows])
+            whole = blank(len(rows))
+            for name in COLUMNS:
+                getattr(whole, name)[open_rows] = getattr(part, name)
+            each.append(whole.freeze())
+            open_rows = open_rows[~part.reached]
+        return over_setups(each)[0]
 
     def misses(self, rows: Rows) -> Rows:
         """Those of some samples that it does not reach."""
@@ -73,7 +81,32 @@ class Case:
     def judged(self, rows: Rows | None = None) -> Rows:
         """Samples of the finished surface that it does not reach, as a plan finds them: of all, or of some, ascending."""
         wanted = np.flatnonzero(self.ready.finished) if rows is None else rows[self.ready.finished[rows]]
-        return wanted[~judge(self.ready, self.cutter, wanted).reached]
+        for one in self.setups:
+            if len(wanted):
+                wanted = wanted[~judge(one, self.cutter, wanted).reached]
+        return wanted
+
+
+def _look(ready: Prepared, cutter: Cutter, rows: Rows) -> Verdicts:
+    """Judge some samples again in one setup."""
+    from plan_cutters.kernels.search.search import dummy_clear
+
+    conditions, verdicts = ready.conditions, blank(len(rows))
+    context = Context.of(cutter, conditions)
+    if not context.judges:
+        verdicts.verdict[:], verdicts.reason[:] = UNDECIDED, TOLERANCE
+        return verdicts.freeze()
+    contacts = Contacts(*(np.ascontiguousarray(column[rows]) for column in contacts_of(ready.samples)))
+    free = np.zeros(len(rows), bool)
+    if len(context.dummy):
+        upright = np.flatnonzero((ready.surface_class[rows] == CONVEX) & conditions.upright(contacts.normal))
+        dummy_clear(upright, contacts, context.dummy, context.outer, conditions.obstacles.solids, free)
+    verdicts.verdict[free] = ACCESSIBLE
+    # Of the finished surface these lie within a fixture, or are held.
+    within, held = ready.shut[rows] >= 0, ready.clamped[rows]
+    search_postures(contacts, np.flatnonzero(~free & ~within), context, verdicts)
+    verdicts.verdict[within], verdicts.reason[within] = INACCESSIBLE, np.where(held[within], FIXTURE, INSIDE)
+    return verdicts.freeze()
 
 
 #: A value's case, by its number of steps from the present one; None where there can be no such cutter or setup.

@@ -65,8 +65,8 @@ def stick_out(case: Case, trials: Trials) -> WhatIf | Change:
 
 def highest(ready: Prepared, cutter: Cutter) -> float:
     """Give a stick-out with which the nose is above all obstacles wherever the cutter touches them, mm."""
-    vertex = ready.conditions.obstacles.triangles.vertex
-    size = float(np.linalg.norm(vertex.max(axis=(0, 1)) - vertex.min(axis=(0, 1))))
+    each = [conditions.obstacles.triangles.vertex for conditions in ready.setups]
+    size = max(float(np.linalg.norm(vertex.max(axis=(0, 1)) - vertex.min(axis=(0, 1)))) for vertex in each)
     return size + 2.0 * cutter.radius + flute_length(cutter) + (cutter.clearance or 0.0)
 
 

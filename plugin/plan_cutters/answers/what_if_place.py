@@ -20,6 +20,7 @@ from plan_cutters.plan_file.words import change_text
 from plan_cutters.plan_file.words.change_text import samples
 from plan_cutters.scene.inside_material import inside_bodies, inside_material
 from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.setups import conditions_of, with_setups
 
 #: Steps of the setup axis, deg.
 TURN = 1.0
@@ -42,6 +43,9 @@ def setup(case: Case, trials: Trials) -> WhatIf | Change:
     now: Axis = ready.scene.setup
     if not ready.conditions.machine.limited:
         return none("setup", now, not_reached, "the machine has no limit, so it turns to any axis")
+    if ready.others and not ready.alike:
+        why = f"{UNDECIDED}the setups hold the part in their own ways; a further setup is looked for among the next steps"
+        return replace(none("setup", now, not_reached, why), helps=None, why=why)
     if any(each.follows_setup for each in ready.scene.fixtures):
         why = f"{UNDECIDED}a table lies across the setup axis, so it would lie elsewhere; ask with another --setup"
         return replace(none("setup", now, not_reached, why), helps=None, why=why)
@@ -174,12 +178,15 @@ def tolerance(case: Case, trials: Trials) -> Change:
 def closer(case: Case, requested: float) -> Case:
     """Make the same, surrounded anew for a finer tolerance."""
     ready = case.ready
-    scene = replace(ready.scene, asked=requested)
-    surroundings = scene.surround(jobs=ready.conditions.jobs)
-    conditions = replace(ready.conditions, surroundings=surroundings, tolerance=surroundings.tolerance(requested))
+    scene, now = replace(ready.scene, asked=requested), ready.conditions
+    scene.surround(jobs=now.jobs)
+    # What another step changes of the conditions stays changed.
+    each = [replace(one, machine=now.machine, postures=now.postures) for one in conditions_of(scene, ready.options)]
+    conditions, surroundings = each[0], each[0].surroundings
     within = inside_material(ready.samples, scene.orientation, surroundings.enclosing, surroundings.certain, conditions.tolerance)
     inside = inside_bodies(within, surroundings.bodies, scene.orientation)
-    return replace(case, ready=replace(ready, scene=scene, conditions=conditions, inside=within, inside_bodies=inside))
+    closely = replace(ready, scene=scene, conditions=conditions, inside=within, inside_bodies=inside)
+    return replace(case, ready=with_setups(closely, each))
 
 
 def faces(case: Case, trials: Trials) -> Change:

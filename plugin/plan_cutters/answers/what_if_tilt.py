@@ -79,8 +79,7 @@ def tilt_range(case: Case, trials: Trials) -> WhatIf | Change:
 
 
 def _within(case: Case, **changes: Any) -> Case:
-    ready = case.ready
-    return replace(case, ready=replace(ready, conditions=replace(ready.conditions, **changes)))
+    return replace(case, ready=case.ready.under(**changes))
 
 
 def _degrees(angle: float) -> float:

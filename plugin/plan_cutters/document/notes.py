@@ -34,6 +34,7 @@ def notes_of(ready: Prepared, entries: Sequence[CutterEntry]) -> list[Note]:
         *_of_other_fixtures(ready),
         *ready.chosen.notes,
         *notes_of_setups(ready),
+        *_of_several_setups(ready),
         *_of_spacing(ready),
         *_of_travel(options),
         *_of_area(entries, doubtful=surroundings.doubtful),
@@ -117,6 +118,15 @@ def _of_area(entries: Sequence[CutterEntry], *, doubtful: bool) -> Iterator[Note
             yield notes.area_left(entry.id, unserved=unserved, dropped=area.dropped, short=area.short)
         if area.left_out:
             yield notes.area_unknown(area.left_out)
+
+
+def _of_several_setups(ready: Prepared) -> Iterator[Note]:
+    """What is found in each setup by itself, or in the first one alone."""
+    options = ready.options
+    if ready.others and {"stick-out", "stick-out-map"} & set(options.answers):
+        yield notes.stick_out_each_setup()
+    if options.posture_maps and not ready.alike:
+        yield notes.maps_first_setup()
 
 
 def _of_travel(options: Options) -> Iterator[Note]:

@@ -167,13 +167,14 @@ def completed(
         moved = (travels or {}).get(entry.id)
         stick_out, mend = answers.stick_outs.get(entry.id), answers.mends.get(entry.id)
         here = over.here[entry.id]
+        surroundings = ready.setups[0 if stick_out is None else stick_out.setup].surroundings
         more = {
             **_of_setups(ready, entry.id, over),
             "beyond_setup": reached_by_none,
             "singular": _singular(ready, entry.id, over),
             "travel": None if moved is None else travel_entry(ready.options.machine, moved, here, samples),
             "sources": [source_entry(*place) for place in sources.get(entry.id, ())],
-            "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples, ready.conditions.surroundings),
+            "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples, surroundings),
             "mend": None if mend is None else what_if_entry(mend),
         }
         completed_entries.append(entry.model_copy(update=more))

@@ -50,6 +50,8 @@ class StickOut(Record):
         For every sample the least stick-out, to `step`, nan where it is not reached.
     step : float
         A sample is reached with its `each`, and was not with `step` less, or `each` is the floor.
+    setup : int
+        The setup of the sample that limits it, from 0.
     """
 
     least: float
@@ -68,6 +70,7 @@ class StickOut(Record):
     served: int = 0
     each: Floats | None = None
     step: float = math.nan
+    setup: int = 0
 
     @property
     def lean(self) -> Floats | None:

@@ -45,7 +45,8 @@ CONVEX, CONCAVE, SADDLE = 0, 1, 2
 
 Bytes = NDArray[np.uint8]
 _POSTURE = ("axis", "tilt_direction", "tilt", "rotation")
-_COLUMNS = ("verdict", *_POSTURE, "reason")
+#: The columns of verdicts.
+COLUMNS = ("verdict", *_POSTURE, "reason")
 
 
 def not_reached(verdict: Bytes) -> NDArray[np.bool_]:
@@ -109,16 +110,16 @@ class Verdicts(_Columns):
     """
 
     def __post_init__(self) -> None:
-        for name in _COLUMNS:
+        for name in COLUMNS:
             getattr(self, name).setflags(write=False)
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Unpacked arrays can be written: they are made read-only again.
-        return Verdicts, tuple(getattr(self, name) for name in _COLUMNS)
+        return Verdicts, tuple(getattr(self, name) for name in COLUMNS)
 
     def of(self, rows: NDArray[np.int64]) -> "Verdicts":
         """Take the verdicts of some samples."""
-        return Verdicts(*(getattr(self, name)[rows] for name in _COLUMNS))
+        return Verdicts(*(getattr(self, name)[rows] for name in COLUMNS))
 
 
 #: The former name.
@@ -140,11 +141,11 @@ class VerdictBuffer(_Columns):
 
     def freeze(self) -> Verdicts:
         """Give what was written as a result, of the same arrays: nothing can be written into this buffer any more."""
-        return Verdicts(*(getattr(self, name) for name in _COLUMNS))
+        return Verdicts(*(getattr(self, name) for name in COLUMNS))
 
     def take(self, rows: Any, other: _Columns) -> None:
         """Take over all that is known of some samples: an index or a mask."""
-        for name in _COLUMNS:
+        for name in COLUMNS:
             getattr(self, name)[rows] = getattr(other, name)[rows]
 
     def take_posture(self, rows: Any, other: _Columns, at: Any = None) -> None:

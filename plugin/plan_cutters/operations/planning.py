@@ -14,8 +14,6 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.operations import Fastest, OperationPlan, Operations, Worth
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.errors import OptionError
-from plan_cutters.library.presets import feed_of
 from plan_cutters.operations.candidates import STEP, apart, candidates
 from plan_cutters.operations.canonical import canonical
 from plan_cutters.operations.curve import curve
@@ -68,11 +66,6 @@ def plan_operations(
         The fewest cutters that reach all that any reaches: they are considered before others.
     stage : callable
         Opens a stage of work by its name; what it gives is told how much of how much is done.
-
-    Raises
-    ------
-    OptionError
-        Times are requested, and a cutter has no feed.
     """
     options = ready.options
     task = _task(ready, everywhere, least)
@@ -82,7 +75,7 @@ def plan_operations(
         fewest = search_fewest(search, task.orientations, options.index_step or STEP, finest, tell)
         any_axes, cells = over_all_axes(task.probes, fewest, task.rows)
         fewest = replace(fewest, at_least_any=any_axes, cells=cells)
-        whole = float(np.nansum(ready.samples.area[ready.somewhere]))
+        whole = float(np.nansum(ready.samples.area[ready.finished]))
         steps = curve(task.probes, fewest, task.rows, ready.samples.area, whole, lambda: _even(task, search))
         plans, timed, worth = _plans(task, search, fewest.columns.of(fewest.chosen))
         # What was found of a plan is neither sought nor said again of others that are the same.
@@ -92,6 +85,9 @@ def plan_operations(
             plans[k] = proved(ready, each) if same is None else replace(same, name=each.name)
             different += [plans[k]] if same is None else []
     small = tuple(note for each in different for note in small_pieces(each, ready.samples, options.overlap))
+    if unpriced := [each.id for each in without_feed(ready)]:
+        has = "has no feed" if len(unpriced) == 1 else "have no feed"
+        small += (f"No operation is planned with what {has}: {', '.join(unpriced)}. Give --feed MM/MIN, or ask for the fewest.",)
     moving = max(sum(len(each.rows) for each in plan.operations if each.mode == "simultaneous") for plan in plans)
     if options.most_operations is None and moving > len(fewest.alone):
         small += (
@@ -124,7 +120,10 @@ def _plans(task: Task, search: Search, few: Columns) -> tuple[list[OperationPlan
 
 def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], least: LeastSet | None) -> Task:
     options = ready.options
-    cutters = considered(ready.cutters, [run.cutter for run in least.runs] if least else [], _CUTTERS)
+    unpriced = without_feed(ready)
+    usable = [each for each in ready.cutters if each not in unpriced]
+    needed = [run.cutter for run in least.runs if run.cutter not in unpriced] if least else []
+    cutters = considered(usable, needed, _CUTTERS)
     open_ = ready.machinable
     reached = np.logical_or.reduce(
         [open_[s] & verdicts[cutter].reached for s, verdicts in enumerate(everywhere) for cutter in cutters]
@@ -138,23 +137,17 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
 
 
 def feeds(options: Options, cutters: Sequence[Cutter]) -> Mapping[Cutter, float] | None:
-    """The feed of each cutter, mm/min; None where one has none and times are not asked for.
+    """The feed of each cutter, mm/min; None where one has none."""
+    stated = options.feeds if options.feed is None else dict.fromkeys(cutters, options.feed)
+    return {each: stated[each] for each in cutters} if all(each in stated for each in cutters) else None
 
-    Raises
-    ------
-    OptionError
-        Times are requested, and a cutter has no feed.
-    """
-    if options.feed is not None:
-        return dict.fromkeys(cutters, options.feed)
-    sources = options.sources
-    stated = {cutter: feed_of([entry for _, entry in sources.get(cutter.id, ())]) for cutter in cutters}
-    result = {cutter: feed for cutter, feed in stated.items() if feed is not None}
-    without = [cutter.id for cutter in cutters if cutter not in result]
-    if without and options.operations in ("fastest", "both"):
-        who = f"{', '.join(without)} {'has' if len(without) == 1 else 'have'} none"
-        raise OptionError(f"the fastest operations need a feed, and {who}: give --feed MM/MIN, or ask for the fewest")
-    return None if without else result
+
+def without_feed(ready: Prepared) -> tuple[Cutter, ...]:
+    """The cutters that no operation is planned with, for times are requested and they have no feed."""
+    if ready.options.operations not in ("fastest", "both"):
+        return ()
+    stated = ready.options.feeds
+    return tuple(each for each in ready.cutters if each not in stated)
 
 
 def _first(task: Task) -> Columns:

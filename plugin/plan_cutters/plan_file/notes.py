@@ -14,6 +14,7 @@ NoteCode = Literal[
     "not_sampled", "no_machine", "side_guessed", "side_by_setup", "tolerance_raised", "open_faces", "fixture", "fixture_stays",
     "fixture_not_cad", "faces_none_sculptured", "faces_ignored", "faces_clamped", "travel_not_judged", "travel_of_holder",
     "travel_first_setup", "faces_clamped_there", "setup_without_fixtures", "setup_proposed",
+    "stick_out_each_setup", "maps_first_setup",
     "faces_loose", "area_not_looked_at", "area_proved", "area_left", "area_unknown", "maps_partial",
 ]  # fmt: skip
 
@@ -89,6 +90,20 @@ def maps_partial(unmapped: int, judged: int) -> Note:
     )
 
 
+def maps_first_setup() -> Note:
+    return Note(
+        "maps_first_setup",
+        "The posture maps and the estimate of motion are about the first setup alone: others hold the part differently.",
+    )
+
+
+def stick_out_each_setup() -> Note:
+    return Note(
+        "stick_out_each_setup",
+        "With the least stick-outs each setup reaches all that it serves now; if another setup served some of it, less might do.",
+    )
+
+
 # Of the part, its sides and its triangles.
 
 
@@ -156,8 +171,7 @@ def faces_ignored(faces: Sequence[str]) -> Note:
 
 
 def faces_clamped(faces: Sequence[str]) -> Note:
-    target = "target" if len(faces) == 1 else "targets"
-    return Note("faces_clamped", f"{_number(faces)} {_are(faces)} clamped and therefore no {target}: {listed(faces)}.")
+    return Note("faces_clamped", f"{_number(faces)} {_are(faces)} clamped and left for another setup: {listed(faces)}.")
 
 
 def faces_clamped_there(faces: Sequence[str], setup: str) -> Note:

@@ -11,7 +11,7 @@ class PlacementEntry(Frozen):
     file: str | None
     x: Vector | None = Field(description="direction of the part along the machine's X; null: as near to the part's X as can be")
     origin_mm: Vector | None = Field(description="point of the part at the machine's zero; null: not known")
-    clamped: list[str] = Field(description="faces that are held, in the words for faces: no targets")
+    clamped: list[str] = Field(description="faces that are held, in the words for faces: left for another setup")
 
 
 class AxisTravel(Frozen):

@@ -82,14 +82,14 @@ def choose(
     ignore : tuple of str
         The words for these.
     placed : Placement, optional
-        Whose clamped faces are left out of the targets.
+        Its clamped faces stay targets: they are left for another setup, and named.
     others : sequence of (Placement or None)
-        Of other setups: only what is clamped in all of them, too, is left out.
+        Of other setups: only what is clamped in all of them, too, is left.
 
     Raises
     ------
     OptionError
-        A choice has no meaning, nothing is left, or a face is requested by its number and ignored.
+        A choice has no meaning, a face is requested by its number and ignored, or every target is clamped in all setups.
     """
     requested = _word(part, part.picked or DEFAULT if faces is None else faces, "--faces")
     targets = select_faces(part.faces, requested, tree=part.tree, ignored=ignored, blends=part.blends)
@@ -100,12 +100,10 @@ def choose(
         remarks.append(notes.faces_ignored([f"F{n}" for n in sorted(ignored)]))
     held = clamped_faces(part, placed).intersection(*[clamped_faces(part, each) for each in others])
     if placed is not None and held:
-        remaining = tuple(n for n in targets if n not in held)
-        if not remaining:
+        if held.issuperset(targets):
             raise OptionError(f"{placed.where} {_brief(', '.join(placed.clamped))} leaves no target face")
         if clamped := [f"F{n}" for n in targets if n in held]:
             remarks.append(notes.faces_clamped(clamped))
-        targets = remaining
     return Chosen(targets, tuple(sorted(ignored)), requested, ignore, tuple(remarks), part.blends)
 
 

@@ -1,6 +1,7 @@
 """A part that is ready to be judged, cutter by cutter."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -101,6 +102,15 @@ class Prepared(Record):
             return self
         other = self.others[setup - 1]
         return replace(self, conditions=other.conditions, inside=other.inside, held=other.clamped)
+
+    def alone(self, setup: int) -> "Prepared":
+        """One setup, counted from 0, as if there were no other one."""
+        return replace(self.there(setup), others=())
+
+    def under(self, **changes: Any) -> "Prepared":
+        """The same with other values of the conditions, by their names, in every setup."""
+        others = tuple(replace(each, conditions=replace(each.conditions, **changes)) for each in self.others)
+        return replace(self, conditions=replace(self.conditions, **changes), others=others)
 
     @property
     def clamped(self) -> NDArray[np.bool_]:

@@ -283,8 +283,8 @@ class PostureMaps(Record):
 
 def posture_maps(
     samples: SurfaceSamples, context: Context, verdicts: Verdicts, *, part: str = "",
-    inside: NDArray[np.bool_] | None = None, about: Mapping[str, Any] | None = None, most: int | None = None,
-    progress: Progress | None = None,
+    inside: NDArray[np.bool_] | None = None, shut: NDArray[np.bool_] | None = None, about: Mapping[str, Any] | None = None,
+    most: int | None = None, progress: Progress | None = None,
 ) -> PostureMaps:  # fmt: skip
     """Find the free tilts of judged samples, whatever the machine; the others have none.
 
@@ -302,6 +302,8 @@ def posture_maps(
         SHA-256 of the part's file.
     inside : (n,) bool, optional
         Samples that lie inside another body of the part.
+    shut : (n,) bool, optional
+        Samples that no cutter gets to, for they are held or lie within a fixture: no tilt is free there, nor in doubt.
     about : mapping, optional
         What was asked, as `scene.question.question` writes it.
     most : int, optional
@@ -339,7 +341,7 @@ def posture_maps(
         count[rows], undecided[rows] = mine, unsure
         free[int(rows[0])] = part[np.arange(_MOST_INTERVALS) < mine[..., None]]
 
-    judged = np.flatnonzero(samples.unjudged < 0)
+    judged = np.flatnonzero(samples.unjudged < 0 if shut is None else (samples.unjudged < 0) & ~shut)
     require_finite(contacts, judged)
     rows = chosen(judged, most, lambda piece: mapped(piece, possible)[3], conditions.jobs)
     in_chunks(work, rows, conditions.jobs, progress)

@@ -32,10 +32,7 @@ def not_judged(plan: Plan) -> list[str]:
         return []
     many = scope.not_judged > 1
     what = _listed(scope.not_judged_by_kind)
-    why = "--faces all"
-    if plan.effective.faces.strip() == "all":
-        why = "they are clamped" if many else "it is clamped"
-    return [f"{what} {'were' if many else 'was'} not judged, only {'obstacles' if many else 'an obstacle'}: {why}."]
+    return [f"{what} {'were' if many else 'was'} not judged, only {'obstacles' if many else 'an obstacle'}: --faces all."]
 
 
 def _requested(plan: Plan, scope: Scope) -> str:
