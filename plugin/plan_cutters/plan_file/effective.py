@@ -46,6 +46,7 @@ class Effective(Frozen):
     rotation_deg: tuple[float, float]
     rotation_step_deg: float
     tolerance_mm: float = Field(description="the gouge tolerance that was met, raised where a budget binds")
+    tolerance_requested_mm: float | None = Field(default=None, description="null in older files")
     local_tolerance: list[LocalTolerance] = Field(
         default=[], description="faces that obstacle triangles follow less closely than all others, the loosest first"
     )

@@ -26,6 +26,9 @@ class ProcessStep(Frozen):
     area_mm2: float
     share: float = Field(description="of what is requested, 0 to 1")
     seconds: float | None = Field(description="cutting alone; null where it is not known")
+    below_mm2: float = Field(
+        default=0.0, description="of its area, cut from below: the tool's axis points under the plane across the setup axis"
+    )
     clearance_mm: float | None = Field(description="least at any of its samples; 100: that or more; null: not known")
 
 
