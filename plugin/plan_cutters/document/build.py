@@ -54,17 +54,19 @@ def degrees(pair: tuple[float, float]) -> tuple[float, float]:
 def cutter_entry(
     cutter: Cutter, samples: SurfaceSamples, reach: Verdicts, witnesses: Sequence[Witness], march_differs: int, seconds: float,
     *, part: Part, surroundings: Surroundings, slack: float, inside: NDArray[np.bool_], besides: NDArray[np.uint8],
+    exempt: NDArray[np.bool_] | None = None,
 ) -> CutterEntry:  # fmt: skip
     """Make the plan's entry of a cutter: its verdicts in the `surroundings`, and the reasons; `slack` as in `Assembly`.
 
-    `inside` (n,): samples inside other bodies of the part. `besides` (n,): the reasons that take part in the axis limit.
+    `inside`, `exempt` (n,): samples inside other bodies of the part, and at sharp inside edges that are not required.
+    `besides` (n,): the reasons that take part in the axis limit.
     """
-    mine = counts(reach.verdict, inside)
-    blocked = mine["inaccessible"] - mine["inside_bodies"]
+    mine = counts(reach.verdict, inside, exempt)
+    blocked = mine["inaccessible"] - mine["inside_bodies"] - mine["exempt"]
     # What is missing from the obstacles can only be in the way of more.
     feasible = False if blocked else None if mine["undecided"] or surroundings.doubtful else True
     not_reached, unsure = reach.verdict == INACCESSIBLE, reach.verdict == UNDECIDED
-    faces = face_verdicts(samples, reach, inside)
+    faces = face_verdicts(samples, reach, inside, exempt)
     return filled(
         CutterEntry,
         cutter,

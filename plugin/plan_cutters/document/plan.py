@@ -70,6 +70,7 @@ def plan_of(
             unjudged=int((samples.unjudged >= 0).sum()),
             regions=len(np.unique(ready.region)),
             inside_bodies=int(ready.inside_bodies.sum()),
+            exempt=0 if ready.exempt is None else int(ready.exempt.sum()),
         ),
         scope=scope_of(faces),
         inside_other_bodies=inside_entry(ready, entries[0].faces),
@@ -138,7 +139,7 @@ def _of_setups(ready: Prepared, name: str, over: OverSetups) -> dict[str, Any]:
         return {}
     inside, serves = ready.inside_bodies, over.served_in[name]
     entries = [
-        SetupReach(axis=axis, serves=int((serves == k).sum()), **counts(verdicts[name].verdict, inside))
+        SetupReach(axis=axis, serves=int((serves == k).sum()), **counts(verdicts[name].verdict, inside, ready.exempt))
         for k, (axis, verdicts) in enumerate(over.each())
     ]
     return {"setups": entries, "lost_in_all": int((over.reaches[name].not_reached & ready.finished).sum())}

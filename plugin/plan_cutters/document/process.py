@@ -11,7 +11,7 @@ from plan_cutters.document.over_setups import OverSetups
 from plan_cutters.document.shares import sample_areas
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.operations import OperationPlan
-from plan_cutters.domain.verdicts import NO_REASON, REASONS
+from plan_cutters.domain.verdicts import NO_REASON, REASONS, SHARP_EDGE
 from plan_cutters.plan_file.frozen import Vector, vector
 from plan_cutters.plan_file.model import CutterEntry
 from plan_cutters.plan_file.nearest import nearest
@@ -43,7 +43,7 @@ def process_entry(
         As it is in the plan file.
     """
     sampled, not_sampled = sample_areas(entries[0].faces, ready.samples, ready.scene.part)
-    area = np.where(ready.inside_bodies, 0.0, sampled)
+    area = np.where(ready.not_required, 0.0, sampled)
     requested = float(area.sum()) + not_sampled
     if answers.operations is not None and operations is not None:
         chosen, entry = _preferred(answers.operations.plans, operations.plans)
@@ -61,8 +61,16 @@ def process_entry(
     finished = float(area[done].sum())
     share = exact(finished / max(1e-300, requested), some=bool(done.any()), whole=not remaining)
     return ProcessEntry(
-        steps=steps, finished_share=share, finished_mm2=finished, asked_mm2=requested, left=remaining, seconds=seconds
-    )
+        steps=steps, finished_share=share, finished_mm2=finished, asked_mm2=requested, left=remaining, seconds=seconds,
+        exempt=_exempt(ready, sampled, requested),
+    )  # fmt: skip
+
+
+def _exempt(ready: Prepared, sampled: Floats, requested: float) -> RemainingEntry | None:
+    """What is not required at sharp inside edges; None where that is nothing."""
+    if ready.exempt is None or not ready.exempt.any():
+        return None
+    return _remaining_entry(ready, REASONS[SHARP_EDGE], ready.exempt, np.where(ready.inside_bodies, 0.0, sampled), requested)
 
 
 def _preferred(plans: Sequence[OperationPlan], entries: Sequence[OperationPlanEntry]) -> tuple[OperationPlan, OperationPlanEntry]:

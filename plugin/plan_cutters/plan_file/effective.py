@@ -60,6 +60,9 @@ class Effective(Frozen):
     )
     obstacle_triangles: int
     flip: bool
+    sharp_edges: Literal["asked", "left"] = Field(
+        default="asked", description="left: strips at sharp inside edges that no cutter enters are not required"
+    )
     area_budget: int = Field(description="contacts that may be added between the samples")
     posture_maps: bool
     map_budget: int | None = Field(default=None, description="samples to map, at most; null: what some minutes allow")

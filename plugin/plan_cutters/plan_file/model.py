@@ -44,10 +44,12 @@ class SampleCounts(Frozen):
         default=0, description="inside other bodies of the part: no surface of the finished part (`inside_other_bodies`)"
     )
 
+    exempt: int = Field(default=0, description="at sharp inside edges that no cutter enters, and not required (`sharp_edges`)")
+
     @property
     def finished(self) -> int:
-        """Samples but those inside other bodies: what shares and choices are about, those that are not judged included."""
-        return self.count - self.inside_bodies
+        """Samples that are required: what shares and choices are about, those that are not judged included."""
+        return self.count - self.inside_bodies - self.exempt
 
     @property
     def judged(self) -> int:

@@ -28,7 +28,7 @@ def doubts(plan: Plan) -> list[str]:
     return [named(plan, line) for line in lines]
 
 
-def told_above(plan: Plan) -> set[str]:
+def repeated_warnings(plan: Plan) -> set[str]:
     """Warnings on the part that the doubts say in other words."""
     return {text for text in (plan.part.unit_doubt, plan.part.sheets_doubt) if text}
 

@@ -149,6 +149,9 @@ def _remaining(process: ProcessEntry, plan: Plan) -> Iterator[str]:
     if len(process.left) > len(listed_causes):
         rest = process.left[len(listed_causes) :]
         yield f"Left besides, {percent(sum(each.share for each in rest), some=True, whole=False)}, for other causes."
+    if process.exempt is not None:
+        where = listed(process.exempt.faces, _FACES)
+        yield f"Not required (--sharp-edges left): {area(process.exempt.area_mm2)} at sharp inside edges of {where}."
 
 
 def _needs(plan: Plan, entry: RemainingEntry) -> str:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from plan_cutters.plan_file.model import CutterEntry, Plan, TextEntry, VerdictText
 from plan_cutters.plan_file.numbers import count
 from plan_cutters.plan_file.words.chip import TONES, chip, cutter_chip
-from plan_cutters.plan_file.words.doubts import told_above
+from plan_cutters.plan_file.words.doubts import repeated_warnings
 from plan_cutters.plan_file.words.process import with_process_words, wrapped
 from plan_cutters.plan_file.words.scope import not_judged, not_seen, unseen
 from plan_cutters.plan_file.words.story import Story, story_of
@@ -62,7 +62,7 @@ def process_lines(plan: Plan, story: Story, most: int) -> list[str]:
 
 def _doubts(plan: Plan, story: Story) -> list[str]:
     """What makes the verdicts unsure, but for warnings that stand above in other words."""
-    above = {f"{text}." for text in told_above(plan)} if plan.process else set()
+    above = {f"{text}." for text in repeated_warnings(plan)} if plan.process else set()
     return [f"{line.mark} {line.text}" for lines in story.doubts.values() for line in lines if line.text not in above]
 
 
