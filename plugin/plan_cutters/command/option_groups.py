@@ -144,8 +144,8 @@ _OPTIONS = (
         "--sharp-edges",
         type=click.Choice(["asked", "left"]),
         default="asked",
-        help="`left`: the strips beside sharp inside edges (two faces meet without a fillet) that no cutter enters are not "
-        "required.  [default: asked]",
+        help="`left`: the strips along sharp inside edges (two faces meet without a fillet) that no cutter enters are not "
+        "required.  [default: all are required]",
     ),
     _faces(
         "--unit",

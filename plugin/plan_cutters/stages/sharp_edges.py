@@ -98,8 +98,8 @@ def exempt(reaches: Mapping[Cutter, Verdicts], inside: NDArray[np.bool_]) -> NDA
         Samples inside other bodies of the part: they are none of these.
     """
     finest = min(reaches, key=lambda cutter: (least_radius(cutter) or np.inf, cutter.radius))
-    lost = np.logical_and.reduce([verdicts.verdict == INACCESSIBLE for verdicts in reaches.values()])
-    return np.asarray(lost & ~inside & (reaches[finest].reason == SHARP_EDGE))
+    blocked = np.logical_and.reduce([verdicts.verdict == INACCESSIBLE for verdicts in reaches.values()])
+    return np.asarray(blocked & ~inside & (reaches[finest].reason == SHARP_EDGE))
 
 
 def _losses(verdicts: Verdicts) -> NDArray[np.bool_]:
