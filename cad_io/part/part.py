@@ -298,6 +298,11 @@ class Part:
         """Every solid, as it stands in the shape."""
         return explore(self.shape, TopAbs_SOLID)
 
+    @property
+    def unit_doubt(self) -> str:
+        """Why the length unit is doubtful, as `warnings` has it; empty where it is not."""
+        return next(_size_warnings(self.size), "")
+
     def _loose_warnings(self) -> Iterator[str]:
         if self.looseness > LOOSEST * max(self.size):
             yield (

@@ -25,6 +25,10 @@ class CutterError(OptionError):
     """A cutter or a holder cannot exist."""
 
 
+class HolderFitError(CutterError):
+    """A cutter does not fit the holder that is to hold it."""
+
+
 class MachineError(OptionError):
     """A machine is unknown or contradicts itself."""
 

@@ -72,6 +72,7 @@ class PlanOptions(SceneOptions, total=False):
     setup_time: float
     overlap: float
     most_operations: int | None
+    sharp_edges: str
     unit: str | None
     placement: Placement | None
     other_placements: Sequence[Placement | None]

@@ -28,6 +28,8 @@ from plan_cutters.option_types import ANGLES, PlanOptions
 
 #: Gouge tolerances that can be requested, mm.
 LEAST_TOLERANCE, MOST_TOLERANCE = 1e-4, 10.0
+#: Whether strips at sharp inside edges that no cutter enters are required.
+SHARP_EDGES = ("asked", "left")
 #: Longest length that can be requested, mm: longer ones are rather a mistake. Most threads.
 _LONGEST, _MOST_JOBS = 1e6, 1024
 #: The least and the largest value of options, and their unit: the tolerance, and what the plan of operations reckons with.
@@ -144,6 +146,8 @@ class Options:
         Width by which operations overlap at a common border, mm.
     most_operations : int, optional
         Fixed orientations at most: the rest is left to simultaneous motion.
+    sharp_edges : str
+        `left`: strips at sharp inside edges that no cutter enters are not required; else `asked`.
     unit : str, optional
         Length unit to take instead of the part's own, one of `cad_io.units.UNITS`.
     fixtures : tuple of Fixture
@@ -206,6 +210,7 @@ class Options:
     setup_time: float = 300.0
     overlap: float = 2.0
     most_operations: int | None = None
+    sharp_edges: str = "asked"
     unit: str | None = None
     fixtures: tuple[Fixture, ...] = ()
     placement: Placement | None = None
@@ -271,6 +276,8 @@ class Options:
             take(map_budget=whole(self.map_budget, "map budget"))
         take(flip=flag(self.flip, "flip"), posture_maps=flag(self.posture_maps, "posture_maps"))
         take(answers=answers_of(self.answers), operations=operations_of(self.operations))
+        if self.sharp_edges not in SHARP_EDGES:
+            raise OptionError(f"sharp edges: {shown(self.sharp_edges)} is none of {', '.join(SHARP_EDGES)}")
         if self.most_operations is not None:
             take(most_operations=whole(self.most_operations, "most operations"))
         for word in _RECKONED:

@@ -61,7 +61,7 @@ from plan_cutters.stages.posture_maps import posture_maps
 from plan_cutters.stages.reasons import Reasons
 from plan_cutters.stages.select_cutters import ranked
 from plan_cutters.stages.setups import within_limits
-from plan_cutters.stages.sharp_edges import may_be_at_edge, strips, with_sharp_edges
+from plan_cutters.stages.sharp_edges import exempt, may_be_at_edge, strips, with_sharp_edges
 from plan_cutters.stages.travel import travels
 from plan_cutters.stages.witness import witnesses
 
@@ -147,15 +147,13 @@ def run(
             here[cutter] = judged(ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell, work=searched)
             seconds[cutter] = time.perf_counter() - began
     others = [(axis, _in_other_setup(ready, here, k, clock, judged)) for k, axis in enumerate(options.other_setups, 1)]
-    reported = _judged(ready, here, others, seconds, clock)
-    answers = ask(ready, {cutter: each.here for cutter, each in reported.items()}, clock.stage, others)
+    ready, reported = _judged(ready, here, others, seconds, clock)
+    first = {cutter: each.here for cutter, each in reported.items()}
+    answers = ask(ready, first, clock.stage, others)
     if options.operations is not None:
         from plan_cutters.operations.planning import plan_operations
 
-        everywhere = [
-            {c: each.here for c, each in reported.items()},
-            *({c: verdicts_there[c.id] for c in reported} for _, verdicts_there in others),
-        ]
+        everywhere = [first, *({c: verdicts_there[c.id] for c in reported} for _, verdicts_there in others)]
         answers = replace(answers, operations=plan_operations(ready, everywhere, answers.least_set, clock.stage))
     result = assemble(ready, reported, clock, started, answers, others, searched, compiling)
     if not options.posture_maps:
@@ -313,8 +311,8 @@ def _judged(
     other_setups: Sequence[OtherSetup],
     seconds: Mapping[Cutter, float],
     clock: Clock,
-) -> dict[Cutter, Judged]:
-    """Combine the verdicts of each cutter over all setups, find the reasons, and make its line in the plan."""
+) -> tuple[Prepared, dict[Cutter, Judged]]:
+    """Combine the verdicts of each cutter over all setups, find the reasons and what is not required, and make its line."""
     samples, convex, surroundings = ready.samples, ready.surface_class == CONVEX, ready.conditions.surroundings
     reasons = Reasons(samples, ready.setups, ready.somewhere, ready.machinable)
     by_cutter = {}
@@ -324,21 +322,23 @@ def _judged(
             by_cutter[cutter] = reasons.of(cutter, over, part_of(tell, k, len(here))), which
         wanted = any(may_be_at_edge(explained.verdicts, cutter) for cutter, (explained, _) in by_cutter.items())
         edges = inside_edges(ready.scene.part, ready.scene.orientation) if wanted else ()
+    at_edges = {cutter: strips(samples, explained.verdicts, cutter, edges) for cutter, (explained, _) in by_cutter.items()}
+    reaches = {cutter: with_sharp_edges(by_cutter[cutter][0].verdicts, at_edge) for cutter, at_edge in at_edges.items()}
+    ready = replace(ready, exempt=exempt(reaches, ready.inside_bodies) if ready.options.sharp_edges == "left" else None)
     judged = {}
     for (cutter, mine), (explained, which) in zip(here.items(), by_cutter.values(), strict=True):
-        at_edge = strips(samples, explained.verdicts, cutter, edges)
-        verdicts = with_sharp_edges(explained.verdicts, at_edge)
+        at_edge, verdicts = at_edges[cutter], reaches[cutter]
         with clock.stage(cutter.id, shown=False):
             context, part = Context.of(cutter, ready.conditions), ready.scene.part
             witness_list = witnesses(samples, verdicts, context, inside=ready.shut, part=part)
             marched = march_differs(samples, convex, ready.region, mine.interference_free)
             entry = cutter_entry(
                 cutter, samples, verdicts, witness_list, marched, seconds[cutter], part=part, surroundings=surroundings,
-                slack=context.outer_tool.slack, inside=ready.inside_bodies, besides=explained.besides,
+                slack=context.outer_tool.slack, inside=ready.inside_bodies, exempt=ready.exempt, besides=explained.besides,
             )  # fmt: skip
             fillets = sharp_edge_entries(edges, at_edge, samples, cutter)
             judged[cutter] = Judged(verdicts, which, mine if other_setups else verdicts, entry, fillets)
-    return judged
+    return ready, judged
 
 
 def assemble(
@@ -395,6 +395,6 @@ def _area(ready: Prepared, cutter: Cutter, judged: Judged, budget: int, most: fl
     contexts = [Context.of(cutter, each) for each in (ready.setups[:1] if ready.alike else ready.setups)]
     which = np.minimum(judged.which, len(contexts) - 1)
     served = in_each(ready.samples, judged.verdicts, which, contexts, ready.scene.part, ready.scene.orientation,
-                     budget=budget, most=most, covered_samples=ready.inside_bodies)  # fmt: skip
+                     budget=budget, most=most, covered_samples=ready.not_required)  # fmt: skip
     return AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
                      short=served.short, dropped=served.dropped, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip

@@ -159,6 +159,11 @@ class Result:
         """Samples (n,) inside other bodies of the part: no surface of the finished part."""
         return self.ready.inside_bodies
 
+    @property
+    def exempt(self) -> NDArray[np.bool_] | None:
+        """Samples (n,) at sharp inside edges that are not required; None where all are."""
+        return self.ready.exempt
+
     def rotary(self, cutter: str) -> tuple[Floats, NDArray[np.int8]]:
         """Positions of the rotary axes at the postures of a cutter, rad, both solutions, and which of them is to be taken.
 

@@ -10,12 +10,14 @@ from cad_io import Part
 from cad_io.part.inside_edges import inside_edges
 from cad_io.part.orient import orient
 from plan_cutters import Cutter, plan
+from plan_cutters.command.codes import code_of
 from plan_cutters.document.sharp_edges import sharp_edge_entries
-from plan_cutters.domain.verdicts import LOCAL_GOUGE, SHARP_EDGE
+from plan_cutters.domain.verdicts import LOCAL_GOUGE, SHARP_EDGE, UNDECIDED
+from plan_cutters.errors import OptionError
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
 from plan_cutters.stages.judge import judge
-from plan_cutters.stages.sharp_edges import strips
+from plan_cutters.stages.sharp_edges import exempt, strips
 from tests.support.cad_parts import box, cut
 from tests.support.profiles import grooved, slotted
 
@@ -121,3 +123,73 @@ def test_no_strip_makes_no_entry():
     result = planned(grooved(math.radians(90)), "R2L60rc2", "4,5", 2.0)
     none = np.full(len(result.samples), -1, np.int32)
     assert sharp_edge_entries([], none, result.samples, Cutter.parse("R2L60rc2")) == []
+
+
+def left(shape, cutters, faces, spacing, **more):
+    return plan(Part(shape), cutters=cutters, faces=faces, spacing=spacing, sharp_edges="left", **HOW, **more)
+
+
+def test_strips_may_be_left_and_are_told_apart():
+    """Without the strips a ball R3 finishes the pocket: nothing else is lost."""
+    usual, result = planned(pocket(), "R3L40rc3", "7-11", 0.5), left(pocket(), ["R3L40rc3"], "7-11", 0.5)
+    process, entry = result.plan.process, result.plan.cutters[0]
+    assert (entry.feasible, result.plan.selected, process.finished_share, process.left) == (True, entry.id, 1.0, [])
+    assert usual.plan.process.finished_share < 1.0
+    assert code_of(usual.plan) == 1
+    assert code_of(result.plan) == 0
+    # No verdict is another one, and the area is that of the strips.
+    assert (result.reaches[entry.id].verdict == usual.reaches[entry.id].verdict).all()
+    assert process.exempt.area_mm2 == pytest.approx(usual.plan.process.left[0].area_mm2)
+    assert process.exempt.area_mm2 + process.asked_mm2 == pytest.approx(usual.plan.process.asked_mm2)
+    assert process.exempt.faces == usual.plan.process.left[0].faces
+    assert result.plan.samples.exempt == entry.exempt == result.exempt.sum() == named(result, entry.id).sum()
+    assert sum(each.exempt for each in entry.faces.values()) == entry.exempt
+    assert entry.area_share.not_reached == 0.0
+    assert any("Not required (--sharp-edges left)" in line for line in result.plan.text.lines)
+    assert "every sample but those at sharp inside edges" in result.summary()
+
+
+def test_only_what_no_cutter_enters_is_left():
+    """A ball R1 reaches more than a ball R3: the larger one is not excused from what the smaller one does."""
+    result = left(pocket(), ["R3L40rc3", "R1L40rc1"], "7-11", 0.5)
+    coarse, fine = (result.reaches[name] for name in ("R3L40rc3", "R1L40rc1"))
+    assert (result.exempt == named(result, "R1L40rc1")).all()
+    assert not (result.exempt & coarse.reached).any()
+    assert (coarse.not_reached & fine.reached).any()
+    by_id = {each.id: each for each in result.plan.cutters}
+    assert by_id["R3L40rc3"].feasible is False
+    assert by_id["R1L40rc1"].feasible is True
+    assert result.plan.selected == "R1L40rc1"
+
+
+def test_what_another_cause_loses_is_required():
+    """The floor of a slot that is too narrow is no strip, whatever is left."""
+    result = left(slotted(8.0, 8.0), ["R6L60rc6"], "all", 1.0)
+    floor = (np.abs(result.samples.point[:, 2]) < 1e-6) & (result.samples.normal[:, 2] > 0.9)
+    assert not result.exempt[floor].any()
+    assert result.plan.cutters[0].feasible is False
+    assert {each.cause for each in result.plan.process.left} >= {"rear_gouge"}
+
+
+def test_an_undecided_sample_is_required():
+    cutter = Cutter.parse("R2L60rc2")
+    result = planned(grooved(math.radians(90)), "R2L60rc2", "4,5", 1.0)
+    reach, inside = result.reaches["R2L60rc2"], np.zeros(len(result.samples), bool)
+    lost = exempt({cutter: reach}, inside)
+    assert lost.any()
+    unsure = replace(reach, verdict=np.where(lost, UNDECIDED, reach.verdict).astype(np.uint8))
+    assert not exempt({cutter: unsure}, inside).any()
+    assert not exempt({cutter: reach}, ~inside).any()
+
+
+def test_changes_and_operations_are_about_what_is_required():
+    how = {"answers": "mend", "operations": "fewest", "machine": "trunnion-ac", "setup": (0.0, 0.0, 1.0)}
+    result = left(pocket(), ["R3L40rc3"], "7-11", 1.0, **how)
+    assert result.plan.cutters[0].mend is None
+    assert not (result.answers.operations.plans[0].label[result.exempt] >= 0).any()
+    assert result.plan.process.left == []
+
+
+def test_other_words_for_sharp_edges_are_refused():
+    with pytest.raises(OptionError, match="none of asked, left"):
+        Options(sharp_edges="none")

@@ -47,7 +47,7 @@ class Finished(Record):
         own = np.where(whole[samples.face] > 0.0, own, 1.0)
         whole = np.bincount(samples.face, own, len(faces) + 1)
         area = known[samples.face - 1] * own / whole[samples.face]
-        area[ready.inside_bodies] = 0.0
+        area[ready.not_required] = 0.0
         total = area.sum() + sum(known[number - 1] for number, _ in samples.empty)
         return cls(area, area / max(total, 1e-300), ready.finished)
 

@@ -45,7 +45,7 @@ class Reckoned:
         self.ids: list[str] = [each["id"] for each in document["cutters"]]
         self.verdict = {name: samples[f"verdict_{name}"] for name in self.ids}
         unjudged = np.logical_and.reduce([each == _UNJUDGED for each in self.verdict.values()])
-        self.finished = ~unjudged & ~samples["inside_bodies"]
+        self.finished = ~unjudged & ~samples["inside_bodies"] & ~samples.get("exempt", np.zeros(len(unjudged), bool))
         least = document.get("least_set") or {"runs": []}
         needed = list(dict.fromkeys(run["cutter"] for run in least["runs"]))
         wanted = [*needed, *(each for each in self.ids if each not in needed)][: max(_CUTTERS, len(needed))]

@@ -141,6 +141,13 @@ _OPTIONS = (
     ),
     _faces("--flip", is_flag=True, help="Machine the other side of open shells and loose faces."),
     _faces(
+        "--sharp-edges",
+        type=click.Choice(["asked", "left"]),
+        default="asked",
+        help="`left`: the strips along sharp inside edges (two faces meet without a fillet) that no cutter enters are not "
+        "required.  [default: all are required]",
+    ),
+    _faces(
         "--unit",
         type=click.Choice(list(UNITS)),
         help="Unit of the lengths in the part's file, if the file states a wrong one.  [default: as stated]",

@@ -85,6 +85,7 @@ class StoredRequest(JudgingRequest):
 class PlanningRequest(JudgingRequest):
     """The common fields of all commands that plan parts."""
 
+    sharp_edges: str
     area_budget: int | None
     posture_maps: bool
     map_budget: int | None
@@ -229,6 +230,7 @@ class McpRequest:
 def planning_options(request: PlanningRequest) -> "PlanOptions":
     """The options of a plan that a command line requests, as `Options` takes them."""
     return judging_options(request) | {
+        "sharp_edges": request.sharp_edges,
         "area_budget": request.area_budget,
         "posture_maps": request.posture_maps,
         "map_budget": request.map_budget,

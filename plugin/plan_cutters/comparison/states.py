@@ -83,4 +83,4 @@ def _targets(plan: Plan) -> Iterable[FaceEntry]:
 
 def _finished(verdicts: VerdictCounts) -> int:
     judged = verdicts.interference_free + verdicts.accessible + verdicts.inaccessible + verdicts.undecided
-    return judged + verdicts.unjudged - verdicts.inside_bodies
+    return judged + verdicts.unjudged - verdicts.inside_bodies - verdicts.exempt

@@ -54,17 +54,19 @@ def degrees(pair: tuple[float, float]) -> tuple[float, float]:
 def cutter_entry(
     cutter: Cutter, samples: SurfaceSamples, reach: Verdicts, witnesses: Sequence[Witness], march_differs: int, seconds: float,
     *, part: Part, surroundings: Surroundings, slack: float, inside: NDArray[np.bool_], besides: NDArray[np.uint8],
+    exempt: NDArray[np.bool_] | None = None,
 ) -> CutterEntry:  # fmt: skip
     """Make the plan's entry of a cutter: its verdicts in the `surroundings`, and the reasons; `slack` as in `Assembly`.
 
-    `inside` (n,): samples inside other bodies of the part. `besides` (n,): the reasons that take part in the axis limit.
+    `inside`, `exempt` (n,): samples inside other bodies of the part, and at sharp inside edges that are not required.
+    `besides` (n,): the reasons that take part in the axis limit.
     """
-    mine = counts(reach.verdict, inside)
-    blocked = mine["inaccessible"] - mine["inside_bodies"]
+    mine = counts(reach.verdict, inside, exempt)
+    blocked = mine["inaccessible"] - mine["inside_bodies"] - mine["exempt"]
     # What is missing from the obstacles can only be in the way of more.
     feasible = False if blocked else None if mine["undecided"] or surroundings.doubtful else True
     not_reached, unsure = reach.verdict == INACCESSIBLE, reach.verdict == UNDECIDED
-    faces = face_verdicts(samples, reach, inside)
+    faces = face_verdicts(samples, reach, inside, exempt)
     return filled(
         CutterEntry,
         cutter,
@@ -126,12 +128,17 @@ def part_info(scene: Scene, surroundings: Surroundings) -> PartInfo:
             f"{listed([f'F{number}' for number in body.faces])} enclose a body with openings: what lies within it is "
             "not known for sure; a face or an edge may be missing"
         )
+    on_shell = ""
     if surroundings.on_bodies:
         names = listed([f"F{number}" for number in surroundings.on_bodies])
-        warnings.append(
+        on_shell = (
             f"{names} lie on faces of solids, as construction geometry does, and are judged and in the way like "
             "all others: --ignore leaves them out"
         )
+        warnings.append(on_shell)
+    opened = _open_faces(scene, surroundings)
+    # Faces of a broken solid are none: they are its skin.
+    loose = [name for name in opened if int(name[1:]) in part.sewn.faces] if part.solids else []
     return PartInfo(
         file=Path(part.file).name if part.file else None,
         sha256=part.sha256,
@@ -142,7 +149,17 @@ def part_info(scene: Scene, surroundings: Surroundings) -> PartInfo:
         orientation=OrientationInfo(method=orientation.method, confident=orientation.confident),
         sewing=_sewing(part),
         warnings=warnings,
+        loose_faces=loose,
+        guessed_faces=[] if orientation.confident else opened,
+        sheets_doubt=on_shell,
+        unit_doubt=part.unit_doubt,
     )
+
+
+def _open_faces(scene: Scene, surroundings: Surroundings) -> list[str]:
+    """Faces of no closed body that are neither ignored nor set aside."""
+    closed = {number for body in surroundings.bodies if body.closed for number in body.faces}
+    return [f.id for f in scene.part.faces if not (f.number in closed or f.number in scene.ignored or f.unjudged)]
 
 
 def _sewing(part: Part) -> SewingInfo | None:

@@ -32,6 +32,7 @@ def effective(ready: Prepared) -> Effective:
         "spacing_mm": max(ready.spacing.values()) if isinstance(ready.spacing, dict) else ready.spacing,
         "sampled_by": "grid" if options.grid is not None else "default" if options.spacing is None else "spacing",
         "tolerance_mm": ready.conditions.tolerance,
+        "tolerance_requested_mm": scene.asked,
         "local_tolerance": _local(ready),
         "chord_error_mm": surroundings.certain.triangles.chord_error,
         "chord_measured_share": surroundings.certain.triangles.measured_share,

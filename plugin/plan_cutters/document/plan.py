@@ -18,10 +18,8 @@ from plan_cutters.document.operations_entry import operations_entry
 from plan_cutters.document.over_setups import OverSetups
 from plan_cutters.document.process import process_entry
 from plan_cutters.document.shares import counts
-from plan_cutters.document.travel import travel_entry
+from plan_cutters.document.travel import linear_entries, travel_entry
 from plan_cutters.domain.answers import Answers
-from plan_cutters.domain.kinematics import Kinematics
-from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.over_setups import positions
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE
@@ -72,6 +70,7 @@ def plan_of(
             unjudged=int((samples.unjudged >= 0).sum()),
             regions=len(np.unique(ready.region)),
             inside_bodies=int(ready.inside_bodies.sum()),
+            exempt=0 if ready.exempt is None else int(ready.exempt.sum()),
         ),
         scope=scope_of(faces),
         inside_other_bodies=inside_entry(ready, entries[0].faces),
@@ -79,7 +78,7 @@ def plan_of(
         missing=missing_entries(part, surroundings),
         reasons=list(REASONS),
         reason_words={code: WORDS[code].name for code in REASONS},
-        machine=machine_entry(options.machine, ready.conditions.kinematics),
+        machine=machine_entry(ready),
         fixtures=fixture_entries([each.surroundings for each in ready.setups]),
         libraries=[library_entry(library) for library in options.libraries],
         cutters=list(entries),
@@ -114,8 +113,9 @@ def _operations(ready: Prepared, answers: Answers) -> OperationsEntry | None:
     return operations_entry(answers.operations, ready.samples, ready.finished, ready.options)
 
 
-def machine_entry(machine: Machine, kinematics: Kinematics | None) -> MachineEntry:
-    """A machine, its axes in the part's frame."""
+def machine_entry(ready: Prepared) -> MachineEntry:
+    """The machine, its axes in the part's frame."""
+    machine, kinematics = ready.options.machine, ready.conditions.kinematics
     rotary = None
     if kinematics is not None:
         rotary = [
@@ -128,7 +128,9 @@ def machine_entry(machine: Machine, kinematics: Kinematics | None) -> MachineEnt
             for axis, direction in zip(machine.rotary, kinematics.direction, strict=True)
         ]
     limit = None if machine.tilt_limit is None else round(float(np.degrees(machine.tilt_limit)), 9)
-    return MachineEntry(name=machine.name, tilt_limit_deg=limit, rotary=rotary, notes=list(machine.notes))
+    return MachineEntry(
+        name=machine.name, tilt_limit_deg=limit, rotary=rotary, linear=linear_entries(ready), notes=list(machine.notes)
+    )
 
 
 def _of_setups(ready: Prepared, name: str, over: OverSetups) -> dict[str, Any]:
@@ -137,7 +139,7 @@ def _of_setups(ready: Prepared, name: str, over: OverSetups) -> dict[str, Any]:
         return {}
     inside, serves = ready.inside_bodies, over.served_in[name]
     entries = [
-        SetupReach(axis=axis, serves=int((serves == k).sum()), **counts(verdicts[name].verdict, inside))
+        SetupReach(axis=axis, serves=int((serves == k).sum()), **counts(verdicts[name].verdict, inside, ready.exempt))
         for k, (axis, verdicts) in enumerate(over.each())
     ]
     return {"setups": entries, "lost_in_all": int((over.reaches[name].not_reached & ready.finished).sum())}

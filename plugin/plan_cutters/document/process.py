@@ -1,6 +1,7 @@
 """Make the process of a plan: its steps, and what they leave by cause."""
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,8 +11,8 @@ from plan_cutters.document.over_setups import OverSetups
 from plan_cutters.document.shares import sample_areas
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.operations import OperationPlan
-from plan_cutters.domain.verdicts import NO_REASON, REASONS
-from plan_cutters.plan_file.frozen import vector
+from plan_cutters.domain.verdicts import NO_REASON, REASONS, SHARP_EDGE
+from plan_cutters.plan_file.frozen import Vector, vector
 from plan_cutters.plan_file.model import CutterEntry
 from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.numbers import exact
@@ -21,6 +22,8 @@ from plan_cutters.scene.preparation import Prepared
 
 #: Which plan of operations is the process: the first of these that there is.
 _PREFERRED = ("fastest", "fewest")
+#: Cosine from the setup axis under which a tool comes from below: walls that are drawn out of true by half a degree are walls.
+_BELOW = -0.01
 
 
 def process_entry(
@@ -40,26 +43,34 @@ def process_entry(
         As it is in the plan file.
     """
     sampled, not_sampled = sample_areas(entries[0].faces, ready.samples, ready.scene.part)
-    area = np.where(ready.inside_bodies, 0.0, sampled)
+    area = np.where(ready.not_required, 0.0, sampled)
     requested = float(area.sum()) + not_sampled
     if answers.operations is not None and operations is not None:
         chosen, entry = _preferred(answers.operations.plans, operations.plans)
         done = (chosen.label >= 0) & ready.finished
-        steps, seconds = _operated(ready, chosen, entry, area, requested), entry.seconds
+        steps, seconds = _operated(ready, chosen, entry, over, area, requested), entry.seconds
     else:
         runs, seconds = list(_runs(ready, entries, answers, over)), None
         done = np.logical_or.reduce([mine for *_, mine in runs]) if runs else np.zeros(len(area), bool)
         steps = [
-            _step(ready, area, requested, mine, setup=setup, mode="any", cutter=cutter, angles_deg=None, axis=None, seconds=None,
-                  clearance_mm=None)
+            _step(ready, over, area, requested, mine, setup=setup, mode="any", cutter=cutter, angles_deg=None, axis=None,
+                  seconds=None, clearance_mm=None)
             for setup, cutter, mine in runs
         ]  # fmt: skip
     remaining = _remaining(ready, done, _reasons(entries, over, steps, done), area, requested)
     finished = float(area[done].sum())
     share = exact(finished / max(1e-300, requested), some=bool(done.any()), whole=not remaining)
     return ProcessEntry(
-        steps=steps, finished_share=share, finished_mm2=finished, asked_mm2=requested, left=remaining, seconds=seconds
-    )
+        steps=steps, finished_share=share, finished_mm2=finished, asked_mm2=requested, left=remaining, seconds=seconds,
+        exempt=_exempt(ready, sampled, requested),
+    )  # fmt: skip
+
+
+def _exempt(ready: Prepared, sampled: Floats, requested: float) -> RemainingEntry | None:
+    """What is not required at sharp inside edges; None where that is nothing."""
+    if ready.exempt is None or not ready.exempt.any():
+        return None
+    return _remaining_entry(ready, REASONS[SHARP_EDGE], ready.exempt, np.where(ready.inside_bodies, 0.0, sampled), requested)
 
 
 def _preferred(plans: Sequence[OperationPlan], entries: Sequence[OperationPlanEntry]) -> tuple[OperationPlan, OperationPlanEntry]:
@@ -69,7 +80,7 @@ def _preferred(plans: Sequence[OperationPlan], entries: Sequence[OperationPlanEn
 
 
 def _operated(
-    ready: Prepared, plan: OperationPlan, entry: OperationPlanEntry, area: Floats, requested: float
+    ready: Prepared, plan: OperationPlan, entry: OperationPlanEntry, over: OverSetups, area: Floats, requested: float
 ) -> list[ProcessStep]:
     """The steps of a plan of operations: by setup, fixed orientations first, by cutter, the largest area first."""
     by_cutter: dict[tuple[int, str], float] = {}
@@ -82,7 +93,7 @@ def _operated(
         key=lambda e: (e.setup, e.mode != "fixed", -by_cutter[e.setup, e.cutter], e.cutter, -e.area_mm2, rank[id(e)]),
     )
     return [
-        _step(ready, area, requested, plan.label == rank[id(each)], setup=each.setup, mode=each.mode, cutter=each.cutter,
+        _step(ready, over, area, requested, plan.label == rank[id(each)], setup=each.setup, mode=each.mode, cutter=each.cutter,
               angles_deg=each.angles_deg, axis=each.axis, seconds=each.seconds, clearance_mm=each.clearance_mm)
         for each in ordered
     ]  # fmt: skip
@@ -105,10 +116,18 @@ def _runs(
             yield setup, cutter, mine
 
 
-def _step(ready: Prepared, area: Floats, requested: float, mine: NDArray[np.bool_], **fields: object) -> ProcessStep:
-    """A step that finishes some samples (n,)."""
+def _step(
+    ready: Prepared, over: OverSetups, area: Floats, requested: float, mine: NDArray[np.bool_], *, setup: int, cutter: str,
+    axis: Vector | None, **fields: Any,
+) -> ProcessStep:  # fmt: skip
+    """A step that finishes some samples (n,): with one axis, or each with that of its posture."""
     size = float(area[mine].sum())
-    return ProcessStep(faces=_faces(ready, mine, area), area_mm2=size, share=min(1.0, size / max(1e-300, requested)), **fields)  # type: ignore[arg-type]
+    axes = over.each()[setup][1][cutter].axis[mine] if axis is None else np.tile(axis, (int(mine.sum()), 1))
+    below = axes @ ready.setups[setup].setup < _BELOW
+    return ProcessStep(
+        faces=_faces(ready, mine, area), area_mm2=size, share=min(1.0, size / max(1e-300, requested)), setup=setup, cutter=cutter,
+        axis=axis, below_mm2=float(area[mine][below].sum()), **fields,
+    )  # fmt: skip
 
 
 def _faces(ready: Prepared, mine: NDArray[np.bool_], area: Floats) -> list[str]:

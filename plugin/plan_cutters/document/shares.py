@@ -12,21 +12,36 @@ from plan_cutters.domain.verdicts import INACCESSIBLE, REASONS, UNDECIDED, WORDS
 from plan_cutters.plan_file.shares import AreaShare, FaceVerdicts
 
 
-def counts(verdict: NDArray[np.uint8], inside: NDArray[np.bool_] | None = None) -> dict[str, Any]:
-    """How many samples have each verdict; `inside` (n,): those inside other bodies of the part."""
-    covered = 0 if inside is None else int(inside.sum())
-    return {**{name: int((verdict == code).sum()) for code, name in WORDS.items()}, "inside_bodies": covered}
+def counts(
+    verdict: NDArray[np.uint8], inside: NDArray[np.bool_] | None = None, exempt: NDArray[np.bool_] | None = None
+) -> dict[str, Any]:
+    """How many samples have each verdict; `inside`, `exempt` (n,): those inside other bodies of the part, and not required."""
+    of = {name: int((verdict == code).sum()) for code, name in WORDS.items()}
+    return {
+        **of,
+        "inside_bodies": 0 if inside is None else int(inside.sum()),
+        "exempt": 0 if exempt is None else int(exempt.sum()),
+    }
 
 
-def face_verdicts(samples: SurfaceSamples, reach: Verdicts, inside: NDArray[np.bool_] | None = None) -> dict[str, FaceVerdicts]:
-    """Sum up the verdicts on each face that has samples, by its id; `inside` as in `counts`."""
-    entries, inside = {}, np.zeros(len(samples.face), bool) if inside is None else inside
+def face_verdicts(
+    samples: SurfaceSamples, reach: Verdicts, inside: NDArray[np.bool_] | None = None, exempt: NDArray[np.bool_] | None = None
+) -> dict[str, FaceVerdicts]:
+    """Sum up the verdicts on each face that has samples, by its id; `inside` and `exempt` as in `counts`."""
+    nowhere = np.zeros(len(samples.face), bool)
+    inside, exempt = nowhere if inside is None else inside, nowhere if exempt is None else exempt
+    entries = {}
     for number, mine in samples.by_face().items():
         area = weights(samples.area[mine])
-        within, seen = inside[mine], mine[~inside[mine]]
-        share = _share(reach.verdict[seen], reach.reason[seen], area[~within])
-        part = min(1.0, float(area[within].sum() / area.sum())) if len(seen) else 1.0
-        entries[f"F{number}"] = FaceVerdicts(**counts(reach.verdict[mine], within), area_share=share, inside_share=part)
+        within, free = inside[mine], exempt[mine]
+        required = ~within & ~free
+        seen = mine[required]
+        share = _share(reach.verdict[seen], reach.reason[seen], area[required])
+        part = min(1.0, float(area[within].sum() / area.sum())) if not within.all() else 1.0
+        edges = min(1.0 - part, float(area[free].sum() / area.sum())) if len(seen) else 1.0 - part
+        entries[f"F{number}"] = FaceVerdicts(
+            **counts(reach.verdict[mine], within, free), area_share=share, inside_share=part, exempt_share=edges
+        )
     return entries
 
 
@@ -44,7 +59,7 @@ def whole_share(faces: Mapping[str, FaceVerdicts], samples: SurfaceSamples, part
     as one.
     """
     targets = [
-        *((name, each.area_share, 1.0 - each.inside_share) for name, each in faces.items()),
+        *((name, each.area_share, 1.0 - each.inside_share - each.exempt_share) for name, each in faces.items()),
         *((f"F{number}", AreaShare(unjudged=1.0), 1.0) for number, _ in samples.empty),
     ]
     areas = _areas([name for name, _, _ in targets], part)

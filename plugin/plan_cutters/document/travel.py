@@ -8,7 +8,9 @@ from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.plan_file.frozen import vector
+from plan_cutters.plan_file.model import LinearEntry
 from plan_cutters.plan_file.travel import AxisTravel, BeyondTravel, PlacementEntry, TravelEntry
+from plan_cutters.scene.preparation import Prepared
 
 
 def placement_entry(placement: Placement | None) -> PlacementEntry | None:
@@ -16,6 +18,25 @@ def placement_entry(placement: Placement | None) -> PlacementEntry | None:
     if placement is None:
         return None
     return PlacementEntry(file=placement.file or None, x=placement.x, origin_mm=placement.origin, clamped=list(placement.clamped))
+
+
+def linear_entries(ready: Prepared) -> list[LinearEntry]:
+    """The linear axes of the machine in the part's frame of the first setup, and how far the target samples reach along each."""
+    entries = []
+    for axis in ready.options.machine.linear:
+        direction = np.array(axis.direction) @ ready.conditions.frame
+        along = ready.samples.point[ready.finished] @ direction
+        low, high = axis.limits or (-np.inf, np.inf)
+        entries.append(
+            LinearEntry(
+                name=axis.name,
+                carries=axis.carries,
+                direction=vector(direction),
+                limits_mm=(float(low) if np.isfinite(low) else None, float(high) if np.isfinite(high) else None),
+                extent_mm=float(np.ptp(along)) if len(along) else 0.0,
+            )
+        )
+    return entries
 
 
 def travel_entry(machine: Machine, travel: Travel, reach: Verdicts, samples: SurfaceSamples) -> TravelEntry:

@@ -7,7 +7,7 @@ from typing import Literal, NamedTuple
 from plan_cutters.domain.dimensions import Dimensions
 from plan_cutters.domain.holder import Segment
 from plan_cutters.domain.spec import notation
-from plan_cutters.errors import CutterError
+from plan_cutters.errors import CutterError, HolderFitError
 
 #: Parts of an assembly that do not cut, from the flutes up.
 Part = Literal["neck", "shank", "holder"]
@@ -198,12 +198,12 @@ def check(cutter: Dimensions, name: str) -> None:
     above = stages(cutter)
     last = next((stage.upper_radius for part, _, stage in reversed(above) if part != "holder"), top_radius(cutter))
     if cutter.holder is not None and cutter.holder.stages[0].radius < last - SAME:
-        raise CutterError(
+        raise HolderFitError(
             f"{name}: the holder's nose of radius {cutter.holder.stages[0].radius:g} is narrower than what it holds, "
             f"of radius {last:g}"
         )
     if cutter.holder is not None and cutter.holder.bore is not None and 2.0 * last > cutter.holder.bore + SAME:
-        raise CutterError(
+        raise HolderFitError(
             f"{name}: its shank of {2.0 * last:g} mm does not fit {cutter.holder.name or 'its holder'}, which takes up to "
             f"{cutter.holder.bore:g} mm: another holder, or say its flutes and shank "
             f"(F30S{notation(cutter.name).across(0.5 * cutter.holder.bore)})"

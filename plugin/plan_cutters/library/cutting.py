@@ -15,11 +15,11 @@ _CORNER = "the radius of its corner"
 
 
 class UnfitError(Exception):
-    """Why a tool is not used; `broken`: it contradicts itself."""
+    """Why a tool is not used; `broken`: it contradicts itself; `unheld`: it does not fit its holder."""
 
-    def __init__(self, why: str, *, broken: bool = False) -> None:
+    def __init__(self, why: str, *, broken: bool = False, unheld: bool = False) -> None:
         super().__init__(why)
-        self.broken = broken
+        self.broken, self.unheld = broken, unheld
 
 
 def slack(value: float) -> float:

@@ -9,7 +9,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.dimensions import Dimensions
 from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.domain.shapes import MOST_PIECES, SAME, flute_length, pieces_at_most, top_radius
-from plan_cutters.errors import CutterError
+from plan_cutters.errors import CutterError, HolderFitError
 from plan_cutters.library.cutting import CUTTING, UnfitError, agree_ball, corner_of, note_tapered, slack
 from plan_cutters.library.outlines import fewer, joined, up_to
 from plan_cutters.library.raw_tool import Listed, Stated
@@ -70,9 +70,9 @@ def entry_of(tool: Listed, ask: Ask) -> Entry:
     try:
         cutter = _cutter(tool, ask)
     except UnfitError as why:
-        return tool.entry(unused=str(why), broken=why.broken)
+        return tool.entry(unused=str(why), broken=why.broken, unheld=why.unheld)
     except CutterError as error:
-        return tool.entry(unused=cause_of(error), broken=True)
+        return tool.entry(unused=cause_of(error), broken=True, unheld=isinstance(error, HolderFitError))
     return tool.entry(cutter=cutter)
 
 
@@ -298,7 +298,8 @@ def _held(tool: Listed, cutter: Cutter, holder: Holder | Literal["none"]) -> Cut
     try:
         return replace(cutter, holder=plain)
     except CutterError as error:
-        raise UnfitError(cause_of(error), broken=tool.holder is not None) from None
+        unheld = isinstance(error, HolderFitError)
+        raise UnfitError(cause_of(error), broken=tool.holder is not None, unheld=unheld) from None
 
 
 def _with(cutter: Cutter, holder: Holder) -> Dimensions:

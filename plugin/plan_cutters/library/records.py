@@ -30,6 +30,8 @@ class Entry:
         The field concerned, what is wrong with it and what to add.
     broken : bool
         It contradicts itself or cannot be read; else it is not for finishing, or lacks something.
+    unheld : bool
+        It is not used because it does not fit its holder.
     notes : tuple of str
         How it was understood where that is not plain.
     given : tuple of (str, float)
@@ -52,6 +54,7 @@ class Entry:
     given: tuple[tuple[str, float], ...] = ()
     feed: float | None = None
     preset: str = ""
+    unheld: bool = False
 
     @property
     def label(self) -> str:

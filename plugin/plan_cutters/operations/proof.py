@@ -70,7 +70,7 @@ def _proved(ready: Prepared, plan: OperationPlan, group: list[int], budget: int,
     first = np.where(number < 0, -1, _roomiest(samples, axes, serves, context))
     proved = between(
         samples, held_at(axes, first, samples, context), context, ready.scene.part,
-        ready.scene.orientation, budget=budget, most=most, covered_samples=ready.inside_bodies,
+        ready.scene.orientation, budget=budget, most=most, covered_samples=ready.not_required,
         fixed=Fixed(axes, serves),
     )  # fmt: skip
     cells = proved.cells

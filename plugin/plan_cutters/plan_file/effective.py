@@ -46,6 +46,7 @@ class Effective(Frozen):
     rotation_deg: tuple[float, float]
     rotation_step_deg: float
     tolerance_mm: float = Field(description="the gouge tolerance that was met, raised where a budget binds")
+    tolerance_requested_mm: float | None = Field(default=None, description="null in older files")
     local_tolerance: list[LocalTolerance] = Field(
         default=[], description="faces that obstacle triangles follow less closely than all others, the loosest first"
     )
@@ -59,6 +60,9 @@ class Effective(Frozen):
     )
     obstacle_triangles: int
     flip: bool
+    sharp_edges: Literal["asked", "left"] = Field(
+        default="asked", description="left: strips at sharp inside edges that no cutter enters are not required"
+    )
     area_budget: int = Field(description="contacts that may be added between the samples")
     posture_maps: bool
     map_budget: int | None = Field(default=None, description="samples to map, at most; null: what some minutes allow")

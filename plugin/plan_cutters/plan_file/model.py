@@ -44,10 +44,12 @@ class SampleCounts(Frozen):
         default=0, description="inside other bodies of the part: no surface of the finished part (`inside_other_bodies`)"
     )
 
+    exempt: int = Field(default=0, description="at sharp inside edges that no cutter enters, and not required (`sharp_edges`)")
+
     @property
     def finished(self) -> int:
-        """Samples but those inside other bodies: what shares and choices are about, those that are not judged included."""
-        return self.count - self.inside_bodies
+        """Samples that are required: what shares and choices are about, those that are not judged included."""
+        return self.count - self.inside_bodies - self.exempt
 
     @property
     def judged(self) -> int:
@@ -143,12 +145,29 @@ class RotaryEntry(Frozen):
     limits_deg: tuple[float, float] | None
 
 
+class LinearEntry(Frozen):
+    """A linear axis of the machine, and how far the surface to machine reaches along it."""
+
+    name: str
+    carries: Literal["part", "tool"]
+    direction: Vector = Field(description="as of rotary axes, in the first setup")
+    limits_mm: tuple[float | None, float | None] = Field(description="null: no limit on that side")
+    extent_mm: float = Field(description="of all target samples along it, rotary axes at zero")
+
+    @property
+    def short_mm(self) -> float:
+        """By how much the surface is longer than the travel; 0 where it is not, or where there is no limit."""
+        low, high = self.limits_mm
+        return 0.0 if low is None or high is None else max(0.0, self.extent_mm - (high - low))
+
+
 class MachineEntry(Frozen):
     """The machine limited the tool axes in this way."""
 
     name: str
     tilt_limit_deg: float | None = Field(description="largest angle from the setup axis")
     rotary: list[RotaryEntry] | None = Field(description="from the part to the tool; null: any within the limit above")
+    linear: list[LinearEntry] = Field(default=[], description="from the part to the tool; empty where none is known")
     notes: list[str]
 
 
@@ -173,6 +192,7 @@ class UnusedEntry(Frozen):
     kind: str
     why: str = Field(description="the field concerned, what is wrong with it and what to add")
     broken: bool = Field(description="it contradicts itself or cannot be read")
+    unheld: bool = Field(default=False, description="it does not fit its holder, as with a shank wider than the collet takes")
 
 
 class LibraryEntry(Frozen):

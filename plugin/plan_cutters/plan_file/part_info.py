@@ -56,6 +56,16 @@ class PartInfo(Frozen):
     orientation: OrientationInfo
     sewing: SewingInfo | None = Field(default=None, description="null where every face belongs to a solid")
     warnings: list[str]
+    loose_faces: list[str] = Field(
+        default=[], description="in no closed body, where there are solids: rather construction sheets and reference planes"
+    )
+    guessed_faces: list[str] = Field(
+        default=[], description="in no closed body, so that which side of them is material is a guess; empty where it is sure"
+    )
+    sheets_doubt: str = Field(
+        default="", description="the warning on those of them that lie on faces of solids; empty: none does"
+    )
+    unit_doubt: str = Field(default="", description="the warning that makes the length unit doubtful; empty where there is none")
 
 
 class Scope(Frozen):

@@ -26,6 +26,9 @@ class ProcessStep(Frozen):
     area_mm2: float
     share: float = Field(description="of what is requested, 0 to 1")
     seconds: float | None = Field(description="cutting alone; null where it is not known")
+    below_mm2: float = Field(
+        default=0.0, description="of its area, cut from below: the tool's axis points under the plane across the setup axis"
+    )
     clearance_mm: float | None = Field(description="least at any of its samples; 100: that or more; null: not known")
 
 
@@ -55,8 +58,13 @@ class ProcessEntry(Frozen):
     steps: list[ProcessStep] = Field(description="in the order of setups, and of cutters in a setup")
     finished_share: float = Field(description="of what is requested, 0 to 1: 1 only where nothing at all is left")
     finished_mm2: float
-    asked_mm2: float = Field(description="of the target faces, without what lies inside other bodies")
+    asked_mm2: float = Field(description="of the target faces, without what lies inside other bodies or is exempt")
     left: list[RemainingEntry] = Field(description="the largest area first")
+    exempt: RemainingEntry | None = Field(
+        default=None,
+        description="strips at sharp inside edges that no cutter enters, where they are not required (`sharp_edges`): in none of "
+        "the other numbers; null where there is none",
+    )
     seconds: float | None = Field(description="of all steps, with orientations, changes and setups; null without a feed")
     next: list[NextEntry] = Field(default=[], description="the best first")
     doubts: list[str] = Field(default=[], description="what changes what one does: a line each, the gravest first")

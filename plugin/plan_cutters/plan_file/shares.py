@@ -28,10 +28,16 @@ class VerdictCounts(Frozen):
         "shares and choices are about the others",
     )
 
+    exempt: int = Field(
+        default=0,
+        description="of the inaccessible: samples at sharp inside edges that no cutter enters, where `sharp_edges` is `left`; "
+        "shares and choices are about the others",
+    )
+
     @property
     def blocked(self) -> int:
-        """Inaccessible samples of the finished part's surface."""
-        return self.inaccessible - self.inside_bodies
+        """Inaccessible samples that are required."""
+        return self.inaccessible - self.inside_bodies - self.exempt
 
     @property
     def reached(self) -> int:
@@ -82,6 +88,7 @@ class FaceVerdicts(VerdictCounts):
     area_share: AreaShare = Field(
         default=AreaShare(), description="of the face's area, without what of it lies inside other bodies; 0 where all does"
     )
+    exempt_share: float = Field(default=0.0, description="of the face's area that is exempt")
     inside_share: float = Field(default=0.0, description="of the face's area that lies inside other bodies of the part")
 
 

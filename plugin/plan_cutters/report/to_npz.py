@@ -15,7 +15,8 @@ def write_npz(result: Judged, _split: object, path: Path) -> None:
     """Write `samples.npz`: the samples, and per cutter verdict, axis, tilt_direction and reason with its id as suffix.
 
     Over several setups what one or another reaches, with the posture of the first that does: `setup_ID` is its index into
-    `setups`, -1 where none does, and `reached_in_ID` says which do. `inside_bodies`: what is no surface of the finished part.
+    `setups`, -1 where none does, and `reached_in_ID` says which do. `inside_bodies`: what is no surface of the finished part;
+    `exempt`, where some is: what is not required at sharp inside edges.
 
     With a machine of rotary axes, also their positions at the posture found, in degrees: both solutions, axis by axis from the
     part to the tool, nan where one is beyond a limit, and which of them is to be taken, -1 where there is none. Where linear
@@ -34,6 +35,8 @@ def write_npz(result: Judged, _split: object, path: Path) -> None:
         "surface_class": result.surface_class,
         "inside_bodies": result.inside_bodies,
     }
+    if result.exempt is not None:
+        arrays["exempt"] = result.exempt
     for name, verdicts in result.reaches.items():
         arrays[f"verdict_{name}"] = verdicts.verdict
         arrays[f"axis_{name}"] = verdicts.axis

@@ -67,6 +67,8 @@ class Prepared(Record):
         Samples of faces that are clamped in the first setup; None: none of them is.
     others : tuple of OtherSetup
         The setups beside the first.
+    exempt : (n,) bool, optional
+        Samples at sharp inside edges that no cutter has to reach (`stages.sharp_edges.exempt`); None: all are required.
     """
 
     scene: Scene
@@ -83,6 +85,7 @@ class Prepared(Record):
     coarser: float = 1.0
     held: NDArray[np.bool_] | None = None
     others: tuple[OtherSetup, ...] = ()
+    exempt: NDArray[np.bool_] | None = None
 
     @property
     def axes(self) -> tuple[tuple[Axis, Axis | None], ...]:
@@ -144,5 +147,10 @@ class Prepared(Record):
 
     @property
     def finished(self) -> NDArray[np.bool_]:
-        """Judged samples (n,) of the finished part's surface: shares, selection, reasons and answers are about these."""
-        return (self.samples.unjudged < 0) & ~self.inside_bodies
+        """Judged samples (n,) that a cutter has to reach: shares, selection, reasons and answers are about these."""
+        return (self.samples.unjudged < 0) & ~self.not_required
+
+    @property
+    def not_required(self) -> NDArray[np.bool_]:
+        """Samples (n,) that no cutter has to reach: inside other bodies of the part, or exempt."""
+        return self.inside_bodies if self.exempt is None else self.inside_bodies | self.exempt

@@ -12,7 +12,7 @@ No verdict is changed: a reason gets another name. A sample of a face A is lost 
 A sample counts as it is: no spacing is added to the width.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -23,7 +23,7 @@ from cad_io.arrays import Floats, Ints, SurfaceSamples
 from cad_io.part.inside_edges import InsideEdge
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fillet import least_radius
-from plan_cutters.domain.verdicts import COLLISION, REAR_GOUGE, SHARP_EDGE, Verdicts
+from plan_cutters.domain.verdicts import COLLISION, INACCESSIBLE, REAR_GOUGE, SHARP_EDGE, Verdicts
 
 #: A reached sample is near the end of a strip within so many gaps of its face; its normal turns less than this cosine says.
 _NEAR, _FACING = 2.0, 0.7
@@ -83,6 +83,23 @@ def with_sharp_edges(verdicts: Verdicts, at_edge: Ints) -> Verdicts:
     if (at_edge < 0).all():
         return verdicts
     return replace(verdicts, reason=np.where(at_edge >= 0, SHARP_EDGE, verdicts.reason).astype(np.uint8))
+
+
+def exempt(reaches: Mapping[Cutter, Verdicts], inside: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Find the samples (n,) that no cutter reaches, and which a sharp inside edge loses for the finest of them.
+
+    What is undecided of any cutter is not among them: it may be reached.
+
+    Parameters
+    ----------
+    reaches : dict
+        Of each cutter the verdicts over all setups, with the reason SHARP_EDGE where it applies.
+    inside : (n,) bool
+        Samples inside other bodies of the part: they are none of these.
+    """
+    finest = min(reaches, key=lambda cutter: (least_radius(cutter) or np.inf, cutter.radius))
+    blocked = np.logical_and.reduce([verdicts.verdict == INACCESSIBLE for verdicts in reaches.values()])
+    return np.asarray(blocked & ~inside & (reaches[finest].reason == SHARP_EDGE))
 
 
 def _losses(verdicts: Verdicts) -> NDArray[np.bool_]:

@@ -91,7 +91,7 @@ def _much(plan: Plan, share: float, *, finished: bool) -> str:
 def every(plan: Plan) -> str:
     """All samples; where not all could be judged, how many could."""
     if not plan.samples.unjudged and not not_sampled(plan):
-        return "every sample"
+        return "every sample but those at sharp inside edges" if plan.samples.exempt else "every sample"
     judged = plan.samples.judged
     return f"all {judged:,} samples that could be judged" if judged != 1 else "the 1 sample that could be judged"
 

@@ -9,6 +9,7 @@ from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.numbers import area, count, duration, figure, listed, mm, percent, place
 from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, NextEntry, ProcessEntry, ProcessStep, RemainingEntry
 from plan_cutters.plan_file.reasons import REASONS
+from plan_cutters.plan_file.words.doubts import doubts
 from plan_cutters.plan_file.words.names import named
 from plan_cutters.plan_file.words.next_steps import is_excluded
 
@@ -86,11 +87,12 @@ def process_story(plan: Plan, names: Mapping[str, str]) -> ProcessStory | None:
 
 
 def with_process_words(plan: Plan) -> Plan:
-    """The plan with the words of its process made anew: what each area that is left needs, and what to do next."""
+    """The plan with the words of its process made anew: doubts, what each area that is left needs, and what to do next."""
     if plan.process is None:
         return plan
     needed = [each.model_copy(update={"needs": _needs(plan, each)}) for each in plan.process.left]
-    process = plan.process.model_copy(update={"left": needed, "next": list(_next_entries(plan))})
+    update = {"left": needed, "next": list(_next_entries(plan)), "doubts": doubts(plan)}
+    process = plan.process.model_copy(update=update)
     return plan.model_copy(update={"process": process})
 
 
@@ -147,6 +149,9 @@ def _remaining(process: ProcessEntry, plan: Plan) -> Iterator[str]:
     if len(process.left) > len(listed_causes):
         rest = process.left[len(listed_causes) :]
         yield f"Left besides, {percent(sum(each.share for each in rest), some=True, whole=False)}, for other causes."
+    if process.exempt is not None:
+        where = listed(process.exempt.faces, _FACES)
+        yield f"Not required (--sharp-edges left): {area(process.exempt.area_mm2)} at sharp inside edges of {where}."
 
 
 def _needs(plan: Plan, entry: RemainingEntry) -> str:

@@ -6,6 +6,7 @@ from plan_cutters.plan_file.model import CutterEntry, Plan, TextEntry, VerdictTe
 from plan_cutters.plan_file.numbers import count
 from plan_cutters.plan_file.words.chip import TONES, chip, cutter_chip
 from plan_cutters.plan_file.words.cutters import CutterStory
+from plan_cutters.plan_file.words.doubts import repeated_warnings
 from plan_cutters.plan_file.words.process import with_process_words, wrapped
 from plan_cutters.plan_file.words.scope import not_judged, not_seen, unseen
 from plan_cutters.plan_file.words.story import Story, story_of
@@ -42,7 +43,8 @@ def process_lines(plan: Plan, story: Story, most: int) -> list[str]:
     inside = [f"Inside other bodies: {' '.join(story.inside)}"] if story.inside else []
     judged = " ".join(filter(None, (story.headline.about, *not_judged(plan))))
     blocks: list[list[str]] = [
-        [*wrapped(inside, 6), *wrapped(_doubts(story), 1)[:_DOUBTS], *wrapped([judged] if judged else [], 3)],
+        wrapped(plan.process.doubts if plan.process else [], 2),
+        [*wrapped(inside, 6), *wrapped(_doubts(plan, story), 1)[:_DOUBTS], *wrapped([judged] if judged else [], 3)],
         process.table() if process else [],
         wrapped(list(process.remaining), 2) if process else [],
         wrapped(list(process.next), 3) if process else [],
@@ -59,8 +61,10 @@ def process_lines(plan: Plan, story: Story, most: int) -> list[str]:
     return lines if len(lines) <= most else [*lines[: most - 1], "More: -v, or the review page."]
 
 
-def _doubts(story: Story) -> list[str]:
-    return [f"{line.mark} {line.text}" for lines in story.doubts.values() for line in lines]
+def _doubts(plan: Plan, story: Story) -> list[str]:
+    """What makes the verdicts unsure, but for warnings that stand above in other words."""
+    above = {f"{text}." for text in repeated_warnings(plan)} if plan.process else set()
+    return [f"{line.mark} {line.text}" for lines in story.doubts.values() for line in lines if line.text not in above]
 
 
 def _unsure(plan: Plan, story: Story) -> list[str]:

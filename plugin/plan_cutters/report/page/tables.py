@@ -10,6 +10,7 @@ from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters.plan_file.shares import VERDICTS, reached
 from plan_cutters.plan_file.words import answers, cutters, headline
 from plan_cutters.plan_file.words.chip import CHIPS, chip
+from plan_cutters.plan_file.words.doubts import repeated_warnings
 from plan_cutters.plan_file.words.names import named
 from plan_cutters.plan_file.words.next_steps import step_text
 from plan_cutters.plan_file.words.story import Story, story_of
@@ -75,6 +76,7 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
         "more": more,
         "faces": faces[:_FACES],
         "unlisted": len(faces[_FACES:]),
+        "warnings": [text for text in plan.part.warnings if not plan.process or text not in repeated_warnings(plan)],
         "doubts": [line for each in story.doubts.values() for line in each],
         "asked": bool(plan.largest_radius) or any(c.least_stick_out or c.mend for c in plan.cutters),
         "effective": _effective(plan),

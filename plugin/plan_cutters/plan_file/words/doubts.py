@@ -1,0 +1,122 @@
+"""Say what changes what one does, before the process: a line each, the gravest first."""
+
+from collections.abc import Iterator, Sequence
+
+from plan_cutters.plan_file.model import CutterEntry, Plan
+from plan_cutters.plan_file.nearest import nearest
+from plan_cutters.plan_file.numbers import ROUNDING, count, listed, mm, ranges
+from plan_cutters.plan_file.words.names import named
+
+#: A tolerance that is this many times what was requested was raised; so many faces are named.
+_RAISED, _FACES = 1.001, 3
+
+
+def doubts(plan: Plan) -> list[str]:
+    """All doubts about a plan, for people; empty where there is none.
+
+    Parameters
+    ----------
+    plan : Plan
+        With its process, if it has one.
+
+    Returns
+    -------
+    list of str
+        Whole sentences.
+    """
+    lines = (*_unit(plan), *_travel(plan), *_held(plan), *_unheld(plan), *_side(plan), *_sheets(plan), *_tolerance(plan))
+    return [named(plan, line) for line in lines]
+
+
+def repeated_warnings(plan: Plan) -> set[str]:
+    """Warnings on the part that the doubts say in other words."""
+    return {text for text in (plan.part.unit_doubt, plan.part.sheets_doubt) if text}
+
+
+def _unit(plan: Plan) -> Iterator[str]:
+    if plan.part.unit_doubt:
+        yield f"The part is {mm(max(plan.part.size_mm))} long: if that is wrong, --unit gives the right unit."
+
+
+def _travel(plan: Plan) -> Iterator[str]:
+    """The machine's travel: shorter than the surface, or exceeded at the postures found."""
+    name = plan.machine.name
+    short = sorted((each for each in plan.machine.linear if each.short_mm > 0.0), key=lambda each: (-each.short_mm, each.name))
+    if short:
+        each_axis = " and ".join(
+            f"{mm(each.extent_mm)} to machine along {each.name}, {mm(each.short_mm)} more than the travel" for each in short
+        )
+        yield f"The part does not fit machine {name}: {each_axis}."
+        return
+    entry = _shown(plan).travel
+    if entry is not None and entry.outside:
+        by = " and ".join(f"{each.axis} by up to {mm(each.beyond_mm)}" for each in entry.worst)
+        yield f"Beyond the travel of {name} at {entry.outside:,} of {count(entry.judged, 'posture')}: {by}."
+
+
+def _held(plan: Plan) -> Iterator[str]:
+    """Steps from below, at rotary angles, in setups in which nothing holds the part."""
+    process = plan.process
+    if process is None or not plan.machine.rotary:
+        return
+    holds = {setup for fixture in plan.fixtures for setup in fixture.setups}
+    below = [k for k, step in enumerate(process.steps, 1) if step.below_mm2 > 0.0 and step.setup not in holds]
+    if not below:
+        return
+    steps = [process.steps[k - 1] for k in below]
+    partly = all(step.below_mm2 < step.area_mm2 * (1.0 - ROUNDING) for step in steps)
+    which = f"step {below[0]} comes" if len(below) == 1 else f"steps {_runs(below)} come"
+    setups = {step.setup for step in steps}
+    where = f" in setup {setups.pop() + 1}" if holds and len(setups) == 1 else ""
+    yield f"No fixture was given{where}: {which} from below{' in part' if partly else ''}."
+
+
+def _unheld(plan: Plan) -> Iterator[str]:
+    """Tools of a library that do not fit their holders."""
+    tools = [(tool.name or tool.place, tool.why) for library in plan.libraries for tool in library.unused if tool.unheld]
+    if tools:
+        more = f" ({len(tools) - 1} more)" if len(tools) > 1 else ""
+        yield f"A tool does not fit its holder and is not used{more}: {tools[0][0]}, {tools[0][1]}."
+
+
+def _side(plan: Plan) -> Iterator[str]:
+    faces = plan.part.guessed_faces
+    if faces and len(faces) >= sum(not face.ignored for face in plan.faces):
+        yield "An open shell: which side is material is a guess; --flip takes the other one."
+    elif faces:
+        yield f"Which side of {listed(faces, _FACES)} is material is a guess; --flip takes the other one."
+
+
+def _sheets(plan: Plan) -> Iterator[str]:
+    faces = plan.part.loose_faces
+    if faces:
+        verb = "stands" if len(faces) == 1 else "stand"
+        what, them = ("a construction sheet does", "it") if len(faces) == 1 else ("construction sheets do", "them")
+        option = f"--ignore {ranges(int(face[1:]) for face in faces)}"
+        yield f"{listed(faces, _FACES)} {verb} in no solid, as {what}: {option} leaves {them} out."
+
+
+def _tolerance(plan: Plan) -> Iterator[str]:
+    requested, met = plan.effective.tolerance_requested_mm, plan.effective.tolerance_mm
+    if requested is not None and met > _RAISED * requested:
+        yield f"The tolerance had to be raised from {mm(requested)} to {mm(met)}: the triangles follow the surface no closer."
+
+
+def _shown(plan: Plan) -> CutterEntry:
+    return next((c for c in plan.cutters if c.id == plan.shown), None) or nearest(plan.cutters)
+
+
+def _runs(numbers: Sequence[int]) -> str:
+    """Ascending numbers in words.
+
+    >>> _runs([2, 3, 4, 5, 6]), _runs([1, 2]), _runs([1, 3, 4, 5])
+    ('2 to 6', '1 and 2', '1 and 3 to 5')
+    """
+    runs: list[list[int]] = []
+    for number in numbers:
+        if runs and number == runs[-1][-1] + 1:
+            runs[-1].append(number)
+        else:
+            runs.append([number])
+    texts = [text for run in runs for text in ([f"{run[0]} to {run[-1]}"] if len(run) > 2 else map(str, run))]
+    return " and ".join(filter(None, (", ".join(texts[:-1]), texts[-1])))

@@ -1,0 +1,135 @@
+"""What changes what one does stands above the process, a line each; where nothing is doubtful there is no line."""
+
+import pytest
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
+from OCP.gp import gp_Dir, gp_Pln, gp_Pnt
+
+from plan_cutters import Machine, plan
+from plan_cutters.domain.axis import Axis
+from plan_cutters.domain.placement import Placement
+from plan_cutters.library.read import read_library
+from plan_cutters.plan_file.words.doubts import doubts
+from plan_cutters.plan_file.words.text import text_of
+from plan_cutters.report.page.write import page
+from tests.support.cad_parts import box, compound
+
+FEW = {"faces": "all", "grid": 5, "area_budget": 0}
+X, Y, Z = (1, 0, 0), (0, 1, 0), (0, 0, 1)
+
+
+def linear(name, direction, limits):
+    return Axis(name, "linear", "tool", direction, limits)
+
+
+def sheet(z=10.0, half=30.0):
+    """A reference plane that cuts a body."""
+    return BRepBuilderAPI_MakeFace(gp_Pln(gp_Pnt(10, 10, z), gp_Dir(0, 0, 1)), -half, half, -half, half).Face()
+
+
+@pytest.fixture(scope="module")
+def block():
+    """A closed solid of a usual size whose top is machined with any axis."""
+    return plan(box(20, 20, 20), cutters=["D6L60"], **FEW | {"faces": "F6"})
+
+
+def test_nothing_is_doubtful_of_a_plain_solid(block):
+    assert block.plan.process.doubts == []
+    assert doubts(block.plan) == []
+
+
+def test_an_unusual_size_doubts_the_unit_and_is_told_once():
+    result = plan(box(5000, 20, 20), cutters=["D6L60"], **FEW)
+    (line,) = result.plan.process.doubts
+    assert "5,000 mm" in line
+    assert "--unit" in line
+    lines = " ".join(text_of(result.plan).lines)
+    assert lines.index(line[:30]) == 0
+    assert "outside 1 to 3000" not in lines
+    html = page(result).decode()
+    assert line in html
+    assert "outside 1 to 3000" not in html[: html.index("<main>")]
+
+
+def test_a_sheet_beside_a_solid_is_named_with_the_option_that_leaves_it_out():
+    part = compound(box(20, 20, 20), sheet())
+    line = plan(part, cutters=["D6L60"], **FEW).plan.process.doubts[-1]
+    assert line.startswith("F7 stands in no solid, as a construction sheet does: --ignore F7 ")
+    ignored = plan(part, cutters=["D6L60"], ignore="F7", **FEW).plan
+    assert ignored.process.doubts == []
+    assert ignored.part.loose_faces == []
+
+
+def test_faces_without_a_solid_are_no_sheets_but_their_side_is_a_guess():
+    (line,) = plan(sheet(), cutters=["D6L60"], **FEW).plan.process.doubts
+    assert "a guess" in line
+    assert "--flip" in line
+
+
+@pytest.mark.parametrize(("long", "short"), [(120.0, 20.0), (100.0, 0.0)])
+def test_a_part_that_is_longer_than_the_travel_is_told_by_how_much(long, short):
+    machine = Machine("small", axes=(linear("X", X, (-50, 50)), linear("Y", Y, (-50, 50)), linear("Z", Z, None)), fixed=True)
+    document = plan(box(20, long, 20), cutters=["D6L60"], machine=machine, **FEW | {"faces": "F6"}).plan
+    by_name = {each.name: each for each in document.machine.linear}
+    assert by_name["Y"].extent_mm == pytest.approx(long, rel=0.01)
+    assert by_name["Z"].limits_mm == (None, None)
+    if short:
+        (line,) = document.process.doubts
+        assert line == "The part does not fit machine small: 120 mm to machine along Y, 20 mm more than the travel."
+    else:
+        assert document.process.doubts == []
+
+
+def test_travel_that_postures_exceed_is_told_where_the_part_as_such_would_fit():
+    axes = (linear("X", X, (-500, 500)), linear("Y", Y, (-500, 500)), linear("Z", Z, (0, 50)))
+    machine = Machine("low", axes=axes, fixed=True)
+    placement = Placement(z=(0.0, 0.0, 1.0), origin=(0.0, 0.0, 0.0))
+    (line,) = plan(
+        box(20, 20, 20), cutters=["D6L60"], machine=machine, setup=placement, **FEW | {"faces": "F6"}
+    ).plan.process.doubts
+    assert line.startswith("Beyond the travel of low at 25 of 25 postures: Z by up to 30 mm")
+
+
+def test_steps_from_below_need_something_that_holds_the_part():
+    part, under = box(20, 20, 20), {"faces": "F5"}
+    free = plan(part, cutters=["D6L60"], machine="trunnion-ac", setup=(0.0, 0.6, 0.8), **FEW | under).plan
+    assert free.process.steps[0].below_mm2 == pytest.approx(400.0)
+    assert free.process.doubts == ["No fixture was given: step 1 comes from below."]
+    held = plan(
+        part, cutters=["D6L60"], machine="trunnion-ac", setup=(0.0, 0.6, 0.8), fixtures="box:5,5,5@100,0,0", **FEW | under
+    )
+    assert held.plan.process.steps[0].below_mm2 == pytest.approx(400.0)
+    assert held.plan.process.doubts == []
+    # Without rotary axes nobody turns the part.
+    assert plan(part, cutters=["D6L60"], setup=(0.0, 0.6, 0.8), **FEW | under).plan.process.doubts == []
+
+
+def test_from_above_and_level_is_not_from_below():
+    walls = plan(box(20, 20, 20), cutters=["D6L60"], machine="trunnion-ac", **FEW | {"faces": "1-4,6"}).plan
+    assert sum(step.below_mm2 for step in walls.process.steps) < walls.process.finished_mm2
+    level = plan(box(20, 20, 20), cutters=["D6L60"], machine="tilt:90", **FEW | {"faces": "1-4,6"}).plan
+    assert all(step.below_mm2 == 0.0 for step in level.process.steps)
+
+
+def test_a_tool_that_its_holder_cannot_take_is_told(tmp_path):
+    file = tmp_path / "drawer.toml"
+    tools = (
+        f'[[tool]]\nname = "{name}"\ntype = "flat"\nDC = {size}\nLCF = 10\nLPR = 60\nDMM = {size}\nholder = "er16"\n'
+        for name, size in (("thick", 16), ("thin", 6))
+    )
+    file.write_text('unit = "mm"\n' + "".join(tools))
+    library = read_library(file, skip_bad=True)
+    (unused,) = library.unused
+    assert unused.unheld
+    (line,) = plan(box(20, 20, 20), libraries=library, **FEW | {"faces": "F6"}).plan.process.doubts
+    assert line.startswith("A tool does not fit its holder and is not used: thick")
+
+
+def test_a_raised_tolerance_says_from_where_to_where(block):
+    effective = block.plan.effective.model_copy(update={"tolerance_mm": 0.064})
+    (line,) = doubts(block.plan.model_copy(update={"effective": effective}))
+    assert "from 0.01 mm to 0.064 mm" in line
+
+
+def test_older_plans_have_no_doubts_that_they_do_not_know(block):
+    effective = block.plan.effective.model_copy(update={"tolerance_requested_mm": None})
+    assert doubts(block.plan.model_copy(update={"process": None, "effective": effective})) == []
