@@ -103,7 +103,7 @@ def _compared(result: Result, ranking: Ranking, chosen: tuple[int, ...]) -> tupl
     """Find the share of area that a plan reaches, the part of what was promised that it holds, and the setup that lost most."""
     samples, ready = result.samples, ranking.ready
     reached = np.logical_or.reduce([each.reached for each in result.reaches.values()]) & result.ready.finished
-    whole = float(np.nansum(ready.samples.area[ready.finished]))
+    whole = float(np.nansum(samples.area[result.ready.finished]))
     reached_share = float(np.nansum(samples.area[reached])) / max(1e-300, whole)
     # Samples may stand elsewhere, for another tolerance is kept: the nearest one answers.
     near = cKDTree(samples.point).query(ready.samples.point[ranking.rows])[1]
