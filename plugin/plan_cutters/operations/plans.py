@@ -181,7 +181,7 @@ def clearance_of(task: Task, operation: Operation) -> float | None:
 
 def _clearance(task: Task, operation: Operation, held: Verdicts) -> float | None:
     """The least clearance of postures of an operation; None where nothing is known."""
-    samples = at_fixed_axis(task.ready.samples, held)
+    samples = at_fixed_axis(task.ready.samples, held, task.ready.conditions.tolerance)
     clearance = least_clearance(samples, operation.cutter, held, task.ready.setups[operation.setup])
     return clearance if math.isfinite(clearance) else None
 
