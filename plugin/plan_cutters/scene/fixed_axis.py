@@ -101,8 +101,8 @@ def held_at(axes: Floats, number: Ints, samples: SurfaceSamples, context: Contex
 
     Where the axis is the normal within the accuracy of the axes, and the cutter stands with the contact under the flat of its
     tip, the tilt is 0 and the tilt direction goes from the axis to the contact; 1 at the rim of the flat, shorter within. Where
-    its flank stands along a wall, and keeps the tolerance from it, the tilt is a right angle and the tilt direction the axis:
-    about `at_fixed_axis` samples.
+    its flank stands along a wall, and keeps the tolerance from it, the tilt is a right angle and the tilt direction the axis,
+    twice as long as others: all about `at_fixed_axis` samples.
     """
     from plan_cutters.kernels.search.fixed_axis import ALONG, LEANING, UPRIGHT
 
@@ -122,7 +122,7 @@ def held_at(axes: Floats, number: Ints, samples: SurfaceSamples, context: Contex
 
 def along(held: Verdicts) -> NDArray[np.bool_]:
     """Samples (n,) at which the flank stands along a wall, at a distance of the tolerance, as `held_at` writes them."""
-    return np.asarray((held.tilt == 0.5 * np.pi) & (held.tilt_direction == held.axis).all(axis=1))
+    return np.asarray(np.linalg.norm(held.tilt_direction, axis=1) > 1.5)
 
 
 def at_fixed_axis(samples: SurfaceSamples, held: Verdicts, tolerance: float) -> SurfaceSamples:

@@ -61,7 +61,7 @@ def _stands(row, axis, contacts, low, high, about, tool, solids, body, sides, wo
             cross(x, axis, t)
             for k in range(3):
                 f[k] = p[k] + away * x[k]
-                lean[k] = axis[k]
+                lean[k] = 2.0 * axis[k]
             stand(body, Frame(f, x, axis, t), 0.0, 1.0, tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])
             free, hint = _is_free(body, mode, tool, solids, workspace, hint)
             if free:
@@ -115,7 +115,7 @@ def served(rows, axis, contacts, low, high, about, tool, solids, way, tilt_direc
         the contact under the flat. ALONG: it is free with its flank along the wall, at its distance.
     tilt_direction : (m or 0, 3) float64, written
         Where the tool leans: a unit direction; UPRIGHT the way from the axis to the contact, 1 at the rim of the flat; ALONG the
-        axis. Nothing is written if it has no rows.
+        axis, 2 long. Nothing is written if it has no rows.
 
     Returns
     -------
