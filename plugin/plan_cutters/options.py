@@ -134,7 +134,8 @@ class Options:
     index_step : float, optional
         Rotary axes lock at whole multiples of this angle alone, rad. None: anywhere.
     axis_accuracy : float
-        Of the rotary axes, rad: orientations of one setup that are nearer than this are one.
+        Of the rotary axes, rad: orientations of one setup that are nearer than this are one; floors and walls that are off the
+        tool axis by no more are square to it or along it.
     index_time : float, optional
         Seconds that another orientation takes. None: what the machine's rotary axes need by their rates, else 5 s.
     change_time, setup_time : float

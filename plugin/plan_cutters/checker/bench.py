@@ -143,9 +143,7 @@ class Bench:
             verdict[upright] = self._under_flat(setup, tool, rows[upright], axis[upright], clock, surely=surely)
         return verdict
 
-    def _under_flat(
-        self, setup: int, tool: Tool, rows: Rows, axis: Floats, clock: Clock, *, surely: bool
-    ) -> NDArray[np.int8]:
+    def _under_flat(self, setup: int, tool: Tool, rows: Rows, axis: Floats, clock: Clock, *, surely: bool) -> NDArray[np.int8]:
         """Whether an upright tool stands free anywhere with a contact under its flat: `FREE`, `MET`, or `OPEN`."""
         first, limits = self.question.samples["direction_max"], self._limits(tool, surely=surely)
         uv = np.array([across(a, first[row]) for a, row in zip(axis, rows.tolist(), strict=True)])

@@ -1,7 +1,7 @@
 """Where a tool may stand upright, so that a contact lies under the flat of its tip.
 
-Places are pairs (u, v) across the axis, from the contact. A point of the surface that is too deep in the tool at one place is so at
-all places that are as near to it: each forbids a disk. Of the places that are left one is on the rim of the flat or where the
+Places are pairs (u, v) across the axis, from the contact. A point of the surface that is too deep in the tool at one place is so
+at all places that are as near to it: each forbids a disk. Of the places that are left one is on the rim of the flat or where the
 borders of two disks cross.
 """
 
@@ -91,7 +91,7 @@ def _crossings(one: Floats, other: Floats) -> Floats:
 
 
 def reach_at(solid: Solid, height: float, deep: float, within: float) -> float:
-    """The distance from the axis up to which a point at a height is deeper in a solid than `deep`; `within` is so, or is taken."""
+    """Up to which distance from the axis a point at a height is deeper in a solid than `deep`: `within` is so, or is taken."""
     low, high = within, within + 2.0 * float(np.abs(solid.border).max())
     for _ in range(_HALVINGS):
         middle = 0.5 * (low + high)

@@ -39,8 +39,8 @@ from plan_cutters.kernels.codes import (
 from plan_cutters.kernels.rows import Tool
 from plan_cutters.operations.cover import UNIT, fewest, relax
 from plan_cutters.operations.probes import Probes
-from plan_cutters.scene.fixed_axis import FLAT
 from plan_cutters.scene.conditions import Context, contacts_of
+from plan_cutters.scene.fixed_axis import FLAT
 
 Rows = NDArray[np.int64]
 #: Halvings of the icosahedron's sides that make the first cells: 320 of them, about 10 deg in radius.

@@ -15,15 +15,7 @@ from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.tolerance import depths
-from plan_cutters.domain.verdicts import (
-    ACCESSIBLE,
-    INACCESSIBLE,
-    INSIDE,
-    NO_REASON,
-    UNDECIDED,
-    VerdictBuffer,
-    blank,
-)
+from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INSIDE, NO_REASON, UNDECIDED, VerdictBuffer, blank
 from plan_cutters.kernels.rows import Contacts, Ranges, Rotary, Tool, VerdictArrays
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings

@@ -4,7 +4,7 @@ Places are pairs (u, v) in the plane across the axis, from the contact. What a c
 point it meets from all places nearer to that point than the piece's radius at the point's height. So a triangle that was met
 forbids at least what is nearer to a part of it than a radius: a convex polygon, grown. Places are left only outside all of these
 and within the flat's radius. If any are left there is one among few: on the rim of the flat, or where two borders cross
-(`docs/at_a_sample.md`, lemma S7). Each place is tried with all of the tool, as a search tries a posture.
+(`docs/at_a_sample.md`, lemma S6). Each place is tried with all of the tool, as a search tries a posture.
 """
 
 from typing import Any, NamedTuple
@@ -32,8 +32,8 @@ LEAST_SHARE = 1e-6
 
 
 class Flat(NamedTuple):
-    """This is a workspace: what is forbidden, corner (s, c, 2), corners (s,) and radius (s,) of grown polygons; border (b, 5), the
-    lines (0, from, to) and circles (1, centre, radius) around these; place (p, 2), how far each is from what is forbidden,
+    """This is a workspace: what is forbidden, corner (s, c, 2), corners (s,) and radius (s,) of grown polygons; border (b, 5),
+    the lines (0, from, to) and circles (1, centre, radius) around these; place (p, 2), how far each is from what is forbidden,
     room (p,), and whether it is open (p,). counts (3,): how many of each there are. A body for the tool."""
 
     corner: Any
@@ -54,8 +54,8 @@ def flat_workspace():
     """Make a workspace."""
     return Flat(
         np.empty((_SHAPES, _CORNERS, 2)), np.zeros(_SHAPES, np.int64), np.empty(_SHAPES), np.empty((_BORDERS, 5)),
-        np.empty((_PLACES, 2)), np.empty(_PLACES), np.zeros(_PLACES, np.bool_), np.zeros(3, np.int64), np.empty(BODY), np.empty(3),
-        scratch(),
+        np.empty((_PLACES, 2)), np.empty(_PLACES), np.zeros(_PLACES, np.bool_), np.zeros(3, np.int64), np.empty(BODY),
+        np.empty(3), scratch(),
     )  # fmt: skip
 
 
