@@ -9,7 +9,7 @@ from plan_cutters.domain.assembly import assembly
 from plan_cutters.kernels.codes import OFFSET_OF
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.kernels.search.search import probe
-from plan_cutters.kernels.search.upright import FORBIDDEN, FOUND, upright
+from plan_cutters.kernels.search.upright import FORBIDDEN, PLACED, upright
 from plan_cutters.scene.conditions import tool_of
 from plan_cutters.scene.obstacles import Obstacles
 
@@ -58,12 +58,12 @@ def test_a_place_is_found_just_where_there_is_one(name):
     tool = tool_of(assembly(CUTTERS[name], 0.0, 0.0))
     leans = grid(float(tool.mode[0, OFFSET_OF]))
     contact = Contacts(np.zeros((1, 3)), np.array([[0.0, 0.0, 1.0]]), np.array([[1.0, 0.0, 0.0]]), np.zeros((1, 2)))
-    results = {FOUND: 0, FORBIDDEN: 0}
+    results = {PLACED: 0, FORBIDDEN: 0}
     for corner in scenes(150, 7):
         solids = Obstacles(Triangles(corner, np.ones(len(corner), np.int32), 0.0, ())).solids
         found, lean = np.empty(1, np.int8), np.full((1, 3), np.nan)
         upright(np.zeros(1, np.int64), contact, tool, solids, 0.5, 0.0, found, lean)
-        if found[0] == FOUND:
+        if found[0] == PLACED:
             assert np.linalg.norm(lean) <= 1.0 + 1e-9
             assert free_at(lean, tool, solids).all()
         else:
@@ -94,4 +94,4 @@ def test_what_is_no_number_is_in_the_way():
     found = np.empty(1, np.int8)
     solids = solids._replace(tree=solids.tree._replace(vertex=broken))
     upright(np.zeros(1, np.int64), contact, tool, solids, 0.5, 0.0, found, np.full((1, 3), np.nan))
-    assert found[0] != FOUND
+    assert found[0] != PLACED

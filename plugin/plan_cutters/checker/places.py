@@ -37,38 +37,38 @@ class Places:
     disk : (k, 3) float
         What is forbidden: centres and radii, mm.
     open_ : (n, 2) float
-        Places that may be free, and `room`, how far each is from all disks.
+        Places that may be free, and `margin`, how far each is from all disks.
     """
 
     most: float
     disk: Floats = field(default_factory=lambda: np.zeros((0, 3)))
     open_: Floats = field(default_factory=lambda: np.zeros((0, 2)))
-    room: Floats = field(default_factory=lambda: np.zeros(0))
+    margin: Floats = field(default_factory=lambda: np.zeros(0))
 
     def __post_init__(self) -> None:
         self.open_ = first_places(self.most)
-        self.room = np.full(len(self.open_), np.inf)
+        self.margin = np.full(len(self.open_), np.inf)
 
     @property
     def best(self) -> Floats | None:
-        """The place with the most room; None if all are forbidden."""
-        return self.open_[int(self.room.argmax())] if len(self.open_) else None
+        """The place farthest from all disks; None if all are forbidden."""
+        return self.open_[int(self.margin.argmax())] if len(self.open_) else None
 
     def forbid(self, centre: Floats, radius: float) -> None:
         """Forbid the places that are nearer to a point (2,) than a radius; the one that was tried last is among them."""
-        tried = int(self.room.argmax())
+        tried = int(self.margin.argmax())
         left = np.arange(len(self.open_)) != tried
         new = np.array([[*centre, radius + _APART]])
         crossing = np.concatenate([_crossings(new[0], each) for each in [*self.disk, np.array([0.0, 0.0, self.most])]])
         self.disk = np.concatenate([self.disk, new])
         crossing = crossing[np.linalg.norm(crossing, axis=1) <= self.most + _ROUNDING]
         every = np.concatenate([self.open_[left], crossing])
-        room = np.concatenate([self.room[left], np.full(len(crossing), np.inf)])
+        margin = np.concatenate([self.margin[left], np.full(len(crossing), np.inf)])
         if len(every):
-            room = np.minimum(room, _away(every, new))
+            margin = np.minimum(margin, _away(every, new))
             crossed = np.arange(len(every)) >= left.sum()
-            room[crossed] = _away(every[crossed], self.disk)
-        self.open_, self.room = every[room >= -_ROUNDING], room[room >= -_ROUNDING]
+            margin[crossed] = _away(every[crossed], self.disk)
+        self.open_, self.margin = every[margin >= -_ROUNDING], margin[margin >= -_ROUNDING]
 
 
 def _away(place: Floats, disk: Floats) -> Floats:

@@ -16,7 +16,7 @@ from plan_cutters.plan_file.model import CutterEntry
 from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.numbers import exact
 from plan_cutters.plan_file.operations import OperationPlanEntry, OperationsEntry
-from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, RemainingEntry, ProcessEntry, ProcessStep
+from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, ProcessEntry, ProcessStep, RemainingEntry
 from plan_cutters.scene.preparation import Prepared
 
 #: Which plan of operations is the process: the first of these that there is.

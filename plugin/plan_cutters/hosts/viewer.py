@@ -128,8 +128,8 @@ def _posture(result: Result, cutter: Cutter, at: int | WitnessEntry) -> tuple[Fl
     size = float(np.linalg.norm(tilt_direction))
     if size < 1e-9:
         # Upright it says where under the tool the sample is.
-        found = result.reaches[cutter.id].tilt_direction[row]
-        tilt_direction, size = (found if tilt == 0.0 and np.isfinite(found).all() else samples.direction_max[row]), 1.0
+        own = result.reaches[cutter.id].tilt_direction[row]
+        tilt_direction, size = (own if tilt == 0.0 and np.isfinite(own).all() else samples.direction_max[row]), 1.0
     one = blank(1)
     one.axis[0], one.tilt_direction[0], one.tilt[0] = axis, tilt_direction / size, tilt
     tip = tips(cutter, samples.point[row : row + 1], normal[None], one.freeze())[0]

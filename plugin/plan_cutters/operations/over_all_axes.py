@@ -57,7 +57,7 @@ _PIECES = 60
 _TURNS = np.geomspace(2.0, 16.0, 10)
 _ROUNDING = 1e-6
 #: Of a tool that stands as it leans alone, for the kernel: neither upright nor along a wall.
-_AS_IT_LEANS = (-1.0, -1.0, False)
+_TILTED_ALONE = (-1.0, -1.0, False)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -181,7 +181,16 @@ class OpenCells:
                 for tool in self._bodies(c, s, number, psi, along) if len(open_rows) else ():
                     decided = np.full(len(open_rows), -1, np.int8)
                     self.made += served(
-                        self.rows[mine[open_rows]], axis, contacts, -1.0, math.pi + 1.0, _AS_IT_LEANS, tool, solids, decided, none
+                        self.rows[mine[open_rows]],
+                        axis,
+                        contacts,
+                        -1.0,
+                        math.pi + 1.0,
+                        _TILTED_ALONE,
+                        tool,
+                        solids,
+                        decided,
+                        none,
                     )
                     open_rows = open_rows[decided >= 0]
                 free[open_rows] = True

@@ -270,28 +270,28 @@ def on_the_flat(contacts: Contacts, rows: NDArray[np.int64], context: Context, v
         # Rotations that are limited say which side of the bottom touches.
         return
     from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
-    from plan_cutters.kernels.search.upright import FORBIDDEN, FOUND, upright
+    from plan_cutters.kernels.search.upright import FORBIDDEN, PLACED, upright
 
     rows = rows[conditions.upright(contacts.normal[rows]) & (verdicts.reason[rows] != INSIDE)]
     n = len(contacts.normal)
     possible, certain = conditions.obstacles.solids, conditions.surroundings.certain.solids
-    tilt_direction, found = np.full((n, 3), np.nan), np.full(n, FORBIDDEN, np.int8)
+    tilt_direction, state = np.full((n, 3), np.nan), np.full(n, FORBIDDEN, np.int8)
 
     def tried(tool: Tool, solids: Any, within: float, apart: float, some: NDArray[np.int64]) -> None:
         in_chunks(
-            lambda piece: upright(piece, contacts, tool, solids, within, apart, found, tilt_direction), some, conditions.jobs
+            lambda piece: upright(piece, contacts, tool, solids, within, apart, state, tilt_direction), some, conditions.jobs
         )
 
     tried(context.outer, possible, MAYBE_INSIDE, 0.0, rows)
-    free = rows[found[rows] == FOUND]
+    free = rows[state[rows] == PLACED]
     verdicts.verdict[free], verdicts.reason[free], verdicts.tilt[free] = ACCESSIBLE, NO_REASON, 0.0
     verdicts.axis[free], verdicts.tilt_direction[free] = contacts.normal[free], tilt_direction[free]
     turn = rotations_of(contacts.normal[free], contacts.direction_max[free], tilt_direction[free])
     steps = len(conditions.postures.rotations)
     verdicts.rotation[free] = np.rint(turn * (steps / (2.0 * np.pi))).astype(np.int32) % steps
-    rest = rows[(found[rows] != FOUND) & (verdicts.verdict[rows] == INACCESSIBLE)]
+    rest = rows[(state[rows] != PLACED) & (verdicts.verdict[rows] == INACCESSIBLE)]
     tried(context.inner, certain, SURELY_INSIDE, _NO_PLACE, rest)
-    verdicts.verdict[rest[found[rest] != FORBIDDEN]] = UNDECIDED
+    verdicts.verdict[rest[state[rest] != FORBIDDEN]] = UNDECIDED
 
 
 def warm(contacts: Contacts, context: Context) -> None:

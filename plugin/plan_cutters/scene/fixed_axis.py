@@ -109,12 +109,12 @@ def held_at(axes: Floats, number: Ints, samples: SurfaceSamples, context: Contex
     verdicts = blank(len(number))
     for k, axis in enumerate(axes):
         rows = np.flatnonzero(number == k)
-        every, _, found = _tested(rows, axis[None], samples, context, directions=True)
+        every, _, directions = _tested(rows, axis[None], samples, context, directions=True)
         way, cosine = every[0], samples.normal[rows] @ axis
         across = np.linalg.norm(np.cross(samples.normal[rows], axis), axis=1)
         stands = (way > LEANING)[:, None]
         verdicts.axis[rows] = axis
-        verdicts.tilt_direction[rows] = np.where(stands, found[0], tilt_direction_of(rows, axis, samples))
+        verdicts.tilt_direction[rows] = np.where(stands, directions[0], tilt_direction_of(rows, axis, samples))
         verdicts.tilt[rows] = np.select([way == UPRIGHT, way == ALONG], [0.0, 0.5 * np.pi], np.arctan2(across, cosine))
         verdicts.verdict[rows] = ACCESSIBLE
     return verdicts.freeze()

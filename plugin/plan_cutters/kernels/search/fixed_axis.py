@@ -13,7 +13,7 @@ from plan_cutters.kernels.linear.vectors import cross, dot
 from plan_cutters.kernels.material import MAYBE_INSIDE
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search.place import inside, mode_at
-from plan_cutters.kernels.search.upright import FOUND, find_place, flat_workspace, place_to_lean
+from plan_cutters.kernels.search.upright import PLACED, find_place, flat_workspace, place_to_direction
 from plan_cutters.kernels.tool.hit import BODY, scratch, stand, tree_hit
 
 #: Sines of a tilt below which the axis is the normal, and leans nowhere.
@@ -24,7 +24,7 @@ _RIGHT = 0.5 * np.pi
 
 
 @kernel
-def _stands(row, axis, contacts, low, high, about, tool, solids, body, sides, workspace, flat, hint, lean):
+def _stands(row, axis, contacts, low, high, about, tool, solids, body, sides, workspace, flat, hint, direction):
     """Return how the tool stands free at a contact with an axis, as `served` writes it, and the triangle in its way last."""
     accuracy, away, whole_turn = about
     p, n, e1 = contacts.point[row], contacts.normal[row], contacts.direction_max[row]
@@ -36,7 +36,7 @@ def _stands(row, axis, contacts, low, high, about, tool, solids, body, sides, wo
     tilt = np.arctan2(sine, cosine)
     for k in range(3):
         f[k] = f[k] / sine if sine > _UPRIGHT else e1[k]
-        lean[k] = f[k]
+        direction[k] = f[k]
     cross(n, f, t)
     mode = mode_at(tool, tilt)
     if mode >= 0 and low <= tilt <= high:
@@ -50,9 +50,9 @@ def _stands(row, axis, contacts, low, high, about, tool, solids, body, sides, wo
         if most > 0.0:
             _across(e1, axis, x)
             # Without the hint: wherever it is asked for, the same place is found.
-            found, hint = find_place(p, axis, x, tool, mode, most, solids, MAYBE_INSIDE, 0.0, -1, flat, place)
-            if found == FOUND:
-                place_to_lean(place, x, flat.y, most, lean)
+            result, hint = find_place(p, axis, x, tool, mode, most, solids, MAYBE_INSIDE, 0.0, -1, flat, place)
+            if result == PLACED:
+                place_to_direction(place, x, flat.y, most, direction)
                 return UPRIGHT, hint
     if away >= 0.0 and abs(tilt - _RIGHT) <= accuracy and low <= _RIGHT <= high:
         mode = mode_at(tool, _RIGHT)
@@ -61,7 +61,7 @@ def _stands(row, axis, contacts, low, high, about, tool, solids, body, sides, wo
             cross(x, axis, t)
             for k in range(3):
                 f[k] = p[k] + away * x[k]
-                lean[k] = 2.0 * axis[k]
+                direction[k] = 2.0 * axis[k]
             stand(body, Frame(f, x, axis, t), 0.0, 1.0, tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])
             free, hint = _is_free(body, mode, tool, solids, workspace, hint)
             if free:
@@ -122,7 +122,7 @@ def served(rows, axis, contacts, low, high, about, tool, solids, way, tilt_direc
     int
         How many times the tool was put down: where the surface faces the axis.
     """
-    body, sides, lean = np.empty(BODY), np.empty((4, 3)), np.empty(3)
+    body, sides, direction = np.empty(BODY), np.empty((4, 3)), np.empty(3)
     workspace, flat = scratch(), flat_workspace()
     least, count, hint = np.cos(min(high, np.pi)) - 1e-9 - max(0.0, about[0]), 0, -1
     for i in range(len(rows)):
@@ -130,9 +130,9 @@ def served(rows, axis, contacts, low, high, about, tool, solids, way, tilt_direc
         if dot(axis, contacts.normal[rows[i]]) >= least:
             count += 1
             way[i], hint = _stands(
-                rows[i], axis, contacts, low, high, about, tool, solids, body, sides, workspace, flat, hint, lean
+                rows[i], axis, contacts, low, high, about, tool, solids, body, sides, workspace, flat, hint, direction
             )
             if way[i] != BLOCKED and len(tilt_direction):
                 for k in range(3):
-                    tilt_direction[i, k] = lean[k]
+                    tilt_direction[i, k] = direction[k]
     return count

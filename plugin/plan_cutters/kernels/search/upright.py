@@ -19,13 +19,13 @@ from plan_cutters.kernels.search.place import inside, mode_at
 from plan_cutters.kernels.tool.hit import BODY, HALF, OFFSET, A, P, X, Y, into_frame, scratch, tree_hit
 from plan_cutters.kernels.tool.pieces import clipped, shadow_area
 
-#: What a place is: none, none that could be (proved), or found.
-NONE, FORBIDDEN, FOUND = 0, 1, 2
-#: Grown polygons that are kept, their corners, lines and circles of all borders, and places.
+#: What a place is: none, none that could be (proved), or one where the tool was put down.
+NONE, FORBIDDEN, PLACED = 0, 1, 2
+#: Grown polygons that are complete, their corners, lines and circles of all borders, and places.
 _SHAPES, _CORNERS, _BORDERS, _PLACES = 64, 7, 1024, 1024
 #: Places that are looked at first: on the rim of the flat, halfway, and in the middle.
 _RIM, _RING = 36, 8
-#: Borders of places are kept apart from what is forbidden by this share of the flat's radius, at least so much, mm; rounding, mm.
+#: Borders of places are complete apart from what is forbidden by this share of the flat's radius, at least so much, mm; rounding, mm.
 _SHARE, _APART, _ROUNDING = 1e-6, 1e-7, 1e-9
 #: Lengths from the axis to the contact are no smaller share of the flat's radius: they say where the contact lies.
 LEAST_SHARE = 1e-6
@@ -34,14 +34,14 @@ LEAST_SHARE = 1e-6
 class Flat(NamedTuple):
     """This is a workspace: what is forbidden, corner (s, c, 2), corners (s,) and radius (s,) of grown polygons; border (b, 5),
     the lines (0, from, to) and circles (1, centre, radius) around these; place (p, 2), how far each is from what is forbidden,
-    room (p,), and whether it is open (p,). counts (3,): how many of each there are. A body for the tool."""
+    margin (p,), and whether it is open (p,). counts (3,): how many of each there are. A body for the tool."""
 
     corner: Any
     corners: Any
     radius: Any
     border: Any
     place: Any
-    room: Any
+    margin: Any
     open_: Any
     counts: Any
     body: Any
@@ -82,18 +82,18 @@ def _away(u, v, flat, s):
 
 @kernel
 def _add_place(u, v, most, flat):
-    """Enter a place that nothing known forbids; whether there was room for it."""
+    """Enter a place that nothing known forbids; whether there was space for it."""
     if u * u + v * v > most * most * (1.0 + 1e-12) + _ROUNDING * _ROUNDING:
         return True
-    room = np.inf
+    margin = np.inf
     for s in range(flat.counts[0]):
-        room = min(room, _away(u, v, flat, s))
-        if room < -_ROUNDING:
+        margin = min(margin, _away(u, v, flat, s))
+        if margin < -_ROUNDING:
             return True
     at = flat.counts[2]
     if at == len(flat.place):
         return False
-    flat.place[at, 0], flat.place[at, 1], flat.room[at], flat.open_[at] = u, v, room, True
+    flat.place[at, 0], flat.place[at, 1], flat.margin[at], flat.open_[at] = u, v, margin, True
     flat.counts[2] += 1
     return True
 
@@ -122,17 +122,17 @@ def _on_line(border, other, most, flat):
     square = half * half - a * c
     if square < 0.0:
         return True
-    kept = True
+    complete = True
     for sign in (-1.0, 1.0):
         s = (-half + sign * np.sqrt(square)) / a
         if -1e-9 <= s <= 1.0 + 1e-9:
-            kept = _add_place(x + s * ex, y + s * ey, most, flat) and kept
-    return kept
+            complete = _add_place(x + s * ex, y + s * ey, most, flat) and complete
+    return complete
 
 
 @kernel
 def _cross_borders(border, other, most, flat):
-    """Enter where two borders cross; whether there was room for it."""
+    """Enter where two borders cross; whether there was space for it."""
     if flat.border[border, 0] == 0.0:
         return _on_line(border, other, most, flat)
     if flat.border[other, 0] == 0.0:
@@ -145,8 +145,8 @@ def _cross_borders(border, other, most, flat):
     along = (d * d + r * r - q * q) / (2.0 * d)
     across = np.sqrt(max(0.0, r * r - along * along))
     dx, dy = dx / d, dy / d
-    kept = _add_place(x + along * dx - across * dy, y + along * dy + across * dx, most, flat)
-    return _add_place(x + along * dx + across * dy, y + along * dy - across * dx, most, flat) and kept
+    complete = _add_place(x + along * dx - across * dy, y + along * dy + across * dx, most, flat)
+    return _add_place(x + along * dx + across * dy, y + along * dy - across * dx, most, flat) and complete
 
 
 @kernel
@@ -162,18 +162,18 @@ def _add_border(kind, a, b, c, d, flat):
 
 @kernel
 def _forbid(flat, many, radius, apart, most):
-    """Forbid what is nearer than a radius to the polygon written behind the others; whether there was room for all of it."""
+    """Forbid what is nearer than a radius to the polygon written behind the others; whether there was space for all of it."""
     s, first = flat.counts[0], flat.counts[1]
     flat.corners[s], flat.radius[s] = many, radius + apart
     flat.counts[0] += 1
     for i in range(flat.counts[2]):
         if flat.open_[i]:
-            flat.room[i] = min(flat.room[i], _away(flat.place[i, 0], flat.place[i, 1], flat, s))
-            flat.open_[i] = flat.room[i] >= -_ROUNDING
-    r, kept = flat.radius[s], True
+            flat.margin[i] = min(flat.margin[i], _away(flat.place[i, 0], flat.place[i, 1], flat, s))
+            flat.open_[i] = flat.margin[i] >= -_ROUNDING
+    r, complete = flat.radius[s], True
     for i in range(many):
         x, y = flat.corner[s, i, 0], flat.corner[s, i, 1]
-        kept = _add_border(1.0, x, y, r, 0.0, flat) and kept
+        complete = _add_border(1.0, x, y, r, 0.0, flat) and complete
         j = i + 1 if i + 1 < many else 0
         if j == i or (many == 2 and i == 1):
             continue
@@ -182,11 +182,11 @@ def _forbid(flat, many, radius, apart, most):
         if size > 0.0:
             for side in (-r / size, r / size):
                 wx, wy = -ey * side, ex * side
-                kept = _add_border(0.0, x + wx, y + wy, x + ex + wx, y + ey + wy, flat) and kept
+                complete = _add_border(0.0, x + wx, y + wy, x + ex + wx, y + ey + wy, flat) and complete
     for i in range(first, flat.counts[1]):
         for k in range(first):
-            kept = _cross_borders(i, k, most, flat) and kept
-    return kept
+            complete = _cross_borders(i, k, most, flat) and complete
+    return complete
 
 
 @kernel
@@ -261,10 +261,10 @@ def _met(vertex, triangle, piece, k, hit, u, v, flat):
 
 @kernel
 def _best(flat):
-    """The open place with the most room, -1 for none; the first of those that have the same."""
+    """The open place farthest from what is forbidden, -1 for none; the first of those that are as far."""
     best = -1
     for i in range(flat.counts[2]):
-        if flat.open_[i] and (best < 0 or flat.room[i] > flat.room[best]):
+        if flat.open_[i] and (best < 0 or flat.margin[i] > flat.margin[best]):
             best = i
     return best
 
@@ -288,7 +288,7 @@ def find_place(p, axis, x, tool, mode, most, solids, within, apart, hint, flat, 
     within : float
         Winding number from which a place lies within a body.
     apart : float
-        Places are kept apart from what is forbidden by this, mm; what is left between is not found.
+        Places are held apart from what is forbidden by this, mm; what is left between is not found.
     hint : int
         Triangle to try first, or -1.
     flat : Flat
@@ -297,8 +297,8 @@ def find_place(p, axis, x, tool, mode, most, solids, within, apart, hint, flat, 
 
     Returns
     -------
-    found : int
-        FOUND; FORBIDDEN if what was met forbids all places, with `apart` more; or NONE.
+    result : int
+        PLACED; FORBIDDEN if what was met forbids all places, with `apart` more; or NONE.
     hint : int
         The triangle that was in the way last.
     """
@@ -327,7 +327,7 @@ def find_place(p, axis, x, tool, mode, most, solids, within, apart, hint, flat, 
         if triangle < 0:
             if inside(body, tool, mode, solids, flat.scratch.stack) < within:
                 place[0], place[1] = u, v
-                return FOUND, hint
+                return PLACED, hint
             return NONE, hint
         hint = triangle
         if counts[0] == len(flat.corner):
@@ -340,17 +340,17 @@ def find_place(p, axis, x, tool, mode, most, solids, within, apart, hint, flat, 
 
 
 @kernel
-def place_to_lean(place, x, y, most, lean):
+def place_to_direction(place, x, y, most, tilt_direction):
     """Write the way from the axis at a place to the contact: 1 long at the rim of the flat, and never nothing."""
     least = LEAST_SHARE * most
     if abs(place[0]) < least and abs(place[1]) < least:
         place[0] = -least
     for k in range(3):
-        lean[k] = -(place[0] * x[k] + place[1] * y[k]) / most
+        tilt_direction[k] = -(place[0] * x[k] + place[1] * y[k]) / most
 
 
 @entry
-def upright(rows, contacts, tool, solids, within, apart, found, tilt_direction):
+def upright(rows, contacts, tool, solids, within, apart, result, tilt_direction):
     """Look at contacts, each for itself, for a place of a tool along the normal with the contact under the flat of its tip.
 
     Parameters
@@ -361,19 +361,19 @@ def upright(rows, contacts, tool, solids, within, apart, found, tilt_direction):
     solids : Solids
     within, apart : float
         As for `find_place`.
-    found : (n,) int8, written
-        FOUND, FORBIDDEN or NONE; FORBIDDEN too where the tip has no flat.
+    result : (n,) int8, written
+        PLACED, FORBIDDEN or NONE; FORBIDDEN too where the tip has no flat.
     tilt_direction : (n, 3) float64, written
-        Where it is found: the way from the axis to the contact, 1 at the rim of the flat.
+        Where it is PLACED: the way from the axis to the contact, 1 at the rim of the flat.
     """
     flat, place = flat_workspace(), np.empty(2)
     mode = mode_at(tool, 0.0)
     most = tool.mode[mode, OFFSET_OF] if mode >= 0 else 0.0
     for row in rows:
-        found[row] = FORBIDDEN
+        result[row] = FORBIDDEN
         if most <= 0.0:
             continue
         n, e1 = contacts.normal[row], contacts.direction_max[row]
-        found[row], _ = find_place(contacts.point[row], n, e1, tool, mode, most, solids, within, apart, -1, flat, place)
-        if found[row] == FOUND:
-            place_to_lean(place, e1, flat.y, most, tilt_direction[row])
+        result[row], _ = find_place(contacts.point[row], n, e1, tool, mode, most, solids, within, apart, -1, flat, place)
+        if result[row] == PLACED:
+            place_to_direction(place, e1, flat.y, most, tilt_direction[row])
