@@ -25,7 +25,8 @@ NONE, FORBIDDEN, PLACED = 0, 1, 2
 _SHAPES, _CORNERS, _BORDERS, _PLACES = 64, 7, 1024, 1024
 #: Places that are looked at first: on the rim of the flat, halfway, and in the middle.
 _RIM, _RING = 36, 8
-#: Borders of places are complete apart from what is forbidden by this share of the flat's radius, at least so much, mm; rounding, mm.
+#: Borders of places are held apart from what is forbidden by this share of the flat's radius, at least so much, mm; and rounding,
+#: mm.
 _SHARE, _APART, _ROUNDING = 1e-6, 1e-7, 1e-9
 #: Lengths from the axis to the contact are no smaller share of the flat's radius: they say where the contact lies.
 LEAST_SHARE = 1e-6
