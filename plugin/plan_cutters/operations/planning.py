@@ -37,6 +37,7 @@ from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.proof import proved
 from plan_cutters.operations.rest_areas import allowed, by_size, largest_first, with_and_without, worths
 from plan_cutters.operations.timing import Paths, Problems, shared_area
+from plan_cutters.operations.walls import Walls
 from plan_cutters.options import Options
 from plan_cutters.plan_file.numbers import percent
 from plan_cutters.scene.preparation import Prepared
@@ -130,11 +131,12 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
         [open_[s] & verdicts[cutter].reached for s, verdicts in enumerate(everywhere) for cutter in cutters]
     )
     probes = Probes(ready.samples, cutters, ready.setups, open_)
-    paths = Paths(options.scallop, options.stepover, feeds(options, cutters))
+    paths = Paths(options.scallop, options.stepover, feeds(options, cutters), options.axis_accuracy)
+    walls = Walls.of(probes, options.scallop, options.axis_accuracy)
     where = orientations_of(ready)
     indexing = Indexing(where, options.index_time)
     return Task(ready, cutters, where, tuple(everywhere), np.flatnonzero(reached), probes, paths, indexing,
-                Problems(ready.samples, cutters, paths, indexing))  # fmt: skip
+                Problems(ready.samples, cutters, paths, indexing, walls), walls)  # fmt: skip
 
 
 def feeds(options: Options, cutters: Sequence[Cutter]) -> Mapping[Cutter, float] | None:
