@@ -32,8 +32,8 @@ def main() -> None:
         said = run(
             "plan-cutters", "samples/peaks_and_valleys.step", *_CUTTERS, "--answers", "stick-out,mend", "-o", str(out / "p")
         )
-        # The last lines tell seconds, which differ, and a folder.
-        text = said[said.index("\nTake ") + 1 : said.index("\nWritten")]
+        # The last line is a path.
+        text = said[: said.index("\nReview page")]
         (PICTURES / "summary.txt").write_text(text.rstrip() + "\n", encoding="utf-8")
         _readme(text.splitlines())
         run("plan-cutters-map", "samples/peaks_and_valleys.step", "--at", "-2.241,4.502,-22.43", "--cutter", "D16L90", "-o",
@@ -65,10 +65,8 @@ def _card(page: Path, picture: Path) -> None:
 
 
 def _readme(lines: list[str]) -> None:
-    """Write the headline and the table of the summary into the README."""
-    first = next(i for i, line in enumerate(lines) if i and not line.startswith("  "))
-    table = next(i for i, line in enumerate(lines) if line.startswith("  cutter "))
-    shown = "\n".join([*lines[:first], *lines[table : lines.index("", table)]])
+    """Write the summary into the README."""
+    shown = "\n".join(lines)
     page = ROOT / "README.md"
     before, fence, rest = page.read_text(encoding="utf-8").partition("```text\n")
     page.write_text(f"{before}{fence}{shown}\n{rest[rest.index('```') :]}", encoding="utf-8")

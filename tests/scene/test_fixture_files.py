@@ -162,7 +162,7 @@ def test_the_command_names_and_draws_fixtures(tmp_path):
     solid(np.array([61.0, -5, 0]), np.array([80.0, 45, 70])).export(tmp_path / "jaw.stl")
     done = run(SAMPLES / "pocket_top.step", "--cutter", "R9L40", "--spacing", "3", "--tilt", "0:10", "--area-budget", "0",
                "--formats", "json,glb,merged", "--fixture", "jaw.stl", "--fixture", "table:0",
-               "-o", "out", cwd=tmp_path)  # fmt: skip
+               "-v", "-o", "out", cwd=tmp_path)  # fmt: skip
     assert done.returncode == 1, done.stderr
     assert "fixture:jaw: STL files name no unit: mm was assumed." in in_lines(done.stdout)
     document = json.loads((tmp_path / "out/plan.json").read_text())

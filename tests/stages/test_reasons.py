@@ -189,7 +189,7 @@ def test_the_headline_is_that_of_the_union(capsys):
     how = HOW | {"cutters": ["R3L30"], "machine": "tilt:60"}
     both = plan(top, setup=(0, 0, 1), other_setups=[(0, 0, -1)], **how)
     assert (both.selected, code_of(both.plan)) == ("R3L30", 0)
-    summary(both.plan)
+    summary(both.plan, verbose=True)
     said = " ".join("".join(capsys.readouterr()).split())
     assert said.startswith("Take flat end D6 x 30. For the part, in 2 setups")
     assert "over 2 setups" in said

@@ -16,7 +16,7 @@ from plan_cutters.plan_file.model import CutterEntry
 from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.numbers import exact
 from plan_cutters.plan_file.operations import OperationPlanEntry, OperationsEntry
-from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, RemainingEntry, ProcessEntry, ProcessStep
+from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, ProcessEntry, ProcessStep, RemainingEntry
 from plan_cutters.scene.preparation import Prepared
 
 #: Which plan of operations is the process: the first of these that there is.
@@ -155,5 +155,5 @@ def _remaining_entry(ready: Prepared, cause: str, mine: NDArray[np.bool_], area:
         rows = np.flatnonzero(mine & (samples.face == int(faces[0][1:])))
         middle = samples.point[rows].mean(axis=0)
         place = vector(samples.point[rows[np.linalg.norm(samples.point[rows] - middle, axis=1).argmin()]])
-    return RemainingEntry(cause=cause, area_mm2=size, share=min(1.0, size / max(1e-300, requested)), samples=int(mine.sum()), faces=faces,
-                     place_mm=place)  # fmt: skip
+    share = min(1.0, size / max(1e-300, requested))
+    return RemainingEntry(cause=cause, area_mm2=size, share=share, samples=int(mine.sum()), faces=faces, place_mm=place)

@@ -145,7 +145,8 @@ def _rendered(
         for each in story.cutters
     ]
     return _TEMPLATE.render(
-        chip=_CHIPS[story.headline.good], headline=story.headline, text="\n".join((result.plan.text or made_of(result.plan)).lines),
+        chip=_CHIPS[story.headline.good], headline=story.headline,
+        text="\n".join((result.plan.text or made_of(result.plan)).lines),
         told=_lines(story), columns=list(_COLUMNS.values()),
         cutters=cutters, taken=story.taken, shown=story.names[result.shown], picture=picture, page=page, open=opened,
         file=result.plan.part.file, height=int(height), missing=missing or [],

@@ -100,7 +100,7 @@ def test_the_command_takes_a_unit_and_says_the_side_in_its_summary(tmp_path):
     lidless = compound(*faces(loose(box(0.3, 0.3, 0.3)))[1:])
     BRepTools.Write_s(lidless, str(tmp_path / "part.brep"))
     words = ("part.brep", "--faces", "all", "--cutter", "R1L20", "--grid", "4", "--formats", "json", "--unit", "in")
-    done = run(*words, cwd=tmp_path)
+    done = run(*words, "-v", cwd=tmp_path)
     said = in_lines(done.stdout)
     side = said[said.index("Side of the material:") :]
     assert "towards the given direction" in side

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.numbers import area, count, duration, figure, listed, mm, percent, place
-from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, RemainingEntry, NextEntry, ProcessEntry, ProcessStep
+from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, NextEntry, ProcessEntry, ProcessStep, RemainingEntry
 from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters.plan_file.words.names import named
 from plan_cutters.plan_file.words.next_steps import is_excluded

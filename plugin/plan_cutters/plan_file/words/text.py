@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from plan_cutters.plan_file.model import CutterEntry, Plan, TextEntry, VerdictText
 from plan_cutters.plan_file.numbers import count
 from plan_cutters.plan_file.words.chip import TONES, chip, cutter_chip
+from plan_cutters.plan_file.words.cutters import CutterStory
 from plan_cutters.plan_file.words.process import with_process_words, wrapped
 from plan_cutters.plan_file.words.scope import not_judged, not_seen, unseen
 from plan_cutters.plan_file.words.story import Story, story_of
@@ -68,12 +69,18 @@ def _unsure(plan: Plan, story: Story) -> list[str]:
 
 
 def _alone(story: Story) -> list[str]:
-    """How much each of several cutters leaves by itself."""
+    """How much each of several cutters reaches by itself, and why no more."""
     if len(story.cutters) < 2:
         return []
-    each = [f"{c.name} {'all' if c.feasible else c.reached}" for c in story.cutters[:_CUTTERS]]
+    each = [f"{c.name} {_alone_reaches(c)}" for c in story.cutters[:_CUTTERS]]
     more = f" and {len(story.cutters) - _CUTTERS} more" if len(story.cutters) > _CUTTERS else ""
     return [f"Each alone reaches: {', '.join(each)}{more}."]
+
+
+def _alone_reaches(cutter: CutterStory) -> str:
+    if cutter.feasible:
+        return "all"
+    return f"{cutter.reached} ({cutter.reason})" if cutter.reason else cutter.reached
 
 
 def _remaining(plan: Plan, story: Story) -> list[str]:
