@@ -89,13 +89,14 @@ class Bench:
 
     def looked(
         self, setup: int, tool: Tool, rows: Rows, axis: Floats, tilt_direction: Floats, clock: Clock, *, surely: bool = True,
-        tell: Callable[[int], None] = lambda done: None,
+        tell: Callable[[int], None] = lambda done: None, contact: tuple[Floats, Floats] | None = None,
     ) -> tuple[NDArray[np.int8], list[str]]:  # fmt: skip
-        """The same, with words for the first few that are not free."""
+        """The same, with words for the first few that are not free; `contact`: points and normals in the place of samples."""
         tolerance, words = self.question.tolerance, list[str]()
         verdict = np.full(len(rows), MET, np.int8)
-        tip = tool.tips(self.point[rows], self.normal[rows], axis, tilt_direction)
-        able = np.isfinite(tip).all(axis=1) & self._can_tilt(rows, axis)
+        point, normal = (self.point[rows], self.normal[rows]) if contact is None else contact
+        tip = tool.tips(point, normal, axis, tilt_direction)
+        able = np.isfinite(tip).all(axis=1) & self._can_tilt(rows, normal, axis)
         able &= ~np.isin(self.question.samples["face"][rows], [*self.question.setups[setup].clamped])
         for each in self.standing[setup]:
             # What is in the way at no place of its surface may still hold all of the tool.
@@ -141,10 +142,13 @@ class Bench:
         return np.where(size > 1e-12, across / np.maximum(size, 1e-300), self.question.samples["direction_max"][rows])
 
     def clearance(
-        self, setup: int, tool: Tool, rows: Rows, axis: Floats, tilt_direction: Floats, beyond: float, clock: Clock
-    ) -> tuple[float, str] | None:
-        """The least distance of what does not cut from anything, mm, at samples (m,), and which part comes nearest."""
-        tip = tool.tips(self.point[rows], self.normal[rows], axis, tilt_direction)
+        self, setup: int, tool: Tool, contact: tuple[Floats, Floats], axis: Floats, tilt_direction: Floats, beyond: float,
+        clock: Clock,
+    ) -> tuple[float, str] | None:  # fmt: skip
+        """The least distance of what does not cut from anything, mm, at contacts, points and normals (m, 3), and which part
+        comes nearest.
+        """
+        tip = tool.tips(*contact, axis, tilt_direction)
         return nearest(self.cells, self.root[setup], tool.above(2.0 * tool.radius), tip, axis, beyond, self.grain, clock)
 
     def named(self, index: int) -> Tool:
@@ -152,9 +156,9 @@ class Bench:
         cutters: Any = self.question.document["cutters"]
         return self.tools[cutters[index]["id"]]
 
-    def _can_tilt(self, rows: Rows, axis: Floats) -> NDArray[np.bool_]:
-        """Which axes (m, 3) lean from the normals by tilts and towards rotations that the plan allows."""
-        normal, first = self.normal[rows], self.question.samples["direction_max"][rows]
+    def _can_tilt(self, rows: Rows, normal: Floats, axis: Floats) -> NDArray[np.bool_]:
+        """Which axes (m, 3) lean from normals (m, 3) by tilts and towards rotations that the plan allows."""
+        first = self.question.samples["direction_max"][rows]
         cosine = (normal * axis).sum(axis=1)
         across = axis - cosine[:, None] * normal
         tilt = np.arctan2(np.linalg.norm(across, axis=1), cosine)

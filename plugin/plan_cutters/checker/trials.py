@@ -13,6 +13,7 @@ from plan_cutters.checker.expected import Reckoned
 from plan_cutters.checker.findings import Finding
 from plan_cutters.checker.leaves import Between, Loose
 from plan_cutters.checker.question import Question, allowed, axes_of
+from plan_cutters.checker.strategies import Contacts, contacts_at
 from plan_cutters.checker.tool import FLAT
 
 Rows = NDArray[np.int64]
@@ -87,8 +88,10 @@ class Trials:
                 setup, tool = each["setup"], self.bench.tools[each["cutter"]]
                 axis, there = self._axes(each, rows)
                 open_ += len(rows) - len(there)
-                wrong_tilts += self._other_tilt_directions(there, axis, tilt_direction[there])
-                verdicts, more = self.bench.looked(setup, tool, there, axis, tilt_direction[there], clock)
+                at = contacts_at(self.question, self.reckoned, k, each, there, axis)
+                wrong_tilts += self._other_tilt_directions(there, axis, tilt_direction[there], at)
+                contact = at.point, at.normal
+                verdicts, more = self.bench.looked(setup, tool, there, axis, at.lean, clock, contact=contact)
                 wrong, open_ = wrong + int((verdicts == MET).sum()), open_ + int((verdicts == OPEN).sum())
                 tested += int((verdicts != OPEN).sum())
                 words += [f"{each['id']}, {one}" for one in more]
@@ -116,9 +119,10 @@ class Trials:
         there = rows if served is None else rows[served[rows] == each["setup"]]
         return samples[f"axis_{name}"][there], there
 
-    def _other_tilt_directions(self, rows: Rows, axis: Floats, tilt_direction: Floats) -> int:
+    def _other_tilt_directions(self, rows: Rows, axis: Floats, tilt_direction: Floats, at: Contacts) -> int:
         """How many written leans are not those of their axes; where an axis is the normal any across it is one."""
-        own = self.bench.own_tilt_direction(rows, axis)
+        walls = (at.normal != self.bench.normal[rows]).any(axis=1)
+        own = np.where(walls[:, None], at.lean, self.bench.own_tilt_direction(rows, axis))
         tilt = np.linalg.norm(np.cross(self.bench.normal[rows], axis), axis=1)
         same = np.abs(own - tilt_direction).max(axis=1, initial=0.0) <= _SAME
         across = (np.abs((tilt_direction * axis).sum(axis=1)) <= 1e-3) & (
@@ -259,7 +263,7 @@ class Trials:
         """Put into the entry between what the least clearance of each operation must lie."""
         clock = self.clock("clearance")
         for k, plan in enumerate(self.plans):
-            label, tilt_direction = self.reckoned.array(k, "operation"), self.reckoned.array(k, "lean")
+            label = self.reckoned.array(k, "operation")
             for i, each in enumerate(plan["operations"]):
                 claimed, tool = each["clearance_mm"], self.bench.tools[each["cutter"]]
                 self.tell(f"{plan['name']}: the clearance of {each['id']}")
@@ -272,7 +276,9 @@ class Trials:
                 if len(there) < len(rows) or clock.over or (claimed is None and doubtful):
                     continue
                 beyond = (claimed or 0.0) * (1.0 + _EDGE) + _CLEARANCE_STEP + self.question.tolerance
-                clearance = self.bench.clearance(each["setup"], tool, there, axis, tilt_direction[there], beyond, clock)
+                at = contacts_at(self.question, self.reckoned, k, each, there, axis)
+                contact = at.point, at.normal
+                clearance = self.bench.clearance(each["setup"], tool, contact, axis, at.lean, beyond, clock)
                 if clearance is None:
                     continue
                 true, part = clearance
