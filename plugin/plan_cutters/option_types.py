@@ -72,6 +72,7 @@ class PlanOptions(SceneOptions, total=False):
     setup_time: float
     overlap: float
     most_operations: int | None
+    max_orientations: int
     unit: str | None
     placement: Placement | None
     other_placements: Sequence[Placement | None]

@@ -44,6 +44,7 @@ _LIMITS = {
     "area_budget": (0, math.inf, "must not be negative"),
     "map_budget": (1, math.inf, "must be at least 1 sample"),
     "most_operations": (1, math.inf, "must be at least 1"),
+    "max_orientations": (1, math.inf, "must be at least 1"),
     "jobs": (1, _MOST_JOBS, f"must be at least 1 and at most {_MOST_JOBS}"),
 }
 
@@ -143,6 +144,9 @@ class Options:
         Width by which operations overlap at a common border, mm.
     most_operations : int, optional
         Fixed orientations at most: the rest is left to simultaneous motion.
+    max_orientations : int
+        Where the fastest plan would have more fixed orientations, simultaneous motion is recommended for the rest; without effect
+        where `most_operations` is given.
     unit : str, optional
         Length unit to take instead of the part's own, one of `cad_io.units.UNITS`.
     fixtures : tuple of Fixture
@@ -205,6 +209,7 @@ class Options:
     setup_time: float = 300.0
     overlap: float = 2.0
     most_operations: int | None = None
+    max_orientations: int = 8
     unit: str | None = None
     fixtures: tuple[Fixture, ...] = ()
     placement: Placement | None = None
@@ -277,6 +282,7 @@ class Options:
         take(answers=answers_of(self.answers), operations=operations_of(self.operations))
         if self.most_operations is not None:
             take(most_operations=whole(self.most_operations, "most operations"))
+        take(max_orientations=whole(self.max_orientations, "max orientations"))
         for word in _RECKONED:
             if getattr(self, word) is not None:
                 take(**{word: number(getattr(self, word), word.replace("_", " "))})

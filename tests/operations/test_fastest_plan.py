@@ -8,7 +8,8 @@ from plan_cutters.operations import planning
 from plan_cutters.plan_file.words.operations import operations
 from tests.support.shapes import trough
 
-OPTIONS = {"faces": "all", "area_budget": 0, "feed": 1000.0, "operations": "both"}
+#: Tilts below 90 deg: the flutes cannot be laid along the trough, which would be the fastest by far.
+OPTIONS = {"faces": "all", "area_budget": 0, "feed": 1000.0, "operations": "both", "tilt_deg": (0.0, 80.0)}
 #: Bull noses in a trough: one orientation serves all of it, and each strip is wider where the tool leans less.
 BULLS = ["R2L60rc0.5", "R6L60rc1"]
 

@@ -16,7 +16,6 @@ from plan_cutters.operations.candidates import Orientations
 from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.labels import joined, labelled, regions_of
 from plan_cutters.operations.probes import Probes
-from plan_cutters.operations.strips import strips
 from plan_cutters.operations.timing import Paths, Problems, costs_of, tip_widths, widths
 from plan_cutters.operations.walls import Walls
 from plan_cutters.operations.workplanes import workplanes
@@ -146,26 +145,46 @@ def _fixed(
     return operations, order
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Motion:
+    """Simultaneous motion over samples, m of them: which cutter and setup, and the width of a pass, mm."""
+
+    cutter: Rows
+    setup: Rows
+    width: Floats
+
+
+def moving_over(task: Task, rows: Rows) -> Motion:
+    """Simultaneous motion over samples (m,): with the first cutter in the first setup that reaches each, in the posture found."""
+    samples, paths, n = task.ready.samples, task.paths, len(rows)
+    motion = Motion(np.full(n, -1, np.int64), np.full(n, -1, np.int64), np.full(n, np.nan))
+    for s, verdicts in enumerate(task.everywhere):
+        for c, cutter in enumerate(task.cutters):
+            mine = np.flatnonzero((motion.cutter < 0) & verdicts[cutter].reached[rows])
+            if len(mine):
+                motion.cutter[mine], motion.setup[mine] = c, s
+                axis = verdicts[cutter].axis[rows[mine]]
+                motion.width[mine] = tip_widths(cutter, samples, rows[mine], axis, paths)[0]
+    return motion
+
+
 def _simultaneous(
     task: Task, before: int, number: NDArray[np.int32], table: NDArray[np.bool_], strip: Floats
 ) -> tuple[NDArray[np.int32], NDArray[np.bool_], Floats, list[Operation]]:
     """Give what no fixed operation takes to simultaneous ones: number, what serves, strips and operations."""
-    samples, paths, operations = task.ready.samples, task.paths, list[Operation]()
-    rest = task.rows[number[task.rows] < 0]
-    for s, verdicts in enumerate(task.everywhere):
-        for cutter in task.cutters:
-            mine = rest[verdicts[cutter].reached[rest]]
-            if not len(mine):
-                continue
-            rest = np.setdiff1d(rest, mine)
-            number[mine] = before + len(operations)
-            strip[mine] = strips(cutter, samples, verdicts[cutter].axis, paths.scallop, paths.stepover).width[mine]
-            column = np.zeros((len(samples), 1), bool)
-            column[mine] = True
-            table = np.concatenate([table, column], axis=1)
-            operations.append(
-                Operation(f"op{before + len(operations) + 1}", "simultaneous", cutter, s, None, None, None, mine, mine)
-            )
+    operations, rest = list[Operation](), task.rows[number[task.rows] < 0]
+    motion = moving_over(task, rest)
+    for s, c in sorted({*zip(motion.setup.tolist(), motion.cutter.tolist(), strict=True)}):
+        if c < 0:
+            continue
+        chosen = (motion.cutter == c) & (motion.setup == s)
+        mine = rest[chosen]
+        number[mine], strip[mine] = before + len(operations), motion.width[chosen]
+        column = np.zeros((len(number), 1), bool)
+        column[mine] = True
+        table = np.concatenate([table, column], axis=1)
+        name = f"op{before + len(operations) + 1}"
+        operations.append(Operation(name, "simultaneous", task.cutters[c], s, None, None, None, mine, mine))
     return number, table, strip, operations
 
 

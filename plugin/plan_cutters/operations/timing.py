@@ -81,13 +81,18 @@ def tip_widths(
     return np.where(floor, paths.stepover * flat_of(cutter), width), floor
 
 
+def speed_of(paths: Paths, cutters: Sequence[Cutter], which: NDArray[np.integer]) -> Floats:
+    """Feeds (m,) of cutters, by their numbers, mm/s; 1 where there is no feed."""
+    if paths.feed is None:
+        return np.ones(len(which))
+    return np.array([paths.feed[cutter] / 60.0 for cutter in cutters])[which]
+
+
 def costs_of(
     columns: Columns, width: Floats, serves: NDArray[np.bool_], area: Floats, cutters: Sequence[Cutter], paths: Paths
 ) -> Floats:
     """Seconds, or mm of path without a feed, of each sample with each column; infinite where the column does not serve it."""
-    speed = np.ones(len(columns))
-    if paths.feed is not None:
-        speed = np.array([paths.feed[cutters[c]] / 60.0 for c in columns.cutter.tolist()])
+    speed = speed_of(paths, cutters, columns.cutter)
     with np.errstate(divide="ignore", invalid="ignore"):
         costs = area[:, None] / (width * speed)
     return np.where(serves & np.isfinite(costs), costs, np.inf)

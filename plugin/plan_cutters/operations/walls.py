@@ -23,6 +23,8 @@ from plan_cutters.scene.fixed_axis import serves
 Rows = NDArray[np.int64]
 #: Lengths that count as nothing, mm.
 _NOTHING = 1e-6
+#: Curvatures of a plane at most, 1/mm.
+PLANE = 1e-9
 #: Share of the scallop height by which the floor may leave a flat tip, or a wall the flutes: rounding stays below it.
 _WITHIN = 1.0 - 1e-6
 
@@ -85,7 +87,7 @@ def on_floor(
     if flat <= 0.0:
         return np.zeros(len(normal), bool)
     sine = np.linalg.norm(np.cross(normal, axis), axis=1)
-    plane = (np.abs(curvature) <= 1e-9).all(axis=1)
+    plane = (np.abs(curvature) <= PLANE).all(axis=1)
     near = (sine <= math.sin(accuracy) + 1e-12) & ((normal * axis).sum(axis=1) > 0.0)
     return np.asarray(plane & near & (flat * sine <= scallop))
 
@@ -226,7 +228,7 @@ class Walls:
         return low, high
 
     def _turned_away(self, c: int, s: int, axis: Floats, rows: Rows) -> NDArray[np.bool_]:
-        """Samples (m,) that are cut along the setup axis as a floor or a wall: nobody turns the part to lay the flutes there."""
+        """Samples (m,) that are cut along the setup axis: nobody turns the part to lay the flutes along a face that faces it."""
         setup = self._probes.setups[s].setup
         if float(axis @ setup) >= math.cos(self._accuracy):
             return np.zeros(len(rows), bool)
@@ -235,21 +237,20 @@ class Walls:
         return self._upright[s][rows]
 
     def _cut_upright(self, s: int) -> NDArray[np.bool_]:
-        """Samples (n,) that one of the cutters cuts along the setup axis as a floor or a wall."""
+        """Samples (n,) that one of the cutters cuts along the setup axis, on a face across it or by the flutes."""
         probes, samples = self._probes, self._probes.samples
         conditions, served = probes.setups[s], np.zeros(len(samples), bool)
         axis = conditions.setup
         if not conditions.allows(axis[None])[0]:
             return served
-        axes = np.broadcast_to(axis, samples.normal.shape)
-        judged = probes.outside[s] & (samples.unjudged < 0)
+        judged, cosine = probes.outside[s] & (samples.unjudged < 0), samples.normal @ axis
+        floor = (cosine >= math.cos(self._accuracy)) & (np.abs(samples.curvature) <= PLANE).all(axis=1)
         for c, cutter in enumerate(probes.cutters):
-            floor = on_floor(cutter, samples.normal, samples.curvature, axes, self._accuracy, self._scallop)
             rows = np.flatnonzero(judged & floor & ~served)
             served[rows] = probes.table(rows, columns_of(axis[None], np.zeros((1, 2)), c, s))[:, 0]
             if flank_of(cutter) is None:
                 continue
-            wall = self._side(cutter, samples.normal @ axis)
+            wall = self._side(cutter, cosine)
             rows = np.flatnonzero(judged & wall & ~served)
             served[rows] = np.isfinite(self.passes(c, s, axis, rows).strip)
         return served

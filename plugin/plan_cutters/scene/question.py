@@ -33,7 +33,8 @@ METHOD = 2
 ANSWERED = frozenset({"machine", "setup", "placement", "tilt", "rotation", "rotation_step"})
 #: Options that change nothing that maps say.
 IRRELEVANT = frozenset({"jobs", "area_budget", "length_over_radius", "feed", "scallop", "stepover", "index_step",
-                        "axis_accuracy", "index_time", "change_time", "setup_time", "overlap", "most_operations"})  # fmt: skip
+                        "axis_accuracy", "index_time", "change_time", "setup_time", "overlap", "most_operations",
+                        "max_orientations"})  # fmt: skip
 
 _WORDS = {"libraries": "--cutters", "cutters": "--cutter", "fixtures": "--fixture", "other_setups": "a second --setup"}
 _TOLERATED = 1e-9
