@@ -54,7 +54,7 @@ class Passes(Record):
 def flank_of(cutter: Cutter) -> tuple[float, float] | None:
     """Height over the tip at which the straight side of the flutes begins, and its length, mm; None where there is none.
 
-    >>> flank_of(Cutter.parse("D12L60F26rc1"))
+    >>> flank_of(Cutter.parse("D12L60rc1F26"))
     (1.0, 25.0)
     >>> flank_of(Cutter.lollipop(radius=4, neck_radius=2, length=40)) is None
     True
