@@ -28,17 +28,17 @@ class Contacts:
 
     point: Floats
     normal: Floats
-    lean: Floats
+    tilt_direction: Floats
 
 
 def contacts_at(question: Question, reckoned: Reckoned, k: int, each: Mapping[str, Any], rows: Rows, axis: Floats) -> Contacts:
     """Where the tool of an operation of plan k touches as it cuts samples (m,), with axes (m, 3): on walls as is written."""
     point, normal = question.samples["point"][rows].copy(), question.samples["normal"][rows].copy()
-    lean = reckoned.array(k, "lean")[rows].copy()
+    tilt_direction = reckoned.array(k, "lean")[rows].copy()
     mine = reckoned.array(k, "strategy")[rows] == WALL
     point[mine] = reckoned.array(k, "contact")[rows[mine]]
-    normal[mine], lean[mine] = flutes(question.tools[each["cutter"]], normal[mine], axis[mine])
-    return Contacts(point, normal, lean)
+    normal[mine], tilt_direction[mine] = flutes(question.tools[each["cutter"]], normal[mine], axis[mine])
+    return Contacts(point, normal, tilt_direction)
 
 
 def flutes(sizes: ToolSizes, normal: Floats, axis: Floats) -> tuple[Floats, Floats]:
@@ -140,7 +140,7 @@ class Strategies:
         # With an allowance the flutes keep that from the contact, and as much from the sample.
         if not ((depth >= -self._scallop - sizes.allowance - _SAME) & (depth <= self.question.tolerance + _SAME)).all():
             yield "a sample of a wall is not at the flutes"
-        strip, up = self.reckoned.array(k, "strip_mm")[rows], stands.lean
+        strip, up = self.reckoned.array(k, "strip_mm")[rows], stands.tilt_direction
         above = ((point - stands.point) * up).sum(axis=1)
         begins = sizes.corner_radius * (1.0 - math.sin(sizes.taper))
         most = (sizes.flutes - begins) / math.cos(sizes.taper)
@@ -156,7 +156,7 @@ class Strategies:
 
 def _on_flutes(sizes: ToolSizes, stands: Contacts, axis: Floats, point: Floats) -> tuple[Floats, Floats, Floats]:
     """How far points (m, 3) are over the lower and below the upper end of straight flutes, mm, and how deep within their side."""
-    tip = tool_of(sizes).tips(stands.point, stands.normal, axis, stands.lean)
+    tip = tool_of(sizes).tips(stands.point, stands.normal, axis, stands.tilt_direction)
     away = point - tip
     height = (away * axis).sum(axis=1)
     radius = np.linalg.norm(away - height[:, None] * axis, axis=1)

@@ -91,7 +91,7 @@ class Trials:
                 at = contacts_at(self.question, self.reckoned, k, each, there, axis)
                 wrong_tilts += self._other_tilt_directions(there, axis, tilt_direction[there], at)
                 contact = at.point, at.normal
-                verdicts, more = self.bench.looked(setup, tool, there, axis, at.lean, clock, contact=contact)
+                verdicts, more = self.bench.looked(setup, tool, there, axis, at.tilt_direction, clock, contact=contact)
                 wrong, open_ = wrong + int((verdicts == MET).sum()), open_ + int((verdicts == OPEN).sum())
                 tested += int((verdicts != OPEN).sum())
                 words += [f"{each['id']}, {one}" for one in more]
@@ -122,7 +122,7 @@ class Trials:
     def _other_tilt_directions(self, rows: Rows, axis: Floats, tilt_direction: Floats, at: Contacts) -> int:
         """How many written leans are not those of their axes; where an axis is the normal any across it is one."""
         walls = (at.normal != self.bench.normal[rows]).any(axis=1)
-        own = np.where(walls[:, None], at.lean, self.bench.own_tilt_direction(rows, axis))
+        own = np.where(walls[:, None], at.tilt_direction, self.bench.own_tilt_direction(rows, axis))
         tilt = np.linalg.norm(np.cross(self.bench.normal[rows], axis), axis=1)
         same = np.abs(own - tilt_direction).max(axis=1, initial=0.0) <= _SAME
         across = (np.abs((tilt_direction * axis).sum(axis=1)) <= 1e-3) & (
@@ -278,7 +278,7 @@ class Trials:
                 beyond = (claimed or 0.0) * (1.0 + _EDGE) + _CLEARANCE_STEP + self.question.tolerance
                 at = contacts_at(self.question, self.reckoned, k, each, there, axis)
                 contact = at.point, at.normal
-                clearance = self.bench.clearance(each["setup"], tool, contact, axis, at.lean, beyond, clock)
+                clearance = self.bench.clearance(each["setup"], tool, contact, axis, at.tilt_direction, beyond, clock)
                 if clearance is None:
                     continue
                 true, part = clearance

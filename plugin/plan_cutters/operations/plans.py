@@ -301,7 +301,7 @@ def costs_with(task: Task, columns: Columns) -> tuple[Floats, Floats]:
 def _widths(task: Task, columns: Columns, serves: NDArray[np.bool_]) -> Floats:
     """Width of a pass (r, k), mm, of columns at the samples of a task that they serve: by the tip, or along a wall."""
     by_tip = widths(columns, task.rows, task.ready.samples, task.cutters, task.paths, serves)
-    return np.fmax(by_tip, np.where(serves, task.walls.kept(columns, task.rows), np.nan))
+    return np.fmax(by_tip, np.where(serves, task.walls.cached(columns, task.rows), np.nan))
 
 
 def worth_their_turn(task: Task, columns: Columns) -> Columns:

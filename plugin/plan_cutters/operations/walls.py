@@ -137,7 +137,7 @@ class Walls:
                 result[at, k] = self.passes(c, int(columns.setup[k]), columns.axis[k], rows[at]).strip
         return result
 
-    def kept(self, columns: Columns, rows: Rows) -> Floats:
+    def cached(self, columns: Columns, rows: Rows) -> Floats:
         """As `strips` at all of some samples, (rows, columns), for columns that are requested again and again at these."""
         if not np.array_equal(rows, self._known_rows):
             self._known, self._known_rows = {}, rows
@@ -153,27 +153,27 @@ class Walls:
 
     def passes(self, c: int, s: int, axis: Floats, rows: Rows) -> Passes:
         """The passes of cutter `c` in setup `s` with an axis (3,) at samples (m,)."""
-        cutter, samples, found = self._probes.cutters[c], self._probes.samples, Passes.none(len(rows))
+        cutter, samples, result = self._probes.cutters[c], self._probes.samples, Passes.none(len(rows))
         flank, normal = flank_of(cutter), samples.normal[rows]
         able = self._side(cutter, normal @ axis) & self._probes.outside[s][rows] & ~self._turned_away(c, s, axis, rows)
         if flank is None or not able.any():
-            return found
+            return result
         at = np.flatnonzero(able)
         square, ruling = _flute_frame(normal[at], axis, cutter.taper)
         low, high = self._ends(rows[at], normal[at], axis)
         for raised in (0.0, flank[0] / math.cos(cutter.taper)) if flank[0] > _NOTHING else (0.0,):
-            open_ = np.flatnonzero(np.isnan(found.strip[at]))
+            open_ = np.flatnonzero(np.isnan(result.strip[at]))
             ends = low[open_] + raised, high[open_]
             more = self._pass(c, s, axis, rows[at[open_]], square[open_], ruling[open_], ends, flank[1])
             for name in ("strip", "point", "normal"):
-                getattr(found, name)[at[open_]] = getattr(more, name)
-        return found
+                getattr(result, name)[at[open_]] = getattr(more, name)
+        return result
 
     def _pass(
         self, c: int, s: int, axis: Floats, rows: Rows, square: Floats, ruling: Floats, ends: tuple[Floats, Floats], flutes: float
     ) -> Passes:
         """The same between ends (m,) of the wall along its ruling from each sample."""
-        found, (low, high) = Passes.none(len(rows)), ends
+        result, (low, high) = Passes.none(len(rows)), ends
         # How far the wall stands out towards the flutes, mm for each mm up.
         out = (self._tangent(rows, ruling) * square).sum(axis=1)
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -184,15 +184,15 @@ class Walls:
         above = -low - number * strip
         good = np.flatnonzero(np.isfinite(strip) & (strip > _NOTHING) & (above >= -_NOTHING) & (above <= most + _NOTHING))
         if not len(good):
-            return found
+            return result
         tangent = self._tangent(rows[good], ruling[good])
         point = self._probes.samples.point[rows[good]] - above[good, None] * tangent
         # The flutes touch where the wall stands out farthest over the strip.
         point += np.maximum(0.0, strip[good] * out[good])[:, None] * square[good]
         free = self._free(c, s, axis, rows[good], point, square[good])
         good, point = good[free], point[free]
-        found.strip[good], found.point[good], found.normal[good] = strip[good], point, square[good]
-        return found
+        result.strip[good], result.point[good], result.normal[good] = strip[good], point, square[good]
+        return result
 
     def _tangent(self, rows: Rows, ruling: Floats) -> Floats:
         """Unit directions (m, 3) in the face nearest to those of the flutes."""

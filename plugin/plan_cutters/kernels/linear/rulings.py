@@ -15,7 +15,7 @@ def _piece(triangle, point, ruling, normal, side, ends):
 
     Returns whether it crosses it.
     """
-    found = False
+    crosses = False
     for i in range(3):
         j = (i + 1) % 3
         s, t = 0.0, 0.0
@@ -33,12 +33,12 @@ def _piece(triangle, point, ruling, normal, side, ends):
             x = triangle[i, k] + share * (triangle[j, k] - triangle[i, k]) - point[k]
             along += x * ruling[k]
             over += x * normal[k]
-        if not found or along < ends[0, 0]:
+        if not crosses or along < ends[0, 0]:
             ends[0, 0], ends[0, 1] = along, over
-        if not found or along > ends[1, 0]:
+        if not crosses or along > ends[1, 0]:
             ends[1, 0], ends[1, 1] = along, over
-        found = True
-    return found
+        crosses = True
+    return crosses
 
 
 @kernel
