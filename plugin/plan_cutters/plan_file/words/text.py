@@ -16,6 +16,8 @@ from plan_cutters.plan_file.words.undecided import undecided
 MOST = 22
 #: Doubts, and cutters, that are named.
 _DOUBTS, _CUTTERS = 4, 6
+#: Lines on what each cutter reaches by itself.
+_ALONE = 3
 
 
 def with_text(plan: Plan) -> Plan:
@@ -50,7 +52,7 @@ def process_lines(plan: Plan, story: Story, most: int) -> list[str]:
         wrapped(list(process.next), 3) if process else [],
         wrapped(_unsure(plan, story), 2),
         wrapped([process.clearance] if process and process.clearance else [], 1),
-        wrapped(_alone(story), 3),
+        wrapped(_alone(story), _ALONE),
         wrapped([story.headline.why] if story.headline.why else [], 2),
         wrapped(list(story.between[:1]), 2),
         _remaining(plan, story),
@@ -76,9 +78,13 @@ def _alone(story: Story) -> list[str]:
     """How much each of several cutters reaches by itself, and why no more."""
     if len(story.cutters) < 2:
         return []
-    each = [f"{c.name} {_alone_reaches(c)}" for c in story.cutters[:_CUTTERS]]
-    more = f" and {len(story.cutters) - _CUTTERS} more" if len(story.cutters) > _CUTTERS else ""
-    return [f"Each alone reaches: {', '.join(each)}{more}."]
+    each = [f"{c.name} {_alone_reaches(c)}" for c in story.cutters]
+    for shown in range(min(_CUTTERS, len(each)), 0, -1):
+        more = f" and {len(each) - shown} more" if len(each) > shown else ""
+        text = f"Each alone reaches: {', '.join(each[:shown])}{more}."
+        if len(wrapped([text], len(text))) <= _ALONE:
+            break
+    return [text]
 
 
 def _alone_reaches(cutter: CutterStory) -> str:
