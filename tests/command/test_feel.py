@@ -170,7 +170,8 @@ def test_completion_knows_names_and_loads_no_kernel(tmp_path, words, offered):
 
 def test_the_first_line_says_which_cutter_to_take(capsys, planned):
     said = shown(capsys, planned, verbose=True)
-    assert said.startswith("Take flat end D12 x 80.\nFor peaks_and_valleys.step: R6L80, ")
+    assert said.startswith("Take flat end D12 x 80.\nAn open shell: ")
+    assert "\nFor peaks_and_valleys.step: R6L80, " in said
     assert "without a holder" in in_lines(said)
     assert re.search(r"^> flat end D12 x 80 +yes ", said, re.MULTILINE)
     assert re.search(r"^  flat end D24 x 120 +no ", said, re.MULTILINE)
@@ -230,6 +231,7 @@ def everywhere(value, text):
             "part",
             "carries",
             "sampled_by",
+            "sharp_edges",
             "mode",
             "strategy",
             "cutter",
@@ -424,13 +426,14 @@ def test_it_speaks_soon_and_shows_a_clock_on_a_terminal(tmp_path):
 
 def test_what_is_found_goes_to_standard_output_and_all_else_to_standard_error(tmp_path):
     done = run(GROOVE, *QUICK, *FILES, cwd=tmp_path)
-    assert done.stdout.startswith("Take flat end D12 x 80.\nFor v_groove.step")
+    assert done.stdout.startswith("Take flat end D12 x 80.\nAn open shell: ")
+    assert "\nFor v_groove.step" in done.stdout
     assert "\nWritten to out: plan.json" in done.stdout
     assert done.stderr
     assert all(re.fullmatch(r" +\d+\.\d s  .+", line) for line in done.stderr.splitlines())
     done = run(GROOVE, *QUICK, "--json", "-", cwd=tmp_path)
     assert json.loads(done.stdout)["selected"] == "R6L80"
-    assert "\nTake flat end D12 x 80.\nFor v_groove.step" in done.stderr
+    assert "\nTake flat end D12 x 80.\nAn open shell: " in done.stderr
 
 
 @pytest.mark.parametrize(("close", "code", "said"), [
