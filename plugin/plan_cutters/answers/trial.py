@@ -13,18 +13,7 @@ from numpy.typing import NDArray
 from plan_cutters.domain.change import Change, Thing
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.over_setups import over_setups
-from plan_cutters.domain.verdicts import (
-    ACCESSIBLE,
-    COLUMNS,
-    CONVEX,
-    FIXTURE,
-    INACCESSIBLE,
-    INSIDE,
-    TOLERANCE,
-    UNDECIDED,
-    Verdicts,
-    blank,
-)
+from plan_cutters.domain.verdicts import ACCESSIBLE, CONVEX, FIXTURE, INACCESSIBLE, INSIDE, TOLERANCE, UNDECIDED, Verdicts, blank
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.plan_file.words.change_text import reasons, samples
 from plan_cutters.scene.conditions import Context, contacts_of, search_postures
@@ -68,8 +57,7 @@ class Case:
         for one in self.setups:
             part = _look(one, self.cutter, rows[open_rows])
             whole = blank(len(rows))
-            for name in COLUMNS:
-                getattr(whole, name)[open_rows] = getattr(part, name)
+            whole.take(open_rows, part, at=slice(None))
             each.append(whole.freeze())
             open_rows = open_rows[~part.reached]
         return over_setups(each)[0]

@@ -179,6 +179,7 @@ def closer(case: Case, requested: float) -> Case:
     """Make the same, surrounded anew for a finer tolerance."""
     ready = case.ready
     scene, now = replace(ready.scene, asked=requested), ready.conditions
+    # On all threads: what is found stays in the scene, and the setups take it from there.
     scene.surround(jobs=now.jobs)
     # What another step changes of the conditions stays changed.
     each = [replace(one, machine=now.machine, postures=now.postures) for one in conditions_of(scene, ready.options)]

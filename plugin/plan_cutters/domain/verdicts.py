@@ -45,8 +45,7 @@ CONVEX, CONCAVE, SADDLE = 0, 1, 2
 
 Bytes = NDArray[np.uint8]
 _POSTURE = ("axis", "tilt_direction", "tilt", "rotation")
-#: The columns of verdicts.
-COLUMNS = ("verdict", *_POSTURE, "reason")
+_COLUMNS = ("verdict", *_POSTURE, "reason")
 
 
 def not_reached(verdict: Bytes) -> NDArray[np.bool_]:
@@ -110,16 +109,16 @@ class Verdicts(_Columns):
     """
 
     def __post_init__(self) -> None:
-        for name in COLUMNS:
+        for name in _COLUMNS:
             getattr(self, name).setflags(write=False)
 
     def __reduce__(self) -> tuple[Any, ...]:
         # Unpacked arrays can be written: they are made read-only again.
-        return Verdicts, tuple(getattr(self, name) for name in COLUMNS)
+        return Verdicts, tuple(getattr(self, name) for name in _COLUMNS)
 
     def of(self, rows: NDArray[np.int64]) -> "Verdicts":
         """Take the verdicts of some samples."""
-        return Verdicts(*(getattr(self, name)[rows] for name in COLUMNS))
+        return Verdicts(*(getattr(self, name)[rows] for name in _COLUMNS))
 
 
 #: The former name.
@@ -141,12 +140,12 @@ class VerdictBuffer(_Columns):
 
     def freeze(self) -> Verdicts:
         """Give what was written as a result, of the same arrays: nothing can be written into this buffer any more."""
-        return Verdicts(*(getattr(self, name) for name in COLUMNS))
+        return Verdicts(*(getattr(self, name) for name in _COLUMNS))
 
-    def take(self, rows: Any, other: _Columns) -> None:
-        """Take over all that is known of some samples: an index or a mask."""
-        for name in COLUMNS:
-            getattr(self, name)[rows] = getattr(other, name)[rows]
+    def take(self, rows: Any, other: _Columns, at: Any = None) -> None:
+        """Take over all that is known of some samples (an index or a mask), which in `other` stand `at` other places if given."""
+        for name in _COLUMNS:
+            getattr(self, name)[rows] = getattr(other, name)[rows if at is None else at]
 
     def take_posture(self, rows: Any, other: _Columns, at: Any = None) -> None:
         """Take over the postures of some samples, which in `other` stand `at` other places if that is given."""

@@ -191,14 +191,24 @@ def ranges(faces: Iterable[int]) -> str:
     >>> ranges([7, 1, 3, 4, 5, 9, 10]), ranges([])
     ('F1,3-5,7,9,10', '')
     """
+    runs = consecutive(faces)
+    texts = [f"{run[0]}-{run[-1]}" if len(run) > 2 else ",".join(map(str, run)) for run in runs]
+    return f"F{','.join(texts)}" if texts else ""
+
+
+def consecutive(numbers: Iterable[int]) -> list[list[int]]:
+    """Numbers in ascending runs of which each is one more than the one before.
+
+    >>> consecutive([4, 7, 3, 8])
+    [[3, 4], [7, 8]]
+    """
     runs: list[list[int]] = []
-    for number in sorted(set(faces)):
+    for number in sorted(set(numbers)):
         if runs and number == runs[-1][-1] + 1:
             runs[-1].append(number)
         else:
             runs.append([number])
-    texts = [f"{run[0]}-{run[-1]}" if len(run) > 2 else ",".join(map(str, run)) for run in runs]
-    return f"F{','.join(texts)}" if texts else ""
+    return runs
 
 
 def capital(text: str) -> str:

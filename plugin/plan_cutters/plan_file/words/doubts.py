@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator, Sequence
 
-from plan_cutters.plan_file.model import CutterEntry, Plan
-from plan_cutters.plan_file.nearest import nearest
-from plan_cutters.plan_file.numbers import ROUNDING, count, listed, mm, ranges
+from plan_cutters.plan_file.model import Plan
+from plan_cutters.plan_file.numbers import ROUNDING, consecutive, count, listed, mm, ranges
 from plan_cutters.plan_file.words.names import named
+from plan_cutters.plan_file.words.scope import shown_cutter
 
 #: A tolerance that is this many times what was requested was raised; so many faces are named.
 _RAISED, _FACES = 1.001, 3
@@ -48,7 +48,7 @@ def _travel(plan: Plan) -> Iterator[str]:
         )
         yield f"The part does not fit machine {name}: {each_axis}."
         return
-    entry = _shown(plan).travel
+    entry = shown_cutter(plan).travel
     if entry is not None and entry.outside:
         by = " and ".join(f"{each.axis} by up to {mm(each.beyond_mm)}" for each in entry.worst)
         yield f"Beyond the travel of {name} at {entry.outside:,} of {count(entry.judged, 'posture')}: {by}."
@@ -102,21 +102,11 @@ def _tolerance(plan: Plan) -> Iterator[str]:
         yield f"The tolerance had to be raised from {mm(requested)} to {mm(met)}: the triangles follow the surface no closer."
 
 
-def _shown(plan: Plan) -> CutterEntry:
-    return next((c for c in plan.cutters if c.id == plan.shown), None) or nearest(plan.cutters)
-
-
 def _runs(numbers: Sequence[int]) -> str:
     """Ascending numbers in words.
 
     >>> _runs([2, 3, 4, 5, 6]), _runs([1, 2]), _runs([1, 3, 4, 5])
     ('2 to 6', '1 and 2', '1 and 3 to 5')
     """
-    runs: list[list[int]] = []
-    for number in numbers:
-        if runs and number == runs[-1][-1] + 1:
-            runs[-1].append(number)
-        else:
-            runs.append([number])
-    texts = [text for run in runs for text in ([f"{run[0]} to {run[-1]}"] if len(run) > 2 else map(str, run))]
+    texts = [text for run in consecutive(numbers) for text in ([f"{run[0]} to {run[-1]}"] if len(run) > 2 else map(str, run))]
     return " and ".join(filter(None, (", ".join(texts[:-1]), texts[-1])))

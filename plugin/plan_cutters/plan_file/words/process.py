@@ -12,6 +12,7 @@ from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters.plan_file.words.doubts import doubts
 from plan_cutters.plan_file.words.names import named
 from plan_cutters.plan_file.words.next_steps import is_excluded
+from plan_cutters.plan_file.words.scope import shown_cutter
 
 #: Columns of a line; steps and causes that are listed; faces that are named of a cause; next steps.
 WIDTH, _STEPS, _CAUSES, _FACES, _NEXT = 80, 9, 4, 3, 2
@@ -174,7 +175,7 @@ def _next_entries(plan: Plan) -> Iterator[NextEntry]:
     process = plan.process
     if process is None or process.finished:
         return
-    entry = next((c for c in plan.cutters if c.id == plan.shown), plan.cutters[0])
+    entry = shown_cutter(plan)
     if entry.mend is not None:
         for step in entry.mend.steps:
             if not is_excluded(step):

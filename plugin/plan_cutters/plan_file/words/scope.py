@@ -25,6 +25,11 @@ def headline_cutter(plan: Plan) -> CutterEntry:
     return next((c for c in plan.cutters if c.id == taken), None) or nearest(plan.cutters)
 
 
+def shown_cutter(plan: Plan) -> CutterEntry:
+    """The cutter that models and pictures show."""
+    return next((c for c in plan.cutters if c.id == plan.shown), None) or nearest(plan.cutters)
+
+
 def not_judged(plan: Plan) -> list[str]:
     """Say in a sentence which faces were not judged, and which option requests them."""
     scope = plan.scope
