@@ -423,8 +423,9 @@ def told(read):
 
 def test_the_page_says_first_which_cutter_to_take(valley):
     result, read = valley
-    (title,), (why, *_) = read.of("h1"), read.of("p")
+    (title,), (doubt, why, *_) = read.of("h1"), read.of("p")
     assert title == "Take flat end D12 x 80."
+    assert doubt.startswith("Doubt: An open shell: ")
     assert "It is the largest of 3 cutters that reaches every sample." in why
     by_name = {row[0]: row[1:] for row in told(read)}
     assert by_name["flat end D12 x 80"][:3] == ["✓ yes", "100 %", "–"]
