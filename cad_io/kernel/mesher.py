@@ -18,7 +18,7 @@ from cad_io.kernel.calls import may_refuse
 Taken = TypeVar("Taken")
 
 #: Processor time, s: for one face, and for all of them; and so many faces may not end.
-FACE, FACES, HANGS = 1.0, 10.0, 5
+FACE, FACES, HANGS = 2.0, 15.0, 5
 
 
 class Meshed(NamedTuple):

@@ -68,7 +68,7 @@ def test_colours_are_linear_light(halves, tmp_path):
 
 def test_metres_and_y_up_in_trimesh(halves, tmp_path):
     part, found = halves
-    write(found, tmp_path / "p.glb", deflection=0.05)
+    write(found, tmp_path / "p.glb", deflection=0.1)
     scene = trimesh.load(tmp_path / "p.glb")
     size = np.ptp(scene.bounds, axis=0) * 1000
     assert size == pytest.approx([part.size[0], part.size[2], part.size[1]], rel=1e-3)
