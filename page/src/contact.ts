@@ -27,7 +27,7 @@ export function place(cutter: Cutter, sample: Sample, posture: Posture): Placed 
   const axis = mixed(sample.normal, cosine, lean, sine);
   const outward = mixed(lean, cosine, sample.normal, -sine);
   const centre = plus(sample.point, sample.normal, mode.radius + cutter.allowance_mm);
-  return { tip: plus(plus(centre, outward, -mode.offset), axis, -mode.height), axis };
+  return { tip: plus(plus(centre, outward, -mode.offset * (posture.share ?? 1)), axis, -mode.height), axis };
 }
 
 /** Least and largest tilt (rad) that the curvature leaves at a rotation (rad); null where it leaves none. */

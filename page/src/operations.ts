@@ -5,7 +5,7 @@ import type { Arrays } from "./decode.ts";
 import { button, el } from "./dom.ts";
 import type { Meta, Operation, OperationPlan, Vec } from "./meta.ts";
 import { swatch } from "./patterns.ts";
-import type { Posture, Sample } from "./samples.ts";
+import { type Posture, type Sample, shareOf } from "./samples.ts";
 import { press } from "./tables.ts";
 import { cross, DEG, dot, minus, turned } from "./vectors.ts";
 
@@ -28,15 +28,17 @@ export function takenBy(plan: OperationPlan, arrays: Arrays): (row: number) => n
   return (row) => values[row] - 1;
 }
 
-/** Axes nearer to the normal lean nowhere: the posture says which side of the tool touches, degrees. */
-const UPRIGHT = 0.01;
+/** Axes nearer to the normal may stand upright: the posture says where under the tool the sample is, degrees. */
+const UPRIGHT = 1;
 
 /** The posture of a tool axis at a sample that an operation of a plan takes. */
 export function postureOf(plan: OperationPlan, arrays: Arrays, axis: Vec, sample: Sample): Posture {
   const side = cross(sample.normal, sample.direction);
   const tilt = Math.acos(Math.min(1, Math.max(-1, dot(axis, sample.normal)))) * DEG;
   const lean = Math.atan2(dot(axis, side), dot(axis, sample.direction)) * DEG;
-  return { tilt, rotation: turned(tilt < UPRIGHT ? arrays.get(plan.lean).values[sample.row] / 100 : lean) };
+  if (tilt >= UPRIGHT) return { tilt, rotation: turned(lean) };
+  const rotation = turned(arrays.get(plan.lean).values[sample.row] / 100);
+  return { tilt, rotation, ...shareOf(arrays, `operation_share.${plan.key}`, sample.row) };
 }
 
 /** What the surface shows: verdicts, or the operations of a plan. */

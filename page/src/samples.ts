@@ -19,11 +19,20 @@ export interface Sample {
 export interface Posture {
   tilt: number;
   rotation: number;
+  /** Upright, how far the contact is from the axis, as a share of the radius of the flat tip; not given: at its rim. */
+  share?: number;
 }
+
+/** Shares are stored in so many parts. */
+export const SHARES = 10000;
 
 /** Whether two postures are one, but for the rounding of stored ones. */
 export const alike = (a: Posture, b: Posture): boolean =>
   Math.abs(a.tilt - b.tilt) < 0.02 && apart(a.rotation, b.rotation) < 0.02;
+
+/** The share of a sample's posture, where some are stored. */
+export const shareOf = (arrays: Arrays, name: string, row: number): { share?: number } =>
+  arrays.has(name) ? { share: arrays.get(name).values[row] / SHARES } : {};
 
 export class Samples {
   readonly count: number;
@@ -116,7 +125,8 @@ export class Samples {
     if (!this.arrays.has(`tilt.${cutter}`)) return null;
     const tilt = this.arrays.get(`tilt.${cutter}`).values[row];
     if (tilt === 65535) return null;
-    return { tilt: tilt / 100, rotation: turned(this.arrays.get(`lean.${cutter}`).values[row] / 100) };
+    const posture = { tilt: tilt / 100, rotation: turned(this.arrays.get(`lean.${cutter}`).values[row] / 100) };
+    return tilt === 0 ? { ...posture, ...shareOf(this.arrays, `share.${cutter}`, row) } : posture;
   }
 
   /** The lean direction at a rotation, degrees. */

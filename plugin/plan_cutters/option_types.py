@@ -73,6 +73,7 @@ class PlanOptions(SceneOptions, total=False):
     overlap: float
     most_operations: int | None
     sharp_edges: str
+    max_orientations: int
     unit: str | None
     placement: Placement | None
     other_placements: Sequence[Placement | None]

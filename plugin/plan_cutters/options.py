@@ -47,6 +47,7 @@ _LIMITS = {
     "area_budget": (0, math.inf, "must not be negative"),
     "map_budget": (1, math.inf, "must be at least 1 sample"),
     "most_operations": (1, math.inf, "must be at least 1"),
+    "max_orientations": (1, math.inf, "must be at least 1"),
     "jobs": (1, _MOST_JOBS, f"must be at least 1 and at most {_MOST_JOBS}"),
 }
 
@@ -137,7 +138,8 @@ class Options:
     index_step : float, optional
         Rotary axes lock at whole multiples of this angle alone, rad. None: anywhere.
     axis_accuracy : float
-        Of the rotary axes, rad: orientations of one setup that are nearer than this are one.
+        Of the rotary axes, rad: orientations of one setup that are nearer than this are one; floors and walls that are off the
+        tool axis by no more are square to it or along it.
     index_time : float, optional
         Seconds that another orientation takes. None: what the machine's rotary axes need by their rates, else 5 s.
     change_time, setup_time : float
@@ -148,6 +150,9 @@ class Options:
         Fixed orientations at most: the rest is left to simultaneous motion.
     sharp_edges : str
         `left`: strips at sharp inside edges that no cutter enters are not required; else `asked`.
+    max_orientations : int
+        Where the fastest plan would have more fixed orientations, simultaneous motion is recommended for the rest; without effect
+        where `most_operations` is given.
     unit : str, optional
         Length unit to take instead of the part's own, one of `cad_io.units.UNITS`.
     fixtures : tuple of Fixture
@@ -211,6 +216,7 @@ class Options:
     overlap: float = 2.0
     most_operations: int | None = None
     sharp_edges: str = "asked"
+    max_orientations: int = 8
     unit: str | None = None
     fixtures: tuple[Fixture, ...] = ()
     placement: Placement | None = None
@@ -280,6 +286,7 @@ class Options:
             raise OptionError(f"sharp edges: {shown(self.sharp_edges)} is none of {', '.join(SHARP_EDGES)}")
         if self.most_operations is not None:
             take(most_operations=whole(self.most_operations, "most operations"))
+        take(max_orientations=whole(self.max_orientations, "max orientations"))
         for word in _RECKONED:
             if getattr(self, word) is not None:
                 take(**{word: number(getattr(self, word), word.replace("_", " "))})

@@ -121,7 +121,7 @@ def test_the_habit_serves_all(seed):
 
 def test_plans_of_two_cutters_agree_with_themselves():
     result = plan(trough(10.0, 10.0), cutters=["R2L60rc2", "R6L60rc6"], faces="all", grid=7, operations="both", feed=1000.0,
-                  area_budget=0, index_time=3.0, change_time=7.0)  # fmt: skip
+                  area_budget=0, index_time=3.0, change_time=7.0, machine="tilt:80")  # fmt: skip
     found = result.plan.operations
     assert [each.name for each in found.plans] == ["fewest", "fastest", "largest first"]
     for each in found.plans:
@@ -149,7 +149,9 @@ def test_a_ball_in_a_plane_trough_takes_the_seconds_of_its_width():
     c, radius, feed = -10.0, 6.0, 1000.0
     cosine = ((c + radius) ** 2 + (c + 0.01) ** 2 - radius**2) / (2 * (c + radius) * (c + 0.01))
     each = 2.0 * abs(c) * math.acos(cosine)
-    result = plan(trough(10.0, 10.0), cutters="R6L60rc6", faces="all", grid=7, operations="fewest", feed=feed, area_budget=0)
+    # With axes up to 80 deg off the setup axis the flutes cannot be laid along the trough.
+    options = {"operations": "fewest", "feed": feed, "area_budget": 0, "machine": "tilt:80"}
+    result = plan(trough(10.0, 10.0), cutters="R6L60rc6", faces="all", grid=7, **options)
     entry = result.plan.operations.plans[0]
     area = sum(one.area_mm2 for one in entry.operations)
     assert entry.cutting_seconds == pytest.approx(area / (each * feed / 60.0), rel=0.01)

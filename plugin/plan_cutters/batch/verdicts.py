@@ -238,7 +238,11 @@ def require_sound(verdicts: Verdicts, normal: Floats, postures: PostureRange) ->
     turned = (verdicts.rotation[at] >= 0) & (verdicts.rotation[at] < len(postures.rotations))
     with np.errstate(all="ignore"):
         stands = np.abs(axis - np.cos(tilt) * normal - np.sin(tilt) * across) <= _SLACK
-        unit = np.abs((across * across).sum(axis=1) - 1.0) + np.abs((across * normal).sum(axis=1)) <= _SLACK
+        # Upright, with the contact under the flat of the tip, a tilt direction is shorter than 1.
+        length = (across * across).sum(axis=1)
+        unit = ((np.abs(length - 1.0) <= _SLACK) | ((tilt[:, 0] == 0.0) & (length > 0.0) & (length < 1.0))) & (
+            np.abs((across * normal).sum(axis=1)) <= _SLACK
+        )
         within = (tilt[:, 0] >= low - _SLACK) & (tilt[:, 0] <= high + _SLACK)
     if not (stands.all() and unit.all() and within.all() and turned.all()):
         raise ValueError("it holds postures that there are not")

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.checker.clash import FREE, MET, Clock, lowest, met, nearest
+from plan_cutters.checker.clash import FREE, MET, OPEN, Clock, lowest, met, nearest
 from plan_cutters.checker.fixtures import PlacedFixture, rotation_of
+from plan_cutters.checker.places import Places, across, reach_at
 from plan_cutters.checker.question import Question, frame_of
 from plan_cutters.checker.surface import Cells, Face
 from plan_cutters.checker.tool import FLAT, Tool, tool_of
@@ -19,8 +20,8 @@ Rows = NDArray[np.int64]
 #: Shares of the tolerance: what may be missed; what a posture that counts as blocked is at least too deep by, below the flutes'
 #: tolerance and, above them, nearer than the clearance. A search may refuse what lies between, for its triangles are not exact.
 _GRAIN, _DEEP, _NEAR = 0.05, 0.25, 0.6
-#: Sides of a flat bottom that may touch where the axis is the normal.
-_SIDES = 36
+#: Places of an upright tool that are tried at a contact, and the accuracy of the axes where none is written, deg.
+_TRIED, _ACCURACY = 120, 0.05
 _END = 1e-9
 
 
@@ -41,6 +42,8 @@ class Bench:
         effective = question.document["effective"]
         self._tilt = np.radians(effective["tilt_deg"])
         self._rotation = np.radians(effective["rotation_deg"])
+        #: Of the rotary axes, rad: what is off by no more is upright, or along a wall.
+        self.accuracy = max(FLAT, math.radians(effective.get("axis_accuracy_deg", _ACCURACY)))
         self.cells = Cells()
         part, tell_ = question.part, tell
         tell_("opening the surfaces of the part")
@@ -89,13 +92,14 @@ class Bench:
 
     def looked(
         self, setup: int, tool: Tool, rows: Rows, axis: Floats, tilt_direction: Floats, clock: Clock, *, surely: bool = True,
-        tell: Callable[[int], None] = lambda done: None,
+        tell: Callable[[int], None] = lambda done: None, contact: tuple[Floats, Floats] | None = None,
     ) -> tuple[NDArray[np.int8], list[str]]:  # fmt: skip
-        """The same, with words for the first few that are not free."""
-        tolerance, words = self.question.tolerance, list[str]()
+        """The same, with words for the first few that are not free; `contact`: points and normals in the place of samples."""
+        words = list[str]()
         verdict = np.full(len(rows), MET, np.int8)
-        tip = tool.tips(self.point[rows], self.normal[rows], axis, tilt_direction)
-        able = np.isfinite(tip).all(axis=1) & self._can_tilt(rows, axis)
+        contact = self._at(rows) if contact is None else contact
+        tip = self._tips(tool, contact, axis, tilt_direction)
+        able = np.isfinite(tip).all(axis=1) & self._can_tilt(tool, rows, contact[1], axis, tilt_direction)
         able &= ~np.isin(self.question.samples["face"][rows], [*self.question.setups[setup].clamped])
         for each in self.standing[setup]:
             # What is in the way at no place of its surface may still hold all of the tool.
@@ -105,8 +109,7 @@ class Bench:
                 f"sample {rows[bad[0]]}: the tool cannot touch there at that tilt, the face is clamped, or a fixture is there"
             )
         mine = np.flatnonzero(able)
-        flutes, rest = (1.0, 0.0) if surely else (_DEEP, -_NEAR)
-        limits = flutes * tolerance - tool.allowance, rest * tolerance - tool.clearance
+        limits = self._limits(tool, surely=surely)
         hits = met(self.cells, self.root[setup], tool, tip[mine], axis[mine], limits, self.grain, clock, tell)
         verdict[mine] = hits.verdict
         for k in np.flatnonzero(hits.verdict == MET)[:3].tolist():
@@ -115,22 +118,69 @@ class Bench:
             words.append(f"sample {rows[mine[k]]}: {where} is {hits.depth[k]:.4g} mm deep in the {solid.part}")
         return verdict, words
 
+    def _at(self, rows: Rows) -> tuple[Floats, Floats]:
+        return self.point[rows], self.normal[rows]
+
+    def _tips(self, tool: Tool, contact: tuple[Floats, Floats], axis: Floats, tilt_direction: Floats) -> Floats:
+        return tool.tips(*contact, axis, tilt_direction, self.accuracy, self.question.tolerance)
+
+    def _limits(self, tool: Tool, *, surely: bool) -> tuple[float, float]:
+        flutes, rest = (1.0, 0.0) if surely else (_DEEP, -_NEAR)
+        return flutes * self.question.tolerance - tool.allowance, rest * self.question.tolerance - tool.clearance
+
     def serves(self, setup: int, tool: Tool, rows: Rows, axis: Floats, clock: Clock, *, surely: bool) -> NDArray[np.int8]:
-        """The same for a fixed axis at samples (m,), (m, 3): where the axis is the normal, with any side of the bottom."""
-        normal = self.normal[rows]
-        tilt_direction = self.own_tilt_direction(rows, axis)
-        verdict = self.stands(setup, tool, rows, axis, tilt_direction, clock, surely=surely)
-        upright = np.linalg.norm(np.cross(normal, axis), axis=1) <= FLAT
-        for k in np.flatnonzero(upright & (verdict != FREE)).tolist():
-            first = self.question.samples["direction_max"][rows[k]]
-            first = first - (first @ axis[k]) * axis[k]
-            first = first / max(float(np.linalg.norm(first)), 1e-300)
-            turn = 2.0 * math.pi / _SIDES * np.arange(_SIDES)[:, None]
-            about = np.cos(turn) * first + np.sin(turn) * np.cross(axis[k], first)
-            every = self.stands(
-                setup, tool, np.full(_SIDES, rows[k]), np.repeat(axis[k][None], _SIDES, axis=0), about, clock, surely=surely
-            )
-            verdict[k] = FREE if (every == FREE).any() else max(every)
+        """The same for a fixed axis at samples (m,), (m, 3): where it is the normal with the contact anywhere under the flat of
+        the tip, and along a wall at the distance of the tolerance. `OPEN` also where too many places would have to be tried.
+        """
+        verdict = self.stands(setup, tool, rows, axis, self.own_tilt_direction(rows, axis), clock, surely=surely)
+        low, high = self._rotation
+        if high - low < 2.0 * math.pi - _END:
+            return verdict
+        cosine = (self.normal[rows] * axis).sum(axis=1)
+        sine = np.linalg.norm(np.cross(self.normal[rows], axis), axis=1)
+        walls = np.flatnonzero((verdict != FREE) & (np.abs(cosine) <= math.sin(self.accuracy)))
+        if len(walls):
+            verdict[walls] = self.stands(setup, tool, rows[walls], axis[walls], 2.0 * axis[walls], clock, surely=surely)
+        upright = np.flatnonzero((verdict != FREE) & (np.arctan2(sine, cosine) <= self.accuracy))
+        if len(upright) and tool.flat > 0.0:
+            verdict[upright] = self._under_flat(setup, tool, rows[upright], axis[upright], clock, surely=surely)
+        return verdict
+
+    def _under_flat(self, setup: int, tool: Tool, rows: Rows, axis: Floats, clock: Clock, *, surely: bool) -> NDArray[np.int8]:
+        """Whether an upright tool stands free anywhere with a contact under its flat: `FREE`, `MET`, or `OPEN`."""
+        first, limits = self.question.samples["direction_max"], self._limits(tool, surely=surely)
+        uv = np.array([across(a, first[row]) for a, row in zip(axis, rows.tolist(), strict=True)])
+        places = [Places(tool.flat) for _ in rows]
+        verdict = np.full(len(rows), OPEN, np.int8)
+        for _ in range(_TRIED):
+            open_rows = np.flatnonzero(verdict == OPEN)
+            if not len(open_rows) or clock.over:
+                break
+            at = [places[k].best for k in open_rows.tolist()]
+            gone = np.array([each is None for each in at])
+            verdict[open_rows[gone]] = MET
+            some, place = open_rows[~gone], np.array([each for each in at if each is not None]).reshape(-1, 2)
+            tilt_direction = -np.einsum("nk,nkx->nx", place, uv[some]) / tool.flat
+            # In the middle of the flat no direction is left: a hair beside it.
+            tilt_direction[np.linalg.norm(tilt_direction, axis=1) < _END] = _END
+            contact = self._at(rows[some])
+            tip = self._tips(tool, contact, axis[some], tilt_direction)
+            able = np.isfinite(tip).all(axis=1) & self._can_tilt(tool, rows[some], contact[1], axis[some], tilt_direction)
+            able &= ~np.isin(self.question.samples["face"][rows[some]], [*self.question.setups[setup].clamped])
+            verdict[some[~able]] = MET
+            some, place, tip = some[able], place[able], tip[able]
+            hits = met(self.cells, self.root[setup], tool, tip, axis[some], limits, self.grain, clock)
+            for i, k in enumerate(some.tolist()):
+                if hits.verdict[i] == FREE:
+                    held = any(each.holds(tip[i : i + 1] + tool.high * axis[k])[0] for each in self.standing[setup])
+                    verdict[k] = MET if held else FREE
+                elif hits.verdict[i] == MET:
+                    solid = tool.solids[hits.solid[i]]
+                    limit = limits[0] if solid.part == "flutes" else limits[1]
+                    away = self.cells.point[hits.cell[i]] - tip[i]
+                    flat = uv[k] @ away
+                    radius = reach_at(solid, float(away @ axis[k]), limit, float(np.linalg.norm(flat)))
+                    places[k].forbid(place[i] + flat, radius)
         return verdict
 
     def own_tilt_direction(self, rows: Rows, axis: Floats) -> Floats:
@@ -141,10 +191,13 @@ class Bench:
         return np.where(size > 1e-12, across / np.maximum(size, 1e-300), self.question.samples["direction_max"][rows])
 
     def clearance(
-        self, setup: int, tool: Tool, rows: Rows, axis: Floats, tilt_direction: Floats, beyond: float, clock: Clock
-    ) -> tuple[float, str] | None:
-        """The least distance of what does not cut from anything, mm, at samples (m,), and which part comes nearest."""
-        tip = tool.tips(self.point[rows], self.normal[rows], axis, tilt_direction)
+        self, setup: int, tool: Tool, contact: tuple[Floats, Floats], axis: Floats, tilt_direction: Floats, beyond: float,
+        clock: Clock,
+    ) -> tuple[float, str] | None:  # fmt: skip
+        """The least distance of what does not cut from anything, mm, at contacts, points and normals (m, 3), and which part
+        comes nearest.
+        """
+        tip = self._tips(tool, contact, axis, tilt_direction)
         return nearest(self.cells, self.root[setup], tool.above(2.0 * tool.radius), tip, axis, beyond, self.grain, clock)
 
     def named(self, index: int) -> Tool:
@@ -152,15 +205,18 @@ class Bench:
         cutters: Any = self.question.document["cutters"]
         return self.tools[cutters[index]["id"]]
 
-    def _can_tilt(self, rows: Rows, axis: Floats) -> NDArray[np.bool_]:
-        """Which axes (m, 3) lean from the normals by tilts and towards rotations that the plan allows."""
-        normal, first = self.normal[rows], self.question.samples["direction_max"][rows]
+    def _can_tilt(self, tool: Tool, rows: Rows, normal: Floats, axis: Floats, tilt_direction: Floats) -> NDArray[np.bool_]:
+        """Which axes (m, 3) lean from normals (m, 3) by tilts and towards rotations that the plan allows."""
+        first = self.question.samples["direction_max"][rows]
         cosine = (normal * axis).sum(axis=1)
-        across = axis - cosine[:, None] * normal
-        tilt = np.arctan2(np.linalg.norm(across, axis=1), cosine)
+        leaning = axis - cosine[:, None] * normal
+        tilt = np.arctan2(np.linalg.norm(leaning, axis=1), cosine)
+        # Upright and along a wall the surface counts as if it were square to the axis, or held it.
+        tilt = np.where(tilt <= self.accuracy, np.minimum(tilt, self._tilt[0]), tilt)
+        tilt[tool.stands_along(normal, axis, tilt_direction, self.accuracy)] = 0.5 * math.pi
         able = (tilt >= self._tilt[0] - _END) & (tilt <= self._tilt[1] + _END)
         low, high = self._rotation
         if high - low < 2.0 * math.pi - _END:
-            turn = np.arctan2((across * np.cross(normal, first)).sum(axis=1), (across * first).sum(axis=1))
+            turn = np.arctan2((leaning * np.cross(normal, first)).sum(axis=1), (leaning * first).sum(axis=1))
             able &= (np.remainder(turn - low + _END, 2.0 * math.pi) <= high - low + 2.0 * _END) | (tilt < _END)
         return np.asarray(able)

@@ -18,6 +18,8 @@ Rows = NDArray[np.int64]
 _REACHED, _UNJUDGED, _NO_REASON = (1, 2), 255, 255
 #: Cutters whose operations are compared, at most, unless more are needed to reach all.
 _CUTTERS = 4
+#: How a sample is cut, in operations.npz, and the words for it; one that takes so much of an operation is that of all of it.
+FLOOR, WALL, _STRATEGIES, _NEARLY_ALL = 1, 2, ("point", "floor", "wall"), 0.95
 #: Areas that differ by less, as a share, are the same.
 _SAME_AREA = 1e-9
 #: Share of an area that a search may count less than stands free.
@@ -253,6 +255,7 @@ class Reckoned:
         entry: dict[str, Any] = {
             "id": f"op{i + 1}",
             "mode": mode,
+            "strategy": self._strategy(k, rows),
             "cutter": each["cutter"] if each["cutter"] in self.considered else "one of the cutters that were compared",
             "setup": each["setup"] if each["setup"] in range(len(question.setups)) else "one of the setups",
             "samples": len(rows),
@@ -273,6 +276,14 @@ class Reckoned:
         if entry["setup"] != each["setup"]:
             return entry
         return entry | self._orientation(each)
+
+    def _strategy(self, k: int, rows: Rows) -> str:
+        """How most of the samples of an operation are cut."""
+        number, area = np.minimum(self.array(k, "strategy")[rows], WALL), self.area[rows]
+        size = np.bincount(number, area, len(_STRATEGIES))
+        if not len(rows):
+            return _STRATEGIES[0]
+        return _STRATEGIES[int(size.argmax())] if size.max() >= _NEARLY_ALL * size.sum() else "mixed"
 
     def _orientation(self, each: Mapping[str, Any]) -> dict[str, Any]:
         question = self.question

@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from cad_io.kernel import first_derivatives
-from plan_cutters.checker.expected import Reckoned
+from plan_cutters.checker.expected import WALL, Reckoned
 from plan_cutters.checker.findings import Finding
 from plan_cutters.checker.question import Question, allowed, axes_of
+from plan_cutters.checker.strategies import Strategies
 
 #: Parts of unit vectors, and mm, that differ by less are one; share by which areas of a face may differ.
 _SAME, _SAME_MM, _SAME_AREA = 1e-6, 1e-5, 0.01
@@ -44,6 +45,7 @@ class Paper:
         for k in range(len(self.plans)):
             yield from self._labels(k)
             yield from self._times(k)
+            yield from Strategies(self.question, self.reckoned, self.rng).findings(k)
 
     def _files(self) -> Iterator[Finding]:
         """The arrays are those that plan.json names."""
@@ -163,12 +165,15 @@ class Paper:
         )
         strip, seconds = self.reckoned.array(k, "strip_mm"), self.reckoned.array(k, "seconds")
         wanted, widest, feeds = np.full(len(label), np.nan), np.zeros(len(label)), assumed["feed_mm_min"]
+        walls = self.reckoned.array(k, "strategy") == WALL
         for i, each in enumerate(plan["operations"]):
             mine = label == i
             if feeds is not None:
                 with np.errstate(divide="ignore", invalid="ignore"):
                     wanted[mine] = self.reckoned.area[mine] / (strip[mine] * feeds[each["cutter"]] / 60.0)
-            widest[mine] = assumed["stepover"] * 2.0 * self.question.tools[each["cutter"]].radius
+            tool = self.question.tools[each["cutter"]]
+            # Along walls the flutes are the limit: `Strategies` compares strips with these.
+            widest[mine] = np.where(walls[mine], tool.flutes, assumed["stepover"] * 2.0 * tool.radius)
         own = label >= 0
         same = np.isclose(seconds[own], wanted[own], rtol=1e-9, atol=1e-12, equal_nan=True).all()
         same &= not np.isfinite(seconds[~own]).any() and not np.isfinite(strip[~own]).any()

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from plan_cutters.checker.question import ToolSizes
@@ -141,31 +142,56 @@ class Tool:
             pieces.append(each)
         return tuple(pieces)
 
-    def tips(self, contact: Floats, normal: Floats, axis: Floats, tilt_direction: Floats) -> Floats:
+    @property
+    def flat(self) -> float:
+        """Radius of the flat of its tip, mm; 0 where there is none."""
+        for arc in self.contacts:
+            if arc.first - _HAIR <= _DOWN <= arc.last + _HAIR:
+                return arc.q if abs(arc.h - arc.radius) <= _HAIR else 0.0
+        return 0.0
+
+    def tips(
+        self, contact: Floats, normal: Floats, axis: Floats, tilt_direction: Floats, accuracy: float = FLAT, keep: float = 0.0
+    ) -> Floats:
         """Where its tip is, (n, 3), with its contact at points (n, 3); nan where it does not touch at that tilt.
 
-        `tilt_direction` (n, 3) says which side of the bottom touches where the axis is the normal.
+        `tilt_direction` (n, 3) says which side of the bottom touches where the axis is the normal within an accuracy, rad; it is
+        shorter than 1 where the contact is under the flat of the tip. Twice the axis says that the flank stands along a wall that
+        holds the axis within the accuracy, and keeps a distance from it, mm.
         """
+        accuracy = max(accuracy, FLAT)
         cosine = np.clip((normal * axis).sum(axis=1), -1.0, 1.0)
-        across = axis - cosine[:, None] * normal
-        sine = np.linalg.norm(across, axis=1)
+        from_normal = axis - cosine[:, None] * normal
+        sine = np.linalg.norm(from_normal, axis=1)
         tilt = np.arctan2(sine, cosine)
         # From the axis to the contact: across the axis, away from the normal.
         outward = -normal + cosine[:, None] * axis
         sideways = tilt_direction - (tilt_direction * axis).sum(axis=1)[:, None] * axis
+        size = np.linalg.norm(sideways, axis=1)
         with np.errstate(invalid="ignore", divide="ignore"):
-            turned = np.linalg.norm(tilt_direction - across / sine[:, None], axis=1) > _SAME
-            upright = (tilt <= FLAT) & ((sine < _UPRIGHT) | turned)
-            outward = np.where(upright[:, None], sideways, outward)
+            turned = np.linalg.norm(tilt_direction - from_normal / sine[:, None], axis=1) > _SAME
+            upright = (tilt <= accuracy) & ((sine < _UPRIGHT) | turned)
+            along = self.stands_along(normal, axis, tilt_direction, accuracy)
             outward = outward / np.linalg.norm(outward, axis=1)[:, None]
-        normal, tilt = np.where(upright[:, None], axis, normal), np.where(upright, 0.0, tilt)
-        tips, open_rows = np.full(contact.shape, np.nan), np.ones(len(contact), bool)
+            # A direction that is one within rounding touches with the rim.
+            rim = np.abs(size - 1.0) <= _SAME
+            outward = np.where(upright[:, None], sideways / np.where(rim, size, 1.0)[:, None], outward)
+        wrong = (upright & ((size > 1.0 + _SAME) | ((size < 1.0 - _SAME) & (self.flat == 0.0)))) | ~np.isfinite(size)
+        contact = np.where(along[:, None], contact - keep * outward, contact)
+        normal = np.where(upright[:, None], axis, np.where(along[:, None], -outward, normal))
+        tilt = np.select([upright, along], [0.0, 0.5 * math.pi], tilt)
+        tips, open_rows = np.full(contact.shape, np.nan), ~wrong
         for arc in self.contacts:
             mine = open_rows & (tilt + _DOWN >= arc.first - _HAIR) & (tilt + _DOWN <= arc.last + _HAIR)
             centre = contact[mine] + (arc.radius + self.allowance) * normal[mine]
             tips[mine] = centre - arc.q * outward[mine] - arc.h * axis[mine]
             open_rows &= ~mine
         return tips
+
+    def stands_along(self, normal: Floats, axis: Floats, tilt_direction: Floats, accuracy: float) -> NDArray[np.bool_]:
+        """Where a tilt direction says that the flank stands along a wall, and the wall holds the axis within an accuracy."""
+        twice = np.linalg.norm(tilt_direction - 2.0 * axis, axis=1) <= _SAME
+        return np.asarray(twice & (np.abs((normal * axis).sum(axis=1)) <= math.sin(accuracy) + _SAME))
 
 
 def _cut(solid: Solid, height: float) -> Solid:

@@ -13,7 +13,8 @@ from plan_cutters.checker.expected import Reckoned
 from plan_cutters.checker.findings import Finding
 from plan_cutters.checker.leaves import Between, Loose
 from plan_cutters.checker.question import Question, allowed, axes_of
-from plan_cutters.checker.tool import FLAT
+from plan_cutters.checker.strategies import Contacts, contacts_at
+from plan_cutters.checker.tool import Tool
 
 Rows = NDArray[np.int64]
 _UNIT = 1_000_000
@@ -87,8 +88,10 @@ class Trials:
                 setup, tool = each["setup"], self.bench.tools[each["cutter"]]
                 axis, there = self._axes(each, rows)
                 open_ += len(rows) - len(there)
-                wrong_tilts += self._other_tilt_directions(there, axis, tilt_direction[there])
-                verdicts, more = self.bench.looked(setup, tool, there, axis, tilt_direction[there], clock)
+                at = contacts_at(self.question, self.reckoned, k, each, there, axis)
+                wrong_tilts += self._other_tilt_directions(tool, there, axis, tilt_direction[there], at)
+                contact = at.point, at.normal
+                verdicts, more = self.bench.looked(setup, tool, there, axis, at.tilt_direction, clock, contact=contact)
                 wrong, open_ = wrong + int((verdicts == MET).sum()), open_ + int((verdicts == OPEN).sum())
                 tested += int((verdicts != OPEN).sum())
                 words += [f"{each['id']}, {one}" for one in more]
@@ -116,15 +119,20 @@ class Trials:
         there = rows if served is None else rows[served[rows] == each["setup"]]
         return samples[f"axis_{name}"][there], there
 
-    def _other_tilt_directions(self, rows: Rows, axis: Floats, tilt_direction: Floats) -> int:
-        """How many written leans are not those of their axes; where an axis is the normal any across it is one."""
-        own = self.bench.own_tilt_direction(rows, axis)
+    def _other_tilt_directions(self, tool: Tool, rows: Rows, axis: Floats, tilt_direction: Floats, at: Contacts) -> int:
+        """How many written leans are not those of their axes; where an axis is the normal any across it is one, and a shorter one
+        if the tool has a flat tip; along a wall twice the axis is, or that of the flutes at the contact that is written.
+        """
+        passes = (at.normal != self.bench.normal[rows]).any(axis=1)
+        own = np.where(passes[:, None], at.tilt_direction, self.bench.own_tilt_direction(rows, axis))
+        accuracy = self.bench.accuracy
         tilt = np.linalg.norm(np.cross(self.bench.normal[rows], axis), axis=1)
         same = np.abs(own - tilt_direction).max(axis=1, initial=0.0) <= _SAME
-        across = (np.abs((tilt_direction * axis).sum(axis=1)) <= 1e-3) & (
-            np.abs(np.linalg.norm(tilt_direction, axis=1) - 1.0) <= _SAME
-        )
-        return int((~(same | ((tilt <= FLAT) & across))).sum())
+        size = np.linalg.norm(tilt_direction, axis=1)
+        across = (np.abs((tilt_direction * axis).sum(axis=1)) <= 1e-3) & (size <= 1.0 + _SAME)
+        across &= (np.abs(size - 1.0) <= _SAME) | ((size > 0.0) & (tool.flat > 0.0))
+        walls = tool.stands_along(self.bench.normal[rows], axis, tilt_direction, accuracy)
+        return int((~(same | ((tilt <= np.sin(accuracy)) & across) | walls)).sum())
 
     def weights(self) -> Finding:
         """No candidate serves samples whose weights sum up to more than a million."""
@@ -145,7 +153,7 @@ class Trials:
                 mine = np.flatnonzero((cutter[some] == c) & (setup[some] == s))
                 pairs, which = np.tile(rows, len(mine)), np.repeat(mine, len(rows))
                 serves = self.bench.serves(s, self.bench.named(c), pairs, axis[some[which]], clock, surely=False)
-                late |= bool((serves == OPEN).any())
+                late |= bool((serves == OPEN).any()) and clock.over
                 np.add.at(carried, which[serves == FREE], np.tile(weight, len(mine))[serves == FREE])
             if late:
                 break
@@ -252,14 +260,15 @@ class Trials:
             mine = np.flatnonzero((label[rows] != i) & ~served)
             axis, there = self._axes(each, rows[mine])
             verdict = self.bench.serves(each["setup"], self.bench.tools[each["cutter"]], there, axis, clock, surely=surely)
-            served[mine[verdict == FREE]] = True
+            # What could not be settled may stand free.
+            served[mine[(verdict == FREE) | ((verdict == OPEN) & surely)]] = True
         return served
 
     def clearances(self, entry: dict[str, Any]) -> None:
         """Put into the entry between what the least clearance of each operation must lie."""
         clock = self.clock("clearance")
         for k, plan in enumerate(self.plans):
-            label, tilt_direction = self.reckoned.array(k, "operation"), self.reckoned.array(k, "lean")
+            label = self.reckoned.array(k, "operation")
             for i, each in enumerate(plan["operations"]):
                 claimed, tool = each["clearance_mm"], self.bench.tools[each["cutter"]]
                 self.tell(f"{plan['name']}: the clearance of {each['id']}")
@@ -272,7 +281,9 @@ class Trials:
                 if len(there) < len(rows) or clock.over or (claimed is None and doubtful):
                     continue
                 beyond = (claimed or 0.0) * (1.0 + _EDGE) + _CLEARANCE_STEP + self.question.tolerance
-                clearance = self.bench.clearance(each["setup"], tool, there, axis, tilt_direction[there], beyond, clock)
+                at = contacts_at(self.question, self.reckoned, k, each, there, axis)
+                contact = at.point, at.normal
+                clearance = self.bench.clearance(each["setup"], tool, contact, axis, at.tilt_direction, beyond, clock)
                 if clearance is None:
                     continue
                 true, part = clearance

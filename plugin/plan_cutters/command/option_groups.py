@@ -274,6 +274,13 @@ _OPTIONS = (
         "--most-operations", type=int, metavar="N", help="Fixed orientations, at most; simultaneous motion finishes the rest."
     ),
     _operations(
+        "--max-orientations",
+        type=int,
+        default=8,
+        metavar="N",
+        help="Where the fastest plan has more fixed orientations, simultaneous motion is recommended for the rest.  [default: 8]",
+    ),
+    _operations(
         "--check-operations",
         type=File("FILE"),
         help="Check the operations in a plan.json against the exact part, with the options that it was made with; write nothing.",

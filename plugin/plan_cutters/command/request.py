@@ -102,6 +102,7 @@ class PlanningRequest(JudgingRequest):
     setup_time: float
     overlap: float
     most_operations: int | None
+    max_orientations: int
     formats: str | None
     step_schema: str
     cluster: str | None
@@ -247,6 +248,7 @@ def planning_options(request: PlanningRequest) -> "PlanOptions":
         "setup_time": request.setup_time,
         "overlap": request.overlap,
         "most_operations": request.most_operations,
+        "max_orientations": request.max_orientations,
     }
 
 

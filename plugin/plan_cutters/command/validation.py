@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 NAMED = {"cutter": "cutters", "cutters": "libraries", "fixture": "fixtures"}
 #: Options that count in a plan of operations alone: without one they must not be ignored.
 OF_OPERATIONS = ("feed", "scallop", "stepover", "index_step", "axis_accuracy", "index_time", "change_time", "setup_time",
-                 "overlap", "most_operations")  # fmt: skip
+                 "overlap", "most_operations", "max_orientations")  # fmt: skip
 #: Bytes of memory below which nothing can be planned.
 LEAST_MEMORY = 2e9
 

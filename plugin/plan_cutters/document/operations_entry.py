@@ -180,7 +180,7 @@ def _operation(
     length = float((mine[known] / strip[known]).sum()) if known.all() else None
     seconds = plan.seconds[rows]
     return OperationEntry(
-        id=operation.name, mode=operation.mode, cutter=operation.cutter.id, setup=operation.setup,
+        id=operation.name, mode=operation.mode, strategy=operation.strategy, cutter=operation.cutter.id, setup=operation.setup,
         axis=None if operation.axis is None else vector(operation.axis), angles_deg=_angles(operation.angle, names),
         other_angles_deg=_angles(operation.other_angle, names), samples=len(rows), area_mm2=float(mine.sum()),
         share=min(1.0, float(mine.sum()) / whole) if whole > 0.0 else 0.0, exclusive_mm2=float(area[operation.only].sum()),

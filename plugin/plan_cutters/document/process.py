@@ -93,8 +93,9 @@ def _operated(
         key=lambda e: (e.setup, e.mode != "fixed", -by_cutter[e.setup, e.cutter], e.cutter, -e.area_mm2, rank[id(e)]),
     )
     return [
-        _step(ready, over, area, requested, plan.label == rank[id(each)], setup=each.setup, mode=each.mode, cutter=each.cutter,
-              angles_deg=each.angles_deg, axis=each.axis, seconds=each.seconds, clearance_mm=each.clearance_mm)
+        _step(ready, over, area, requested, plan.label == rank[id(each)], setup=each.setup, mode=each.mode,
+              strategy=each.strategy, cutter=each.cutter, angles_deg=each.angles_deg, axis=each.axis, seconds=each.seconds,
+              clearance_mm=each.clearance_mm)
         for each in ordered
     ]  # fmt: skip
 

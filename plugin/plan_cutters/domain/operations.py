@@ -19,6 +19,11 @@ from plan_cutters.errors import OptionError
 #: Plans that may be requested.
 WHICH = ("fewest", "fastest", "both")
 Mode = Literal["fixed", "simultaneous"]
+Strategy = Literal["point", "floor", "wall", "mixed"]
+#: How a sample is cut, in the numbers of `OperationPlan.strategy`.
+STRATEGIES: tuple[Strategy, ...] = ("point", "floor", "wall")
+#: A strategy by which so much of an operation's area is cut is that of the operation, as a share.
+_NEARLY_ALL = 0.95
 #: Another orientation takes this, s, where no time was given and the machine does not say how fast its rotary axes turn.
 INDEX_TIME = 5.0
 IndexFrom = Literal["rates", "given", "assumed"]
@@ -35,6 +40,20 @@ def operations_of(value: Any) -> str | None:
     if value is None or value in WHICH:
         return value if value is None else str(value)
     raise OptionError(f"operations: {shown(value)} is none of {', '.join(WHICH)}")
+
+
+def strategy_of(number: NDArray[np.uint8], area: Floats) -> Strategy:
+    """The strategy of an operation whose samples (n,) are cut by some, numbers in STRATEGIES, and stand for some areas.
+
+    >>> strategy_of(np.array([2, 2, 0], np.uint8), np.array([60.0, 39.0, 1.0]))
+    'wall'
+    >>> strategy_of(np.array([2, 1], np.uint8), np.ones(2)), strategy_of(np.zeros(0, np.uint8), np.zeros(0))
+    ('mixed', 'point')
+    """
+    size = np.bincount(number, area, len(STRATEGIES))
+    if not len(number):
+        return "point"
+    return STRATEGIES[int(size.argmax())] if size.max() >= _NEARLY_ALL * size.sum() else "mixed"
 
 
 @dataclass(frozen=True, slots=True)
@@ -180,6 +199,9 @@ class Operation:
         Connected pieces of the area proved with its axis, the largest, until they hold 99 % of it: inside one, any path is safe.
     clearance : float, optional
         Least clearance at its samples, mm, of what does not cut; None where nothing is proved.
+    strategy : str
+        `floor`: the flat part of the tip lies on the face; `wall`: the flutes lie along it; `point`: the tool touches in a point;
+        `mixed`: several of them.
     """
 
     name: str
@@ -194,6 +216,7 @@ class Operation:
     proved: float | None = None
     approaches: int | None = None
     clearance: float | None = None
+    strategy: Strategy = "point"
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -240,6 +263,11 @@ class OperationPlan:
     lean : (n, 3) float
         Unit direction in which the tool leans, across its contact's normal; where it stands upright, the side of its bottom that
         touches. nan where there is no operation.
+    strategy : (n,) uint8
+        How each sample is cut, an index into STRATEGIES; 0 where there is no operation.
+    contact : (n, 3) float
+        Where the tool touches while it cuts a sample of a wall, mm: at the lower end of its strip, where its flutes begin to be
+        straight. nan where it touches at the sample itself.
     cutting, other : float
         Seconds of all cutting, nan where one of them is not known; and of all orientations, of changes of cutters and of setups.
     """
@@ -253,6 +281,8 @@ class OperationPlan:
     region: Ints
     planes: tuple[Workplane | None, ...]
     lean: Floats
+    strategy: NDArray[np.uint8]
+    contact: Floats
     cutting: float
     other: float
 

@@ -99,7 +99,9 @@ class Verdicts(_Columns):
     verdict : (n,) uint8
         INACCESSIBLE, ACCESSIBLE, INTERFERENCE_FREE, UNDECIDED or UNJUDGED.
     axis, tilt_direction : (n, 3) float
-        Unit tool axis and tilt direction of the posture found; nan where there is none.
+        Unit tool axis and tilt direction of the posture found; nan where there is none. At tilt 0 the tilt direction goes from
+        the axis to the contact, and is shorter than 1 where the contact lies under the flat of the tip: by the share of the
+        flat's radius that it is from the axis.
     tilt : (n,) float
         rad, nan where there is none.
     rotation : (n,) int32

@@ -125,10 +125,13 @@ def _posture(result: Result, cutter: Cutter, at: int | WitnessEntry) -> tuple[Fl
         axis, tilt = reach.axis[row], float(reach.tilt[row])
     normal = samples.normal[row]
     tilt_direction = axis - (axis @ normal) * normal
-    if np.linalg.norm(tilt_direction) < 1e-9:
-        tilt_direction = samples.direction_max[row]
+    size = float(np.linalg.norm(tilt_direction))
+    if size < 1e-9:
+        # Upright it says where under the tool the sample is.
+        own = result.reaches[cutter.id].tilt_direction[row]
+        tilt_direction, size = (own if tilt == 0.0 and np.isfinite(own).all() else samples.direction_max[row]), 1.0
     one = blank(1)
-    one.axis[0], one.tilt_direction[0], one.tilt[0] = axis, tilt_direction / np.linalg.norm(tilt_direction), tilt
+    one.axis[0], one.tilt_direction[0], one.tilt[0] = axis, tilt_direction / size, tilt
     tip = tips(cutter, samples.point[row : row + 1], normal[None], one.freeze())[0]
     if not np.isfinite(tip).all():
         raise OptionError(f"{cutter.id} cannot touch at a tilt of {np.degrees(tilt):.3g} deg: there is nothing to show")

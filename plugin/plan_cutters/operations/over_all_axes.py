@@ -28,6 +28,7 @@ from plan_cutters.kernels.codes import (
     OFFSET_OF,
     PART,
     RADIUS,
+    RISE,
     ROUND,
     SLOPE,
     TILT_FROM,
@@ -39,6 +40,7 @@ from plan_cutters.kernels.rows import Tool
 from plan_cutters.operations.cover import UNIT, fewest, relax
 from plan_cutters.operations.probes import Probes
 from plan_cutters.scene.conditions import Context, contacts_of
+from plan_cutters.scene.fixed_axis import FLAT
 
 Rows = NDArray[np.int64]
 #: Halvings of the icosahedron's sides that make the first cells: 320 of them, about 10 deg in radius.
@@ -54,6 +56,8 @@ _PIECES = 60
 #: Angles through which a frame turns within a cell, in radii of the cell, for tools that stand beside their axis.
 _TURNS = np.geomspace(2.0, 16.0, 10)
 _ROUNDING = 1e-6
+#: Of a tool that stands as it leans alone, for the kernel: neither upright nor along a wall.
+_TILTED_ALONE = (-1.0, -1.0, False)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -130,7 +134,7 @@ class OpenCells:
 
     def __init__(self, probes: Probes, rows: Rows) -> None:
         self.probes, self.rows, self.made = probes, rows, 0
-        self._tools: dict[tuple[Cutter, int, int, float], list[Tool]] = {}
+        self._tools: dict[tuple[Cutter, int, int, float, bool], list[Tool]] = {}
         self._modes = [[each.inner_tool.mode for each in of_cutter] for of_cutter in probes.contexts]
 
     def table(self, cells: Cells, before: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
@@ -144,7 +148,9 @@ class OpenCells:
         for k, (c, s) in enumerate(pairs):
             conditions = probes.setups[s]
             low, high = conditions.postures.tilt
-            reached = (tilt + radius >= low - _ROUNDING) & (tilt - radius <= high + _ROUNDING)
+            # Upright and along a wall it stands with a tilt of 0 or a right angle, within the accuracy of the axes.
+            off = radius + max(FLAT, conditions.accuracy) + _ROUNDING
+            reached = (tilt + off >= low) & (tilt - off <= high)
             limit = math.acos(max(-1.0, conditions.machine.limit_cos))
             held = np.arccos(np.clip(middle @ conditions.setup, -1.0, 1.0)) - radius <= limit + _ROUNDING
             open_table[:, k] &= reached & held[:, None] & probes.outside[s][self.rows]
@@ -161,24 +167,39 @@ class OpenCells:
         conditions = self.probes.setups[s]
         # What is enclosed is not asked for: only what a triangle blocks counts.
         solids, contacts = sheet(conditions.surroundings.certain.tree), contacts_of(self.probes.samples)
-        free = np.zeros(len(mine), bool)
+        off = radius + max(FLAT, conditions.accuracy) + _ROUNDING
+        free, none = np.zeros(len(mine), bool), np.zeros((0, 3))
         for number, mode in enumerate(self._modes[c][s]):
-            touching = (tilt + radius >= mode[TILT_FROM] - _ROUNDING) & (tilt - radius <= mode[TILT_TO] + _ROUNDING)
+            touching = (tilt + off >= mode[TILT_FROM]) & (tilt - off <= mode[TILT_TO])
             turn = _turn(tilt, radius, float(mode[OFFSET_OF]))
+            # Under the flat the contact may be anywhere.
+            turn[tilt <= off] = np.inf if mode[OFFSET_OF] > 0.0 else turn[tilt <= off]
+            wall = np.abs(tilt - 0.5 * math.pi) <= off
             free |= touching & ~np.isfinite(turn)
-            for psi in np.unique(turn[touching & np.isfinite(turn)]).tolist():
-                open_rows = np.flatnonzero(touching & (turn == psi) & ~free)
-                for tool in self._bodies(c, s, number, psi):
+            for psi, along in {*zip(turn[touching].tolist(), wall[touching].tolist(), strict=True)}:
+                open_rows = np.flatnonzero(touching & (turn == psi) & (wall == along) & ~free)
+                for tool in self._bodies(c, s, number, psi, along) if len(open_rows) else ():
                     decided = np.full(len(open_rows), -1, np.int8)
-                    self.made += served(self.rows[mine[open_rows]], axis, contacts, -1.0, math.pi + 1.0, tool, solids, 0, decided)
+                    self.made += served(
+                        self.rows[mine[open_rows]],
+                        axis,
+                        contacts,
+                        -1.0,
+                        math.pi + 1.0,
+                        _TILTED_ALONE,
+                        tool,
+                        solids,
+                        decided,
+                        none,
+                    )
                     open_rows = open_rows[decided >= 0]
                 free[open_rows] = True
         return free
 
-    def _bodies(self, c: int, s: int, mode: int, turn: float) -> list[Tool]:
-        key = self.probes.cutters[c], s, mode, turn
+    def _bodies(self, c: int, s: int, mode: int, turn: float, along: bool) -> list[Tool]:
+        key = self.probes.cutters[c], s, mode, turn, along
         if key not in self._tools:
-            self._tools[key] = bodies(self.probes.contexts[c][s], mode, turn)
+            self._tools[key] = bodies(self.probes.contexts[c][s], mode, turn, along=along)
         return self._tools[key]
 
 
@@ -198,7 +219,7 @@ def _turn(tilt: Floats, radius: float, offset: float) -> Floats:
     return np.where(far & (at < len(steps)), steps[np.minimum(at, len(steps) - 1)], np.inf)
 
 
-def bodies(context: Context, mode: int, turn: float) -> list[Tool]:
+def bodies(context: Context, mode: int, turn: float, *, along: bool = False) -> list[Tool]:
     """Make bodies that lie in a tool however it is turned about its centre of curvature, deep enough to count.
 
     What is within D of the centre moves by no more than `turn` D in the tool's frame, so what lies deeper by that much in the
@@ -211,6 +232,8 @@ def bodies(context: Context, mode: int, turn: float) -> list[Tool]:
         The way in which it touches.
     turn : float
         rad, at most, about any line through the centre of curvature.
+    along : bool
+        Whether its flank may stand along a wall as well: turned by the accuracy of the axes, and moved by the tolerance.
 
     Returns
     -------
@@ -220,7 +243,10 @@ def bodies(context: Context, mode: int, turn: float) -> list[Tool]:
     cutter, conditions, whole = context.cutter, context.conditions, context.inner_tool
     error = conditions.obstacles.triangles.chord_error
     (_, blocked), (_, blocked_rest) = depths(conditions.tolerance, error), depths(0.0, error)
-    offset, rows = float(whole.mode[mode, OFFSET_OF]), whole.piece[mode]
+    offset, rows, moved = float(whole.mode[mode, OFFSET_OF]), whole.piece[mode], 0.0
+    if along:
+        off = max(FLAT, conditions.accuracy)
+        turn, moved = turn + off, conditions.tolerance + off * float(whole.mode[mode, RISE])
     if not len(rows):
         return []
     low, high = float(rows[:, BOTTOM].min()), float(rows[:, TOP].max())
@@ -228,7 +254,7 @@ def bodies(context: Context, mode: int, turn: float) -> list[Tool]:
     for first, last in pairwise(_layers(low, high, cutter.radius)):
         inside = (rows[:, TOP] > first) & (rows[:, BOTTOM] < last)
         wide = float(rows[inside][:, [RADIUS, WIDE]].max(initial=0.0))
-        more = turn * math.hypot(offset + wide, max(abs(first), abs(last)))
+        more = turn * math.hypot(offset + wide, max(abs(first), abs(last))) + moved
         smaller = assembly(cutter, blocked + more, blocked_rest + more, kind="inner")
         result += [row for each in smaller.piece[mode] if solid(row := _cut_off(each, first, last))]
     anywhere = whole.mode[mode : mode + 1].copy()

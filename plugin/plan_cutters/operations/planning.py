@@ -14,6 +14,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.operations import Fastest, OperationPlan, Operations, Worth
 from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.operations.at_once import few_enough, recommended
 from plan_cutters.operations.candidates import STEP, apart, candidates
 from plan_cutters.operations.canonical import canonical
 from plan_cutters.operations.curve import curve
@@ -35,8 +36,9 @@ from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.proof import proved
 from plan_cutters.operations.rest_areas import allowed, by_size, largest_first, with_and_without, worths
 from plan_cutters.operations.timing import Paths, Problems, shared_area
+from plan_cutters.operations.walls import Walls
 from plan_cutters.options import Options
-from plan_cutters.plan_file.numbers import percent
+from plan_cutters.plan_file.numbers import duration, percent
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress
 
@@ -77,19 +79,19 @@ def plan_operations(
         fewest = replace(fewest, at_least_any=any_axes, cells=cells)
         whole = float(np.nansum(ready.samples.area[ready.finished]))
         steps = curve(task.probes, fewest, task.rows, ready.samples.area, whole, lambda: _even(task, search))
-        plans, timed, worth = _plans(task, search, fewest.columns.of(fewest.chosen))
+        plans, timed, worth, instead = _plans(task, search, fewest.columns.of(fewest.chosen))
         # What was found of a plan is neither sought nor said again of others that are the same.
         different = list[OperationPlan]()
         for k, each in enumerate(plans):
             same = next((other for other in different if each.like(other)), None)
             plans[k] = proved(ready, each) if same is None else replace(same, name=each.name)
             different += [plans[k]] if same is None else []
-    small = tuple(note for each in different for note in small_pieces(each, ready.samples, options.overlap))
+    small = instead + tuple(note for each in different for note in small_pieces(each, ready.samples, options.overlap))
     if unpriced := [each.id for each in without_feed(ready)]:
         has = "has no feed" if len(unpriced) == 1 else "have no feed"
         small += (f"No operation is planned with what {has}: {', '.join(unpriced)}. Give --feed MM/MIN, or ask for the fewest.",)
     moving = max(sum(len(each.rows) for each in plan.operations if each.mode == "simultaneous") for plan in plans)
-    if options.most_operations is None and moving > len(fewest.alone):
+    if options.most_operations is None and moving > len(fewest.alone) and not instead:
         small += (
             f"Orientations that add less than {percent(MINOR_AREA)} of the area each are left out of the plans; "
             "--most-operations with a large number takes all.",
@@ -99,23 +101,65 @@ def plan_operations(
                       notes=small, index_from=task.indexing.source)  # fmt: skip
 
 
-def _plans(task: Task, search: Search, few: Columns) -> tuple[list[OperationPlan], Fastest | None, tuple[Worth, ...]]:
+_Plans = tuple[list[OperationPlan], Fastest | None, tuple[Worth, ...], tuple[str, ...]]
+
+
+def _plans(task: Task, search: Search, few: Columns) -> _Plans:
     """Make the plans that were requested: the fastest is the one of all plans found here that takes the least time."""
     which = task.ready.options.operations
     fewest = _capped(task, "fewest", _quicker(task, search, few))
     if which == "fewest":
-        return [fewest], None, ()
+        return [fewest], None, (), ()
     columns, problem, area, chosen = _fastest(task, search, few)
     others = [_capped(task, "fastest", columns.of(each)) for each in (chosen, *with_and_without(problem, chosen))]
     largest_first = [_capped(task, "largest first", _largest_first(task, search, few))] if len(task.cutters) > 1 else []
     # Of those that take the same time the fewest.
     plans = [fewest, *others, *largest_first]
-    fastest = replace(min(plans, key=lambda plan: np.nan_to_num(plan.total, nan=np.inf)), name="fastest")
+    fastest, notes = _recommended(task, plans)
     at_best = float(problem.cost.min(axis=1, initial=np.inf).sum())
     # Canonical orientations need not be candidates: what the plan that is printed takes bounds the best from above.
     bound = min(bounded(problem, chosen).bound, np.nan_to_num(fastest.total, nan=np.inf))
     timed = Fastest(fastest.total, bound, min(at_best, bound), area, len(problem.cost), len(columns))
-    return [*([fewest] if which == "both" else []), fastest, *largest_first], timed, worths(task, plans)
+    return [*([fewest] if which == "both" else []), fastest, *largest_first], timed, worths(task, plans), notes
+
+
+def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationPlan, tuple[str, ...]]:
+    """The plan that is recommended as the fastest, and what must be said of it.
+
+    It is the one of all plans that takes the least time; of those with more fixed orientations than are recommended the area of
+    some is left to simultaneous motion first.
+    """
+    best = min(plans, key=_seconds)
+    columns = recommended(task, _columns_of(task, best))
+    fixed = sum(each.mode == "fixed" for each in best.operations)
+    if len(columns) == fixed:
+        return replace(best, name="fastest"), ()
+    tried = [plan_with(task, "fastest", columns), *(each for each in plans if few_enough(task, each))]
+    chosen = min(tried, key=_seconds)
+    if few_enough(task, best) and _seconds(best) <= _seconds(chosen):
+        return replace(best, name="fastest"), ()
+    many, why = fixed - sum(each.mode == "fixed" for each in chosen.operations), "it takes less time"
+    if not few_enough(task, best):
+        why = f"more than {task.ready.options.max_orientations} orientations are not recommended (--max-orientations)"
+    words = (
+        f"With fixed orientations alone, {fixed} of them, the fastest plan would take {duration(best.total)}; simultaneous "
+        f"motion is recommended in place of {many}, for {why}."
+    )
+    return replace(chosen, name="fastest"), (words,) if any(each.mode == "simultaneous" for each in chosen.operations) else ()
+
+
+def _seconds(plan: OperationPlan) -> float:
+    """Seconds of a plan, infinite where they are not known."""
+    return float(np.nan_to_num(plan.total, nan=np.inf))
+
+
+def _columns_of(task: Task, plan: OperationPlan) -> Columns:
+    """The columns of the fixed operations of a plan."""
+    columns = columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
+    for each in plan.operations:
+        if each.axis is not None and each.angle is not None:
+            columns = columns.and_(columns_of(each.axis[None], each.angle[None], task.cutters.index(each.cutter), each.setup))
+    return columns
 
 
 def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], least: LeastSet | None) -> Task:
@@ -129,11 +173,12 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
         [open_[s] & verdicts[cutter].reached for s, verdicts in enumerate(everywhere) for cutter in cutters]
     )
     probes = Probes(ready.samples, cutters, ready.setups, open_)
-    paths = Paths(options.scallop, options.stepover, feeds(options, cutters))
+    paths = Paths(options.scallop, options.stepover, feeds(options, cutters), options.axis_accuracy)
+    walls = Walls.of(probes, options.scallop, options.axis_accuracy)
     where = orientations_of(ready)
     indexing = Indexing(where, options.index_time)
     return Task(ready, cutters, where, tuple(everywhere), np.flatnonzero(reached), probes, paths, indexing,
-                Problems(ready.samples, cutters, paths, indexing))  # fmt: skip
+                Problems(ready.samples, cutters, paths, indexing, walls), walls)  # fmt: skip
 
 
 def feeds(options: Options, cutters: Sequence[Cutter]) -> Mapping[Cutter, float] | None:

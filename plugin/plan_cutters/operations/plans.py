@@ -10,14 +10,14 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.operations import Operation, OperationPlan, Workplane
+from plan_cutters.domain.operations import STRATEGIES, Operation, OperationPlan, Workplane, strategy_of
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.operations.candidates import Orientations
 from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.labels import joined, labelled, regions_of
 from plan_cutters.operations.probes import Probes
-from plan_cutters.operations.strips import strips
-from plan_cutters.operations.timing import Paths, Problems, costs_of, widths
+from plan_cutters.operations.timing import Paths, Problems, costs_of, tip_widths, widths
+from plan_cutters.operations.walls import Walls
 from plan_cutters.operations.workplanes import workplanes
 from plan_cutters.plan_file.numbers import area as size
 from plan_cutters.scene.clearance import least_clearance
@@ -51,6 +51,7 @@ class Task:
     paths : Paths
     indexing : Indexing
     problems : Problems
+    walls : Walls
     """
 
     ready: Prepared
@@ -62,6 +63,7 @@ class Task:
     paths: Paths
     indexing: Indexing
     problems: Problems
+    walls: Walls
 
 
 def plan_with(
@@ -76,7 +78,7 @@ def plan_with(
     area, edge = np.nan_to_num(samples.area), samples.neighbours
     serves, width = np.zeros((n, len(columns)), bool), np.full((n, len(columns)), np.nan)
     serves[rows] = task.probes.kept(rows, columns)
-    width[rows] = widths(columns, rows, samples, task.cutters, task.paths, serves[rows])
+    width[rows] = _widths(task, columns, serves[rows])
     cost = np.full((n, len(columns)), np.inf)
     cost[rows] = costs_of(columns, width[rows], serves[rows], area[rows], task.cutters, task.paths)
     # A border is cut twice over the overlap: what that takes is what the same area costs elsewhere.
@@ -99,15 +101,19 @@ def plan_with(
             speed[number == k] = task.paths.feed[operation.cutter] / 60.0
     with np.errstate(divide="ignore", invalid="ignore"):
         seconds = area / (strip * speed)
-    tilt_direction = np.full((n, 3), np.nan)
+    tilt_direction, contact, strategy = np.full((n, 3), np.nan), np.full((n, 3), np.nan), np.zeros(n, np.uint8)
     for k, operation in enumerate(operations):
-        held = _held(task, operation)
-        tilt_direction[operation.rows] = held.tilt_direction[operation.rows]
-        operations[k] = replace(operation, clearance=_clearance(task, operation, held))
+        stands, mine = _stands(task, operation), operation.rows
+        tilt_direction[mine], contact[mine] = stands.held.tilt_direction[mine], stands.contact
+        strategy[mine] = stands.strategy
+        clearance, word = _clearance(task, operation, stands), strategy_of(stands.strategy, area[mine])
+        operations[k] = replace(operation, clearance=clearance, strategy=word)
     region = regions_of(number, edge, area)
     planes = workplanes(operations, task.ready, task.indexing)
     cutting, other = float(seconds[number >= 0].sum()), _other(task, operations, planes)
-    return OperationPlan(name, tuple(operations), number, table, strip, seconds, region, planes, tilt_direction, cutting, other)
+    return OperationPlan(
+        name, tuple(operations), number, table, strip, seconds, region, planes, tilt_direction, strategy, contact, cutting, other
+    )
 
 
 def _other(task: Task, operations: Sequence[Operation], planes: Sequence[Workplane | None]) -> float:
@@ -139,27 +145,91 @@ def _fixed(
     return operations, order
 
 
+@dataclass(frozen=True, slots=True, eq=False)
+class Motion:
+    """Simultaneous motion over samples, m of them: which cutter and setup, and the width of a pass, mm."""
+
+    cutter: Rows
+    setup: Rows
+    width: Floats
+
+
+def moving_over(task: Task, rows: Rows) -> Motion:
+    """Simultaneous motion over samples (m,): with the first cutter in the first setup that reaches each, in the posture found."""
+    samples, paths, n = task.ready.samples, task.paths, len(rows)
+    motion = Motion(np.full(n, -1, np.int64), np.full(n, -1, np.int64), np.full(n, np.nan))
+    for s, verdicts in enumerate(task.everywhere):
+        for c, cutter in enumerate(task.cutters):
+            mine = np.flatnonzero((motion.cutter < 0) & verdicts[cutter].reached[rows])
+            if len(mine):
+                motion.cutter[mine], motion.setup[mine] = c, s
+                axis = verdicts[cutter].axis[rows[mine]]
+                motion.width[mine] = tip_widths(cutter, samples, rows[mine], axis, paths)[0]
+    return motion
+
+
 def _simultaneous(
     task: Task, before: int, number: NDArray[np.int32], table: NDArray[np.bool_], strip: Floats
 ) -> tuple[NDArray[np.int32], NDArray[np.bool_], Floats, list[Operation]]:
     """Give what no fixed operation takes to simultaneous ones: number, what serves, strips and operations."""
-    samples, paths, operations = task.ready.samples, task.paths, list[Operation]()
-    rest = task.rows[number[task.rows] < 0]
-    for s, verdicts in enumerate(task.everywhere):
-        for cutter in task.cutters:
-            mine = rest[verdicts[cutter].reached[rest]]
-            if not len(mine):
-                continue
-            rest = np.setdiff1d(rest, mine)
-            number[mine] = before + len(operations)
-            strip[mine] = strips(cutter, samples, verdicts[cutter].axis, paths.scallop, paths.stepover).width[mine]
-            column = np.zeros((len(samples), 1), bool)
-            column[mine] = True
-            table = np.concatenate([table, column], axis=1)
-            operations.append(
-                Operation(f"op{before + len(operations) + 1}", "simultaneous", cutter, s, None, None, None, mine, mine)
-            )
+    operations, rest = list[Operation](), task.rows[number[task.rows] < 0]
+    motion = moving_over(task, rest)
+    for s, c in sorted({*zip(motion.setup.tolist(), motion.cutter.tolist(), strict=True)}):
+        if c < 0:
+            continue
+        chosen = (motion.cutter == c) & (motion.setup == s)
+        mine = rest[chosen]
+        number[mine], strip[mine] = before + len(operations), motion.width[chosen]
+        column = np.zeros((len(number), 1), bool)
+        column[mine] = True
+        table = np.concatenate([table, column], axis=1)
+        name = f"op{before + len(operations) + 1}"
+        operations.append(Operation(name, "simultaneous", task.cutters[c], s, None, None, None, mine, mine))
     return number, table, strip, operations
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Stands:
+    """How a tool stands at the samples of an operation.
+
+    Attributes
+    ----------
+    samples : SurfaceSamples
+        All n, with the contact in the place of those that are cut along a wall.
+    held : Verdicts
+        Postures at its samples; those of others are not looked at.
+    strategy : (r,) uint8
+        How its samples are cut, in STRATEGIES.
+    contact : (r, 3) float
+        As in the plan.
+    """
+
+    samples: SurfaceSamples
+    held: Verdicts
+    strategy: NDArray[np.uint8]
+    contact: Floats
+
+
+def _stands(task: Task, operation: Operation) -> _Stands:
+    """How the tool of an operation stands at its samples."""
+    samples, rows, held = task.ready.samples, operation.rows, _held(task, operation)
+    if operation.axis is None:
+        return _Stands(samples, held, np.zeros(len(rows), np.uint8), np.full((len(rows), 3), np.nan))
+    axis, cutter = operation.axis, operation.cutter
+    width, floor = tip_widths(cutter, samples, rows, np.broadcast_to(axis, (len(rows), 3)), task.paths)
+    passes = task.walls.passes(task.cutters.index(cutter), operation.setup, axis, rows)
+    wall = passes.strip > np.nan_to_num(width)
+    strategy = np.where(wall, STRATEGIES.index("wall"), np.where(floor, STRATEGIES.index("floor"), 0)).astype(np.uint8)
+    mine, flutes = rows[wall], passes.normal[wall]
+    # Postures with the contact at a sample; those along walls, which are known to be free, are put in their place.
+    at = at_fixed_axis(samples, held, task.ready.conditions.tolerance)
+    point, normal, tilt, tilt_direction = (each.copy() for each in (at.point, at.normal, held.tilt, held.tilt_direction))
+    point[mine], normal[mine], tilt[mine] = passes.point[wall], flutes, 0.5 * math.pi - cutter.taper
+    tilt_direction[mine] = (axis - math.sin(cutter.taper) * flutes) / math.cos(cutter.taper)
+    return _Stands(
+        replace(at, point=point, normal=normal), replace(held, tilt=tilt, tilt_direction=tilt_direction), strategy,
+        np.where(wall[:, None], passes.point, np.nan),
+    )  # fmt: skip
 
 
 def _held(task: Task, operation: Operation) -> Verdicts:
@@ -176,13 +246,12 @@ def _held(task: Task, operation: Operation) -> Verdicts:
 
 def clearance_of(task: Task, operation: Operation) -> float | None:
     """The least clearance of an operation at its samples, mm; None where nothing is known."""
-    return _clearance(task, operation, _held(task, operation))
+    return _clearance(task, operation, _stands(task, operation))
 
 
-def _clearance(task: Task, operation: Operation, held: Verdicts) -> float | None:
+def _clearance(task: Task, operation: Operation, stands: _Stands) -> float | None:
     """The least clearance of postures of an operation; None where nothing is known."""
-    samples = at_fixed_axis(task.ready.samples, held)
-    clearance = least_clearance(samples, operation.cutter, held, task.ready.setups[operation.setup])
+    clearance = least_clearance(stands.samples, operation.cutter, stands.held, task.ready.setups[operation.setup])
     return clearance if math.isfinite(clearance) else None
 
 
@@ -225,8 +294,14 @@ def costs_with(task: Task, columns: Columns) -> tuple[Floats, Floats]:
     """The area (r,) of the samples of a task, and what each costs with columns (r, k), infinite where one does not serve it."""
     rows = task.rows
     area, serves = np.nan_to_num(task.ready.samples.area[rows]), task.probes.kept(rows, columns)
-    width = widths(columns, rows, task.ready.samples, task.cutters, task.paths, serves)
+    width = _widths(task, columns, serves)
     return area, costs_of(columns, width, serves, area, task.cutters, task.paths)
+
+
+def _widths(task: Task, columns: Columns, serves: NDArray[np.bool_]) -> Floats:
+    """Width of a pass (r, k), mm, of columns at the samples of a task that they serve: by the tip, or along a wall."""
+    by_tip = widths(columns, task.rows, task.ready.samples, task.cutters, task.paths, serves)
+    return np.fmax(by_tip, np.where(serves, task.walls.cached(columns, task.rows), np.nan))
 
 
 def worth_their_turn(task: Task, columns: Columns) -> Columns:

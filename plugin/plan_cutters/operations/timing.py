@@ -14,6 +14,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.operations.fastest import Costs, Problem, Turning
 from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.strips import strips_at
+from plan_cutters.operations.walls import Walls, flat_of, on_floor
 
 Rows = NDArray[np.int64]
 #: How much farther apart samples of two faces count than those of one, in lengths of the part.
@@ -34,11 +35,14 @@ class Paths:
         Widest distance of passes, in diameters.
     feed : mapping, optional
         Cutter -> mm/min; None: times are not known, and lengths stand for them.
+    accuracy : float
+        Of the rotary axes, rad: within it of its normal an axis stands upright on a floor.
     """
 
     scallop: float
     stepover: float
     feed: Mapping[Cutter, float] | None
+    accuracy: float
 
 
 def widths(
@@ -49,7 +53,7 @@ def widths(
     paths: Paths,
     where: NDArray[np.bool_] | None = None,
 ) -> Floats:
-    """Width of a pass (rows, columns), mm, whether a column serves there or not; nan where the tool does not touch.
+    """Width of a pass by the tip (rows, columns), mm, whether a column serves there or not; nan where the tool does not touch.
 
     With `where` (rows, columns) it is nan elsewhere, too.
     """
@@ -60,20 +64,35 @@ def widths(
         for part in np.array_split(np.arange(len(row)), max(1, math.ceil(len(row) / _AT_ONCE))):
             i, k = row[part], column[part]
             at = rows[i]
-            result[i, k] = strips_at(
-                cutter, samples.normal[at], samples.direction_max[at], samples.curvature[at], columns.axis[k], paths.scallop,
-                paths.stepover,
-            ).width  # fmt: skip
+            result[i, k] = tip_widths(cutter, samples, at, columns.axis[k], paths)[0]
     return result
+
+
+def tip_widths(
+    cutter: Cutter, samples: SurfaceSamples, rows: Rows, axis: Floats, paths: Paths
+) -> tuple[Floats, NDArray[np.bool_]]:
+    """Width of a pass by the tip at samples (m,) with axes (m, 3), mm, and where the flat part of the tip lies on a floor.
+
+    On a floor passes are the step-over apart, as a share of the flat part: what its corner cuts beside that is not counted.
+    """
+    normal, curvature = samples.normal[rows], samples.curvature[rows]
+    width = strips_at(cutter, normal, samples.direction_max[rows], curvature, axis, paths.scallop, paths.stepover).width
+    floor = on_floor(cutter, normal, curvature, axis, paths.accuracy, paths.scallop)
+    return np.where(floor, paths.stepover * flat_of(cutter), width), floor
+
+
+def speed_of(paths: Paths, cutters: Sequence[Cutter], which: NDArray[np.integer]) -> Floats:
+    """Feeds (m,) of cutters, by their numbers, mm/s; 1 where there is no feed."""
+    if paths.feed is None:
+        return np.ones(len(which))
+    return np.array([paths.feed[cutter] / 60.0 for cutter in cutters])[which]
 
 
 def costs_of(
     columns: Columns, width: Floats, serves: NDArray[np.bool_], area: Floats, cutters: Sequence[Cutter], paths: Paths
 ) -> Floats:
     """Seconds, or mm of path without a feed, of each sample with each column; infinite where the column does not serve it."""
-    speed = np.ones(len(columns))
-    if paths.feed is not None:
-        speed = np.array([paths.feed[cutters[c]] / 60.0 for c in columns.cutter.tolist()])
+    speed = speed_of(paths, cutters, columns.cutter)
     with np.errstate(divide="ignore", invalid="ignore"):
         costs = area[:, None] / (width * speed)
     return np.where(serves & np.isfinite(costs), costs, np.inf)
@@ -98,10 +117,14 @@ class Problems:
     cutters : sequence of Cutter
     paths : Paths
     indexing : Indexing
+    walls : Walls
     """
 
-    def __init__(self, samples: SurfaceSamples, cutters: Sequence[Cutter], paths: Paths, indexing: Indexing) -> None:
+    def __init__(
+        self, samples: SurfaceSamples, cutters: Sequence[Cutter], paths: Paths, indexing: Indexing, walls: Walls
+    ) -> None:
         self._samples, self._cutters, self._paths, self._indexing = samples, cutters, paths, indexing
+        self._walls = walls
         self._rows: Rows = np.zeros(0, np.int64)
         self._active: Rows = np.zeros(0, np.int64)
         self._width: Floats = np.zeros((0, 0))
@@ -129,6 +152,7 @@ class Problems:
             width[: len(self._rows), there], known[: len(self._rows), there] = self._width, self._known
         new = table & ~known
         result = widths(columns, rows, self._samples, self._cutters, self._paths, new)
+        result = np.fmax(result, self._walls.strips(columns, rows, new))
         width[new] = result[new]
         self._rows, self._active, self._width, self._known = rows, active, width, known | new
         cost = costs_of(columns, width, table, area, self._cutters, self._paths)

@@ -59,6 +59,11 @@ class OperationEntry(Frozen):
 
     id: str
     mode: Literal["fixed", "simultaneous"]
+    strategy: Literal["point", "floor", "wall", "mixed"] = Field(
+        default="point",
+        description="floor: the flat part of the tip lies on the face, strips are stepover times that; wall: the flutes lie "
+        "along it, strips are as high as they are; point: the tool touches in a point; that of 95 % of its area, or mixed",
+    )
     cutter: str
     setup: int = Field(description="0 for the first setup, then the others in their order")
     axis: Vector | None = Field(description="unit, from the tip to the spindle, part coordinates; null if simultaneous")

@@ -20,7 +20,9 @@ class ProcessStep(Frozen):
     angles_deg: dict[str, float] | None = Field(description="of the rotary axes by name; null unless fixed")
     axis: Vector | None = Field(description="unit, from the tip to the spindle, part coordinates; null unless fixed")
     cutter: str = Field(description="id")
-    strategy: Literal["point", "floor", "wall", "mixed"] = "point"
+    strategy: Literal["point", "floor", "wall", "mixed"] = Field(
+        default="point", description="how most of it is cut, as of the operation; point where no operations were requested"
+    )
     repeat: int = Field(default=1, description="how many times it is done, over a pattern of equal faces")
     faces: list[str] = Field(description="the one with the most of it first")
     area_mm2: float

@@ -16,8 +16,10 @@ def write_operations(result: Judged, _split: object, path: Path) -> None:
 
     Of the first plan, and of others with `_` and their name behind the words: `operation` (n,) int16, an index into its
     operations, -1 for none; `strip_mm`, the width of a pass; `seconds`, nan without a feed; `exclusive`, that no other operation
-    serves it; `lean` (n, 3), where the tool leans, on a floor the side of its bottom that touches. `candidate_cutter` and
-    `candidate_setup` (m,) are indices into the plan's cutters and setups, `candidate_angle` (m, 2) is in degrees.
+    serves it; `lean` (n, 3), where the tool leans, on a floor the side of its bottom that touches; `strategy`, 0: in a point,
+    1: on a floor, 2: along a wall; `contact` (n, 3), where the tool touches as it cuts a sample of a wall, else nan.
+    `candidate_cutter` and `candidate_setup` (m,) are indices into the plan's cutters and setups, `candidate_angle` (m, 2) is in
+    degrees.
     """
     operations = result.answers.operations
     assert operations is not None, "written where operations were requested"
@@ -46,6 +48,8 @@ def _columns(plan: OperationPlan) -> dict[str, Any]:
         "seconds": plan.seconds,
         "exclusive": alone,
         "lean": plan.lean,
+        "strategy": plan.strategy,
+        "contact": plan.contact,
     }
 
 
@@ -56,15 +60,17 @@ def write_operations_csv(result: Judged, _split: object, path: Path) -> None:
     first, second = entry.rotary
     with path.open("w", encoding="utf-8", newline="") as file:
         rows = csv.writer(file, lineterminator="\r\n")
-        rows.writerow(["plan", "operation", "mode", "cutter", "setup", f"{first}_deg", f"{second}_deg", "axis_x", "axis_y",
-                       "axis_z", "area_mm2", "share", "exclusive_mm2", "cut_length_mm", "seconds", "faces"])  # fmt: skip
+        rows.writerow(["plan", "operation", "mode", "strategy", "cutter", "setup", f"{first}_deg", f"{second}_deg",
+                       "axis_x", "axis_y", "axis_z", "area_mm2", "share", "exclusive_mm2", "cut_length_mm", "seconds",
+                       "faces"])  # fmt: skip
         for plan in entry.plans:
             for each in plan.operations:
                 angles = each.angles_deg or {}
                 axis = ("", "", "") if each.axis is None else [_rounded(x, 9) for x in each.axis]
-                rows.writerow([plan.name, each.id, each.mode, each.cutter, each.setup + 1, angles.get(first, ""),
-                               angles.get(second, ""), *axis, _rounded(each.area_mm2), _rounded(each.share, 6),
-                               _rounded(each.exclusive_mm2), _rounded(each.cut_length_mm), _rounded(each.seconds),
+                turned = (angles.get(first, ""), angles.get(second, ""))
+                rows.writerow([plan.name, each.id, each.mode, each.strategy, each.cutter, each.setup + 1, *turned, *axis,
+                               _rounded(each.area_mm2), _rounded(each.share, 6), _rounded(each.exclusive_mm2),
+                               _rounded(each.cut_length_mm), _rounded(each.seconds),
                                " ".join(face.face for face in each.faces)])  # fmt: skip
 
 

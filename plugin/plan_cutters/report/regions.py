@@ -38,7 +38,7 @@ def axis_regions(result: Judged) -> AxisRegions:
     operations = result.answers.operations
     axes, number = fixed_axes(samples, cutter, verdicts, conditions, operations.plans[0] if operations else None)
     held = held_at(axes, number, samples, Context.of(cutter, conditions))
-    near = clearances(at_fixed_axis(samples, held), cutter, held, conditions).distance
+    near = clearances(at_fixed_axis(samples, held, conditions.tolerance), cutter, held, conditions).distance
     label = pieces(number, samples.neighbours)
     free = None if result.maps is None else _Free(result.maps.held(conditions))
     parts = [np.flatnonzero(label == k) for k in range(label.max(initial=-1) + 1)]

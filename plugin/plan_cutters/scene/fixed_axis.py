@@ -16,6 +16,8 @@ from plan_cutters.scene.threads import in_chunks
 
 #: Axes this close are one, rad; ends of ranges this close to a posture's are on it.
 _SAME, _END = 1e-6, 1e-9
+#: Tilts at which the bottom of a tool may as well lie across its axis, through the contact, rad: no control holds smaller ones.
+FLAT = 1e-4
 #: Rows of one axis that are tested together, and tests that a thread makes in one go.
 _BLOCK, _AT_ONCE = 4096, 20_000
 
@@ -23,6 +25,16 @@ _BLOCK, _AT_ONCE = 4096, 20_000
 def serves(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, context: Context) -> NDArray[np.bool_]:
     """At which of some samples (m,) a cutter stands free with one axis (3,)."""
     return np.asarray(served_by(rows, np.asarray(axis)[None], samples, context)[0][0])
+
+
+def leans(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, context: Context) -> NDArray[np.bool_]:
+    """At which of some samples (m,) a cutter stands free with one axis (3,) and the contact at the sample itself.
+
+    Not with the sample elsewhere under the flat of its tip, nor with its flank at a distance.
+    """
+    from plan_cutters.kernels.search.fixed_axis import LEANING
+
+    return np.asarray(_tested(rows, np.asarray(axis)[None], samples, context)[0][0] == LEANING)
 
 
 def served_by(rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, context: Context) -> tuple[NDArray[np.bool_], int]:
@@ -34,22 +46,27 @@ def served_by(rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, co
     made : int
         How many times the tool was put down.
     """
-    column, made = _tested(rows, axes, samples, context)
-    return column >= 0, made
+    way, made, _ = _tested(rows, axes, samples, context)
+    return way >= 0, made
 
 
-def _tested(rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, context: Context) -> tuple[NDArray[np.int8], int]:
-    """How a cutter stands at samples with axes (k, m), in the numbers of the kernel, and how many times it was put down."""
-    from plan_cutters.kernels.search.fixed_axis import DIRECTIONS, served
+def _tested(
+    rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, context: Context, *, directions: bool = False
+) -> tuple[NDArray[np.int8], int, Floats]:
+    """How a cutter stands at samples with axes (k, m), in the numbers of the kernel; how many times it was put down; and, if
+    asked for, its tilt directions (k, m, 3).
+    """
+    from plan_cutters.kernels.search.fixed_axis import served
 
     conditions, (low, high) = context.conditions, context.conditions.postures.tilt
-    column = np.full((len(axes), len(rows)), -1, np.int8)
+    way = np.full((len(axes), len(rows)), -1, np.int8)
+    tilt_direction = np.full((len(axes), len(rows) if directions else 0, 3), np.nan)
     held = np.flatnonzero(conditions.allows(axes))
     if not len(held) or not len(rows):
-        return column, 0
+        return way, 0, tilt_direction
     tool, solids, contacts = context.outer, conditions.obstacles.solids, contacts_of(samples)
     full_turn = conditions.postures.rotation[1] - conditions.postures.rotation[0] > 2.0 * np.pi - _END
-    ways = DIRECTIONS if full_turn else 0
+    about = max(FLAT, conditions.accuracy), conditions.tolerance if full_turn else -1.0, full_turn
 
     def tested(piece: NDArray[np.int64]) -> int:
         """Test a piece of a table of axes by blocks of rows."""
@@ -57,7 +74,9 @@ def _tested(rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, cont
         count = 0
         for k, part in zip(held[which].tolist(), block.tolist(), strict=True):
             ends = slice(part * _BLOCK, (part + 1) * _BLOCK)
-            count += served(rows[ends], axes[k], contacts, low - _END, high + _END, tool, solids, ways, column[k, ends])
+            count += served(
+                rows[ends], axes[k], contacts, low - _END, high + _END, about, tool, solids, way[k, ends], tilt_direction[k, ends]
+            )
         return count
 
     blocks = -(-len(rows) // _BLOCK)
@@ -65,10 +84,10 @@ def _tested(rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, cont
     made = in_chunks(tested, np.arange(len(held) * blocks), conditions.jobs, chunk=most)
     if not full_turn:
         for k in held.tolist():
-            touched = np.flatnonzero(column[k] >= 0)
+            touched = np.flatnonzero(way[k] >= 0)
             turned = _turned(rows[touched], axes[k], samples, conditions)
-            column[k, touched[~turned]] = -1
-    return column, made
+            way[k, touched[~turned]] = -1
+    return way, made, tilt_direction
 
 
 def _turned(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, conditions: Conditions) -> NDArray[np.bool_]:
@@ -90,30 +109,43 @@ def tilt_direction_of(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSam
 def held_at(axes: Floats, number: Ints, samples: SurfaceSamples, context: Context) -> Verdicts:
     """Return the postures of samples that go with one of some axes each, as a search would write them.
 
-    Where the axis is the normal, or nearly so (`kernels.search.fixed_axis.FLAT`), and the cutter is free upright alone, with its
-    bottom across the axis, the tilt is 0 and the tilt direction is where it leans: about `standing` samples.
+    Where the axis is the normal within the accuracy of the axes, and the cutter stands with the contact under the flat of its
+    tip, the tilt is 0 and the tilt direction goes from the axis to the contact; 1 at the rim of the flat, shorter within. Where
+    its flank stands along a wall, and keeps the tolerance from it, the tilt is a right angle and the tilt direction the axis,
+    twice as long as others: all about `at_fixed_axis` samples.
     """
-    from plan_cutters.kernels.search.fixed_axis import DIRECTIONS
+    from plan_cutters.kernels.search.fixed_axis import ALONG, LEANING, UPRIGHT
 
     verdicts = blank(len(number))
     for k, axis in enumerate(axes):
         rows = np.flatnonzero(number == k)
-        ways = _tested(rows, axis[None], samples, context)[0][0].astype(np.int64)
-        cosine = samples.normal[rows] @ axis
+        every, _, directions = _tested(rows, axis[None], samples, context, directions=True)
+        way, cosine = every[0], samples.normal[rows] @ axis
         across = np.linalg.norm(np.cross(samples.normal[rows], axis), axis=1)
-        first = samples.direction_max[rows] - (samples.direction_max[rows] @ axis)[:, None] * axis
-        first /= np.maximum(np.linalg.norm(first, axis=1), 1e-300)[:, None]
-        turn = (2.0 * np.pi / DIRECTIONS) * (ways - 1)[:, None]
-        about = np.cos(turn) * first + np.sin(turn) * np.cross(axis, first)
-        flat = ways > 0
+        stands = (way > LEANING)[:, None]
         verdicts.axis[rows] = axis
-        verdicts.tilt_direction[rows] = np.where(flat[:, None], about, tilt_direction_of(rows, axis, samples))
-        verdicts.tilt[rows] = np.where(flat, 0.0, np.arctan2(across, cosine))
+        verdicts.tilt_direction[rows] = np.where(stands, directions[0], tilt_direction_of(rows, axis, samples))
+        verdicts.tilt[rows] = np.select([way == UPRIGHT, way == ALONG], [0.0, 0.5 * np.pi], np.arctan2(across, cosine))
         verdicts.verdict[rows] = ACCESSIBLE
     return verdicts.freeze()
 
 
-def at_fixed_axis(samples: SurfaceSamples, held: Verdicts) -> SurfaceSamples:
-    """Samples with the axis for their normal where the cutter stands upright."""
+def along(held: Verdicts) -> NDArray[np.bool_]:
+    """Samples (n,) at which the flank stands along a wall, at a distance of the tolerance, as `held_at` writes them."""
+    return np.asarray(np.linalg.norm(held.tilt_direction, axis=1) > 1.5)
+
+
+def at_fixed_axis(samples: SurfaceSamples, held: Verdicts, tolerance: float) -> SurfaceSamples:
+    """Samples as the tool takes them: with the axis for their normal where it stands upright; with the normal across the axis,
+    and moved towards the tool by the tolerance, mm, where its flank stands along a wall.
+    """
     upright = (held.tilt == 0.0)[:, None] & np.isfinite(held.axis)
-    return replace(samples, normal=np.where(upright, held.axis, samples.normal))
+    walls = along(held)[:, None]
+    across = samples.normal - (samples.normal * held.axis).sum(axis=1)[:, None] * held.axis
+    with np.errstate(invalid="ignore", divide="ignore"):
+        across /= np.linalg.norm(across, axis=1)[:, None]
+    return replace(
+        samples,
+        point=np.where(walls, samples.point + tolerance * across, samples.point),
+        normal=np.where(upright, held.axis, np.where(walls, across, samples.normal)),
+    )

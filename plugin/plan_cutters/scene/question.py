@@ -26,7 +26,7 @@ from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene
 
 #: Of the method: raised by one whenever the same question may get another verdict.
-METHOD = 2
+METHOD = 3
 
 #: Options that maps answer, whatever they were made with; of the last three, what lies within theirs. An option that stands in
 #: none of these sets asks for what maps do not hold: it is refused.
@@ -34,7 +34,7 @@ ANSWERED = frozenset({"machine", "setup", "placement", "tilt", "rotation", "rota
 #: Options that change nothing that maps say.
 IRRELEVANT = frozenset({"jobs", "area_budget", "length_over_radius", "feed", "scallop", "stepover", "index_step",
                         "axis_accuracy", "index_time", "change_time", "setup_time", "overlap", "most_operations",
-                        "sharp_edges"})  # fmt: skip
+                        "max_orientations", "sharp_edges"})  # fmt: skip
 
 _WORDS = {"libraries": "--cutters", "cutters": "--cutter", "fixtures": "--fixture", "other_setups": "a second --setup"}
 _TOLERATED = 1e-9

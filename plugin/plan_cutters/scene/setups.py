@@ -46,7 +46,9 @@ def conditions_of(scene: Scene, options: Options) -> list[Conditions]:
             )
     tolerance = max(each.tolerance(scene.asked) for each in each_setup)
     return [
-        Conditions(options.machine, np.array(axis), options.postures, each, tolerance, options.jobs, _x(place))
+        Conditions(
+            options.machine, np.array(axis), options.postures, each, tolerance, options.jobs, _x(place), options.axis_accuracy
+        )
         for axis, each, place in zip(axes, each_setup, places(options), strict=True)
     ]
 

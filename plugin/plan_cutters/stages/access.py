@@ -20,7 +20,7 @@ from plan_cutters.domain.verdicts import (
     blank,
 )
 from plan_cutters.kernels.rows import Contacts
-from plan_cutters.scene.conditions import Context, contacts_of, search_postures
+from plan_cutters.scene.conditions import Context, contacts_of, on_the_flat, search_postures
 from plan_cutters.scene.threads import Progress, in_chunks
 from plan_cutters.scene.work import Work
 
@@ -85,6 +85,7 @@ def access(
         _first_reasons(contacts, np.flatnonzero(follows & (known.verdict == INACCESSIBLE)), context, verdicts.reason)
         wanted &= ~follows
     search_postures(contacts, np.flatnonzero(wanted), context, verdicts, progress, fixed=True, work=work)
+    on_the_flat(contacts, np.flatnonzero(wanted & verdicts.not_reached), context, verdicts)
     if conditions.surroundings.alone is not None:
         searched = wanted | (inside >= len(conditions.surroundings.bodies) if inside is not None else False)
         handed = judged & (verdicts.reason == FIXTURE)

@@ -1,4 +1,9 @@
-"""One tool axis, kept for many contacts: at which of them does the tool stand free with it?"""
+"""One tool axis, kept for many contacts: at which of them does the tool stand free with it?
+
+It stands as it leans by its tilt; upright, with the contact anywhere under the flat of its tip; or with its flank along a wall.
+Of the last two the surface may be off its direction by the accuracy of the rotary axes. Wherever the tool stands, all of it is
+tested among all obstacles, with the axis as it is given: what is in the way by that much is found.
+"""
 
 import numpy as np
 
@@ -8,21 +13,22 @@ from plan_cutters.kernels.linear.vectors import cross, dot
 from plan_cutters.kernels.material import MAYBE_INSIDE
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search.place import inside, mode_at
+from plan_cutters.kernels.search.upright import PLACED, find_place, flat_workspace, place_to_direction
 from plan_cutters.kernels.tool.hit import BODY, scratch, stand, tree_hit
 
 #: Sines of a tilt below which the axis is the normal, and leans nowhere.
 _UPRIGHT = 1e-12
-#: Tilts at which the bottom of a tool may as well lie across its axis, through the contact, rad: no control holds smaller ones.
-FLAT = 1e-4
-#: Directions in which a tool that stands upright lies on its contact, besides that of its tilt.
-DIRECTIONS = 36
+#: How a tool stands: not at all, leaning by its tilt, upright on its flat, or along a wall.
+BLOCKED, LEANING, UPRIGHT, ALONG = -1, 0, 1, 2
+_RIGHT = 0.5 * np.pi
 
 
 @kernel
-def _stands(row, axis, contacts, low, high, tool, solids, directions, body, sides, workspace, hint):
+def _stands(row, axis, contacts, low, high, about, tool, solids, body, sides, workspace, flat, hint, direction):
     """Return how the tool stands free at a contact with an axis, as `served` writes it, and the triangle in its way last."""
-    n, e1 = contacts.normal[row], contacts.direction_max[row]
-    f, t, x, y = sides[0], sides[1], sides[2], sides[3]
+    accuracy, away, whole_turn = about
+    p, n, e1 = contacts.point[row], contacts.normal[row], contacts.direction_max[row]
+    f, t, x, place = sides[0], sides[1], sides[2], sides[3]
     cosine = min(1.0, max(-1.0, dot(axis, n)))
     for k in range(3):
         f[k] = axis[k] - cosine * n[k]
@@ -30,35 +36,48 @@ def _stands(row, axis, contacts, low, high, tool, solids, directions, body, side
     tilt = np.arctan2(sine, cosine)
     for k in range(3):
         f[k] = f[k] / sine if sine > _UPRIGHT else e1[k]
+        direction[k] = f[k]
     cross(n, f, t)
     mode = mode_at(tool, tilt)
-    if mode < 0 or tilt < low or tilt > high:
-        return -1, hint
-    offset, rise = tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE]
-    stand(body, Frame(contacts.point[row], n, f, t), cosine, sine, offset, rise)
-    free, hint = _is_free(body, mode, tool, solids, workspace, hint)
-    if free:
-        return 0, hint
-    if tilt > FLAT or offset == 0.0:
-        return -1, hint
-    # The bottom lies across the axis: about the contact the tool may be at any side.
-    along = dot(axis, e1)
-    for k in range(3):
-        x[k] = e1[k] - along * axis[k]
-    length = np.sqrt(dot(x, x))
-    for k in range(3):
-        x[k] /= length
-    cross(axis, x, y)
-    for number in range(directions):
-        turn = 2.0 * np.pi * number / DIRECTIONS
-        for k in range(3):
-            f[k] = np.cos(turn) * x[k] + np.sin(turn) * y[k]
-        cross(axis, f, t)
-        stand(body, Frame(contacts.point[row], axis, f, t), 1.0, 0.0, offset, rise)
+    if mode >= 0 and low <= tilt <= high:
+        stand(body, Frame(p, n, f, t), cosine, sine, tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])
         free, hint = _is_free(body, mode, tool, solids, workspace, hint)
         if free:
-            return number + 1, hint
-    return -1, hint
+            return LEANING, hint
+    if tilt <= accuracy and low <= 0.0 and whole_turn:
+        mode = mode_at(tool, 0.0)
+        most = tool.mode[mode, OFFSET_OF] if mode >= 0 else 0.0
+        if most > 0.0:
+            _across(e1, axis, x)
+            # Without the hint: wherever it is asked for, the same place is found.
+            result, hint = find_place(p, axis, x, tool, mode, most, solids, MAYBE_INSIDE, 0.0, -1, flat, place)
+            if result == PLACED:
+                place_to_direction(place, x, flat.y, most, direction)
+                return UPRIGHT, hint
+    if away >= 0.0 and abs(tilt - _RIGHT) <= accuracy and low <= _RIGHT <= high:
+        mode = mode_at(tool, _RIGHT)
+        if mode >= 0:
+            _across(n, axis, x)
+            cross(x, axis, t)
+            for k in range(3):
+                f[k] = p[k] + away * x[k]
+                direction[k] = 2.0 * axis[k]
+            stand(body, Frame(f, x, axis, t), 0.0, 1.0, tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])
+            free, hint = _is_free(body, mode, tool, solids, workspace, hint)
+            if free:
+                return ALONG, hint
+    return BLOCKED, hint
+
+
+@kernel
+def _across(direction, axis, out):
+    """Write the unit direction across an axis that is nearest to a direction."""
+    along = dot(axis, direction)
+    for k in range(3):
+        out[k] = direction[k] - along * axis[k]
+    length = np.sqrt(dot(out, out))
+    for k in range(3):
+        out[k] /= length
 
 
 @kernel
@@ -71,7 +90,7 @@ def _is_free(body, mode, tool, solids, workspace, hint):
 
 
 @entry
-def served(rows, axis, contacts, low, high, tool, solids, directions, tilt_direction):
+def served(rows, axis, contacts, low, high, about, tool, solids, way, tilt_direction):
     """Test one axis at contacts, as a search tests the postures that it finds.
 
     Parameters
@@ -83,30 +102,37 @@ def served(rows, axis, contacts, low, high, tool, solids, directions, tilt_direc
     contacts : Contacts
     low, high : float
         Tilts that there are, rad.
+    about : (float, float, bool)
+        What counts as upright or as a wall: so far off, rad, none below 0. How far the tool keeps from a wall, mm; walls are left
+        out below 0. Whether any side of the bottom may touch.
     tool : Tool
         Smaller by what does not matter.
     solids : Solids
         All that may be in the way.
-    directions : int
-        Directions that are tried where the axis is the normal, of `LEANS`; 0: none but one.
-    tilt_direction : (m,) int8, written
-        -1: the tool does not touch there at that tilt, a triangle reaches into it, or it lies in a body. 0: it is free as it
-        leans by its tilt, or towards `direction_max` if it has none. k > 0: it is free with its bottom across the axis, leaning
-        to where k - 1 of `LEANS` parts of a turn about the axis bring `direction_max`.
+    way : (m,) int8, written
+        BLOCKED: the tool does not touch there at that tilt, a triangle reaches into it, or it lies in a body. LEANING: it is free
+        as it leans by its tilt, or towards `direction_max` if it has none. UPRIGHT: it is free with its bottom across the axis,
+        the contact under the flat. ALONG: it is free with its flank along the wall, at its distance.
+    tilt_direction : (m or 0, 3) float64, written
+        Where the tool leans: a unit direction; UPRIGHT the way from the axis to the contact, 1 at the rim of the flat; ALONG the
+        axis, 2 long. Nothing is written if it has no rows.
 
     Returns
     -------
     int
         How many times the tool was put down: where the surface faces the axis.
     """
-    body, sides = np.empty(BODY), np.empty((4, 3))
-    workspace = scratch()
-    least, count, hint = np.cos(min(high, np.pi)) - 1e-9, 0, -1
+    body, sides, direction = np.empty(BODY), np.empty((4, 3)), np.empty(3)
+    workspace, flat = scratch(), flat_workspace()
+    least, count, hint = np.cos(min(high, np.pi)) - 1e-9 - max(0.0, about[0]), 0, -1
     for i in range(len(rows)):
-        tilt_direction[i] = -1
+        way[i] = BLOCKED
         if dot(axis, contacts.normal[rows[i]]) >= least:
             count += 1
-            tilt_direction[i], hint = _stands(
-                rows[i], axis, contacts, low, high, tool, solids, directions, body, sides, workspace, hint
+            way[i], hint = _stands(
+                rows[i], axis, contacts, low, high, about, tool, solids, body, sides, workspace, flat, hint, direction
             )
+            if way[i] != BLOCKED and len(tilt_direction):
+                for k in range(3):
+                    tilt_direction[i, k] = direction[k]
     return count

@@ -25,7 +25,7 @@ from plan_cutters.kernels.codes import (
 from plan_cutters.kernels.intervals import remove
 from plan_cutters.kernels.jit import kernel, maker
 from plan_cutters.kernels.limits import held_tilts, turn_of
-from plan_cutters.kernels.linear.vectors import tilt_frame
+from plan_cutters.kernels.linear.vectors import dot, tilt_frame
 from plan_cutters.kernels.material import outside, winding
 from plan_cutters.kernels.rows import Scratch
 from plan_cutters.kernels.tool.arcs import local_gouge
@@ -42,6 +42,8 @@ _LOW = 8.0
 _TURN = 0.2
 #: Tilts this close to the end of a tool's range are in it, rad.
 _ROUNDING = 1e-9
+#: Lengths of unit vectors are 1 within this.
+_UNIT = 1e-9
 
 
 @kernel
@@ -103,6 +105,17 @@ def mode_at(tool, tilt):
         if tool.mode[mode, TILT_FROM] - _ROUNDING <= tilt <= tool.mode[mode, TILT_TO] + _ROUNDING:
             return mode
     return -1
+
+
+@kernel
+def straightened(tilt_direction, f):
+    """Write a tilt direction as a unit vector; its length, at most 1: that of a contact under a flat is less (`upright`)."""
+    size = np.sqrt(dot(tilt_direction, tilt_direction))
+    if abs(size - 1.0) <= _UNIT:
+        size = 1.0
+    for k in range(3):
+        f[k] = tilt_direction[k] / size if size != 1.0 else tilt_direction[k]
+    return min(1.0, size)
 
 
 @kernel

@@ -34,7 +34,7 @@ from plan_cutters.kernels.limits import turn_of
 from plan_cutters.kernels.linear.vectors import cross, dot, perpendicular, tilt_frame
 from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
 from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.search.place import clip_straight, inside, mode_at, permitted, search_workspace, straight
+from plan_cutters.kernels.search.place import clip_straight, inside, mode_at, permitted, search_workspace, straight, straightened
 from plan_cutters.kernels.search.sweep import Side, both, memory, sweep, sweep_both
 from plan_cutters.kernels.tool.hit import BODY, scratch, stand, tree_hit
 
@@ -292,25 +292,25 @@ def probe(rows, point, normal, axis, tilt_direction, tool, tree, triangle, which
     rows : (m,) int64
         Rows to test.
     point, normal, axis, tilt_direction : (n, 3) float64
-        Contact, unit normal, unit tool axis, unit tilt direction.
+        Contact, unit normal, unit tool axis, tilt direction: a unit vector, or shorter with the contact under the flat.
     tool : Tool
         Without what does not matter.
     tree : Tree
     triangle, which : (n,) int32, written
         At a tilt at which the tool does not touch: -2.
     """
-    body, t = np.empty(BODY), np.empty(3)
+    body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
     workspace = scratch()
     hint = -1
     for row in rows:
-        n, f = normal[row], tilt_direction[row]
+        n, share = normal[row], straightened(tilt_direction[row], f)
         cross(n, f, t)
         cosine, sine = dot(axis[row], n), dot(axis[row], f)
         mode = mode_at(tool, np.arctan2(sine, cosine))
         if mode < 0:
             triangle[row], which[row] = -2, -2
             continue
-        stand(body, Frame(point[row], n, f, t), cosine, sine, tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])
+        stand(body, Frame(point[row], n, f, t), cosine, sine, share * tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])
         triangle[row], which[row], _, _, _ = tree_hit(tree, body, tool.piece[mode], 0.0, hint, workspace)
         if triangle[row] >= 0:
             hint = triangle[row]

@@ -12,7 +12,7 @@ from plan_cutters.kernels.codes import OFFSET_OF, OVER_TIP, RISE
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.linear.vectors import cross
 from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.search.place import mode_at
+from plan_cutters.kernels.search.place import mode_at, straightened
 from plan_cutters.kernels.tool.hit import BODY, OFFSET, A, P, X, Y, half_width, into_frame, scratch, stand
 
 V0, V1, Q0, Q1 = 0, 1, 2, 3
@@ -188,14 +188,14 @@ def least_stick_outs(rows, point, normal, tilt_direction, tilt, tool, outline, f
     triangle : (n,) int32, written
         -1 where the floor is enough.
     """
-    body, t = np.empty(BODY), np.empty(3)
+    body, f, t = np.empty(BODY), np.empty(3), np.empty(3)
     workspace, bound = scratch(), np.empty(64)
     for row in rows:
-        n, f = normal[row], tilt_direction[row]
+        n, share = normal[row], straightened(tilt_direction[row], f)
         cross(n, f, t)
         mode = max(0, mode_at(tool, tilt[row]))
         over = tool.mode[mode, OVER_TIP]
-        stand(body, Frame(point[row], n, f, t), np.cos(tilt[row]), np.sin(tilt[row]), tool.mode[mode, OFFSET_OF],
-              tool.mode[mode, RISE])  # fmt: skip
+        stand(body, Frame(point[row], n, f, t), np.cos(tilt[row]), np.sin(tilt[row]),
+              share * tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])  # fmt: skip
         best, triangle[row] = _cleared(tree, body, outline, floor - over, workspace.stack, bound, workspace.corner)
         stick_out[row] = best + over

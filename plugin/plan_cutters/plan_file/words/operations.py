@@ -15,6 +15,8 @@ from plan_cutters.plan_file.words.names import named
 _LISTED, _FACES = 12, 4
 #: Operations for little area that are named before the others; a gap that counts as none, as a share.
 _SMALL, _NO_GAP = 3, 1e-6
+#: How an operation cuts, where it does not cut in points alone.
+_STRATEGIES = {"floor": "as floors", "wall": "along walls", "mixed": "floors, walls and points"}
 #: A share of the curve that is worth stopping at, and a share of the area for which an orientation is hardly worth its turn.
 _KNEE, _LITTLE = 0.97, 0.005
 
@@ -209,7 +211,8 @@ def _setups(operations: OperationsEntry) -> bool:
 def _listed(each: OperationEntry, setups: bool) -> str:
     took = "" if each.seconds is None else f", {duration(each.seconds)}"
     where = f" in setup {each.setup + 1}" if setups else ""
-    return f"{each.id}: {each.cutter}{where}, {_turned(each)}: {share_text(each.share)} of the area{took}, {_faces(each)}."
+    how = f"{each.cutter}{where}, {_turned(each)}{_strategy(each)}"
+    return f"{each.id}: {how}: {share_text(each.share)} of the area{took}, {_faces(each)}."
 
 
 class OperationText(NamedTuple):
@@ -242,6 +245,11 @@ def _turned(each: OperationEntry) -> str:
     if each.angles_deg is None:
         return "simultaneous"
     return " ".join(f"{name} {angle:g}" for name, angle in each.angles_deg.items()) + " deg"
+
+
+def _strategy(each: OperationEntry) -> str:
+    """How it cuts, where it does not cut in points alone."""
+    return "" if each.strategy == "point" else f", {_STRATEGIES[each.strategy]}"
 
 
 def _faces(each: OperationEntry) -> str:

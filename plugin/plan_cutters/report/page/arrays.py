@@ -9,7 +9,7 @@ from cad_io.arrays import Floats
 from plan_cutters.plan_file.numbers import mm
 from plan_cutters.report.page.atlas import Atlas
 from plan_cutters.report.page.encode import COARSE, FINE, Stored, halves, octahedral, placed, turned, unfolded
-from plan_cutters.report.page.facts import tilt_and_direction
+from plan_cutters.report.page.facts import shares, tilt_and_direction
 from plan_cutters.report.page.stored_maps import stored
 from plan_cutters.report.page.surface import Surface
 from plan_cutters.report.protocol import Judged
@@ -55,7 +55,9 @@ def sample_arrays(result: Judged, low: Floats, high: Floats) -> Arrays:
 def posture_arrays(result: Judged, name: str) -> Arrays:
     """The postures found for a cutter."""
     tilt, tilt_direction = tilt_and_direction(result.samples, result.reaches[name])
-    return {f"tilt.{name}": Stored.of(tilt), f"lean.{name}": Stored.of(tilt_direction)}
+    arrays = {f"tilt.{name}": Stored.of(tilt), f"lean.{name}": Stored.of(tilt_direction)}
+    share = shares(result.reaches[name].tilt_direction)
+    return arrays if share is None else arrays | {f"share.{name}": Stored.of(share)}
 
 
 def scalar_arrays(result: Judged) -> tuple[Arrays, list[dict[str, Any]]]:

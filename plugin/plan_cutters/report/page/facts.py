@@ -16,6 +16,8 @@ from plan_cutters.report.witness import row_of
 _SPOTS, _OTHER_SPOTS = 20, 6
 #: Instead of a tilt: there is none.
 NO_TILT = 65535
+#: Parts of the radius of a flat in which distances from its axis are told; what is so near to the rim is on it.
+SHARES, _RIM = 10000, 1e-6
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,6 +47,15 @@ def turned_by(samples: Any, tilt_direction: Any) -> NDArray[np.int16]:
     tilt_direction, first, normal = (np.nan_to_num(a) for a in (tilt_direction, samples.direction_max, samples.normal))
     angle = np.degrees(np.arctan2((tilt_direction * np.cross(normal, first)).sum(axis=1), (tilt_direction * first).sum(axis=1)))
     return np.where(known, np.round(100 * angle), 0).astype(np.int16)
+
+
+def shares(tilt_direction: Any) -> NDArray[np.uint16] | None:
+    """How far contacts (n,) are from the tool axis, in parts of `SHARES` of the flat's radius, from tilt directions (n, 3); None
+    where all are at its rim.
+    """
+    length = np.linalg.norm(tilt_direction, axis=1)
+    short = length < 1.0 - _RIM
+    return np.where(short, np.round(SHARES * np.where(short, length, 1.0)), SHARES).astype(np.uint16) if short.any() else None
 
 
 def tilt_and_direction(samples: Any, reach: Verdicts) -> tuple[NDArray[np.uint16], NDArray[np.int16]]:

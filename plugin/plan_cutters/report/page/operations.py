@@ -18,7 +18,7 @@ from plan_cutters.plan_file.words.operations import OperationText, of_the_whole,
 from plan_cutters.plan_file.words.story import Story
 from plan_cutters.report.page.arrays import Arrays
 from plan_cutters.report.page.encode import Stored
-from plan_cutters.report.page.facts import turned_by
+from plan_cutters.report.page.facts import shares, turned_by
 from plan_cutters.report.protocol import Judged
 
 #: The drawing of the curve: its size, and the edges of what is plotted in it.
@@ -41,6 +41,8 @@ def operation_arrays(result: Judged) -> Arrays:
     for plan in operations.plans if operations else ():
         arrays[f"operation.{key(plan)}"] = Stored.of(_numbers(plan))
         arrays[f"operation_lean.{key(plan)}"] = Stored.of(turned_by(result.samples, plan.lean))
+        if (share := shares(plan.lean)) is not None:
+            arrays[f"operation_share.{key(plan)}"] = Stored.of(share)
     return arrays
 
 

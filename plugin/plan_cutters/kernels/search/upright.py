@@ -1,0 +1,380 @@
+"""A tool with a flat bottom that stands upright on a contact: where may its axis be, so that the contact lies under the flat?
+
+Places are pairs (u, v) in the plane across the axis, from the contact. What a convex piece of the tool meets at an obstacle
+point it meets from all places nearer to that point than the piece's radius at the point's height. So a triangle that was met
+forbids at least what is nearer to a part of it than a radius: a convex polygon, grown. Places are left only outside all of these
+and within the flat's radius. If any are left there is one among few: on the rim of the flat, or where two borders cross
+(`docs/at_a_sample.md`, lemma S6). Each place is tried with all of the tool, as a search tries a posture.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from plan_cutters.kernels.codes import ARC, CYLINDER, HIGH, KIND, LOW, OFFSET_OF, RADIUS, RISE, ROUND, SLOPE
+from plan_cutters.kernels.jit import entry, kernel, maker
+from plan_cutters.kernels.linear.vectors import cross
+from plan_cutters.kernels.rows import Scratch
+from plan_cutters.kernels.search.place import inside, mode_at
+from plan_cutters.kernels.tool.hit import BODY, HALF, OFFSET, A, P, X, Y, into_frame, scratch, tree_hit
+from plan_cutters.kernels.tool.pieces import clipped, shadow_area
+
+#: What a place is: none, none that could be (proved), or one where the tool was put down.
+NONE, FORBIDDEN, PLACED = 0, 1, 2
+#: Grown polygons that are complete, their corners, lines and circles of all borders, and places.
+_SHAPES, _CORNERS, _BORDERS, _PLACES = 64, 7, 1024, 1024
+#: Places that are looked at first: on the rim of the flat, halfway, and in the middle.
+_RIM, _RING = 36, 8
+#: Borders of places are held apart from what is forbidden by this share of the flat's radius, at least so much, mm; and rounding,
+#: mm.
+_SHARE, _APART, _ROUNDING = 1e-6, 1e-7, 1e-9
+#: Lengths from the axis to the contact are no smaller share of the flat's radius: they say where the contact lies.
+LEAST_SHARE = 1e-6
+
+
+class Flat(NamedTuple):
+    """This is a workspace: what is forbidden, corner (s, c, 2), corners (s,) and radius (s,) of grown polygons; border (b, 5),
+    the lines (0, from, to) and circles (1, centre, radius) around these; place (p, 2), how far each is from what is forbidden,
+    margin (p,), and whether it is open (p,). counts (3,): how many of each there are. A body for the tool."""
+
+    corner: Any
+    corners: Any
+    radius: Any
+    border: Any
+    place: Any
+    margin: Any
+    open_: Any
+    counts: Any
+    body: Any
+    y: Any
+    scratch: Scratch
+
+
+@maker
+def flat_workspace():
+    """Make a workspace."""
+    return Flat(
+        np.empty((_SHAPES, _CORNERS, 2)), np.zeros(_SHAPES, np.int64), np.empty(_SHAPES), np.empty((_BORDERS, 5)),
+        np.empty((_PLACES, 2)), np.empty(_PLACES), np.zeros(_PLACES, np.bool_), np.zeros(3, np.int64), np.empty(BODY),
+        np.empty(3), scratch(),
+    )  # fmt: skip
+
+
+@kernel
+def _away(u, v, flat, s):
+    """How far a place is from grown polygon s: negative in it."""
+    many, least = flat.corners[s], np.inf
+    within, sign = many > 2, 0.0
+    for i in range(many):
+        j = i + 1 if i + 1 < many else 0
+        x, y = flat.corner[s, i, 0], flat.corner[s, i, 1]
+        ex, ey = flat.corner[s, j, 0] - x, flat.corner[s, j, 1] - y
+        dx, dy = u - x, v - y
+        size = ex * ex + ey * ey
+        part = min(1.0, max(0.0, (dx * ex + dy * ey) / size)) if size > 0.0 else 0.0
+        dx, dy = dx - part * ex, dy - part * ey
+        least = min(least, dx * dx + dy * dy)
+        side = ex * (v - y) - ey * (u - x)
+        if side * sign < 0.0 or side == 0.0:
+            within = False
+        sign = side
+    return -flat.radius[s] if within else np.sqrt(least) - flat.radius[s]
+
+
+@kernel
+def _add_place(u, v, most, flat):
+    """Enter a place that nothing known forbids; whether there was space for it."""
+    if u * u + v * v > most * most * (1.0 + 1e-12) + _ROUNDING * _ROUNDING:
+        return True
+    margin = np.inf
+    for s in range(flat.counts[0]):
+        margin = min(margin, _away(u, v, flat, s))
+        if margin < -_ROUNDING:
+            return True
+    at = flat.counts[2]
+    if at == len(flat.place):
+        return False
+    flat.place[at, 0], flat.place[at, 1], flat.margin[at], flat.open_[at] = u, v, margin, True
+    flat.counts[2] += 1
+    return True
+
+
+@kernel
+def _on_line(border, other, most, flat):
+    """Enter where a line crosses a line or a circle."""
+    x, y = flat.border[border, 1], flat.border[border, 2]
+    ex, ey = flat.border[border, 3] - x, flat.border[border, 4] - y
+    a = ex * ex + ey * ey
+    if a == 0.0:
+        return True
+    ox, oy = flat.border[other, 1], flat.border[other, 2]
+    if flat.border[other, 0] == 0.0:
+        gx, gy = flat.border[other, 3] - ox, flat.border[other, 4] - oy
+        det = ex * gy - ey * gx
+        if det == 0.0:
+            return True
+        s = ((ox - x) * gy - (oy - y) * gx) / det
+        t = ((ox - x) * ey - (oy - y) * ex) / det
+        if -1e-9 <= s <= 1.0 + 1e-9 and -1e-9 <= t <= 1.0 + 1e-9:
+            return _add_place(x + s * ex, y + s * ey, most, flat)
+        return True
+    r = flat.border[other, 3]
+    half, c = (x - ox) * ex + (y - oy) * ey, (x - ox) ** 2 + (y - oy) ** 2 - r * r
+    square = half * half - a * c
+    if square < 0.0:
+        return True
+    complete = True
+    for sign in (-1.0, 1.0):
+        s = (-half + sign * np.sqrt(square)) / a
+        if -1e-9 <= s <= 1.0 + 1e-9:
+            complete = _add_place(x + s * ex, y + s * ey, most, flat) and complete
+    return complete
+
+
+@kernel
+def _cross_borders(border, other, most, flat):
+    """Enter where two borders cross; whether there was space for it."""
+    if flat.border[border, 0] == 0.0:
+        return _on_line(border, other, most, flat)
+    if flat.border[other, 0] == 0.0:
+        return _on_line(other, border, most, flat)
+    x, y, r = flat.border[border, 1], flat.border[border, 2], flat.border[border, 3]
+    dx, dy, q = flat.border[other, 1] - x, flat.border[other, 2] - y, flat.border[other, 3]
+    d = np.sqrt(dx * dx + dy * dy)
+    if d == 0.0 or d > r + q or d < abs(r - q):
+        return True
+    along = (d * d + r * r - q * q) / (2.0 * d)
+    across = np.sqrt(max(0.0, r * r - along * along))
+    dx, dy = dx / d, dy / d
+    complete = _add_place(x + along * dx - across * dy, y + along * dy + across * dx, most, flat)
+    return _add_place(x + along * dx + across * dy, y + along * dy - across * dx, most, flat) and complete
+
+
+@kernel
+def _add_border(kind, a, b, c, d, flat):
+    at = flat.counts[1]
+    if at == len(flat.border):
+        return False
+    border = flat.border[at]
+    border[0], border[1], border[2], border[3], border[4] = kind, a, b, c, d
+    flat.counts[1] += 1
+    return True
+
+
+@kernel
+def _forbid(flat, many, radius, apart, most):
+    """Forbid what is nearer than a radius to the polygon written behind the others; whether there was space for all of it."""
+    s, first = flat.counts[0], flat.counts[1]
+    flat.corners[s], flat.radius[s] = many, radius + apart
+    flat.counts[0] += 1
+    for i in range(flat.counts[2]):
+        if flat.open_[i]:
+            flat.margin[i] = min(flat.margin[i], _away(flat.place[i, 0], flat.place[i, 1], flat, s))
+            flat.open_[i] = flat.margin[i] >= -_ROUNDING
+    r, complete = flat.radius[s], True
+    for i in range(many):
+        x, y = flat.corner[s, i, 0], flat.corner[s, i, 1]
+        complete = _add_border(1.0, x, y, r, 0.0, flat) and complete
+        j = i + 1 if i + 1 < many else 0
+        if j == i or (many == 2 and i == 1):
+            continue
+        ex, ey = flat.corner[s, j, 0] - x, flat.corner[s, j, 1] - y
+        size = np.sqrt(ex * ex + ey * ey)
+        if size > 0.0:
+            for side in (-r / size, r / size):
+                wx, wy = -ey * side, ex * side
+                complete = _add_border(0.0, x + wx, y + wy, x + ex + wx, y + ey + wy, flat) and complete
+    for i in range(first, flat.counts[1]):
+        for k in range(first):
+            complete = _cross_borders(i, k, most, flat) and complete
+    return complete
+
+
+@kernel
+def _slice(source, count, level, corner):
+    """Write where the sides of a polygon of rows (height, x, y) pass a height, (2, 2) at most; how many points."""
+    written = 0
+    for i in range(count):
+        j = i + 1 if i + 1 < count else 0
+        low, high = source[i, 0] - level, source[j, 0] - level
+        if (low < 0.0) == (high < 0.0) or written == 2:
+            continue
+        part = low / (low - high)
+        for k in range(2):
+            corner[written, k] = source[i, 1 + k] + part * (source[j, 1 + k] - source[i, 1 + k])
+        written += 1
+    return written
+
+
+@kernel
+def _radius_at(piece, k, height):
+    """The radius of piece k, a cone or an arc, at a height: a little less where that is rounded."""
+    if piece[k, KIND] == ARC:
+        away = height - piece[k, SLOPE]
+        return piece[k, RADIUS] + np.sqrt(max(0.0, piece[k, ROUND] * piece[k, ROUND] - away * away)) - 1e-12
+    return piece[k, RADIUS] + piece[k, SLOPE] * (height - piece[k, LOW]) - 1e-12
+
+
+@kernel
+def _met(vertex, triangle, piece, k, hit, u, v, flat):
+    """Write what a triangle forbids, that was met in piece k from a place with its point `hit`: a polygon behind the others.
+
+    Returns its corners and the radius by which it is grown.
+    """
+    corner = flat.scratch.corner
+    _, least, most, _ = into_frame(vertex, triangle, flat.body, 0.0, corner)
+    low, high = piece[k, LOW], piece[k, HIGH]
+    shape = flat.corner[flat.counts[0]]
+    if piece[k, KIND] == CYLINDER:
+        where, count = clipped(corner, 3, least, most, low, high, flat.scratch.polygon, flat.scratch.spare)
+        source = corner if where == 0 else flat.scratch.polygon if where == 1 else flat.scratch.spare
+        if 0 < count <= _CORNERS:
+            thin = shadow_area(source, count) == 0.0
+            if not thin:
+                for i in range(count):
+                    shape[i, 0], shape[i, 1] = source[i, 1] + u, source[i, 2] + v
+                return count, piece[k, RADIUS]
+            # Seen along the axis it is a line: from one end of it to the other.
+            far, first, last = -1.0, 0, 0
+            for i in range(count):
+                for j in range(i + 1):
+                    size = (source[i, 1] - source[j, 1]) ** 2 + (source[i, 2] - source[j, 2]) ** 2
+                    if size > far:
+                        far, first, last = size, i, j
+            shape[0, 0], shape[0, 1] = source[first, 1] + u, source[first, 2] + v
+            shape[1, 0], shape[1, 1] = source[last, 1] + u, source[last, 2] + v
+            return 2 if far > 0.0 else 1, piece[k, RADIUS]
+    else:
+        # A cut through it where the piece is widest, if that meets it too, or else through the point that was met.
+        best = piece[k, SLOPE] if piece[k, KIND] == ARC else high if piece[k, SLOPE] > 0.0 else low
+        for level in (min(min(high, most), max(max(low, least), best)), hit[0]):
+            if low <= level <= high and _slice(corner, 3, level, shape) == 2:
+                radius = _radius_at(piece, k, level)
+                for i in range(2):
+                    shape[i, 0] += u
+                    shape[i, 1] += v
+                flat.corners[flat.counts[0]], flat.radius[flat.counts[0]] = 2, radius
+                if _away(u, v, flat, flat.counts[0]) < 0.0:
+                    return 2, radius
+    shape[0, 0], shape[0, 1] = hit[1] + u, hit[2] + v
+    return 1, piece[k, RADIUS] if piece[k, KIND] == CYLINDER else _radius_at(piece, k, hit[0])
+
+
+@kernel
+def _best(flat):
+    """The open place farthest from what is forbidden, -1 for none; the first of those that are as far."""
+    best = -1
+    for i in range(flat.counts[2]):
+        if flat.open_[i] and (best < 0 or flat.margin[i] > flat.margin[best]):
+            best = i
+    return best
+
+
+@kernel
+def find_place(p, axis, x, tool, mode, most, solids, within, apart, hint, flat, place):
+    """Look for a place at which a tool stands free, its bottom across the axis and a contact under the flat of its tip.
+
+    Parameters
+    ----------
+    p, axis : (3,) float64
+        The contact, and the unit tool axis.
+    x : (3,) float64
+        Unit direction of u, across the axis; v is that of axis x u.
+    tool : Tool
+    mode : int
+        In which it touches at tilt 0.
+    most : float
+        Radius of the flat, mm.
+    solids : Solids
+    within : float
+        Winding number from which a place lies within a body.
+    apart : float
+        Places are held apart from what is forbidden by this, mm; what is left between is not found.
+    hint : int
+        Triangle to try first, or -1.
+    flat : Flat
+    place : (2,) float64, written
+        u and v of the axis, mm.
+
+    Returns
+    -------
+    result : int
+        PLACED; FORBIDDEN if what was met forbids all places, with `apart` more; or NONE.
+    hint : int
+        The triangle that was in the way last.
+    """
+    counts, body, y = flat.counts, flat.body, flat.y
+    counts[:] = 0
+    cross(axis, x, y)
+    apart = max(apart, _APART, _SHARE * most)
+    proved = _add_border(1.0, 0.0, 0.0, most, 0.0, flat)
+    for i in range(_RIM):
+        turn = 2.0 * np.pi * i / _RIM
+        _add_place(-most * np.cos(turn), -most * np.sin(turn), most, flat)
+    for i in range(_RING):
+        turn = 2.0 * np.pi * i / _RING
+        _add_place(-0.5 * most * np.cos(turn), -0.5 * most * np.sin(turn), most, flat)
+    _add_place(0.0, 0.0, most, flat)
+    while True:
+        best = _best(flat)
+        if best < 0:
+            return FORBIDDEN if proved else NONE, hint
+        u, v = flat.place[best, 0], flat.place[best, 1]
+        for k in range(3):
+            body[P + k] = p[k] + tool.mode[mode, RISE] * axis[k] + u * x[k] + v * y[k]
+            body[A + k], body[X + k], body[Y + k] = axis[k], x[k], y[k]
+        body[OFFSET], body[HALF] = 0.0, 0.0
+        triangle, which, height, px, py = tree_hit(solids.tree, body, tool.piece[mode], 0.0, hint, flat.scratch)
+        if triangle < 0:
+            if inside(body, tool, mode, solids, flat.scratch.stack) < within:
+                place[0], place[1] = u, v
+                return PLACED, hint
+            return NONE, hint
+        hint = triangle
+        if counts[0] == len(flat.corner):
+            return NONE, hint
+        many, radius = _met(solids.tree.vertex, triangle, tool.piece[mode], which, (height, px, py), u, v, flat)
+        proved = _forbid(flat, many, radius, apart, most) and proved
+        if flat.open_[best]:
+            # By rounding: it was tried, and is not tried again.
+            flat.open_[best], proved = False, False
+
+
+@kernel
+def place_to_direction(place, x, y, most, tilt_direction):
+    """Write the way from the axis at a place to the contact: 1 long at the rim of the flat, and never nothing."""
+    least = LEAST_SHARE * most
+    if abs(place[0]) < least and abs(place[1]) < least:
+        place[0] = -least
+    for k in range(3):
+        tilt_direction[k] = -(place[0] * x[k] + place[1] * y[k]) / most
+
+
+@entry
+def upright(rows, contacts, tool, solids, within, apart, result, tilt_direction):
+    """Look at contacts, each for itself, for a place of a tool along the normal with the contact under the flat of its tip.
+
+    Parameters
+    ----------
+    rows : (m,) int64
+    contacts : Contacts
+    tool : Tool
+    solids : Solids
+    within, apart : float
+        As for `find_place`.
+    result : (n,) int8, written
+        PLACED, FORBIDDEN or NONE; FORBIDDEN too where the tip has no flat.
+    tilt_direction : (n, 3) float64, written
+        Where it is PLACED: the way from the axis to the contact, 1 at the rim of the flat.
+    """
+    flat, place = flat_workspace(), np.empty(2)
+    mode = mode_at(tool, 0.0)
+    most = tool.mode[mode, OFFSET_OF] if mode >= 0 else 0.0
+    for row in rows:
+        result[row] = FORBIDDEN
+        if most <= 0.0:
+            continue
+        n, e1 = contacts.normal[row], contacts.direction_max[row]
+        result[row], _ = find_place(contacts.point[row], n, e1, tool, mode, most, solids, within, apart, -1, flat, place)
+        if result[row] == PLACED:
+            place_to_direction(place, e1, flat.y, most, tilt_direction[row])

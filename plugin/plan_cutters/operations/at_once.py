@@ -1,0 +1,105 @@
+"""Where many fixed orientations would be set, simultaneous motion takes their area: which orientations stay then.
+
+A machinist sets few orientations. Where a plan has more than the most that are recommended, those stay without which the rest
+takes the most time; where simultaneous motion cuts faster than a fixed axis by more than it costs, orientations go as well.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
+from plan_cutters.domain.columns import Columns
+from plan_cutters.domain.operations import OperationPlan
+from plan_cutters.operations.plans import Task, costs_with, moving_over
+from plan_cutters.operations.timing import speed_of
+
+Rows = NDArray[np.int64]
+#: Simultaneous motion is taken for less than what is recommended where it saves this share of the time: what it costs to turn
+#: while cutting is not known.
+_WORTH = 0.02
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Times:
+    """What samples of a task (r,) take with columns and with simultaneous motion.
+
+    Attributes
+    ----------
+    cost : (r, k) float
+        s, or mm without a feed; infinite where a column does not serve.
+    moving : (r,) float
+        The same with simultaneous motion.
+    cutter : (r,) int
+        Of that motion, counted as in the task.
+    setup : (r,) int
+    """
+
+    task: Task
+    columns: Columns
+    cost: Floats
+    moving: Floats
+    cutter: Rows
+    setup: Rows
+
+    @classmethod
+    def of(cls, task: Task, columns: Columns) -> "_Times":
+        area, cost = costs_with(task, columns)
+        motion = moving_over(task, task.rows)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            moving = area / (motion.width * speed_of(task.paths, task.cutters, motion.cutter))
+        return cls(task, columns, cost, np.where(np.isfinite(moving), moving, 0.0), motion.cutter, motion.setup)
+
+    def total(self, some: Sequence[int]) -> tuple[float, float]:
+        """The time of some columns, numbers, with simultaneous motion for what they leave; and that of cutting alone."""
+        own = self.cost[:, some].min(axis=1, initial=np.inf)
+        left = ~np.isfinite(own)
+        cutting = float(np.where(left, self.moving, own).sum())
+        options, columns = self.task.ready.options, self.columns.of(np.array(some, np.int64))
+        motions = {*zip(self.setup[left].tolist(), self.cutter[left].tolist(), strict=True)}
+        turns = self.task.indexing.together(columns) + self.task.indexing.constant * len(motions)
+        cutters = {*columns.cutter.tolist(), *(c for _, c in motions)}
+        setups = {*columns.setup.tolist(), *(s for s, _ in motions)}
+        others = options.change_time * max(0, len(cutters) - 1) + options.setup_time * max(0, len(setups) - 1)
+        return cutting + turns + others, cutting
+
+
+def recommended(task: Task, columns: Columns) -> Columns:
+    """The columns of a plan that stay where simultaneous motion takes the area of the others.
+
+    Parameters
+    ----------
+    task : Task
+    columns : Columns
+
+    Returns
+    -------
+    Columns
+        All of them where they are few enough, simultaneous motion saves nothing, the machine's axes lock, or the most
+        orientations were requested otherwise.
+    """
+    options = task.ready.options
+    if not len(columns) or options.most_operations is not None or options.index_step is not None:
+        return columns
+    times, stay = _Times.of(task, columns), list(range(len(columns)))
+    (now, cutting), whole = times.total(stay), len(columns)
+    while stay:
+        tried = [[each for each in stay if each != gone] for gone in stay]
+        totals = [times.total(each) for each in tried]
+        best = min(range(len(tried)), key=lambda k: totals[k][0])
+        total, cut = totals[best]
+        # Turns alone are no reason: what the axes take on the way is in no time of simultaneous motion.
+        worth = total < (1.0 - _WORTH) * now and cut < cutting
+        if len(stay) <= options.max_orientations and not worth:
+            break
+        stay, now, cutting = tried[best], total, cut
+    return columns if len(stay) == whole else columns.of(np.array(stay, np.int64))
+
+
+def few_enough(task: Task, plan: OperationPlan) -> bool:
+    """Whether a plan has no more fixed orientations than are recommended."""
+    options = task.ready.options
+    fixed = sum(each.mode == "fixed" for each in plan.operations)
+    return options.most_operations is not None or options.index_step is not None or fixed <= options.max_orientations

@@ -1,0 +1,104 @@
+"""Floors under the flat of the tip and walls along the flutes: strips, times and what is claimed, by closed forms."""
+
+import math
+
+import numpy as np
+import pytest
+
+from plan_cutters import plan
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.operations import STRATEGIES
+from plan_cutters.kernels.linear.rulings import extents
+from plan_cutters.operations.walls import flank_of, flat_of
+from tests.support.cad_parts import box, rod
+
+FEED = 1000.0
+#: A block on a table, with tools that reach all of its sides from above.
+OPTIONS = {"faces": "all", "area_budget": 0, "feed": FEED, "machine": "trunnion-ac", "grid": 9, "fixtures": "table"}
+WALL = STRATEGIES.index("wall")
+
+
+def planned(shape, cutter, **more):
+    return plan(shape, cutters=cutter, **{**OPTIONS, "operations": "fastest", **more})
+
+
+@pytest.mark.parametrize(("cutter", "height"), [("D12L60F26", 20.0), ("D12L60F60", 50.0)])
+def test_a_block_takes_the_seconds_of_its_top_and_of_passes_along_its_sides(cutter, height):
+    """The top in strips of 0.75 of the flat of the tip, each side in passes as high as the flutes: one orientation, A 0."""
+    made = Cutter.parse(cutter)
+    found = planned(box(60.0, 40.0, height), cutter).plan.operations.plans[0]
+    assert [list(each.angles_deg.values()) for each in found.operations] == [[0.0, 0.0]]
+    top = 60.0 * 40.0 / (0.75 * flat_of(made))
+    sides = 2.0 * (60.0 + 40.0)
+    assert found.cutting_seconds == pytest.approx((top + sides) * 60.0 / FEED, rel=0.01)
+
+
+def test_each_sample_of_a_wall_lies_along_the_flutes_at_its_contact():
+    cutter = Cutter.parse("D10L60rc1F15")
+    result = planned(box(30.0, 30.0, 40.0), cutter, fixtures=())
+    found, samples = result.answers.operations.plans[0], result.samples
+    mine = np.flatnonzero(found.strategy == WALL)
+    assert len(mine)
+    begins, length = flank_of(cutter)
+    for row in mine.tolist():
+        axis = found.operations[found.label[row]].axis
+        above = float((samples.point[row] - found.contact[row]) @ axis)
+        assert -1e-6 <= above <= found.strip[row] + 1e-6
+        assert found.strip[row] <= length + 1e-9
+        across = samples.point[row] - found.contact[row] - above * axis
+        assert np.linalg.norm(across) <= 0.01
+    assert np.isnan(found.contact[found.strategy != WALL]).all()
+    assert begins == 1.0
+
+
+def test_a_wall_that_leans_more_than_the_axes_are_accurate_is_cut_in_points():
+    leaning = rod(10.0, 10.0)
+    tilted = planned(leaning, "D12L60F26", machine="tilt:0", setup=(math.sin(0.01), 0.0, math.cos(0.01)), fixtures=())
+    straight = planned(leaning, "D12L60F26", machine="tilt:0", setup=(0.0, 0.0, 1.0), fixtures=())
+    assert (straight.answers.operations.plans[0].strategy == WALL).any()
+    side = np.abs(tilted.samples.normal[:, 1]) > 0.9
+    assert side.any()
+    walls = tilted.answers.operations.plans[0].strategy == WALL
+    # Where the side of the cylinder leans with the axis it is off it by 0.57 deg; across that it is not.
+    assert not walls[np.abs(tilted.samples.normal[:, 0]) > 0.9].any()
+
+
+def test_a_tool_whose_flutes_end_with_its_corner_has_no_flank():
+    assert flank_of(Cutter.ball(radius=5, length=40, flutes=5.0)) is None
+
+
+def test_no_tip_but_a_flat_one_lies_on_a_floor():
+    assert flat_of(Cutter.ball(radius=5, length=40)) == 0.0
+    assert flat_of(Cutter.lens(radius=6, bottom_radius=60, corner_radius=1, length=40)) == 0.0
+
+
+def test_a_face_ends_along_a_line_where_its_triangles_do_and_where_it_leaves_the_line():
+    flat = np.array([[[0.0, 0, 0], [10, 0, 0], [0, 10, 0]]])
+    low, high = np.empty((2, 1))
+    start = np.array([[2.0, 3.0, 0.0]])
+    extents(start, np.array([[1.0, 0, 0]]), np.array([[0.0, 0, 1]]), flat, 0.01, low, high)
+    assert (low[0], high[0]) == pytest.approx((-2.0, 5.0))
+    # From x = 4 on it rises by a tenth: it leaves the band after 0.1 mm.
+    bent = np.array([[[0.0, 0, 0], [4, 0, 0], [4, 10, 0]], [[0, 0, 0], [4, 10, 0], [0, 10, 0]],
+                     [[4, 0, 0], [9, 0, 0.5], [9, 10, 0.5]], [[4, 0, 0], [9, 10, 0.5], [4, 10, 0]]])  # fmt: skip
+    extents(start, np.array([[1.0, 0, 0]]), np.array([[0.0, 0, 1]]), bent, 0.01, low, high)
+    assert (low[0], high[0]) == pytest.approx((-2.0, 2.1))
+    extents(start, np.array([[1.0, 0, 0]]), np.array([[0.0, 0, 1]]), flat[:0], 0.01, low, high)
+    assert np.isnan(low[0])
+    assert np.isnan(high[0])
+
+
+def test_strategies_stand_in_the_operations_and_in_the_process():
+    result = planned(box(60.0, 40.0, 20.0), "D12L60F26").plan
+    assert [each.strategy for each in result.operations.plans[0].operations] == ["mixed"]
+    assert [each.strategy for each in result.process.steps] == ["mixed"]
+    top = planned(box(60.0, 40.0, 20.0), "D12L60F26", faces="F6").plan
+    assert [each.strategy for each in top.process.steps] == ["floor"]
+
+
+def test_above_the_most_orientations_simultaneous_motion_is_recommended():
+    found = planned(rod(10.0, 10.0), "D6L60rc3F3", fixtures=(), max_orientations=1).plan.operations
+    (fastest,) = (each for each in found.plans if each.name == "fastest")
+    assert fastest.orientations <= 1
+    assert any(each.mode == "simultaneous" for each in fastest.operations)
+    assert any("simultaneous motion is recommended" in note for note in found.notes)
