@@ -22,7 +22,7 @@ from typing import Any
 import click
 
 FEED, STEPOVER, SCALLOP = 1000.0 / 60.0, 0.75, 0.01
-#: Diameter and length of flutes of the tools, mm; the ball has no flat.
+#: Diameter and length of flutes of the tools, mm; the ball has no flat. All are held as usual: without a holder a plate may stand on end.
 D16, D12, D10 = (16.0, 32.0), (12.0, 26.0), (10.0, 22.0)
 FLAT = {D16: "D16L60F32S16", D12: "D12L50F26S12"}
 BALL = "D10L50rc5F22S10"
@@ -166,7 +166,19 @@ def row(case: Case, folder: Path, words: list[str]) -> str:
     cq.exporters.export(case.shape, str(file))
     began = time.perf_counter()
     out = file.with_suffix("")
-    words = [*words, "--machine", "trunnion-ac", "--operations", "fastest", "--feed", f"{60 * FEED:g}", "-o", str(out)]
+    words = [
+        *words,
+        "--machine",
+        "trunnion-ac",
+        "--holder",
+        "er25",
+        "--operations",
+        "fastest",
+        "--feed",
+        f"{60 * FEED:g}",
+        "-o",
+        str(out),
+    ]
     command = [sys.executable, "-m", "plan_cutters", str(file), *case.words, *words]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     took = time.perf_counter() - began

@@ -44,11 +44,14 @@ def process_entry(
     """
     sampled, not_sampled = sample_areas(entries[0].faces, ready.samples, ready.scene.part)
     area = np.where(ready.not_required, 0.0, sampled)
-    requested = float(area.sum()) + not_sampled
+    requested, clamping = float(area.sum()) + not_sampled, None
     if answers.operations is not None and operations is not None:
         chosen, entry = _preferred(answers.operations.plans, operations.plans)
         done = (chosen.label >= 0) & ready.finished
         steps, seconds = _operated(ready, chosen, entry, over, area, requested), entry.seconds
+        if seconds is not None:
+            clamping = ready.options.setup_time * max(0, len({step.setup for step in steps}) - 1)
+            seconds -= clamping
     else:
         runs, seconds = list(_runs(ready, entries, answers, over)), None
         done = np.logical_or.reduce([mine for *_, mine in runs]) if runs else np.zeros(len(area), bool)
@@ -62,7 +65,7 @@ def process_entry(
     share = exact(finished / max(1e-300, requested), some=bool(done.any()), whole=not remaining)
     return ProcessEntry(
         steps=steps, finished_share=share, finished_mm2=finished, asked_mm2=requested, left=remaining, seconds=seconds,
-        exempt=_exempt(ready, sampled, requested),
+        setup_seconds=clamping, exempt=_exempt(ready, sampled, requested),
     )  # fmt: skip
 
 

@@ -17,6 +17,7 @@ from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.at_once import few_enough, recommended
 from plan_cutters.operations.candidates import STEP, apart, candidates
 from plan_cutters.operations.canonical import canonical
+from plan_cutters.operations.companions import accompanied
 from plan_cutters.operations.curve import curve
 from plan_cutters.operations.fastest import Costs, Problem, bounded, cheap, exchanged
 from plan_cutters.operations.fewest import FINEST, Search, search_fewest
@@ -222,6 +223,7 @@ def _stored(task: Task, rows: Rows) -> Columns:
 def _capped(task: Task, name: str, columns: Columns) -> OperationPlan:
     rule = partial(allowed, task) if name == "largest first" else None
     columns = _worth(task, name, canonical(task, _worth(task, name, columns), rule))
+    columns = accompanied(task, columns) if name == "fewest" else columns
     return plan_with(task, name, columns, None if rule is None else partial(rule, columns))
 
 

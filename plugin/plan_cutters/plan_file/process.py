@@ -67,7 +67,11 @@ class ProcessEntry(Frozen):
         description="strips at sharp inside edges that no cutter enters, where they are not required (`sharp_edges`): in none of "
         "the other numbers; null where there is none",
     )
-    seconds: float | None = Field(description="of all steps, with orientations, changes and setups; null without a feed")
+    seconds: float | None = Field(
+        description="on the machine: cutting of all steps, orientations and changes of cutters, without `setup_seconds`; null "
+        "without a feed"
+    )
+    setup_seconds: float | None = Field(default=None, description="to clamp the part for each setup after the first")
     next: list[NextEntry] = Field(default=[], description="the best first")
     doubts: list[str] = Field(default=[], description="what changes what one does: a line each, the gravest first")
 

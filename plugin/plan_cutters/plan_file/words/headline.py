@@ -85,6 +85,8 @@ def _much(plan: Plan, share: float, *, finished: bool) -> str:
     of = f"the {area_text(whole)} to machine" if math.isfinite(whole) else "the area to machine"
     seconds = plan.process.seconds if plan.process else None
     took = f", {duration(seconds)}" if seconds is not None else ""
+    if plan.process and plan.process.setup_seconds:
+        took += f" and {duration(plan.process.setup_seconds)} to clamp it again"
     return f"{percent(share, some=share > 0.0, whole=finished and share >= 1.0)} of {of}{took}"
 
 
