@@ -22,7 +22,7 @@ from typing import Any
 import click
 
 FEED, STEPOVER, SCALLOP = 1000.0 / 60.0, 0.75, 0.01
-#: Diameter and length of flutes of the tools, mm; the ball has no flat. All are held as usual: without a holder a plate may stand on end.
+#: Diameter and length of flutes of the tools, mm; the ball has no flat.
 D16, D12, D10 = (16.0, 32.0), (12.0, 26.0), (10.0, 22.0)
 FLAT = {D16: "D16L60F32S16", D12: "D12L50F26S12"}
 BALL = "D10L50rc5F22S10"

@@ -65,7 +65,7 @@ class PlanOptions(SceneOptions, total=False):
     stepover: float
     index_step: float | None
     index_step_deg: float | None
-    axis_accuracy: float
+    axis_accuracy: float | None
     axis_accuracy_deg: float | None
     index_time: float | None
     change_time: float

@@ -30,6 +30,8 @@ from plan_cutters.option_types import ANGLES, PlanOptions
 LEAST_TOLERANCE, MOST_TOLERANCE = 1e-4, 10.0
 #: Whether strips at sharp inside edges that no cutter enters are required.
 SHARP_EDGES = ("asked", "left")
+#: Accuracy of rotary axes that state none, rad.
+_ACCURACY = math.radians(0.05)
 #: Longest length that can be requested, mm: longer ones are rather a mistake. Most threads.
 _LONGEST, _MOST_JOBS = 1e6, 1024
 #: The least and the largest value of options, and their unit: the tolerance, and what the plan of operations reckons with.
@@ -137,9 +139,10 @@ class Options:
         Height of the cusps between passes, mm, and the widest distance of passes, in diameters.
     index_step : float, optional
         Rotary axes lock at whole multiples of this angle alone, rad. None: anywhere.
-    axis_accuracy : float
+    axis_accuracy : float, optional
         Of the rotary axes, rad: orientations of one setup that are nearer than this are one; floors and walls that are off the
-        tool axis by no more are square to it or along it.
+        tool axis by no more are square to it or along it. None: that of the machine's least accurate rotary axis, where its
+        file states one, else 0.05 deg.
     index_time : float, optional
         Seconds that another orientation takes. None: what the machine's rotary axes need by their rates, else 5 s.
     change_time, setup_time : float
@@ -209,7 +212,7 @@ class Options:
     scallop: float = 0.01
     stepover: float = 0.75
     index_step: float | None = None
-    axis_accuracy: float = math.radians(0.05)
+    axis_accuracy: float | None = None
     index_time: float | None = None
     change_time: float = 20.0
     setup_time: float = 300.0
@@ -305,6 +308,14 @@ class Options:
             raise OptionError(f"unit must be one of {', '.join(UNITS)}, not {shown(self.unit)}")
         postures = self.postures
         take(tilt=postures.tilt, rotation=postures.rotation, rotation_step=postures.step)
+
+    @property
+    def accuracy(self) -> float:
+        """Accuracy of the rotary axes, rad: that was requested, else that of the machine."""
+        if self.axis_accuracy is not None:
+            return self.axis_accuracy
+        stated = [each.accuracy for each in self.machine.axes if each.accuracy is not None]
+        return max(stated, default=_ACCURACY)
 
     @property
     def shared_fixtures(self) -> tuple[Fixture, ...]:

@@ -15,6 +15,7 @@ from plan_cutters.domain.machine import Machine, builtin_machines
 from plan_cutters.errors import MachineError
 from plan_cutters.machines import machine_of, plain, read_machine, to_toml
 from plan_cutters.machines.explain import share, solutions, tool_axis
+from plan_cutters.options import Options
 from tests.support.machine_files import (  # fmt: skip
     HEAD,
     TABLE,
@@ -346,7 +347,8 @@ def axes(draw):
         ends = draw(st.none() | st.tuples(st.floats(-1e4, 0.0) | st.just(-math.inf), st.floats(0.0, 1e4) | st.just(math.inf)))
         rate = draw(st.none() | st.floats(1e-3, 1e5))
         point = draw(st.tuples(NUMBERS, NUMBERS, NUMBERS)) if kind == "rotary" else (0.0, 0.0, 0.0)
-        found.append(Axis(name, kind, draw(st.sampled_from(["part", "tool"])), draw(VECTORS), ends, point, rate))
+        accuracy = draw(st.none() | st.floats(0.0, 0.017)) if kind == "rotary" else None
+        found.append(Axis(name, kind, draw(st.sampled_from(["part", "tool"])), draw(VECTORS), ends, point, rate, accuracy))
     return tuple(sorted(found, key=lambda axis: axis.carries))
 
 
@@ -396,6 +398,13 @@ def test_a_table_counted_by_itself_is_the_tool_counted_backwards(tmp_path):
         assert part @ held_by(table, (c, a)) == pytest.approx(Z, abs=1e-12)
 
 
+def test_the_worst_rotary_axis_of_the_machine_gives_the_accuracy_unless_one_is_requested(tmp_path):
+    file = write(tmp_path, "worn.json", own([rotary("A", X, accuracy=0.02), rotary("C", Z, accuracy=0.1)]))
+    assert Options(machine=file).accuracy == math.radians(0.1)
+    assert Options(machine=file, axis_accuracy_deg=0.01).accuracy == math.radians(0.01)
+    assert Options(machine="trunnion-ac").accuracy == math.radians(0.05)
+
+
 def test_the_sample_of_the_documentation_is_read(tmp_path):
     page = (ROOT / "docs" / "machines.md").read_text()
     sample = page.partition("```toml\n")[2].partition("```")[0]
@@ -440,6 +449,8 @@ BAD = [
     ("twice.json", own([rotary("A", X), rotary("A", Y)]), "two of its axes have one name"),
     ("zero.json", own([rotary("A", [0, 0, 0])]), "not all zero"),
     ("text.json", own([rotary("A", X, ["20 deg", 30])]), "least limit is '20 deg'"),
+    ("accuracy.json", own([rotary("A", X, accuracy=1.5)]), "accuracy is an angle of a rotary axis, from 0 to 1 deg"),
+    ("minus.json", own([rotary("A", X, accuracy=-0.1)]), "accuracy is an angle"),
     ("rate.json", own([rotary("A", X, rate=-1)]), "rate must be positive"),
     ("version.json", own(AC, version=2), "version is 2"),
     ("half.toml", 'format = "plan-cutters-machine"\nname = ', "is no TOML"),

@@ -183,6 +183,13 @@ _OPTIONS = (
     ),
     _postures("--rotation-step", type=float, default=10.0, metavar="DEG", help="Step between rotations.  [default: 10]"),
     _postures(
+        "--axis-accuracy",
+        type=float,
+        metavar="DEG",
+        help="Of the rotary axes: a floor or wall that is off by less is square to the axis or along it, and "
+        "orientations that are nearer are one.  [default: the machine's own, else 0.05]",
+    ),
+    _postures(
         "--posture-maps",
         is_flag=True,
         help="Also write every sample's free tilt intervals at every rotation (postures.npz), for the cutter shown.",
@@ -251,13 +258,6 @@ _OPTIONS = (
         type=float,
         metavar="DEG",
         help="Rotary axes lock at whole multiples of this angle alone.  [default: they lock anywhere]",
-    ),
-    _operations(
-        "--axis-accuracy",
-        type=float,
-        default=0.05,
-        metavar="DEG",
-        help="Of the rotary axes: orientations of one setup that are nearer than this are one.  [default: 0.05]",
     ),
     _operations(
         "--index-time",

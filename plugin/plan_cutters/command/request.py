@@ -96,7 +96,7 @@ class PlanningRequest(JudgingRequest):
     scallop: float
     stepover: float
     index_step: float | None
-    axis_accuracy: float
+    axis_accuracy: float | None
     index_time: float | None
     change_time: float
     setup_time: float
@@ -242,7 +242,7 @@ def planning_options(request: PlanningRequest) -> "PlanOptions":
         "scallop": request.scallop,
         "stepover": request.stepover,
         "index_step": None if request.index_step is None else math.radians(request.index_step),
-        "axis_accuracy": math.radians(request.axis_accuracy),
+        "axis_accuracy": None if request.axis_accuracy is None else math.radians(request.axis_accuracy),
         "index_time": request.index_time,
         "change_time": request.change_time,
         "setup_time": request.setup_time,

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 #: Parameters of the commands that `Options` names otherwise.
 NAMED = {"cutter": "cutters", "cutters": "libraries", "fixture": "fixtures"}
 #: Options that count in a plan of operations alone: without one they must not be ignored.
-OF_OPERATIONS = ("feed", "scallop", "stepover", "index_step", "axis_accuracy", "index_time", "change_time", "setup_time",
+OF_OPERATIONS = ("feed", "scallop", "stepover", "index_step", "index_time", "change_time", "setup_time",
                  "overlap", "most_operations", "max_orientations")  # fmt: skip
 #: Bytes of memory below which nothing can be planned.
 LEAST_MEMORY = 2e9

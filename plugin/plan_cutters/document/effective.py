@@ -38,6 +38,7 @@ def effective(ready: Prepared) -> Effective:
         "chord_measured_share": surroundings.certain.triangles.measured_share,
         "obstacle_triangles": len(surroundings.possible.triangles),
         "area_budget": options.contacts_between(len(ready.samples)),
+        "axis_accuracy_deg": float(np.degrees(options.accuracy)),
         "index_time_s": INDEX_TIME if options.index_time is None else options.index_time,
     }
     return Effective(**{name: _as_requested(options, name) for name in Effective.model_fields if name not in made}, **made)

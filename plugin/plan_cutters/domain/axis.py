@@ -11,6 +11,8 @@ from plan_cutters.errors import MachineError
 
 Kind = Literal["rotary", "linear"]
 Carried = Literal["part", "tool"]
+#: Largest accuracy of a rotary axis that is one, rad.
+MOST_ACCURACY = math.radians(1.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +35,8 @@ class Axis:
         A point of a rotary axis, mm.
     rate : float, optional
         Largest speed, rad/s or mm/s.
+    accuracy : float, optional
+        Of a rotary axis, rad: how far it may stand from where it is told to.
     """
 
     name: str
@@ -42,6 +46,7 @@ class Axis:
     limits: tuple[float, float] | None = None
     point: tuple[float, float, float] = (0.0, 0.0, 0.0)
     rate: float | None = None
+    accuracy: float | None = None
 
     if TYPE_CHECKING:
 
@@ -54,6 +59,7 @@ class Axis:
             limits: Sequence[float] | Floats | None = None,
             point: Sequence[float] | Floats = ...,
             rate: float | None = None,
+            accuracy: float | None = None,
         ) -> None: ...
 
     @classmethod
@@ -104,6 +110,12 @@ class Axis:
             if not 0.0 < rate < math.inf:
                 raise MachineError(f"{what}: its rate must be positive")
             object.__setattr__(self, "rate", rate)
+        if self.accuracy is not None:
+            accuracy = number(self.accuracy, f"{what}: its accuracy", error=MachineError)
+            if self.kind != "rotary" or not 0.0 <= accuracy <= MOST_ACCURACY:
+                most = f"{math.degrees(MOST_ACCURACY):g} deg"
+                raise MachineError(f"{what}: its accuracy is an angle of a rotary axis, from 0 to {most}")
+            object.__setattr__(self, "accuracy", accuracy)
 
 
 def numbers_of(value: Any, what: str, count: int) -> tuple[float, ...]:

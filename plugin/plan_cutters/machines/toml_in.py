@@ -36,7 +36,10 @@ class Units(_Table):
 
 
 class AxisTable(_Table):
-    """An axis; `limits` missing or null: none, one of them null or inf: none on that side. `rate` is a speed a second."""
+    """An axis; `limits` missing or null: none, one of them null or inf: none on that side.
+
+    `rate` is a speed a second; `accuracy` an angle, of a rotary axis alone.
+    """
 
     axis: Annotated[str, Field(min_length=1)]
     type: Literal["rotary", "linear"]
@@ -44,6 +47,7 @@ class AxisTable(_Table):
     point: Vector | None = None
     limits: Annotated[list[Size | None], Field(min_length=2, max_length=2)] | None = None
     rate: Size | None = None
+    accuracy: Size | None = None
 
 
 class MaxTool(_Table):
@@ -144,8 +148,9 @@ def _axis(table: AxisTable, carries: Carried, sign: str, length: float, angle: f
             raise MachineError(f"{what}: its limits must run upwards, from -inf to inf")
     px, py, pz = (scaled(value, length) for value in table.point or (0.0, 0.0, 0.0))
     rate = None if table.rate is None else _size(table.rate, size, f"{what}: its rate", turns)
+    accuracy = None if table.accuracy is None else _size(table.accuracy, size, f"{what}: its accuracy", turns)
     turned = opposite((x, y, z)) if sign == "table" and carries == "part" else (x, y, z)
-    return Axis(table.axis, table.type, carries, turned, limits, (px, py, pz), rate)
+    return Axis(table.axis, table.type, carries, turned, limits, (px, py, pz), rate, accuracy)
 
 
 def _size(value: float | str, size: float, what: str, turns: bool = True) -> float:

@@ -68,6 +68,8 @@ def _axis(axis: Axis) -> dict[str, Any]:
         entry["limits"] = [None if math.isinf(end) else size(end) for end in axis.limits]
     if axis.rate is not None:
         entry["rate"] = size(axis.rate)
+    if axis.accuracy is not None:
+        entry["accuracy"] = size(axis.accuracy)
     return entry
 
 

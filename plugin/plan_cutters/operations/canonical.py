@@ -197,7 +197,7 @@ def _shortened(choice: _Choice, k: int, most: float) -> _Choice:
         angle, axis = where.set_to(_multiples(columns.angle[k], step))
         if (angle == columns.angle[k]).all(axis=1).any():
             return choice
-        near = _within(axis, columns.axis[k], choice.task.ready.options.axis_accuracy)
+        near = _within(axis, columns.axis[k], choice.task.ready.options.accuracy)
         good = _as_good(choice, k, angle[near], axis[near], most)
         if good:
             return _clearest(good, k)
@@ -206,7 +206,7 @@ def _shortened(choice: _Choice, k: int, most: float) -> _Choice:
 
 def _merged(choice: _Choice, most: float) -> _Choice:
     """The choice with one orientation for those of a setup that are nearer than the accuracy of the axes, where it serves."""
-    accuracy, order = choice.task.ready.options.axis_accuracy, choice.order()
+    accuracy, order = choice.task.ready.options.accuracy, choice.order()
     gone = list[int]()
     for place, k in enumerate(order):
         for j in order[place + 1 :]:

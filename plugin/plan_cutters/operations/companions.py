@@ -1,7 +1,7 @@
 """Other cutters at orientations that a plan has anyway: a part that stands there already is not turned for them.
 
-The fewest orientations are sought without a look at time: one ball may stand for all cutters, and mill a floor in passes of half a
-millimetre. Where feeds are known, a larger cutter that saves more than its change goes there first.
+The fewest orientations are sought without a look at time: one ball may stand for all cutters, and mill a floor in passes of half
+a millimetre. Where feeds are known, another cutter that saves more than its change goes there, too.
 """
 
 import numpy as np

@@ -174,8 +174,8 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
         [open_[s] & verdicts[cutter].reached for s, verdicts in enumerate(everywhere) for cutter in cutters]
     )
     probes = Probes(ready.samples, cutters, ready.setups, open_)
-    paths = Paths(options.scallop, options.stepover, feeds(options, cutters), options.axis_accuracy)
-    walls = Walls.of(probes, options.scallop, options.axis_accuracy)
+    paths = Paths(options.scallop, options.stepover, feeds(options, cutters), options.accuracy)
+    walls = Walls.of(probes, options.scallop, options.accuracy)
     where = orientations_of(ready)
     indexing = Indexing(where, options.index_time)
     return Task(ready, cutters, where, tuple(everywhere), np.flatnonzero(reached), probes, paths, indexing,

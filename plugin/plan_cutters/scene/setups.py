@@ -46,9 +46,7 @@ def conditions_of(scene: Scene, options: Options) -> list[Conditions]:
             )
     tolerance = max(each.tolerance(scene.asked) for each in each_setup)
     return [
-        Conditions(
-            options.machine, np.array(axis), options.postures, each, tolerance, options.jobs, _x(place), options.axis_accuracy
-        )
+        Conditions(options.machine, np.array(axis), options.postures, each, tolerance, options.jobs, _x(place), options.accuracy)
         for axis, each, place in zip(axes, each_setup, places(options), strict=True)
     ]
 
