@@ -309,8 +309,8 @@ class Ranking:
 def _reached(ready: Prepared, rows: Rows, conditions: Conditions) -> NDArray[np.bool_]:
     """The samples (n,) of some rows at which any of the cutters has a posture under some conditions."""
     reached, open_rows = np.zeros(len(ready.samples), bool), rows
-    # The least wanted cutter is the smallest: it reaches most.
-    for cutter in reversed(ready.cutters):
+    # The smallest reaches most.
+    for cutter in sorted(ready.cutters, key=lambda each: each.radius):
         if len(open_rows) and conditions.judges(cutter):
             verdicts = blank(len(reached))
             search_postures(contacts_of(ready.samples), open_rows, Context.of(cutter, conditions), verdicts, fixed=True)

@@ -14,6 +14,7 @@ from plan_cutters import __version__
 from plan_cutters.document.fixtures import references
 from plan_cutters.document.shares import counts, face_verdicts, whole_share
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.preference import group_of
 from plan_cutters.domain.shapes import flute_length, modes
 from plan_cutters.domain.verdicts import INACCESSIBLE, REASONS, UNDECIDED, Verdicts, Witness
 from plan_cutters.plan_file.frozen import filled, posture, vector
@@ -71,6 +72,7 @@ def cutter_entry(
         CutterEntry,
         cutter,
         taper_deg=float(np.degrees(cutter.taper)),
+        group=group_of(cutter),
         flutes_mm=flute_length(cutter),
         holder=cutter.holder.name if cutter.holder else "",
         stages=[

@@ -33,9 +33,8 @@ from plan_cutters.plan_file.reasons import REASONS as WORDS
 from plan_cutters.plan_file.setups import SetupEntry, SetupReach
 from plan_cutters.plan_file.shares import unreached
 from plan_cutters.plan_file.sharp_edges import SharpEdgeEntry
+from plan_cutters.plan_file.words import choice as words
 from plan_cutters.scene.preparation import Prepared
-
-RULE = "largest radius, then smaller corner radius, then shorter length, then library order, among the feasible"
 
 
 def plan_of(
@@ -192,21 +191,17 @@ def for_setup(entries: Sequence[CutterEntry]) -> str | None:
     return None
 
 
-def selection(entries: Sequence[CutterEntry]) -> tuple[str | None, Selection]:
-    """Which cutter wins, of entries from the most wanted down, and why."""
-    feasible = [e for e in entries if e.feasible]
+def selection(entries: Sequence[CutterEntry], free_form: float) -> tuple[str | None, Selection]:
+    """Which cutter wins, of entries from the most wanted down, and why; `free_form`: the share of such faces."""
+    feasible, rule = [e for e in entries if e.feasible], words.rule(free_form)
     if not feasible:
         best = nearest(entries)
         text = f"{unreached(best, best.area_share)} of the area"
         why = f"no cutter reaches every sample; {best.id} comes nearest and leaves {text}"
         if not best.not_reached:
             why = f"{best.id} reaches every judged sample, but obstacles are missing: see the notes"
-        return None, Selection(rule=RULE, runner_up=None, why=why)
+        return None, Selection(rule=rule, free_form=free_form, runner_up=None, why=why)
     first = feasible[0]
-    larger = [e.id for e in entries if e.radius > first.radius]
-    why = (
-        f"{', '.join(larger)} {'is' if len(larger) == 1 else 'are'} larger but not feasible"
-        if larger
-        else ("no larger cutter was given")
-    )
-    return first.id, Selection(rule=RULE, runner_up=feasible[1].id if len(feasible) > 1 else None, why=why)
+    before = [e.id for e in entries[: entries.index(first)]]
+    runner_up = feasible[1].id if len(feasible) > 1 else None
+    return first.id, Selection(rule=rule, free_form=free_form, runner_up=runner_up, why=words.why(before))

@@ -26,6 +26,7 @@ from plan_cutters.operations.plans import (
     Task,
     best_area,
     considered,
+    of_wanted_kinds,
     orientations_of,
     plan_with,
     small_pieces,
@@ -123,6 +124,8 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
     unpriced = without_feed(ready)
     usable = [each for each in ready.cutters if each not in unpriced]
     needed = [run.cutter for run in least.runs if run.cutter not in unpriced] if least else []
+    if least and needed and len(needed) == len(least.runs):
+        usable = of_wanted_kinds(usable, needed, ready.chosen.free_form)
     cutters = considered(usable, needed, _CUTTERS)
     open_ = ready.machinable
     reached = np.logical_or.reduce(

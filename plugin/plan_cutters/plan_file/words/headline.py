@@ -10,6 +10,7 @@ from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.numbers import area as area_text
 from plan_cutters.plan_file.numbers import capital, count, duration, listed, percent, some
 from plan_cutters.plan_file.shares import reached_share
+from plan_cutters.plan_file.words.choice import first_of
 from plan_cutters.plan_file.words.names import described
 from plan_cutters.plan_file.words.scope import judged
 
@@ -47,8 +48,7 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
                 why = f"It reaches {every(plan)} there, and needs no other setup."
                 return take(plan.selected, why, where=f", in setup {axis_words(alone or ())}")
             if setups == 1 or alone:
-                which = "" if len(entries) == 1 else f"is the largest of {len(entries)} cutters that "
-                return take(plan.selected, f"It {which}reaches {every(plan)}.")
+                return take(plan.selected, first_of(plan, entries[plan.selected], every(plan)))
         if plan.selected_over_setups:
             why = f"Together they reach {every(plan)}; no setup does alone."
             return take(plan.selected_over_setups, why, where=f", in {setups} setups")
