@@ -30,7 +30,7 @@ def grooved(plane, groove, change):
 
 def task_of(reached, change):
     verdicts = {cutter: SimpleNamespace(reached=np.array(mine)) for cutter, mine in zip((LARGE, SMALL), reached, strict=True)}
-    ready = SimpleNamespace(options=SimpleNamespace(change_time=change))
+    ready = SimpleNamespace(options=SimpleNamespace(change_time=change), chosen=SimpleNamespace(free_form=0.0))
     return SimpleNamespace(cutters=(LARGE, SMALL), everywhere=(verdicts,), rows=np.arange(2), ready=ready)
 
 

@@ -231,7 +231,8 @@ class CutterEntry(VerdictCounts):
         default=0.0, description="how far from what counts a point may be and still count, where a shape is held in a larger one"
     )
     feasible: bool | None = Field(
-        description="null: undecided samples alone are left, or it reaches all that could be judged but obstacles are missing"
+        description="null: undecided samples alone are left, or those that stand on the table of a proposed setup (reason "
+        "another_setup), or it reaches all that could be judged but obstacles are missing"
     )
     seen: bool = Field(
         default=True,

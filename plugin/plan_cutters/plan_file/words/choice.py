@@ -29,6 +29,11 @@ def why(before: Sequence[str]) -> str:
     return f"{', '.join(before)} {come} before it but {are} not feasible"
 
 
+def stands(cutter: str) -> str:
+    """Why a cutter comes first that leaves what stands on a proposed table."""
+    return f"{cutter} comes first, and leaves only what stands on the table of the proposed setup"
+
+
 def first_of(plan: Plan, chosen: CutterEntry, every: str) -> str:
     """Say in sentences that a cutter is the most wanted that reaches everything, and by what; `every` names the samples.
 
