@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Sequence
-from typing import Any, TypedDict
+from typing import Any, Literal, TypedDict
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.degrees import Angle
@@ -73,6 +73,7 @@ class PlanOptions(SceneOptions, total=False):
     overlap: float
     most_operations: int | None
     sharp_edges: str
+    units: Literal["mm", "in"] | None
     unit: str | None
     placement: Placement | None
     other_placements: Sequence[Placement | None]

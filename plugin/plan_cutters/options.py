@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Any, Literal, Unpack
 
 from cad_io.units import UNITS
 from plan_cutters.domain.answers import answers_of
@@ -20,6 +20,7 @@ from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.operations import operations_of
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange
+from plan_cutters.domain.spec import notation
 from plan_cutters.errors import OptionError
 from plan_cutters.library.presets import feed_of
 from plan_cutters.library.records import Entry, Library, libraries_of
@@ -148,6 +149,8 @@ class Options:
         Fixed orientations at most: the rest is left to simultaneous motion.
     sharp_edges : str
         `left`: strips at sharp inside edges that no cutter enters are not required; else `asked`.
+    units : str, optional
+        Of lengths in the words, `mm` or `in`; numbers in files stay mm. None: inches where all cutters were given in them.
     unit : str, optional
         Length unit to take instead of the part's own, one of `cad_io.units.UNITS`.
     fixtures : tuple of Fixture
@@ -211,6 +214,7 @@ class Options:
     overlap: float = 2.0
     most_operations: int | None = None
     sharp_edges: str = "asked"
+    units: Literal["mm", "in"] | None = None
     unit: str | None = None
     fixtures: tuple[Fixture, ...] = ()
     placement: Placement | None = None
@@ -278,6 +282,8 @@ class Options:
         take(answers=answers_of(self.answers), operations=operations_of(self.operations))
         if self.sharp_edges not in SHARP_EDGES:
             raise OptionError(f"sharp edges: {shown(self.sharp_edges)} is none of {', '.join(SHARP_EDGES)}")
+        if self.units not in (None, "mm", "in"):
+            raise OptionError(f"units: {shown(self.units)} is none of mm, in")
         if self.most_operations is not None:
             take(most_operations=whole(self.most_operations, "most operations"))
         for word in _RECKONED:
@@ -339,6 +345,13 @@ class Options:
         cutters = [self._asked(c, self.holder) for c in (*self.cutters, *built_in)]
         listed = [self._asked(c, None) for library in self.libraries for c in library]
         return tuple({c.id: c for c in (*cutters, *listed)}.values())
+
+    @property
+    def told_in(self) -> Literal["mm", "in"] | None:
+        """The unit of lengths in the words; None: mm, and tools as they were given."""
+        given = [notation(each.name).inches for each in self.cutters]
+        given += [entry.unit == "inch" for library in self.libraries for entry in library.entries if entry.cutter is not None]
+        return self.units or ("in" if given and all(given) else None)
 
     @property
     def sources(self) -> dict[str, tuple[tuple[Library, Entry], ...]]:

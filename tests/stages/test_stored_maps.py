@@ -63,6 +63,7 @@ CASES = {
     "overlap": [(1.0, None)],
     "most_operations": [(3, None)],
     "sharp_edges": [("left", None)],
+    "units": [("in", None)],
     "unit": [("in", "unit as stated, not in")],
     "fixtures": [("box:200,200,200@-50,-50,-50", "other fixtures"), ("box:5,5,5@0,0,60", None), ((), "other fixtures")],
     "placement": [

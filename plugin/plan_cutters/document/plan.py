@@ -20,6 +20,7 @@ from plan_cutters.document.process import process_entry
 from plan_cutters.document.shares import counts
 from plan_cutters.document.travel import linear_entries, travel_entry
 from plan_cutters.domain.answers import Answers
+from plan_cutters.domain.lengths import reporting
 from plan_cutters.domain.over_setups import positions
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE
@@ -37,6 +38,7 @@ from plan_cutters.plan_file.words import choice as words
 from plan_cutters.scene.preparation import Prepared
 
 
+@reporting(lambda ready: ready.options.told_in)
 def plan_of(
     ready: Prepared,
     entries: Sequence[CutterEntry],

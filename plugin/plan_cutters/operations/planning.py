@@ -12,6 +12,7 @@ from cad_io.arrays import Floats
 from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.least_set import LeastSet
+from plan_cutters.domain.lengths import reporting
 from plan_cutters.domain.operations import Fastest, OperationPlan, Operations, Worth
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.candidates import STEP, apart, candidates
@@ -50,6 +51,7 @@ _EVEN, _TIMED, _ROUNDS = 250, 600, 12
 _TRIES = 4
 
 
+@reporting(lambda ready: ready.options.told_in)
 def plan_operations(
     ready: Prepared,
     everywhere: Sequence[Mapping[Cutter, Verdicts]],
