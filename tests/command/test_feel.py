@@ -232,6 +232,8 @@ def everywhere(value, text):
             "carries",
             "sampled_by",
             "sharp_edges",
+            "units",
+            "group",
             "mode",
             "strategy",
             "cutter",
