@@ -45,11 +45,12 @@ def first_of(plan: Plan, chosen: CutterEntry, every: str) -> str:
     share = plan.selection.free_form
     mine = _rank(chosen, share)
     given = {_rank(each, share) for each in plan.cutters if each.group}
-    order = ranks(free_form=share)
+    groups = {each.group for each in plan.cutters}
+    order = [[group for group in rank_ if group in groups] for rank_ in ranks(free_form=share)]
     if not chosen.group or given == {mine}:
         return f"It is the largest of {number} cutters that reaches {every}."
     same = _any(order[mine])
-    if before := [groups for k, groups in enumerate(order) if k < mine and k in given]:
+    if before := [rank_ for k, rank_ in enumerate(order) if k < mine and k in given]:
         return f"No {' and no '.join(map(_any, before))} reaches {every}. Of {number} cutters it is the largest {same} that does."
     after = min(given - {mine})
     where = "" if after == len(order) - 1 else f" on {_faces(share)}"
