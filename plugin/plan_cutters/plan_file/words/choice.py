@@ -42,13 +42,16 @@ def first_of(plan: Plan, chosen: CutterEntry, every: str) -> str:
     number = len(plan.cutters)
     if number == 1:
         return f"It reaches {every}."
-    share = plan.selection.free_form
+    largest, share = f"It is the largest of {number} cutters that reaches {every}.", plan.selection.free_form
+    if not chosen.group:
+        # A plan of an earlier version ranked by size alone.
+        return largest
     mine = _rank(chosen, share)
     given = {_rank(each, share) for each in plan.cutters if each.group}
     groups = {each.group for each in plan.cutters}
     order = [[group for group in rank_ if group in groups] for rank_ in ranks(free_form=share)]
-    if not chosen.group or given == {mine}:
-        return f"It is the largest of {number} cutters that reaches {every}."
+    if given == {mine}:
+        return largest
     same = _any(order[mine])
     if before := [rank_ for k, rank_ in enumerate(order) if k < mine and k in given]:
         return f"No {' and no '.join(map(_any, before))} reaches {every}. Of {number} cutters it is the largest {same} that does."

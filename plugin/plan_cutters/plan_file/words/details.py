@@ -59,9 +59,9 @@ def others(plan: Plan, *, every: bool = False) -> list[str]:
     if rest := [c for c in larger if c not in near]:
         ends = [of(rest, key=leaves) for of in (min, max)]
         least, most = (unreached(c, c.area_share) for c in ends)
-        which = "larger cutter" if plan.selected else "cutter"
+        which = "more wanted cutter" if plan.selected else "more cutter"
         much = least if least == most else f"{least} to {most}"
-        leave = f"{len(rest)} more {which}{'s leave' if len(rest) > 1 else ' leaves'}"
+        leave = f"{len(rest)} {which}{'s leave' if len(rest) > 1 else ' leaves'}"
         lines.insert(0, f"{leave} {much} of {area(plan)}: -v or plan.json say why.")
     return lines
 
