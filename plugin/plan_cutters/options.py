@@ -347,11 +347,11 @@ class Options:
         return tuple({c.id: c for c in (*cutters, *listed)}.values())
 
     @property
-    def told_in(self) -> Literal["mm", "in"] | None:
+    def reported_unit(self) -> Literal["mm", "in"] | None:
         """The unit of lengths in the words; None: mm, and tools as they were given."""
-        given = [notation(each.name).inches for each in self.cutters]
-        given += [entry.unit == "inch" for library in self.libraries for entry in library.entries if entry.cutter is not None]
-        return self.units or ("in" if given and all(given) else None)
+        stated = [notation(each.name).inches for each in self.cutters]
+        stated += [entry.unit == "inch" for library in self.libraries for entry in library.entries if entry.cutter is not None]
+        return self.units or ("in" if stated and all(stated) else None)
 
     @property
     def sources(self) -> dict[str, tuple[tuple[Library, Entry], ...]]:

@@ -49,7 +49,7 @@ from plan_cutters.scene.inside_material import inside_bodies, inside_material
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.question import question
 from plan_cutters.scene.scene import Scene
-from plan_cutters.scene.setups import conditions_of, left_for_another, places, with_setups
+from plan_cutters.scene.setups import conditions_of, for_another_setup, places, with_setups
 from plan_cutters.scene.spacing import affordable, sampled
 from plan_cutters.scene.threads import part_of
 from plan_cutters.scene.work import Work
@@ -323,7 +323,7 @@ def _judged(
         wanted = any(may_be_at_edge(explained.verdicts, cutter) for cutter, (explained, _) in by_cutter.items())
         edges = inside_edges(ready.scene.part, ready.scene.orientation) if wanted else ()
     at_edges = {cutter: strips(samples, explained.verdicts, cutter, edges) for cutter, (explained, _) in by_cutter.items()}
-    reaches = {c: left_for_another(ready, with_sharp_edges(by_cutter[c][0].verdicts, each)) for c, each in at_edges.items()}
+    reaches = {c: for_another_setup(ready, with_sharp_edges(by_cutter[c][0].verdicts, each)) for c, each in at_edges.items()}
     ready = replace(ready, exempt=exempt(reaches, ready.inside_bodies) if ready.options.sharp_edges == "left" else None)
     judged = {}
     for (cutter, mine), (explained, which) in zip(here.items(), by_cutter.values(), strict=True):

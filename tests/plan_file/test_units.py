@@ -46,15 +46,15 @@ def test_the_unit_ends_with_the_words_even_by_an_error():
 
 
 def test_inches_are_told_where_all_tools_are_in_inches(tmp_path):
-    assert Options(cutters="D0.5inL3in").told_in == "in"
-    assert Options(cutters=["D0.5inL3in", "D12L80"]).told_in is None
-    assert Options(cutters="D0.5inL3in", units="mm").told_in == "mm"
-    assert Options(cutters="D12L80", units="in").told_in == "in"
-    assert Options().told_in is None
+    assert Options(cutters="D0.5inL3in").reported_unit == "in"
+    assert Options(cutters=["D0.5inL3in", "D12L80"]).reported_unit is None
+    assert Options(cutters="D0.5inL3in", units="mm").reported_unit == "mm"
+    assert Options(cutters="D12L80", units="in").reported_unit == "in"
+    assert Options().reported_unit is None
     file = tmp_path / "shop.toml"
     for unit, told in (("inch", "in"), ("mm", None)):
         file.write_text(f'unit = "{unit}"\n[[tool]]\nname = "One"\ntype = "flat"\nDC = 0.5\nLCF = 1\nLPR = 1\nholder = "none"\n')
-        assert Options(cutters=read_library(file)).told_in == told
+        assert Options(cutters=read_library(file)).reported_unit == told
     with pytest.raises(OptionError, match="none of mm, in"):
         Options(units="cm")
 

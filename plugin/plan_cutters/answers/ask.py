@@ -33,7 +33,7 @@ _ENDS: tuple[Literal["flat", "ball"], ...] = ("flat", "ball")
 NEAREST = 3
 
 
-@reporting(lambda ready: ready.options.told_in)
+@reporting(lambda ready: ready.options.reported_unit)
 def ask(
     ready: Prepared,
     reaches: Mapping[Cutter, Verdicts],

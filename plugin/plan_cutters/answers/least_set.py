@@ -71,12 +71,12 @@ def _on_a_proposed_table(ready: Prepared, verdicts: Sequence[Sequence[Verdicts]]
 
     That table is not there yet, so these choose no cutter; `verdicts` are those of each cutter in each setup.
     """
-    stood, lost = stood_on(ready), np.zeros(len(ready.samples), bool)
+    stood, unreached = stood_on(ready), np.zeros(len(ready.samples), bool)
     if stood.any():
         for each in verdicts:
             fixture = np.logical_or.reduce([np.isin(one.reason, (FIXTURE, ANOTHER_SETUP)) for one in each])
-            lost |= fixture & np.logical_and.reduce([one.not_reached for one in each])
-    return np.asarray(stood & lost)
+            unreached |= fixture & np.logical_and.reduce([one.not_reached for one in each])
+    return np.asarray(stood & unreached)
 
 
 def _with_more(

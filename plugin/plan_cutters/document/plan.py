@@ -38,7 +38,7 @@ from plan_cutters.plan_file.words import choice as words
 from plan_cutters.scene.preparation import Prepared
 
 
-@reporting(lambda ready: ready.options.told_in)
+@reporting(lambda ready: ready.options.reported_unit)
 def plan_of(
     ready: Prepared,
     entries: Sequence[CutterEntry],

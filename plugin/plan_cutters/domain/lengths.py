@@ -43,14 +43,14 @@ def reporting(unit_of: Callable[[Any], Literal["mm", "in"] | None]) -> Callable[
     return wrap
 
 
-def in_inches(given: bool = False) -> bool:
-    """Whether words have lengths in inches; `given`: of a tool, where no unit was chosen, whether it was given in them.
+def in_inches(stated: bool = False) -> bool:
+    """Whether words have lengths in inches; `stated`: of a tool, where no unit was chosen, whether it was given in them.
 
     >>> in_inches(), in_inches(True)
     (False, True)
     """
     unit = _reported.get()
-    return given if unit is None else unit == "in"
+    return stated if unit is None else unit == "in"
 
 
 def length(text: str, share: Fraction = Fraction(1)) -> float:

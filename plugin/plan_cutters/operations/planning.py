@@ -51,7 +51,7 @@ _EVEN, _TIMED, _ROUNDS = 250, 600, 12
 _TRIES = 4
 
 
-@reporting(lambda ready: ready.options.told_in)
+@reporting(lambda ready: ready.options.reported_unit)
 def plan_operations(
     ready: Prepared,
     everywhere: Sequence[Mapping[Cutter, Verdicts]],

@@ -13,8 +13,6 @@ _DIGITS = 9
 class _Share(Protocol):
     @property
     def not_reached(self) -> float: ...
-    @property
-    def lost_by(self) -> Mapping[str, float]: ...
 
 
 class Judged(Protocol):
@@ -37,7 +35,8 @@ def leaves(cutter: Judged) -> tuple[float, int]:
 
     What stands on the table of a proposed setup does not count: that table is not there yet, and chooses no cutter.
     """
-    share = cutter.area_share.not_reached - cutter.area_share.lost_by.get(ANOTHER_SETUP, 0.0)
+    by_reason: Mapping[str, float] = getattr(cutter.area_share, "lost_by", {})
+    share = cutter.area_share.not_reached - by_reason.get(ANOTHER_SETUP, 0.0)
     samples = cutter.not_reached - cutter.by_reason.get(ANOTHER_SETUP, 0)
     return round(share, _DIGITS) + 0.0 if math.isfinite(share) else math.inf, samples
 

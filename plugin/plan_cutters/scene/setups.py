@@ -86,7 +86,7 @@ def stood_on(ready: Prepared) -> NDArray[np.bool_]:
     return np.isin(ready.samples.face, sorted(faces))
 
 
-def left_for_another(ready: Prepared, verdicts: Verdicts) -> Verdicts:
+def for_another_setup(ready: Prepared, verdicts: Verdicts) -> Verdicts:
     """The same verdicts with a reason of its own where only a proposed table is in the way, on faces that stand on it.
 
     Beside a proposed table there are no other fixtures.

@@ -165,8 +165,8 @@ def _corner(
     mine &= (flat @ normal.T > -_LEVEL * radius).all(axis=1)
     for number in np.unique(samples.face[rows[mine]]).tolist():
         # Where a fillet of its radius stood the cutter would work beside it.
-        found = reached[tree.query_ball_point(corner + centre, radius + near[number])]
-        if not (samples.face[found] == number).any():
+        nearby = reached[tree.query_ball_point(corner + centre, radius + near[number])]
+        if not (samples.face[nearby] == number).any():
             mine &= samples.face[rows] != number
     return rows[mine]
 

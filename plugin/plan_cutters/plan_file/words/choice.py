@@ -47,15 +47,15 @@ def first_of(plan: Plan, chosen: CutterEntry, every: str) -> str:
         # A plan of an earlier version ranked by size alone.
         return largest
     mine = _rank(chosen, share)
-    given = {_rank(each, share) for each in plan.cutters if each.group}
+    present = {_rank(each, share) for each in plan.cutters if each.group}
     groups = {each.group for each in plan.cutters}
     order = [[group for group in rank_ if group in groups] for rank_ in ranks(free_form=share)]
-    if given == {mine}:
+    if present == {mine}:
         return largest
     same = _any(order[mine])
-    if before := [rank_ for k, rank_ in enumerate(order) if k < mine and k in given]:
+    if before := [rank_ for k, rank_ in enumerate(order) if k < mine and k in present]:
         return f"No {' and no '.join(map(_any, before))} reaches {every}. Of {number} cutters it is the largest {same} that does."
-    after = min(given - {mine})
+    after = min(present - {mine})
     where = "" if after == len(order) - 1 else f" on {_faces(share)}"
     come = f"{_all(order[mine])} come before {_all(order[after])}"
     return f"Of {number} cutters it is the largest {same} that reaches {every}:{where} {come}."
