@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from plan_cutters import Cutter, plan
-from plan_cutters.answers.least_set import least_set
+from plan_cutters.answers.least_set import by_kind, least_set
 from plan_cutters.answers.setup_ranking import touching
 from plan_cutters.command.codes import NONE_FEASIBLE, code_of
 from plan_cutters.domain.fixture import Fixture
@@ -85,3 +85,14 @@ def test_faces_that_touch_the_table():
     bottom = every.samples.normal[:, 2] < -0.5
     assert set(every.samples.face[bottom].tolist()) < set(found)
     assert len(found) == 5, "the sides touch it with an edge"
+
+
+def test_an_engraving_bit_joins_the_set_only_for_what_no_other_cutter_reaches():
+    """Two rows: the bit alone reaches both, two others one each. Then a third row that only the bit reaches."""
+    cutters = [BALL, Cutter.parse("R3L40"), BIT]
+    columns = [(0, 0), (0, 1), (0, 2)]
+    both = np.array([[1, 0, 1], [0, 1, 1]], bool)
+    assert by_kind(both, columns, cutters) == ([0, 1], True)
+    assert by_kind(np.vstack([both, [0, 0, 1]]).astype(bool), columns, cutters) == ([0, 1, 2], True)
+    assert by_kind(both[:, 2:], [(0, 0)], [BIT]) == ([0], True)
+    assert by_kind(np.zeros((2, 3), bool), columns, cutters) == ([], True)

@@ -46,7 +46,7 @@ def least_set(
     columns = [(s, c) for s in range(len(setups)) for c in range(len(cutters))]
     reached = np.stack([setups[s][1][cutters[c].id].reached & finished.wanted for s, c in columns], axis=1)
     open_ = _on_a_proposed_table(ready, [[verdicts[cutter.id] for _, verdicts in setups] for cutter in cutters])
-    chosen, proven = cover(reached & ~open_[:, None], [s for s, _ in columns], [c for _, c in columns])
+    chosen, proven = by_kind(reached & ~open_[:, None], columns, cutters)
     if open_.any() and chosen:
         chosen = _with_more(ready, reached, chosen, columns, cutters)
     whole, done = reached[:, chosen], np.zeros(len(reached), bool)
@@ -64,6 +64,17 @@ def least_set(
     return LeastSet(
         tuple(runs), int(done.sum()), len(open_rows), finished.of_rows(np.flatnonzero(done)), finished.of_rows(open_rows), proven
     )
+
+
+def by_kind(reached: NDArray[np.bool_], columns: Sequence[tuple[int, int]], cutters: Sequence[Cutter]) -> tuple[list[int], bool]:
+    """The fewest runs of cutters that finish surfaces, then those of engraving, chamfer and form cutters for what these leave."""
+    last = np.array([group_of(cutters[c]) == "last" for _, c in columns])
+    chosen, proven = list[int](), True
+    for mine in (np.flatnonzero(~last).tolist(), np.flatnonzero(last).tolist()):
+        done = np.asarray(reached[:, chosen].any(axis=1))
+        more, sure = cover(reached[:, mine] & ~done[:, None], [columns[k][0] for k in mine], [columns[k][1] for k in mine])
+        chosen, proven = sorted([*chosen, *(mine[k] for k in more)]), proven and sure
+    return chosen, proven
 
 
 def _on_a_proposed_table(ready: Prepared, verdicts: Sequence[Sequence[Verdicts]]) -> NDArray[np.bool_]:
