@@ -63,12 +63,17 @@ def test_a_flat_end_wins_on_free_form_faces_where_no_round_one_finishes():
 
 
 def test_an_engraving_bit_wins_only_where_nothing_else_finishes_as_much():
-    """The others have holders that meet the part: the bit alone finishes it, and says so."""
+    """The others have holders that meet the part: the bit alone finishes it, and does only what they leave."""
     others = [STUBBY, Cutter.parse("D4L4HR60L30")]
     found = taken(patch(), [*others, BIT], tilt_deg=(0, 30))
     assert [c.feasible for c in found.cutters] == [False, False, True]
     assert found.selected == BIT.id
-    assert "No ball end and no flat end reaches every sample." in joined(found)
+    assert [step.cutter for step in found.process.steps] == [STUBBY.id, BIT.id]
+    assert found.process.finished
+    assert found.text.headline.startswith("part: 100 % of ")
+    assert "Engraving bit D12 does alone, but such a cutter comes last." in joined(found)
+    alone = taken(patch(), [BIT, Cutter.form([(0, 0), (0.15, 0), (5, 40)], length=60)], tilt_deg=(0, 30))
+    assert (alone.selected, alone.text.headline) == (BIT.id, "Take engraving bit D12.")
     without = taken(patch(), others, tilt_deg=(0, 30))
     assert without.selected is None
     assert code_of(without) == NONE_FEASIBLE

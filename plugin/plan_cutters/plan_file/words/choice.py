@@ -34,6 +34,13 @@ def stands(cutter: str) -> str:
     return f"{cutter} comes first, and leaves only what stands on the table of the proposed setup"
 
 
+def comes_last(plan: Plan) -> str:
+    """The cutter that does alone, where it is of a kind that comes last and the process has others before it; else empty."""
+    entry = next((each for each in plan.cutters if each.id == plan.selected), None)
+    used = {step.cutter for step in plan.process.steps} if plan.process else set()
+    return entry.id if entry is not None and entry.group == "last" and used - {entry.id} else ""
+
+
 def first_of(plan: Plan, chosen: CutterEntry, every: str) -> str:
     """Say in sentences that a cutter is the most wanted that reaches everything, and by what; `every` names the samples.
 
