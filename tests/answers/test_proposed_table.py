@@ -92,7 +92,14 @@ def test_an_engraving_bit_joins_the_set_only_for_what_no_other_cutter_reaches():
     cutters = [BALL, Cutter.parse("R3L40"), BIT]
     columns = [(0, 0), (0, 1), (0, 2)]
     both = np.array([[1, 0, 1], [0, 1, 1]], bool)
-    assert by_kind(both, columns, cutters) == ([0, 1], True)
-    assert by_kind(np.vstack([both, [0, 0, 1]]).astype(bool), columns, cutters) == ([0, 1, 2], True)
-    assert by_kind(both[:, 2:], [(0, 0)], [BIT]) == ([0], True)
-    assert by_kind(np.zeros((2, 3), bool), columns, cutters) == ([], True)
+    assert by_kind(both, columns, cutters, 0.0) == ([0, 1], True)
+    assert by_kind(np.vstack([both, [0, 0, 1]]).astype(bool), columns, cutters, 0.0) == ([0, 1, 2], True)
+    assert by_kind(both[:, 2:], [(0, 0)], [BIT], 0.0) == ([0], True)
+    assert by_kind(np.zeros((2, 3), bool), columns, cutters, 0.0) == ([], True)
+
+
+def test_on_free_form_parts_flat_ends_join_the_set_after_round_ones():
+    """A ball reaches one of two rows, a flat end both: it has the rest; on other parts it is alone."""
+    both, columns, cutters = np.array([[1, 1], [0, 1]], bool), [(0, 0), (0, 1)], [BALL, Cutter.parse("R3L40")]
+    assert by_kind(both, columns, cutters, 1.0) == ([0, 1], True)
+    assert by_kind(both, columns, cutters, 0.5) == ([1], True)

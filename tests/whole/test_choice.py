@@ -59,7 +59,9 @@ def test_a_flat_end_wins_on_free_form_faces_where_no_round_one_finishes():
     found = taken(patch(), [STUBBY, Cutter.parse("D4L60"), BIT], tilt_deg=(0, 30))
     assert [c.feasible for c in found.cutters] == [False, True, True]
     assert found.selected == "R2L60"
-    assert "No ball end reaches every sample. Of 3 cutters it is the largest flat end that does." in joined(found)
+    assert [step.cutter for step in found.process.steps] == [STUBBY.id, "R2L60"]
+    assert found.process.finished
+    assert "Flat end D4 x 60 does alone, but its kind comes after that of step 1." in joined(found)
 
 
 def test_an_engraving_bit_wins_only_where_nothing_else_finishes_as_much():
@@ -71,7 +73,7 @@ def test_an_engraving_bit_wins_only_where_nothing_else_finishes_as_much():
     assert [step.cutter for step in found.process.steps] == [STUBBY.id, BIT.id]
     assert found.process.finished
     assert found.text.headline.startswith("part: 100 % of ")
-    assert "Engraving bit D12 does alone, but such a cutter comes last." in joined(found)
+    assert "Engraving bit D12 does alone, but its kind comes after that of step 1." in joined(found)
     alone = taken(patch(), [BIT, Cutter.form([(0, 0), (0.15, 0), (5, 40)], length=60)], tilt_deg=(0, 30))
     assert (alone.selected, alone.text.headline) == (BIT.id, "Take engraving bit D12.")
     without = taken(patch(), others, tilt_deg=(0, 30))

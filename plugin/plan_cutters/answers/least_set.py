@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from plan_cutters.answers.areas import Finished
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.least_set import LeastSet, Run
-from plan_cutters.domain.preference import group_of, rank
+from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
 from plan_cutters.domain.set_cover import essential_rows
 from plan_cutters.domain.verdicts import ANOTHER_SETUP, FIXTURE, Verdicts
 from plan_cutters.scene.preparation import Prepared
@@ -46,7 +46,7 @@ def least_set(
     columns = [(s, c) for s in range(len(setups)) for c in range(len(cutters))]
     reached = np.stack([setups[s][1][cutters[c].id].reached & finished.wanted for s, c in columns], axis=1)
     open_ = _on_a_proposed_table(ready, [[verdicts[cutter.id] for _, verdicts in setups] for cutter in cutters])
-    chosen, proven = by_kind(reached & ~open_[:, None], columns, cutters)
+    chosen, proven = by_kind(reached & ~open_[:, None], columns, cutters, ready.chosen.free_form)
     if open_.any() and chosen:
         chosen = _with_more(ready, reached, chosen, columns, cutters)
     whole, done = reached[:, chosen], np.zeros(len(reached), bool)
@@ -66,12 +66,20 @@ def least_set(
     )
 
 
-def by_kind(reached: NDArray[np.bool_], columns: Sequence[tuple[int, int]], cutters: Sequence[Cutter]) -> tuple[list[int], bool]:
-    """The fewest runs of cutters that finish surfaces, then those of engraving, chamfer and form cutters for what these leave."""
-    last = np.array([group_of(cutters[c]) == "last" for _, c in columns])
+def by_kind(
+    reached: NDArray[np.bool_], columns: Sequence[tuple[int, int]], cutters: Sequence[Cutter], free_form: float
+) -> tuple[list[int], bool]:
+    """The fewest runs of the most wanted kinds, then those of other kinds for what these leave.
+
+    Engraving, chamfer and form cutters come after all others; where nearly all faces are free-form (`free_form` is their share of
+    the area), flat ends come after round ones, too.
+    """
+    place = np.array([rank(group_of(cutters[c]), free_form=free_form) for _, c in columns])
+    if free_form < NEARLY_ALL:
+        place = np.where(place == rank("last", free_form=free_form), 1, 0)
     chosen, proven = list[int](), True
-    for mine in (np.flatnonzero(~last).tolist(), np.flatnonzero(last).tolist()):
-        done = np.asarray(reached[:, chosen].any(axis=1))
+    for each in np.unique(place).tolist():
+        mine, done = np.flatnonzero(place == each).tolist(), np.asarray(reached[:, chosen].any(axis=1))
         more, sure = cover(reached[:, mine] & ~done[:, None], [columns[k][0] for k in mine], [columns[k][1] for k in mine])
         chosen, proven = sorted([*chosen, *(mine[k] for k in more)]), proven and sure
     return chosen, proven

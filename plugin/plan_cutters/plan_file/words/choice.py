@@ -35,10 +35,13 @@ def stands(cutter: str) -> str:
 
 
 def comes_last(plan: Plan) -> str:
-    """The cutter that does alone, where it is of a kind that comes last and the process has others before it; else empty."""
+    """The cutter that does alone, where the process has cutters of more wanted kinds before it; else empty."""
     entry = next((each for each in plan.cutters if each.id == plan.selected), None)
-    used = {step.cutter for step in plan.process.steps} if plan.process else set()
-    return entry.id if entry is not None and entry.group == "last" and used - {entry.id} else ""
+    steps = plan.process.steps if plan.process else []
+    # Operations are chosen by their time: there only what comes last in any case gives way.
+    if entry is None or (entry.group != "last" and any(step.mode != "any" for step in steps)):
+        return ""
+    return entry.id if {step.cutter for step in steps} - {entry.id} else ""
 
 
 def first_of(plan: Plan, chosen: CutterEntry, every: str) -> str:

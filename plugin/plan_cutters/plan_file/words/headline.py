@@ -65,7 +65,7 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
         why = f"{capital(every(plan))} is reached" if every(plan).startswith("every") else f"{capital(every(plan))} are reached"
         if plan.missing:
             return Headline(title, None, about, f"{why}, but obstacles are missing that may be in the way.")
-        single = f" {capital(names[late])} does alone, but such a cutter comes last." if late else ""
+        single = f" {capital(names[late])} does alone, but its kind comes after that of step 1." if late else ""
         return Headline(title, True, about, f"{why}.{single}{could_not(plan)}")
     undecided = not any(c.blocked for c in plan.cutters)
     return Headline(title, None if undecided or share >= _MOST else False, about, could_not(plan).strip())
