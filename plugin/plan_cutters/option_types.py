@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Sequence
-from typing import Any, TypedDict
+from typing import Any, Literal, TypedDict
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.degrees import Angle
@@ -74,6 +74,7 @@ class PlanOptions(SceneOptions, total=False):
     most_operations: int | None
     sharp_edges: str
     max_orientations: int
+    units: Literal["mm", "in"] | None
     unit: str | None
     placement: Placement | None
     other_placements: Sequence[Placement | None]

@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from difflib import get_close_matches
-from typing import TYPE_CHECKING, Any, Unpack
+from typing import TYPE_CHECKING, Any, Literal, Unpack
 
 from cad_io.units import UNITS
 from plan_cutters.domain.answers import answers_of
@@ -20,6 +20,7 @@ from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.operations import operations_of
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange
+from plan_cutters.domain.spec import notation
 from plan_cutters.errors import OptionError
 from plan_cutters.library.presets import feed_of
 from plan_cutters.library.records import Entry, Library, libraries_of
@@ -156,6 +157,8 @@ class Options:
     max_orientations : int
         Where the fastest plan would have more fixed orientations, simultaneous motion is recommended for the rest; without effect
         where `most_operations` is given.
+    units : str, optional
+        Of lengths in the words, `mm` or `in`; numbers in files stay mm. None: inches where all cutters were given in them.
     unit : str, optional
         Length unit to take instead of the part's own, one of `cad_io.units.UNITS`.
     fixtures : tuple of Fixture
@@ -220,6 +223,7 @@ class Options:
     most_operations: int | None = None
     sharp_edges: str = "asked"
     max_orientations: int = 8
+    units: Literal["mm", "in"] | None = None
     unit: str | None = None
     fixtures: tuple[Fixture, ...] = ()
     placement: Placement | None = None
@@ -287,6 +291,8 @@ class Options:
         take(answers=answers_of(self.answers), operations=operations_of(self.operations))
         if self.sharp_edges not in SHARP_EDGES:
             raise OptionError(f"sharp edges: {shown(self.sharp_edges)} is none of {', '.join(SHARP_EDGES)}")
+        if self.units not in (None, "mm", "in"):
+            raise OptionError(f"units: {shown(self.units)} is none of mm, in")
         if self.most_operations is not None:
             take(most_operations=whole(self.most_operations, "most operations"))
         take(max_orientations=whole(self.max_orientations, "max orientations"))
@@ -357,6 +363,13 @@ class Options:
         cutters = [self._asked(c, self.holder) for c in (*self.cutters, *built_in)]
         listed = [self._asked(c, None) for library in self.libraries for c in library]
         return tuple({c.id: c for c in (*cutters, *listed)}.values())
+
+    @property
+    def reported_unit(self) -> Literal["mm", "in"] | None:
+        """The unit of lengths in the words; None: mm, and tools as they were given."""
+        stated = [notation(each.name).inches for each in self.cutters]
+        stated += [entry.unit == "inch" for library in self.libraries for entry in library.entries if entry.cutter is not None]
+        return self.units or ("in" if stated and all(stated) else None)
 
     @property
     def sources(self) -> dict[str, tuple[tuple[Library, Entry], ...]]:

@@ -30,6 +30,7 @@ from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.nesting import handed, order
 from plan_cutters.domain.over_setups import over_setups
+from plan_cutters.domain.preference import wanted
 from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.domain.verdicts import CONVEX, UNJUDGED, Verdicts
 from plan_cutters.errors import OptionError, UnjudgeableError
@@ -48,7 +49,7 @@ from plan_cutters.scene.inside_material import inside_bodies, inside_material
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.question import question
 from plan_cutters.scene.scene import Scene
-from plan_cutters.scene.setups import conditions_of, places, with_setups
+from plan_cutters.scene.setups import conditions_of, for_another_setup, places, with_setups
 from plan_cutters.scene.spacing import affordable, sampled
 from plan_cutters.scene.threads import part_of
 from plan_cutters.scene.work import Work
@@ -59,7 +60,6 @@ from plan_cutters.stages.judge import Judge, judge
 from plan_cutters.stages.other_setups import in_setup
 from plan_cutters.stages.posture_maps import posture_maps
 from plan_cutters.stages.reasons import Reasons
-from plan_cutters.stages.select_cutters import ranked
 from plan_cutters.stages.setups import within_limits
 from plan_cutters.stages.sharp_edges import exempt, may_be_at_edge, strips, with_sharp_edges
 from plan_cutters.stages.travel import travels
@@ -209,7 +209,6 @@ def prepare(
         stands = _read(part, options, read_timeout)
         if excluded and isinstance(stands, Part):
             stands = stands.without(excluded)
-    cutters = tuple(ranked(options.judged))
     whole = stands.part if isinstance(stands, Scene) else stands
     with clock.stage("measure"):
         whole.measured(partial(at, "kernel"))
@@ -230,6 +229,7 @@ def prepare(
     with clock.stage("sample"):
         first, *others = places(options)
         chosen = choose(whole, options.faces, scene.ignored, scene.ignore, first, others)
+        cutters = tuple(wanted(options.judged, free_form=chosen.free_form))
         affordable(whole, chosen.targets, options)
         job = partial(sampled, whole, scene.orientation, options, chosen.targets, cutters)
     # Sampling and meshing need nothing of each other.
@@ -323,7 +323,7 @@ def _judged(
         wanted = any(may_be_at_edge(explained.verdicts, cutter) for cutter, (explained, _) in by_cutter.items())
         edges = inside_edges(ready.scene.part, ready.scene.orientation) if wanted else ()
     at_edges = {cutter: strips(samples, explained.verdicts, cutter, edges) for cutter, (explained, _) in by_cutter.items()}
-    reaches = {cutter: with_sharp_edges(by_cutter[cutter][0].verdicts, at_edge) for cutter, at_edge in at_edges.items()}
+    reaches = {c: for_another_setup(ready, with_sharp_edges(by_cutter[c][0].verdicts, each)) for c, each in at_edges.items()}
     ready = replace(ready, exempt=exempt(reaches, ready.inside_bodies) if ready.options.sharp_edges == "left" else None)
     judged = {}
     for (cutter, mine), (explained, which) in zip(here.items(), by_cutter.values(), strict=True):
@@ -361,7 +361,7 @@ def assemble(
     moved = travels(ready.options, ready.samples, {cutter: each.here for cutter, each in judged.items()})
     over = _over_setups(ready, judged, other_setups)
     entries = completed([judged[c].entry for c in ready.cutters], ready, answers, over, beyond, moved)
-    selected, chosen = selection(entries)
+    selected, chosen = selection(entries, ready.chosen.free_form)
     # Where obstacles are missing, none is selected, but one may reach all that could be judged.
     best = selected or next((e.id for e in entries if not e.not_reached), None)
     if best and (budget := ready.options.contacts_between(len(ready.samples))):

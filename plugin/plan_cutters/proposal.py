@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 from scipy.spatial import cKDTree
 
-from plan_cutters.answers.setup_ranking import MOST, Ranking, ranked
+from plan_cutters.answers.setup_ranking import MOST, Ranking, ranked, touching
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.notes import noted
 from plan_cutters.domain.fixture import Fixture
@@ -91,8 +91,14 @@ def _axis(ranking: Ranking, k: int) -> tuple[float, float, float]:
 def _options(options: Options, ranking: Ranking, chosen: tuple[int, ...]) -> Options:
     """The options of a plan in the chosen setups, a table under the part in each; the scene has the unit already."""
     table = (Fixture.parse("table"),)
+    stands_on = touching(ranking.ready, ranking.candidates.axis)
     first, *others = (
-        Placement(_axis(ranking, k), clamped=tuple(f"F{n}" for n in ranking.candidates.stands_on[k]), fixtures=table)
+        Placement(
+            _axis(ranking, k),
+            clamped=tuple(f"F{n}" for n in ranking.candidates.stands_on[k]),
+            fixtures=table,
+            stands_on=tuple(f"F{n}" for n in ranking.candidates.stands_on[k] or stands_on[k]),
+        )
         for k in chosen
     )
     return replace(options, setup=first.z, placement=first, other_setups=tuple(each.z for each in others),

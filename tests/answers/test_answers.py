@@ -29,7 +29,7 @@ def answered():
 def test_the_plan_has_all_that_was_asked(answered, tmp_path):
     document, n = answered.plan, len(answered.samples)
     assert document.effective.answers == ["stick-out", "stick-out-map", "radius", "mend"]
-    large, small = document.cutters
+    small, large = document.cutters
     assert (large.feasible, small.feasible) == (False, True)
     for entry in document.cutters:
         found = entry.least_stick_out

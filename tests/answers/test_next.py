@@ -318,15 +318,20 @@ def test_where_nothing_is_shared_no_set_is_told():
 
 
 def test_a_set_is_a_sentence():
-    def of(runs, share, left=0, proven=True, doubtful=False, unjudged=0):
+    def of(runs, share, left=0, proven=True, doubtful=False, unjudged=0, causes=()):
         made = [SimpleNamespace(cutter=c, share=s, setup=axis) for c, s, axis in runs]
         found = SimpleNamespace(runs=made, share=share, left=left, left_share=1 - share, proven=proven, doubtful=doubtful)
         samples = SimpleNamespace(unjudged=unjudged)
-        return together(SimpleNamespace(least_set=found, samples=samples, faces=[]))
+        process = SimpleNamespace(left=[SimpleNamespace(cause=each) for each in causes])
+        return together(SimpleNamespace(least_set=found, samples=samples, faces=[], process=process))
 
     up, down = (0, 0, 1), (0, 0, -1)
     assert of([("R6L60", 0.81, up), ("R1L12", 0.182, up)], 0.992, left=9) == (
         "R6L60 for 81 % of the area and R1L12 for the rest reach 99.2 %; nothing given reaches the other 0.8 %"
+    )
+    # Of what stands on a proposed table another cutter may reach something.
+    assert of([("R6L60", 0.81, up), ("R1L12", 0.182, up)], 0.992, left=9, causes=["another_setup"]).endswith(
+        "; they leave the other 0.8 %, also for another setup"
     )
     assert of([("R6L60", 0.6, up), ("R6L60", 0.4, down)], 1.0) == (
         "R6L60 in setup 0,0,1 for 60 % of the area and R6L60 in setup 0,0,-1 for the rest reach all of it"

@@ -110,10 +110,18 @@ def test_a_proposal_stands_on_a_face_and_holds_what_it_promised():
     assert tuple(found.plan.effective.setup) == tuple(mine.axis)
     assert found.plan.effective.placement.clamped == mine.stands_on
     assert [each.name for each in found.plan.fixtures] == ["fixture:table"]
-    # The same setup by hand is the same plan.
+    # What stands on a table that nobody has is left for another setup; in the same setup by hand it is lost to that table.
     place = Placement(z=mine.axis, clamped=tuple(mine.stands_on), fixtures=(Fixture.parse("table"),))
     again = plan(box(), setup=place, machine="trunnion-ac", **HOW)
-    assert [c.model_dump() for c in again.plan.cutters] == [c.model_dump() for c in found.plan.cutters]
+    (mine_here,), (by_hand,) = found.plan.cutters, again.plan.cutters
+    assert (by_hand.accessible, by_hand.inaccessible) == (mine_here.accessible, mine_here.inaccessible)
+    assert mine_here.by_reason["another_setup"] == by_hand.by_reason["fixture"] > 0
+    assert mine_here.by_reason["fixture"] == by_hand.by_reason["another_setup"] == 0
+    assert (mine_here.feasible, by_hand.feasible) == (None, False)
+    assert found.plan.selected_for_setup == mine_here.id
+    (rest,) = found.plan.process.left
+    assert (rest.cause, rest.faces) == ("another_setup", mine.stands_on)
+    assert any(" for another setup: " in line for line in found.plan.text.lines)
     assert "setup_proposed" in found.plan.note_codes
     (told,) = story_of(found.plan).proposal
     assert told.startswith(f"Proposed setup: on {mine.stands_on[0]}, with ")

@@ -46,7 +46,7 @@ COLOUR = re.compile(r"\x1b\[[0-9;]*m")
 
 @pytest.fixture(scope="module")
 def planned():
-    return plan(WAVES, cutters=["R12L120", "R6L80", "R3L60rc3"], grid=41, area_budget=4000).plan
+    return plan(WAVES, cutters=["R12L120", "R6L80", "R3L60"], grid=41, area_budget=4000).plan
 
 
 @pytest.fixture(scope="module")
@@ -232,6 +232,8 @@ def everywhere(value, text):
             "carries",
             "sampled_by",
             "sharp_edges",
+            "units",
+            "group",
             "mode",
             "strategy",
             "cutter",

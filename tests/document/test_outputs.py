@@ -7,8 +7,8 @@ from typing import get_args
 import pytest
 
 from plan_cutters.domain.change import MEANS
+from plan_cutters.domain.verdicts import REASONS as CODES
 from plan_cutters.domain.verdicts import WORDS
-from plan_cutters.kernels import codes
 from plan_cutters.plan_file.notes import NoteCode
 from plan_cutters.plan_file.outputs import OUTPUTS
 from plan_cutters.plan_file.reasons import REASONS
@@ -33,7 +33,7 @@ def test_a_schema_is_that_of_its_model_and_is_told(file):
 
 def test_codes_are_listed_as_the_code_has_them():
     assert listed("Codes of reasons") == {each.code: each.sentence for each in REASONS.values()}
-    assert set(listed("Codes of reasons")) == set(codes.REASONS)
+    assert set(listed("Codes of reasons")) == set(CODES)
     assert set(listed("Codes of notes")) == set(get_args(NoteCode))
     assert set(listed("Codes of verdicts")) == set(WORDS.values())
     assert list(listed("Codes of changes")) == list(MEANS)

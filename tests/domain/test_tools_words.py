@@ -7,8 +7,8 @@ import pytest
 
 from plan_cutters import Cutter, CutterError, Holder, OptionError, Options, Stage, plan
 from plan_cutters.domain.default_tools import builtin
+from plan_cutters.domain.preference import wanted
 from plan_cutters.domain.shapes import flute_length, modes
-from plan_cutters.stages.select_cutters import ranked
 from tests.support.forked import run
 from tests.support.places import SAMPLES
 
@@ -84,9 +84,14 @@ def test_an_option_that_cannot_be_is_one_clear_line(options, cause):
     assert "\n" not in str(error.value)
 
 
-def test_the_built_in_drawer_has_every_kind_and_ranks_from_the_largest():
+def test_the_built_in_drawer_has_every_kind_and_ranks_from_the_largest_of_each():
     drawer = builtin()
-    assert [c.radius for c in ranked(drawer)] == sorted((c.radius for c in drawer), reverse=True)
+    for free_form, first in ((1.0, True), (0.0, False)):
+        ranked = wanted(drawer, free_form=free_form)
+        for round_ in (True, False):
+            mine = [c.radius for c in ranked if (c.corner_radius > 0.0 if free_form else c.corner_radius == c.radius) is round_]
+            assert mine == sorted(mine, reverse=True)
+        assert (ranked[0].corner_radius > 0.0) is first
     assert {(c.corner_radius == 0, c.corner_radius == c.radius) for c in drawer} == {(True, False), (False, True), (False, False)}
     assert all(c.holder and "built-in" in c.name for c in drawer)
     assert len({c.id for c in drawer}) == len(drawer)

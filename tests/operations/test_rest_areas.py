@@ -30,7 +30,7 @@ def grooved(plane, groove, change):
 
 def task_of(reached, change):
     verdicts = {cutter: SimpleNamespace(reached=np.array(mine)) for cutter, mine in zip((LARGE, SMALL), reached, strict=True)}
-    ready = SimpleNamespace(options=SimpleNamespace(change_time=change))
+    ready = SimpleNamespace(options=SimpleNamespace(change_time=change), chosen=SimpleNamespace(free_form=0.0))
     return SimpleNamespace(cutters=(LARGE, SMALL), everywhere=(verdicts,), rows=np.arange(2), ready=ready)
 
 
@@ -82,7 +82,8 @@ def test_the_first_cutter_and_the_first_setup_cost_nothing():
 def test_by_the_habit_a_sample_goes_with_the_largest_cutter_that_serves_it():
     columns = Columns(np.array([1, 0, 0], np.int32), np.zeros(3, np.int32), np.zeros((3, 3)), np.zeros((3, 2)))
     serves = np.array([[1, 1, 1], [1, 0, 1], [1, 0, 0], [0, 0, 0]], bool)
-    found = allowed(SimpleNamespace(cutters=(LARGE, SMALL)), columns, serves)
+    ready = SimpleNamespace(chosen=SimpleNamespace(free_form=0.0))
+    found = allowed(SimpleNamespace(cutters=(LARGE, SMALL), ready=ready), columns, serves)
     assert found.tolist() == [[False, True, True], [False, False, True], [True, False, False], [False, False, False]]
 
 

@@ -50,7 +50,7 @@ def words_of(html):
 @pytest.fixture(scope="module")
 def result():
     """A groove that is narrower than one of two cutters, which comes first."""
-    return plan(SAMPLES / "v_groove.step", cutters=["R8L20rc8", "R3L40"], grid=9, area_budget=0)
+    return plan(SAMPLES / "v_groove.step", cutters=["R8L20rc7.9", "R3L40"], grid=9, area_budget=0)
 
 
 @pytest.fixture(scope="module")

@@ -44,7 +44,7 @@ class Seen(HTMLParser):
 @pytest.fixture(scope="module")
 def result():
     """A groove that is narrower than one of two cutters."""
-    return plan(SAMPLES / "v_groove.step", cutters=["R8L20rc8", "R3L40"], grid=9, area_budget=0)
+    return plan(SAMPLES / "v_groove.step", cutters=["R8L20rc7.9", "R3L40"], grid=9, area_budget=0)
 
 
 @pytest.fixture(scope="module")
@@ -124,7 +124,7 @@ def test_summary_has_a_line_for_each_cutter_and_its_shares(result):
         assert len(shares) == 5
         assert sum(shares) == pytest.approx(100, abs=0.3)
     assert len({len(line) for line in lines[first - 1 : first + len(story.cutters)]}) == 1
-    assert any(line.startswith("Ball end") and "does not reach" in line for line in lines)
+    assert any(line.startswith("Bull nose") and "does not reach" in line for line in lines)
 
 
 def test_show_opens_a_browser_with_the_page(result, monkeypatch, tmp_path):

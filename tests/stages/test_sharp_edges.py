@@ -72,10 +72,48 @@ def test_a_pocket_loses_a_strip_all_along_its_edges():
     assert result.plan.selected is None
 
 
-def test_a_flat_end_enters_the_floor_edge():
-    result = planned(pocket(), "R3L40", "11", 0.5)
-    assert not named(result, "R3L40").any()
-    assert result.plan.sharp_edges == []
+def floor_of(result):
+    """Distances (n, 2) of samples of a pocket's floor from its nearest two walls."""
+    x, y = result.samples.point[:, 0] - 10.0, result.samples.point[:, 1] - 8.0
+    return np.stack([np.minimum(x, 40.0 - x), np.minimum(y, 34.0 - y)], axis=1)
+
+
+def test_a_flat_end_enters_the_floor_edge_and_leaves_four_corners():
+    """Beside the walls nothing is lost; in each corner what lies beyond a circle of its radius: (1 - pi / 4) r2."""
+    result = planned(pocket(), "R3L40", "11", 0.25)
+    mine, away = named(result, "R3L40"), floor_of(result)
+    beyond = (away < 3.0).all(axis=1) & (np.linalg.norm(away - 3.0, axis=1) > 3.0)
+    lost = result.reaches["R3L40"].not_reached
+    assert mine.any()
+    assert not mine[~beyond | ~lost].any()
+    # A rotation every 10 deg finds no posture at a few samples just within the circle: that is another cause.
+    rest = lost & ~mine
+    assert rest.sum() < 0.05 * mine.sum()
+    assert (np.linalg.norm(away[rest] - 3.0, axis=1) > 2.8).all()
+    # Within the tolerance of the circle it still reaches.
+    assert mine[(away < 3.0).all(axis=1) & (np.linalg.norm(away - 3.0, axis=1) > 3.02)].all()
+    entries = result.plan.sharp_edges
+    assert [round(each.angle_deg) for each in entries] == [90] * 4
+    assert sum(each.area_mm2 for each in entries) == pytest.approx(4 * (1.0 - math.pi / 4) * 9.0, rel=0.15)
+    assert {face for each in entries for face in each.faces} == {"F7", "F8", "F9", "F10"}
+
+
+def test_corners_of_a_floor_are_not_named_where_the_cutter_does_not_fit():
+    """A flat end wider than the pocket loses all of the floor: no fillet between the walls would help."""
+    result = planned(pocket(10.0, 10.0), "R6L40", "11", 0.5)
+    assert result.reaches["R6L40"].not_reached.all()
+    assert not named(result, "R6L40").any()
+
+
+def test_what_stands_in_the_middle_of_a_floor_loses_no_corner():
+    """A boss with outside corners, and a rib that ends in the air: what is lost beside these is no sharp inside edge."""
+    shape = cut(box(60, 50, 20), cut(box(40, 34, 20, (10, 8, 8)), box(6, 6, 30, (27, 22, 0))))
+    result = planned(shape, "R3L40", "all", 1.0)
+    mine, point = named(result, "R3L40"), result.samples.point
+    boss = np.max(np.abs(point[:, :2] - (30.0, 25.0)), axis=1) < 7.0
+    floor = (np.abs(point[:, 2] - 8.0) < 1e-6) & (result.samples.normal[:, 2] > 0.9)
+    assert floor[boss].any()
+    assert not mine[boss].any()
 
 
 def test_a_slot_that_is_too_narrow_is_no_sharp_edge():

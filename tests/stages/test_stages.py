@@ -21,7 +21,6 @@ from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.stages.access import access
 from plan_cutters.stages.classify import FLAT, classify, regions
 from plan_cutters.stages.decompose import march_differs
-from plan_cutters.stages.select_cutters import ranked
 from tests.support import shapes
 from tests.support.cad_parts import ball, rod
 
@@ -166,12 +165,6 @@ def test_reasons_are_handed_up_but_for_what_the_larger_cutter_has_of_its_own():
     tilted = Conditions(Machine.parse("tilt:5"), np.array(UP), PostureRange(tilt=(0.0, 0.5)), Surroundings.sheet(far), 0.01, 1)
     found = access(aside, np.zeros(3, bool), Context.of(cutter, tilted), known=known)
     assert [REASONS[r] for r in found.reason] == ["axis_limit"] * 3
-
-
-def test_cutters_are_ranked_by_radius_corner_length_and_order():
-    one, two = Cutter.flat(radius=6, length=60, name="one"), Cutter.flat(radius=6, length=60, name="two")
-    others = [Cutter.flat(radius=4, length=20), Cutter.flat(radius=6, length=80), Cutter.flat(radius=8, length=200)]
-    assert ranked([two, *others, one]) == [others[2], two, one, others[1], others[0]]
 
 
 def test_a_tolerance_too_coarse_for_a_cutter_decides_nothing():

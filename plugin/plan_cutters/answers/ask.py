@@ -16,6 +16,7 @@ from plan_cutters.answers.undecidable import undecidable
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.change import WhatIfAnswer
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.lengths import reporting
 from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.radius_map import RadiusMap
 from plan_cutters.domain.verdicts import Verdicts
@@ -32,6 +33,7 @@ _ENDS: tuple[Literal["flat", "ball"], ...] = ("flat", "ball")
 NEAREST = 3
 
 
+@reporting(lambda ready: ready.options.reported_unit)
 def ask(
     ready: Prepared,
     reaches: Mapping[Cutter, Verdicts],

@@ -8,9 +8,11 @@ from numpy.typing import NDArray
 from plan_cutters.answers.areas import Finished
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.least_set import LeastSet, Run
+from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
 from plan_cutters.domain.set_cover import essential_rows
-from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.domain.verdicts import ANOTHER_SETUP, FIXTURE, Verdicts
 from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.setups import stood_on
 
 Axis = tuple[float, float, float]
 #: Seconds that the proof may take; then the best set found so far is told as such.
@@ -33,7 +35,8 @@ def least_set(
     Returns
     -------
     LeastSet or None
-        None where one cutter was judged in one setup.
+        None where one cutter was judged in one setup. What stands on the table of a proposed setup chooses no kind of cutter
+        that comes later: it is left for another setup.
     """
     setups = [(ready.scene.setup, {cutter.id: verdicts for cutter, verdicts in reaches.items()}), *other_setups]
     cutters = [cutter for cutter in ready.cutters if cutter in reaches]
@@ -42,7 +45,10 @@ def least_set(
     finished = Finished.of(ready)
     columns = [(s, c) for s in range(len(setups)) for c in range(len(cutters))]
     reached = np.stack([setups[s][1][cutters[c].id].reached & finished.wanted for s, c in columns], axis=1)
-    chosen, proven = cover(reached, [s for s, _ in columns], [c for _, c in columns])
+    open_ = _on_a_proposed_table(ready, [[verdicts[cutter.id] for _, verdicts in setups] for cutter in cutters])
+    chosen, proven = by_kind(reached & ~open_[:, None], columns, cutters, ready.chosen.free_form)
+    if open_.any() and chosen:
+        chosen = _with_more(ready, reached, chosen, columns, cutters)
     whole, done = reached[:, chosen], np.zeros(len(reached), bool)
     runs = []
     for k, column in enumerate(chosen):
@@ -58,6 +64,50 @@ def least_set(
     return LeastSet(
         tuple(runs), int(done.sum()), len(open_rows), finished.of_rows(np.flatnonzero(done)), finished.of_rows(open_rows), proven
     )
+
+
+def by_kind(
+    reached: NDArray[np.bool_], columns: Sequence[tuple[int, int]], cutters: Sequence[Cutter], free_form: float
+) -> tuple[list[int], bool]:
+    """The fewest runs of the most wanted kinds, then those of other kinds for what these leave.
+
+    Engraving, chamfer and form cutters come after all others; where nearly all faces are free-form (`free_form` is their share of
+    the area), flat ends come after round ones, too.
+    """
+    place = np.array([rank(group_of(cutters[c]), free_form=free_form) for _, c in columns])
+    if free_form < NEARLY_ALL:
+        place = np.where(place == rank("last", free_form=free_form), 1, 0)
+    chosen, proven = list[int](), True
+    for each in np.unique(place).tolist():
+        mine, done = np.flatnonzero(place == each).tolist(), np.asarray(reached[:, chosen].any(axis=1))
+        more, sure = cover(reached[:, mine] & ~done[:, None], [columns[k][0] for k in mine], [columns[k][1] for k in mine])
+        chosen, proven = sorted([*chosen, *(mine[k] for k in more)]), proven and sure
+    return chosen, proven
+
+
+def _on_a_proposed_table(ready: Prepared, verdicts: Sequence[Sequence[Verdicts]]) -> NDArray[np.bool_]:
+    """Samples (n,) that some cutter loses in all setups to the table of one that was proposed, on which their face stands.
+
+    That table is not there yet, so these choose no cutter; `verdicts` are those of each cutter in each setup.
+    """
+    stood, unreached = stood_on(ready), np.zeros(len(ready.samples), bool)
+    if stood.any():
+        for each in verdicts:
+            fixture = np.logical_or.reduce([np.isin(one.reason, (FIXTURE, ANOTHER_SETUP)) for one in each])
+            unreached |= fixture & np.logical_and.reduce([one.not_reached for one in each])
+    return np.asarray(stood & unreached)
+
+
+def _with_more(
+    ready: Prepared, reached: NDArray[np.bool_], chosen: list[int], columns: Sequence[tuple[int, int]], cutters: Sequence[Cutter]
+) -> list[int]:
+    """Runs that were chosen, and more for what they leave that cutters of kinds no less wanted reach."""
+    place = [rank(group_of(cutter), free_form=ready.chosen.free_form) for cutter in cutters]
+    worst = max(place[columns[k][1]] for k in chosen)
+    usable = [k for k, (_, c) in enumerate(columns) if place[c] <= worst]
+    rest = reached[:, usable] & ~np.asarray(reached[:, chosen].any(axis=1))[:, None]
+    more, _ = cover(rest, [columns[k][0] for k in usable], [columns[k][1] for k in usable])
+    return sorted({*chosen, *(usable[k] for k in more)})
 
 
 def cover(reached: NDArray[np.bool_], setup: Sequence[int], rank: Sequence[int]) -> tuple[list[int], bool]:

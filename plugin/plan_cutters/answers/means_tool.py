@@ -4,12 +4,13 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
-from plan_cutters.answers.scan import HALF, NEARLY, Candidate, Scan
+from plan_cutters.answers.scan import HALF, NEARLY, Candidate, Rows, Scan
 from plan_cutters.answers.state import State
 from plan_cutters.answers.what_if_cutter import highest, longer, made_of
 from plan_cutters.domain.change import Move
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Holder
+from plan_cutters.domain.preference import group_of
 from plan_cutters.domain.shapes import SAME
 from plan_cutters.domain.standard_holders import NOSES, chuck
 from plan_cutters.domain.standard_tools import MOST, USUAL, corners, is_standard, smaller
@@ -20,6 +21,8 @@ from plan_cutters.plan_file.words import change_text
 _LOOKED_AT = 48
 #: Other given cutters that are looked at for the rest, at most.
 _MOST_CUTTERS = 4
+#: Groups of cutters without a round tip.
+_SHARP = ("flat", "last")
 
 
 def stick_out(scan: Scan) -> Iterator[Candidate]:
@@ -90,10 +93,31 @@ def _is_chuck(name: str) -> bool:
 
 
 def other_cutters(scan: Scan) -> Iterator[Candidate]:
-    """Other given cutters for the rest: the one that leaves least, and the most wanted that leaves hardly more."""
-    base, known = scan.state, scan.known
+    """Other given cutters for the rest: the one that leaves least, and the most wanted that leaves hardly more.
+
+    What comes last (engraving, chamfer and form cutters) is looked at beside those that come first: it has to leave less.
+    """
+    base = scan.state
     others = [each for each in scan.given if each not in base.cutters and of_a_kind(scan, base.cutters[0], each)]
-    rows = scan.few
+    whole = scan.estimate(scan.few)
+    first = _tried(scan, [each for each in others if group_of(each) != "last"], whole)
+    least = min((each[0] for each in first), default=whole)
+    tried = [*first, *_tried(scan, [each for each in others if group_of(each) == "last"], least)]
+    if not tried:
+        return
+    least = min(each[0] for each in tried)
+    content = whole - NEARLY * (whole - least)
+    best = next(each for each in tried if each[0] == least)
+    nearly = next(each for each in tried if each[0] <= content)
+    for _, state, missed in {id(each): each for each in (nearly, best)}.values():
+        cutter = state.cutters[-1]
+        move = Move("cutter", None, cutter.id, change_text.rest(cutter.id))
+        yield scan.found(move, state, missed, nested=True)
+
+
+def _tried(scan: Scan, others: list[Cutter], less_than: float) -> list[tuple[float, State, Rows]]:
+    """What some other cutters, the likeliest, leave beside the present ones, of those that leave less than a share."""
+    base, known, rows = scan.state, scan.known, scan.few
     if len(others) > _MOST_CUTTERS:
         # Those that leave least by what is known already.
         alone = [replace(base, cutters=(cutter,), ready=base.ready) for cutter in others]
@@ -103,24 +127,13 @@ def other_cutters(scan: Scan) -> Iterator[Candidate]:
     tried = []
     for cutter in others:
         state = replace(base, cutters=(*base.cutters, cutter))
-        tried.append((scan.estimate(missed := known.glance(state, rows)), cutter, state, missed))
-    whole = scan.estimate(rows)
-    tried = [each for each in tried if each[0] < whole]
-    if not tried:
-        return
-    least = min(each[0] for each in tried)
-    content = whole - NEARLY * (whole - least)
-    best = next(each for each in tried if each[0] == least)
-    nearly = next(each for each in tried if each[0] <= content)
-    for _, cutter, state, missed in {id(each): each for each in (nearly, best)}.values():
-        move = Move("cutter", None, cutter.id, change_text.rest(cutter.id))
-        yield scan.found(move, state, missed, nested=True)
+        tried.append((scan.estimate(missed := known.glance(state, rows)), state, missed))
+    return [each for each in tried if each[0] < less_than]
 
 
 def of_a_kind(scan: Scan, cutter: Cutter, other: Cutter) -> bool:
     """Whether another cutter may do the rest of one: on free-form faces no sharp end comes after a round one."""
-    sharp = other.shape == "form" or not other.corner_radius
-    return not sharp or not (cutter.corner_radius and scan.sculptured)
+    return not scan.sculptured or group_of(cutter) in _SHARP or group_of(other) not in _SHARP
 
 
 def radius(scan: Scan) -> Iterator[Candidate]:

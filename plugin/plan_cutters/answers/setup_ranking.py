@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Record, SurfaceSamples, Triangles
 from plan_cutters.answers.least_set import cover
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.preference import group_of
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.errors import OptionError
 from plan_cutters.scene.conditions import Conditions, Context, contacts_of, search_postures
@@ -81,6 +82,15 @@ def planes_below(ready: Prepared, axis: Floats) -> tuple[tuple[tuple[int, ...], 
     tops = {number: height[face == number].max(axis=0) for number in planar if (face == number).any()}
     stands = [tuple(number for number, top in tops.items() if top[k] <= lowest[k] + flat) for k in range(len(axis))]
     return tuple(stands), lowest
+
+
+def touching(ready: Prepared, axis: Floats) -> tuple[tuple[int, ...], ...]:
+    """Faces with which a part touches the plane below it, by their numbers, along some axes (m, 3)."""
+    triangles, _ = _of_part(ready)
+    height = triangles.vertex.reshape(-1, 3) @ axis.T
+    reach = triangles.chord_error + 1e-6 * float(np.linalg.norm(ready.scene.part.size))
+    low, face = height <= height.min(axis=0) + reach, np.repeat(triangles.face, 3)
+    return tuple(tuple(int(n) for n in np.unique(face[low[:, k]]) if n > 0) for k in range(len(axis)))
 
 
 def cube() -> Floats:
@@ -185,6 +195,9 @@ class Ranking:
         and machine: what the part itself is in the way of is not searched again in each direction.
     served : mapping
         By candidate, where a posture was found over a real table, (r,).
+    usual : (r,) bool
+        Where cutters that finish surfaces serve without table and machine: there no engraving, chamfer or form cutter makes a
+        setup look better than it is.
     """
 
     ready: Prepared
@@ -192,6 +205,7 @@ class Ranking:
     rows: Rows
     bound: Table
     served: dict[int, NDArray[np.bool_]]
+    usual: NDArray[np.bool_]
 
     @classmethod
     def of(cls, ready: Prepared) -> "Ranking":
@@ -217,8 +231,11 @@ class Ranking:
                 f"at which a cutter touches with tilts from {low:g} to {high:g} deg; give other tilts or machine"
             )
         surroundings = few.surroundings.alone or few.surroundings
-        free = _reached(ready, rows, replace(few.without_machine(), surroundings=surroundings))
-        return cls(ready, candidates, rows, bound & free[rows, None] if free.any() else bound, {})
+        bare = replace(few.without_machine(), surroundings=surroundings)
+        free = usual = _reached(ready, rows, bare, usual=True)
+        if len(_usual(ready.cutters)) < len(ready.cutters):
+            free = usual | _reached(ready, rows[~usual[rows]], bare, usual=False)
+        return cls(ready, candidates, rows, bound & free[rows, None] if free.any() else bound, {}, usual[rows])
 
     @property
     def area(self) -> Floats:
@@ -248,7 +265,10 @@ class Ranking:
         x, y, z = self.candidates.axis[k].tolist()
         surroundings = self.ready.scene.surround_on_table((x, y, z))
         conditions = replace(self.ready.conditions, setup=np.array([x, y, z]), x=None, surroundings=surroundings)
-        return _reached(self.ready, self.rows[self.bound[:, k]], conditions)[self.rows]
+        reached = np.zeros(len(self.ready.samples), bool)
+        for usual in (True, False):
+            reached |= _reached(self.ready, self.rows[self.bound[:, k] & (self.usual == usual)], conditions, usual=usual)
+        return reached[self.rows]
 
     def choose(self, most: int, without: frozenset[int] = frozenset()) -> tuple[int, ...]:
         """Choose the fewest directions that serve all that any of those searched serves, or as many as there may be.
@@ -306,11 +326,16 @@ class Ranking:
         return tuple(every[k] for k in sorted(chosen, key=lambda k: -round(float(share[k]) / _EVEN)))
 
 
-def _reached(ready: Prepared, rows: Rows, conditions: Conditions) -> NDArray[np.bool_]:
-    """The samples (n,) of some rows at which any of the cutters has a posture under some conditions."""
+def _usual(cutters: Sequence[Cutter]) -> list[Cutter]:
+    """The cutters that finish surfaces: without engraving, chamfer and form cutters, unless there are no others."""
+    return [each for each in cutters if group_of(each) != "last"] or list(cutters)
+
+
+def _reached(ready: Prepared, rows: Rows, conditions: Conditions, *, usual: bool) -> NDArray[np.bool_]:
+    """The samples (n,) of some rows at which any of the cutters, or of the usual ones, has a posture under some conditions."""
     reached, open_rows = np.zeros(len(ready.samples), bool), rows
-    # The least wanted cutter is the smallest: it reaches most.
-    for cutter in reversed(ready.cutters):
+    # The smallest reaches most.
+    for cutter in sorted(_usual(ready.cutters) if usual else ready.cutters, key=lambda each: each.radius):
         if len(open_rows) and conditions.judges(cutter):
             verdicts = blank(len(reached))
             search_postures(contacts_of(ready.samples), open_rows, Context.of(cutter, conditions), verdicts, fixed=True)

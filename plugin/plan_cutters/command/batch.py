@@ -50,6 +50,7 @@ _many = heading("Many parts")
 )  # fmt: skip
 @options(
     "step_schema",
+    "units",
     "quiet",
     out={"required": True, "help": "Folder or URL for the table of all parts, and the folder NAME-plan of each."},
     formats={

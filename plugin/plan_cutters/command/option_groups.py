@@ -220,6 +220,11 @@ _OPTIONS = (
         type=Words("-", lambda: ("-",)),
         help="The plan of one part on standard output, nothing else there; files only where -o names a folder.",
     ),
+    _output(
+        "--units",
+        type=click.Choice(["mm", "in"]),
+        help="Unit of lengths in the summary and on the page; files have mm.  [default: mm; in where all cutters are in inches]",
+    ),
     _output("-v", "--verbose", is_flag=True, help="Print all details, not only the summary."),
     _output("--quiet", is_flag=True, help="Print no progress and no summary, only errors."),
     _answers(

@@ -8,7 +8,7 @@ import functools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar
 
 if TYPE_CHECKING:
     from plan_cutters.domain.cutter import Cutter
@@ -86,6 +86,7 @@ class PlanningRequest(JudgingRequest):
     """The common fields of all commands that plan parts."""
 
     sharp_edges: str
+    units: Literal["mm", "in"] | None
     area_budget: int | None
     posture_maps: bool
     map_budget: int | None
@@ -232,6 +233,7 @@ def planning_options(request: PlanningRequest) -> "PlanOptions":
     """The options of a plan that a command line requests, as `Options` takes them."""
     return judging_options(request) | {
         "sharp_edges": request.sharp_edges,
+        "units": request.units,
         "area_budget": request.area_budget,
         "posture_maps": request.posture_maps,
         "map_budget": request.map_budget,

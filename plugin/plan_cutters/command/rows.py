@@ -12,6 +12,7 @@ from rich.text import Text
 from plan_cutters.command.terminal import wrapped
 from plan_cutters.files.terminal_text import clean
 from plan_cutters.plan_file.nearest import leaves
+from plan_cutters.plan_file.numbers import unit
 from plan_cutters.plan_file.words.cutters import FEASIBLE, worst_face_text
 
 if TYPE_CHECKING:
@@ -78,7 +79,7 @@ def worst_faces(story: "Story") -> list[Any]:
     few = c.failing > len(c.faces)
     which = f"the {len(c.faces)} worst of {c.failing} faces" if few else f"{c.failing} face{'s' if c.failing > 1 else ''}"
     lines: list[Any] = [cell(f"Where {c.name} {'fails' if c.feasible is False else 'is not sure'}, {which}:")]
-    table = _table(("  face", "mainly", "in the way"), ("mm2 not reached", "of the face", "mm too deep"))
+    table = _table(("  face", "mainly", "in the way"), (f"{unit()}2 not reached", "of the face", f"{unit()} too deep"))
     for f in c.faces:
         table.add_row(f"  {f.id}", f.reason, cell(_distinct([f.obstacle or "-"], _OBSTACLE)[0]), f.area, f.share, f.depth or "-")
     return [*lines, _Fitting(table, [cell(f"  {worst_face_text(f)}") for f in c.faces])]

@@ -8,6 +8,7 @@ from rich.text import Text
 
 from plan_cutters.command.rows import cell, cutter_rows, worst_faces
 from plan_cutters.command.terminal import show
+from plan_cutters.domain.lengths import reporting
 from plan_cutters.plan_file.words.details import details, scene, unjudged_share
 from plan_cutters.plan_file.words.story import Story, story_of
 from plan_cutters.plan_file.words.text import text_of
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 _MARKS = {True: "bold green", False: "bold red", None: "bold yellow"}
 
 
+@reporting(lambda plan: plan.effective.units)
 def summary(plan: "Plan", *, verbose: bool = False, tells: Callable[..., None] = show) -> None:
     """Tell the process; with `verbose` all that is found, but not what is not reached: that comes last."""
     story = story_of(plan)

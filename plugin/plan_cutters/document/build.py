@@ -14,8 +14,9 @@ from plan_cutters import __version__
 from plan_cutters.document.fixtures import references
 from plan_cutters.document.shares import counts, face_verdicts, whole_share
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.preference import group_of
 from plan_cutters.domain.shapes import flute_length, modes
-from plan_cutters.domain.verdicts import INACCESSIBLE, REASONS, UNDECIDED, Verdicts, Witness
+from plan_cutters.domain.verdicts import ANOTHER_SETUP, INACCESSIBLE, REASONS, UNDECIDED, Verdicts, Witness
 from plan_cutters.plan_file.frozen import filled, posture, vector
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, MissingEntry, SegmentEntry, WitnessEntry
 from plan_cutters.plan_file.numbers import listed
@@ -63,14 +64,17 @@ def cutter_entry(
     """
     mine = counts(reach.verdict, inside, exempt)
     blocked = mine["inaccessible"] - mine["inside_bodies"] - mine["exempt"]
-    # What is missing from the obstacles can only be in the way of more.
-    feasible = False if blocked else None if mine["undecided"] or surroundings.doubtful else True
     not_reached, unsure = reach.verdict == INACCESSIBLE, reach.verdict == UNDECIDED
+    another = int((not_reached & (reach.reason == ANOTHER_SETUP)).sum())
+    # What is missing from the obstacles can only be in the way of more. A proposed table decides nothing of what stands on it.
+    open_ = bool(mine["undecided"] or surroundings.doubtful or another)
+    feasible = False if blocked > another else None if open_ else True
     faces = face_verdicts(samples, reach, inside, exempt)
     return filled(
         CutterEntry,
         cutter,
         taper_deg=float(np.degrees(cutter.taper)),
+        group=group_of(cutter),
         flutes_mm=flute_length(cutter),
         holder=cutter.holder.name if cutter.holder else "",
         stages=[

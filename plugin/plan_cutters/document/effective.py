@@ -19,6 +19,7 @@ def effective(ready: Prepared) -> Effective:
     scene, options, choice, surroundings = ready.scene, ready.options, ready.chosen, ready.conditions.surroundings
     made: dict[str, Any] = {
         "cutters": [c.id for c in ready.cutters],
+        "units": options.reported_unit,
         "cutter_source": " and ".join(_sources(options)) or "built-in",
         "holder": None if options.holder is None else options.holder.id,
         "fixtures": [each.text for each in scene.fixtures],

@@ -20,24 +20,25 @@ from plan_cutters.document.process import process_entry
 from plan_cutters.document.shares import counts
 from plan_cutters.document.travel import linear_entries, travel_entry
 from plan_cutters.domain.answers import Answers
+from plan_cutters.domain.lengths import reporting
 from plan_cutters.domain.over_setups import positions
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE
 from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.inside_radii import InsideRadiusEntry
 from plan_cutters.plan_file.model import CutterEntry, MachineEntry, Plan, RotaryEntry, Run, SampleCounts, Selection
-from plan_cutters.plan_file.nearest import nearest
+from plan_cutters.plan_file.nearest import ANOTHER_SETUP, leaves, nearest
 from plan_cutters.plan_file.operations import OperationsEntry
 from plan_cutters.plan_file.palette import MEANING, PALETTE
 from plan_cutters.plan_file.reasons import REASONS as WORDS
 from plan_cutters.plan_file.setups import SetupEntry, SetupReach
 from plan_cutters.plan_file.shares import unreached
 from plan_cutters.plan_file.sharp_edges import SharpEdgeEntry
+from plan_cutters.plan_file.words import choice as words
 from plan_cutters.scene.preparation import Prepared
 
-RULE = "largest radius, then smaller corner radius, then shorter length, then library order, among the feasible"
 
-
+@reporting(lambda ready: ready.options.reported_unit)
 def plan_of(
     ready: Prepared,
     entries: Sequence[CutterEntry],
@@ -184,29 +185,29 @@ def completed(
 
 
 def for_setup(entries: Sequence[CutterEntry]) -> str | None:
-    """The first cutter that leaves nothing but what no cutter can reach in this setup."""
+    """The first cutter that leaves nothing but what no cutter can reach in this setup, or what stands on its proposed table."""
     for e in entries:
-        done = e.interference_free + e.accessible
-        if done and e.beyond_setup and not e.undecided and e.blocked == e.beyond_setup:
+        done, stood = e.interference_free + e.accessible, e.by_reason.get(ANOTHER_SETUP, 0)
+        if done and (e.beyond_setup or stood) and not e.undecided and e.blocked == e.beyond_setup + stood:
             return e.id
     return None
 
 
-def selection(entries: Sequence[CutterEntry]) -> tuple[str | None, Selection]:
-    """Which cutter wins, of entries from the most wanted down, and why."""
-    feasible = [e for e in entries if e.feasible]
-    if not feasible:
+def selection(entries: Sequence[CutterEntry], free_form: float) -> tuple[str | None, Selection]:
+    """Which cutter wins, of entries from the most wanted down, and why; `free_form`: the share of such faces."""
+    feasible, rule = [e for e in entries if e.feasible], words.rule(free_form)
+    first = feasible[0] if feasible else None
+    before = entries if first is None else entries[: entries.index(first)]
+    if stood := next((e for e in before if e.by_reason.get(ANOTHER_SETUP) and not any(leaves(e))), None):
+        runner_up = None if first is None else first.id
+        return None, Selection(rule=rule, free_form=free_form, runner_up=runner_up, why=words.stands(stood.id))
+    if first is None:
         best = nearest(entries)
         text = f"{unreached(best, best.area_share)} of the area"
         why = f"no cutter reaches every sample; {best.id} comes nearest and leaves {text}"
         if not best.not_reached:
             why = f"{best.id} reaches every judged sample, but obstacles are missing: see the notes"
-        return None, Selection(rule=RULE, runner_up=None, why=why)
-    first = feasible[0]
-    larger = [e.id for e in entries if e.radius > first.radius]
-    why = (
-        f"{', '.join(larger)} {'is' if len(larger) == 1 else 'are'} larger but not feasible"
-        if larger
-        else ("no larger cutter was given")
-    )
-    return first.id, Selection(rule=RULE, runner_up=feasible[1].id if len(feasible) > 1 else None, why=why)
+        return None, Selection(rule=rule, free_form=free_form, runner_up=None, why=why)
+    runner_up = feasible[1].id if len(feasible) > 1 else None
+    why = words.why([e.id for e in before])
+    return first.id, Selection(rule=rule, free_form=free_form, runner_up=runner_up, why=why)

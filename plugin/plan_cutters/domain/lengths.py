@@ -1,13 +1,56 @@
 """Lengths as people write them in the words for cutters and holders: `12`, `12mm`, `0.5in`, `1/2in`."""
 
+import functools
 import math
 import re
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from fractions import Fraction
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, TypeVar
 
 #: A length in a text; what is written behind the number is its unit, mm where there is none.
 LENGTH = r"-?(?:[0-9]+/[0-9]+|[0-9]+\.?[0-9]*|\.[0-9]+)(?:in|mm)?"
 _UNITS = {"in": Fraction("25.4"), "mm": Fraction(1)}
+#: mm in an inch.
+INCH = 25.4
+#: The unit of lengths in the words that are being made; None: mm, and tools as they were given.
+_reported: ContextVar[Literal["mm", "in"] | None] = ContextVar("reported", default=None)
+_F = TypeVar("_F", bound=Callable[..., Any])
+
+
+@contextmanager
+def reported_in(unit: Literal["mm", "in"] | None) -> Iterator[None]:
+    """Within this, words have lengths in a unit; numbers that are no words stay mm."""
+    token = _reported.set(unit)
+    try:
+        yield
+    finally:
+        _reported.reset(token)
+
+
+def reporting(unit_of: Callable[[Any], Literal["mm", "in"] | None]) -> Callable[[_F], _F]:
+    """Make a function whose words have lengths in the unit that its first argument names; it must be no generator."""
+
+    def wrap(function: _F) -> _F:
+        @functools.wraps(function)
+        def inner(first: Any, *args: Any, **more: Any) -> Any:
+            with reported_in(unit_of(first)):
+                return function(first, *args, **more)
+
+        return inner  # type: ignore[return-value]
+
+    return wrap
+
+
+def in_inches(stated: bool = False) -> bool:
+    """Whether words have lengths in inches; `stated`: of a tool, where no unit was chosen, whether it was given in them.
+
+    >>> in_inches(), in_inches(True)
+    (False, True)
+    """
+    unit = _reported.get()
+    return stated if unit is None else unit == "in"
 
 
 def length(text: str, share: Fraction = Fraction(1)) -> float:
@@ -63,7 +106,10 @@ class Notation(NamedTuple):
 
     def mm(self, value: float) -> str:
         """A length, mm, in a sentence."""
-        return f"{value / 25.4:.6g} in" if self.inches else f"{value:g} mm"
+        if not in_inches(self.inches):
+            return f"{value:g} mm"
+        # What was given in mm is no round number of inches.
+        return f"{value / INCH:.6g} in" if self.inches else f"{value / INCH:.4g} in"
 
     def size(self, radius: float) -> str:
         """How thick a tool of a radius, mm, is, in a sentence."""

@@ -40,6 +40,9 @@ class Placement:
         What holds it.
     file : str
         Where it was read from; empty where it was not.
+    stands_on : tuple of str
+        Faces that stand on a table which was proposed with the setup, and which nobody has yet: what it forbids there is left
+        for another setup, and decides nothing.
 
     Raises
     ------
@@ -58,6 +61,7 @@ class Placement:
     clamped: tuple[str, ...] = ()
     fixtures: tuple[Fixture, ...] = ()
     file: str = ""
+    stands_on: tuple[str, ...] = ()
 
     if TYPE_CHECKING:
 
@@ -69,6 +73,7 @@ class Placement:
             clamped: str | Sequence[str] = ...,
             fixtures: Any = ...,
             file: str = "",
+            stands_on: tuple[str, ...] = (),
         ) -> None: ...
 
     def __post_init__(self) -> None:

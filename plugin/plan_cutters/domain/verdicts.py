@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints, Record
+from plan_cutters.kernels import codes
 from plan_cutters.kernels.codes import (
     ACCESSIBLE,
     AXIS_LIMIT,
@@ -18,7 +19,6 @@ from plan_cutters.kernels.codes import (
     LOCAL_GOUGE,
     NO_REASON,
     REAR_GOUGE,
-    REASONS,
     SHARP_EDGE,
     TOLERANCE,
     UNDECIDED,
@@ -27,11 +27,14 @@ from plan_cutters.kernels.codes import (
 
 # The codes of verdicts and reasons are this module's as well.
 __all__ = [
-    "ACCESSIBLE", "AXIS_LIMIT", "COLLISION", "CONCAVE", "CONVEX", "FIXTURE", "INACCESSIBLE", "INSIDE", "INTERFERENCE_FREE",
-    "LOCAL_GOUGE", "NO_REASON", "REAR_GOUGE", "REASONS", "SADDLE", "SHARP_EDGE", "TOLERANCE", "UNDECIDED", "UNJUDGED", "WORDS",
-    "Bytes", "VerdictBuffer", "Verdicts", "Witness", "blank", "not_reached",
+    "ACCESSIBLE", "ANOTHER_SETUP", "AXIS_LIMIT", "COLLISION", "CONCAVE", "CONVEX", "FIXTURE", "INACCESSIBLE", "INSIDE",
+    "INTERFERENCE_FREE", "LOCAL_GOUGE", "NO_REASON", "REAR_GOUGE", "REASONS", "SADDLE", "SHARP_EDGE", "TOLERANCE", "UNDECIDED",
+    "UNJUDGED", "WORDS", "Bytes", "VerdictBuffer", "Verdicts", "Witness", "blank", "not_reached",
 ]  # fmt: skip
 
+#: Why a sample is not reached; the last one is about setups that were proposed, which kernels know nothing of.
+REASONS = (*codes.REASONS, "another_setup")
+ANOTHER_SETUP = len(codes.REASONS)
 #: Words of verdicts, from best to worst.
 WORDS = {
     INTERFERENCE_FREE: "interference_free",

@@ -12,6 +12,7 @@ from cad_io.arrays import Floats
 from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.least_set import LeastSet
+from plan_cutters.domain.lengths import reporting
 from plan_cutters.domain.operations import Fastest, OperationPlan, Operations, Worth
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.at_once import few_enough, recommended
@@ -28,6 +29,7 @@ from plan_cutters.operations.plans import (
     Task,
     best_area,
     considered,
+    of_wanted_kinds,
     orientations_of,
     plan_with,
     small_pieces,
@@ -52,6 +54,7 @@ _EVEN, _TIMED, _ROUNDS = 250, 600, 12
 _TRIES = 4
 
 
+@reporting(lambda ready: ready.options.reported_unit)
 def plan_operations(
     ready: Prepared,
     everywhere: Sequence[Mapping[Cutter, Verdicts]],
@@ -91,6 +94,10 @@ def plan_operations(
     if unpriced := [each.id for each in without_feed(ready)]:
         has = "has no feed" if len(unpriced) == 1 else "have no feed"
         small += (f"No operation is planned with what {has}: {', '.join(unpriced)}. Give --feed MM/MIN, or ask for the fewest.",)
+    comparable = _comparable(ready, least)
+    if late := [each.id for each in ready.cutters if each.id not in (*unpriced, *(one.id for one in comparable))]:
+        kind = "whose kind comes" if len(late) == 1 else "whose kinds come"
+        small += (f"No operation is planned with {', '.join(late)}, {kind} last on these faces: the others reach all without.",)
     moving = max(sum(len(each.rows) for each in plan.operations if each.mode == "simultaneous") for plan in plans)
     if options.most_operations is None and moving > len(fewest.alone) and not instead:
         small += (
@@ -166,9 +173,8 @@ def _columns_of(task: Task, plan: OperationPlan) -> Columns:
 def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], least: LeastSet | None) -> Task:
     options = ready.options
     unpriced = without_feed(ready)
-    usable = [each for each in ready.cutters if each not in unpriced]
     needed = [run.cutter for run in least.runs if run.cutter not in unpriced] if least else []
-    cutters = considered(usable, needed, _CUTTERS)
+    cutters = considered(_comparable(ready, least), needed, _CUTTERS)
     open_ = ready.machinable
     reached = np.logical_or.reduce(
         [open_[s] & verdicts[cutter].reached for s, verdicts in enumerate(everywhere) for cutter in cutters]
@@ -180,6 +186,15 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
     indexing = Indexing(where, options.index_time)
     return Task(ready, cutters, where, tuple(everywhere), np.flatnonzero(reached), probes, paths, indexing,
                 Problems(ready.samples, cutters, paths, indexing, walls), walls)  # fmt: skip
+
+
+def _comparable(ready: Prepared, least: LeastSet | None) -> list[Cutter]:
+    """The cutters with a feed, without kinds that come after all that are needed, if these have feeds."""
+    unpriced = without_feed(ready)
+    priced, needed = [each for each in ready.cutters if each not in unpriced], [run.cutter for run in least.runs] if least else []
+    if not needed or any(each in unpriced for each in needed):
+        return priced
+    return of_wanted_kinds(priced, needed, ready.chosen.free_form)
 
 
 def feeds(options: Options, cutters: Sequence[Cutter]) -> Mapping[Cutter, float] | None:

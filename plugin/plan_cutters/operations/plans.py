@@ -11,6 +11,7 @@ from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import STRATEGIES, Operation, OperationPlan, Workplane, strategy_of
+from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.operations.candidates import Orientations
 from plan_cutters.operations.indexing import Indexing
@@ -332,6 +333,21 @@ def orientations_of(ready: Prepared) -> tuple[Orientations, ...]:
 
 
 def considered(cutters: Sequence[Cutter], needed: Sequence[Cutter], most: int) -> tuple[Cutter, ...]:
-    """The cutters whose operations are compared, by rank: those that are needed, and the most wanted of the others."""
-    wanted = [*needed, *(each for each in cutters if each not in needed)][: max(most, len(needed))]
-    return tuple(each for each in cutters if each in wanted)
+    """The cutters whose operations are compared, by rank: those that are needed, and the most wanted of each other kind."""
+    others = [each for each in cutters if each not in needed]
+    first_of_kind = list({group_of(each): each for each in reversed(others)}.values())[::-1]
+    ordered = [*needed, *first_of_kind, *(each for each in others if each not in first_of_kind)]
+    chosen = ordered[: max(most, len(needed))]
+    return tuple(each for each in cutters if each in chosen)
+
+
+def of_wanted_kinds(cutters: Sequence[Cutter], needed: Sequence[Cutter], free_form: float) -> list[Cutter]:
+    """Cutters without the kinds that come after all that are needed, for what is needed reaches all without them.
+
+    These are engraving, chamfer and form cutters in any case, and flat ends and others where nearly all faces are free-form;
+    `free_form` is their share of the area.
+    """
+    place = {each: rank(group_of(each), free_form=free_form) for each in cutters}
+    last = max(place[each] for each in needed)
+    most = last if free_form >= NEARLY_ALL else max(last, rank("last", free_form=free_form) - 1)
+    return [each for each in cutters if place[each] <= most]

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import OperationPlan, Worth
+from plan_cutters.domain.preference import by_radius
 from plan_cutters.operations.fastest import Problem, cheap
 from plan_cutters.operations.plans import Task
 
@@ -15,10 +16,9 @@ Rows = NDArray[np.int64]
 
 
 def by_size(task: Task) -> list[int]:
-    """Numbers of the cutters, the largest first; of equal radii the one with the larger corner, which leaves wider strips."""
-    return sorted(
-        range(len(task.cutters)), key=lambda c: (-task.cutters[c].radius, -task.cutters[c].corner_radius, task.cutters[c].id)
-    )
+    """Numbers of the cutters, the largest first."""
+    ordered = by_radius(task.cutters, free_form=task.ready.chosen.free_form)
+    return [task.cutters.index(cutter) for cutter in ordered]
 
 
 def largest_first(problem: Problem, order: Sequence[int]) -> Rows:

@@ -63,6 +63,9 @@ class Effective(Frozen):
     sharp_edges: Literal["asked", "left"] = Field(
         default="asked", description="left: strips at sharp inside edges that no cutter enters are not required"
     )
+    units: Literal["mm", "in"] | None = Field(
+        default=None, description="of lengths in words: mm or in; null: mm, and tools as they were given; numbers here are mm"
+    )
     area_budget: int = Field(description="contacts that may be added between the samples")
     posture_maps: bool
     map_budget: int | None = Field(default=None, description="samples to map, at most; null: what some minutes allow")

@@ -216,6 +216,11 @@ class CutterEntry(VerdictCounts):
     length: float = Field(description="from the tip to the holder's nose, or to the end of what is checked")
     shape: str = Field(default="end", description="end, lollipop, barrel, lens or form")
     taper_deg: float = Field(default=0.0, description="half angle")
+    group: str = Field(
+        default="",
+        description="how its kind is ranked: ball, bull, flat, special (tapered with a round tip, barrel, lens, lollipop) or "
+        "last (engraving, chamfer and form cutters, dovetails)",
+    )
     flutes_mm: float | None = Field(default=None, description="height over the tip up to which it cuts")
     holder: str = Field(default="", description="its holder's name; empty where it has none, or one without a name")
     stages: list[SegmentEntry] = Field(default=[], description="from the flutes up")
@@ -226,7 +231,8 @@ class CutterEntry(VerdictCounts):
         default=0.0, description="how far from what counts a point may be and still count, where a shape is held in a larger one"
     )
     feasible: bool | None = Field(
-        description="null: undecided samples alone are left, or it reaches all that could be judged but obstacles are missing"
+        description="null: undecided samples alone are left, or those that stand on the table of a proposed setup (reason "
+        "another_setup), or it reaches all that could be judged but obstacles are missing"
     )
     seen: bool = Field(
         default=True,
@@ -275,6 +281,7 @@ class CutterEntry(VerdictCounts):
 
 class Selection(Frozen):
     rule: str
+    free_form: float = Field(default=0.0, description="share of the target faces' area that is bent in both directions, 0 to 1")
     runner_up: str | None
     why: str
 

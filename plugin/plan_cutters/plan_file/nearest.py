@@ -1,9 +1,11 @@
 """Which cutter comes nearest where none finishes: the one that leaves the least area, as all shares beside it are of area."""
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Protocol, TypeVar
 
+#: The reason of what is left for another setup.
+ANOTHER_SETUP = "another_setup"
 #: Shares that differ by less are equal.
 _DIGITS = 9
 
@@ -21,15 +23,22 @@ class Judged(Protocol):
 
     @property
     def not_reached(self) -> int: ...
+    @property
+    def by_reason(self) -> Mapping[str, int]: ...
 
 
 C = TypeVar("C", bound=Judged)
 
 
 def leaves(cutter: Judged) -> tuple[float, int]:
-    """Sort cutters by this: the share of the area that is left, then the number of samples, which may stand for no area."""
-    share = cutter.area_share.not_reached
-    return round(share, _DIGITS) if math.isfinite(share) else math.inf, cutter.not_reached
+    """Sort cutters by this: the share of the area that is left, then the number of samples, which may stand for no area.
+
+    What stands on the table of a proposed setup does not count: that table is not there yet, and chooses no cutter.
+    """
+    by_reason: Mapping[str, float] = getattr(cutter.area_share, "lost_by", {})
+    share = cutter.area_share.not_reached - by_reason.get(ANOTHER_SETUP, 0.0)
+    samples = cutter.not_reached - cutter.by_reason.get(ANOTHER_SETUP, 0)
+    return round(share, _DIGITS) + 0.0 if math.isfinite(share) else math.inf, samples
 
 
 def nearest(cutters: Iterable[C]) -> C:

@@ -3,6 +3,8 @@
 import math
 from collections.abc import Iterable, Sequence
 
+from plan_cutters.domain.lengths import INCH, in_inches
+
 #: Numbers of less than this are what rounding leaves of nothing.
 ROUNDING = 1e-9
 #: How shares are written that would be rounded to none, and to the whole.
@@ -91,13 +93,29 @@ def some(share: float) -> str:
     return percent(share, whole=False)
 
 
-def mm(length: float | None) -> str:
-    """A length, three digits of it.
+def mm(length: float | None, digits: int = 3) -> str:
+    """A length that is given in mm, three digits of it, or so many, in the unit of the words.
 
-    >>> mm(12345.6), mm(0.0456), mm(-2.776e-17)
-    ('12,300 mm', '0.0456 mm', '0 mm')
+    >>> mm(12345.6), mm(0.0456), mm(-2.776e-17), mm(12.3456, 4)
+    ('12,300 mm', '0.0456 mm', '0 mm', '12.35 mm')
+    >>> from plan_cutters.domain.lengths import reported_in
+    >>> with reported_in("in"):
+    ...     mm(25.4), area(645.16), place((25.4, -12.7, 0.0)), up(6.0), down(6.0)
+    ('1 in', '1 in²', '1, -0.5, 0', '0.237 in', '0.236 in')
     """
-    return "" if length is None else f"{figure(length)} mm"
+    if length is None:
+        return ""
+    return f"{figure(reported(length)) if digits == 3 else plainly(reported(length), digits)} {unit()}"
+
+
+def reported(length: float) -> float:
+    """A length, mm, in the unit of the words."""
+    return length / INCH if in_inches() else length
+
+
+def unit() -> str:
+    """The unit of lengths in the words: `mm`, or `in`."""
+    return "in" if in_inches() else "mm"
 
 
 def angle(degrees: float) -> str:
@@ -134,21 +152,29 @@ def area(mm2: float) -> str:
     >>> area(12345.6), area(0.0456), area(float("nan"))
     ('12,300 mm²', '0.0456 mm²', 'not known')
     """
-    return f"{figure(mm2)} mm²" if math.isfinite(mm2) else "not known"
+    return f"{figure(reported(reported(mm2)))} {unit()}²" if math.isfinite(mm2) else "not known"
 
 
 def place(point: Sequence[float] | None) -> str:
-    """A point or direction: four digits, and no more than four behind the point.
+    """A point that is given in mm: four digits, and no more than four behind the point.
 
     >>> place((-2.776e-17, 12345.678, -0.70710678)), place(None)
     ('0, 12346, -0.7071', '')
     """
-    return "" if point is None else ", ".join(plainly(round(x, 4), 4) for x in point)
+    return "" if point is None else direction([reported(x) for x in point])
+
+
+def direction(axis: Sequence[float]) -> str:
+    """A direction, as `place` writes a point."""
+    return ", ".join(plainly(round(x, 4), 4) for x in axis)
 
 
 def up(length: float | None) -> str:
     """A length that must not be less, rounded up."""
-    return "" if length is None else f"{math.ceil(100.0 * length - 1e-9) / 100.0:.2f} mm"
+    if length is None:
+        return ""
+    digits = 3 if in_inches() else 2
+    return f"{math.ceil(10.0**digits * reported(length) - 1e-9) / 10.0**digits:.{digits}f} {unit()}"
 
 
 def down(length: float | None) -> str:
@@ -158,9 +184,10 @@ def down(length: float | None) -> str:
     ('6.23 mm', '0 mm')
     """
     if not length:
-        return "0 mm"
+        return f"0 {unit()}"
+    length = reported(length)
     digit = 10.0 ** (math.floor(math.log10(length)) - 2)
-    return f"{math.floor(length / digit + 1e-9) * digit:.4g} mm"
+    return f"{math.floor(length / digit + 1e-9) * digit:.4g} {unit()}"
 
 
 def duration(seconds: float | None) -> str:

@@ -8,6 +8,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from plan_cutters.domain.lengths import reporting
 from plan_cutters.errors import PlanError
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.shares import VERDICTS
@@ -39,6 +40,7 @@ class _Chip(NamedTuple):
 _CHIPS = {True: _Chip("✓", "#00664b", "#ffffff"), False: _Chip("✗", "#a33c00", "#ffffff"), None: _Chip("?", "#f0e442", "#000000")}
 
 
+@reporting(lambda plan: plan.effective.units)
 def text_of(plan: Plan) -> str:
     """The plan in words: what to take and why, what makes it unsure, a line for each cutter, what is not reached."""
     story = story_of(plan)
@@ -49,6 +51,7 @@ def text_of(plan: Plan) -> str:
     return "\n".join(plain(line).rstrip() for line in lines).strip() + "\n"
 
 
+@reporting(lambda result: result.plan.effective.units)
 def card(result: Judged, *, height: int = HEIGHT) -> str:
     """The result as HTML for a notebook: headline, what makes it unsure, table, picture, and the review page to be opened.
 

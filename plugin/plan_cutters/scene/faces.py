@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from cad_io.arrays import FaceInfo
 from plan_cutters.domain.checks import choice
 from plan_cutters.domain.placement import Placement
+from plan_cutters.domain.preference import free_form_share
 from plan_cutters.errors import OptionError
 from plan_cutters.plan_file import notes
 from plan_cutters.plan_file.notes import Note
@@ -52,6 +53,8 @@ class Chosen:
         What the plan must say of the choice.
     blends : frozenset of int
         Faces of the part that are fillets and rounds, whether chosen or not.
+    free_form : float
+        Share of the targets' area that is bent in both directions (`preference.free_form_share`).
     """
 
     targets: tuple[int, ...]
@@ -60,6 +63,7 @@ class Chosen:
     ignore: tuple[str, ...]
     notes: tuple[Note, ...]
     blends: frozenset[int] = frozenset()
+    free_form: float = 0.0
 
 
 def choose(
@@ -104,7 +108,8 @@ def choose(
             raise OptionError(f"{placed.where} {_brief(', '.join(placed.clamped))} leaves no target face")
         if clamped := [f"F{n}" for n in targets if n in held]:
             remarks.append(notes.faces_clamped(clamped))
-    return Chosen(targets, tuple(sorted(ignored)), requested, ignore, tuple(remarks), part.blends)
+    share = free_form_share((part.faces[n - 1].shape, part.faces[n - 1].area) for n in targets)
+    return Chosen(targets, tuple(sorted(ignored)), requested, ignore, tuple(remarks), part.blends, share)
 
 
 def clamped_faces(part: "Part", placed: Placement | None) -> frozenset[int]:

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from plan_cutters.domain.placement import Placement, axis_words
+from plan_cutters.domain.verdicts import ANOTHER_SETUP, FIXTURE, Verdicts
 from plan_cutters.errors import FixtureError
 from plan_cutters.options import Options
 from plan_cutters.plan_file import notes
@@ -77,6 +78,23 @@ def with_setups(ready: Prepared, conditions: list[Conditions]) -> Prepared:
 def _samples_of(ready: Prepared, place: Placement | None) -> NDArray[np.bool_]:
     """Samples (n,) of the faces that a setup clamps."""
     return np.isin(ready.samples.face, sorted(clamped_faces(ready.scene.part, place)))
+
+
+def stood_on(ready: Prepared) -> NDArray[np.bool_]:
+    """Samples (n,) of faces that stand on the table of a setup that was proposed."""
+    faces = {int(name[1:]) for place in places(ready.options) if place is not None for name in place.stands_on}
+    return np.isin(ready.samples.face, sorted(faces))
+
+
+def for_another_setup(ready: Prepared, verdicts: Verdicts) -> Verdicts:
+    """The same verdicts with a reason of its own where only a proposed table is in the way, on faces that stand on it.
+
+    Beside a proposed table there are no other fixtures.
+    """
+    mine = stood_on(ready) & verdicts.not_reached & (verdicts.reason == FIXTURE)
+    if not mine.any():
+        return verdicts
+    return replace(verdicts, reason=np.where(mine, ANOTHER_SETUP, verdicts.reason).astype(np.uint8))
 
 
 def notes_of_setups(ready: Prepared) -> Iterator[Note]:

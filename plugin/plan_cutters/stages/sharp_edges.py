@@ -9,6 +9,10 @@ No verdict is changed: a reason gets another name. A sample of a face A is lost 
   slot that is too narrow for the cutter it does not;
 - the cutter does not enter the edge: it reaches less than half of the samples that near. A flat end does, between wall and floor.
 
+Where such an edge stands on a third face, as that of two walls on a floor, a flat end leaves the corner of the third face, too:
+what lies beyond the disk of its radius that touches both walls. A sample there is lost to the edge if the cutter reaches the
+third face beside that disk.
+
 A sample counts as it is: no spacing is added to the width.
 """
 
@@ -31,6 +35,8 @@ _NEAR, _FACING = 2.0, 0.7
 _WIDER = 1.5
 #: Share of the samples of a strip from which on a cutter enters the edge.
 _ENTERS = 0.5
+#: Cosine from which on a face is square to an edge that stands on it, and how far a sample may be off its level, in radii.
+_SQUARE, _LEVEL = 0.9995, 0.02
 
 
 def may_be_at_edge(verdicts: Verdicts, cutter: Cutter) -> bool:
@@ -75,6 +81,12 @@ def strips(samples: SurfaceSamples, verdicts: Verdicts, cutter: Cutter, edges: S
             rows, at = rows[open_rows], at[open_rows]
             served = _served(samples, reached, tree, edge, side, wide, _NEAR * gaps.get(number, 0.0))
             result[rows[served[at]]] = place
+    if cutter.shape == "end" and not cutter.taper and not cutter.corner_radius:
+        near = {number: _NEAR * gaps.get(number, 0.0) for number in rows_of}
+        for place, edge in enumerate(edges):
+            for end in (0, -1):
+                rows = np.flatnonzero(losses & (result < 0))
+                result[_corner(samples, rows, edge, end, radius, reached, tree, near)] = place
     return result
 
 
@@ -125,6 +137,38 @@ def _within(
     out = (samples.point[rows] - edge.point[at]) * edge.inward[side, at]
     mine = edge.sharp[at] & (height < radius) & (along > 0.0) & (out.sum(axis=1) <= _WIDER * wide[at])
     return rows[mine], at[mine]
+
+
+def _corner(
+    samples: SurfaceSamples, rows: NDArray[np.int64], edge: InsideEdge, end: int, radius: float,
+    reached: NDArray[np.int64], tree: cKDTree, near: Mapping[int, float],
+) -> NDArray[np.int64]:  # fmt: skip
+    """Of lost samples those of a third face in the corner at an end (0 or -1) of an edge, which a disk between its faces leaves.
+
+    They lie nearer to the corner along both faces than where the disk touches these, and farther from its centre than its radius.
+    """
+    wide = radius / float(np.tan(0.5 * edge.angle[end]))
+    if not len(rows) or len(edge.point) < 2 or not edge.sharp[end] or not np.isfinite(wide):
+        return rows[:0]
+    corner, along = edge.point[end], edge.point[end] - edge.point[1 if end == 0 else -2]
+    along = along / max(1e-300, float(np.linalg.norm(along)))
+    normal, inward = edge.normal[:, end], edge.inward[:, end]
+    centre = radius * normal.sum(axis=0) / (1.0 + float(normal[0] @ normal[1]))
+    # The third face is square to the edge and faces along it: the cutter stands on it with its axis along the edge.
+    away = samples.point[rows] - corner
+    high = away @ along
+    flat = away - np.outer(high, along)
+    mine = (
+        ~np.isin(samples.face[rows], edge.faces) & (samples.normal[rows] @ -along > _SQUARE) & (np.abs(high) <= _LEVEL * radius)
+    )
+    mine &= (np.linalg.norm(flat - centre, axis=1) > radius) & (flat @ inward.T < wide).all(axis=1)
+    mine &= (flat @ normal.T > -_LEVEL * radius).all(axis=1)
+    for number in np.unique(samples.face[rows[mine]]).tolist():
+        # Where a fillet of its radius stood the cutter would work beside it.
+        nearby = reached[tree.query_ball_point(corner + centre, radius + near[number])]
+        if not (samples.face[nearby] == number).any():
+            mine &= samples.face[rows] != number
+    return rows[mine]
 
 
 def _served(

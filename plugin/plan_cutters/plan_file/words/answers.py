@@ -6,7 +6,7 @@ from plan_cutters.domain.change import NO_USUAL, UNDECIDED
 from plan_cutters.domain.spec import notation
 from plan_cutters.plan_file.answers import ChangeEntry, MendEntry, RadiusEntry, StickOutEntry
 from plan_cutters.plan_file.model import CutterEntry, Plan
-from plan_cutters.plan_file.numbers import capital, down, place, some, up
+from plan_cutters.plan_file.numbers import capital, down, mm, place, some, up
 from plan_cutters.plan_file.words.cutters import reason
 from plan_cutters.plan_file.words.headline import every
 from plan_cutters.plan_file.words.line import Line
@@ -55,12 +55,13 @@ def _stick_outs(plan: Plan) -> Iterator[Line]:
         if stick_out.least_mm is None:
             yield Line(f"The least stick-out of {c.id} was not looked for: {stick_out.limited_by}.")
         elif stick_out.limited_by == "floor":
-            short.append(f"{c.id} {up(stick_out.least_mm)} (judged with {stick_out.longest_mm:g} mm)")
+            short.append(f"{c.id} {up(stick_out.least_mm)} (judged with {mm(stick_out.longest_mm, 6)})")
         elif stick_out.longest_mm - stick_out.least_mm < SAME:
-            yield Line(f"{c.id} cannot be held shorter than the {stick_out.longest_mm:g} mm that were judged. {limit(stick_out)}")
+            longest = mm(stick_out.longest_mm, 6)
+            yield Line(f"{c.id} cannot be held shorter than the {longest} that were judged. {limit(stick_out)}")
         else:
             yield Line(
-                f"{c.id} can be held shorter: {up(stick_out.least_mm)} of its {stick_out.longest_mm:g} mm stick-out are enough "
+                f"{c.id} can be held shorter: {up(stick_out.least_mm)} of its {mm(stick_out.longest_mm, 6)} stick-out are enough "
                 f"for all that it reaches now. {limit(stick_out)}"
             )
     if short:
@@ -87,9 +88,9 @@ def _radii(plan: Plan) -> Iterator[Line]:
         end, rest = f"{each.shape} end of {across}", f"({each.length_over_radius:g} radii long) reaches {every(plan)}"
         whole = f"A {end} {down(times * each.bottleneck_mm)} {rest}"
         if not each.bottleneck_mm:
-            whole = f"Not even a {end} {times * each.least_mm:.3g} mm {rest}: it misses {each.below}"
+            whole = f"Not even a {end} {mm(times * each.least_mm)} {rest}: it misses {each.below}"
         middle = each.percentiles_mm["50"]
-        half = f"{down(times * middle)} or more" if middle else f"less than {times * each.least_mm:.3g} mm"
+        half = f"{down(times * middle)} or more" if middle else f"less than {mm(times * each.least_mm)}"
         yield Line(f"{whole}; half of the area takes {half}. The narrowest place is {narrowest(each)}.")
     if plan.missing and (plan.largest_radius or any(c.least_stick_out for c in plan.cutters)):
         yield Line("Stick-outs and largest radii hold provided that no missing obstacle is in the way.")

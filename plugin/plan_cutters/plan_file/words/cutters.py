@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan, WitnessEntry
-from plan_cutters.plan_file.numbers import angle, capital, figure, listed, mm, percent, place
+from plan_cutters.plan_file.numbers import angle, capital, figure, listed, mm, percent, place, reported, unit
 from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters.plan_file.shares import VERDICTS, AreaShare, part_of, reached, unreached
 from plan_cutters.plan_file.words.headline import area, between, every
@@ -205,9 +205,9 @@ def worst_faces(plan: Plan, c: CutterEntry, most: int = 5) -> tuple[list[WorstFa
 
 def worst_face_text(face: WorstFace) -> str:
     """A face on which a cutter fails, in a line."""
-    deep = f", {face.depth} mm too deep" if face.depth else ""
+    deep = f", {face.depth} {unit()} too deep" if face.depth else ""
     way = f", {called(face.obstacle)} in the way" if face.obstacle else ""
-    return f"{face.id}: {face.area} mm² lost, {face.share} of the face, mainly {face.reason}{deep}{way}"
+    return f"{face.id}: {face.area} {unit()}² lost, {face.share} of the face, mainly {face.reason}{deep}{way}"
 
 
 def _by_remaining_area(plan: Plan, c: CutterEntry) -> list[str]:
@@ -234,8 +234,9 @@ def _worst(face: FaceEntry, c: CutterEntry, lot: float) -> WorstFace:
     unsure = share.undecided > share.inaccessible
     verdict = "undecided" if unsure else "inaccessible"
     deepest = max(mine, key=lambda w: (w.verdict == verdict, w.depth_mm or 0.0), default=None)
-    depth = "" if deepest is None or deepest.depth_mm is None else figure(deepest.depth_mm)
+    depth = "" if deepest is None or deepest.depth_mm is None else figure(reported(deepest.depth_mm))
+    size = figure(reported(reported(lot)))
     return WorstFace(
-        face.id, face.name, figure(lot), unreached(c.faces[face.id], share), f"{'undecided: ' * unsure}{main or '?'}", depth,
+        face.id, face.name, size, unreached(c.faces[face.id], share), f"{'undecided: ' * unsure}{main or '?'}", depth,
         "" if deepest is None else deepest.obstacle_face or "",
     )  # fmt: skip

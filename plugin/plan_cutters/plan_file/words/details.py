@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import leaves
-from plan_cutters.plan_file.numbers import angle, capital, count, figure, mm, percent, place
+from plan_cutters.plan_file.numbers import angle, capital, count, direction, figure, mm, percent, reported, unit
 from plan_cutters.plan_file.shares import unreached
 from plan_cutters.plan_file.words.cutters import remaining_text
 from plan_cutters.plan_file.words.headline import area
@@ -30,7 +30,7 @@ def rendered(plan: Plan) -> str:
     taken = "is selected" if plan.selected else "is shown because it leaves the least area; none is selected"
     return (
         f"This cutter {taken}. Part {_size(plan)}. Machine {plan.effective.machine}, setup axis "
-        f"({place(plan.effective.setup)}), gouge tolerance {mm(plan.effective.tolerance_mm)}, "
+        f"({direction(plan.effective.setup)}), gouge tolerance {mm(plan.effective.tolerance_mm)}, "
         f"{count(plan.samples.count, 'sample')}."
     )
 
@@ -59,9 +59,9 @@ def others(plan: Plan, *, every: bool = False) -> list[str]:
     if rest := [c for c in larger if c not in near]:
         ends = [of(rest, key=leaves) for of in (min, max)]
         least, most = (unreached(c, c.area_share) for c in ends)
-        which = "larger cutter" if plan.selected else "cutter"
+        which = "more wanted cutter" if plan.selected else "more cutter"
         much = least if least == most else f"{least} to {most}"
-        leave = f"{len(rest)} more {which}{'s leave' if len(rest) > 1 else ' leaves'}"
+        leave = f"{len(rest)} {which}{'s leave' if len(rest) > 1 else ' leaves'}"
         lines.insert(0, f"{leave} {much} of {area(plan)}: -v or plan.json say why.")
     return lines
 
@@ -89,7 +89,7 @@ def details(plan: Plan) -> Iterator[str]:
 
 
 def _size(plan: Plan) -> str:
-    return f"{' x '.join(map(figure, plan.part.size_mm))} mm"
+    return f"{' x '.join(figure(reported(each)) for each in plan.part.size_mm)} {unit()}"
 
 
 def _turn(degrees: float) -> str:

@@ -10,6 +10,7 @@ from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.numbers import area as area_text
 from plan_cutters.plan_file.numbers import capital, count, duration, listed, percent, some
 from plan_cutters.plan_file.shares import reached_share
+from plan_cutters.plan_file.words.choice import comes_last, first_of
 from plan_cutters.plan_file.words.names import described
 from plan_cutters.plan_file.words.scope import judged
 
@@ -39,16 +40,16 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
         about = f"For {part}{where}: {described(entries[name], names[name])}."
         return Headline(f"Take {names[name]}", True, about, why + could_not(plan))
 
+    late = comes_last(plan)
     if process is None or process.finished:
-        if plan.selected:
+        if plan.selected and not late:
             # Of several setups one may do by itself.
             alone = next((s.axis for s in entries[plan.selected].setups if not s.not_reached), None)
             if alone not in (None, plan.effective.setup):
                 why = f"It reaches {every(plan)} there, and needs no other setup."
                 return take(plan.selected, why, where=f", in setup {axis_words(alone or ())}")
             if setups == 1 or alone:
-                which = "" if len(entries) == 1 else f"is the largest of {len(entries)} cutters that "
-                return take(plan.selected, f"It {which}reaches {every(plan)}.")
+                return take(plan.selected, first_of(plan, entries[plan.selected], every(plan)))
         if plan.selected_over_setups:
             why = f"Together they reach {every(plan)}; no setup does alone."
             return take(plan.selected_over_setups, why, where=f", in {setups} setups")
@@ -64,7 +65,8 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
         why = f"{capital(every(plan))} is reached" if every(plan).startswith("every") else f"{capital(every(plan))} are reached"
         if plan.missing:
             return Headline(title, None, about, f"{why}, but obstacles are missing that may be in the way.")
-        return Headline(title, True, about, f"{why}.{could_not(plan)}")
+        single = f" {capital(names[late])} does alone, but its kind comes after that of step 1." if late else ""
+        return Headline(title, True, about, f"{why}.{single}{could_not(plan)}")
     undecided = not any(c.blocked for c in plan.cutters)
     return Headline(title, None if undecided or share >= _MOST else False, about, could_not(plan).strip())
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import figure, listed
+from plan_cutters.plan_file.numbers import listed, mm
 
 #: Faces that are named.
 _FACES = 3
@@ -17,6 +17,6 @@ def inside_radii(plan: Plan, names: Mapping[str, str]) -> Iterator[str]:
     smallest = faces[0]
     fits = f"the largest usual size that fits is D{smallest.fits_mm:g}" if smallest.fits_mm else "no usual size is that small"
     yield (
-        f"The smallest inside radius of {listed([each.face for each in faces], _FACES)} is {figure(smallest.radius_mm)} mm, and "
+        f"The smallest inside radius of {listed([each.face for each in faces], _FACES)} is {mm(smallest.radius_mm)}, and "
         f"{names[plan.shown]} has R{smallest.cutter_radius_mm:.4g}: {fits}."
     )

@@ -41,9 +41,11 @@ def called(cutter: "Cutter | CutterEntry") -> str:
     """
     # Not before anything is planned: help is shown without numpy.
     from plan_cutters.domain.cutter import Cutter
+    from plan_cutters.domain.lengths import in_inches
     from plan_cutters.domain.spec import is_spec, notation
 
-    inches = notation(cutter.name).inches
+    # As it was typed: a D12 is called so in an inch shop, too. Tools of libraries have only names.
+    inches = notation(cutter.name).inches if not cutter.name or is_spec(cutter.name) else in_inches()
 
     def size(length: float, digits: int = 5) -> str:
         return f"{length / 25.4:.{digits}g}in" if inches else f"{length:.{digits}g}"
@@ -91,6 +93,7 @@ def _numbers(plan: "Plan") -> dict[str, list[str]]:
 
 def described(entry: "CutterEntry", name: str) -> str:
     """Describe a cutter beyond its name: its kind, and how far it stands out of which holder."""
+    from plan_cutters.domain.lengths import INCH, in_inches
     from plan_cutters.domain.spec import notation
 
     what = called_plainly(entry)
@@ -100,7 +103,8 @@ def described(entry: "CutterEntry", name: str) -> str:
     if not holder:
         return f"{text}judged without a holder, {length} up from its tip"
     widest = 2.0 * max(max(stage.radius_mm, stage.upper_radius_mm) for stage in holder)
-    return f"{text}{length} out of its holder{f' {entry.holder}' if entry.holder else ''}, up to D{widest:.4g} wide"
+    wide = f"D{widest / INCH:.4g}in" if in_inches() else f"D{widest:.4g}"
+    return f"{text}{length} out of its holder{f' {entry.holder}' if entry.holder else ''}, up to {wide} wide"
 
 
 def _word(entry: "CutterEntry") -> str:

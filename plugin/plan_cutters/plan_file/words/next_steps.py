@@ -3,6 +3,7 @@
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.plan_file.answers import ChangeEntry, MendEntry, RunEntry, StepEntry
 from plan_cutters.plan_file.model import CutterEntry, Plan
+from plan_cutters.plan_file.nearest import ANOTHER_SETUP
 from plan_cutters.plan_file.numbers import percent
 from plan_cutters.plan_file.words.headline import not_sampled
 
@@ -36,7 +37,9 @@ def together(plan: Plan) -> str:
         text = f"{', '.join(each)} and {_run(last, several)} for the rest reach {whole if least.left else every}"
     if least.left:
         other = "the other" if judged else "another"
-        text += f"; nothing given reaches {other} {percent(least.left_share, some=True, whole=False)}"
+        rest = f"{other} {percent(least.left_share, some=True, whole=False)}"
+        stood = plan.process is not None and any(each.cause == ANOTHER_SETUP for each in plan.process.left)
+        text += f"; they leave {rest}, also for another setup" if stood else f"; nothing given reaches {rest}"
     if not least.proven:
         text += " (a smaller set may do: the search ended before the proof)"
     if least.doubtful:

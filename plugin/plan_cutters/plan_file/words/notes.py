@@ -6,7 +6,7 @@ from itertools import zip_longest
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.plan_file.model import CutterEntry, LibraryEntry, Plan
 from plan_cutters.plan_file.notes import NoteCode
-from plan_cutters.plan_file.numbers import count, percent, place
+from plan_cutters.plan_file.numbers import count, mm, percent, place
 from plan_cutters.plan_file.words.line import Line
 from plan_cutters.plan_file.words.names import named
 
@@ -56,9 +56,9 @@ def side(plan: Plan) -> Line:
     sure = " (sure)" if orientation.confident else "" if "guess" in orientation.method else " (a guess)"
     text = f"{orientation.method}{sure}."
     if sewing and sewing.tolerance_mm is not None:
-        text += f" Faces were joined at {sewing.tolerance_mm:.3g} mm."
+        text += f" Faces were joined at {mm(sewing.tolerance_mm)}."
     if sewing and sewing.open_edges:
-        text += f" Open edges: {sewing.open_edges}, {sewing.open_length_mm:.4g} mm long."
+        text += f" Open edges: {sewing.open_edges}, {mm(sewing.open_length_mm, 4)} long."
     return Line(text, "Side of the material:", minor=orientation.confident)
 
 
@@ -120,7 +120,7 @@ def travel(plan: Plan, best: CutterEntry) -> Iterator[Line]:
     if entry is None:
         return
     if entry.outside:
-        each = "; ".join(f"{w.axis} by up to {w.beyond_mm:.4g} mm, at ({place(w.point)}) on {w.face}" for w in entry.worst)
+        each = "; ".join(f"{w.axis} by up to {mm(w.beyond_mm, 4)}, at ({place(w.point)}) on {w.face}" for w in entry.worst)
         yield Line(named(plan, f"Beyond the travel: at {entry.outside} of {entry.judged} samples reached by {best.id} the "
                          f"posture found needs more than the machine's: {each}."))  # fmt: skip
     elif entry.judged:

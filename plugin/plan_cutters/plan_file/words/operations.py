@@ -5,7 +5,8 @@ from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import ROUNDING, bound, duration, figure, listed, percent, some
+from plan_cutters.plan_file.numbers import ROUNDING, bound, duration, listed, percent, some
+from plan_cutters.plan_file.numbers import area as size
 from plan_cutters.plan_file.operations import CutterUse, FewestEntry, OperationEntry, OperationPlanEntry, OperationsEntry
 from plan_cutters.plan_file.words.line import Line
 from plan_cutters.plan_file.words.motion import motion, whatever_the_axes
@@ -189,7 +190,7 @@ def _largest_first(operations: OperationsEntry) -> Iterator[str]:
 def _worth(operations: OperationsEntry, use: CutterUse) -> Iterator[str]:
     """What a cutter saves, and what its change costs."""
     if use.only_mm2 > 0.0:
-        yield f"Only {use.id} reaches {figure(use.only_mm2)} mm2."
+        yield f"Only {use.id} reaches {size(use.only_mm2)}."
         return
     used = any(use.id == each.cutter for plan in operations.plans if plan.name == "fastest" for each in plan.operations)
     if use.saves_seconds is None:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import area, count, duration, figure, listed, mm, percent, place
+from plan_cutters.plan_file.numbers import area, count, duration, listed, mm, percent, place
 from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, NextEntry, ProcessEntry, ProcessStep, RemainingEntry
 from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters.plan_file.words.doubts import doubts
@@ -198,7 +198,7 @@ def _clearance(process: ProcessEntry) -> str:
         return ""
     least, step = min(known)
     if least >= _FAR:
-        return f"Least clearance: {figure(_FAR)} mm or more."
+        return f"Least clearance: {mm(_FAR)} or more."
     return f"Least clearance: {mm(least)} in step {step}."
 
 

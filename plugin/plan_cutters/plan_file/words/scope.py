@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import nearest
-from plan_cutters.plan_file.numbers import percent
+from plan_cutters.plan_file.numbers import mm, percent
 from plan_cutters.plan_file.part_info import Scope
 
 #: Choices that name kinds of faces, not faces.
@@ -84,6 +84,6 @@ def not_seen(plan: Plan, names: Mapping[str, str]) -> list[str]:
     widest = max(plan.faces, key=lambda f: f.gap_mm or 0.0)
     on = f" on {widest.id}" if widest.gap_mm else ""
     return [
-        f"What lies between the samples was not seen: they are up to {plan.samples.max_gap_mm:.3g} mm apart{on}, more than the "
-        f"radius of {names[entry.id]}, {entry.radius:.4g} mm. --spacing {entry.radius:.4g} looks more closely."
+        f"What lies between the samples was not seen: they are up to {mm(plan.samples.max_gap_mm)} apart{on}, more than the "
+        f"radius of {names[entry.id]}, {mm(entry.radius, 4)}. --spacing {entry.radius:.4g} looks more closely."
     ]

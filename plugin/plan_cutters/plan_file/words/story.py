@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from plan_cutters.domain.lengths import reporting
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.numbers import sentence
@@ -67,6 +68,7 @@ class Story:
         return next(each for each in self.cutters if each.id == name)
 
 
+@reporting(lambda plan: plan.effective.units)
 def story_of(plan: Plan) -> Story:
     """Tell a plan."""
     names, best = short_names(plan), shown(plan)

@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 
+from plan_cutters.domain.lengths import reporting
 from plan_cutters.plan_file.model import CutterEntry, Plan, TextEntry, VerdictText
 from plan_cutters.plan_file.numbers import count
 from plan_cutters.plan_file.words.chip import TONES, chip, cutter_chip
@@ -20,12 +21,14 @@ _DOUBTS, _CUTTERS = 4, 6
 _ALONE = 3
 
 
+@reporting(lambda plan: plan.effective.units)
 def with_text(plan: Plan) -> Plan:
     """The plan with its text and the words of its process, made anew of all that it says by now."""
     plan = with_process_words(plan)
     return plan.model_copy(update={"text": text_of(plan)})
 
 
+@reporting(lambda plan: plan.effective.units)
 def text_of(plan: Plan) -> TextEntry:
     """Put a plan into a few lines."""
     story = story_of(plan)

@@ -10,6 +10,7 @@ from markupsafe import Markup
 from numpy.typing import NDArray
 
 from cad_io.write.render_mesh import render_mesh
+from plan_cutters.domain.lengths import reporting
 from plan_cutters.domain.tolerance import depths
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.report.markup import embedded, policy, template, with_three
@@ -61,6 +62,7 @@ def write_html(result: Judged, _split: object, path: Path) -> None:
     path.write_bytes(page(result, maps=result.maps))
 
 
+@reporting(lambda result: result.plan.effective.units)
 def page(
     result: Judged,
     *,

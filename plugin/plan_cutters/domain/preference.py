@@ -1,0 +1,116 @@
+"""Which of several cutters is wanted first: by kind, as the faces ask for it, then by size; nothing else decides."""
+
+import math
+from collections.abc import Iterable
+from typing import Any
+
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.shapes import top_radius
+
+#: Kinds in the order in which they are wanted, those of one rank together: on free-form faces, and on planes and cylinders.
+_FREE_FORM = (("ball", "bull"), ("special",), ("flat",), ("last",))
+_PRISMATIC = (("flat", "bull"), ("ball",), ("special",), ("last",))
+#: A sharp tip that is less than so much of its flutes' width is that of a V-shaped cutter.
+_POINTED = 0.5
+#: Share of the area of all targets from which on free-form faces decide; and from which on there is nearly nothing else.
+FREE_FORM, NEARLY_ALL = 0.1, 0.9
+#: Shapes of faces that are bent in both directions.
+_BENT = ("sculptured", "sphere", "torus")
+
+
+def group_of(cutter: Cutter) -> str:
+    """The kind of a cutter as it is ranked: `ball`, `bull`, `flat`, `special` or `last`.
+
+    Special are tapered cutters with a round tip, barrels, lenses and lollipops. Last come those that finish a surface only where
+    nothing else does: engraving, chamfer and form cutters, V-shaped ones and dovetails.
+
+    Examples
+    --------
+    >>> [group_of(Cutter.parse(each)) for each in ("R6L80", "R6L80rc1", "R3L40rc3", "R1L40rc1T5", "R0.2L40T15F10", "R6L40T-10F5")]
+    ['flat', 'bull', 'ball', 'special', 'last', 'last']
+    """
+    if cutter.shape == "form" or cutter.taper < 0.0:
+        return "last"
+    if cutter.shape != "end" or (cutter.taper and cutter.corner_radius):
+        return "special"
+    if cutter.taper:
+        return "last" if cutter.radius < _POINTED * top_radius(cutter) else "flat"
+    if not cutter.corner_radius:
+        return "flat"
+    return "ball" if cutter.corner_radius >= cutter.radius else "bull"
+
+
+def ranks(*, free_form: float) -> tuple[tuple[str, ...], ...]:
+    """Groups in the order in which they are wanted, those of one rank together, for a share of free-form faces."""
+    return _FREE_FORM if is_free_form(free_form) else _PRISMATIC
+
+
+def rank(group: str, *, free_form: float) -> int:
+    """The rank of a group, 0 for the most wanted."""
+    return next(k for k, groups in enumerate(ranks(free_form=free_form)) if group in groups)
+
+
+def size(cutter: Cutter, *, free_form: float) -> tuple[Any, ...]:
+    """Sort cutters by this, the largest first.
+
+    By the radius; of equal ones the larger corner on free-form faces, where it leaves wider strips, and the smaller one on
+    others, where it leaves less in corners; then the shorter one, then its id: never the order in which they were given.
+    """
+    corner = -cutter.corner_radius if is_free_form(free_form) else cutter.corner_radius
+    return -cutter.radius, corner, cutter.length, cutter.id
+
+
+def wanted(cutters: Iterable[Cutter], *, free_form: float) -> list[Cutter]:
+    """Cutters from the most to the least wanted: by kind, then by size.
+
+    Parameters
+    ----------
+    cutters : iterable of Cutter
+    free_form : float
+        Share of the area of the faces to machine that is free-form (`free_form_share`).
+
+    Examples
+    --------
+    >>> given = [Cutter.parse(each) for each in ("R8L80", "R3L40rc3", "R5L60rc1")]
+    >>> [each.id for each in wanted(given, free_form=1.0)], [each.id for each in wanted(given, free_form=0.0)]
+    (['R5L60rc1', 'R3L40rc3', 'R8L80'], ['R8L80', 'R5L60rc1', 'R3L40rc3'])
+    """
+    return sorted(cutters, key=lambda c: (rank(group_of(c), free_form=free_form), *size(c, free_form=free_form)))
+
+
+def by_radius(cutters: Iterable[Cutter], *, free_form: float) -> list[Cutter]:
+    """Cutters by size, whatever their kind, but for those that come last in any case."""
+    return sorted(cutters, key=lambda c: (group_of(c) == "last", *size(c, free_form=free_form)))
+
+
+def free_form_share(faces: Iterable[tuple[str, float]]) -> float:
+    """The share of area of free-form faces, and of spheres and tori, which are bent in both directions as well.
+
+    Parameters
+    ----------
+    faces : iterable of (str, float)
+        Of each target face its shape, and its area, mm2; one that is not known counts as none.
+
+    Returns
+    -------
+    float
+        0 to 1. Where no area is known: 1 if any of the faces is free-form, else 0.
+
+    Examples
+    --------
+    >>> free_form_share([("plane", 30.0), ("sculptured", 10.0)]), free_form_share([])
+    (0.25, 0.0)
+    >>> free_form_share([("sphere", math.nan)])
+    1.0
+    """
+    known = list(faces)
+    sizes = [area if math.isfinite(area) else 0.0 for _, area in known]
+    whole = math.fsum(sizes)
+    if not whole > 0.0:
+        return float(any(shape in _BENT for shape, _ in known))
+    return math.fsum(area for (shape, _), area in zip(known, sizes, strict=True) if shape in _BENT) / whole
+
+
+def is_free_form(share: float) -> bool:
+    """Whether free-form faces are enough of the targets to decide which kind of cutter is wanted first."""
+    return share >= FREE_FORM
