@@ -78,6 +78,8 @@ class Staging:
 
     def __init__(self, out: Path, named: Callable[[Path], None] = lambda _: None) -> None:
         self.out = out
+        #: Whether a plan of this run is in the output already.
+        self.stands = False
         self.folder = out.absolute().parent / f".{out.name}-{secrets.token_hex(4)}"
         named(self.folder)
         try:
@@ -192,8 +194,10 @@ def write_all(
             raise _unwritable(out, error) from None
         written.put()
         # All is on disk: from here on files only change their names, and no plan stands beside files that are not its own.
-        _clear(out)
+        if not staging.stands:
+            _clear(out)
         written.publish(written.files)
+        staging.stands = True
         if listener:
             with clock.stage("show", shown=False):
                 listener.safe(written.plan)
@@ -216,6 +220,30 @@ def write_all(
                 written.put()
                 written.publish([name])
     return written.plan
+
+
+def write_unfinished(plan: "Plan", formats: Sequence[str], staging: Staging, clock: "Clock") -> bool:
+    """Let the plan of a run that goes on appear in the output, whole, without other files; whether it is written at all.
+
+    The plan says of the other formats that the run ended before they were written: that is true whenever it ends.
+
+    Raises
+    ------
+    PlanError
+        The folder cannot be written to.
+    """
+    from plan_cutters.report.to_json import PENDING
+
+    if "json" not in formats:
+        return False
+    others = dict.fromkeys((name for name in formats if name != "json"), PENDING)
+    written = _Written(plan, staging, clock, staging.out, others, as_json=True)
+    written.put()
+    if not staging.stands:
+        _clear(staging.out)
+    written.publish(())
+    staging.stands = True
+    return True
 
 
 def _arrays(result: Judged, formats: Sequence[str]) -> Iterator[str]:
