@@ -156,7 +156,7 @@ class JudgedPart:
         return next((c for c in self.ready.cutters if c.id == best), None)
 
     def between(self, clock: Clock, compiling: Callable[[str], None]) -> dict[str, AreaEntry]:
-        """What is proved of the area between the samples, by cutter id: of the best one; empty where nothing is to be."""
+        """Prove what can be proved between the samples, by cutter id: of the best one; empty where nothing is to be."""
         ready, cutter = self.ready, self._best
         if cutter is None or not self.looks_between:
             return {}

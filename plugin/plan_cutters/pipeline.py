@@ -112,12 +112,12 @@ def run(
     begun = partial(prepare, read_timeout=read_timeout, at=at, compiling=compiling)
     describe: Callable[[Plan], Plan] = _as_it_is
     if options.propose:
-        found, describe = judged_proposed(
+        judged_part, describe = judged_proposed(
             partial(begun, part, excluded=excluded), partial(_judge, begun, judged=judged), options, clock
         )
     else:
-        found = _judge(partial(begun, excluded=excluded), part, options, clock, judged=judged)
-    return _completed(found, clock, describe, compiling, stands)
+        judged_part = _judge(partial(begun, excluded=excluded), part, options, clock, judged=judged)
+    return _completed(judged_part, clock, describe, compiling, stands)
 
 
 def _as_it_is(plan: Plan) -> Plan:
@@ -170,8 +170,8 @@ def _completed(
     if options.operations is not None:
         from plan_cutters.operations.planning import plan_operations
 
-        found = plan_operations(part.ready, part.everywhere(), answers.least_set, clock.stage)
-        answers = replace(answers, operations=found)
+        operations = plan_operations(part.ready, part.everywhere(), answers.least_set, clock.stage)
+        answers = replace(answers, operations=operations)
     done(3)
     result = assembled(part, clock, answers, between)
     if options.posture_maps:

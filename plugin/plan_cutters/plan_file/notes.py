@@ -30,22 +30,22 @@ class Note(NamedTuple):
 
 
 def later_stages(*, area: bool, answers: Sequence[str], operations: str | None, maps: bool) -> tuple[str, str, str, str]:
-    """What the stages that follow the verdicts give, in their order; empty for one that was not requested.
+    """Name the stages that follow the verdicts, in their order, by their options; empty for one that was not requested.
 
     >>> later_stages(area=True, answers=(), operations="fewest", maps=False)
-    ('the proof between the samples', '', 'the plan of operations (--operations fewest)', '')
+    ('the proof between the samples', '', '--operations fewest', '')
     """
     return (
         "the proof between the samples" if area else "",
-        f"the answers (--answers {','.join(answers)})" if answers else "",
-        f"the plan of operations (--operations {operations})" if operations is not None else "",
-        "the posture maps (--posture-maps)" if maps else "",
+        f"--answers {','.join(answers)}" if answers else "",
+        f"--operations {operations}" if operations is not None else "",
+        "--posture-maps" if maps else "",
     )
 
 
 def run_unfinished(absent: Sequence[str]) -> Note:
     without = " and ".join(filter(None, (", ".join(absent[:-1]), absent[-1])))
-    return Note("run_unfinished", f"Written before the run was done: this plan has the verdicts, and is without {without}.")
+    return Note("run_unfinished", f"The run was not done: this plan is without {without}.")
 
 
 # Of cutters.

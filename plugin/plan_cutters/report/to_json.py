@@ -63,7 +63,7 @@ def listed(path: Path) -> dict[str, str] | None:
 
 
 def unfinished(path: Path) -> str:
-    """What a plan file says that it is without, for its run had not been done; empty where it was, or there is no plan."""
+    """Read what a plan file is without, for its run had not been done; empty where it was, or there is no plan."""
     try:
         plan = json.loads(path.read_text(encoding="utf-8"))
         each = zip(plan["note_codes"], plan["notes"], strict=True)
