@@ -100,20 +100,21 @@ def plan(part: Any, *, progress: Progress | None = None, judged: Judge = judge, 
 def run(
     part: Any, options: Options, clock: Clock, *, read_timeout: float = TIMEOUT, at: At = lambda whose, face: None,
     compiling: Callable[[str], None] = lambda entry: None, excluded: Mapping[int, str] | None = None, judged: Judge = judge,
-    stands: Callable[[Plan], None] | None = None,
+    stands: Callable[[Result], None] | None = None, folder: str = "",
 ) -> Result:  # fmt: skip
     """`plan` with its options gathered.
 
     `read_timeout` is the most seconds that a faulty file may take to read; `at` is told whose work goes on at which face;
     `compiling` waits for the machine code of an entry that is made meanwhile; `excluded` says by number why faces are not
-    to be worked on at all; `judged` gives the verdicts of each cutter in each setup, as `judge` does; `stands` is given a whole
-    plan as soon as the verdicts stand, and again after each stage that another one follows: the plan says what it is without.
+    to be worked on at all; `judged` gives the verdicts of each cutter in each setup, as `judge` does; `stands` is given a
+    result as soon as the verdicts stand, and again after each stage that another one follows: its plan is whole, and says what it
+    is without. `folder` is where files of setups that are proposed will be, as a command in it is to name them.
     """
     begun = partial(prepare, read_timeout=read_timeout, at=at, compiling=compiling)
     describe: Callable[[Plan], Plan] = _as_it_is
     if options.propose:
         judged_part, describe = judged_proposed(
-            partial(begun, part, excluded=excluded), partial(_judge, begun, judged=judged), options, clock
+            partial(begun, part, excluded=excluded), partial(_judge, begun, judged=judged), options, clock, folder
         )
     else:
         judged_part = _judge(partial(begun, excluded=excluded), part, options, clock, judged=judged)
@@ -147,7 +148,7 @@ def _completed(
     clock: Clock,
     describe: Callable[[Plan], Plan],
     compiling: Callable[[str], None],
-    stands: Callable[[Plan], None] | None,
+    stands: Callable[[Result], None] | None,
 ) -> Result:
     """Do what follows the verdicts, stage by stage; `describe` adds to each plan how its setups were found."""
     options = part.ready.options
@@ -159,8 +160,9 @@ def _completed(
         """So many of the later stages are done: let the plan stand if that is news, and some follow."""
         news, absent = not number or later[number - 1], [each for each in later[number:] if each]
         if stands is not None and news and absent:
-            plan = assembled(part, clock, answers, between).plan
-            stands(clock.stamp(with_text(describe(noted(plan, run_unfinished(absent))))))
+            result = assembled(part, clock, answers, between)
+            document = describe(noted(result.plan, run_unfinished(absent)))
+            stands(replace(result, plan=clock.stamp(with_text(document))))
 
     done(0)
     between = part.between(clock, compiling)

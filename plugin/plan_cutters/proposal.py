@@ -33,6 +33,7 @@ def judged_proposed(
     judge: Callable[[Scene, Options, Clock], JudgedPart],
     options: Options,
     clock: Clock,
+    folder: str = "",
 ) -> tuple[JudgedPart, Callable[[Plan], Plan]]:
     """Propose setups, the fewest of up to three that serve nearly all, and judge them.
 
@@ -43,6 +44,8 @@ def judged_proposed(
     options : Options
         With `propose`.
     clock : Clock
+    folder : str
+        Where the setups will be written; empty where they will not be.
 
     Returns
     -------
@@ -68,7 +71,7 @@ def judged_proposed(
         if not promised.any():
             break
         try:
-            part = judge(ready.scene.turned_to(_axis(ranking, chosen[0])), _options(unproposed, ranking, chosen), clock)
+            part = judge(ready.scene.turned_to(_axis(ranking, chosen[0])), _options(unproposed, ranking, chosen, folder), clock)
         except PlanError as error:
             why, failed = error.cause, failed | {chosen[0]}
             continue
@@ -94,12 +97,21 @@ def _axis(ranking: Ranking, k: int) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _options(options: Options, ranking: Ranking, chosen: tuple[int, ...]) -> Options:
-    """The options of a plan in the chosen setups, a table under the part in each; the scene has the unit already."""
+def _options(options: Options, ranking: Ranking, chosen: tuple[int, ...], folder: str) -> Options:
+    """The options of a plan in the chosen setups, a table under the part in each; the scene has the unit already.
+
+    Each setup knows the file in which it will be: advice names that.
+    """
     table = (Fixture.parse("table"),)
     first, *others = (
-        Placement(_axis(ranking, k), clamped=tuple(f"F{n}" for n in ranking.candidates.stands_on[k]), fixtures=table)
-        for k in chosen
+        Placement(
+            _axis(ranking, k),
+            clamped=tuple(f"F{n}" for n in ranking.candidates.stands_on[k]),
+            fixtures=table,
+            file=f"{folder.rstrip('/')}/setup-{number}.toml" if folder else "",
+            proposed=True,
+        )
+        for number, k in enumerate(chosen, 1)
     )
     return replace(options, setup=first.z, placement=first, other_setups=tuple(each.z for each in others),
                    other_placements=tuple(others), unit=None)  # fmt: skip

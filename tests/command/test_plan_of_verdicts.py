@@ -156,7 +156,11 @@ def stages():
     """A plan with all later stages, those that stood before it, and the same without anyone who looks at those."""
     options = Options(cutters=("R6L80",), grid=3, area_budget=50, answers="mend", operations="fewest", posture_maps=True)
     before = []
-    return run_stages(PART, options, Clock(), stands=before.append), before, run_stages(PART, options, Clock())
+    return (
+        run_stages(PART, options, Clock(), stands=lambda result: before.append(result.plan)),
+        before,
+        run_stages(PART, options, Clock()),
+    )
 
 
 def test_each_plan_that_stands_is_without_less(stages):
@@ -174,7 +178,9 @@ def test_each_plan_that_stands_is_without_less(stages):
 
 def test_a_plan_that_nothing_follows_is_written_once():
     before = []
-    run_stages(PART, Options(cutters=("R6L80",), grid=3, area_budget=0), Clock(), stands=before.append)
+    run_stages(
+        PART, Options(cutters=("R6L80",), grid=3, area_budget=0), Clock(), stands=lambda result: before.append(result.plan)
+    )
     assert before == []
 
 

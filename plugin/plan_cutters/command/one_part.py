@@ -17,12 +17,13 @@ from plan_cutters.command.progress import Display, Teller
 from plan_cutters.command.summary import summary, written
 from plan_cutters.plan_file.words.details import others
 from plan_cutters.plan_file.words.names import called
-from plan_cutters.workers.assignment import INTERRUPTED, is_child, report, report_work
+from plan_cutters.workers.assignment import INTERRUPTED, assignment, is_child, report, report_work
 
 if TYPE_CHECKING:
     from plan_cutters.command.request import PlanRequest
     from plan_cutters.options import Options
     from plan_cutters.plan_file.model import Plan
+    from plan_cutters.result import Result
     from plan_cutters.stages.judge import Judge
 
 
@@ -47,8 +48,8 @@ def one_part(
     staging = Staging(out, lambda folder: report("staging", str(folder))) if out else None
     watch = ProgressListener(out, options, request, began)
 
-    def stands(plan: "Plan") -> None:
-        if staging and write_unfinished(plan, formats, staging, clock):
+    def stands(result: "Result") -> None:
+        if staging and write_unfinished(result, formats, staging, clock):
             watch.stands()
 
     try:
@@ -65,7 +66,8 @@ def one_part(
         source = pickle.loads(handed) if handed else part
         with _judging(request) as judged:
             result = run(source, options, clock, read_timeout=request.read_timeout, at=report_work, compiling=compiling,
-                         excluded=omitted, judged=judged, stands=stands if staging else None)  # fmt: skip
+                         excluded=omitted, judged=judged, stands=stands if staging else None,
+                         folder=_folder(out))  # fmt: skip
         document = result.plan
         if out is None:
             watch.summarise(document)
@@ -97,6 +99,11 @@ def one_part(
     for name, why in document.not_written.items():
         terminal.error(f"plan-cutters: {file_name(name)} was not written: {why}")
     return code_of(document, request.fail_under), ""
+
+
+def _folder(out: Path | None) -> str:
+    """How a command names the output; empty where there is none, or it will be somewhere else: a batch takes it away."""
+    return "" if out is None or assignment().job is not None else str(out)
 
 
 def _tells(request: "PlanRequest") -> Callable[..., None]:

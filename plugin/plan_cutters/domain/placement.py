@@ -39,7 +39,9 @@ class Placement:
     fixtures : tuple of Fixture
         What holds it.
     file : str
-        Where it was read from; empty where it was not.
+        Where it was read from, or will be written; empty where it was not.
+    proposed : bool
+        It was proposed: nobody has named it.
 
     Raises
     ------
@@ -58,6 +60,7 @@ class Placement:
     clamped: tuple[str, ...] = ()
     fixtures: tuple[Fixture, ...] = ()
     file: str = ""
+    proposed: bool = False
 
     if TYPE_CHECKING:
 
@@ -69,6 +72,7 @@ class Placement:
             clamped: str | Sequence[str] = ...,
             fixtures: Any = ...,
             file: str = "",
+            proposed: bool = False,
         ) -> None: ...
 
     def __post_init__(self) -> None:
