@@ -27,7 +27,7 @@ from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.result import Result
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.scene.threads import part_of
+from plan_cutters.scene.threads import Progress, part_of
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.between import in_each
 from plan_cutters.stages.decompose import march_differs
@@ -160,13 +160,13 @@ class JudgedPart:
         ready, cutter = self.ready, self._best
         if cutter is None or not self.looks_between:
             return {}
-        with clock.stage("area"):
+        with clock.stage("area") as tell:
             compiling("cover.cover")
             most = np.inf
             if ready.options.area_budget is None:
                 most = _WORK_LEAST + _WORK_SHARE * self.searched.looked + _WORK_SAMPLE * len(ready.samples)
             budget = ready.options.contacts_between(len(ready.samples))
-            return {cutter.id: _area(ready, cutter, self.cutters[cutter], budget, most)}
+            return {cutter.id: _area(ready, cutter, self.cutters[cutter], budget, most, tell)}
 
 
 def assembled(part: JudgedPart, clock: Clock, answers: Answers, between: Mapping[str, AreaEntry]) -> Result:
@@ -199,12 +199,12 @@ def assembled(part: JudgedPart, clock: Clock, answers: Answers, between: Mapping
     return Result(clock.stamp(with_text(document)), ready, over, part.travels, answers)
 
 
-def _area(ready: Prepared, cutter: Cutter, judged: JudgedCutter, budget: int, most: float) -> AreaEntry:
+def _area(ready: Prepared, cutter: Cutter, judged: JudgedCutter, budget: int, most: float, tell: Progress) -> AreaEntry:
     """What is proved between the samples, with so many contacts and so much work."""
     # Where all setups hold the part alike, what is free in one of them is free in all.
     contexts = [Context.of(cutter, each) for each in (ready.setups[:1] if ready.alike else ready.setups)]
     which = np.minimum(judged.which, len(contexts) - 1)
     served = in_each(ready.samples, judged.verdicts, which, contexts, ready.scene.part, ready.scene.orientation,
-                     budget=budget, most=most, covered_samples=ready.not_required)  # fmt: skip
+                     budget=budget, most=most, covered_samples=ready.not_required, progress=tell)  # fmt: skip
     return AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
                      short=served.short, dropped=served.dropped, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip

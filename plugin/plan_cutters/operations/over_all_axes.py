@@ -39,6 +39,7 @@ from plan_cutters.kernels.rows import Tool
 from plan_cutters.operations.cover import UNIT, fewest, relax
 from plan_cutters.operations.probes import Probes
 from plan_cutters.scene.conditions import Context, contacts_of
+from plan_cutters.scene.threads import Progress
 
 Rows = NDArray[np.int64]
 #: Halvings of the icosahedron's sides that make the first cells: 320 of them, about 10 deg in radius.
@@ -121,6 +122,8 @@ class OpenCells:
         Samples, cutters and setups.
     rows : (r,) int64
         Samples.
+    progress : callable, optional
+        Called with `made`, and the most that it may be.
 
     Attributes
     ----------
@@ -128,8 +131,8 @@ class OpenCells:
         Times that a body was put down at a sample.
     """
 
-    def __init__(self, probes: Probes, rows: Rows) -> None:
-        self.probes, self.rows, self.made = probes, rows, 0
+    def __init__(self, probes: Probes, rows: Rows, progress: Progress | None = None) -> None:
+        self.probes, self.rows, self.made, self._progress = probes, rows, 0, progress
         self._tools: dict[tuple[Cutter, int, int, float], list[Tool]] = {}
         self._modes = [[each.inner_tool.mode for each in of_cutter] for of_cutter in probes.contexts]
 
@@ -151,6 +154,8 @@ class OpenCells:
             for i in np.flatnonzero(open_table[:, k].any(axis=1)).tolist():
                 mine = np.flatnonzero(open_table[i, k])
                 open_table[i, k, mine] = self._free(c, s, middle[i], radius, mine, tilt[i, mine])
+                if self._progress is not None:
+                    self._progress(min(self.made, _TESTS), _TESTS)
         return open_table
 
     def _free(self, c: int, s: int, axis: Floats, radius: float, mine: Rows, tilt: Floats) -> NDArray[np.bool_]:
@@ -285,7 +290,7 @@ def apart(normal: Floats, tilt: float) -> Rows:
     return np.sort(np.array(best, np.int64))
 
 
-def over_all_axes(probes: Probes, fewest: Fewest, wanted: Rows) -> tuple[int, float]:
+def over_all_axes(probes: Probes, fewest: Fewest, wanted: Rows, *, progress: Progress | None = None) -> tuple[int, float]:
     """Bound how many orientations are needed, whatever their axes.
 
     Parameters
@@ -295,6 +300,8 @@ def over_all_axes(probes: Probes, fewest: Fewest, wanted: Rows) -> tuple[int, fl
         The fewest among candidates; its weights say which samples are looked at.
     wanted : (n,) int64
         Samples to serve.
+    progress : callable, optional
+        Called with how much is done of the most that may be.
 
     Returns
     -------
@@ -313,7 +320,7 @@ def over_all_axes(probes: Probes, fewest: Fewest, wanted: Rows) -> tuple[int, fl
         return least, math.nan
     heaviest = np.argsort(-fewest.weight, kind="stable")[:_ROWS]
     rows = np.union1d(fewest.rows[heaviest[fewest.weight[heaviest] > 0]], alone)
-    by_cells, radius = _by_cells(OpenCells(probes, rows), len(fewest.chosen))
+    by_cells, radius = _by_cells(OpenCells(probes, rows, progress), len(fewest.chosen))
     return max(least, by_cells), radius
 
 

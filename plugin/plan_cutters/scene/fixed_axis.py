@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.domain.verdicts import ACCESSIBLE, Verdicts, blank
 from plan_cutters.scene.conditions import Conditions, Context, contacts_of, rotations_of
-from plan_cutters.scene.threads import in_chunks
+from plan_cutters.scene.threads import Progress, in_chunks
 
 #: Axes this close are one, rad; ends of ranges this close to a posture's are on it.
 _SAME, _END = 1e-6, 1e-9
@@ -25,7 +25,9 @@ def serves(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, conte
     return np.asarray(served_by(rows, np.asarray(axis)[None], samples, context)[0][0])
 
 
-def served_by(rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, context: Context) -> tuple[NDArray[np.bool_], int]:
+def served_by(
+    rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, context: Context, progress: Progress | None = None
+) -> tuple[NDArray[np.bool_], int]:
     """At which of some samples (m,) a cutter stands free with each of some axes (k, 3).
 
     Returns
@@ -34,11 +36,13 @@ def served_by(rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, co
     made : int
         How many times the tool was put down.
     """
-    column, made = _tested(rows, axes, samples, context)
+    column, made = _tested(rows, axes, samples, context, progress)
     return column >= 0, made
 
 
-def _tested(rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, context: Context) -> tuple[NDArray[np.int8], int]:
+def _tested(
+    rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, context: Context, progress: Progress | None = None
+) -> tuple[NDArray[np.int8], int]:
     """How a cutter stands at samples with axes (k, m), in the numbers of the kernel, and how many times it was put down."""
     from plan_cutters.kernels.search.fixed_axis import DIRECTIONS, served
 
@@ -62,7 +66,7 @@ def _tested(rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, cont
 
     blocks = -(-len(rows) // _BLOCK)
     most = max(1, _AT_ONCE // min(_BLOCK, len(rows)))
-    made = in_chunks(tested, np.arange(len(held) * blocks), conditions.jobs, chunk=most)
+    made = in_chunks(tested, np.arange(len(held) * blocks), conditions.jobs, progress, chunk=most)
     if not full_turn:
         for k in held.tolist():
             touched = np.flatnonzero(column[k] >= 0)
