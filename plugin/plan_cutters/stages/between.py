@@ -25,7 +25,7 @@ from plan_cutters.stages.face_cells import FaceCells, Fixed, best
 #: Least gain, as a share of the target area for each contact, for which cells are cut into four.
 LEAST_GAIN = 1e-7
 #: Steps in which progress is told.
-_TOLD = 1000
+_STEPS = 1000
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -160,10 +160,10 @@ def between(
     began, upto = work.looked, work.looked + most
     contacts = budget
 
-    def told() -> None:
+    def reported() -> None:
         if progress is not None:
             share = max((work.looked - began) / most, sum(face_cells.seen for face_cells in faces) / max(1, contacts))
-            progress(min(int(_TOLD * share), _TOLD), _TOLD)
+            progress(min(int(_STEPS * share), _STEPS), _STEPS)
 
     faces, nodes, strips = list[FaceCells](), list[CellContacts](), list[CellContacts]()
     for grid in samples.grids:
@@ -180,7 +180,7 @@ def between(
             mine, bare = (cells.of(~deep[tuple(cells.home.T)]) for cells in (mine, bare))
         # Row -1, of no sample, is the last.
         mine, bare = (cells.of(own[cells.sample]) for cells in (mine, bare))
-        faces.append(FaceCells(field, context, work, fixed, told))
+        faces.append(FaceCells(field, context, work, fixed, reported))
         nodes.append(mine)
         strips.append(bare)
     contacts = budget + sum(map(len, nodes))

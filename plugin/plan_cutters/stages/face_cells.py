@@ -73,7 +73,7 @@ class FaceCells:
         What was looked at, for this face and others.
     fixed : Fixed, optional
         Where postures are not searched.
-    told : callable
+    reported : callable
         Called as often as contacts were looked at.
     found : list of CellContacts
         Served.
@@ -97,7 +97,7 @@ class FaceCells:
     context: Context
     work: Work = dataclasses_field(default_factory=Work)
     fixed: Fixed | None = None
-    told: Callable[[], None] = lambda: None
+    reported: Callable[[], None] = lambda: None
     found: list[CellContacts] = dataclasses_field(default_factory=list)
     levels: list[int] = dataclasses_field(default_factory=list)
     pools: list[tuple[CellContacts, CellStatus]] = dataclasses_field(default_factory=list)
@@ -154,7 +154,7 @@ class FaceCells:
         self.work.add(_ROUND + _CONTACT * len(contacts))
         status = _served(contacts, self, _MARGINS[min(level, len(_MARGINS) - 1)], upto)
         self.seen, self.spent = self.seen + len(contacts), self.spent + self.work.looked - began
-        self.told()
+        self.reported()
         good = status == 0
         self.found.append(contacts.of(good))
         self.levels.append(level)
