@@ -1,7 +1,8 @@
-"""Setups that are proposed: ranked, then planned with a table each, and kept only if that plan holds what was promised."""
+"""Setups that are proposed: ranked, then judged with a table each, and kept only if the verdicts hold what was promised."""
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -12,13 +13,14 @@ from plan_cutters.document.notes import noted
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement, axis_words
 from plan_cutters.errors import OptionError, PlanError
+from plan_cutters.judged_part import JudgedPart
 from plan_cutters.options import Options
+from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.notes import setup_proposed
 from plan_cutters.plan_file.numbers import exact, percent
 from plan_cutters.plan_file.setups import ProposedSetup, SetupProposal
-from plan_cutters.plan_file.words.text import with_text
-from plan_cutters.result import Result
 from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.scene import Scene
 
 #: Proposals that are planned, at most, and the share of what was promised that a plan must hold.
 _TRIES, _ENOUGH = 3, 0.99
@@ -26,24 +28,31 @@ _TRIES, _ENOUGH = 3, 0.99
 _ROUNDING = 1e-9
 
 
-def plan_proposed(
-    prepare: Callable[[Options, Clock], Prepared], run: Callable[..., Result], options: Options, clock: Clock
-) -> Result:
-    """Propose setups, the fewest of up to three that serve nearly all, and plan them.
+def judged_proposed(
+    prepare: Callable[[Options, Clock], Prepared],
+    judge: Callable[[Scene, Options, Clock], JudgedPart],
+    options: Options,
+    clock: Clock,
+    folder: str = "",
+) -> tuple[JudgedPart, Callable[[Plan], Plan]]:
+    """Propose setups, the fewest of up to three that serve nearly all, and judge them.
 
     Parameters
     ----------
-    prepare, run : callable
-        Read and sample a part under options; plan a scene under options.
+    prepare, judge : callable
+        Read and sample a part under options; judge a scene under options.
     options : Options
         With `propose`.
     clock : Clock
+    folder : str
+        Where the setups will be written; empty where they will not be.
 
     Returns
     -------
-    Result
-        The plan of the first proposal that holds what it promised; where none of three does, that which reaches most, which says
-        so.
+    part : JudgedPart
+        In the first proposal that holds what it promised; where none of three does, in that which reaches most.
+    describe : callable
+        Gives a plan of it with its proposal, which says so.
 
     Raises
     ------
@@ -54,7 +63,7 @@ def plan_proposed(
     ready = prepare(unproposed, clock)
     with clock.stage("proposal"):
         ranking = ranked(ready, MOST)
-    best: tuple[float, Result] | None = None
+    best: tuple[float, JudgedPart, Callable[[Plan], Plan]] | None = None
     failed, why = frozenset[int](), ""
     for tried in range(1, _TRIES + 1):
         chosen = ranking.choose(MOST, failed)
@@ -62,19 +71,19 @@ def plan_proposed(
         if not promised.any():
             break
         try:
-            result = run(ready.scene.turned_to(_axis(ranking, chosen[0])), _options(unproposed, ranking, chosen), clock)
+            part = judge(ready.scene.turned_to(_axis(ranking, chosen[0])), _options(unproposed, ranking, chosen, folder), clock)
         except PlanError as error:
             why, failed = error.cause, failed | {chosen[0]}
             continue
-        reached_share, held_share, worst = _compared(result, ranking, chosen)
-        texts = _texts(result, ranking, chosen, clock, (reached_share, held_share, tried))
+        reached_share, held_share, worst = _compared(part, ranking, chosen)
+        describe = partial(_described, ranking=ranking, chosen=chosen, shares=(reached_share, held_share, tried))
         if held_share >= _ENOUGH:
-            return texts
+            return part, describe
         if best is None or reached_share > best[0]:
-            best = reached_share, texts
+            best = reached_share, part, describe
         failed |= {worst}
     if best is not None:
-        return best[1]
+        return best[1:]
     if why:
         raise OptionError(f"setup auto: no proposal can be planned: {why}")
     raise OptionError(
@@ -88,8 +97,11 @@ def _axis(ranking: Ranking, k: int) -> tuple[float, float, float]:
     return x, y, z
 
 
-def _options(options: Options, ranking: Ranking, chosen: tuple[int, ...]) -> Options:
-    """The options of a plan in the chosen setups, a table under the part in each; the scene has the unit already."""
+def _options(options: Options, ranking: Ranking, chosen: tuple[int, ...], folder: str) -> Options:
+    """The options of a plan in the chosen setups, a table under the part in each; the scene has the unit already.
+
+    Each setup knows the file in which it will be: advice names that.
+    """
     table = (Fixture.parse("table"),)
     stands_on = touching(ranking.ready, ranking.candidates.axis)
     first, *others = (
@@ -98,28 +110,30 @@ def _options(options: Options, ranking: Ranking, chosen: tuple[int, ...]) -> Opt
             clamped=tuple(f"F{n}" for n in ranking.candidates.stands_on[k]),
             fixtures=table,
             stands_on=tuple(f"F{n}" for n in ranking.candidates.stands_on[k] or stands_on[k]),
+            file=f"{folder.rstrip('/')}/setup-{number}.toml" if folder else "",
+            proposed=True,
         )
-        for k in chosen
+        for number, k in enumerate(chosen, 1)
     )
     return replace(options, setup=first.z, placement=first, other_setups=tuple(each.z for each in others),
                    other_placements=tuple(others), unit=None)  # fmt: skip
 
 
-def _compared(result: Result, ranking: Ranking, chosen: tuple[int, ...]) -> tuple[float, float, int]:
+def _compared(part: JudgedPart, ranking: Ranking, chosen: tuple[int, ...]) -> tuple[float, float, int]:
     """Find the share of area that a plan reaches, the part of what was promised that it holds, and the setup that lost most."""
-    samples, ready = result.samples, ranking.ready
-    reached = np.logical_or.reduce([each.reached for each in result.reaches.values()]) & result.ready.finished
-    whole = float(np.nansum(samples.area[result.ready.finished]))
+    samples, finished = part.ready.samples, part.ready.finished
+    reached = np.logical_or.reduce([each.verdicts.reached for each in part.cutters.values()]) & finished
+    whole = float(np.nansum(samples.area[finished]))
     reached_share = float(np.nansum(samples.area[reached])) / max(1e-300, whole)
     # Samples may stand elsewhere, for another tolerance is kept: the nearest one answers.
-    near = cKDTree(samples.point).query(ready.samples.point[ranking.rows])[1]
+    near = cKDTree(samples.point).query(ranking.ready.samples.point[ranking.rows])[1]
     held = reached[near]
     served = np.stack([ranking.served[k] for k in chosen], axis=1)
     promised = served.any(axis=1)
     held_share = float(ranking.area[promised & held].sum()) / max(1e-300, float(ranking.area[promised].sum()))
     missed = np.asarray(ranking.area @ (served & ~held[:, None]))
     # Clamped faces are targets of the plan, too: what is clamped in all setups is not reached.
-    every = reached_share > 1.0 - _ROUNDING and bool((reached == result.ready.finished).all())
+    every = reached_share > 1.0 - _ROUNDING and bool((reached == finished).all())
     return (
         exact(reached_share, some=bool(reached.any()), whole=every),
         exact(held_share, some=bool(held[promised].any()), whole=bool(held[promised].all())),
@@ -127,8 +141,8 @@ def _compared(result: Result, ranking: Ranking, chosen: tuple[int, ...]) -> tupl
     )
 
 
-def _texts(result: Result, ranking: Ranking, chosen: tuple[int, ...], clock: Clock, shares: tuple[float, float, int]) -> Result:
-    """The same plan with its proposal."""
+def _described(plan: Plan, *, ranking: Ranking, chosen: tuple[int, ...], shares: tuple[float, float, int]) -> Plan:
+    """The same plan with its proposal; its text is not made anew."""
     served = np.stack([ranking.served[k] for k in chosen], axis=1)
     alone, any_of = ranking.share(served), np.asarray(served.any(axis=1))
     together = exact(float(ranking.share(any_of[:, None])[0]), some=bool(any_of.any()), whole=bool(any_of.all()))
@@ -152,5 +166,4 @@ def _texts(result: Result, ranking: Ranking, chosen: tuple[int, ...], clock: Clo
     entry = SetupProposal(setups=setups, directions=len(ranking.candidates.axis), searched=len(ranking.served),
                           samples=len(ranking.rows), promised=together, found=share, kept=held_share, held=held, tried=tried,
                           why=why)  # fmt: skip
-    document = noted(result.plan, setup_proposed(where, why)).model_copy(update={"setup_proposal": entry})
-    return replace(result, plan=clock.stamp(with_text(document)))
+    return noted(plan, setup_proposed(where, why)).model_copy(update={"setup_proposal": entry})

@@ -121,9 +121,9 @@ def test_a_holder_that_is_advised_is_one_of_the_table_and_takes_the_shank():
     usual(result)
 
 
-def brackets(part, *words, most=2, has=()):
+def brackets(part, *words, most=2, has=(), folder=""):
     """How many options were followed: each leaves what it says of the same area, within half a point."""
-    result, count = asked(part, *words), 0
+    result, count = asked(part, *words, folder=folder), 0
     usual(result)
     area = sum(face.area_mm2 for face in result.plan.faces if face.target)
     for entry in [c for c in result.cutters if c.mend]:
@@ -136,12 +136,26 @@ def brackets(part, *words, most=2, has=()):
     return count
 
 
-def test_with_several_proposed_setups_no_option_is_said_that_would_not_keep_its_word():
+#: Two setups are proposed for a block with a slot, and the tool is too thick and too short for the slot.
+SLOT = ("--cutter", "D12L60rc1F26S12", "--holder", "er20", "--machine", "trunnion-ac", "--setup", "auto", "--faces", "all",
+        "--spacing", "12")  # fmt: skip
+
+
+def slotted():
+    return read_part(cut(box(60, 60, 40), box(5, 40, 20, at=(28, 10, 20))))
+
+
+def test_with_a_proposed_setup_the_option_names_it(tmp_path):
+    """Another cutter might make `auto` choose otherwise: the files of the setups, their tables in them, stand in the option."""
+    files = [tmp_path / f"setup-{number}.toml" for number in (1, 2)]
+    assert brackets(slotted(), *SLOT, most=1, has=[f"--setup {file}" for file in files], folder=tmp_path) == 1
+    assert all('fixtures = ["table"]' in file.read_text() for file in files)
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["plan.json", "setup-1.toml", "setup-2.toml"]
+
+
+def test_with_several_proposed_setups_in_no_file_no_option_is_said_that_would_not_keep_its_word():
     """Another cutter might make `auto` choose otherwise, and no option says that each setup stands on a table of its own."""
-    part = read_part(cut(box(60, 60, 40), box(5, 40, 20, at=(28, 10, 20))))
-    words = ("--cutter", "D12L60rc1F26S12", "--holder", "er20", "--machine", "trunnion-ac", "--setup", "auto", "--faces", "all",
-             "--spacing", "12")  # fmt: skip
-    result = asked(part, *words)
+    result = asked(slotted(), *SLOT)
     assert len(result.plan.setup_proposal.setups) > 1
     (entry,) = result.cutters
     steps = steps_of(result, entry.id)
@@ -152,7 +166,7 @@ def test_with_several_proposed_setups_no_option_is_said_that_would_not_keep_its_
 
 HARD = {
     "hard/gmsh_pump_carter_sup.stp": ("--cutter", "D16L60F32S16", "--cutter", "D6L40rc3F15S6", "--holder", "er25", "--machine",
-                                 "trunnion-ac", "--spacing", "14", "--faces", "all"),
+                                 "trunnion-ac", "--setup", "auto", "--spacing", "14", "--faces", "all"),
     "hard/jack_phone.igs": ("--cutter", "D8L40rc4F16S8", "--cutter", "D4L35rc2F12S6", "--holder", "er20",
                             "--machine", "trunnion-ac", "--spacing", "4"),
 }  # fmt: skip
@@ -160,5 +174,5 @@ HARD = {
 
 @pytest.mark.slow
 @pytest.mark.parametrize("file", real(*HARD), ids=lambda path: path.stem)
-def test_what_a_bracket_says_is_true_on_real_parts(file):
-    assert brackets(read_part(file), *HARD[f"hard/{file.name}"]) > 0
+def test_what_a_bracket_says_is_true_on_real_parts(file, tmp_path):
+    assert brackets(read_part(file), *HARD[f"hard/{file.name}"], folder=tmp_path) > 0

@@ -14,7 +14,7 @@ from plan_cutters.domain.placement import Placement
 from plan_cutters.errors import OptionError
 from plan_cutters.pipeline import prepare
 from plan_cutters.plan_file.words.story import story_of
-from plan_cutters.proposal import plan_proposed
+from plan_cutters.proposal import judged_proposed
 from tests.support.cad_parts import ball, box
 from tests.support.commands import assert_one_line
 from tests.support.forked import run
@@ -183,7 +183,7 @@ def test_where_nothing_is_within_the_limits_it_is_one_line():
         raise AssertionError
 
     with pytest.raises(OptionError, match=r"in none of \d+ directions does machine 3-axis hold") as caught:
-        plan_proposed(lambda options, clock: prepare(box(), options, clock), never, flat, Clock())
+        judged_proposed(lambda options, clock: prepare(box(), options, clock), never, flat, Clock())
     assert "\n" not in str(caught.value)
 
 

@@ -123,7 +123,11 @@ def test_more_than_the_tilts_is_called_blocked():
     probes = Probes(ready.samples, ready.cutters, ready.setups, [ready.finished])
     rows = np.flatnonzero(ready.finished)[::3]
     cells = Cells.whole(3)
-    open_ = OpenCells(probes, rows).table(cells)[:, 0]
+    told = []
+    open_ = OpenCells(probes, rows, lambda done, total: told.append(done / total)).table(cells)[:, 0]
+    assert len(set(told)) > 10
+    assert told == sorted(told)
+    assert told[-1] <= 1.0
     tilt = np.arccos(np.clip(cells.middle @ ready.samples.normal[rows].T, -1.0, 1.0))
     low = tilt < math.pi / 2.0 - cells.radius.max()
     assert 0.02 < (~open_ & low).sum() / low.sum() < 0.98

@@ -107,10 +107,11 @@ def test_the_clearance_of_an_operation_is_the_least_of_its_samples(written):
         for number, (said, each) in enumerate(zip(entry.operations, found.operations, strict=True)):
             if each.axis is None:
                 continue
-            there = held_at(
-                each.axis[None], np.where(found.label == number, 0, -1), samples, Context.of(each.cutter, result.ready.setups[0])
-            )
-            every = clearances(at_fixed_axis(samples, there), each.cutter, there, result.ready.setups[0]).distance[each.rows]
+            conditions = result.ready.setups[0]
+            mine = np.where(found.label == number, 0, -1)
+            there = held_at(each.axis[None], mine, samples, Context.of(each.cutter, conditions))
+            at = at_fixed_axis(samples, there, conditions.tolerance)
+            every = clearances(at, each.cutter, there, conditions).distance[each.rows]
             assert said.clearance_mm == pytest.approx(every.min(), abs=0.0)
 
 

@@ -20,9 +20,12 @@ def options(*words):
     return options_of(PlanRequest(**command.make_context("plan-cutters", ["part", *words]).params))
 
 
-def asked(part, *words):
-    """A plan by the words of a command line, with its steps."""
-    return run(part, options(*words, "--answers", "mend", "--area-budget", "0"), Clock())
+def asked(part, *words, folder=""):
+    """A plan by the words of a command line, with its steps; with a folder, its proposed setups are written there."""
+    result = run(part, options(*words, "--answers", "mend", "--area-budget", "0"), Clock(), folder=str(folder))
+    if folder:
+        result.write(folder, ("json",))
+    return result
 
 
 def followed(part, step, *words):

@@ -9,13 +9,13 @@ from numpy.typing import NDArray
 
 from plan_cutters.answers.areas import Finished
 from plan_cutters.answers.in_setups import radius_in_any, stick_out_in_each
-from plan_cutters.answers.least_set import least_set
 from plan_cutters.answers.mend import mend
 from plan_cutters.answers.steps import steps, worth
 from plan_cutters.answers.undecidable import undecidable
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.change import WhatIfAnswer
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.lengths import reporting
 from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.radius_map import RadiusMap
@@ -39,8 +39,10 @@ def ask(
     reaches: Mapping[Cutter, Verdicts],
     stage: Callable[[str], AbstractContextManager[Progress]],
     other_setups: OtherSetups = (),
+    *,
+    least: LeastSet | None = None,
 ) -> Answers:
-    """Answer what is asked, and what costs nothing.
+    """Answer what is asked.
 
     Parameters
     ----------
@@ -51,6 +53,8 @@ def ask(
         Opens a stage of work by its name; what it gives is told how much of how much is done.
     other_setups : sequence
         Of each other setup its axis, and what each cutter reaches there by its id.
+    least : LeastSet, optional
+        The fewest runs, as they are known already: one of the answers.
     """
     requested = ready.options.answers
     setups = {c: [reaches[c], *(there[c.id] for _, there in other_setups)] for c in reaches}
@@ -81,7 +85,7 @@ def ask(
                 over = together[cutter][0]
                 mends[cutter.id] = _what_if(ready, cutter, over, reaches, other_setups, part_of(tell, k, len(near)))
     rest = tuple(cutter.id for cutter in failing if cutter not in near)
-    return Answers(stick_outs, tuple(radius_maps), mends, rest, least_set(ready, reaches, other_setups))
+    return Answers(stick_outs, tuple(radius_maps), mends, rest, least)
 
 
 def _what_if(

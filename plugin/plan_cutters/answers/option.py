@@ -1,5 +1,6 @@
 """How a change is said on the command line, exactly: what is said there gives what was judged."""
 
+import shlex
 from collections.abc import Sequence
 from dataclasses import replace
 
@@ -13,6 +14,7 @@ from plan_cutters.plan_file.numbers import ranges
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.faces import select_faces
 from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.setups import places
 
 Axis = tuple[float, float, float]
 
@@ -33,7 +35,7 @@ def option(
     if words is None:
         return None
     auto = proposed(ready)
-    if auto and (setups is not None or flip is not None or options.other_setups):
+    if auto and (setups is not None or flip is not None or not _nameable(ready)):
         return None
     if setups is not None:
         if options.placement is not None or any(options.other_placements):
@@ -56,15 +58,27 @@ def option(
 
 
 def proposed(ready: Prepared) -> bool:
-    """Whether its setup is one that was proposed: it stands on a table of its own, and no file says so."""
+    """Whether its setups were proposed."""
     place = ready.options.placement
-    return place is not None and not place.file and any(each.follows_setup for each in place.fixtures)
+    return place is not None and place.proposed
+
+
+def _files(ready: Prepared) -> list[str]:
+    """The files in which its setups will be; empty where they will be in none."""
+    each = [place.file if place else "" for place in places(ready.options)]
+    return each if all(each) else []
+
+
+def _nameable(ready: Prepared) -> bool:
+    """Whether options name the proposed setups, and a plan that is given them finds the sides that faces have now."""
+    return bool(_files(ready) or not ready.options.other_setups) and ready.scene.same_sides(ready.scene.setup)
 
 
 def _pinned(ready: Prepared, faces: Sequence[int]) -> list[str]:
-    """Name the proposed setup, its table, and the faces to be finished."""
+    """Name the proposed setups, their tables, and the faces to be finished."""
     part = ready.scene.part
-    words = ["--setup", ",".join(f"{each:.12g}" for each in ready.scene.setup), "--fixture", "table"]
+    words = [word for file in _files(ready) for word in ("--setup", shlex.quote(file))]
+    words = words or ["--setup", ",".join(f"{each:.12g}" for each in ready.scene.setup), "--fixture", "table"]
     selected = select_faces(part.faces, ready.chosen.asked, tree=part.tree, ignored=ready.scene.ignored, blends=part.blends)
     return words if tuple(selected) == tuple(faces) else [*words, "--faces", ranges(faces)]
 

@@ -11,17 +11,19 @@ from typing import TYPE_CHECKING
 
 from plan_cutters.batch.job_input import job_input
 from plan_cutters.command import terminal
-from plan_cutters.command.codes import code_of
+from plan_cutters.command.codes import UNREADABLE, code_of
+from plan_cutters.command.partial_plan import verdicts_text
 from plan_cutters.command.progress import Display, Teller
 from plan_cutters.command.summary import summary, written
 from plan_cutters.plan_file.words.details import others
 from plan_cutters.plan_file.words.names import called
-from plan_cutters.workers.assignment import INTERRUPTED, is_child, report, report_work
+from plan_cutters.workers.assignment import INTERRUPTED, assignment, is_child, report, report_work
 
 if TYPE_CHECKING:
     from plan_cutters.command.request import PlanRequest
     from plan_cutters.options import Options
     from plan_cutters.plan_file.model import Plan
+    from plan_cutters.result import Result
     from plan_cutters.stages.judge import Judge
 
 
@@ -37,7 +39,7 @@ def one_part(
 
     `began`: when the command did, for the first part (`time.monotonic`); `omitted`: why faces are not to be worked on, by number.
     """
-    from plan_cutters.report.folder import DEFAULT_FORMATS, Staging, ended, file_name, read_formats, write_all
+    from plan_cutters.report.folder import DEFAULT_FORMATS, Staging, ended, file_name, read_formats, write_all, write_unfinished
     from plan_cutters.report.to_json import dumps
 
     formats = DEFAULT_FORMATS if request.formats is None else read_formats(request.formats)
@@ -45,6 +47,11 @@ def one_part(
     report("part", part)
     staging = Staging(out, lambda folder: report("staging", str(folder))) if out else None
     watch = ProgressListener(out, options, request, began)
+
+    def stands(result: "Result") -> None:
+        if staging and write_unfinished(result, formats, staging, clock):
+            watch.stands()
+
     try:
         watch.tell("start", 0, 1)
         compiling = _compiling(options, request.quiet)
@@ -59,7 +66,8 @@ def one_part(
         source = pickle.loads(handed) if handed else part
         with _judging(request) as judged:
             result = run(source, options, clock, read_timeout=request.read_timeout, at=report_work, compiling=compiling,
-                         excluded=omitted, judged=judged)  # fmt: skip
+                         excluded=omitted, judged=judged, stands=stands if staging else None,
+                         folder=_folder(out))  # fmt: skip
         document = result.plan
         if out is None:
             watch.summarise(document)
@@ -67,10 +75,17 @@ def one_part(
             watch.tell("files", 0, 1)
             document = write_all(result, out, formats, staging, step_schema=request.step_schema, listener=watch, clock=clock)
     except KeyboardInterrupt:
-        if watch.plan is None or out is None:
+        if staging is None or out is None or not staging.stands:
             raise
+        staging.discard()
         ended(out, "interrupted")
-        return INTERRUPTED, f"plan-cutters: interrupted; the plan is in {out}, not all models are"
+        what = verdicts_text(out) or f"the plan is in {out}, not all models are"
+        return INTERRUPTED, f"plan-cutters: interrupted; {what}"
+    except Exception:
+        if staging and out and staging.stands and (what := verdicts_text(out)):
+            watch.end()
+            terminal.error(f"plan-cutters: {what}")
+        raise
     finally:
         watch.end()
         if staging:
@@ -84,6 +99,11 @@ def one_part(
     for name, why in document.not_written.items():
         terminal.error(f"plan-cutters: {file_name(name)} was not written: {why}")
     return code_of(document, request.fail_under), ""
+
+
+def _folder(out: Path | None) -> str:
+    """How a command names the output; empty where there is none, or it will be somewhere else: a batch takes it away."""
+    return "" if out is None or assignment().job is not None else str(out)
 
 
 def _tells(request: "PlanRequest") -> Callable[..., None]:
@@ -136,7 +156,6 @@ class ProgressListener:
 
     def __init__(self, out: Path | None, options: "Options", request: "PlanRequest", began: float | None) -> None:
         self.out, self.request = out, request
-        self.plan: Plan | None = None
         self.display = None
         if not is_child():
             names = {cutter.id: called(cutter) for cutter in options.judged}
@@ -148,8 +167,12 @@ class ProgressListener:
         if not self.request.quiet:
             summary(plan, verbose=self.request.verbose, tells=_tells(self.request))
 
+    def stands(self) -> None:
+        """A plan is in the output that is without what was requested besides: no exit code of a plan stands for that."""
+        if self.out is not None:
+            report("safe", f"{UNREADABLE} {self.out.absolute()}")
+
     def safe(self, plan: "Plan") -> None:
-        self.plan = plan
         if self.out is not None:
             report("safe", f"{code_of(plan, self.request.fail_under)} {self.out.absolute()}")
         self.summarise(plan)

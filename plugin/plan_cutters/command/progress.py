@@ -32,6 +32,7 @@ _WORDS = {
     "proposal": "comparing setups",
     "reasons": "finding the reasons",
     **{kind.word: kind.work for kind in KINDS},
+    "operations": "planning the operations",
     "area": "looking between the samples",
     "maps": "mapping all postures",
     "motion": "joining postures over the surface",

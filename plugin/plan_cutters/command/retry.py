@@ -61,8 +61,11 @@ def _failure_text(out: Path | None, timeout: float) -> str:
     advice = "sample more coarsely (--spacing), or give more time (--timeout)"
     if out is None:
         return f"{why}: {advice}"
+    from plan_cutters.command.partial_plan import verdicts_text
     from plan_cutters.report import file_name
     from plan_cutters.report.folder import ended
 
     missing = ", ".join(map(file_name, ended(out, why))) or "a model"
+    if text := verdicts_text(out):
+        return f"{why}: {advice}; {text}"
     return f"{why}: the plan is in {out}, without {missing}; {advice}"

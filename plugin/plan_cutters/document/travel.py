@@ -17,7 +17,8 @@ def placement_entry(placement: Placement | None) -> PlacementEntry | None:
     """How a part stands."""
     if placement is None:
         return None
-    return PlacementEntry(file=placement.file or None, x=placement.x, origin_mm=placement.origin, clamped=list(placement.clamped))
+    file = None if placement.proposed else placement.file or None
+    return PlacementEntry(file=file, x=placement.x, origin_mm=placement.origin, clamped=list(placement.clamped))
 
 
 def linear_entries(ready: Prepared) -> list[LinearEntry]:

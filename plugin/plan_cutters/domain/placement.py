@@ -39,10 +39,12 @@ class Placement:
     fixtures : tuple of Fixture
         What holds it.
     file : str
-        Where it was read from; empty where it was not.
+        Where it was read from, or will be written; empty where it was not.
     stands_on : tuple of str
         Faces that stand on a table which was proposed with the setup, and which nobody has yet: what it forbids there is left
         for another setup, and decides nothing.
+    proposed : bool
+        It was proposed: nobody has named it.
 
     Raises
     ------
@@ -62,6 +64,7 @@ class Placement:
     fixtures: tuple[Fixture, ...] = ()
     file: str = ""
     stands_on: tuple[str, ...] = ()
+    proposed: bool = False
 
     if TYPE_CHECKING:
 
@@ -74,6 +77,7 @@ class Placement:
             fixtures: Any = ...,
             file: str = "",
             stands_on: tuple[str, ...] = (),
+            proposed: bool = False,
         ) -> None: ...
 
     def __post_init__(self) -> None:

@@ -18,6 +18,7 @@ from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.operations import Operation
 from plan_cutters.operations.candidates import Orientations, face_directions
 from plan_cutters.operations.plans import Task, clearance_of, costs_with
+from plan_cutters.scene.threads import Progress
 
 Served = NDArray[np.bool_]
 Rows = NDArray[np.int64]
@@ -104,7 +105,7 @@ def _choice(task: Task, rule: Rule | None, columns: Columns, cost: Floats) -> _C
     )
 
 
-def canonical(task: Task, columns: Columns, rule: Rule | None = None) -> Columns:
+def canonical(task: Task, columns: Columns, rule: Rule | None = None, *, progress: Progress | None = None) -> Columns:
     """Exchange orientations of a choice for canonical ones.
 
     The setup axis comes first, then normals of floors, directions of walls, and whole multiples of 90, 45, 30, 15, 5, 1 and
@@ -117,6 +118,8 @@ def canonical(task: Task, columns: Columns, rule: Rule | None = None) -> Columns
     columns : Columns
     rule : callable, optional
         Says which of the columns that serve a sample it may go with.
+    progress : callable, optional
+        Called with how much is done, of how much.
 
     Returns
     -------
@@ -127,9 +130,12 @@ def canonical(task: Task, columns: Columns, rule: Rule | None = None) -> Columns
         return columns
     first = choice = _choice(task, rule, columns, costs_with(task, columns)[1])
     most, faces = (1.0 + _EQUAL) * choice.cutting, face_directions(task.ready.samples)
-    for k in choice.order():
+    tell, count = progress or (lambda done, total: None), 2 * len(columns)
+    for done, k in enumerate(choice.order()):
+        tell(done, count)
         choice = _preferred(choice, k, most, faces)
-    for k in choice.order():
+    for done, k in enumerate(choice.order(), len(columns)):
+        tell(done, count)
         choice = _shortened(choice, k, most)
     choice = _merged(choice, most)
     return choice.columns if choice.seconds() <= (1.0 + _EQUAL) * first.seconds() else columns

@@ -14,6 +14,7 @@ from cad_io.arrays import Floats
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.operations import Fewest, Step
 from plan_cutters.operations.probes import Probes
+from plan_cutters.scene.threads import Progress, part_of
 
 Known = tuple[Columns, NDArray[np.int64], NDArray[np.bool_], Floats]
 #: Tests that a table of all samples may take.
@@ -21,7 +22,14 @@ _TESTS = 300_000
 
 
 def curve(
-    probes: Probes, fewest: Fewest, rows: NDArray[np.int64], area: Floats, whole: float, some: Callable[[], Known]
+    probes: Probes,
+    fewest: Fewest,
+    rows: NDArray[np.int64],
+    area: Floats,
+    whole: float,
+    some: Callable[[Progress], Known],
+    *,
+    progress: Progress | None = None,
 ) -> tuple[Step, ...]:
     """Steps of the greedy choice by area, as many as the cover has columns.
 
@@ -36,24 +44,30 @@ def curve(
     whole : float
         Area that shares are of, mm2.
     some : callable
-        Gives columns, among them the cover's, their numbers, where each serves some samples (s, columns), and the area (s,) that
-        each of these stands for: columns are chosen by these where the table of all samples is large.
+        Told how to tell its progress, gives columns, among them the cover's, their numbers, where each serves some samples
+        (s, columns), and the area (s,) that each of these stands for: columns are chosen by these where the table of all samples
+        is large.
+    progress : callable, optional
+        Called with how much is done, of how much.
     """
+    tell = progress or (lambda done, total: None)
+    parts = [part_of(tell, k, 5) for k in range(5)]
     most = len(fewest.chosen)
     if not most or not len(rows):
         return ()
     size = np.nan_to_num(area[rows])
     if len(rows) * len(fewest.columns) <= _TESTS:
-        columns, table, weight = fewest.columns, probes.table(rows, fewest.columns).T.astype(np.float32), size
-        order = _order(table, weight, most)
-        bound = _bound(table, weight, order) / max(whole, 1e-300)
+        columns, table, weight = fewest.columns, probes.table(rows, fewest.columns, parts[0]).T.astype(np.float32), size
+        order = _order(table, weight, most, parts[1])
+        bound = _bound(table, weight, order, parts[2]) / max(whole, 1e-300)
     else:
-        columns, _, known, weight = some()
+        columns, _, known, weight = some(parts[0])
         table = known.T.astype(np.float32)
-        order, bound = _order(table, weight, most), None
+        order, bound = _order(table, weight, most, parts[1]), None
     chosen = np.flatnonzero(np.isin(columns.key, fewest.columns.of(fewest.chosen).key))
-    own = chosen[_order(table[chosen], weight, most)]
-    ways = [probes.kept(rows, columns.of(each)) for each in (np.array(order, np.int64), own)]
+    own = chosen[_order(table[chosen], weight, most, parts[3])]
+    orders = enumerate((np.array(order, np.int64), own))
+    ways = [probes.kept(rows, columns.of(each), part_of(parts[4], k, 2)) for k, each in orders]
     steps = []
     for k in range(most):
         share = min(1.0, max(float(size[way[:, : k + 1].any(axis=1)].sum()) for way in ways) / max(whole, 1e-300))
@@ -61,10 +75,11 @@ def curve(
     return tuple(steps)
 
 
-def _order(table: NDArray[np.float32], size: Floats, most: int) -> list[int]:
+def _order(table: NDArray[np.float32], size: Floats, most: int, tell: Progress) -> list[int]:
     """Columns in the order of how much each serves of what those before it leave."""
     open_size, order = size.astype(np.float32), list[int]()
-    for _ in range(most):
+    for k in range(most):
+        tell(k, most)
         gain = table @ open_size
         gain[order] = -1.0
         order.append(int(gain.argmax()))
@@ -72,10 +87,11 @@ def _order(table: NDArray[np.float32], size: Floats, most: int) -> list[int]:
     return order
 
 
-def _bound(table: NDArray[np.float32], size: Floats, order: list[int]) -> Floats:
+def _bound(table: NDArray[np.float32], size: Floats, order: list[int], tell: Progress) -> Floats:
     """The most area (k,) that one, two, three ... columns serve."""
     most, open_size, have = np.full(len(order), np.inf), size.astype(np.float32), 0.0
-    for column in [*order, -1]:
+    for k, column in enumerate([*order, -1]):
+        tell(k, len(order) + 1)
         gain = np.sort(table @ open_size)[::-1][: len(order)]
         cumulated = have + np.cumsum(gain, dtype=float)
         most[: len(cumulated)] = np.minimum(most[: len(cumulated)], cumulated)

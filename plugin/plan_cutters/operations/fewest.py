@@ -18,6 +18,7 @@ from plan_cutters.domain.operations import Fewest
 from plan_cutters.operations.candidates import Orientations, apart, neighbours
 from plan_cutters.operations.cover import SECONDS, UNIT, Cover, fewest, relax
 from plan_cutters.operations.probes import Probes
+from plan_cutters.scene.threads import Progress
 
 Rows = NDArray[np.int64]
 #: Samples that the first table holds, and samples that are added to it at once.
@@ -52,6 +53,8 @@ class Search:
         Samples to serve.
     stored : callable
         Gives columns for samples that no candidate serves: their own postures.
+    progress : callable, optional
+        Called with how much of the first table is done, of how much.
 
     Attributes
     ----------
@@ -63,7 +66,9 @@ class Search:
         Samples that no candidate serves.
     """
 
-    def __init__(self, probes: Probes, columns: Columns, rows: Rows, stored: Callable[[Rows], Columns]) -> None:
+    def __init__(
+        self, probes: Probes, columns: Columns, rows: Rows, stored: Callable[[Rows], Columns], progress: Progress | None = None
+    ) -> None:
         self._probes, self.columns, self._wanted, self._stored = probes, columns, rows, stored
         self.rows: Rows = np.zeros(0, np.int64)
         self.alone: Rows = np.zeros(0, np.int64)
@@ -73,7 +78,7 @@ class Search:
         self._seconds = SECONDS
         rng = np.random.default_rng(0)
         first = rng.choice(rows, min(_FIRST, len(rows)), replace=False) if len(rows) else rows
-        self._add_rows(np.sort(first))
+        self._add_rows(np.sort(first), progress)
 
     def solve(self, known: Rows | None = None, *, prove: bool = True) -> Cover:
         """Return a small cover of the candidates that serves all samples but those that none serves.
@@ -103,11 +108,11 @@ class Search:
         active = np.flatnonzero(self._active)
         return active, self._table[:, active] == 1
 
-    def require(self, rows: Rows) -> None:
+    def require(self, rows: Rows, progress: Progress | None = None) -> None:
         """Take samples into the table."""
         new = np.setdiff1d(rows, np.union1d(self.rows, self.alone))
         if len(new):
-            self._add_rows(new)
+            self._add_rows(new, progress)
 
     def refine(self, cover: Cover, spacing: float, orientations: Sequence[Orientations]) -> None:
         """Lay candidates at a spacing, rad, about those that the weights load most, and about those chosen."""
@@ -174,10 +179,10 @@ class Search:
             missing = missing[~self._probes.one(missing, self.columns, column)]
         return missing
 
-    def _add_rows(self, rows: Rows) -> None:
+    def _add_rows(self, rows: Rows, progress: Progress | None = None) -> None:
         active = np.flatnonzero(self._active)
         new = np.full((len(rows), len(self.columns)), -1, np.int8)
-        new[:, active] = self._probes.table(rows, self.columns.of(active))
+        new[:, active] = self._probes.table(rows, self.columns.of(active), progress)
         bare = rows[~(new == 1).any(axis=1)]
         if len(bare):
             before = len(self.columns)

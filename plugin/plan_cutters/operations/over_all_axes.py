@@ -41,6 +41,7 @@ from plan_cutters.operations.cover import UNIT, fewest, relax
 from plan_cutters.operations.probes import Probes
 from plan_cutters.scene.conditions import Context, contacts_of
 from plan_cutters.scene.fixed_axis import FLAT
+from plan_cutters.scene.threads import Progress
 
 Rows = NDArray[np.int64]
 #: Halvings of the icosahedron's sides that make the first cells: 320 of them, about 10 deg in radius.
@@ -125,6 +126,8 @@ class OpenCells:
         Samples, cutters and setups.
     rows : (r,) int64
         Samples.
+    progress : callable, optional
+        Called with `made`, and the most that it may be.
 
     Attributes
     ----------
@@ -132,8 +135,8 @@ class OpenCells:
         Times that a body was put down at a sample.
     """
 
-    def __init__(self, probes: Probes, rows: Rows) -> None:
-        self.probes, self.rows, self.made = probes, rows, 0
+    def __init__(self, probes: Probes, rows: Rows, progress: Progress | None = None) -> None:
+        self.probes, self.rows, self.made, self._progress = probes, rows, 0, progress
         self._tools: dict[tuple[Cutter, int, int, float, bool], list[Tool]] = {}
         self._modes = [[each.inner_tool.mode for each in of_cutter] for of_cutter in probes.contexts]
 
@@ -157,6 +160,8 @@ class OpenCells:
             for i in np.flatnonzero(open_table[:, k].any(axis=1)).tolist():
                 mine = np.flatnonzero(open_table[i, k])
                 open_table[i, k, mine] = self._free(c, s, middle[i], radius, mine, tilt[i, mine])
+                if self._progress is not None:
+                    self._progress(min(self.made, _TESTS), _TESTS)
         return open_table
 
     def _free(self, c: int, s: int, axis: Floats, radius: float, mine: Rows, tilt: Floats) -> NDArray[np.bool_]:
@@ -180,18 +185,8 @@ class OpenCells:
                 open_rows = np.flatnonzero(touching & (turn == psi) & (wall == along) & ~free)
                 for tool in self._bodies(c, s, number, psi, along) if len(open_rows) else ():
                     decided = np.full(len(open_rows), -1, np.int8)
-                    self.made += served(
-                        self.rows[mine[open_rows]],
-                        axis,
-                        contacts,
-                        -1.0,
-                        math.pi + 1.0,
-                        _TILTED_ALONE,
-                        tool,
-                        solids,
-                        decided,
-                        none,
-                    )
+                    at = self.rows[mine[open_rows]]
+                    self.made += served(at, axis, contacts, -1.0, math.pi + 1.0, _TILTED_ALONE, tool, solids, decided, none)
                     open_rows = open_rows[decided >= 0]
                 free[open_rows] = True
         return free
@@ -311,7 +306,7 @@ def apart(normal: Floats, tilt: float) -> Rows:
     return np.sort(np.array(best, np.int64))
 
 
-def over_all_axes(probes: Probes, fewest: Fewest, wanted: Rows) -> tuple[int, float]:
+def over_all_axes(probes: Probes, fewest: Fewest, wanted: Rows, *, progress: Progress | None = None) -> tuple[int, float]:
     """Bound how many orientations are needed, whatever their axes.
 
     Parameters
@@ -321,6 +316,8 @@ def over_all_axes(probes: Probes, fewest: Fewest, wanted: Rows) -> tuple[int, fl
         The fewest among candidates; its weights say which samples are looked at.
     wanted : (n,) int64
         Samples to serve.
+    progress : callable, optional
+        Called with how much is done of the most that may be.
 
     Returns
     -------
@@ -339,7 +336,7 @@ def over_all_axes(probes: Probes, fewest: Fewest, wanted: Rows) -> tuple[int, fl
         return least, math.nan
     heaviest = np.argsort(-fewest.weight, kind="stable")[:_ROWS]
     rows = np.union1d(fewest.rows[heaviest[fewest.weight[heaviest] > 0]], alone)
-    by_cells, radius = _by_cells(OpenCells(probes, rows), len(fewest.chosen))
+    by_cells, radius = _by_cells(OpenCells(probes, rows, progress), len(fewest.chosen))
     return max(least, by_cells), radius
 
 

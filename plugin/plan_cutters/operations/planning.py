@@ -43,13 +43,15 @@ from plan_cutters.operations.walls import Walls
 from plan_cutters.options import Options
 from plan_cutters.plan_file.numbers import duration, percent
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.scene.threads import Progress
+from plan_cutters.scene.threads import Progress, part_of
 
 Rows = NDArray[np.int64]
 #: Cutters whose operations are compared, at most: the fewest that reach all, and then by rank.
 _CUTTERS = 4
 #: Samples all over the part by which plans are compared, and more by which the fastest is found; rounds until it serves all.
 _EVEN, _TIMED, _ROUNDS = 250, 600, 12
+#: Parts of the work whose progress is told as one: the first table, the fewest, their bound and curve, the plans, their proof.
+_PARTS = 6
 #: Tries to exchange the fewest for as many that cut faster.
 _TRIES = 4
 
@@ -77,18 +79,21 @@ def plan_operations(
     task = _task(ready, everywhere, least)
     finest = FINEST if options.index_step is None else options.index_step
     with stage("operations") as tell:
-        search = Search(task.probes, _first(task), task.rows, lambda bare: _stored(task, bare))
-        fewest = search_fewest(search, task.orientations, options.index_step or STEP, finest, tell)
-        any_axes, cells = over_all_axes(task.probes, fewest, task.rows)
+        search = Search(task.probes, _first(task), task.rows, lambda bare: _stored(task, bare), part_of(tell, 0, _PARTS))
+        fewest = search_fewest(search, task.orientations, options.index_step or STEP, finest, part_of(tell, 1, _PARTS))
+        any_axes, cells = over_all_axes(task.probes, fewest, task.rows, progress=part_of(tell, 2, _PARTS))
         fewest = replace(fewest, at_least_any=any_axes, cells=cells)
         whole = float(np.nansum(ready.samples.area[ready.finished]))
-        steps = curve(task.probes, fewest, task.rows, ready.samples.area, whole, lambda: _even(task, search))
-        plans, timed, worth, instead = _plans(task, search, fewest.columns.of(fewest.chosen))
+        steps = curve(task.probes, fewest, task.rows, ready.samples.area, whole, partial(_even, task, search),
+                      progress=part_of(tell, 3, _PARTS))  # fmt: skip
+        plans, timed, worth, instead = _plans(task, search, fewest.columns.of(fewest.chosen), part_of(tell, 4, _PARTS))
+        proving = part_of(tell, 5, _PARTS)
         # What was found of a plan is neither sought nor said again of others that are the same.
         different = list[OperationPlan]()
         for k, each in enumerate(plans):
             same = next((other for other in different if each.like(other)), None)
-            plans[k] = proved(ready, each) if same is None else replace(same, name=each.name)
+            mine = part_of(proving, k, len(plans))
+            plans[k] = proved(ready, each, progress=mine) if same is None else replace(same, name=each.name)
             different += [plans[k]] if same is None else []
     small = instead + tuple(note for each in different for note in small_pieces(each, ready.samples, options.overlap))
     if unpriced := [each.id for each in without_feed(ready)]:
@@ -112,15 +117,20 @@ def plan_operations(
 _Plans = tuple[list[OperationPlan], Fastest | None, tuple[Worth, ...], tuple[str, ...]]
 
 
-def _plans(task: Task, search: Search, few: Columns) -> _Plans:
+def _plans(task: Task, search: Search, few: Columns, tell: Progress) -> _Plans:
     """Make the plans that were requested: the fastest is the one of all plans found here that takes the least time."""
     which = task.ready.options.operations
-    fewest = _capped(task, "fewest", _quicker(task, search, few))
+    parts = [part_of(tell, k, 4) for k in range(4)]
+    fewest = _capped(task, "fewest", _quicker(task, search, few), parts[0])
     if which == "fewest":
         return [fewest], None, (), ()
     columns, problem, area, chosen = _fastest(task, search, few)
-    others = [_capped(task, "fastest", columns.of(each)) for each in (chosen, *with_and_without(problem, chosen))]
-    largest_first = [_capped(task, "largest first", _largest_first(task, search, few))] if len(task.cutters) > 1 else []
+    choices = [chosen, *with_and_without(problem, chosen)]
+    others = [_capped(task, "fastest", columns.of(each), part_of(parts[1], k, len(choices))) for k, each in enumerate(choices)]
+    largest_first = list[OperationPlan]()
+    if len(task.cutters) > 1:
+        largest_first = [_capped(task, "largest first", _largest_first(task, search, few), parts[2])]
+    parts[3](0, 1)
     # Of those that take the same time the fewest.
     plans = [fewest, *others, *largest_first]
     fastest, notes = _recommended(task, plans)
@@ -235,9 +245,9 @@ def _stored(task: Task, rows: Rows) -> Columns:
     return columns
 
 
-def _capped(task: Task, name: str, columns: Columns) -> OperationPlan:
+def _capped(task: Task, name: str, columns: Columns, tell: Progress) -> OperationPlan:
     rule = partial(allowed, task) if name == "largest first" else None
-    columns = _worth(task, name, canonical(task, _worth(task, name, columns), rule))
+    columns = _worth(task, name, canonical(task, _worth(task, name, columns), rule, progress=tell))
     columns = accompanied(task, columns) if name == "fewest" else columns
     return plan_with(task, name, columns, None if rule is None else partial(rule, columns))
 
@@ -250,11 +260,11 @@ def _worth(task: Task, name: str, columns: Columns) -> Columns:
     return selected if len(selected) < len(columns) else columns
 
 
-def _even(task: Task, search: Search) -> tuple[Columns, Rows, NDArray[np.bool_], Floats]:
+def _even(task: Task, search: Search, tell: Progress | None = None) -> tuple[Columns, Rows, NDArray[np.bool_], Floats]:
     """Return the candidates that are known whole, their numbers, where they serve samples all over the part, and these' area."""
     wanted = np.setdiff1d(task.rows, search.alone)
     most = _EVEN if task.ready.options.operations == "fewest" else _TIMED
-    search.require(wanted[:: max(1, len(wanted) // most)])
+    search.require(wanted[:: max(1, len(wanted) // most)], tell)
     active, table = search.whole
     return search.columns.of(active), active, table, shared_area(task.ready.samples, wanted, search.rows)
 

@@ -10,6 +10,7 @@ from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.fixed_axis import served_by
+from plan_cutters.scene.threads import Progress, part_of
 
 Rows = NDArray[np.int64]
 
@@ -46,26 +47,28 @@ class Probes:
         self._kept: dict[str, NDArray[np.bool_]] = {}
         self._kept_rows: Rows = np.zeros(0, np.int64)
 
-    def table(self, rows: Rows, columns: Columns) -> NDArray[np.bool_]:
+    def table(self, rows: Rows, columns: Columns, progress: Progress | None = None) -> NDArray[np.bool_]:
         """Where each column serves: (rows, columns)."""
         table = np.zeros((len(columns), len(rows)), bool)
-        for c, s in {*zip(columns.cutter.tolist(), columns.setup.tolist(), strict=True)}:
+        kinds = {*zip(columns.cutter.tolist(), columns.setup.tolist(), strict=True)}
+        for k, (c, s) in enumerate(kinds):
+            mine_of = None if progress is None else part_of(progress, k, len(kinds))
             mine = np.flatnonzero((columns.cutter == c) & (columns.setup == s))
             open_ = np.flatnonzero(self.outside[s][rows])
             if len(open_):
-                free, made = served_by(rows[open_], columns.axis[mine], self.samples, self.contexts[c][s])
+                free, made = served_by(rows[open_], columns.axis[mine], self.samples, self.contexts[c][s], mine_of)
                 table[np.ix_(mine, open_)] = free
                 self.made += made
         return table.T
 
-    def kept(self, rows: Rows, columns: Columns) -> NDArray[np.bool_]:
+    def kept(self, rows: Rows, columns: Columns, progress: Progress | None = None) -> NDArray[np.bool_]:
         """As `table`, for columns that are requested again and again at the same rows."""
         if not np.array_equal(rows, self._kept_rows):
             self._kept, self._kept_rows = {}, rows
         keys = columns.key.tolist()
         new = np.array([k for k, key in enumerate(keys) if key not in self._kept], np.int64)
         if len(new):
-            self._kept |= dict(zip((keys[k] for k in new.tolist()), self.table(rows, columns.of(new)).T, strict=True))
+            self._kept |= dict(zip((keys[k] for k in new.tolist()), self.table(rows, columns.of(new), progress).T, strict=True))
         return np.array([self._kept[key] for key in keys], bool).reshape(len(keys), len(rows)).T
 
     def one(self, rows: Rows, columns: Columns, which: int) -> NDArray[np.bool_]:

@@ -10,6 +10,7 @@ from plan_cutters.domain.operations import Operation, OperationPlan
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import held_at
 from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.threads import Progress, part_of
 from plan_cutters.stages.between import between
 from plan_cutters.stages.face_cells import Fixed
 from plan_cutters.stages.margin import margin
@@ -23,7 +24,7 @@ _CONTACTS = 4
 _MOST_OF = 0.99
 
 
-def proved(ready: Prepared, plan: OperationPlan) -> OperationPlan:
+def proved(ready: Prepared, plan: OperationPlan, *, progress: Progress | None = None) -> OperationPlan:
     """Write into fixed operations which share of their area is proved, and in how many pieces.
 
     Of the operations of the plan with the same cutter and setup that serve a sample, its cell is tried with the one that has
@@ -35,6 +36,8 @@ def proved(ready: Prepared, plan: OperationPlan) -> OperationPlan:
     ----------
     ready : Prepared
     plan : OperationPlan
+    progress : callable, optional
+        Called with how much is done of the most that may be.
 
     Returns
     -------
@@ -52,14 +55,16 @@ def proved(ready: Prepared, plan: OperationPlan) -> OperationPlan:
         if each.mode == "fixed":
             alike.setdefault((each.cutter.id, each.setup), []).append(k)
     whole = sum(len(operations[k].rows) for group in alike.values() for k in group)
-    for group in alike.values():
+    tell = progress or (lambda done, total: None)
+    for number, group in enumerate(alike.values()):
         part = sum(len(operations[k].rows) for k in group) / max(1, whole)
-        for k, each in zip(group, _proved(ready, plan, group, int(budget * part), most * part), strict=True):
+        mine = part_of(tell, number, len(alike))
+        for k, each in zip(group, _proved(ready, plan, group, int(budget * part), most * part, mine), strict=True):
             operations[k] = each
     return replace(plan, operations=tuple(operations))
 
 
-def _proved(ready: Prepared, plan: OperationPlan, group: list[int], budget: int, most: float) -> list[Operation]:
+def _proved(ready: Prepared, plan: OperationPlan, group: list[int], budget: int, most: float, tell: Progress) -> list[Operation]:
     """The operations of one cutter and setup, numbers in the plan, with what is proved of them."""
     samples, chosen = ready.samples, [plan.operations[k] for k in group]
     number = np.full(len(samples), -1, np.int32)
@@ -71,7 +76,7 @@ def _proved(ready: Prepared, plan: OperationPlan, group: list[int], budget: int,
     proved = between(
         samples, held_at(axes, first, samples, context), context, ready.scene.part,
         ready.scene.orientation, budget=budget, most=most, covered_samples=ready.not_required,
-        fixed=Fixed(axes, serves),
+        fixed=Fixed(axes, serves), progress=tell,
     )  # fmt: skip
     cells = proved.cells
     by_sample = np.bincount(cells.sample, cells.area, len(samples))

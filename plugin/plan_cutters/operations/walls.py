@@ -18,7 +18,7 @@ from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.shapes import flute_length
 from plan_cutters.operations.probes import Probes
-from plan_cutters.scene.fixed_axis import leans
+from plan_cutters.scene.fixed_axis import leaning
 
 Rows = NDArray[np.int64]
 #: Lengths that count as nothing, mm.
@@ -212,7 +212,7 @@ class Walls:
             direction_max=samples.direction_max[rows], curvature=samples.curvature[rows],
         )  # fmt: skip
         self._probes.made += len(rows)
-        return leans(np.arange(len(rows)), axis, there, self._probes.contexts[c][s])
+        return leaning(np.arange(len(rows)), axis, there, self._probes.contexts[c][s])
 
     def _ends(self, rows: Rows, normal: Floats, axis: Floats) -> tuple[Floats, Floats]:
         """Where the face ends below and above samples (m,), mm along their rulings; nan where it has no triangles."""

@@ -15,7 +15,7 @@ NoteCode = Literal[
     "fixture_not_cad", "faces_none_sculptured", "faces_ignored", "faces_clamped", "travel_not_judged", "travel_of_holder",
     "travel_first_setup", "faces_clamped_there", "setup_without_fixtures", "setup_proposed",
     "stick_out_each_setup", "maps_first_setup",
-    "faces_loose", "area_not_looked_at", "area_proved", "area_left", "area_unknown", "maps_partial",
+    "faces_loose", "area_not_looked_at", "area_proved", "area_left", "area_unknown", "maps_partial", "run_unfinished",
 ]  # fmt: skip
 
 
@@ -24,6 +24,28 @@ class Note(NamedTuple):
 
     code: NoteCode
     text: str
+
+
+# Of the run.
+
+
+def later_stages(*, area: bool, answers: Sequence[str], operations: str | None, maps: bool) -> tuple[str, str, str, str]:
+    """Name the stages that follow the verdicts, in their order, by their options; empty for one that was not requested.
+
+    >>> later_stages(area=True, answers=(), operations="fewest", maps=False)
+    ('the proof between the samples', '', '--operations fewest', '')
+    """
+    return (
+        "the proof between the samples" if area else "",
+        f"--answers {','.join(answers)}" if answers else "",
+        f"--operations {operations}" if operations is not None else "",
+        "--posture-maps" if maps else "",
+    )
+
+
+def run_unfinished(absent: Sequence[str]) -> Note:
+    without = " and ".join(filter(None, (", ".join(absent[:-1]), absent[-1])))
+    return Note("run_unfinished", f"The run was not done: this plan is without {without}.")
 
 
 # Of cutters.

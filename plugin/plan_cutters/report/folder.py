@@ -21,8 +21,11 @@ if TYPE_CHECKING:
     from plan_cutters.plan_file.model import FileEntry, Plan
 
 PLAN = "plan.json"
-#: Written where posture maps or operations were requested.
+#: Written where setups were to be proposed, or posture maps or operations were requested.
 _SIDE_FILES = {
+    "setup_1",
+    "setup_2",
+    "setup_3",
     "postures",
     "operations",
     "operations_csv",
@@ -78,6 +81,8 @@ class Staging:
 
     def __init__(self, out: Path, named: Callable[[Path], None] = lambda _: None) -> None:
         self.out = out
+        #: Whether a plan of this run is in the output already.
+        self.stands = False
         self.folder = out.absolute().parent / f".{out.name}-{secrets.token_hex(4)}"
         named(self.folder)
         try:
@@ -192,8 +197,10 @@ def write_all(
             raise _unwritable(out, error) from None
         written.put()
         # All is on disk: from here on files only change their names, and no plan stands beside files that are not its own.
-        _clear(out)
+        if not staging.stands:
+            _clear(out, result)
         written.publish(written.files)
+        staging.stands = True
         if listener:
             with clock.stage("show", shown=False):
                 listener.safe(written.plan)
@@ -218,10 +225,44 @@ def write_all(
     return written.plan
 
 
+def write_unfinished(result: Judged, formats: Sequence[str], staging: Staging, clock: "Clock") -> bool:
+    """Let the plan of a run that goes on appear in the output, whole, with its setups alone; whether it is written at all.
+
+    The plan says of the other formats that the run ended before they were written: that is true whenever it ends.
+
+    Raises
+    ------
+    PlanError
+        The folder cannot be written to.
+    """
+    from plan_cutters.report.formats import Making
+    from plan_cutters.report.to_json import PENDING
+
+    if "json" not in formats:
+        return False
+    others = dict.fromkeys((name for name in formats if name != "json"), PENDING)
+    written = _Written(result.plan, staging, clock, staging.out, others, as_json=True)
+    making = Making(result, staging.folder, "", clock, lambda what: None)
+    written.files |= {name: making.file(name) for name in _setup_files(result)}
+    written.put()
+    if not staging.stands:
+        _clear(staging.out, result)
+    written.publish(written.files)
+    staging.stands = True
+    return True
+
+
+def _setup_files(result: Judged) -> list[str]:
+    """The formats of the setups that were proposed."""
+    proposal = result.plan.setup_proposal
+    return [f"setup_{number}" for number in range(1, 1 + len(proposal.setups))] if proposal else []
+
+
 def _arrays(result: Judged, formats: Sequence[str]) -> Iterator[str]:
     """The files of arrays: they are written before the plan is safe."""
     if "npz" in formats:
         yield "npz"
+    yield from _setup_files(result)
     if result.maps:
         yield "postures"
     if result.plan.operations:
@@ -278,20 +319,21 @@ def _cause(error: Exception) -> str:
     return f"internal error ({type(error).__name__}: {error})"
 
 
-def _clear(out: Path) -> None:
+def _clear(out: Path, result: Judged) -> None:
     """Remove what an earlier run of ours has surely written into the output: the plan there lists it as it is.
 
-    The plan goes first: it must not name files that are gone, or others of the same names.
+    The plan goes first: it must not name files that are gone, or others of the same names. Setup files that this run has read
+    stay: the same command is to find them again.
     """
     from plan_cutters.report.to_json import listed
 
     before = listed(out / PLAN)
     if before is None:
         return
-    ours = []
+    read, ours = _setups_read(result), []
     for name, checksum in before.items():
         path = out / name
-        if name in _names() and path.is_file() and not path.is_symlink():
+        if name in _names() and name not in read and path.is_file() and not path.is_symlink():
             with suppress(OSError):  # it is named instead
                 if sha256(path) == checksum:
                     ours.append(path)
@@ -302,6 +344,12 @@ def _clear(out: Path) -> None:
     for path in ours:
         with suppress(OSError):
             path.unlink()
+
+
+def _setups_read(result: Judged) -> set[str]:
+    """The names of the files in which the setups of a plan were: they may be those of this folder."""
+    options = result.ready.options
+    return {each.file for each in (options.placement, *options.other_placements) if each is not None}
 
 
 def ended(out: Path, cause: str) -> tuple[str, ...]:
@@ -322,8 +370,9 @@ def ended(out: Path, cause: str) -> tuple[str, ...]:
 
 
 def stale_files(out: Path, plan: "Plan", formats: Collection[str]) -> list[str]:
-    """Files in the output that have names of ours, but are not of this plan."""
+    """Files in the output that have names of ours, but are not of this plan: it has neither written nor read them."""
     mine = {entry.name for entry in plan.files.values()} | ({PLAN} if "json" in formats else set())
+    mine |= {each.file for each in (plan.effective.placement, *plan.effective.other_placements) if each and each.file}
     return [name for name in (PLAN, *_names()) if name not in mine and (out / name).is_file()]
 
 

@@ -62,6 +62,16 @@ def listed(path: Path) -> dict[str, str] | None:
     return None
 
 
+def unfinished(path: Path) -> str:
+    """Read what a plan file is without, for its run had not been done; empty where it was, or there is no plan."""
+    try:
+        plan = json.loads(path.read_text(encoding="utf-8"))
+        each = zip(plan["note_codes"], plan["notes"], strict=True)
+        return next((str(text) for code, text in each if code == "run_unfinished"), "")
+    except (OSError, ValueError, LookupError, TypeError, AttributeError):
+        return ""
+
+
 def explain(path: Path, cause: str) -> tuple[str, ...]:
     """Say in a plan file why its pending files were never written; their formats."""
     try:

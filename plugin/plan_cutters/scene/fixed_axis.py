@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.domain.verdicts import ACCESSIBLE, Verdicts, blank
 from plan_cutters.scene.conditions import Conditions, Context, contacts_of, rotations_of
-from plan_cutters.scene.threads import in_chunks
+from plan_cutters.scene.threads import Progress, in_chunks
 
 #: Axes this close are one, rad; ends of ranges this close to a posture's are on it.
 _SAME, _END = 1e-6, 1e-9
@@ -27,7 +27,7 @@ def serves(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, conte
     return np.asarray(served_by(rows, np.asarray(axis)[None], samples, context)[0][0])
 
 
-def leans(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, context: Context) -> NDArray[np.bool_]:
+def leaning(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, context: Context) -> NDArray[np.bool_]:
     """At which of some samples (m,) a cutter stands free with one axis (3,) and the contact at the sample itself.
 
     Not with the sample elsewhere under the flat of its tip, nor with its flank at a distance.
@@ -37,7 +37,9 @@ def leans(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, contex
     return np.asarray(_tested(rows, np.asarray(axis)[None], samples, context)[0][0] == LEANING)
 
 
-def served_by(rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, context: Context) -> tuple[NDArray[np.bool_], int]:
+def served_by(
+    rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, context: Context, progress: Progress | None = None
+) -> tuple[NDArray[np.bool_], int]:
     """At which of some samples (m,) a cutter stands free with each of some axes (k, 3).
 
     Returns
@@ -46,12 +48,18 @@ def served_by(rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, co
     made : int
         How many times the tool was put down.
     """
-    way, made, _ = _tested(rows, axes, samples, context)
+    way, made, _ = _tested(rows, axes, samples, context, progress)
     return way >= 0, made
 
 
 def _tested(
-    rows: NDArray[np.int64], axes: Floats, samples: SurfaceSamples, context: Context, *, directions: bool = False
+    rows: NDArray[np.int64],
+    axes: Floats,
+    samples: SurfaceSamples,
+    context: Context,
+    progress: Progress | None = None,
+    *,
+    directions: bool = False,
 ) -> tuple[NDArray[np.int8], int, Floats]:
     """How a cutter stands at samples with axes (k, m), in the numbers of the kernel; how many times it was put down; and, if
     asked for, its tilt directions (k, m, 3).
@@ -81,7 +89,7 @@ def _tested(
 
     blocks = -(-len(rows) // _BLOCK)
     most = max(1, _AT_ONCE // min(_BLOCK, len(rows)))
-    made = in_chunks(tested, np.arange(len(held) * blocks), conditions.jobs, chunk=most)
+    made = in_chunks(tested, np.arange(len(held) * blocks), conditions.jobs, progress, chunk=most)
     if not full_turn:
         for k in held.tolist():
             touched = np.flatnonzero(way[k] >= 0)

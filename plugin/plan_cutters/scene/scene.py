@@ -138,6 +138,12 @@ class Scene(Record):
         other = orient(self.part, towards=(0.0, 0.0, 1.0), flip=self.flip).sign
         return tuple(f.id for f, one, two in zip(self.part.faces, self.orientation.sign, other, strict=True) if one != two)
 
+    def same_sides(self, setup: tuple[float, float, float]) -> bool:
+        """Whether faces have the sides that they would be given with a setup axis."""
+        return self.orientation.confident or bool(
+            (orient(self.part, towards=setup, flip=self.flip).sign == self.orientation.sign).all()
+        )
+
     # The former names, for scripts: the program itself asks `surround` and `turned_faces`.
     @property
     def around(self) -> Surroundings:

@@ -16,6 +16,7 @@ from cad_io.arrays import FaceGrid, Floats, Ints, Orientation, Record, SurfaceSa
 from cad_io.part import Part
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.scene.conditions import Context
+from plan_cutters.scene.threads import Progress, part_of
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.cells import CellContacts, Field, laid
 from plan_cutters.stages.connected import connected
@@ -23,6 +24,8 @@ from plan_cutters.stages.face_cells import FaceCells, Fixed, best
 
 #: Least gain, as a share of the target area for each contact, for which cells are cut into four.
 LEAST_GAIN = 1e-7
+#: Steps in which progress is told.
+_STEPS = 1000
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -119,6 +122,7 @@ def between(
     covered_samples: NDArray[np.bool_] | None = None,
     fixed: Fixed | None = None,
     own: NDArray[np.bool_] | None = None,
+    progress: Progress | None = None,
 ) -> Between:
     """Find the share of the target area over which a cutter's postures hold.
 
@@ -144,6 +148,8 @@ def between(
     own : (n + 1,) bool, optional
         Samples whose cells are looked at, and behind them whether those about no sample are; the others are as if they were not
         there, but `share` is of all the same.
+    progress : callable, optional
+        Called with how much is done of the most that may be.
     """
     whole, unknown = _areas(samples, part)
     covered_samples = np.zeros(len(samples), bool) if covered_samples is None else covered_samples
@@ -151,7 +157,14 @@ def between(
     counted, short = own[:-1] & ~covered_samples, 0
     looked, unlooked = int((counted & (samples.unjudged < 0)).sum()), int(counted.sum())
     work = Work() if work is None else work
-    upto = work.looked + most
+    began, upto = work.looked, work.looked + most
+    contacts = budget
+
+    def reported() -> None:
+        if progress is not None:
+            share = max((work.looked - began) / most, sum(face_cells.seen for face_cells in faces) / max(1, contacts))
+            progress(min(int(_STEPS * share), _STEPS), _STEPS)
+
     faces, nodes, strips = list[FaceCells](), list[CellContacts](), list[CellContacts]()
     for grid in samples.grids:
         trim = part.trim(grid.face)
@@ -167,9 +180,10 @@ def between(
             mine, bare = (cells.of(~deep[tuple(cells.home.T)]) for cells in (mine, bare))
         # Row -1, of no sample, is the last.
         mine, bare = (cells.of(own[cells.sample]) for cells in (mine, bare))
-        faces.append(FaceCells(field, context, work, fixed))
+        faces.append(FaceCells(field, context, work, fixed, reported))
         nodes.append(mine)
         strips.append(bare)
+    contacts = budget + sum(map(len, nodes))
     surrounding_area = _about(nodes, len(samples)) + _about(strips, len(samples))
     # The strips come first, the largest ones where the budget is short.
     chosen = best(np.concatenate([np.zeros(0), *(each.area for each in strips)]), budget)
@@ -226,12 +240,13 @@ def _refined(faces: Sequence[FaceCells], budget: int, least: float, upto: float,
 def in_each(
     samples: SurfaceSamples, verdicts: Verdicts, which: Ints, contexts: Sequence[Context], part: Part,
     orientation: Orientation, *, budget: int, most: float = np.inf, covered_samples: NDArray[np.bool_] | None = None,
+    progress: Progress | None = None,
 ) -> Between:  # fmt: skip
     """The same over setups that hold the part differently: each cell among the obstacles of the setup that serves its sample.
 
     Parameters
     ----------
-    samples, verdicts, part, orientation, budget, most, covered_samples
+    samples, verdicts, part, orientation, budget, most, covered_samples, progress
         As for `between`; the verdicts are those over all setups.
     which : (n,) int32
         The setup that serves each sample, -1 for none: its cells go with the first setup, as those about no sample do.
@@ -246,6 +261,7 @@ def in_each(
         cells.append(between(
             samples, verdicts, context, part, orientation, budget=int(budget * part_of_all), most=most * part_of_all,
             covered_samples=covered_samples, own=own,
+            progress=None if progress is None else part_of(progress, k, len(contexts)),
         ) if own.any() else None)  # fmt: skip
     return _joined([each for each in cells if each is not None])
 

@@ -1,6 +1,6 @@
 """A face's cells between the samples: which are served, which are still open, and which of them to cut into four next."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from dataclasses import field as dataclasses_field
 from typing import TYPE_CHECKING
@@ -73,6 +73,8 @@ class FaceCells:
         What was looked at, for this face and others.
     fixed : Fixed, optional
         Where postures are not searched.
+    reported : callable
+        Called as often as contacts were looked at.
     found : list of CellContacts
         Served.
     levels : list of int
@@ -95,6 +97,7 @@ class FaceCells:
     context: Context
     work: Work = dataclasses_field(default_factory=Work)
     fixed: Fixed | None = None
+    reported: Callable[[], None] = lambda: None
     found: list[CellContacts] = dataclasses_field(default_factory=list)
     levels: list[int] = dataclasses_field(default_factory=list)
     pools: list[tuple[CellContacts, CellStatus]] = dataclasses_field(default_factory=list)
@@ -151,6 +154,7 @@ class FaceCells:
         self.work.add(_ROUND + _CONTACT * len(contacts))
         status = _served(contacts, self, _MARGINS[min(level, len(_MARGINS) - 1)], upto)
         self.seen, self.spent = self.seen + len(contacts), self.spent + self.work.looked - began
+        self.reported()
         good = status == 0
         self.found.append(contacts.of(good))
         self.levels.append(level)

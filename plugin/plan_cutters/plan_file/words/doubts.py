@@ -24,13 +24,17 @@ def doubts(plan: Plan) -> list[str]:
     list of str
         Whole sentences.
     """
-    lines = (*_unit(plan), *_travel(plan), *_held(plan), *_unheld(plan), *_side(plan), *_sheets(plan), *_tolerance(plan))
-    return [named(plan, line) for line in lines]
+    each = (_unfinished, _unit, _travel, _held, _unheld, _side, _sheets, _tolerance)
+    return [named(plan, line) for doubt in each for line in doubt(plan)]
 
 
 def repeated_warnings(plan: Plan) -> set[str]:
     """Warnings on the part that the doubts say in other words."""
     return {text for text in (plan.part.unit_doubt, plan.part.sheets_doubt) if text}
+
+
+def _unfinished(plan: Plan) -> Iterator[str]:
+    yield from (text for code, text in zip(plan.note_codes, plan.notes, strict=False) if code == "run_unfinished")
 
 
 def _unit(plan: Plan) -> Iterator[str]:

@@ -10,8 +10,10 @@ from plan_cutters.plan_file.numbers import count, mm, percent, place
 from plan_cutters.plan_file.words.line import Line
 from plan_cutters.plan_file.words.names import named
 
-#: Notes that say what the first lines say in other words; those of the area between samples, where it was looked at.
-_STATED_ABOVE: frozenset[NoteCode | None] = frozenset({"samples_apart", "area_proved", "area_left", "setup_proposed"})
+#: Notes that say what the first lines say, or in other words; those of the area between samples, where it was looked at.
+_STATED_ABOVE: frozenset[NoteCode | None] = frozenset(
+    {"samples_apart", "area_proved", "area_left", "setup_proposed", "run_unfinished"}
+)
 #: What stands for an obstacle that is not known.
 _STAND_IN = {
     "none": "nothing stands for it",

@@ -1,0 +1,211 @@
+"""A part with the verdicts of all cutters in all setups: a plan can be put together of it, whatever is asked besides."""
+
+import datetime
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from cad_io.arrays import Ints
+from cad_io.part.inside_edges import inside_edges
+from plan_cutters.document.build import cutter_entry
+from plan_cutters.document.clock import Clock
+from plan_cutters.document.inside_radii import inside_radius_entries
+from plan_cutters.document.over_setups import OtherSetup, OverSetups
+from plan_cutters.document.plan import completed, plan_of, selection
+from plan_cutters.document.setup_table import setup_table
+from plan_cutters.document.sharp_edges import sharp_edge_entries
+from plan_cutters.domain.answers import Answers
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.over_setups import over_setups
+from plan_cutters.domain.travel import Travel
+from plan_cutters.domain.verdicts import CONVEX, Verdicts
+from plan_cutters.plan_file.model import AreaEntry, CutterEntry
+from plan_cutters.plan_file.nearest import nearest
+from plan_cutters.plan_file.sharp_edges import SharpEdgeEntry
+from plan_cutters.plan_file.words.text import with_text
+from plan_cutters.result import Result
+from plan_cutters.scene.conditions import Context
+from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.setups import for_another_setup
+from plan_cutters.scene.threads import Progress, part_of
+from plan_cutters.scene.work import Work
+from plan_cutters.stages.between import in_each
+from plan_cutters.stages.decompose import march_differs
+from plan_cutters.stages.reasons import Reasons
+from plan_cutters.stages.setups import within_limits
+from plan_cutters.stages.sharp_edges import exempt, may_be_at_edge, strips, with_sharp_edges
+from plan_cutters.stages.travel import travels
+from plan_cutters.stages.witness import witnesses
+
+#: The work between samples, as a share of that of the searches, and so much of it in any case and for each sample: boxes.
+_WORK_SHARE, _WORK_LEAST, _WORK_SAMPLE = 0.5, 2e7, 2000.0
+
+
+@dataclass(frozen=True, slots=True)
+class JudgedCutter:
+    """The verdicts of one cutter, over all setups and in the first one, with its line in the plan.
+
+    Attributes
+    ----------
+    verdicts : Verdicts
+        Over all setups, with the reasons that can be acted on.
+    which : (n,) int32
+        The setup that serves each sample, -1 for none.
+    here : Verdicts
+        In the first setup alone; the same where there is no other one.
+    entry : CutterEntry
+        Its line in the plan.
+    strips : list of SharpEdgeEntry
+        Sharp inside edges at which it leaves a fillet.
+    """
+
+    verdicts: Verdicts
+    which: Ints
+    here: Verdicts
+    entry: CutterEntry
+    strips: list[SharpEdgeEntry]
+
+
+@dataclass(frozen=True, eq=False)
+class JudgedPart:
+    """A part of which the verdicts stand.
+
+    Attributes
+    ----------
+    ready : Prepared
+    cutters : mapping
+        What is known of each cutter.
+    other_setups : sequence
+        Of each other setup its axis, and what each cutter reaches there by its id.
+    travels : dict
+        Cutter id -> where the linear axes stand; empty where that is not judged.
+    searched : Work
+        The work of all searches, which bounds that between the samples unless a budget was requested.
+    started : datetime
+        When the work began.
+    """
+
+    ready: Prepared
+    cutters: Mapping[Cutter, JudgedCutter]
+    other_setups: Sequence[OtherSetup]
+    travels: dict[str, Travel]
+    searched: Work
+    started: datetime.datetime
+
+    @classmethod
+    def of(
+        cls, ready: Prepared, here: Mapping[Cutter, Verdicts], other_setups: Sequence[OtherSetup],
+        seconds: Mapping[Cutter, float], clock: Clock, searched: Work, started: datetime.datetime,
+    ) -> "JudgedPart":  # fmt: skip
+        """Combine the verdicts of each cutter over all setups, find the reasons and what is not required, and make its line."""
+        samples, convex, surroundings = ready.samples, ready.surface_class == CONVEX, ready.conditions.surroundings
+        reasons = Reasons(samples, ready.setups, ready.somewhere, ready.machinable)
+        by_cutter = {}
+        with clock.stage("reasons") as tell:
+            for k, (cutter, mine) in enumerate(here.items()):
+                over, which = over_setups([mine, *(verdicts_there[cutter.id] for _, verdicts_there in other_setups)])
+                by_cutter[cutter] = reasons.of(cutter, over, part_of(tell, k, len(here))), which
+            wanted = any(may_be_at_edge(explained.verdicts, cutter) for cutter, (explained, _) in by_cutter.items())
+            edges = inside_edges(ready.scene.part, ready.scene.orientation) if wanted else ()
+        at_edges = {cutter: strips(samples, explained.verdicts, cutter, edges) for cutter, (explained, _) in by_cutter.items()}
+        reaches = {c: for_another_setup(ready, with_sharp_edges(by_cutter[c][0].verdicts, each)) for c, each in at_edges.items()}
+        ready = replace(ready, exempt=exempt(reaches, ready.inside_bodies) if ready.options.sharp_edges == "left" else None)
+        judged = {}
+        for (cutter, mine), (explained, which) in zip(here.items(), by_cutter.values(), strict=True):
+            at_edge, verdicts = at_edges[cutter], reaches[cutter]
+            with clock.stage(cutter.id, shown=False):
+                context, part = Context.of(cutter, ready.conditions), ready.scene.part
+                witness_list = witnesses(samples, verdicts, context, inside=ready.shut, part=part)
+                marched = march_differs(samples, convex, ready.region, mine.interference_free)
+                entry = cutter_entry(
+                    cutter, samples, verdicts, witness_list, marched, seconds[cutter], part=part, surroundings=surroundings,
+                    slack=context.outer_tool.slack, inside=ready.inside_bodies, exempt=ready.exempt, besides=explained.besides,
+                )  # fmt: skip
+                fillets = sharp_edge_entries(edges, at_edge, samples, cutter)
+                judged[cutter] = JudgedCutter(verdicts, which, mine if other_setups else verdicts, entry, fillets)
+        moved = travels(ready.options, samples, {cutter: each.here for cutter, each in judged.items()})
+        return cls(ready, judged, other_setups, moved, searched, started)
+
+    @property
+    def here(self) -> dict[Cutter, Verdicts]:
+        """The verdicts in the first setup by cutter."""
+        return {cutter: each.here for cutter, each in self.cutters.items()}
+
+    def everywhere(self) -> list[dict[Cutter, Verdicts]]:
+        """The verdicts by cutter in each setup, the first one first."""
+        return [self.here, *({c: verdicts_there[c.id] for c in self.cutters} for _, verdicts_there in self.other_setups)]
+
+    def over_setups(self) -> OverSetups:
+        """The verdicts of all cutters by their ids, over all setups and in each."""
+        reaches = {cutter.id: each.verdicts for cutter, each in self.cutters.items()}
+        here = {cutter.id: each.here for cutter, each in self.cutters.items()}
+        served_in = {cutter.id: each.which for cutter, each in self.cutters.items()}
+        there = tuple((axis, dict(each)) for axis, each in self.other_setups)
+        return OverSetups(reaches, here, served_in, self.ready.scene.setup, there)
+
+    @property
+    def looks_between(self) -> bool:
+        """Whether something is to be proved between the samples: it was requested, and a cutter reaches all that was judged."""
+        return self._best is not None and bool(self.ready.options.contacts_between(len(self.ready.samples)))
+
+    @property
+    def _best(self) -> Cutter | None:
+        """The cutter chosen; where obstacles are missing, none is, but one may reach all that could be judged."""
+        ready, entries = self.ready, [self.cutters[c].entry for c in self.ready.cutters]
+        best = selection(entries, ready.chosen.free_form)[0] or next((e.id for e in entries if not e.not_reached), None)
+        return next((c for c in ready.cutters if c.id == best), None)
+
+    def between(self, clock: Clock, compiling: Callable[[str], None]) -> dict[str, AreaEntry]:
+        """Prove what can be proved between the samples, by cutter id: of the best one; empty where nothing is to be."""
+        ready, cutter = self.ready, self._best
+        if cutter is None or not self.looks_between:
+            return {}
+        with clock.stage("area") as tell:
+            compiling("cover.cover")
+            most = np.inf
+            if ready.options.area_budget is None:
+                most = _WORK_LEAST + _WORK_SHARE * self.searched.looked + _WORK_SAMPLE * len(ready.samples)
+            budget = ready.options.contacts_between(len(ready.samples))
+            return {cutter.id: _area(ready, cutter, self.cutters[cutter], budget, most, tell)}
+
+
+def assembled(part: JudgedPart, clock: Clock, answers: Answers, between: Mapping[str, AreaEntry]) -> Result:
+    """Put the result together: the choice, the area between the samples, what was answered, the plan.
+
+    Parameters
+    ----------
+    part : JudgedPart
+    clock : Clock
+        Its seconds are those of the plan.
+    answers : Answers
+        As far as there are any.
+    between : mapping
+        Of `JudgedPart.between`; empty where that was not looked at.
+    """
+    ready, judged = part.ready, part.cutters
+    within = [within_limits(ready.samples, ready.cutters, conditions) & ready.finished for conditions in ready.setups]
+    beyond = ready.somewhere & ~np.logical_or.reduce(within)
+    over = part.over_setups()
+    entries = completed([judged[c].entry for c in ready.cutters], ready, answers, over, beyond, part.travels)
+    selected, chosen = selection(entries, ready.chosen.free_form)
+    for k, e in enumerate(entries):
+        if area := between.get(e.id):
+            entries[k] = e.model_copy(update={"area": area, "seen": e.seen or area.feasible})
+    with clock.stage("plan", shown=False):
+        shown = selected or nearest(entries).id
+        tool, its = next((cutter, each) for cutter, each in judged.items() if cutter.id == shown)
+        radii, table = inside_radius_entries(ready, tool, its.verdicts), setup_table(ready, within, over)
+        document = plan_of(ready, entries, selected, chosen, part.started, answers, over, table, its.strips, radii)
+    return Result(clock.stamp(with_text(document)), ready, over, part.travels, answers)
+
+
+def _area(ready: Prepared, cutter: Cutter, judged: JudgedCutter, budget: int, most: float, tell: Progress) -> AreaEntry:
+    """What is proved between the samples, with so many contacts and so much work."""
+    # Where all setups hold the part alike, what is free in one of them is free in all.
+    contexts = [Context.of(cutter, each) for each in (ready.setups[:1] if ready.alike else ready.setups)]
+    which = np.minimum(judged.which, len(contexts) - 1)
+    served = in_each(ready.samples, judged.verdicts, which, contexts, ready.scene.part, ready.scene.orientation,
+                     budget=budget, most=most, covered_samples=ready.not_required, progress=tell)  # fmt: skip
+    return AreaEntry(share=served.share, feasible=served.feasible, contacts=served.contacts, left=served.left,
+                     short=served.short, dropped=served.dropped, left_out=[f"F{n}" for n in served.unknown])  # fmt: skip
