@@ -136,7 +136,7 @@ class OpenCells:
     """
 
     def __init__(self, probes: Probes, rows: Rows, progress: Progress | None = None) -> None:
-        self.probes, self.rows, self.made, self._progress = probes, rows, 0, progress
+        self.probes, self.rows, self.made, self._progress = probes, rows, 0, progress or (lambda done, of: None)
         self._tools: dict[tuple[Cutter, int, int, float, bool], list[Tool]] = {}
         self._modes = [[each.inner_tool.mode for each in of_cutter] for of_cutter in probes.contexts]
 
@@ -149,8 +149,7 @@ class OpenCells:
         cosine = np.clip(middle @ probes.samples.normal[self.rows].T, -1.0, 1.0)
         tilt = np.arccos(cosine)
         for k, (c, s) in enumerate(pairs):
-            conditions = probes.setups[s]
-            low, high = conditions.postures.tilt
+            conditions, (low, high) = probes.setups[s], probes.setups[s].postures.tilt
             # Upright and along a wall it stands with a tilt of 0 or a right angle, within the accuracy of the axes.
             off = radius + max(FLAT, conditions.accuracy) + _ROUNDING
             reached = (tilt + off >= low) & (tilt - off <= high)
@@ -160,8 +159,7 @@ class OpenCells:
             for i in np.flatnonzero(open_table[:, k].any(axis=1)).tolist():
                 mine = np.flatnonzero(open_table[i, k])
                 open_table[i, k, mine] = self._free(c, s, middle[i], radius, mine, tilt[i, mine])
-                if self._progress is not None:
-                    self._progress(min(self.made, _TESTS), _TESTS)
+                self._progress(min(self.made, _TESTS), _TESTS)
         return open_table
 
     def _free(self, c: int, s: int, axis: Floats, radius: float, mine: Rows, tilt: Floats) -> NDArray[np.bool_]:
@@ -169,8 +167,8 @@ class OpenCells:
         from plan_cutters.kernels.material import sheet
         from plan_cutters.kernels.search.fixed_axis import served
 
-        conditions = self.probes.setups[s]
         # What is enclosed is not asked for: only what a triangle blocks counts.
+        conditions = self.probes.setups[s]
         solids, contacts = sheet(conditions.surroundings.certain.tree), contacts_of(self.probes.samples)
         off = radius + max(FLAT, conditions.accuracy) + _ROUNDING
         free, none = np.zeros(len(mine), bool), np.zeros((0, 3))
