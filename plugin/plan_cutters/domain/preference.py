@@ -1,8 +1,7 @@
-"""Which of several cutters is wanted first: by kind, as the faces ask for it, then by size; nothing else decides."""
+"""Which of several cutters is wanted first: by kind, as the faces ask for it, then by size."""
 
 import math
 from collections.abc import Iterable
-from typing import Any
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.shapes import top_radius
@@ -50,18 +49,13 @@ def rank(group: str, *, free_form: float) -> int:
     return next(k for k, groups in enumerate(ranks(free_form=free_form)) if group in groups)
 
 
-def size(cutter: Cutter, *, free_form: float) -> tuple[Any, ...]:
-    """Sort cutters by this, the largest first.
-
-    By the radius; of equal ones the larger corner on free-form faces, where it leaves wider strips, and the smaller one on
-    others, where it leaves less in corners; then the shorter one, then its id: never the order in which they were given.
-    """
-    corner = -cutter.corner_radius if is_free_form(free_form) else cutter.corner_radius
-    return -cutter.radius, corner, cutter.length, cutter.id
+def size(cutter: Cutter) -> tuple[float, float, float]:
+    """Sort cutters by this, the largest first: by radius, then the smaller corner, then the shorter one."""
+    return -cutter.radius, cutter.corner_radius, cutter.length
 
 
 def wanted(cutters: Iterable[Cutter], *, free_form: float) -> list[Cutter]:
-    """Cutters from the most to the least wanted: by kind, then by size.
+    """Cutters from the most to the least wanted: by kind, then by size, then as they were given.
 
     Parameters
     ----------
@@ -75,12 +69,12 @@ def wanted(cutters: Iterable[Cutter], *, free_form: float) -> list[Cutter]:
     >>> [each.id for each in wanted(given, free_form=1.0)], [each.id for each in wanted(given, free_form=0.0)]
     (['R5L60rc1', 'R3L40rc3', 'R8L80'], ['R8L80', 'R5L60rc1', 'R3L40rc3'])
     """
-    return sorted(cutters, key=lambda c: (rank(group_of(c), free_form=free_form), *size(c, free_form=free_form)))
+    return sorted(cutters, key=lambda c: (rank(group_of(c), free_form=free_form), *size(c)))
 
 
-def by_radius(cutters: Iterable[Cutter], *, free_form: float) -> list[Cutter]:
+def by_radius(cutters: Iterable[Cutter]) -> list[Cutter]:
     """Cutters by size, whatever their kind, but for those that come last in any case."""
-    return sorted(cutters, key=lambda c: (group_of(c) == "last", *size(c, free_form=free_form)))
+    return sorted(cutters, key=lambda c: (group_of(c) == "last", *size(c)))
 
 
 def free_form_share(faces: Iterable[tuple[str, float]]) -> float:

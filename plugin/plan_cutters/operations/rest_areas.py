@@ -17,7 +17,7 @@ Rows = NDArray[np.int64]
 
 def by_size(task: Task) -> list[int]:
     """Numbers of the cutters, the largest first."""
-    ordered = by_radius(task.cutters, free_form=task.ready.chosen.free_form)
+    ordered = by_radius(task.cutters)
     return [task.cutters.index(cutter) for cutter in ordered]
 
 

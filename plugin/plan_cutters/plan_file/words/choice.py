@@ -14,10 +14,9 @@ _MANY = {"ball": "ball ends", "bull": "bull noses", "flat": "flat ends",
 def rule(free_form: float) -> str:
     """By which rule a cutter is chosen, for a share of free-form faces."""
     kinds = ", then ".join(_all(groups) for groups in ranks(free_form=free_form))
-    corner = "larger" if is_free_form(free_form) else "smaller"
     return (
-        f"kind ({_faces(free_form)}: {kinds}), then largest radius, then {corner} corner radius, then shorter length, then id, "
-        "among the feasible"
+        f"kind ({_faces(free_form)}: {kinds}), then largest radius, then smaller corner radius, then shorter length, then "
+        "library order, among the feasible"
     )
 
 
