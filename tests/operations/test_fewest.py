@@ -20,7 +20,7 @@ class Table:
         self.whole, self.made = table, 0
         self.samples = SimpleNamespace(point=np.column_stack([np.arange(len(table)), *np.zeros((2, len(table)))]))
 
-    def table(self, rows, columns):
+    def table(self, rows, columns, progress=None):
         self.made += len(rows) * len(columns)
         return self.whole[np.ix_(rows, np.rint(columns.angle[:, 0]).astype(int))]
 

@@ -11,8 +11,8 @@ from plan_cutters.errors import MachineError
 
 Kind = Literal["rotary", "linear"]
 Carried = Literal["part", "tool"]
-#: Largest accuracy of a rotary axis that is one, rad.
-MOST_ACCURACY = math.radians(1.0)
+#: Largest accuracy of a rotary axis that is one, rad: 1 deg.
+_MOST_ACCURACY = math.radians(1.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,9 +112,8 @@ class Axis:
             object.__setattr__(self, "rate", rate)
         if self.accuracy is not None:
             accuracy = number(self.accuracy, f"{what}: its accuracy", error=MachineError)
-            if self.kind != "rotary" or not 0.0 <= accuracy <= MOST_ACCURACY:
-                most = f"{math.degrees(MOST_ACCURACY):g} deg"
-                raise MachineError(f"{what}: its accuracy is an angle of a rotary axis, from 0 to {most}")
+            if self.kind != "rotary" or not 0.0 <= accuracy <= _MOST_ACCURACY:
+                raise MachineError(f"{what}: its accuracy is an angle of a rotary axis, from 0 to 1 deg")
             object.__setattr__(self, "accuracy", accuracy)
 
 
