@@ -69,7 +69,7 @@ def test_a_cutter_is_still_a_record():
 
 @pytest.mark.parametrize("word", ANGLES)
 def test_both_units_at_once_are_one_error(word):
-    kept = getattr(Options(), word) or 0.1
+    kept = getattr(Options(), word) or 0.01
     degrees = np.degrees(kept).tolist()
     # The default of the other one, too: it was given.
     with pytest.raises(OptionError, match=f"{word} and {word}_deg are one angle, in radians and in degrees: give one of them"):
