@@ -88,12 +88,17 @@ def found(written, document=None, arrays=None, seconds=1e6):
 _IN_TIME = {"plans[].operations[].clearance_mm", "fewest.alone"}
 
 
-def test_what_is_written_holds_and_no_entry_of_the_schema_is_forgotten(written):
+def test_what_is_written_holds(written):
     answer = found(written)
     assert answer.holds, "\n".join(answer.lines)
     assert not answer.entries.differ
     assert all(each.holds for each in answer.findings)
     assert any("clearance_mm" in path for path in answer.entries.agree)
+
+
+def test_no_entry_of_the_schema_is_forgotten(written):
+    answer = found(written, seconds=0.0)
+    assert not answer.entries.differ
     # What is neither checked in this plan nor listed as unchecked would be an entry that the checker does not know.
     schema = OperationsEntry.model_json_schema()
     checked, every = {pattern(path) for path in answer.entries.agree}, schema_patterns(schema, schema)
