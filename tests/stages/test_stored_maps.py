@@ -9,7 +9,7 @@ import click
 import numpy as np
 import pytest
 
-from plan_cutters import Cutter, Options, PostureMaps, plan
+from plan_cutters import Cutter, Options, PostureMaps, plan, posture_map
 from plan_cutters.command import stored_maps
 from plan_cutters.command.cli import command
 from plan_cutters.command.codes import guarded, invoked
@@ -125,6 +125,32 @@ def test_it_equals_a_fresh_plan_or_is_refused_by_name(found, file, library, word
     assert not ((stored.verdict == INACCESSIBLE) & (fresh.verdict == UNDECIDED)).any()
     assert (stored.verdict == fresh.verdict)[stored.verdict != UNDECIDED].all()
     assert (stored.verdict != UNDECIDED).mean() > 0.5
+
+
+def test_what_the_flat_of_the_tip_alone_reaches_is_left_to_a_plan(tmp_path):
+    """The edge of a tool as wide as most of a bore touches little of its floor, and only with the tool upright."""
+    import cadquery as cq
+
+    cq.exporters.export(cq.Workplane().box(30, 30, 12).faces(">Z").workplane().hole(10, 8), str(tmp_path / "bore.step"))
+    asked = {"cutters": ["D8L40F20S8"], "faces": "all", "spacing": 3.0}
+    found = plan(tmp_path / "bore.step", posture_maps=True, **asked)
+    (key,) = found.reaches
+    under = found.reaches[key].reached & (np.linalg.norm(found.reaches[key].tilt_direction, axis=1) < 1.0 - 1e-6)
+    assert under.any()
+    found.write(tmp_path, ["json", "npz"])
+    maps = PostureMaps.load(tmp_path / "postures.npz")
+    for machine in ("unlimited", "tilt:20"):
+        fresh, stored = plan(found.part, machine=machine, **asked).reaches[key], maps.asked(found.part, machine=machine)
+        assert not ((stored.verdict == INACCESSIBLE) & (fresh.reached | (fresh.verdict == UNDECIDED))).any()
+        assert not (stored.reached & ~fresh.reached).any()
+        assert (stored.verdict[under] == UNDECIDED).all()
+    # The map of such a point alone says where it lies under the flat.
+    for k in np.flatnonzero(under)[:3].tolist():
+        point = posture_map(found.part, point=found.samples.point[k], cutter="D8L40F20S8", rotations_deg=range(0, 360, 10))
+        assert 0.0 < np.linalg.norm(point.under_flat) <= 4.0
+        assert not np.isfinite(
+            posture_map(found.part, point=found.samples.point[k], cutter="D8L40rc4", rotations_deg=[0]).under_flat
+        ).any()
 
 
 def told(*words):

@@ -185,12 +185,15 @@ class Postures(Entry):
     rotations: list[RotationRow]
     more_rotations: int = 0
     missing: int = Field(default=0, description="obstacles that are missing or guessed")
+    under_flat_mm: Vector | None = Field(
+        default=None, description="upright the tool is free with the point under its flat: from its axis to the point"
+    )
 
 
 class MapAnswer(Answer):
     format: Literal["plan-cutters-agent-map"] = "plan-cutters-agent-map"
     cutter: str
-    exit_code: int = Field(description="0 some tilt is free, 1 none is, 4 none is surely free")
+    exit_code: int = Field(description="0 some tilt is free, or the point under the flat, 1 none is, 4 none is surely free")
     postures: Postures
 
 

@@ -26,6 +26,7 @@ def postures_of(output: bytes, tilt: tuple[float, float], most: int) -> Postures
         free_share=min(1.0, sum(_width(row["free"]) for row in rows) / wide),
         undecided_share=min(1.0, sum(_width(row["undecided"]) for row in rows) / wide),
         forbidden=forbidden, rotations=rotations, more_rotations=more, missing=len(answer["missing"]),
+        under_flat_mm=answer["under_flat_mm"],
     )  # fmt: skip
 
 

@@ -47,7 +47,7 @@ _point = heading("Point")
         (f"{_SELF} blade.step --at 12,3,4 --cutter R6L80 --machine trunnion-ac", "The tilts that a machine holds there:"),
     ),
     codes=(
-        ("0", "some tilt is free"),
+        ("0", "some tilt is free, or the tool upright with the point under its flat"),
         ("1", "none is"),
         ("2", "wrong command line"),
         ("3", "the part cannot be read, or the point is on none of its faces"),
@@ -151,7 +151,8 @@ def command(request: MapRequest) -> int:
 
 
 def _code(result: "PostureMap") -> int:
-    if any(len(each) for each in result.free) and not result.missing:
+    upright = not math.isnan(result.under_flat[0])
+    if (upright or any(len(each) for each in result.free)) and not result.missing:
         return _FREE
     return _UNDECIDED if result.missing or any(len(each) for each in result.undecided) else _NONE
 
@@ -225,6 +226,9 @@ def _about(result: "PostureMap", face: str, off: float, cutter: "Cutter", reques
         lines.append(
             "A free tilt is safe for the true surface to the tolerance; of several causes the first in the legend is shown."
         )
+    if not math.isnan(result.under_flat[0]):
+        away = mm(math.hypot(*result.under_flat.tolist()))
+        lines.append(f"Upright the tool is free with the point under its flat, {away} from its axis.")
     return lines
 
 
@@ -249,6 +253,7 @@ def _facts(result: "PostureMap", face: str, off: float, cutter: "Cutter", reques
         "off_mm": off, "normal": result.normal.tolist(), "direction_max": result.direction_max.tolist(),
         "curvature": result.curvature.tolist(), "cutter": cutter.id, "machine": request.machine,
         "setup": request.setup,
+        "under_flat_mm": None if math.isnan(result.under_flat[0]) else result.under_flat.tolist(),
         "tolerance_mm": result.tolerance, "certified": result.certified, "missing": list(result.missing),
         "rotations": [
             {"deg": math.degrees(turn), "local_gouge": none[i], **{w: _degrees(getattr(result, w)[i]) for w in words}}

@@ -78,6 +78,12 @@ class Assembly(Record):
     end: float
     slack: float
 
+    @property
+    def flat(self) -> float:
+        """Radius of the flat of the tip, mm; 0 where the tip is round."""
+        upright = self.mode[self.mode[:, 2] <= 0.0]
+        return float(upright[0, 0]) if len(upright) else 0.0
+
     def only(self, part: int) -> "Assembly":
         """The pieces of one part alone."""
         mine = self.piece[0, :, PART] == part

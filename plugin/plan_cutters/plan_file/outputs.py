@@ -46,6 +46,9 @@ class MapOutput(Frozen):
     cutter: str
     machine: str
     setup: str
+    under_flat_mm: Vector | None = Field(
+        description="null, or the tool stands free upright with the point under the flat of its tip: from its axis to the point"
+    )
     tolerance_mm: float = Field(description="0: the nominal answer, which proves nothing")
     certified: bool
     missing: list[str] = Field(description="obstacles that are missing or guessed")

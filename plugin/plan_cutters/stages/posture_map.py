@@ -3,6 +3,7 @@
 The seed's Fig. 7, with a list of intervals at each rotation in place of one pair of numbers.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,9 +15,10 @@ from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.degrees import Angle, in_radians
 from plan_cutters.domain.intervals import common, complement, join, without
 from plan_cutters.domain.posture import tilt_direction
+from plan_cutters.domain.verdicts import ACCESSIBLE, blank
 from plan_cutters.errors import OptionError
 from plan_cutters.kernels.codes import FLUTES, HOLDER, NECK, SHANK, TILT_FROM, TILT_TO
-from plan_cutters.scene.conditions import Context, tool_of
+from plan_cutters.scene.conditions import Context, contacts_of, on_the_flat, tool_of
 from plan_cutters.scene.obstacles import Obstacles, halved
 
 #: Ends that move by no more, rad, have settled.
@@ -55,6 +57,9 @@ class PostureMap(Record):
         kappa_max, kappa_min, 1/mm, concave positive.
     buried : tuple of (m, 2) float
         Tilts at which the cutter touches nothing and lies within a body.
+    under_flat : (3,) float
+        Where the edge of a flat tip can touch at tilt 0 at none of the rotations, but the tool stands free upright with the point
+        under its flat: from its axis to the point, mm. Else nan.
     tolerance : float
         The gouge tolerance kept, mm; 0 for the nominal answer.
     certified : bool
@@ -81,6 +86,7 @@ class PostureMap(Record):
     no_contact: tuple[Floats, ...]
     axis_limit: tuple[Floats, ...]
     buried: tuple[Floats, ...]
+    under_flat: Floats
     point: Floats
     normal: Floats
     direction_max: Floats
@@ -172,12 +178,22 @@ def posture_map_of(contact: SurfaceSamples, rotations: Floats, context: Context,
     return PostureMap(
         rotations=rotations, free=tuple(free), undecided=tuple(undecided), local_gouge=gouge[:, 0],
         local_gouge_most=gouge[:, 1], axis_limit=tuple(axis), no_contact=tuple(no_contact), buried=tuple(inside_bodies), point=p,
-        normal=n,
+        normal=n, under_flat=_under_flat(contact, free, context),
         **{word: tuple(each) for word, each in apart.items()},
         direction_max=e1, curvature=contact.curvature[0], tolerance=tolerance,
         certified=tolerance > 0 and not surroundings.doubtful, missing=surroundings.doubts,
         chord_error=whole.triangles.chord_error, settled=tolerance > 0,
     )  # fmt: skip
+
+
+def _under_flat(contact: SurfaceSamples, free: Sequence[Floats], context: Context) -> Floats:
+    """From the axis of a tool that stands free upright to a contact that lies under the flat of its tip; nan where none does."""
+    none, upright = np.full(3, np.nan), context.conditions.postures.tilt[0] <= 0.0
+    if not (upright and context.outer_tool.flat > 0.0) or any(len(tilts) and tilts[0, 0] <= 0.0 for tilts in free):
+        return none
+    verdicts = blank(1)
+    on_the_flat(contacts_of(contact), np.zeros(1, np.int64), context, verdicts)
+    return context.outer_tool.flat * verdicts.tilt_direction[0] if verdicts.verdict[0] == ACCESSIBLE else none
 
 
 def _gouge_bounds(curvature: Floats, rotation: float, tool: Assembly) -> Floats:

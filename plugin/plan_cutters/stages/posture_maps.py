@@ -206,6 +206,12 @@ class PostureMaps(Record):
         """Judged samples (n,) of the finished part's surface."""
         return np.asarray((self.verdict != UNJUDGED) & ~self.inside)
 
+    @property
+    def _lies_flat(self) -> bool:
+        """Whether the cutter has a flat tip that may lie on a contact, turned as it likes."""
+        first, last = self.about.get("rotation", (0.0, 2.0 * np.pi))
+        return bool(self.about.get("flat", True)) and last - first > 2.0 * np.pi - _END
+
     def _laid(
         self, machine: Machine, place: Placement, turns: NDArray[np.int64], tilt: tuple[float, float], jobs: int
     ) -> Verdicts:
@@ -237,6 +243,10 @@ class PostureMaps(Record):
             verdicts.stand_upright(upright, self.normal, self.direction_max)
         axis_limited = judged & ~not_reached & np.isin(verdicts.verdict, (INACCESSIBLE, UNDECIDED))
         verdicts.reason[axis_limited] = REASONS.index("axis_limit")
+        if self._lies_flat and low <= _END and len(turns) == len(self.rotations):
+            # Maps are of the edge of the tip: a plan also asks whether the flat can lie on the contact.
+            flat = axis_limited & (verdicts.verdict == INACCESSIBLE)
+            verdicts.verdict[np.flatnonzero(flat)[machine.allows(self.normal[flat], frame)]] = UNDECIDED
         # What is in doubt without a machine is so with any that holds some posture there.
         doubt, held = axis_limited & (self.verdict == UNDECIDED), np.zeros(len(self.verdict), bool)
         few = ranges._replace(rotation_cos=ranges.rotation_cos[turns], rotation_sin=ranges.rotation_sin[turns])
@@ -347,7 +357,7 @@ def posture_maps(
     in_chunks(work, rows, conditions.jobs, progress)
     remaining = np.setdiff1d(judged, rows)
     undecided[remaining] = conditions.postures.tilt[1] - conditions.postures.tilt[0]
-    known = {**(about or {}), **({"unmapped": len(remaining)} if len(remaining) else {})}
+    known = {**(about or {}), "flat": outer_tool.flat > 0.0, **({"unmapped": len(remaining)} if len(remaining) else {})}
     pieces = [free[first] for first in sorted(free)]
     offset = np.concatenate([[0], np.cumsum(count.ravel(), dtype=np.int64)])
     return PostureMaps(rotations, offset, np.concatenate([np.zeros((0, 2)), *pieces]), undecided, samples.normal,
