@@ -110,6 +110,40 @@ def test_operations_are_the_steps():
     assert {step.mode for step in done.process.steps} <= {"fixed", "simultaneous"}
 
 
+def test_of_many_steps_the_largest_are_told():
+    part, how = CASES["two cutters"]
+    done = plan(part, **how).plan
+    step, shares = done.process.steps[0], [0.001 * k * k for k in (1, 9, 2, 3, 11, 4, 5, 12, 6, 7, 8, 10)]
+    steps = [step.model_copy(update={"share": share}) for share in shares]
+    many = done.model_copy(update={"process": done.process.model_copy(update={"steps": steps})})
+    story = process_story(many, {})
+    assert [row.number for row in story.rows] == ["2", "5", "6", "7", "8", "9", "10", "11", "12"]
+    assert story.more.startswith("and 3 smaller steps for 1.4 %")
+
+
+def test_a_next_step_takes_something_off_what_the_process_leaves():
+    import cadquery as cq
+
+    shallow = cq.Workplane().rect(24, 18).extrude(-6).edges("|Z").fillet(2.5).translate((-20, 0, 0))
+    deep = cq.Workplane().rect(24, 18).extrude(-20).edges("|Z").fillet(6.0).translate((20, 0, 0))
+    part = cq.Workplane().box(80, 30, 25).translate((0, 0, -12.5)).cut(shallow).cut(deep)
+    bottom = 1 + next(k for k, face in enumerate(part.faces().vals()) if face.BoundingBox().zmax < -24.0)
+    asked = {
+        "cutters": ["D10L40F25S10", "D6L10F9S6"],
+        "holder": "D40L30",
+        "faces": f"!{bottom}",
+        "spacing": 2.0,
+        "area_budget": 0,
+    }
+    done = plan(part, **asked, answers="mend").plan
+    left = 1.0 - done.process.finished_share
+    assert left > 0.0
+    # The larger cutter alone would need the smaller one, which is in the process already.
+    assert {step.cutter for step in done.process.steps} == {cutter.id for cutter in done.cutters}
+    assert done.process.next
+    assert all(each.left_share is None or each.left_share <= left - 0.0009 for each in done.process.next)
+
+
 def test_a_face_without_a_surface_is_left_by_name_and_never_finished():
     part, how = CASES["a face without a surface"]
     done = plan(part, **how).plan

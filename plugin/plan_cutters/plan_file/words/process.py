@@ -16,6 +16,8 @@ from plan_cutters.plan_file.words.scope import shown_cutter
 
 #: Columns of a line; steps and causes that are listed; faces that are named of a cause; next steps.
 WIDTH, _STEPS, _CAUSES, _FACES, _NEXT = 80, 9, 4, 3, 2
+#: A next step takes at least this share off what the process leaves.
+_GAIN = 0.999e-3
 #: A clearance that is told as that or more, mm.
 _FAR = 100.0
 _STRATEGIES = {"point": "", "floor": "floor", "wall": "wall", "mixed": ""}
@@ -71,13 +73,14 @@ def process_story(plan: Plan, names: Mapping[str, str]) -> ProcessStory | None:
         return None
     setups = len({step.setup for step in process.steps}) > 1
     fixed = any(step.mode != "any" for step in process.steps)
-    shown = process.steps if len(process.steps) <= _STEPS + 1 else process.steps[:_STEPS]
-    rows = tuple(_row(k, step, names, setups=setups, fixed=fixed) for k, step in enumerate(shown, 1))
-    rest = process.steps[len(shown) :]
+    steps = dict(enumerate(process.steps, 1))
+    # The largest ones where there is no room for all, in the order of the process.
+    largest = sorted(steps, key=lambda k: -steps[k].share)[: _STEPS if len(steps) > _STEPS + 1 else None]
+    rows = tuple(_row(k, steps[k], names, setups=setups, fixed=fixed) for k in sorted(largest))
     more = ""
-    if rest:
+    if rest := [steps[k] for k in steps if k not in largest]:
         many = percent(sum(step.share for step in rest), some=True, whole=False)
-        more = f"and {count(len(rest), 'more step')} for {many}: the review page and plan.json list them."
+        more = f"and {count(len(rest), 'smaller step')} for {many}: the review page and plan.json list them."
     return ProcessStory(
         rows=rows,
         more=more,
@@ -175,10 +178,11 @@ def _next_entries(plan: Plan) -> Iterator[NextEntry]:
     process = plan.process
     if process is None or process.finished:
         return
-    entry = shown_cutter(plan)
+    entry, left = shown_cutter(plan), 1.0 - process.finished_share
     if entry.mend is not None:
         for step in entry.mend.steps:
-            if not is_excluded(step):
+            # The process has the other cutters and setups already that the shown cutter alone would need.
+            if not is_excluded(step) and (step.lost_after is None or left - step.lost_after >= _GAIN):
                 argv = shlex.split(step.option) if step.option else []
                 yield NextEntry(words=step.why, argv=argv, left_share=step.lost_after)
     elif "mend" not in plan.effective.answers:
