@@ -30,10 +30,10 @@ def comb():
     return waves.comb_samples(9), material.sheet(waves.tree_of(waves.comb_triangles(40)))
 
 
-def searched(contacts, solids, radius, rows):
+def searched(contacts, solids, radius, rows, **how):
     reach = blank(len(contacts.point))
     tools = waves.flat(radius, LENGTH, SAFE), waves.flat(radius, LENGTH, BLOCKED)
-    search.search(rows, contacts, RANGES, *tools, solids, solids, verdict_arrays_of(reach))
+    search.search(rows, contacts, RANGES, *tools, solids, solids, verdict_arrays_of(reach), **how)
     return reach
 
 
@@ -118,6 +118,19 @@ def test_the_least_depth_is_that_of_a_grid(comb):
     assert np.mean(short) <= 0.2
 
 
+@pytest.mark.parametrize("most", [0, 30, 300, 20_000])
+@pytest.mark.parametrize("radius", [1.45, 1.7])
+def test_a_brief_search_leaves_undecided_what_it_gives_up_and_else_says_the_same(comb, radius, most, monkeypatch):
+    contacts, solids = comb
+    rows = np.arange(len(contacts.point))
+    patient = searched(contacts, solids, radius, rows)
+    monkeypatch.setattr(search, "_BRIEF", (1e-5, most))
+    brief = searched(contacts, solids, radius, rows, brief=True)
+    same = brief.verdict == patient.verdict
+    assert ((brief.verdict == UNDECIDED) | same).all()
+    assert same.all() if most == 20_000 else not same.all()
+
+
 def test_every_rotation_is_looked_at():
     """A posture left at one rotation alone is found wherever the search begins: roof and wall but for a slot."""
     angle = np.linspace(0, 2 * np.pi, 73)
@@ -150,7 +163,7 @@ def test_what_is_remembered_is_seen_from_the_contact_at_hand(given):
     solids, tool = material.sheet(waves.tree_of(speck[None])), waves.flat(1.0, LENGTH, SAFE)
 
     def swept(past):
-        return sweep.sweep(contact, 0, RANGES, tool, solids, 0.25, 1e-5, (0, -1.0), TURNS, past,
+        return sweep.sweep(contact, 0, RANGES, tool, solids, 0.25, 1e-5, sweep.WITHOUT_END, (0, -1.0), TURNS, past,
                            place.search_workspace())  # fmt: skip
 
     full = sweep.memory(TURNS, 1, False)

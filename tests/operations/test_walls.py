@@ -2,6 +2,7 @@
 
 import math
 
+import cadquery as cq
 import numpy as np
 import pytest
 
@@ -33,9 +34,15 @@ def test_a_block_takes_the_seconds_of_its_top_and_of_passes_along_its_sides(cutt
     assert found.cutting_seconds == pytest.approx((top + sides) * 60.0 / FEED, rel=0.01)
 
 
-def test_each_sample_of_a_wall_lies_along_the_flutes_at_its_contact():
-    cutter = Cutter.parse("D10L60rc1F15")
-    result = planned(box(30.0, 30.0, 40.0), cutter, fixtures=())
+def overhung():
+    """A pocket whose walls stand over it by 0.02 deg: a shank as wide as the flutes meets them above a strip."""
+    return cq.Workplane().box(90, 60, 20).cut(cq.Workplane().workplane(offset=10).rect(60, 24).extrude(-14, taper=-0.02)).val()
+
+
+@pytest.mark.parametrize(("shape", "cutter"), [(lambda: box(30.0, 30.0, 40.0), "D10L60rc1F15"), (overhung, "D12L45F10S12")])
+def test_each_sample_of_a_wall_lies_along_the_flutes_at_its_contact(shape, cutter):
+    cutter = Cutter.parse(cutter)
+    result = planned(shape(), cutter, fixtures=())
     found, samples = result.answers.operations.plans[0], result.samples
     mine = np.flatnonzero(found.strategy == WALL)
     assert len(mine)
@@ -48,7 +55,7 @@ def test_each_sample_of_a_wall_lies_along_the_flutes_at_its_contact():
         across = samples.point[row] - found.contact[row] - above * axis
         assert np.linalg.norm(across) <= 0.01
     assert np.isnan(found.contact[found.strategy != WALL]).all()
-    assert begins == 1.0
+    assert begins == cutter.corner_radius
 
 
 def test_a_wall_that_leans_more_than_the_axes_are_accurate_is_cut_in_points():

@@ -191,8 +191,10 @@ class Walls:
         point += np.maximum(0.0, strip[good] * out[good])[:, None] * square[good]
         free = self._free(c, s, axis, rows[good], point, square[good])
         # A shank as wide as the flutes may not touch the wall above them: kept off by what the surface may be off, it does not.
-        met, keep = np.flatnonzero(~free), min(_WITHIN * self._scallop, self._probes.setups[s].tolerance)
-        point[met] += keep * square[good[met]]
+        # What a strip leaves already, for the wall is not quite along the flutes, counts as well.
+        met, off = np.flatnonzero(~free), min(_WITHIN * self._scallop, self._probes.setups[s].tolerance)
+        keep = np.maximum(0.0, off - strip[good[met]] * np.abs(out[good[met]]))
+        point[met] += keep[:, None] * square[good[met]]
         free[met] = self._free(c, s, axis, rows[good[met]], point[met], square[good[met]])
         good, point = good[free], point[free]
         result.strip[good], result.point[good], result.normal[good] = strip[good], point, square[good]

@@ -209,7 +209,7 @@ def require_finite(contacts: Contacts, rows: NDArray[np.int64]) -> None:
 
 def search_postures(
     contacts: Contacts, rows: NDArray[np.int64], context: Context, verdicts: VerdictBuffer, progress: Progress | None = None,
-    *, fixed: bool = False, strict: bool = False, work: Work | None = None,
+    *, fixed: bool = False, strict: bool = False, work: Work | None = None, brief: bool = False,
 ) -> None:  # fmt: skip
     """Search a posture for contacts, neighbours in sequence, and write what is found into `verdicts`.
 
@@ -228,6 +228,9 @@ def search_postures(
         Called with the number of pieces of work that are done, and the number of all.
     work : Work, optional
         Where what is looked at is counted.
+    brief : bool
+        Undecided is what takes long, and what has a posture in narrow intervals of tilt alone: enough for a reason, not for a
+        verdict.
 
     Raises
     ------
@@ -242,7 +245,7 @@ def search_postures(
     possible, certain = conditions.obstacles.solids, conditions.surroundings.certain.solids
 
     def searched(piece: NDArray[np.int64]) -> int:
-        return int(search(piece, contacts, ranges, *tools, possible, certain, buffer))
+        return int(search(piece, contacts, ranges, *tools, possible, certain, buffer, brief=brief))
 
     looked = in_chunks(searched, rows, conditions.jobs, progress, fixed=fixed)
     if work is not None:

@@ -163,7 +163,7 @@ class Reasons:
         open_rows = rows[verdicts.verdict[rows] == UNJUDGED]
         if len(open_rows):
             context = Context.of(cutter, conditions)
-            search_postures(contacts_of(self.samples), open_rows, context, verdicts, fixed=True)
+            search_postures(contacts_of(self.samples), open_rows, context, verdicts, fixed=True, brief=True)
         known[cutter] = verdicts.freeze()
         return known[cutter]
 

@@ -13,7 +13,7 @@ from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, Solids
 from plan_cutters.kernels.rows import Tool
 from plan_cutters.kernels.search.search import _FINEST, _NO_INTERVAL, START, _reason, _write
-from plan_cutters.kernels.search.sweep import Side, both, sweep_both
+from plan_cutters.kernels.search.sweep import WITHOUT_END, Side, both, sweep_both
 
 
 class Ladder(NamedTuple):
@@ -50,7 +50,7 @@ def _look(contacts, row, ranges, side, level, starts, turns, workspaces):
             for column in range(piece.shape[2]):
                 piece[m, k, column] = tools.piece[level, m, k, column]
     tool = Tool(piece, mode, tools.reach[level], tools.inner[level], tools.end[level])
-    one = Side(tool, side.solids, side.within, side.narrowest, side.pasts)
+    one = Side(tool, side.solids, side.within, side.narrowest, WITHOUT_END, side.pasts)
     return sweep_both(contacts, row, ranges, one, starts, turns, workspaces)
 
 

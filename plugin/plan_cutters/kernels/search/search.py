@@ -35,13 +35,15 @@ from plan_cutters.kernels.linear.vectors import cross, dot, perpendicular, tilt_
 from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search.place import clip_straight, inside, mode_at, permitted, search_workspace, straight, straightened
-from plan_cutters.kernels.search.sweep import Side, both, memory, sweep, sweep_both
+from plan_cutters.kernels.search.sweep import GIVEN_UP, NONE, WITHOUT_END, Side, both, memory, sweep, sweep_both
 from plan_cutters.kernels.tool.hit import BODY, scratch, stand, tree_hit
 
 #: Between arcs of what is certainly in the way, intervals narrower than this are none: no machine holds a tilt to 0.01 deg. rad.
 _NO_INTERVAL = 1.7e-4
 #: A posture is searched in intervals down to this, rad: it may stand where arcs leave more than they seem to.
 _FINEST = 1e-5
+#: The same of brief searches, and the boxes after which they give up: several times what most samples take.
+_BRIEF = _FINEST, 20_000
 #: Where searches begin, among the tilts that curvature allows and among the others: rotation, and the tilt tried first.
 _ANYWHERE = (0, -1.0)
 START = (_ANYWHERE, _ANYWHERE)
@@ -85,14 +87,15 @@ class Mode(NamedTuple):
     """This record holds how samples are searched.
 
     at: the place of the first one. start: rotation and tilt tried first; turns: how many rotations. narrowest: intervals of tilt
-    narrower than this are passed over, rad. decides: whether the inner tool says what is inaccessible, and why. stops: whether
-    the first sample without a posture is the last one.
+    narrower than this are passed over, rad. most: boxes after which a sweep is given up. decides: whether the inner tool says
+    what is inaccessible, and why. stops: whether the first sample without a posture is the last one.
     """
 
     at: int
     start: tuple[int, float]
     turns: int
     narrowest: float
+    most: int
     decides: bool
     stops: bool
 
@@ -125,9 +128,9 @@ def search_rows(rows, contacts, ranges, tools, solids, mode, results):
     rotations, (outer_tool, inner_tool), (possible, certain) = len(ranges.rotation_cos), tools, solids
     # What is only perhaps in the way must not count as surely in it: each side has obstacle caches of its own.
     pasts, workspaces = both(rotations, len(outer_tool.mode))
-    outer = Side(outer_tool, possible, MAYBE_INSIDE, mode.narrowest, pasts)
+    outer = Side(outer_tool, possible, MAYBE_INSIDE, mode.narrowest, mode.most, pasts)
     pasts, _ = both(rotations if mode.decides else 0, len(inner_tool.mode))
-    inner = Side(inner_tool, certain, SURELY_INSIDE, _NO_INTERVAL, pasts)
+    inner = Side(inner_tool, certain, SURELY_INSIDE, _NO_INTERVAL, mode.most, pasts)
     start, at = (mode.start, mode.start), mode.at
     last, freed, missed, tilt = start, start, False, 0.0
     while at < len(rows) and not (mode.stops and missed):
@@ -139,13 +142,13 @@ def search_rows(rows, contacts, ranges, tools, solids, mode, results):
                 continue
             if of_inner:
                 rotation, _, freed = sweep_both(contacts, row, ranges, inner, freed, mode.turns, workspaces)
-                sure = rotation < 0
+                sure = rotation == NONE
             else:
                 rotation, tilt, last = sweep_both(contacts, row, ranges, outer, last, mode.turns, workspaces)
                 missed = rotation < 0
             if rotation < 0 and mode.decides:
                 results.reason[row] = _reason(workspaces[0].tally, workspaces[1].tally)
-            if sure or not missed:
+            if sure or not missed or (rotation == GIVEN_UP and not of_inner):
                 break
         if missed:
             results.verdict[row] = INACCESSIBLE if sure else UNDECIDED
@@ -155,13 +158,14 @@ def search_rows(rows, contacts, ranges, tools, solids, mode, results):
     return at, workspaces[0].scratch.looked[0] + workspaces[1].scratch.looked[0]
 
 
-def search(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, results):
+def search(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, results, *, brief=False):
     """Decide the samples `rows`, one after the other; how many boxes were looked at.
 
     The possible obstacles are there to call a posture safe, the certain ones to call a sample inaccessible; the rest is as for
-    `search_rows`.
+    `search_rows`. A `brief` search gives up what takes long, and leaves it undecided.
     """
-    mode = Mode(0, _ANYWHERE, len(ranges.rotation_cos), _FINEST, True, False)
+    narrowest, most = _BRIEF if brief else (_FINEST, WITHOUT_END)
+    mode = Mode(0, _ANYWHERE, len(ranges.rotation_cos), narrowest, most, True, False)
     return search_rows(rows, contacts, ranges, (outer_tool, inner_tool), (possible, certain), mode, results)[1]
 
 
@@ -171,7 +175,7 @@ def until_not_reached(rows, at, contacts, ranges, tool, solids, patient, results
     Unless it is `patient`, behind the first sample that has none; such samples are written as UNDECIDED, for nothing was asked
     about why. Intervals that `search` takes for none are passed over, so that it finds a posture where this does.
     """
-    mode = Mode(at, _ANYWHERE, len(ranges.rotation_cos), _NO_INTERVAL, False, not patient)
+    mode = Mode(at, _ANYWHERE, len(ranges.rotation_cos), _NO_INTERVAL, WITHOUT_END, False, not patient)
     return search_rows(rows, contacts, ranges, (tool, tool), (solids, solids), mode, results)[0]
 
 
@@ -194,7 +198,7 @@ def posture(contacts, ranges, tool, narrowest, start, turns, solids, results):
     results : VerdictArrays, written
         The posture.
     """
-    mode = Mode(0, start, turns, narrowest, False, False)
+    mode = Mode(0, start, turns, narrowest, WITHOUT_END, False, False)
     search_rows(_FIRST, contacts, ranges, (tool, tool), (solids, solids), mode, results)
     return bool(results.verdict[0] == ACCESSIBLE)
 
@@ -237,6 +241,7 @@ def first_reason(rows, contacts, ranges, inner_tool, certain, reason):
                 certain,
                 SURELY_INSIDE,
                 _NO_INTERVAL,
+                WITHOUT_END,
                 start,
                 rotations,
                 obstacle_cache,

@@ -34,6 +34,10 @@ from plan_cutters.kernels.tool.hit import deep_hit
 _CACHED, _POOL = 64, 128
 #: Boxes in whose time a rotation is gone through, of a tool that touches in one way, about.
 ROTATION = 16
+#: What a sweep says in place of a rotation: there is no posture; it was given up before it knew.
+NONE, GIVEN_UP = -1, -2
+#: Boxes that are never reached: a sweep with it is never given up.
+WITHOUT_END = 1 << 60
 
 
 class Memory(NamedTuple):
@@ -59,13 +63,15 @@ class Side(NamedTuple):
     """This record is one side of a search: the outer tool with the possible obstacles, or the inner with the certain ones.
 
     It holds the tool; the obstacles; the winding number from which a posture lies within a body; the angular resolution, rad:
-    narrower intervals of tilts are passed over; and the obstacle caches, one for each kind of sweep.
+    narrower intervals of tilts are passed over; the boxes looked at after which a sweep is given up; and the obstacle caches,
+    one for each kind of sweep.
     """
 
     tool: Any
     solids: Any
     within: float
     narrowest: float
+    most: int
     pasts: Any
 
 
@@ -132,9 +138,12 @@ def _deepest(obstacle_cache, count, turn, tilt, tool, mode):
 
 @kernel
 def _rotation(
-    contacts, row, ranges, rotation, tool, mode, solids, within, narrowest, wish, frame, obstacle_cache, pooled, workspace
+    contacts, row, ranges, rotation, tool, mode, solids, within, narrowest, last, wish, frame, obstacle_cache, pooled, workspace
 ):
-    """`sweep` at one rotation and mode: (a tilt, -1 for none; how many points of the pool are seen from this contact)."""
+    """`sweep` at one rotation and mode: (a tilt, -1 for none; how many points of the pool are seen from this contact).
+
+    Tilts that are left when the boxes looked at, in all, are more than `last` are not looked at.
+    """
     p, n, e1, e2, f, t = frame.p, frame.n, contacts.direction_max[row], workspace.e2, workspace.f, workspace.t
     intervals, body, tally = workspace.intervals, workspace.body, workspace.tally
     turn, place = turn_of(n, e1, ranges, rotation), rotation * len(tool.mode) + mode
@@ -155,7 +164,7 @@ def _rotation(
             for k in range(3):
                 obstacle_cache.point[place, written, k] = obstacle_cache.point[place, i, k]
             written += 1
-    while count > 0:
+    while count > 0 and workspace.scratch.looked[0] <= last:
         tilt, wish = next_tilt(intervals, count, wish), -1.0
         # Mostly the first posture of all is free, as it was at the sample before: then the pool is not looked at.
         which = -1
@@ -193,7 +202,7 @@ def _rotation(
 
 
 @kernel
-def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, obstacle_cache, workspace):
+def sweep(contacts, row, ranges, tool, solids, within, narrowest, most, start, turns, obstacle_cache, workspace):
     """Look for a posture of one sample at all rotations, those next to the first looked at first.
 
     It looks among the tilts that `obstacle_cache` is about.
@@ -212,6 +221,8 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, 
         Winding number from which a posture lies within a body.
     narrowest : float
         Intervals of tilt narrower than this are passed over, rad.
+    most : int
+        Boxes after which the rotations that are left are not looked at.
     start : (int, float)
         Rotation to begin with, and the tilt that is tried first at each.
     turns : int
@@ -223,7 +234,7 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, 
     Returns
     -------
     rotation : int
-        -1 if there is no posture.
+        `NONE` if there is no posture, `GIVEN_UP` if none was found among the rotations looked at.
     tilt : float
         rad.
     """
@@ -232,7 +243,7 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, 
     cross(n, e1, e2)
     frame, rotations, modes = Frame(p, n, f, t), len(ranges.rotation_cos), len(tool.mode)
     tally[:] = 0.0
-    pooled = -1
+    pooled, last = -1, workspace.scratch.looked[0] + most
     for step in range(turns):
         side = (step + 1) // 2 if step % 2 else -(step // 2)
         rotation = (start[0] + side) % rotations
@@ -248,6 +259,7 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, 
                 solids,
                 within,
                 narrowest,
+                last,
                 start[1],
                 frame,
                 obstacle_cache,
@@ -256,7 +268,9 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, start, turns, 
             )
             if tilt >= 0.0:
                 return rotation, tilt
-    return -1, 0.0
+            if workspace.scratch.looked[0] > last:
+                return GIVEN_UP, 0.0
+    return NONE, 0.0
 
 
 @maker
@@ -273,14 +287,18 @@ def sweep_both(contacts, row, ranges, side, starts, turns, workspaces):
     of each other, so that a sample that needs the others moves no posture of the samples after it. Returns rotation and tilt, and
     the starts for the next sample.
     """
-    tool, solids, within, narrowest, pasts = side
-    rotation, tilt = sweep(contacts, row, ranges, tool, solids, within, narrowest, starts[0], turns, pasts[0], workspaces[0])
+    tool, solids, within, narrowest, most, pasts = side
+    rotation, tilt = sweep(
+        contacts, row, ranges, tool, solids, within, narrowest, most, starts[0], turns, pasts[0], workspaces[0]
+    )
     if rotation >= 0:
         return rotation, tilt, ((rotation, tilt), starts[1])
-    if ranges.strict:
+    if ranges.strict or rotation == GIVEN_UP:
         workspaces[1].tally[:] = 0.0
-        return -1, 0.0, starts
-    rotation, tilt = sweep(contacts, row, ranges, tool, solids, within, narrowest, starts[1], turns, pasts[1], workspaces[1])
+        return rotation, 0.0, starts
+    rotation, tilt = sweep(
+        contacts, row, ranges, tool, solids, within, narrowest, most, starts[1], turns, pasts[1], workspaces[1]
+    )
     if rotation >= 0:
         return rotation, tilt, (starts[0], (rotation, tilt))
-    return -1, 0.0, starts
+    return rotation, 0.0, starts
