@@ -1,5 +1,6 @@
 """Read products, names, colours and layers of numbered faces from the kernel's document, in the same way for STEP and IGES."""
 
+import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
@@ -159,4 +160,5 @@ def _name(label: TDF_Label) -> str:
     name = TDataStd_Name()
     label.FindAttribute(TDataStd_Name.GetID_s(), name)
     text = str(name.Get().ToExtString()).strip()
-    return "" if text == "NONE" else text  # SolidWorks' word for no name
+    # SolidWorks' word for no name, and the kernel's for an instance that has none.
+    return "" if text == "NONE" or re.fullmatch(r"=>\[[\d:]+\]", text) else text

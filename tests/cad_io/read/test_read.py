@@ -30,6 +30,7 @@ from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
 from cad_io import Part, ReadError, read_part
 from cad_io.errors import CadIoError
 from cad_io.kernel import faces, translated
+from cad_io.read.document import _name
 from cad_io.read.sniff import sniff
 from tests.support.cad_parts import (
     CAD,
@@ -410,3 +411,10 @@ def test_trimmed_planes_without_size_are_not_parts():
     from OCP.gp import gp_Pln
 
     fails(BRepBuilderAPI_MakeFace(gp_Pln()).Face(), "finite size|no surface")
+
+
+@pytest.mark.parametrize(("written", "told"), [("Blade", "Blade"), ("NONE", ""), ("=>[0:1:1:2]", ""), ("=>[a]", "=>[a]")])
+def test_words_that_programs_write_for_no_name_are_none(written, told):
+    document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
+    TDataStd_Name.Set_s(document.Main(), TCollection_ExtendedString(written))
+    assert _name(document.Main()) == told
