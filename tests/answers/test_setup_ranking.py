@@ -1,5 +1,6 @@
 """Setups ranked by what a machine can hold there: closed forms without a table, and proposals that are planned."""
 
+import json
 import math
 
 import numpy as np
@@ -204,7 +205,7 @@ def test_auto_stands_alone(words, cause):
 @pytest.mark.parametrize(
     ("words", "cause"),
     [
-        (("--setup", "auto", "--setup", "+x"), "leave out the other setups"),
+        (("--setup", "+x", "--setup", "auto"), "leave out the other setups"),
         (("--setup", "auto", "--fixture", "table"), "leave out the fixtures"),
         (("--setup", "auto", "--postures", SAMPLES / "v_groove.step"), "name the setup"),
         (("--setup", "auto", "--check-operations", "x"), "name the setup"),
@@ -212,3 +213,13 @@ def test_auto_stands_alone(words, cause):
 )
 def test_the_command_says_so_in_one_line(tmp_path, words, cause):
     assert_one_line(run(SAMPLES / "v_groove.step", "--cutter", "R2L30", *words, "--quiet", cwd=tmp_path), 2, cause)
+
+
+def test_setups_named_behind_auto_take_its_place_and_it_is_said(tmp_path):
+    """So an option of advice may be typed behind the command that was given."""
+    part, words = SAMPLES / "v_groove.step", ("--cutter", "R2L30", "--grid", "5", "--formats", "json", "--area-budget", "0")
+    told = run(part, *words, "--setup", "auto", "--setup", "0,0,1", "--setup", "+x", "-o", "named", cwd=tmp_path)
+    run(part, *words, "--setup", "0,0,1", "--setup", "+x", "-o", "alone", cwd=tmp_path)
+    assert told.stderr.count("--setup auto: 2 named behind it take its place; nothing is proposed") == 1
+    named, alone = (json.loads((tmp_path / name / "plan.json").read_text()) for name in ("named", "alone"))
+    assert {**named, "run": 0} == {**alone, "run": 0}

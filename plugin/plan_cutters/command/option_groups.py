@@ -8,7 +8,7 @@ import click
 from cad_io.units import UNITS
 from plan_cutters.command import values
 from plan_cutters.command.help_groups import heading
-from plan_cutters.command.values import Faces, File, Folder, Range, Setup, Words
+from plan_cutters.command.values import Faces, File, Folder, Range, Setup, Words, named_setups
 from plan_cutters.domain.answer_kinds import KINDS
 from plan_cutters.report.folder import DEFAULT_FORMATS, FORMATS
 
@@ -111,10 +111,12 @@ _OPTIONS = (
         "--setup",
         type=Setup(),
         multiple=True,
+        callback=named_setups,
         default=["0,0,1"],
         help="Direction of the part along the machine's spindle, +z, -y or x,y,z, or a setup file (TOML) that says where the "
         "part stands. Repeatable: every cutter is judged in each, and the summary says what they reach together. `auto` "
-        "proposes the best one over a table, with --operations the fewest, and plans what it proposes.  "
+        "proposes the best one over a table, with --operations the fewest, and plans what it proposes; setups named behind it "
+        "take its place.  "
         "[default: 0,0,1]",
     ),
     _machine(
