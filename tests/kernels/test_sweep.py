@@ -124,7 +124,7 @@ def test_a_brief_search_leaves_undecided_what_it_gives_up_and_else_says_the_same
     contacts, solids = comb
     rows = np.arange(len(contacts.point))
     patient = searched(contacts, solids, radius, rows)
-    monkeypatch.setattr(search, "_BRIEF", (1e-5, most))
+    monkeypatch.setattr(search, "_BRIEF", most)
     brief = searched(contacts, solids, radius, rows, brief=True)
     same = brief.verdict == patient.verdict
     assert ((brief.verdict == UNDECIDED) | same).all()

@@ -229,8 +229,7 @@ def search_postures(
     work : Work, optional
         Where what is looked at is counted.
     brief : bool
-        Undecided is what takes long, and what has a posture in narrow intervals of tilt alone: enough for a reason, not for a
-        verdict.
+        What takes long is left undecided: enough for a reason, not for a verdict.
 
     Raises
     ------

@@ -42,8 +42,8 @@ from plan_cutters.kernels.tool.hit import BODY, scratch, stand, tree_hit
 _NO_INTERVAL = 1.7e-4
 #: A posture is searched in intervals down to this, rad: it may stand where arcs leave more than they seem to.
 _FINEST = 1e-5
-#: The same of brief searches, and the boxes after which they give up: several times what most samples take.
-_BRIEF = _FINEST, 20_000
+#: Boxes after which a brief search gives up: several times what most samples take.
+_BRIEF = 20_000
 #: Where searches begin, among the tilts that curvature allows and among the others: rotation, and the tilt tried first.
 _ANYWHERE = (0, -1.0)
 START = (_ANYWHERE, _ANYWHERE)
@@ -164,8 +164,7 @@ def search(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, re
     The possible obstacles are there to call a posture safe, the certain ones to call a sample inaccessible; the rest is as for
     `search_rows`. A `brief` search gives up what takes long, and leaves it undecided.
     """
-    narrowest, most = _BRIEF if brief else (_FINEST, WITHOUT_END)
-    mode = Mode(0, _ANYWHERE, len(ranges.rotation_cos), narrowest, most, True, False)
+    mode = Mode(0, _ANYWHERE, len(ranges.rotation_cos), _FINEST, _BRIEF if brief else WITHOUT_END, True, False)
     return search_rows(rows, contacts, ranges, (outer_tool, inner_tool), (possible, certain), mode, results)[1]
 
 
