@@ -21,6 +21,7 @@ from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.stages.access import access
 from plan_cutters.stages.classify import FLAT, classify, regions
 from plan_cutters.stages.decompose import march_differs
+from plan_cutters.stages.posture_map import posture_map_of
 from tests.support import shapes
 from tests.support.cad_parts import ball, rod
 
@@ -174,3 +175,11 @@ def test_a_tolerance_too_coarse_for_a_cutter_decides_nothing():
     for radius, verdict in ((1.9, UNDECIDED), (2.1, 1)):
         found = access(grid, np.zeros(2, bool), Context.of(Cutter.flat(radius=radius, length=30), conditions))
         assert found.verdict.tolist() == [verdict] * 2
+
+
+def test_a_tolerance_too_coarse_for_a_cutter_finds_no_place_under_its_flat():
+    far = Obstacles(Triangles(np.array([[[0, 0, -50.0], [1, 0, -50], [0, 1, -50]]]), np.ones(1, np.int32), 0.0, ()))
+    conditions = Conditions(Machine(), np.array(UP), PostureRange(), Surroundings.sheet(far), 0.5, 1)
+    for radius, lies in ((1.9, False), (2.1, True)):
+        context = Context.of(Cutter.flat(radius=radius, length=30), conditions)
+        assert posture_map_of(samples([(0.0, 0.0)]), np.zeros(0), context, 1e-4).lies_flat is lies

@@ -151,8 +151,7 @@ def command(request: MapRequest) -> int:
 
 
 def _code(result: "PostureMap") -> int:
-    upright = not math.isnan(result.under_flat[0])
-    if (upright or any(len(each) for each in result.free)) and not result.missing:
+    if (result.lies_flat or any(len(each) for each in result.free)) and not result.missing:
         return _FREE
     return _UNDECIDED if result.missing or any(len(each) for each in result.undecided) else _NONE
 
@@ -226,7 +225,7 @@ def _about(result: "PostureMap", face: str, off: float, cutter: "Cutter", reques
         lines.append(
             "A free tilt is safe for the true surface to the tolerance; of several causes the first in the legend is shown."
         )
-    if not math.isnan(result.under_flat[0]):
+    if result.lies_flat:
         away = mm(math.hypot(*result.under_flat.tolist()))
         lines.append(f"Upright the tool is free with the point under its flat, {away} from its axis.")
     return lines
@@ -253,7 +252,7 @@ def _facts(result: "PostureMap", face: str, off: float, cutter: "Cutter", reques
         "off_mm": off, "normal": result.normal.tolist(), "direction_max": result.direction_max.tolist(),
         "curvature": result.curvature.tolist(), "cutter": cutter.id, "machine": request.machine,
         "setup": request.setup,
-        "under_flat_mm": None if math.isnan(result.under_flat[0]) else result.under_flat.tolist(),
+        "under_flat_mm": result.under_flat.tolist() if result.lies_flat else None,
         "tolerance_mm": result.tolerance, "certified": result.certified, "missing": list(result.missing),
         "rotations": [
             {"deg": math.degrees(turn), "local_gouge": none[i], **{w: _degrees(getattr(result, w)[i]) for w in words}}

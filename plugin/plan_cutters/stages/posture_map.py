@@ -97,6 +97,11 @@ class PostureMap(Record):
     chord_error: float
     settled: bool
 
+    @property
+    def lies_flat(self) -> bool:
+        """Whether the tool stands free upright with the point under its flat."""
+        return bool(np.isfinite(self.under_flat).all())
+
     def axis(self, i: int, tilt: float | None = None, *, tilt_deg: float | None = None) -> Floats:
         """Unit tool axis at `rotations[i]` and a tilt, rad or degrees, in part coordinates."""
         tilt = in_radians({"tilt": tilt, "tilt_deg": tilt_deg}, {"tilt": Angle(-180.0, 180.0)})["tilt"]
@@ -188,7 +193,7 @@ def posture_map_of(contact: SurfaceSamples, rotations: Floats, context: Context,
 
 def _under_flat(contact: SurfaceSamples, free: Sequence[Floats], context: Context) -> Floats:
     """From the axis of a tool that stands free upright to a contact that lies under the flat of its tip; nan where none does."""
-    none, upright = np.full(3, np.nan), context.conditions.postures.tilt[0] <= 0.0
+    none, upright = np.full(3, np.nan), context.judges and context.conditions.postures.tilt[0] <= 0.0
     if not (upright and context.outer_tool.flat > 0.0) or any(len(tilts) and tilts[0, 0] <= 0.0 for tilts in free):
         return none
     verdicts = blank(1)
