@@ -13,6 +13,7 @@ from plan_cutters.answers.means import candidates, joined
 from plan_cutters.answers.option import Axis, option
 from plan_cutters.answers.scan import Candidate, Scan
 from plan_cutters.answers.state import Judgements, State
+from plan_cutters.domain.answer_kinds import WORTH
 from plan_cutters.domain.area import Patch
 from plan_cutters.domain.change import MEANS, Means, Move, Step, WhatIfAnswer
 from plan_cutters.domain.cutter import Cutter
@@ -29,8 +30,8 @@ Named = tuple[str, str]
 
 #: Steps of one change that are judged, at most; of two after each of the best so many of one, and of two at once.
 _SINGLES, _PAIRS, _BEST, _JOINED = 5, 1, 2, 2
-#: What frees less is no advice: share of the finished area, and mm2. Nor is a second change that frees so little more.
-WORTH, WORTH_AREA = 0.001, 1.0
+#: What frees less is no advice, mm2, nor what frees a smaller share than `WORTH`; nor a second change that frees so little more.
+WORTH_AREA = 1.0
 #: Of what the best step frees, the share with which another one may come before it that asks for less.
 _ENOUGH = 0.5
 #: Shares that differ by less are alike: what asks least comes first.

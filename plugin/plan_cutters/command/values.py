@@ -86,13 +86,13 @@ class Range(click.ParamType):
 
 def named_setups(ctx: click.Context, _: click.Parameter, value: Any) -> Any:
     """Let setups that are named behind `auto` take its place, as an option of advice that is typed behind the command does."""
-    from plan_cutters.workers.assignment import is_child
-
     if not isinstance(value, tuple) or value[:1] != ("auto",) or len(value) < 2 or "auto" in value[1:]:
         return value
+    from plan_cutters.workers.assignment import is_child
+
     named = value[1:]
     # The command reads its words twice: the child that does the work need not say it again.
-    if not (is_child() or ctx.resilient_parsing or ctx.params.get("quiet")):
+    if not (is_child() or ctx.resilient_parsing):
         click.echo(f"--setup auto: {len(named)} named behind it take its place; nothing is proposed", err=True)
     return named
 

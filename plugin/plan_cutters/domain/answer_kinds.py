@@ -27,6 +27,8 @@ KINDS = (
     ),
     AnswerKind("mend-all", "that for every cutter", "asking what to do next", long=True),
 )
+#: What takes less off what is left is no advice, a share of the area.
+WORTH = 0.001
 ANSWERS = tuple(each.word for each in KINDS)
 #: What `all` leaves out.
 LONG = frozenset(each.word for each in KINDS if each.long)

@@ -246,7 +246,8 @@ class PostureMaps(Record):
         if self._lies_flat and low <= _END and len(turns) == len(self.rotations):
             # Maps are of the edge of the tip: a plan also asks whether the flat can lie on the contact.
             flat = axis_limited & (verdicts.verdict == INACCESSIBLE)
-            verdicts.verdict[np.flatnonzero(flat)[machine.allows(self.normal[flat], frame)]] = UNDECIDED
+            flat[flat] = machine.allows(self.normal[flat], frame)
+            verdicts.verdict[flat] = UNDECIDED
         # What is in doubt without a machine is so with any that holds some posture there.
         doubt, held = axis_limited & (self.verdict == UNDECIDED), np.zeros(len(self.verdict), bool)
         few = ranges._replace(rotation_cos=ranges.rotation_cos[turns], rotation_sin=ranges.rotation_sin[turns])

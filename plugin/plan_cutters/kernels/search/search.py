@@ -35,7 +35,7 @@ from plan_cutters.kernels.linear.vectors import cross, dot, perpendicular, tilt_
 from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search.place import clip_straight, inside, mode_at, permitted, search_workspace, straight, straightened
-from plan_cutters.kernels.search.sweep import NONE, STOPPED, WITHOUT_END, Side, both, memory, sweep, sweep_both
+from plan_cutters.kernels.search.sweep import NONE, UNFINISHED, WITHOUT_END, Side, both, memory, sweep, sweep_both
 from plan_cutters.kernels.tool.hit import BODY, scratch, stand, tree_hit
 
 #: Between arcs of what is certainly in the way, intervals narrower than this are none: no machine holds a tilt to 0.01 deg. rad.
@@ -148,7 +148,7 @@ def search_rows(rows, contacts, ranges, tools, solids, mode, results):
                 missed = rotation < 0
             if rotation < 0 and mode.decides:
                 results.reason[row] = _reason(workspaces[0].tally, workspaces[1].tally)
-            if sure or not missed or (rotation == STOPPED and not of_inner):
+            if sure or not missed or (rotation == UNFINISHED and not of_inner):
                 break
         if missed:
             results.verdict[row] = INACCESSIBLE if sure else UNDECIDED

@@ -35,7 +35,7 @@ _CACHED, _POOL = 64, 128
 #: Boxes in whose time a rotation is gone through, of a tool that touches in one way, about.
 ROTATION = 16
 #: What a sweep says in place of a rotation: there is no posture; it was given up before it knew.
-NONE, STOPPED = -1, -2
+NONE, UNFINISHED = -1, -2
 #: Boxes that are never reached: a sweep with it is never given up.
 WITHOUT_END = 1 << 60
 
@@ -234,7 +234,7 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, most, start, t
     Returns
     -------
     rotation : int
-        `NONE` if there is no posture, `STOPPED` if none was found among the rotations looked at.
+        `NONE` if there is no posture, `UNFINISHED` if none was found among the rotations looked at.
     tilt : float
         rad.
     """
@@ -269,7 +269,7 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, most, start, t
             if tilt >= 0.0:
                 return rotation, tilt
             if workspace.scratch.looked[0] > last:
-                return STOPPED, 0.0
+                return UNFINISHED, 0.0
     return NONE, 0.0
 
 
@@ -293,7 +293,7 @@ def sweep_both(contacts, row, ranges, side, starts, turns, workspaces):
     )
     if rotation >= 0:
         return rotation, tilt, ((rotation, tilt), starts[1])
-    if ranges.strict or rotation == STOPPED:
+    if ranges.strict or rotation == UNFINISHED:
         workspaces[1].tally[:] = 0.0
         return rotation, 0.0, starts
     rotation, tilt = sweep(

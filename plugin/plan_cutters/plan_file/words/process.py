@@ -5,6 +5,7 @@ import textwrap
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
+from plan_cutters.domain.answer_kinds import WORTH
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.numbers import area, count, duration, listed, mm, percent, place
 from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, NextEntry, ProcessEntry, ProcessStep, RemainingEntry
@@ -16,8 +17,8 @@ from plan_cutters.plan_file.words.scope import shown_cutter
 
 #: Columns of a line; steps and causes that are listed; faces that are named of a cause; next steps.
 WIDTH, _STEPS, _CAUSES, _FACES, _NEXT = 80, 9, 4, 3, 2
-#: A next step takes at least this share off what the process leaves.
-_GAIN = 0.999e-3
+#: Shares are sums of areas: a gain that is less than it should be by this is that.
+_ROUNDING = 1e-6
 #: A clearance that is told as that or more, mm.
 _FAR = 100.0
 _STRATEGIES = {"point": "", "floor": "floor", "wall": "wall", "mixed": ""}
@@ -182,7 +183,7 @@ def _next_entries(plan: Plan) -> Iterator[NextEntry]:
     if entry.mend is not None:
         for step in entry.mend.steps:
             # The process has the other cutters and setups already that the shown cutter alone would need.
-            if not is_excluded(step) and (step.lost_after is None or left - step.lost_after >= _GAIN):
+            if not is_excluded(step) and (step.lost_after is None or left - step.lost_after >= WORTH - _ROUNDING):
                 argv = shlex.split(step.option) if step.option else []
                 yield NextEntry(words=step.why, argv=argv, left_share=step.lost_after)
     elif "mend" not in plan.effective.answers:
