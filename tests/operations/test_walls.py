@@ -10,8 +10,12 @@ from plan_cutters import plan
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import STRATEGIES
 from plan_cutters.kernels.linear.rulings import extents
-from plan_cutters.operations.walls import flank_of, flat_of
+from plan_cutters.operations.probes import Probes
+from plan_cutters.operations.walls import Walls, flank_of, flat_of
+from plan_cutters.options import Options
+from plan_cutters.pipeline import prepare
 from tests.support.cad_parts import box, rod
+from tests.support.places import real_file
 
 FEED = 1000.0
 #: A block on a table, with tools that reach all of its sides from above.
@@ -109,3 +113,15 @@ def test_above_the_most_orientations_simultaneous_motion_is_recommended():
     assert fastest.orientations <= 1
     assert any(each.mode == "simultaneous" for each in fastest.operations)
     assert any("simultaneous motion is recommended" in note for note in found.notes)
+
+
+def test_a_wall_no_higher_than_the_scallop_is_none():
+    """Where a rounded corner of a phone's case ends, the flutes meet it over 0.000002 mm: a pass of that height takes hours."""
+    options = Options.of(
+        {"faces": "F47,F86", "machine": "trunnion-ac", "setup": (0, 0, -1), "cutters": "D6L40F16S6", "spacing": 6}
+    )
+    ready = prepare(real_file("cad/hard/jack_phone.igs"), options)
+    walls = Walls.of(Probes(ready.samples, ready.cutters, ready.setups, ready.machinable), options.scallop, options.accuracy)
+    strip = walls.passes(0, 0, np.array([0.0, 0.0, -1.0]), np.arange(len(ready.samples))).strip
+    assert np.isfinite(strip).any()
+    assert np.nanmin(strip) > options.scallop

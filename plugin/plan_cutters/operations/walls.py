@@ -182,7 +182,8 @@ class Walls:
             strip = (high - low) / count
             number = np.clip(np.floor(-low / strip), 0.0, count - 1.0)
         above = -low - number * strip
-        good = np.flatnonzero(np.isfinite(strip) & (strip > _NOTHING) & (above >= -_NOTHING) & (above <= most + _NOTHING))
+        # What is no higher than the scallop is the end of a face that bends away.
+        good = np.flatnonzero((strip > self._scallop) & (above >= -_NOTHING) & (above <= most + _NOTHING))
         if not len(good):
             return result
         tangent = self._tangent(rows[good], ruling[good])
