@@ -115,7 +115,24 @@ def test_above_the_most_orientations_simultaneous_motion_is_recommended():
     assert any("simultaneous motion is recommended" in note for note in found.notes)
 
 
-def test_a_wall_no_higher_than_the_scallop_is_none():
+@pytest.mark.parametrize(("height", "there"), [(0.000002, False), (0.009, False), (0.02, True)])
+def test_a_wall_is_higher_than_the_scallop(height, there):
+    """The side of a block, of which triangles leave a low band about one sample."""
+    options = Options.of({"faces": "all", "machine": "trunnion-ac", "cutters": "D10L60F15", "grid": 5})
+    ready = prepare(box(30.0, 30.0, 40.0), options)
+    samples = ready.samples
+    row = int(np.flatnonzero(samples.normal[:, 0] > 0.99)[12])
+    x, y, z = samples.point[row]
+    low, high = z - 0.5 * height, z + 0.5 * height
+    band = np.array([[[x, y - 5, low], [x, y + 5, low], [x, y + 5, high]], [[x, y - 5, low], [x, y + 5, high], [x, y - 5, high]]])
+    probes = Probes(samples, ready.cutters, ready.setups, ready.machinable)
+    walls = Walls(probes, {int(samples.face[row]): band}, 0.0, options.scallop, options.accuracy)
+    (strip,) = walls.passes(0, 0, np.array([0.0, 0.0, 1.0]), np.array([row])).strip
+    assert np.isfinite(strip) == there
+    assert not there or strip == pytest.approx(height)
+
+
+def test_no_wall_of_a_real_case_is_lower_than_the_scallop():
     """Where a rounded corner of a phone's case ends, the flutes meet it over 0.000002 mm: a pass of that height takes hours."""
     options = Options.of(
         {"faces": "F47,F86", "machine": "trunnion-ac", "setup": (0, 0, -1), "cutters": "D6L40F16S6", "spacing": 6}
