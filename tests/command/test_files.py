@@ -319,7 +319,7 @@ def child_of(process):
 
 @pytest.mark.parametrize(("number", "word"), [(signal.SIGSEGV, "SIGSEGV"), (signal.SIGSTOP, "within")])
 def test_a_crash_or_hang_while_splitting_costs_the_models_alone(tmp_path, number, word):
-    process, said = start(*WORDS, "--read-timeout", "2", "--json", "-", "-o", "out", cwd=tmp_path)
+    process, said = start(*WORDS, "--read-timeout", "10", "--json", "-", "-o", "out", cwd=tmp_path)
     assert "flat end D8 x 60" in said
     os.kill(child_of(process), number)
     shown, rest = process.communicate(timeout=120)
