@@ -31,6 +31,7 @@ from plan_cutters.plan_file.operations import (
     OperationRegion,
     OperationsEntry,
     RestEntry,
+    TurningEntry,
     WorkplaneEntry,
     runs,
 )
@@ -186,7 +187,7 @@ def _operation(
         share=min(1.0, float(mine.sum()) / whole) if whole > 0.0 else 0.0, exclusive_mm2=float(area[operation.only].sum()),
         strip_mm=_tenths(strip[known]), cut_length_mm=length,
         seconds=float(seconds.sum()) if np.isfinite(seconds).all() else None, proved_share=operation.proved,
-        approaches_proved=operation.approaches, clearance_mm=operation.clearance,
+        approaches_proved=operation.approaches, turning=_turning(operation, names), clearance_mm=operation.clearance,
         faces=_faces(rows, samples, area), frame=None if plane is None else _frame(plane),
         colour=operation_colour(number), index_s=None if plane is None else plane.index,
         index_from=None if plane is None else index_from,
@@ -194,6 +195,20 @@ def _operation(
             _region(k, np.flatnonzero(plan.region == k), samples, area)
             for k in np.unique(plan.region[rows]).tolist()
         ],
+    )  # fmt: skip
+
+
+def _turning(operation: Operation, names: tuple[str, str]) -> TurningEntry | None:
+    turning = operation.turning
+    if turning is None:
+        return None
+    angles = None
+    if turning.low is not None and turning.high is not None:
+        (a, b), (c, d) = turning.low.tolist(), turning.high.tolist()
+        angles = {names[0]: (a, c), names[1]: (b, d)}
+    return TurningEntry(
+        pieces_mm2=list(turning.area), steepest_deg_mm=turning.steepest, angles_deg=angles, held_share=turning.held,
+        both_share=turning.both, singular_mm2=turning.singular,
     )  # fmt: skip
 
 

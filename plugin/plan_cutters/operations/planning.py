@@ -93,7 +93,7 @@ def plan_operations(
         for k, each in enumerate(plans):
             same = next((other for other in different if each.like(other)), None)
             mine = part_of(proving, k, len(plans))
-            plans[k] = proved(ready, each, progress=mine) if same is None else replace(same, name=each.name)
+            plans[k] = proved(ready, everywhere, each, progress=mine) if same is None else replace(same, name=each.name)
             different += [plans[k]] if same is None else []
     small = instead + tuple(note for each in different for note in small_pieces(each, ready.samples, options.overlap))
     if unpriced := [each.id for each in without_feed(ready)]:

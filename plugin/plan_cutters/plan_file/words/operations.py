@@ -111,6 +111,7 @@ def _plan(operations: OperationsEntry, plan: OperationPlanEntry) -> Iterator[str
         yield f"  {_listed(each, _setups(operations))}"
     if len(plan.operations) > _LISTED:
         yield f"  and {len(plan.operations) - _LISTED} more in plan.json."
+    yield from (line for each in plan.operations if (line := turning(each)))
     if plan.proved_share is not None and plan.proved_share < 1.0:
         yield f"Not proved between samples: {some(1.0 - plan.proved_share)} of the area of the {plan.name} plan."
 
@@ -214,6 +215,29 @@ def _listed(each: OperationEntry, setups: bool) -> str:
     where = f" in setup {each.setup + 1}" if setups else ""
     how = f"{each.cutter}{where}, {_turned(each)}{_strategy(each)}"
     return f"{each.id}: {how}: {share_text(each.share)} of the area{took}, {_faces(each)}."
+
+
+def turning(each: OperationEntry) -> str:
+    """Say over what share simultaneous motion is proved, and how the axes turn there; empty where nothing was looked at."""
+    turn = each.turning
+    if turn is None or each.proved_share is None:
+        return ""
+    if not turn.pieces_mm2:
+        return f"Simultaneous motion in {each.id}: nothing of it is proved between the samples."
+    pieces = "1 piece" if len(turn.pieces_mm2) == 1 else f"{len(turn.pieces_mm2)} pieces"
+    text = (
+        f"Simultaneous motion in {each.id}: {share_text(each.proved_share)} of its area is proved, in {pieces}, with axes that turn "
+        f"by at most {turn.steepest_deg_mm:.2g} deg a mm"
+    )
+    if turn.angles_deg is not None:
+        text += f"; {', '.join(f'{name} {low:.0f} to {high:.0f} deg' for name, (low, high) in turn.angles_deg.items())}"
+    if turn.angles_deg is not None and turn.held_share < 1.0 - ROUNDING:
+        text += (
+            f"; in {some(1.0 - turn.held_share)} of that no solution of the rotary axes goes from end to end without turning back"
+        )
+    if turn.singular_mm2 > 0.0:
+        text += f"; {size(turn.singular_mm2)} lie near the singular direction, where the first rotary axis may turn fast"
+    return f"{text}."
 
 
 class OperationText(NamedTuple):
