@@ -1,4 +1,4 @@
-"""Simultaneous operations between the samples: over which pieces a field of tool axes is proved, and how the machine turns there."""
+"""Simultaneous operations between the samples: where a field of tool axes is proved, and how the machine turns there."""
 
 import math
 from dataclasses import replace
@@ -109,7 +109,7 @@ def _pieces(sample: Rows, piece: Rows, area: Floats, n: int) -> Ints:
 def _held(
     kinematics: Kinematics, axis: Floats, piece: Ints, edge: Rows, sizes: Floats
 ) -> tuple[Floats | None, Floats | None, float, float]:
-    """Least and largest angles, deg, over pieces that a solution holds from end to end; shares that one holds, and that both do."""
+    """Least and largest angles, deg, over pieces that a solution holds from end to end; shares that one or both hold."""
     low, high = np.full(2, np.inf), np.full(2, -np.inf)
     one = both = 0.0
     for k, area in enumerate(sizes.tolist()):

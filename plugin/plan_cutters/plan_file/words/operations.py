@@ -226,8 +226,8 @@ def turning(each: OperationEntry) -> str:
         return f"Simultaneous motion in {each.id}: nothing of it is proved between the samples."
     pieces = "1 piece" if len(turn.pieces_mm2) == 1 else f"{len(turn.pieces_mm2)} pieces"
     text = (
-        f"Simultaneous motion in {each.id}: {share_text(each.proved_share)} of its area is proved, in {pieces}, with axes that turn "
-        f"by at most {turn.steepest_deg_mm:.2g} deg a mm"
+        f"Simultaneous motion in {each.id}: {share_text(each.proved_share)} of its area is proved, in {pieces}, with axes that "
+        f"turn by at most {turn.steepest_deg_mm:.2g} deg a mm"
     )
     if turn.angles_deg is not None:
         text += f"; {', '.join(f'{name} {low:.0f} to {high:.0f} deg' for name, (low, high) in turn.angles_deg.items())}"
