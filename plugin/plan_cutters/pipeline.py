@@ -258,6 +258,8 @@ def prepare(
         first, *others = places(options)
         chosen = choose(whole, options.faces, scene.ignored, scene.ignore, first, others)
         cutters = tuple(wanted(options.judged, free_form=chosen.free_form))
+        if options.process is not None:
+            options.process.check_faces(chosen.targets)
         affordable(whole, chosen.targets, options)
         job = partial(sampled, whole, scene.orientation, options, chosen.targets, cutters)
     # Sampling and meshing need nothing of each other.

@@ -71,7 +71,7 @@ def operations_entry(
         asked=operations.which,  # type: ignore[arg-type]
         rotary=operations.names,
         plans=plans,
-        fewest=_fewest(operations.fewest),
+        fewest=None if operations.fewest is None else _fewest(operations.fewest),
         cutters=uses,
         curve=steps,
         fastest=_fastest(operations),
@@ -180,7 +180,8 @@ def _operation(
     length = float((mine[known] / strip[known]).sum()) if known.all() else None
     seconds = plan.seconds[rows]
     return OperationEntry(
-        id=operation.name, mode=operation.mode, strategy=operation.strategy, cutter=operation.cutter.id, setup=operation.setup,
+        id=operation.name, step=operation.step or None, mode=operation.mode,
+        strategy=operation.strategy, cutter=operation.cutter.id, setup=operation.setup,
         axis=None if operation.axis is None else vector(operation.axis), angles_deg=_angles(operation.angle, names),
         other_angles_deg=_angles(operation.other_angle, names), samples=len(rows), area_mm2=float(mine.sum()),
         share=min(1.0, float(mine.sum()) / whole) if whole > 0.0 else 0.0, exclusive_mm2=float(area[operation.only].sum()),

@@ -13,6 +13,7 @@ from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters.plan_file.words.doubts import doubts
 from plan_cutters.plan_file.words.names import named
 from plan_cutters.plan_file.words.next_steps import is_excluded
+from plan_cutters.plan_file.words.own_steps import angles_text, own_steps
 from plan_cutters.plan_file.words.scope import shown_cutter
 
 #: Columns of a line; steps and causes that are listed; faces that are named of a cause; next steps.
@@ -109,7 +110,7 @@ def cause_text(cause: str) -> str:
 def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bool, fixed: bool) -> StepRow:
     turned = ""
     if fixed:
-        angles = " ".join(f"{name} {angle:g}" for name, angle in (step.angles_deg or {}).items())
+        angles = angles_text(step.angles_deg or {})
         turned = angles if step.mode == "fixed" else "simultaneous" if step.mode == "simultaneous" else "any angles"
     what = " ".join(filter(None, (names.get(step.cutter, step.cutter), _STRATEGIES[step.strategy])))
     times = f"{step.repeat} x, " if step.repeat > 1 else ""
@@ -118,7 +119,7 @@ def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bo
         setup=f"setup {step.setup + 1}" if setups else "",
         turned=times + turned,
         cutter=what if len(what) <= _name_width(fixed) else f"{what[: _name_width(fixed) - 3]}...",
-        share=percent(step.share, some=True),
+        share=percent(step.share, some=step.area_mm2 > 0.0),
         took=duration(step.seconds),
         faces=step.faces,
     )
@@ -144,6 +145,7 @@ def _fitting(faces: list[str], width: int) -> str:
 
 def _remaining(process: ProcessEntry, plan: Plan) -> Iterator[str]:
     """Sentences on what is left, the largest first."""
+    yield from own_steps(process)
     listed_causes = process.left[:_CAUSES]
     for each in listed_causes:
         faces = listed(each.faces, _FACES)

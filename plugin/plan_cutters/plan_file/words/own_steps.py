@@ -1,0 +1,59 @@
+"""Say which steps are the planner's own, and what is wrong with them."""
+
+from collections.abc import Iterator, Mapping
+
+from plan_cutters.plan_file.numbers import area, count, listed
+from plan_cutters.plan_file.process import OTHER_ORIENTATION, ProcessEntry, ProcessStep
+from plan_cutters.plan_file.reasons import REASONS
+
+#: Steps whose faults are told, and faces that are named of one.
+_STEPS, _FACES = 3, 3
+
+
+def angles_text(angles: Mapping[str, float]) -> str:
+    """Rotary axes with their angles.
+
+    >>> angles_text({"C": 0.0, "A": 12.5})
+    'C 0 A 12.5'
+    """
+    return " ".join(f"{name} {angle:g}" for name, angle in angles.items())
+
+
+def own_steps(process: ProcessEntry) -> Iterator[str]:
+    """Sentences on the planner's own steps; none where all were planned."""
+    own = {k: step for k, step in enumerate(process.steps, 1) if step.own is not None}
+    if not own:
+        return
+    planned = len(process.steps) - len(own)
+    if planned:
+        mine = f"Step {min(own)} is" if len(own) == 1 else f"Steps {min(own)} to {max(own)} are"
+        yield f"{mine} yours; behind {'it' if len(own) == 1 else 'them'} {count(planned, 'step')} planned."
+    faults = [text for k, step in own.items() if (text := _fault(k, step))]
+    yield from faults[:_STEPS]
+    if len(faults) > _STEPS:
+        yield f"{count(len(faults) - _STEPS, 'more step')} of yours leave something: plan.json says what."
+
+
+def _fault(number: int, step: ProcessStep) -> str:
+    """What is wrong with a step; empty where it does what it is asked."""
+    own = step.own
+    assert own is not None, "asked of the planner's own steps"
+    near = "" if own.nearest is None else f": {angles_text(own.nearest.angles_deg)} would take {area(own.nearest.area_mm2)}"
+    if own.wrong:
+        return f"Step {number}: {own.wrong}{near}."
+    if own.leaves:
+        worst = own.leaves[0]
+        left = sum(each.area_mm2 for each in own.leaves)
+        cause = "it needs another orientation" if worst.cause == OTHER_ORIENTATION else _cause(worst.cause)
+        return f"Step {number} leaves {area(left)} of {area(own.asked_mm2)}, {listed(worst.faces, _FACES)}: {cause}{near}."
+    if step.area_mm2 <= 0.0:
+        return (
+            f"Step {number} finds nothing left to do."
+            if own.asked_mm2 <= 0.0
+            else f"Step {number} reaches nothing that is left{near}."
+        )
+    return ""
+
+
+def _cause(code: str) -> str:
+    return REASONS[code].name if code in REASONS else code.replace("_", " ")

@@ -1,0 +1,180 @@
+"""The planner's own process: steps are judged as they stand, in their order, and what is wrong with them is said."""
+
+import json
+
+import cadquery as cq
+import numpy as np
+import pytest
+
+from plan_cutters import plan
+from plan_cutters.errors import OptionError
+from plan_cutters.machines.process_file import process_of
+from plan_cutters.report.folder import write_all
+from plan_cutters.report.process_file import process_toml
+from tests.support.cad_parts import box
+from tests.support.forked import run
+
+#: A block of 40 x 30 x 20; F1 to F6 are its sides, two across each axis.
+OPTIONS = {
+    "faces": "all",
+    "area_budget": 0,
+    "feed": 1000.0,
+    "machine": "trunnion-ac",
+    "grid": 5,
+    "cutters": ["D12L60F26", "D6L40rc3F16"],
+}
+UP, DOWN = {"C": 0.0, "A": 0.0}, {"C": 0.0, "A": 130.0}
+FLAT, BALL = "D12L60F26", "D6L40rc3F16"
+
+
+@pytest.fixture(scope="module")
+def block():
+    return box(40.0, 30.0, 20.0)
+
+
+def judged(part, *steps, rest="leave", **more):
+    return plan(part, **{**OPTIONS, **more}, process={"step": list(steps), "rest": rest})
+
+
+def facing(result, direction):
+    """Samples whose normals are in a direction."""
+    return np.flatnonzero(result.samples.normal @ np.array(direction, float) > 0.99)
+
+
+def test_each_step_takes_what_it_serves_of_its_faces_and_none_before_it_took(block):
+    """The flat end takes the top, then the ball all that the top leaves: its four sides; the bottom stays."""
+    result = judged(
+        block, {"cutter": FLAT, "angles": UP, "faces": ["F6"]}, {"cutter": BALL, "angles": UP}, {"cutter": FLAT, "angles": UP}
+    )
+    first, second, third = result.answers.operations.own
+    assert set(first.rows.tolist()) == set(facing(result, (0, 0, 1)).tolist())
+    sides = np.concatenate([facing(result, each) for each in ((1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, -1, 0))])
+    assert set(second.rows.tolist()) == set(sides.tolist())
+    assert not len(third.rows)
+    label, operations = result.answers.operations.plans[0].label, result.answers.operations.plans[0].operations
+    assert {operations[k].step for k in label[first.rows].tolist()} == {1}
+    assert {operations[k].step for k in label[second.rows].tolist()} == {2}
+    assert (label[facing(result, (0, 0, -1))] == -1).all()
+    steps = result.plan.process.steps
+    assert [step.own.number for step in steps] == [1, 2, 3]
+    assert "Step 3 reaches nothing that is left." in result.plan.text.lines
+    assert result.plan.process.finished_share == pytest.approx((1200.0 + 2800.0) / 5200.0)
+
+
+def test_an_orientation_that_the_machine_cannot_hold_is_said_with_one_that_does(block):
+    """The bottom needs A 90 at least, and the trunnion does not tilt to 130 deg: what is proposed finishes it."""
+    wrong = judged(block, {"cutter": FLAT, "angles": DOWN, "faces": ["F5"]}, tolerance=0.02)
+    (found,) = wrong.answers.operations.own
+    assert not len(found.rows)
+    step = wrong.plan.process.steps[0]
+    assert step.own.wrong
+    assert step.own.nearest is not None
+    assert any("cannot hold" in line for line in wrong.plan.text.lines)
+    right = judged(block, {"cutter": FLAT, "angles": step.own.nearest.angles_deg, "faces": ["F5"]}, tolerance=0.02)
+    assert right.plan.process.steps[0].area_mm2 == pytest.approx(step.own.nearest.area_mm2)
+    assert right.plan.process.steps[0].area_mm2 == pytest.approx(1200.0)
+
+
+def test_a_step_that_leaves_some_of_its_faces_says_how_much_and_why(block):
+    result = judged(block, {"cutter": FLAT, "angles": UP, "faces": ["F5", "F6"]})
+    own = result.plan.process.steps[0].own
+    assert own.asked_mm2 == pytest.approx(2400.0)
+    assert [(each.cause, each.faces) for each in own.leaves] == [("orientation", ["F5"])]
+    assert own.leaves[0].area_mm2 == pytest.approx(1200.0)
+
+
+def test_what_steps_leave_is_planned_behind_them_and_not_with_what_is_forbidden(block):
+    process = {"step": [{"cutter": FLAT, "angles": UP, "faces": ["F6"]}], "forbid": [{"cutter": FLAT, "faces": ["F1", "F2"]}]}
+    result = plan(block, **OPTIONS, process=process)
+    made = result.answers.operations.plans[0]
+    assert made.name == "process"
+    assert result.plan.process.steps[0].own.number == 1
+    assert all(step.own is None for step in result.plan.process.steps[1:])
+    assert len(result.plan.process.steps) > 1
+    forbidden = np.isin(result.samples.face, (1, 2))
+    with_flat = np.isin(made.label, [k for k, each in enumerate(made.operations) if each.cutter.corner_radius == 0.0])
+    assert (made.label[forbidden] >= 0).all()
+    assert not (forbidden & with_flat).any()
+    assert result.plan.process.finished_share == 1.0
+
+
+def test_the_file_beside_a_plan_gives_the_same_process(block, tmp_path):
+    first = plan(block, **OPTIONS, operations="fastest")
+    file = tmp_path / "process.toml"
+    file.write_text(process_toml(first.plan), encoding="utf-8")
+    again = plan(block, **OPTIONS, process=file)
+    ours, theirs = first.plan.process, again.plan.process
+    assert theirs.finished_share == ours.finished_share
+    assert [(s.setup, s.angles_deg, s.cutter) for s in theirs.steps] == [(s.setup, s.angles_deg, s.cutter) for s in ours.steps]
+    assert [s.area_mm2 for s in theirs.steps] == pytest.approx([s.area_mm2 for s in ours.steps])
+    written, asked = (process_of(each).steps for each in (again.plan.effective.process, file))
+    assert [(s.setup, s.angles, s.faces) for s in written] == [(s.setup, s.angles, s.faces) for s in asked]
+
+
+def test_a_simultaneous_step_takes_what_its_cutter_reaches(block):
+    result = judged(block, {"cutter": BALL, "mode": "simultaneous"})
+    step = result.plan.process.steps[0]
+    assert (step.mode, step.own.number) == ("simultaneous", 1)
+    assert step.area_mm2 == pytest.approx(5200.0)
+    assert result.answers.operations.plans[0].operations[0].step == 1
+
+
+def test_the_checker_follows_the_steps_and_finds_one_that_is_forged(block, tmp_path):
+    """A plan whose operation says that it is of another step than it is does not hold."""
+    cq.Shape.cast(block).exportStep(str(tmp_path / "block.step"))
+    (tmp_path / "process.toml").write_text(
+        f'rest = "leave"\n[[step]]\ncutter = "{BALL}"\nmode = "simultaneous"\nfaces = ["F1"]\n'
+        f'[[step]]\ncutter = "{FLAT}"\nangles = {{ C = 0.0, A = 0.0 }}\n', encoding="utf-8",
+    )  # fmt: skip
+    words = [str(tmp_path / "block.step"), "--faces", "all", "--machine", "trunnion-ac", "--feed", "1000", "--grid", "5"]
+    words += ["--area-budget", "0", "--cutter", FLAT, "--cutter", BALL, "--process", str(tmp_path / "process.toml")]
+    assert run(*words, "--formats", "json,npz", "-o", str(tmp_path / "out")).returncode == 1
+    file = tmp_path / "out" / "plan.json"
+    check = run(*words, "--check-operations", str(file))
+    assert check.returncode == 0, check.stdout + check.stderr
+    document = json.loads(file.read_text())
+    for each in document["operations"]["plans"][0]["operations"]:
+        each["step"] = 3 - each["step"]
+    file.write_text(json.dumps(document))
+    assert run(*words, "--check-operations", str(file)).returncode == 1
+
+
+def test_a_file_that_a_person_wrote_into_the_folder_stays(block, tmp_path):
+    own = tmp_path / "process.toml"
+    text = f'# mine\nrest = "leave"\n[[step]]\ncutter = "{FLAT}"\nangles = {{ C = 0.0, A = 0.0 }}\n'
+    own.write_text(text, encoding="utf-8")
+    for _ in range(2):
+        write_all(plan(block, **OPTIONS, process=own), tmp_path, ("json",))
+        assert own.read_text(encoding="utf-8") == text
+
+
+STEP = {"cutter": FLAT, "angles": UP}
+
+
+@pytest.mark.parametrize(
+    ("process", "said"),
+    [
+        ({"step": [{**STEP, "cutter": "D13L60"}]}, "step 1: cutter 'D13L60' is none of those that are judged: D12L60F26?"),
+        ({"step": [STEP, {"cutter": FLAT}]}, "step 2: angles are missing"),
+        ({"step": [{**STEP, "axis": [0.0, 0.0, 1.0]}]}, "step 1: give angles or an axis, not both"),
+        ({"step": [{**STEP, "angles": {"B": 0.0, "C": 0.0}}]}, "the rotary axes are C and A"),
+        ({"step": [{**STEP, "angles": {"C": float("nan"), "A": 0.0}}]}, "finite number"),
+        ({"step": [{"cutter": FLAT, "axis": [0.0, 0.0, 0.0]}]}, "has no direction"),
+        ({"step": [{**STEP, "mode": "simultaneous"}]}, "leave them out, or the mode"),
+        ({"step": [{**STEP, "setup": 2}]}, "step 1: setup 2: 1 is the only setup"),
+        ({"step": [{**STEP, "faces": ["top"]}]}, "step 1: faces: 'top' is no face"),
+        ({"step": [{**STEP, "faces": []}]}, "step 1"),
+        ({"step": [{**STEP, "faces": ["F9"]}]}, "step 1: faces: F9: no target face has this number"),
+        ({"steps": []}, "'steps' has no meaning here"),
+        ({"rest": "leave"}, "nothing to judge"),
+        ({"rest": "perhaps"}, "rest is 'perhaps'"),
+        ({"forbid": [{"cutter": "R1", "faces": ["F1"]}]}, "forbid: cutter 'R1'"),
+        ("nowhere.toml", "cannot be read"),
+        (3, "give a file or the steps"),
+    ],
+)  # fmt: skip
+def test_what_has_no_meaning_is_one_line_with_its_place(block, process, said):
+    with pytest.raises(OptionError) as raised:
+        plan(block, **OPTIONS, process=process)
+    assert said in str(raised.value)
+    assert "\n" not in str(raised.value)
