@@ -249,14 +249,14 @@ class Options:
         if self.unit is not None and self.unit not in UNITS:
             raise OptionError(f"unit {self.unit!r} is not one of {', '.join(UNITS)}")
         self._check_numbers()
-        if self.process is not None:
-            self._check_process(self.process)
-        if self.operations is not None and self.machine.turns and self.machine.turning < 2:
+        if (self.operations is not None or self.process is not None) and self.machine.turns and self.machine.turning < 2:
             axes = "one rotary axis turns" if self.machine.turning else "no rotary axis turns"
             raise OptionError(
                 f"on machine {self.machine.name} {axes} the tool: a plan of operations chooses the angles of two; "
-                "leave out --operations, or name a machine that has them"
+                f"leave out --{'operations' if self.operations is not None else 'process'}, or name a machine that has them"
             )
+        if self.process is not None:
+            self._check_process(self.process)
         if self.operations in ("fastest", "both") and not self.feeds:
             raise OptionError("the fastest operations need a feed: give --feed MM/MIN, or ask for the fewest")
         for cutter in self.judged:
@@ -265,15 +265,15 @@ class Options:
 
     def _check_process(self, process: OwnProcess) -> None:
         """That the planner's steps are about what there is; they are operations."""
-        named = [cutter_of(each.cutter, self.judged, f"process: step {each.number}") for each in process.steps]
+        rotary = self.machine.rotary
+        names = (rotary[0].name, rotary[1].name) if len(rotary) == 2 else ("azimuth", "tilt")
+        process.check(self.judged, MOST_PROPOSED if self.propose else 1 + len(self.other_setups), names)
+        named = [cutter_of(each.cutter, self.judged, "process") for each in process.steps]
         unpriced = [each.typed for each in named if each not in self.feeds]
         if self.operations is None:
             object.__setattr__(self, "operations", "fewest" if unpriced or not self.feeds else "fastest")
         if self.operations != "fewest" and unpriced:
             raise OptionError(f"process: {unpriced[0]} has no feed: give --feed MM/MIN, or --operations fewest")
-        rotary = self.machine.rotary
-        names = (rotary[0].name, rotary[1].name) if len(rotary) == 2 else ("azimuth", "tilt")
-        process.check(self.judged, MOST_PROPOSED if self.propose else 1 + len(self.other_setups), names)
 
     def _check_numbers(self) -> None:
         """Every number within its limits."""

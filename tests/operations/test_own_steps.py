@@ -1,6 +1,7 @@
 """The planner's own process: steps are judged as they stand, in their order, and what is wrong with them is said."""
 
 import json
+import os
 
 import cadquery as cq
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 from plan_cutters import plan
 from plan_cutters.errors import OptionError
 from plan_cutters.machines.process_file import process_of
+from plan_cutters.options import Options
 from plan_cutters.report.folder import write_all
 from plan_cutters.report.process_file import process_toml
 from tests.support.cad_parts import box
@@ -139,6 +141,36 @@ def test_the_checker_follows_the_steps_and_finds_one_that_is_forged(block, tmp_p
     assert run(*words, "--check-operations", str(file)).returncode == 1
 
 
+def test_what_a_step_does_alone_is_what_goes_with_it(block):
+    """Leave out each of three steps in turn: what is finished falls by what it did alone, and another one takes the rest."""
+    steps = [
+        {"cutter": FLAT, "angles": UP, "faces": ["F6", "F1"]},
+        {"cutter": BALL, "mode": "simultaneous", "faces": ["F1", "F2", "F5"]},
+        {"cutter": BALL, "angles": UP, "faces": ["F2", "F3"]},
+    ]
+    whole = judged(block, *steps)
+    for k, step in enumerate(whole.plan.process.steps):
+        less = judged(block, *[each for each in steps if each is not steps[k]])
+        gone = whole.plan.process.finished_mm2 - less.plan.process.finished_mm2
+        assert gone == pytest.approx(step.alone_mm2)
+        assert 0.0 < gone < step.area_mm2 + 1e-9
+    assert whole.plan.process.steps[0].alone_mm2 == pytest.approx(1200.0)
+
+
+def test_a_step_may_name_a_cutter_where_it_is_forbidden(block):
+    """It is not planned there; what a step of the planner's gives it, it does, with a posture at each sample."""
+    process = {"step": [{"cutter": BALL, "mode": "simultaneous", "faces": ["F1"]}], "rest": "plan",
+               "forbid": [{"cutter": BALL, "faces": ["F1", "F2"]}]}  # fmt: skip
+    result = plan(block, **OPTIONS, process=process)
+    made = result.answers.operations.plans[0]
+    mine = np.flatnonzero(result.samples.face == 1)
+    (k,) = {*made.label[mine].tolist()}
+    assert made.operations[k].step == 1
+    assert made.operations[k].clearance is not None
+    assert np.isfinite(made.lean[mine]).all()
+    assert {made.operations[i].cutter.corner_radius for i in made.label[result.samples.face == 2].tolist()} == {0.0}
+
+
 def test_a_file_that_a_person_wrote_into_the_folder_stays(block, tmp_path):
     own = tmp_path / "process.toml"
     text = f'# mine\nrest = "leave"\n[[step]]\ncutter = "{FLAT}"\nangles = {{ C = 0.0, A = 0.0 }}\n'
@@ -163,12 +195,18 @@ STEP = {"cutter": FLAT, "angles": UP}
         ({"step": [{**STEP, "mode": "simultaneous"}]}, "leave them out, or the mode"),
         ({"step": [{**STEP, "setup": 2}]}, "step 1: setup 2: 1 is the only setup"),
         ({"step": [{**STEP, "faces": ["top"]}]}, "step 1: faces: 'top' is no face"),
-        ({"step": [{**STEP, "faces": []}]}, "step 1"),
+        ({"step": [{**STEP, "faces": []}]}, 'step 1: faces is a value of type list: write faces = ["F3", "F12"], or "left"'),
+        ({"step": [{**STEP, "angles": {"C": 1e308, "A": 0.0}}]}, "step 1 angles: C is 1e+308"),
+        ({"step": [{"cutter": FLAT, "axis": [5e-324, 5e-324, 0.0]}]}, "has no direction"),
+        ({"step": [STEP] * 10_000}, "at most 500"),
+        ({"step": [{**STEP, "cutter": "x" * 100_000}]}, "at most 300 characters"),
+        ({"version": 2, "step": [STEP]}, "version is 2"),
+        ({}, "has no step, and forbids nothing"),
         ({"step": [{**STEP, "faces": ["F9"]}]}, "step 1: faces: F9: no target face has this number"),
         ({"steps": []}, "'steps' has no meaning here"),
         ({"rest": "leave"}, "nothing to judge"),
         ({"rest": "perhaps"}, "rest is 'perhaps'"),
-        ({"forbid": [{"cutter": "R1", "faces": ["F1"]}]}, "forbid: cutter 'R1'"),
+        ({"forbid": [{"cutter": "R1", "faces": ["F1"]}]}, "forbid 1: cutter 'R1'"),
         ("nowhere.toml", "cannot be read"),
         (3, "give a file or the steps"),
     ],
@@ -178,3 +216,49 @@ def test_what_has_no_meaning_is_one_line_with_its_place(block, process, said):
         plan(block, **OPTIONS, process=process)
     assert said in str(raised.value)
     assert "\n" not in str(raised.value)
+
+
+FILE = f'[[step]]\ncutter = "{FLAT}"\nangles = {{ C = 0.0, A = 0 }}\n'
+
+
+@pytest.mark.parametrize(
+    "data",
+    [FILE.encode("utf-8-sig"), FILE.replace("\n", "\r\n").encode(), FILE.encode("utf-16"),
+     json.dumps({"step": [{"cutter": FLAT, "angles": UP}]}).encode()],
+)  # fmt: skip
+def test_the_same_steps_are_read_from_any_text(tmp_path, data):
+    file = tmp_path / "process"
+    file.write_bytes(data)
+    (step,) = process_of(file).steps
+    assert (step.cutter, dict(step.angles), step.faces) == (FLAT, UP, None)
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        (b"", "has no step"),
+        (b"%", "is no TOML"),
+        (b"x = " + b"[" * 100_000, "nested too deeply"),
+        (b"x = 1" + b"0" * 5000, "is no TOML: a number has too many digits"),
+        (b"<html>", "is a web page"),
+        (b'{"step": [', "looks like JSON but cannot be read"),
+        (b'{"rest": "plan", "rest": "leave"}', "is given twice"),
+        (b"#" * (2 << 20), "is too large"),
+        (FILE.replace(FLAT, "\u00d8").encode("latin-1"), "step 1: cutter '\u00d8'"),
+    ],
+)  # fmt: skip
+def test_a_file_that_is_none_is_one_line_with_its_name(tmp_path, data, said):
+    file = tmp_path / "mine.toml"
+    file.write_bytes(data)
+    with pytest.raises(OptionError) as raised:
+        Options(cutters=[FLAT], machine="trunnion-ac", feed=1000.0, process=file)
+    assert str(raised.value).startswith("mine.toml: ")
+    assert said in str(raised.value)
+    assert "\n" not in str(raised.value)
+
+
+def test_what_is_no_file_is_not_waited_for(tmp_path):
+    os.mkfifo(tmp_path / "pipe")
+    for path, said in ((tmp_path, "is a folder"), (tmp_path / "pipe", "a pipe or a device"), ("/dev/zero", "a pipe or a device")):
+        with pytest.raises(OptionError, match=said):
+            process_of(path)

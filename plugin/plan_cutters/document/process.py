@@ -110,10 +110,12 @@ def _operated(
         (each for each in entry.operations if each.step is None),
         key=lambda e: (e.setup, e.mode != "fixed", -by_cutter[e.setup, e.cutter], e.cutter, -e.area_mm2, rank[id(e)]),
     )
+    alone = _alone(plan, operations.own, len(area))
     planned = [
         _step(ready, over, area, requested, plan.label == rank[id(each)], setup=each.setup, mode=each.mode,
               strategy=each.strategy, cutter=each.cutter, angles_deg=each.angles_deg, axis=each.axis, seconds=each.seconds,
-              clearance_mm=each.clearance_mm, alone_mm2=each.exclusive_mm2)
+              clearance_mm=each.clearance_mm, operation=each.id,
+              alone_mm2=float(area[alone & (plan.label == rank[id(each)])].sum()) if operations.own else each.exclusive_mm2)
         for each in ordered
     ]  # fmt: skip
     done = {each.step: (k, each) for k, each in enumerate(entry.operations)}
@@ -127,10 +129,20 @@ def _operated(
                   angles_deg=angles if found.angle is not None and np.isfinite(found.angle).all() else None,
                   axis=None if found.axis is None else vector(found.axis),
                   seconds=0.0 if made is None else made.seconds, clearance_mm=None if made is None else made.clearance_mm,
-                  alone_mm2=0.0 if made is None else made.exclusive_mm2,
+                  operation="" if made is None else made.id,
+                  alone_mm2=float(area[alone & (plan.label == k)].sum()),
                   own=_own_entry(ready, over, area, requested, found, operations.names, all_done))
         )  # fmt: skip
     return [*own, *planned]
+
+
+def _alone(plan: OperationPlan, own: Sequence[OwnFound], count: int) -> NDArray[np.bool_]:
+    """Samples (n,) that one step alone serves: one of the planner's own serves what it could finish of its faces."""
+    times = np.zeros(count, np.int64)
+    for found in own:
+        times[found.serves] += 1
+    planned = [k for k, each in enumerate(plan.operations) if not each.step]
+    return times + plan.serves[:, planned].sum(axis=1) == 1
 
 
 def _own_entry(

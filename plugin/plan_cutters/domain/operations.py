@@ -250,6 +250,8 @@ class OwnFound:
         Samples of its faces that no step before it finishes.
     rows : (r,) int64
         Those of them that it finishes.
+    serves : (k,) int64
+        All samples of its faces that it could finish, whoever takes them.
     wrong : str
         Why it does less than is asked of it, in words; empty where it does all.
     nearest : Nearest, optional
@@ -264,6 +266,7 @@ class OwnFound:
     angle: Floats | None
     asked: NDArray[np.int64]
     rows: NDArray[np.int64]
+    serves: NDArray[np.int64]
     wrong: str = ""
     nearest: Nearest | None = None
 

@@ -4,8 +4,10 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from difflib import get_close_matches
+from pathlib import Path
 from typing import Any, Literal
 
+from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import Mode
 from plan_cutters.errors import OptionError
@@ -95,10 +97,10 @@ class OwnProcess:
                 there = "is the only setup" if setups == 1 else f"to {setups} are the setups"
                 raise OptionError(f"{self._where(step)}: setup {step.setup + 1}: 1 {there}; name another with --setup")
             if step.angles is not None and {name for name, _ in step.angles} != set(names):
-                given = ", ".join(name for name, _ in step.angles) or "none"
+                given = ", ".join(name if name.isidentifier() else shown(name) for name, _ in step.angles) or "none"
                 raise OptionError(f"{self._where(step)}: angles: {given}; the rotary axes are {' and '.join(names)}")
-        for each in self.forbidden:
-            cutter_of(each.cutter, cutters, f"{self._named()}forbid")
+        for number, each in enumerate(self.forbidden, 1):
+            cutter_of(each.cutter, cutters, f"{self._named()}forbid {number}")
 
     def check_faces(self, targets: Iterable[int]) -> None:
         """See to it that every face is one that is to be machined.
@@ -109,7 +111,7 @@ class OwnProcess:
         """
         known = set(targets)
         for where, faces in [(self._where(step), step.faces or ()) for step in self.steps] + [
-            (f"{self._named()}forbid", each.faces) for each in self.forbidden
+            (f"{self._named()}forbid {number}", each.faces) for number, each in enumerate(self.forbidden, 1)
         ]:
             if missing := [f"F{number}" for number in faces if number not in known]:
                 raise OptionError(f"{where}: faces: {', '.join(missing[:4])}: no target face has this number; see --faces")
@@ -123,7 +125,7 @@ class OwnProcess:
         }
 
     def _named(self) -> str:
-        return f"{self.file}: " if self.file else "process: "
+        return f"{Path(self.file).name}: " if self.file else "process: "
 
     def _where(self, step: OwnStep) -> str:
         return f"{self._named()}step {step.number}"
@@ -171,8 +173,10 @@ def unit_axis(axis: Sequence[float], where: str) -> tuple[float, float, float]:
     OptionError
         It has no direction.
     """
-    length = math.hypot(*axis)
-    if not (math.isfinite(length) and length > 0.0):
+    largest = max(abs(each) for each in axis)
+    # Numbers next to 0 have few digits.
+    if not 1e-100 < largest < math.inf:
         raise OptionError(f"{where}: axis {list(axis)} has no direction")
-    x, y, z = (float(each) / length for each in axis)
+    scaled = [float(each) / largest for each in axis]
+    x, y, z = (each / math.hypot(*scaled) for each in scaled)
     return x, y, z

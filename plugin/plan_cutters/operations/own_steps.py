@@ -83,8 +83,8 @@ def own_plan(task: Task, process: OwnProcess, planned: Callable[[Task], Columns]
         for each in judged.found
         if each.mode == "simultaneous"
     )
-    reserved = Reserved(tuple(step), moving, process.rest == "leave")
-    return plan_with(others, "process", columns, rule, reserved), judged.found
+    reserved = Reserved(tuple(step), moving, process.rest == "leave", others.everywhere)
+    return plan_with(task, "process", columns, rule, reserved), judged.found
 
 
 def _masked(task: Task, barred: Mapping[int, NDArray[np.bool_]]) -> tuple[Mapping[Cutter, Verdicts], ...]:
@@ -115,31 +115,29 @@ def _judged(task: Task, process: OwnProcess) -> _Judged:
     """Judge the steps in their order: each takes what it serves of its faces, if no step before it has taken that."""
     owner, found = np.zeros(len(task.ready.samples), np.int64), list[OwnFound]()
     for step in process.steps:
-        open_ = owner[task.rows] == 0
-        if step.faces is not None:
-            open_ &= np.isin(task.ready.samples.face[task.rows], step.faces)
-        asked = task.rows[open_]
-        one = _moving(task, step, asked) if step.mode == "simultaneous" else _fixed(task, step, asked)
+        mine = task.rows if step.faces is None else task.rows[np.isin(task.ready.samples.face[task.rows], step.faces)]
+        one = _moving(task, step, mine) if step.mode == "simultaneous" else _fixed(task, step, mine)
+        one = replace(one, asked=mine[owner[mine] == 0], rows=one.serves[owner[one.serves] == 0])
         owner[one.rows] = step.number
         found.append(one)
     return _Judged(tuple(_helped(task, each, process.steps[each.number - 1], owner) for each in found), owner)
 
 
-def _moving(task: Task, step: OwnStep, asked: Rows) -> OwnFound:
-    """What a simultaneous step finishes: what its cutter reaches in its setup with any posture."""
+def _moving(task: Task, step: OwnStep, rows: Rows) -> OwnFound:
+    """A simultaneous step over samples (m,) of its faces: it serves what its cutter reaches in its setup with any posture."""
     cutter = cutter_of(step.cutter, task.cutters, f"step {step.number}")
-    serves = task.everywhere[step.setup][cutter].reached[asked] & task.ready.machinable[step.setup][asked]
-    return OwnFound(step.number, step.setup, "simultaneous", cutter, None, None, asked, asked[serves])
+    serves = task.everywhere[step.setup][cutter].reached[rows] & task.ready.machinable[step.setup][rows]
+    return OwnFound(step.number, step.setup, "simultaneous", cutter, None, None, rows, rows[serves], rows[serves])
 
 
-def _fixed(task: Task, step: OwnStep, asked: Rows) -> OwnFound:
-    """What a fixed step finishes."""
+def _fixed(task: Task, step: OwnStep, rows: Rows) -> OwnFound:
+    """A fixed step over samples (m,) of its faces: it serves what its cutter finishes with its axis."""
     cutter, where = cutter_of(step.cutter, task.cutters, f"step {step.number}"), task.orientations[step.setup]
     angle, axis, held = _set_to(where, step)
-    found = OwnFound(step.number, step.setup, "fixed", cutter, axis, angle, asked, asked[:0])
+    found = OwnFound(step.number, step.setup, "fixed", cutter, axis, angle, rows, rows[:0], rows[:0])
     if not held:
         return replace(found, wrong="the machine cannot hold this orientation")
-    return replace(found, rows=asked[_serves(task, found, asked, axis[None], angle[None])[:, 0]])
+    return replace(found, serves=rows[_serves(task, found, rows, axis[None], angle[None])[:, 0]])
 
 
 def _helped(task: Task, found: OwnFound, step: OwnStep, owner: NDArray[np.int64]) -> OwnFound:

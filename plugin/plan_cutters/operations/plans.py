@@ -79,11 +79,14 @@ class Reserved:
         Simultaneous steps: their number, cutter, setup, and the samples that they take.
     leave : bool
         Whether what no step takes is left, and not given to simultaneous operations.
+    others : tuple of mapping
+        Of each setup the verdicts by cutter for these: without those of cutters where they are forbidden.
     """
 
     step: tuple[int, ...]
     moving: tuple[tuple[int, int, int, Rows], ...]
     leave: bool
+    others: tuple[Mapping[Cutter, Verdicts], ...]
 
 
 def plan_with(
@@ -198,7 +201,7 @@ def _simultaneous(
     pieces = [(step, c, s, rows, _moving_width(task, c, s, rows)) for step, c, s, rows in (own.moving if own else ())]
     if own is None or not own.leave:
         rest = rest[~np.isin(rest, np.concatenate([np.zeros(0, np.int64), *(each[3] for each in pieces)]))]
-        motion = moving_over(task, rest)
+        motion = moving_over(task if own is None else replace(task, everywhere=own.others), rest)
         for s, c in sorted({*zip(motion.setup.tolist(), motion.cutter.tolist(), strict=True)}):
             chosen = (motion.cutter == c) & (motion.setup == s)
             pieces += [(0, c, s, rest[chosen], motion.width[chosen])] if c >= 0 else []

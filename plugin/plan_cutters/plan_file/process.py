@@ -70,8 +70,11 @@ class ProcessStep(Frozen):
     )
     clearance_mm: float | None = Field(description="least at any of its samples; 100: that or more; null: not known")
     alone_mm2: float | None = Field(
-        default=None, description="of its area, that no other step serves: gone if it is left out; null: not known"
+        default=None,
+        description="of its area, that no other step serves on the faces that it has: gone if it is left out and nothing is "
+        "planned in its place; null: not known",
     )
+    operation: str = Field(default="", description="its id in the plan of operations that is the process; empty: none")
     own: OwnStepEntry | None = Field(default=None, description="null: the step was planned")
 
 
