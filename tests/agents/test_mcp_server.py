@@ -329,7 +329,7 @@ def test_steps_of_an_answer_are_edited_and_judged_again(server):
     assert steps
     assert sum(each["area_mm2"] for each in [*steps, *first["left"]]) == pytest.approx(first["asked_mm2"])
     assert sum(each["area_mm2"] for each in steps) == pytest.approx(first["finished_share"] * first["asked_mm2"])
-    mine = [{name: each[name] for name in ("setup", "mode", "angles", "cutter", "faces")} for each in steps]
+    mine = [{name: each[name] for name in ("setup", "mode", "angles", "cutter", "faces", "take")} for each in steps]
     same = server.answer(server.begin("plan_part", part=GROOVE, process={"step": mine, "rest": "leave"}, **STEPPED))
     assert [each["own"]["number"] for each in same["steps"]] == [*range(1, 1 + len(steps))]
     assert same["finished_share"] == pytest.approx(first["finished_share"], abs=0.001)

@@ -141,6 +141,23 @@ def test_the_checker_follows_the_steps_and_finds_one_that_is_forged(block, tmp_p
     assert run(*words, "--check-operations", str(file)).returncode == 1
 
 
+def test_a_step_that_takes_the_rest_comes_behind_all_others(block):
+    """It stands first, and takes of its faces what the fixed step behind it does not serve."""
+    moving = {"cutter": BALL, "mode": "simultaneous", "faces": ["F5", "F6"]}
+    fixed = {"cutter": FLAT, "angles": UP, "faces": ["F6"]}
+    first = judged(block, moving, fixed).plan.process.steps
+    assert [each.area_mm2 for each in first] == pytest.approx([2400.0, 0.0])
+    result = judged(block, {**moving, "take": "rest"}, fixed)
+    rest = result.plan.process.steps
+    assert [(each.own.number, each.take) for each in rest] == [(1, "rest"), (2, "first")]
+    assert [each.area_mm2 for each in rest] == pytest.approx([1200.0, 1200.0])
+    assert rest[0].own.asked_mm2 == pytest.approx(1200.0)
+    assert not any("leaves" in line for line in result.plan.text.lines)
+    again = process_of(result.plan.effective.process).steps
+    assert [each.take for each in again] == ["rest", "first"]
+    assert 'faces = ["F5"]\ntake = "rest"\n' in process_toml(result.plan)
+
+
 def test_what_a_step_does_alone_is_what_goes_with_it(block):
     """Leave out each of three steps in turn: what is finished falls by what it did alone, and another one takes the rest."""
     steps = [

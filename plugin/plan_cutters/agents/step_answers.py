@@ -25,7 +25,8 @@ def _step(step: ProcessStep, most: int) -> StepAnswer:
     faces, more = first(step.faces, most)
     return StepAnswer(
         setup=step.setup + 1, mode=step.mode, angles=step.angles_deg, axis=step.axis if step.angles_deg is None else None,
-        cutter=step.cutter, faces=faces, more_faces=more, area_mm2=step.area_mm2, share=step.share, alone_mm2=step.alone_mm2,
+        cutter=step.cutter, faces=faces, more_faces=more, take=step.take,
+        area_mm2=step.area_mm2, share=step.share, alone_mm2=step.alone_mm2,
         seconds=step.seconds, clearance_mm=step.clearance_mm, own=None if step.own is None else _own(step.own, most),
     )  # fmt: skip
 

@@ -1,7 +1,7 @@
 """Make the process of a plan: its steps, and what they leave by cause."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,11 +56,12 @@ def process_entry(
     """
     sampled, not_sampled = sample_areas(entries[0].faces, ready.samples, ready.scene.part)
     area = np.where(ready.not_required, 0.0, sampled)
-    requested, clamping = float(area.sum()) + not_sampled, None
+    requested, clamping, name = float(area.sum()) + not_sampled, None, ""
     if answers.operations is not None and operations is not None:
         chosen, entry = _preferred(answers.operations.plans, operations.plans)
         done = (chosen.label >= 0) & ready.finished
         steps, seconds = _operated(ready, answers.operations, chosen, entry, over, area, requested), entry.seconds
+        name = entry.name
         if seconds is not None:
             clamping = ready.options.setup_time * max(0, len({step.setup for step in steps}) - 1)
             seconds -= clamping
@@ -76,7 +77,7 @@ def process_entry(
     finished = float(area[done].sum())
     share = exact(finished / max(1e-300, requested), some=bool(done.any()), whole=not remaining)
     return ProcessEntry(
-        steps=steps, finished_share=share, finished_mm2=finished, asked_mm2=requested, left=remaining, seconds=seconds,
+        steps=steps, plan=name, finished_share=share, finished_mm2=finished, asked_mm2=requested, left=remaining, seconds=seconds,
         setup_seconds=clamping, exempt=_exempt(ready, sampled, requested),
     )  # fmt: skip
 
@@ -114,7 +115,7 @@ def _operated(
     planned = [
         _step(ready, over, area, requested, plan.label == rank[id(each)], setup=each.setup, mode=each.mode,
               strategy=each.strategy, cutter=each.cutter, angles_deg=each.angles_deg, axis=each.axis, seconds=each.seconds,
-              clearance_mm=each.clearance_mm, operation=each.id,
+              clearance_mm=each.clearance_mm, operation=each.id, take="rest" if each.mode == "simultaneous" else "first",
               alone_mm2=float(area[alone & (plan.label == rank[id(each)])].sum()) if operations.own else each.exclusive_mm2)
         for each in ordered
     ]  # fmt: skip
@@ -129,11 +130,16 @@ def _operated(
                   angles_deg=angles if found.angle is not None and np.isfinite(found.angle).all() else None,
                   axis=None if found.axis is None else vector(found.axis),
                   seconds=0.0 if made is None else made.seconds, clearance_mm=None if made is None else made.clearance_mm,
-                  operation="" if made is None else made.id,
+                  operation="" if made is None else made.id, take=_take(ready, found),
                   alone_mm2=float(area[alone & (plan.label == k)].sum()),
                   own=_own_entry(ready, over, area, requested, found, operations.names, all_done))
         )  # fmt: skip
     return [*own, *planned]
+
+
+def _take(ready: Prepared, found: OwnFound) -> Literal["first", "rest"]:
+    process = ready.options.process
+    return "first" if process is None else process.steps[found.number - 1].take
 
 
 def _alone(plan: OperationPlan, own: Sequence[OwnFound], count: int) -> NDArray[np.bool_]:

@@ -36,6 +36,8 @@ class OwnStep:
         Unit tool axis, part coordinates.
     faces : tuple of int, optional
         Face numbers; None: all that no step before it finishes.
+    take : str
+        `first`: all that no step before it takes; `rest`: what no other step takes, wherever it stands.
     """
 
     number: int
@@ -45,6 +47,7 @@ class OwnStep:
     angles: tuple[tuple[str, float], ...] | None = None
     axis: tuple[float, float, float] | None = None
     faces: tuple[int, ...] | None = None
+    take: Literal["first", "rest"] = "first"
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,7 +161,8 @@ def _written(step: OwnStep) -> dict[str, Any]:
     elif step.axis is not None:
         turned = {"axis": list(step.axis)}
     faces = LEFT if step.faces is None else _ids(step.faces)
-    return {"setup": step.setup + 1, "mode": step.mode, **turned, "cutter": step.cutter, "faces": faces}
+    rest = {"take": step.take} if step.take == "rest" else {}
+    return {"setup": step.setup + 1, "mode": step.mode, **turned, "cutter": step.cutter, "faces": faces, **rest}
 
 
 def _ids(faces: Iterable[int]) -> list[str]:

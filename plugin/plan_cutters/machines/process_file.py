@@ -57,6 +57,9 @@ class StepTable(_Table):
     faces: Annotated[Literal["left"] | _Faces, BeforeValidator(_named)] = Field(
         default="left", description="left: all that no step before it finishes"
     )
+    take: Literal["first", "rest"] = Field(
+        default="first", description="first: all of its faces that no step before it takes; rest: only what no other step takes"
+    )
 
 
 class ForbidTable(_Table):
@@ -148,7 +151,7 @@ def _step(number: int, table: StepTable, file: str) -> OwnStep:
         number=number, setup=table.setup - 1, mode="fixed" if turned else "simultaneous", cutter=table.cutter,
         angles=None if table.angles is None else tuple(table.angles.items()),
         axis=None if table.axis is None else unit_axis(table.axis, f"{file}: {where}"),
-        faces=None if table.faces == LEFT else _numbers(table.faces, file, where),
+        faces=None if table.faces == LEFT else _numbers(table.faces, file, where), take=table.take,
     )  # fmt: skip
 
 

@@ -112,14 +112,18 @@ def _rest(task: Task, owner: NDArray[np.int64], barred: Mapping[int, NDArray[np.
 
 
 def _judged(task: Task, process: OwnProcess) -> _Judged:
-    """Judge the steps in their order: each takes what it serves of its faces, if no step before it has taken that."""
+    """Judge the steps in their order: each takes what it serves of its faces, if no step before it has taken that.
+
+    Those that take the rest are judged behind all others.
+    """
     owner, found = np.zeros(len(task.ready.samples), np.int64), list[OwnFound]()
-    for step in process.steps:
+    for step in sorted(process.steps, key=lambda each: each.take == "rest"):
         mine = task.rows if step.faces is None else task.rows[np.isin(task.ready.samples.face[task.rows], step.faces)]
         one = _moving(task, step, mine) if step.mode == "simultaneous" else _fixed(task, step, mine)
         one = replace(one, asked=mine[owner[mine] == 0], rows=one.serves[owner[one.serves] == 0])
         owner[one.rows] = step.number
         found.append(one)
+    found.sort(key=lambda each: each.number)
     return _Judged(tuple(_helped(task, each, process.steps[each.number - 1], owner) for each in found), owner)
 
 

@@ -75,6 +75,9 @@ class ProcessStep(Frozen):
         "planned in its place; null: not known",
     )
     operation: str = Field(default="", description="its id in the plan of operations that is the process; empty: none")
+    take: Literal["first", "rest"] = Field(
+        default="first", description="rest: it takes only what no other step takes, as simultaneous steps that were planned do"
+    )
     own: OwnStepEntry | None = Field(default=None, description="null: the step was planned")
 
 
@@ -89,7 +92,8 @@ class NextEntry(Frozen):
 class ProcessEntry(Frozen):
     """A process says in which steps the given cutters, setups and operations finish how much together."""
 
-    steps: list[ProcessStep] = Field(description="in the order of setups, and of cutters in a setup")
+    steps: list[ProcessStep] = Field(description="the planner's own first, then by setup and, in a setup, by cutter")
+    plan: str = Field(default="", description="the name of the plan of operations that the steps are; empty: no operations")
     finished_share: float = Field(description="of what is requested, 0 to 1: 1 only where nothing at all is left")
     finished_mm2: float
     asked_mm2: float = Field(description="of the target faces, without what lies inside other bodies or is exempt")

@@ -29,6 +29,7 @@ def process_toml(plan: Plan) -> str:
         f"# {share} of {area(process.asked_mm2)}. Edit the steps, and judge them again: the same command with --process FILE.\n"
         f"{setups}"
         '# Each step takes, in this order, what it serves of its faces; faces = "left" is all that no step before it finishes.\n'
+        '# take = "rest": only what no other step takes, wherever it stands.\n'
         "# To keep a cutter off some faces: [[forbid]] with cutter and faces, as in a step.\n"
         'format = "plan-cutters-process"\nversion = 1\n'
         '# "leave": nothing more is planned behind these steps.\nrest = "plan"\n'
@@ -51,9 +52,10 @@ def _step(number: int, step: ProcessStep, words: dict[str, str], own: dict[str, 
     if not step.faces:
         # A step of the planner's own that does nothing stays as it is.
         faces = '"left"' if own is None or own["faces"] == "left" else json.dumps(own["faces"])
+    take = 'take = "rest"\n' if step.take == "rest" else ""
     return (
         f"\n# {number}: {percent(step.share, some=step.area_mm2 > 0.0)}{took}\n[[step]]\nsetup = {step.setup + 1}\n{turned}"
-        f"cutter = {toml_text(words.get(step.cutter, step.cutter))}\nfaces = {faces}\n"
+        f"cutter = {toml_text(words.get(step.cutter, step.cutter))}\nfaces = {faces}\n{take}"
     )
 
 

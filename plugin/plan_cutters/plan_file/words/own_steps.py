@@ -1,6 +1,6 @@
 """Say which steps are the planner's own, and what is wrong with them."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 from plan_cutters.plan_file.numbers import area, count, listed
 from plan_cutters.plan_file.process import OTHER_ORIENTATION, ProcessEntry, ProcessStep
@@ -20,18 +20,26 @@ def angles_text(angles: Mapping[str, float]) -> str:
 
 
 def own_steps(process: ProcessEntry) -> Iterator[str]:
-    """Sentences on the planner's own steps; none where all were planned."""
+    """Sentences on the planner's own steps, first which they are, then what is wrong with each; none where all were planned."""
     own = {k: step for k, step in enumerate(process.steps, 1) if step.own is not None}
     if not own:
         return
     planned = len(process.steps) - len(own)
-    if planned:
-        mine = f"Step {min(own)} is" if len(own) == 1 else f"Steps {min(own)} to {max(own)} are"
-        yield f"{mine} yours; behind {'it' if len(own) == 1 else 'them'} {count(planned, 'step')} planned."
-    faults = [text for k, step in own.items() if (text := _fault(k, step))]
-    yield from faults[:_STEPS]
-    if len(faults) > _STEPS:
-        yield f"{count(len(faults) - _STEPS, 'more step')} of yours leave something: plan.json says what."
+    mine = f"Step {min(own)} is" if len(own) == 1 else f"Steps {min(own)} to {max(own)} are"
+    behind = f"; behind {'it' if len(own) == 1 else 'them'} {count(planned, 'step')} planned" if planned else ""
+    yield f"{mine if planned else 'All steps are'} yours{behind}."
+    yield from (text for k, step in own.items() if (text := _fault(k, step)))
+
+
+def shortened(sentences: Sequence[str]) -> list[str]:
+    """The first of the sentences on the planner's own steps, and how many more there are.
+
+    >>> shortened(["Steps 1 to 5 are yours.", *(f"Step {k} leaves 3 mm²." for k in range(1, 6))])[3:]
+    ['Step 3 leaves 3 mm².', '2 more steps of yours leave something: the review page and plan.json say what.']
+    """
+    rest = len(sentences) - _STEPS - 1
+    more = [f"{count(rest, 'more step')} of yours leave something: the review page and plan.json say what."] if rest > 0 else []
+    return [*sentences[: _STEPS + 1], *more]
 
 
 def _fault(number: int, step: ProcessStep) -> str:

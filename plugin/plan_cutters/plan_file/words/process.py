@@ -28,7 +28,10 @@ _OTHER_CAUSES = {UNJUDGED_CAUSE: "not judged", NOT_PLANNED: "in no step"}
 
 @dataclass(frozen=True, slots=True)
 class StepRow:
-    """A step as a row of texts; `setup`, `turned` and `took` are empty where there is nothing to tell apart, or not known."""
+    """A step as a row of texts; `setup`, `turned` and `took` are empty where there is nothing to tell apart, or not known.
+
+    `alone` is what is gone if it is left out, empty where that is not known, and `operation` the id of its operation.
+    """
 
     number: str
     setup: str
@@ -37,6 +40,8 @@ class StepRow:
     share: str
     took: str
     faces: list[str]
+    alone: str
+    operation: str
 
     def cells(self) -> list[str]:
         """All but the faces."""
@@ -45,10 +50,13 @@ class StepRow:
 
 @dataclass(frozen=True, slots=True)
 class ProcessStory:
-    """A process in words: rows of steps and how many more there are, sentences on what is left, next steps, and clearance."""
+    """A process in words: rows of steps and how many more there are, sentences on the planner's own steps and on what is left,
+    next steps, and clearance.
+    """
 
     rows: tuple[StepRow, ...]
     more: str
+    own: tuple[str, ...]
     remaining: tuple[str, ...]
     next: tuple[str, ...]
     clearance: str
@@ -86,6 +94,7 @@ def process_story(plan: Plan, names: Mapping[str, str]) -> ProcessStory | None:
     return ProcessStory(
         rows=rows,
         more=more,
+        own=tuple(own_steps(process)),
         remaining=tuple(_remaining(process, plan)),
         next=tuple(named(plan, _next(each)) for each in process.next[:_NEXT]),
         clearance=_clearance(process),
@@ -122,6 +131,8 @@ def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bo
         share=percent(step.share, some=step.area_mm2 > 0.0),
         took=duration(step.seconds),
         faces=step.faces,
+        alone="" if step.alone_mm2 is None else area(step.alone_mm2),
+        operation=step.operation,
     )
 
 
@@ -145,7 +156,6 @@ def _fitting(faces: list[str], width: int) -> str:
 
 def _remaining(process: ProcessEntry, plan: Plan) -> Iterator[str]:
     """Sentences on what is left, the largest first."""
-    yield from own_steps(process)
     listed_causes = process.left[:_CAUSES]
     for each in listed_causes:
         faces = listed(each.faces, _FACES)
