@@ -18,7 +18,7 @@ from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.operations import operations_of
-from plan_cutters.domain.own_process import OwnProcess, cutter_of
+from plan_cutters.domain.own_process import OwnProcess
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.spec import notation
@@ -26,6 +26,7 @@ from plan_cutters.errors import OptionError
 from plan_cutters.library.presets import feed_of
 from plan_cutters.library.records import Entry, Library, libraries_of
 from plan_cutters.machines.process_file import process_of
+from plan_cutters.machines.requested_operations import operations_requested
 from plan_cutters.machines.requested_setups import setups_requested, without
 from plan_cutters.option_types import ANGLES, PlanOptions
 
@@ -162,8 +163,8 @@ class Options:
         Where the fastest plan would have more fixed orientations, simultaneous motion is recommended for the rest; without effect
         where `most_operations` is given.
     process : OwnProcess, optional
-        The planner's own steps, judged as they stand; may be given as a file or a mapping, as `machines.process_file.process_of`
-        takes them. Where no `operations` are requested, the rest is planned as the fastest, or as the fewest without a feed.
+        The planner's own steps, judged as they stand; may be given as a file or a mapping, as `process_of` takes them. The rest
+        is planned as `operations` say; without them as the fastest, or as the fewest without a feed.
     units : str, optional
         Of lengths in the words, `mm` or `in`; numbers in files stay mm. None: inches where all cutters were given in them.
     unit : str, optional
@@ -249,31 +250,13 @@ class Options:
         if self.unit is not None and self.unit not in UNITS:
             raise OptionError(f"unit {self.unit!r} is not one of {', '.join(UNITS)}")
         self._check_numbers()
-        if (self.operations is not None or self.process is not None) and self.machine.turns and self.machine.turning < 2:
-            axes = "one rotary axis turns" if self.machine.turning else "no rotary axis turns"
-            raise OptionError(
-                f"on machine {self.machine.name} {axes} the tool: a plan of operations chooses the angles of two; "
-                f"leave out --{'operations' if self.operations is not None else 'process'}, or name a machine that has them"
-            )
-        if self.process is not None:
-            self._check_process(self.process)
-        if self.operations in ("fastest", "both") and not self.feeds:
-            raise OptionError("the fastest operations need a feed: give --feed MM/MIN, or ask for the fewest")
+        if self.operations is not None or self.process is not None:
+            setups = MOST_PROPOSED if self.propose else 1 + len(self.other_setups)
+            asked = self.operations, self.process, self.judged, self.feeds, self.machine, setups
+            object.__setattr__(self, "operations", operations_requested(*asked))
         for cutter in self.judged:
             if not cutter.large_enough(self.tolerance):
                 raise OptionError(f"tolerance {self.tolerance:g} mm is too coarse for cutter {cutter.typed}")
-
-    def _check_process(self, process: OwnProcess) -> None:
-        """That the planner's steps are about what there is; they are operations."""
-        rotary = self.machine.rotary
-        names = (rotary[0].name, rotary[1].name) if len(rotary) == 2 else ("azimuth", "tilt")
-        process.check(self.judged, MOST_PROPOSED if self.propose else 1 + len(self.other_setups), names)
-        named = [cutter_of(each.cutter, self.judged, "process") for each in process.steps]
-        unpriced = [each.typed for each in named if each not in self.feeds]
-        if self.operations is None:
-            object.__setattr__(self, "operations", "fewest" if unpriced or not self.feeds else "fastest")
-        if self.operations != "fewest" and unpriced:
-            raise OptionError(f"process: {unpriced[0]} has no feed: give --feed MM/MIN, or --operations fewest")
 
     def _check_numbers(self) -> None:
         """Every number within its limits."""
@@ -326,8 +309,7 @@ class Options:
         take(length_over_radius=number(self.length_over_radius, "length over radius"))
         take(allowance=number(self.allowance, "allowance"))
         take(holder_clearance=number(self.holder_clearance, "holder clearance"))
-        if self.holder is not None:
-            take(holder=Holder.of(self.holder))
+        take(holder=None if self.holder is None else Holder.of(self.holder))
         choice(self.faces, "faces")
         choice(self.ignore, "ignore")
         if self.grid is not None:
