@@ -153,6 +153,7 @@ class OwnStepAnswer(Entry):
     """What a step of `process` is asked, and what it leaves of that."""
 
     number: int = Field(description="in `process`, from 1")
+    text: str = Field(default="", description="what is wrong with it, a sentence; empty where it does all")
     asked_mm2: float
     wrong: str = Field(default="", description="why it does nothing; empty where it can be judged")
     leaves: list[LeftOver]

@@ -35,7 +35,7 @@ def _own(own: OwnStepEntry, most: int) -> OwnStepAnswer:
     leaves, more = _left(own.leaves, most)
     near = own.nearest
     return OwnStepAnswer(
-        number=own.number, asked_mm2=own.asked_mm2, wrong=own.wrong, leaves=leaves, more_leaves=more,
+        number=own.number, text=own.text, asked_mm2=own.asked_mm2, wrong=own.wrong, leaves=leaves, more_leaves=more,
         nearest=None if near is None else NearestOrientation(angles=near.angles_deg, axis=near.axis, area_mm2=near.area_mm2),
     )  # fmt: skip
 

@@ -45,6 +45,7 @@ class OwnStepEntry(Frozen):
         default=[], description="of the faces that it names, that no step of the planner's own finishes, the largest area first"
     )
     nearest: NearestEntry | None = None
+    text: str = Field(default="", description="what is wrong with it, a sentence; empty where it does all")
 
 
 class ProcessStep(Frozen):

@@ -28,7 +28,7 @@ def own_steps(process: ProcessEntry) -> Iterator[str]:
     mine = f"Step {min(own)} is" if len(own) == 1 else f"Steps {min(own)} to {max(own)} are"
     behind = f"; behind {'it' if len(own) == 1 else 'them'} {count(planned, 'step')} planned" if planned else ""
     yield f"{mine if planned else 'All steps are'} yours{behind}."
-    yield from (text for k, step in own.items() if (text := _fault(k, step)))
+    yield from (text for k, step in own.items() if (text := fault(k, step)))
 
 
 def shortened(sentences: Sequence[str]) -> list[str]:
@@ -42,10 +42,11 @@ def shortened(sentences: Sequence[str]) -> list[str]:
     return [*sentences[: _STEPS + 1], *more]
 
 
-def _fault(number: int, step: ProcessStep) -> str:
-    """What is wrong with a step; empty where it does what it is asked."""
+def fault(number: int, step: ProcessStep) -> str:
+    """What is wrong with a step; empty where it does what it is asked, and where it was planned."""
     own = step.own
-    assert own is not None, "asked of the planner's own steps"
+    if own is None:
+        return ""
     near = "" if own.nearest is None else f": {angles_text(own.nearest.angles_deg)} would take {area(own.nearest.area_mm2)}"
     if own.wrong:
         return f"Step {number}: {own.wrong}{near}."

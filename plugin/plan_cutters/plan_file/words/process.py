@@ -13,7 +13,7 @@ from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters.plan_file.words.doubts import doubts
 from plan_cutters.plan_file.words.names import named
 from plan_cutters.plan_file.words.next_steps import is_excluded
-from plan_cutters.plan_file.words.own_steps import angles_text, own_steps
+from plan_cutters.plan_file.words.own_steps import angles_text, fault, own_steps
 from plan_cutters.plan_file.words.scope import shown_cutter
 
 #: Columns of a line; steps and causes that are listed; faces that are named of a cause; next steps.
@@ -102,11 +102,15 @@ def process_story(plan: Plan, names: Mapping[str, str]) -> ProcessStory | None:
 
 
 def with_process_words(plan: Plan) -> Plan:
-    """The plan with the words of its process made anew: doubts, what each area that is left needs, and what to do next."""
+    """The plan with the words of its process made anew: of steps, of what each area that is left needs, and what to do next."""
     if plan.process is None:
         return plan
     needed = [each.model_copy(update={"needs": _needs(plan, each)}) for each in plan.process.left]
-    update = {"left": needed, "next": list(_next_entries(plan)), "doubts": doubts(plan)}
+    steps = [
+        step if step.own is None else step.model_copy(update={"own": step.own.model_copy(update={"text": fault(k, step)})})
+        for k, step in enumerate(plan.process.steps, 1)
+    ]
+    update = {"steps": steps, "left": needed, "next": list(_next_entries(plan)), "doubts": doubts(plan)}
     process = plan.process.model_copy(update=update)
     return plan.model_copy(update={"process": process})
 
