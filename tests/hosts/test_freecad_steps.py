@@ -168,3 +168,103 @@ def test_steps_are_judged_again_in_freecad(tmp_path):
     assert found["kept"] is True
     (line,) = found["told"]
     assert "process.json: step 1: cutter 'R9L9'" in line
+
+
+SESSION = """
+import json, os, sys, time, traceback
+import FreeCAD as App, Part
+import FreeCADGui as Gui
+from PySide import QtCore, QtGui
+found = {}
+
+def pump(until=lambda: False, seconds=0.4):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end and not until():
+        QtGui.QApplication.processEvents(QtCore.QEventLoop.AllEvents, 50)
+        time.sleep(0.02)
+
+def work():
+    try:
+        session()
+    except BaseException:
+        traceback.print_exc()
+    else:
+        json.dump(found, open("found.json", "w"))
+    sys.stdout.flush()
+    os._exit(0)
+
+def session():
+    from freecad.plan_cutters import findings, model, objects, runner
+    document = App.newDocument("Work")
+    block = document.addObject("Part::Feature", "Block")
+    block.Shape = Part.makeBox(40, 30, 20)
+    document.recompute()
+    Gui.getMainWindow().resize(1366, 768)
+    got = []
+    job = model.Job("Work", "Block", tools=model.Tools(specs=("D12L60F26",)), machine="trunnion-ac",
+                    options=("--faces", "all", "--grid", "4", "--area-budget", "0", "--feed", "1000", "--operations", "fastest"))
+    run = runner.Run(job, lambda *_: None, got.append, got.append)
+    pump(lambda: bool(got), 90)
+    panel = findings.open_panel(objects.show(document, got[0]))
+    box = panel.steps
+    rows = lambda: [[box.list.topLevelItem(k).text(c) for c in range(5)] for k in range(box.list.topLevelItemCount())]
+    first = found["rows"] = rows()
+    pump()
+    QtGui.QApplication.primaryScreen().grabWindow(0).save("steps.png")
+    # Moved, changed by typing, left out.
+    box.list.setCurrentItem(box.list.topLevelItem(0))
+    box._down.click()
+    found["moved"] = [rows(), box.place]
+    box._up.click()
+    box.list.topLevelItem(0).setText(1, "C 5 A five")
+    pump()
+    box.again.click()
+    found["wrong"] = [box.told.text(), box._run is None]
+    box.list.topLevelItem(0).setText(1, first[0][1])
+    pump()
+    found["unknown"] = [rows()[0][4], box.told.text()]
+    while len(box.steps) > 1:
+        box._out.click()
+        box.list.setCurrentItem(box.list.topLevelItem(len(box.steps) - 1))
+    box.rest.setChecked(False)
+    # Ended before it answers, then judged.
+    box.again.click()
+    found["running"] = [box.again.text(), box._up.isEnabled()]
+    box.again.click()
+    found["ended"] = [box.again.text(), box.told.text()]
+    box.again.click()
+    pump(lambda: findings.LAST is not panel or box._run is None, 90)
+    pump()
+    again = findings.LAST
+    found["again"] = [again is not panel, len(again.steps.steps), again.steps.rest.isChecked(), len(objects.plans(document))]
+    found["headline"] = again._headline.text()
+    block.Shape = Part.makeBox(40, 30, 21)
+    document.recompute()
+    pump()
+    again.steps.again.click()
+    found["stale"] = [again.steps.told.text(), again.steps._run is None]
+
+QtCore.QTimer.singleShot(1000, work)
+"""
+
+
+@pytest.mark.skipif(not (shutil.which("freecad") and shutil.which("xvfb-run")), reason="FreeCAD or a virtual display is missing")
+def test_the_list_of_steps_is_edited_in_the_window(tmp_path):
+    addon = tmp_path / "user" / ".local" / "share" / "FreeCAD" / "Mod" / "PlanCutters"
+    shutil.copytree(ROOT / "freecad", addon, ignore=shutil.ignore_patterns("__pycache__"))
+    display = ["xvfb-run", "-a", "-s", "-screen 0 1366x768x24"]
+    found = run([*display, "freecad"], SESSION, tmp_path, HOME=str(tmp_path / "user"), QTWEBENGINE_DISABLE_SANDBOX="1",
+                LIBGL_ALWAYS_SOFTWARE="1")  # fmt: skip
+    rows = found["rows"]
+    assert len(rows) > 1
+    assert all(row[1] and row[3].startswith("F") and row[4].endswith(" %") for row in rows)
+    assert found["moved"] == [[rows[1], rows[0], *rows[2:]], 1]
+    assert "step 1: “C 5 A five” is no orientation" in found["wrong"][0]
+    assert found["wrong"][1]
+    assert found["unknown"] == ["", "Changed: judge again."]
+    assert found["running"] == ["Cancel", False]
+    assert found["ended"][0] == "Judge again"
+    assert found["ended"][1].startswith("cancelled")
+    assert found["again"] == [True, 1, False, 1]
+    assert "plan again" in found["stale"][0]
+    assert found["stale"][1]

@@ -41,7 +41,7 @@ _SAME_AREA = 1e-3
 
 
 def operations_entry(
-    operations: Operations, samples: SurfaceSamples, wanted: NDArray[np.bool_], options: Options
+    operations: Operations, samples: SurfaceSamples, wanted: NDArray[np.bool_], reason: NDArray[np.uint8], options: Options
 ) -> OperationsEntry:
     """Make the entry of what was found.
 
@@ -51,6 +51,8 @@ def operations_entry(
     samples : SurfaceSamples
     wanted : (n,) bool
         Judged samples of the finished surface.
+    reason : (n,) uint8
+        Why the most wanted cutter reaches a sample in no setup, an index into REASONS, or NO_REASON.
     options : Options
     """
     area = np.where(wanted, np.nan_to_num(samples.area), 0.0)
@@ -64,7 +66,7 @@ def operations_entry(
         change_s=options.change_time,
         setup_s=options.setup_time,
     )
-    plans = [_plan(each, operations, samples, area, wanted) for each in operations.plans]
+    plans = [_plan(each, operations, samples, area, wanted, reason) for each in operations.plans]
     uses = [_use(each, plans, area) for each in operations.worth]
     steps = [CurveStepEntry(orientations=s.orientations, share=s.share, at_most=s.at_most) for s in operations.curve]
     return OperationsEntry(
@@ -128,8 +130,9 @@ def _use(worth: Worth, plans: list[OperationPlanEntry], area: Floats) -> CutterU
 
 
 def _plan(
-    plan: OperationPlan, results: Operations, samples: SurfaceSamples, area: Floats, wanted: NDArray[np.bool_]
-) -> OperationPlanEntry:
+    plan: OperationPlan, results: Operations, samples: SurfaceSamples, area: Floats, wanted: NDArray[np.bool_],
+    reason: NDArray[np.uint8],
+) -> OperationPlanEntry:  # fmt: skip
     whole = float(area.sum())
     operations = [
         _operation(i, each, plan, plane, results.names, samples, area, whole, results.index_from)
@@ -150,7 +153,7 @@ def _plan(
         pieces=len(np.unique(plan.region[plan.region >= 0])),
         approaches_proved=sum(each.approaches_proved or 0 for each in held) if held else None,
         rest=RestEntry(samples=int(rest.sum()), area_mm2=unserved, share=unserved / whole if whole > 0.0 else 0.0,
-                       reason_counts=_reasons(results.reason[rest])),
+                       reason_counts=_reasons(reason[rest])),
     )  # fmt: skip
 
 

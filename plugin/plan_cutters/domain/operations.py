@@ -372,8 +372,6 @@ class Operations:
         How many times a tool was put down.
     feed : mapping, optional
         mm/min; None: times are not known.
-    reason : (n,) uint8
-        Why the most wanted cutter does not reach a sample in the first setup, an index into REASONS, or NO_REASON.
     fastest : Fastest, optional
         Where the fastest were requested.
     worth : tuple of Worth
@@ -392,7 +390,6 @@ class Operations:
     names: tuple[str, str]
     probes: int
     feed: Mapping[Cutter, float] | None
-    reason: NDArray[np.uint8]
     fastest: Fastest | None = None
     worth: tuple[Worth, ...] = ()
     notes: tuple[str, ...] = field(default_factory=tuple)

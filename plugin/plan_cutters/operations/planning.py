@@ -114,7 +114,7 @@ def plan_operations(
             "--most-operations with a large number takes all.",
         )
     return Operations(options.operations or "", task.cutters, tuple(plans), fewest, steps, task.orientations[0].names,
-                      task.probes.made, task.paths.feed, everywhere[0][task.cutters[0]].reason, timed, worth=worth,
+                      task.probes.made, task.paths.feed, timed, worth=worth,
                       notes=small, index_from=task.indexing.source)  # fmt: skip
 
 
@@ -135,9 +135,8 @@ def _own(task: Task, process: OwnProcess, stage: Callable[[str], AbstractContext
     with stage("operations") as tell:
         plan, found = own_plan(task, process, planned)
         plan = proved(ready, plan, progress=part_of(tell, 5, _PARTS))
-    reason = task.everywhere[0][task.cutters[0]].reason
     return Operations(options.operations or "", task.cutters, (plan,), None, (), task.orientations[0].names, task.probes.made,
-                      task.paths.feed, reason, index_from=task.indexing.source, own=found)  # fmt: skip
+                      task.paths.feed, index_from=task.indexing.source, own=found)  # fmt: skip
 
 
 _Plans = tuple[list[OperationPlan], Fastest | None, tuple[Worth, ...], tuple[str, ...]]
