@@ -29,7 +29,7 @@ class Step:
     faces : str
         `F3 F6`, or `left`: all that no step before it finishes.
     take : str
-        `rest`: only what no other step takes; else `first`.
+        `share`: it divides its faces with others that share them, by time; else `first`: all that no such step before it takes.
     share : float, optional
         Of the area that was asked, as it was judged; None where it is not.
     alone : float, optional

@@ -19,7 +19,7 @@ OWN = {
     "rest": "leave",
     "step": [
         {"cutter": FLAT, "angles": {"C": 0.0, "A": 130.5}, "faces": ["F3"]},
-        {"cutter": BALL, "mode": "simultaneous", "faces": ["F1", "F2"], "take": "rest"},
+        {"cutter": BALL, "mode": "simultaneous", "faces": ["F1", "F2"], "take": "share"},
         {"cutter": FLAT, "angles": {"C": 0.0, "A": 0.0}, "faces": ["F1"]},
     ],
     "forbid": [{"cutter": BALL, "faces": ["F5"]}],

@@ -109,6 +109,7 @@ def test_the_file_beside_a_plan_gives_the_same_process(block, tmp_path):
     assert theirs.finished_share == ours.finished_share
     assert [(s.setup, s.angles_deg, s.cutter) for s in theirs.steps] == [(s.setup, s.angles_deg, s.cutter) for s in ours.steps]
     assert [s.area_mm2 for s in theirs.steps] == pytest.approx([s.area_mm2 for s in ours.steps])
+    assert theirs.seconds == pytest.approx(ours.seconds)
     written, asked = (process_of(each).steps for each in (again.plan.effective.process, file))
     assert [(s.setup, s.angles, s.faces) for s in written] == [(s.setup, s.angles, s.faces) for s in asked]
 
@@ -141,21 +142,36 @@ def test_the_checker_follows_the_steps_and_finds_one_that_is_forged(block, tmp_p
     assert run(*words, "--check-operations", str(file)).returncode == 1
 
 
-def test_a_step_that_takes_the_rest_comes_behind_all_others(block):
+def test_a_simultaneous_step_that_shares_comes_behind_all_others(block):
     """It stands first, and takes of its faces what the fixed step behind it does not serve."""
     moving = {"cutter": BALL, "mode": "simultaneous", "faces": ["F5", "F6"]}
     fixed = {"cutter": FLAT, "angles": UP, "faces": ["F6"]}
     first = judged(block, moving, fixed).plan.process.steps
     assert [each.area_mm2 for each in first] == pytest.approx([2400.0, 0.0])
-    result = judged(block, {**moving, "take": "rest"}, fixed)
+    result = judged(block, {**moving, "take": "share"}, fixed)
     rest = result.plan.process.steps
-    assert [(each.own.number, each.take) for each in rest] == [(1, "rest"), (2, "first")]
+    assert [(each.own.number, each.take) for each in rest] == [(1, "share"), (2, "first")]
     assert [each.area_mm2 for each in rest] == pytest.approx([1200.0, 1200.0])
     assert rest[0].own.asked_mm2 == pytest.approx(1200.0)
     assert not any("leaves" in line for line in result.plan.text.lines)
     again = process_of(result.plan.effective.process).steps
-    assert [each.take for each in again] == ["rest", "first"]
-    assert 'faces = ["F5"]\ntake = "rest"\n' in process_toml(result.plan)
+    assert [each.take for each in again] == ["share", "first"]
+    assert 'faces = ["F5"]\ntake = "share"\n' in process_toml(result.plan)
+
+
+def test_fixed_steps_that_share_divide_their_faces_by_time(block):
+    """The flat end is quicker on the top than the ball that stands first; one that does not share comes before both."""
+    ball, flat = ({"cutter": each, "angles": UP, "faces": ["F6"], "take": "share"} for each in (BALL, FLAT))
+    shared = judged(block, ball, flat).plan.process
+    assert [each.area_mm2 for each in shared.steps] == pytest.approx([0.0, 1200.0])
+    assert not any(each.own.leaves for each in shared.steps)
+    first = judged(block, flat, {**ball, "take": "first"}).plan.process
+    assert [each.area_mm2 for each in first.steps] == pytest.approx([0.0, 1200.0])
+    assert [each.own.asked_mm2 for each in first.steps] == pytest.approx([0.0, 1200.0])
+    # What neither serves is planned behind them, and counted once.
+    whole = judged(block, ball, flat, rest="plan").plan.process
+    assert whole.finished_share == 1.0
+    assert sum(each.area_mm2 for each in whole.steps) == pytest.approx(5200.0)
 
 
 def test_what_a_step_does_alone_is_what_goes_with_it(block):

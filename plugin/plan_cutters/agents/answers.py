@@ -171,7 +171,7 @@ class StepAnswer(Entry):
     cutter: str
     faces: list[str] = Field(description="the one with the most of it first")
     more_faces: int = Field(default=0, description="left out here: take all from plan.json before you give the step back")
-    take: Literal["first", "rest"] = Field(description="as in `process`: rest: only what no other step takes")
+    take: Literal["first", "share"] = Field(description="as in `process`: share: by time, with other steps that share its faces")
     area_mm2: float
     share: float = Field(description="of `asked_mm2`")
     alone_mm2: float | None = Field(description="that no other step serves: gone if it is left out; null: not known")

@@ -115,7 +115,7 @@ def _operated(
     planned = [
         _step(ready, over, area, requested, plan.label == rank[id(each)], setup=each.setup, mode=each.mode,
               strategy=each.strategy, cutter=each.cutter, angles_deg=each.angles_deg, axis=each.axis, seconds=each.seconds,
-              clearance_mm=each.clearance_mm, operation=each.id, take="rest" if each.mode == "simultaneous" else "first",
+              clearance_mm=each.clearance_mm, operation=each.id, take="share",
               alone_mm2=float(area[alone & (plan.label == rank[id(each)])].sum()) if operations.own else each.exclusive_mm2)
         for each in ordered
     ]  # fmt: skip
@@ -137,7 +137,7 @@ def _operated(
     return [*own, *planned]
 
 
-def _take(ready: Prepared, found: OwnFound) -> Literal["first", "rest"]:
+def _take(ready: Prepared, found: OwnFound) -> Literal["first", "share"]:
     process = ready.options.process
     return "first" if process is None else process.steps[found.number - 1].take
 

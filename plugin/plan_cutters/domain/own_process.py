@@ -37,7 +37,8 @@ class OwnStep:
     faces : tuple of int, optional
         Face numbers; None: all that no step before it finishes.
     take : str
-        `first`: all that no step before it takes; `rest`: what no other step takes, wherever it stands.
+        `first`: all that no such step before it takes. `share`: of what those leave; fixed steps that share divide it by time,
+        and simultaneous ones take what no fixed one serves.
     """
 
     number: int
@@ -47,7 +48,7 @@ class OwnStep:
     angles: tuple[tuple[str, float], ...] | None = None
     axis: tuple[float, float, float] | None = None
     faces: tuple[int, ...] | None = None
-    take: Literal["first", "rest"] = "first"
+    take: Literal["first", "share"] = "first"
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,7 +162,7 @@ def _written(step: OwnStep) -> dict[str, Any]:
     elif step.axis is not None:
         turned = {"axis": list(step.axis)}
     faces = LEFT if step.faces is None else _ids(step.faces)
-    rest = {"take": step.take} if step.take == "rest" else {}
+    rest = {"take": step.take} if step.take == "share" else {}
     return {"setup": step.setup + 1, "mode": step.mode, **turned, "cutter": step.cutter, "faces": faces, **rest}
 
 

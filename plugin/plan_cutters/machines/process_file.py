@@ -57,8 +57,10 @@ class StepTable(_Table):
     faces: Annotated[Literal["left"] | _Faces, BeforeValidator(_named)] = Field(
         default="left", description="left: all that no step before it finishes"
     )
-    take: Literal["first", "rest"] = Field(
-        default="first", description="first: all of its faces that no step before it takes; rest: only what no other step takes"
+    take: Literal["first", "share"] = Field(
+        default="first",
+        description="first: all of its faces that no such step before it takes; share: of what those leave, divided by time with "
+        "the other steps that share it",
     )
 
 

@@ -28,9 +28,21 @@ _COMPARED = 120
 _ALL = 0.001
 
 
+#: In the place of a step's number: a sample is divided among steps that share it.
+_SHARED = -1
+
+
 @dataclass(frozen=True, slots=True, eq=False)
 class _Judged:
-    """Steps as far as they were judged: their results, and the number of the step that each sample (n,) goes with, 0 for none."""
+    """Steps as far as they were judged.
+
+    Attributes
+    ----------
+    found : tuple of OwnFound
+        In their order; of those that share, with all that they could take.
+    owner : (n,) int64
+        The number of the step that each sample goes with, `_SHARED`, or 0 for none.
+    """
 
     found: tuple[OwnFound, ...]
     owner: NDArray[np.int64]
@@ -71,9 +83,13 @@ def own_plan(task: Task, process: OwnProcess, planned: Callable[[Task], Columns]
         columns, step = columns.and_(more), [*step, *([0] * len(more))]
     number = np.array(step, np.int64)
 
+    shared = {each.number: each.rows for each in judged.found if _shares(process, each) and each.mode == "fixed"}
+
     def rule(serves: NDArray[np.bool_]) -> NDArray[np.bool_]:
-        """Each sample goes with the step that takes it; what none takes, with what was planned, unless that is forbidden."""
+        """Each sample goes with the step that takes it, or one of those that share it; what none takes, with what was planned."""
         may = serves & (judged.owner[:, None] == number[None, :])
+        for j, rows in ((j, shared[each]) for j, each in enumerate(step) if each in shared):
+            may[rows, j] = serves[rows, j]
         for c, samples in barred.items():
             may[np.ix_(samples & (judged.owner == 0), (columns.cutter == c) & (number == 0))] = False
         return may
@@ -84,7 +100,14 @@ def own_plan(task: Task, process: OwnProcess, planned: Callable[[Task], Columns]
         if each.mode == "simultaneous"
     )
     reserved = Reserved(tuple(step), moving, process.rest == "leave", others.everywhere)
-    return plan_with(task, "process", columns, rule, reserved), judged.found
+    plan = plan_with(task, "process", columns, rule, reserved)
+    place = {each.step: k for k, each in enumerate(plan.operations)}
+    taken = {number: np.flatnonzero(plan.label == place.get(number, -2)) for number in shared}
+    return plan, tuple(replace(each, rows=taken.get(each.number, each.rows)) for each in judged.found)
+
+
+def _shares(process: OwnProcess, found: OwnFound) -> bool:
+    return process.steps[found.number - 1].take == "share"
 
 
 def _masked(task: Task, barred: Mapping[int, NDArray[np.bool_]]) -> tuple[Mapping[Cutter, Verdicts], ...]:
@@ -114,14 +137,16 @@ def _rest(task: Task, owner: NDArray[np.int64], barred: Mapping[int, NDArray[np.
 def _judged(task: Task, process: OwnProcess) -> _Judged:
     """Judge the steps in their order: each takes what it serves of its faces, if no step before it has taken that.
 
-    Those that take the rest are judged behind all others.
+    Behind them come those that share: what fixed ones serve is divided later, and simultaneous ones take what is left.
     """
     owner, found = np.zeros(len(task.ready.samples), np.int64), list[OwnFound]()
-    for step in sorted(process.steps, key=lambda each: each.take == "rest"):
+    for step in sorted(process.steps, key=lambda each: (each.take == "share", each.take == "share" and each.mode != "fixed")):
         mine = task.rows if step.faces is None else task.rows[np.isin(task.ready.samples.face[task.rows], step.faces)]
         one = _moving(task, step, mine) if step.mode == "simultaneous" else _fixed(task, step, mine)
-        one = replace(one, asked=mine[owner[mine] == 0], rows=one.serves[owner[one.serves] == 0])
-        owner[one.rows] = step.number
+        divided = step.take == "share" and step.mode == "fixed"
+        open_ = owner <= 0 if divided else owner == 0
+        one = replace(one, asked=mine[open_[mine]], rows=one.serves[open_[one.serves]])
+        owner[one.rows] = _SHARED if divided else step.number
         found.append(one)
     found.sort(key=lambda each: each.number)
     return _Judged(tuple(_helped(task, each, process.steps[each.number - 1], owner) for each in found), owner)

@@ -76,8 +76,8 @@ class ProcessStep(Frozen):
         "planned in its place; null: not known",
     )
     operation: str = Field(default="", description="its id in the plan of operations that is the process; empty: none")
-    take: Literal["first", "rest"] = Field(
-        default="first", description="rest: it takes only what no other step takes, as simultaneous steps that were planned do"
+    take: Literal["first", "share"] = Field(
+        default="first", description="share: it shares its faces with other steps, by time, as those that were planned do"
     )
     own: OwnStepEntry | None = Field(default=None, description="null: the step was planned")
 

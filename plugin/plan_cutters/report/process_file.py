@@ -28,8 +28,8 @@ def process_toml(plan: Plan) -> str:
     head = (
         f"# {share} of {area(process.asked_mm2)}. Edit the steps, and judge them again: the same command with --process FILE.\n"
         f"{setups}"
-        '# Each step takes, in this order, what it serves of its faces; faces = "left" is all that no step before it finishes.\n'
-        '# take = "rest": only what no other step takes, wherever it stands.\n'
+        '# Steps take in this order what they serve of their faces; faces = "left" is all that no step before it finishes.\n'
+        '# take = "share": such steps divide their faces by time, as proposed. A step without it comes before them.\n'
         "# To keep a cutter off some faces: [[forbid]] with cutter and faces, as in a step.\n"
         'format = "plan-cutters-process"\nversion = 1\n'
         '# "leave": nothing more is planned behind these steps.\nrest = "plan"\n'
@@ -52,7 +52,7 @@ def _step(number: int, step: ProcessStep, words: dict[str, str], own: dict[str, 
     if not step.faces:
         # A step of the planner's own that does nothing stays as it is.
         faces = '"left"' if own is None or own["faces"] == "left" else json.dumps(own["faces"])
-    take = 'take = "rest"\n' if step.take == "rest" else ""
+    take = 'take = "share"\n' if step.take == "share" else ""
     return (
         f"\n# {number}: {percent(step.share, some=step.area_mm2 > 0.0)}{took}\n[[step]]\nsetup = {step.setup + 1}\n{turned}"
         f"cutter = {toml_text(words.get(step.cutter, step.cutter))}\nfaces = {faces}\n{take}"

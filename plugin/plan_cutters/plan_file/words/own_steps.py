@@ -55,6 +55,8 @@ def fault(number: int, step: ProcessStep) -> str:
         left = sum(each.area_mm2 for each in own.leaves)
         cause = "it needs another orientation" if worst.cause == OTHER_ORIENTATION else _cause(worst.cause)
         return f"Step {number} leaves {area(left)} of {area(own.asked_mm2)}, {listed(worst.faces, _FACES)}: {cause}{near}."
+    if step.area_mm2 <= 0.0 and own.asked_mm2 > 0.0 and step.take == "share":
+        return f"Step {number} does nothing: steps that share its faces are quicker."
     if step.area_mm2 <= 0.0:
         return (
             f"Step {number} finds nothing left to do."
