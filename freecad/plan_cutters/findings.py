@@ -54,7 +54,7 @@ class Findings(windows.Panel):
         self.steps: steps.StepsBox | None = None
         if (self.result.plan.get("process") or {}).get("steps"):
             self.steps = steps.StepsBox(group, self.result, self._judged_again)
-            self.form.append(self.steps.form)
+            self.form.insert(2, self.steps.form)
         windows.choose(self._cutters, group.Cutter)
         self._cutters.currentIndexChanged.connect(lambda *_: self._other_cutter())
         self._fill(group.Cutter)

@@ -210,7 +210,7 @@ def session():
     rows = lambda: [[box.list.topLevelItem(k).text(c) for c in range(5)] for k in range(box.list.topLevelItemCount())]
     first = found["rows"] = rows()
     pump()
-    QtGui.QApplication.primaryScreen().grabWindow(0).save("steps.png")
+    box.form.grab().save("steps.png")
     # Moved, changed by typing, left out.
     box.list.setCurrentItem(box.list.topLevelItem(0))
     box._down.click()
