@@ -69,9 +69,16 @@ def _step(entry: dict[str, Any], plan: dict[str, Any]) -> Step:
         written = asked[place]["faces"] if 0 <= place < len(asked) else "left"
         faces = written if isinstance(written, str) else " ".join(written)
     return Step(
-        entry["setup"] + 1, turned, entry["cutter"], faces, entry.get("take", "first"), entry["share"], entry.get("alone_mm2"),
-        own.get("text", ""),
+        entry["setup"] + 1, turned, _called(entry["cutter"], plan), faces, entry.get("take", "first"), entry["share"],
+        entry.get("alone_mm2"), own.get("text", ""),
     )  # fmt: skip
+
+
+def _called(cutter: str, plan: dict[str, Any]) -> str:
+    """The name of a cutter, as it was typed or its library has it; its id where others have that name, too, or it has none."""
+    names = {each["id"]: each.get("name", "") for each in plan.get("cutters", ())}
+    name = names.get(cutter, "")
+    return name if name and [*names.values()].count(name) == 1 and name not in names else cutter
 
 
 def axes_of(plan: dict[str, Any]) -> list[str]:

@@ -46,9 +46,12 @@ def test_the_steps_of_a_plan_come_back_as_they_were_written(own, document):
     asked = process_of(document["effective"]["process"])
     assert (again.rest, again.forbidden) == (asked.rest, asked.forbidden)
     for mine, theirs in zip(again.steps, asked.steps, strict=True):
-        kept = ("setup", "mode", "angles", "cutter", "take")
+        kept = ("setup", "mode", "angles", "take")
         assert [getattr(mine, each) for each in kept] == [getattr(theirs, each) for each in kept]
         assert {*mine.faces} <= {*theirs.faces}
+    ids = {each["name"]: each["id"] for each in document["cutters"]}
+    assert [each.cutter for each in steps] == [FLAT, BALL, FLAT]
+    assert [ids[each.cutter] for each in steps] == [each.cutter for each in asked.steps]
     assert [each.turned for each in steps] == ["C 0 A 130.5", "simultaneous", "C 0 A 0"]
     assert steps[0].fault.startswith("Step 1: the machine cannot hold this orientation: ")
     assert "would take" in steps[0].fault

@@ -11,7 +11,7 @@ from plan_cutters import plan
 from plan_cutters.errors import OptionError
 from plan_cutters.machines.process_file import process_of
 from plan_cutters.options import Options
-from plan_cutters.report.folder import write_all
+from plan_cutters.report.folder import stale_files, write_all
 from plan_cutters.report.process_file import process_toml
 from tests.support.cad_parts import box
 from tests.support.forked import run
@@ -209,8 +209,25 @@ def test_a_file_that_a_person_wrote_into_the_folder_stays(block, tmp_path):
     text = f'# mine\nrest = "leave"\n[[step]]\ncutter = "{FLAT}"\nangles = {{ C = 0.0, A = 0.0 }}\n'
     own.write_text(text, encoding="utf-8")
     for _ in range(2):
-        write_all(plan(block, **OPTIONS, process=own), tmp_path, ("json",))
+        written = write_all(plan(block, **OPTIONS, process=own), tmp_path, ("json",))
+        assert stale_files(tmp_path, written, ("json",)) == []
         assert own.read_text(encoding="utf-8") == text
+
+
+def test_a_proposal_that_was_edited_is_not_written_over(block, tmp_path):
+    """The file of a run is replaced by that of the next one, until a person changes it: then it stays, and the plan says so."""
+    own, first = tmp_path / "process.toml", plan(block, **{**OPTIONS, "cutters": [FLAT]})
+    for _ in range(2):
+        assert "process" in write_all(first, tmp_path, ("json",)).files
+    own.write_text(own.read_text() + "# mine\n", encoding="utf-8")
+    for _ in range(2):
+        second = write_all(first, tmp_path, ("json",))
+        assert own.read_text().endswith("# mine\n")
+        assert "process" not in second.files
+        assert "was edited, and stays" in second.not_written["process"]
+        assert stale_files(tmp_path, second, ("json",)) == []
+    own.unlink()
+    assert "process" in write_all(first, tmp_path, ("json",)).files
 
 
 STEP = {"cutter": FLAT, "angles": UP}

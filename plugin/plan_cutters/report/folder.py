@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from plan_cutters.plan_file.model import FileEntry, Plan
 
 PLAN = "plan.json"
+_STAYS = "the process.toml there was edited, and stays: give it with --process, or delete it"
 #: Written where there are steps, setups were to be proposed, or posture maps or operations were requested.
 _SIDE_FILES = {
     "process",
@@ -189,7 +190,8 @@ def write_all(
     later = [name for name in LATER if name in wanted]
     with staging or Staging(out) as staging:
         making = Making(result, staging.folder, step_schema, clock, listener.begins if listener else lambda what: None)
-        written = _Written(result.plan, staging, clock, out, dict.fromkeys(later, PENDING), as_json="json" in formats)
+        stays = {"process": _STAYS} if result.ready.options.process is None and _edited(result, out) else {}
+        written = _Written(result.plan, staging, clock, out, dict.fromkeys(later, PENDING) | stays, as_json="json" in formats)
         try:
             for name in _arrays(result, formats, out):
                 with clock.stage(name, shown=False):
@@ -259,10 +261,13 @@ def _setup_files(result: Judged) -> list[str]:
     return [f"setup_{number}" for number in range(1, 1 + len(proposal.setups))] if proposal else []
 
 
-def _replaces_own(result: Judged, out: Path) -> bool:
-    """Whether the process was read from the file that this one would be written to: what a person wrote stays."""
-    own = result.ready.options.process
-    return own is not None and bool(own.file) and os.path.abspath(own.file) == os.path.abspath(out / file_name("process"))
+def _edited(result: Judged, out: Path) -> bool:
+    """Whether a person wrote what stands in the place of the process: it was read, or no plan there lists it as it is."""
+    from plan_cutters.report.to_json import listed
+
+    own, path = result.ready.options.process, out / file_name("process")
+    read = own is not None and bool(own.file) and os.path.abspath(own.file) == os.path.abspath(path)
+    return read or (path.is_file() and (listed(out / PLAN) or {}).get(path.name) != sha256(path))
 
 
 def _arrays(result: Judged, formats: Sequence[str], out: Path) -> Iterator[str]:
@@ -270,7 +275,7 @@ def _arrays(result: Judged, formats: Sequence[str], out: Path) -> Iterator[str]:
     if "npz" in formats:
         yield "npz"
     yield from _setup_files(result)
-    if result.plan.process is not None and result.plan.process.steps and not _replaces_own(result, out):
+    if result.plan.process is not None and result.plan.process.steps and not _edited(result, out):
         yield "process"
     if result.maps:
         yield "postures"
@@ -382,6 +387,7 @@ def ended(out: Path, cause: str) -> tuple[str, ...]:
 def stale_files(out: Path, plan: "Plan", formats: Collection[str]) -> list[str]:
     """Files in the output that have names of ours, but are not of this plan: it has neither written nor read them."""
     mine = {entry.name for entry in plan.files.values()} | ({PLAN} if "json" in formats else set())
+    mine |= {file_name("process")} if plan.effective.process is not None or "process" in plan.not_written else set()
     mine |= {each.file for each in (plan.effective.placement, *plan.effective.other_placements) if each and each.file}
     return [name for name in (PLAN, *_names()) if name not in mine and (out / name).is_file()]
 

@@ -8,6 +8,8 @@ from plan_cutters.plan_file.reasons import REASONS
 
 #: Steps whose faults are told, and faces that are named of one.
 _STEPS, _FACES = 3, 3
+#: A step that leaves less of what it is asked does all, as a share: crumbs at borders are no fault.
+_CRUMBS = 0.001
 
 
 def angles_text(angles: Mapping[str, float]) -> str:
@@ -50,9 +52,9 @@ def fault(number: int, step: ProcessStep) -> str:
     near = "" if own.nearest is None else f": {angles_text(own.nearest.angles_deg)} would take {area(own.nearest.area_mm2)}"
     if own.wrong:
         return f"Step {number}: {own.wrong}{near}."
-    if own.leaves:
+    left = sum(each.area_mm2 for each in own.leaves)
+    if left > _CRUMBS * own.asked_mm2:
         worst = own.leaves[0]
-        left = sum(each.area_mm2 for each in own.leaves)
         cause = "it needs another orientation" if worst.cause == OTHER_ORIENTATION else _cause(worst.cause)
         return f"Step {number} leaves {area(left)} of {area(own.asked_mm2)}, {listed(worst.faces, _FACES)}: {cause}{near}."
     if step.area_mm2 <= 0.0 and own.asked_mm2 > 0.0 and step.take == "share":
