@@ -154,7 +154,7 @@ def _completed(
     options = part.ready.options
     answers, between = Answers(least_set=least_set(part.ready, part.here, part.other_setups)), dict[str, AreaEntry]()
     later = later_stages(area=part.looks_between, answers=options.answers, operations=options.operations,
-                         maps=options.posture_maps)  # fmt: skip
+                         maps=options.posture_maps, process=options.process is not None)  # fmt: skip
 
     def done(number: int) -> None:
         """So many of the later stages are done: let the plan stand if that is news, and some follow."""
@@ -258,6 +258,8 @@ def prepare(
         first, *others = places(options)
         chosen = choose(whole, options.faces, scene.ignored, scene.ignore, first, others)
         cutters = tuple(wanted(options.judged, free_form=chosen.free_form))
+        if options.process is not None:
+            options.process.check_faces(chosen.targets)
         affordable(whole, chosen.targets, options)
         job = partial(sampled, whole, scene.orientation, options, chosen.targets, cutters)
     # Sampling and meshing need nothing of each other.

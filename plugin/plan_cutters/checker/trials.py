@@ -70,8 +70,9 @@ class Trials:
         if self.bench.hollow:
             yield Finding(None, f"Whether a tool stands wholly within {', '.join(self.bench.hollow)} is not looked at.")
         yield from self.placed()
-        yield self.weights()
-        yield from self.covered(entry)
+        if self.reckoned.own is None:
+            yield self.weights()
+            yield from self.covered(entry)
         yield from self.alone()
         self.clearances(entry)
 

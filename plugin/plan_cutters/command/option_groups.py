@@ -288,6 +288,12 @@ _OPTIONS = (
         help="Where the fastest plan has more fixed orientations, simultaneous motion is recommended for the rest.  [default: 8]",
     ),
     _operations(
+        "--process",
+        type=File("FILE"),
+        help="Your own steps, a process.toml as it is written beside a plan, edited: they are judged as they stand, in their "
+        "order, and the rest is planned behind them.",
+    ),
+    _operations(
         "--check-operations",
         type=File("FILE"),
         help="Check the operations in a plan.json against the exact part, with the options that it was made with; write nothing.",

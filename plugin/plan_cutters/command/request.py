@@ -118,6 +118,7 @@ class PlanRequest(PlanningRequest):
     parts: tuple[str, ...]
     postures: str | None
     check_operations: str | None
+    process: str | None
     out: str | None
     json_out: str | None
     verbose: bool
@@ -232,6 +233,7 @@ class McpRequest:
 def planning_options(request: PlanningRequest) -> "PlanOptions":
     """The options of a plan that a command line requests, as `Options` takes them."""
     return judging_options(request) | {
+        "process": request.process if isinstance(request, PlanRequest) else None,
         "sharp_edges": request.sharp_edges,
         "units": request.units,
         "area_budget": request.area_budget,

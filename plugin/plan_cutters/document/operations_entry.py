@@ -42,7 +42,7 @@ _SAME_AREA = 1e-3
 
 
 def operations_entry(
-    operations: Operations, samples: SurfaceSamples, wanted: NDArray[np.bool_], options: Options
+    operations: Operations, samples: SurfaceSamples, wanted: NDArray[np.bool_], reason: NDArray[np.uint8], options: Options
 ) -> OperationsEntry:
     """Make the entry of what was found.
 
@@ -52,6 +52,8 @@ def operations_entry(
     samples : SurfaceSamples
     wanted : (n,) bool
         Judged samples of the finished surface.
+    reason : (n,) uint8
+        Why the most wanted cutter reaches a sample in no setup, an index into REASONS, or NO_REASON.
     options : Options
     """
     area = np.where(wanted, np.nan_to_num(samples.area), 0.0)
@@ -65,14 +67,14 @@ def operations_entry(
         change_s=options.change_time,
         setup_s=options.setup_time,
     )
-    plans = [_plan(each, operations, samples, area, wanted) for each in operations.plans]
+    plans = [_plan(each, operations, samples, area, wanted, reason) for each in operations.plans]
     uses = [_use(each, plans, area) for each in operations.worth]
     steps = [CurveStepEntry(orientations=s.orientations, share=s.share, at_most=s.at_most) for s in operations.curve]
     return OperationsEntry(
         asked=operations.which,  # type: ignore[arg-type]
         rotary=operations.names,
         plans=plans,
-        fewest=_fewest(operations.fewest),
+        fewest=None if operations.fewest is None else _fewest(operations.fewest),
         cutters=uses,
         curve=steps,
         fastest=_fastest(operations),
@@ -129,8 +131,9 @@ def _use(worth: Worth, plans: list[OperationPlanEntry], area: Floats) -> CutterU
 
 
 def _plan(
-    plan: OperationPlan, results: Operations, samples: SurfaceSamples, area: Floats, wanted: NDArray[np.bool_]
-) -> OperationPlanEntry:
+    plan: OperationPlan, results: Operations, samples: SurfaceSamples, area: Floats, wanted: NDArray[np.bool_],
+    reason: NDArray[np.uint8],
+) -> OperationPlanEntry:  # fmt: skip
     whole = float(area.sum())
     operations = [
         _operation(i, each, plan, plane, results.names, samples, area, whole, results.index_from)
@@ -151,7 +154,7 @@ def _plan(
         pieces=len(np.unique(plan.region[plan.region >= 0])),
         approaches_proved=sum(each.approaches_proved or 0 for each in held) if held else None,
         rest=RestEntry(samples=int(rest.sum()), area_mm2=unserved, share=unserved / whole if whole > 0.0 else 0.0,
-                       reason_counts=_reasons(results.reason[rest])),
+                       reason_counts=_reasons(reason[rest])),
     )  # fmt: skip
 
 
@@ -181,7 +184,8 @@ def _operation(
     length = float((mine[known] / strip[known]).sum()) if known.all() else None
     seconds = plan.seconds[rows]
     return OperationEntry(
-        id=operation.name, mode=operation.mode, strategy=operation.strategy, cutter=operation.cutter.id, setup=operation.setup,
+        id=operation.name, step=operation.step or None, mode=operation.mode,
+        strategy=operation.strategy, cutter=operation.cutter.id, setup=operation.setup,
         axis=None if operation.axis is None else vector(operation.axis), angles_deg=_angles(operation.angle, names),
         other_angles_deg=_angles(operation.other_angle, names), samples=len(rows), area_mm2=float(mine.sum()),
         share=min(1.0, float(mine.sum()) / whole) if whole > 0.0 else 0.0, exclusive_mm2=float(area[operation.only].sum()),

@@ -56,7 +56,7 @@ def plan_of(
     part, surroundings = scene.part, ready.conditions.surroundings
     faces, remarks = (face_entries(part, samples, choice, dict(surroundings.certain.triangles.errors)), notes_of(ready, entries))
     absent = {*(() if _anything_held(ready) else ("fixture",)), *(() if ready.inside_bodies.any() else ("inside_bodies",))}
-    operations = _operations(ready, answers)
+    operations = _operations(ready, answers, over)
     return Plan(
         process=process_entry(ready, entries, answers, over, operations),
         part=part_info(scene, surroundings),
@@ -108,10 +108,11 @@ def _anything_held(ready: Prepared) -> bool:
     return any(each.surroundings.fixtures for each in ready.setups) or not ready.alike
 
 
-def _operations(ready: Prepared, answers: Answers) -> OperationsEntry | None:
+def _operations(ready: Prepared, answers: Answers, over: OverSetups) -> OperationsEntry | None:
     if answers.operations is None:
         return None
-    return operations_entry(answers.operations, ready.samples, ready.finished, ready.options)
+    reason = over.reaches[answers.operations.cutters[0].id].reason
+    return operations_entry(answers.operations, ready.samples, ready.finished, reason, ready.options)
 
 
 def machine_entry(ready: Prepared) -> MachineEntry:

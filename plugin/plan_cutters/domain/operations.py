@@ -241,6 +241,8 @@ class Operation:
     strategy : str
         `floor`: the flat part of the tip lies on the face; `wall`: the flutes lie along it; `point`: the tool touches in a point;
         `mixed`: several of them.
+    step : int
+        Its number in the planner's own process; 0: it was planned.
     """
 
     name: str
@@ -257,6 +259,56 @@ class Operation:
     clearance: float | None = None
     strategy: Strategy = "point"
     turning: Turning | None = None
+    step: int = 0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Nearest:
+    """The orientation next to one that a person wrote which serves more: its angles (2,), deg, its axis (3,), and the rows."""
+
+    angle: Floats
+    axis: Floats
+    rows: NDArray[np.int64]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OwnFound:
+    """A step of the planner's own process does this.
+
+    Attributes
+    ----------
+    number : int
+        In the file, from 1.
+    setup : int
+    mode : str
+    cutter : Cutter
+    axis : (3,) float, optional
+        None where it is simultaneous.
+    angle : (2,) float, optional
+        As written, deg, or the nearest that the machine has for an axis; None where it is simultaneous.
+    asked : (m,) int64
+        Samples of its faces that no step before it finishes.
+    rows : (r,) int64
+        Those of them that it finishes.
+    serves : (k,) int64
+        All samples of its faces that it could finish, whoever takes them.
+    wrong : str
+        Why it does less than is asked of it, in words; empty where it does all.
+    nearest : Nearest, optional
+        An orientation that would do, where there is one.
+    """
+
+    number: int
+    setup: int
+    mode: Mode
+    cutter: Cutter
+    axis: Floats | None
+    angle: Floats | None
+    asked: NDArray[np.int64]
+    rows: NDArray[np.int64]
+    serves: NDArray[np.int64]
+    wrong: str = ""
+    nearest: Nearest | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -285,7 +337,7 @@ class OperationPlan:
     Attributes
     ----------
     name : str
-        `fewest`, `fastest` or `largest first`.
+        `fewest`, `fastest` or `largest first`; `process`: the planner's own steps, and those planned behind them.
     operations : tuple of Operation
     label : (n,) int32
         Index into the operations, -1 for none.
@@ -351,7 +403,8 @@ class Operations:
     cutters : tuple of Cutter
         Those whose operations were compared; columns count in them.
     plans : tuple of OperationPlan
-    fewest : Fewest
+    fewest : Fewest, optional
+        None beside a process of the planner's own.
     curve : tuple of Step
     names : tuple of str
         Of the two rotary axes, or `azimuth` and `tilt`.
@@ -359,29 +412,29 @@ class Operations:
         How many times a tool was put down.
     feed : mapping, optional
         mm/min; None: times are not known.
-    reason : (n,) uint8
-        Why the most wanted cutter does not reach a sample in the first setup, an index into REASONS, or NO_REASON.
     fastest : Fastest, optional
         Where the fastest were requested.
     worth : tuple of Worth
         Of each cutter, the largest first, where the fastest were requested and several were compared.
     index_from : str
         What the times between orientations follow from: the rates of the rotary axes, what was given, or what is assumed.
+    own : tuple of OwnFound
+        What the planner's own steps do, in their order; empty where all steps were planned.
     """
 
     which: str
     cutters: tuple[Cutter, ...]
     plans: tuple[OperationPlan, ...]
-    fewest: Fewest
+    fewest: Fewest | None
     curve: tuple[Step, ...]
     names: tuple[str, str]
     probes: int
     feed: Mapping[Cutter, float] | None
-    reason: NDArray[np.uint8]
     fastest: Fastest | None = None
     worth: tuple[Worth, ...] = ()
     notes: tuple[str, ...] = field(default_factory=tuple)
     index_from: IndexFrom = "assumed"
+    own: tuple[OwnFound, ...] = ()
 
     def plan(self, name: str) -> OperationPlan | None:
         """The plan of a name."""

@@ -14,6 +14,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.lengths import reporting
 from plan_cutters.domain.operations import Fastest, OperationPlan, Operations, Worth
+from plan_cutters.domain.own_process import OwnProcess, cutter_of
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.at_once import few_enough, recommended
 from plan_cutters.operations.candidates import STEP, apart, candidates
@@ -24,6 +25,7 @@ from plan_cutters.operations.fastest import Costs, Problem, bounded, cheap, exch
 from plan_cutters.operations.fewest import FINEST, Search, search_fewest
 from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.over_all_axes import over_all_axes
+from plan_cutters.operations.own_steps import own_plan
 from plan_cutters.operations.plans import (
     MINOR_AREA,
     Task,
@@ -77,6 +79,8 @@ def plan_operations(
     """
     options = ready.options
     task = _task(ready, everywhere, least)
+    if options.process is not None:
+        return _own(task, options.process, stage)
     finest = FINEST if options.index_step is None else options.index_step
     with stage("operations") as tell:
         search = Search(task.probes, _first(task), task.rows, lambda bare: _stored(task, bare), part_of(tell, 0, _PARTS))
@@ -110,8 +114,29 @@ def plan_operations(
             "--most-operations with a large number takes all.",
         )
     return Operations(options.operations or "", task.cutters, tuple(plans), fewest, steps, task.orientations[0].names,
-                      task.probes.made, task.paths.feed, everywhere[0][task.cutters[0]].reason, timed, worth=worth,
+                      task.probes.made, task.paths.feed, timed, worth=worth,
                       notes=small, index_from=task.indexing.source)  # fmt: skip
+
+
+def _own(task: Task, process: OwnProcess, stage: Callable[[str], AbstractContextManager[Progress]]) -> Operations:
+    """The planner's own process, with the rest planned behind it as it was requested."""
+    ready, options = task.ready, task.ready.options
+
+    def planned(rest: Task) -> Columns:
+        """The fixed orientations of the best plan for what the steps leave."""
+        if not len(rest.rows):
+            return columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
+        search = Search(rest.probes, _first(rest), rest.rows, lambda bare: _stored(rest, bare), part_of(tell, 1, _PARTS))
+        finest = FINEST if options.index_step is None else options.index_step
+        fewest = search_fewest(search, rest.orientations, options.index_step or STEP, finest, part_of(tell, 2, _PARTS))
+        plans, *_ = _plans(rest, search, fewest.columns.of(fewest.chosen), part_of(tell, 3, _PARTS))
+        return _columns_of(rest, next((each for each in plans if each.name == "fastest"), plans[0]))
+
+    with stage("operations") as tell:
+        plan, found = own_plan(task, process, planned)
+        plan = proved(ready, task.everywhere, plan, progress=part_of(tell, 5, _PARTS))
+    return Operations(options.operations or "", task.cutters, (plan,), None, (), task.orientations[0].names, task.probes.made,
+                      task.paths.feed, index_from=task.indexing.source, own=found)  # fmt: skip
 
 
 _Plans = tuple[list[OperationPlan], Fastest | None, tuple[Worth, ...], tuple[str, ...]]
@@ -184,7 +209,14 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
     options = ready.options
     unpriced = without_feed(ready)
     needed = [run.cutter for run in least.runs if run.cutter not in unpriced] if least else []
-    cutters = considered(_comparable(ready, least), needed, _CUTTERS)
+    if options.process is not None:
+        named = [cutter_of(each.cutter, ready.cutters, f"step {each.number}") for each in options.process.steps]
+        named += [cutter_of(each.cutter, ready.cutters, "forbid") for each in options.process.forbidden]
+        cutters = considered(
+            [each for each in ready.cutters if each not in unpriced], [*dict.fromkeys([*needed, *named])], _CUTTERS
+        )
+    else:
+        cutters = considered(_comparable(ready, least), needed, _CUTTERS)
     open_ = ready.machinable
     reached = np.logical_or.reduce(
         [open_[s] & verdicts[cutter].reached for s, verdicts in enumerate(everywhere) for cutter in cutters]

@@ -75,6 +75,7 @@ class OperationEntry(Frozen):
     """One cutter in one setup, with one orientation of its axis or with simultaneous motion."""
 
     id: str
+    step: int | None = Field(default=None, description="of the planner's own process, its number there; null: it was planned")
     mode: Literal["fixed", "simultaneous"]
     strategy: Literal["point", "floor", "wall", "mixed"] = Field(
         default="point",
@@ -148,7 +149,9 @@ class AssumedEntry(Frozen):
 class OperationPlanEntry(Frozen):
     """A plan of operations: each reached sample goes with one of them."""
 
-    name: Literal["fewest", "fastest", "largest first"]
+    name: Literal["fewest", "fastest", "largest first", "process"] = Field(
+        description="process: the planner's own steps, and those planned behind them"
+    )
     orientations: int = Field(description="fixed ones, each with one cutter and setup")
     cut_length_mm: float
     seconds: float | None = Field(description="cutting and other_seconds together; null without a feed")
@@ -268,7 +271,7 @@ class OperationsEntry(Frozen):
     asked: Literal["fewest", "fastest", "both"]
     rotary: tuple[str, str] = Field(description="names of the angles")
     plans: list[OperationPlanEntry]
-    fewest: FewestEntry
+    fewest: FewestEntry | None = Field(default=None, description="null beside the planner's own process")
     fastest: FastestEntry | None = Field(description="null unless the fastest were requested")
     cutters: list[CutterUse] = Field(
         description="the largest first; empty unless the fastest were requested and several cutters were compared"

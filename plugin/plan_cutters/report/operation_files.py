@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from plan_cutters.domain.columns import columns_of
 from plan_cutters.domain.operations import OperationPlan
 from plan_cutters.report.protocol import Judged
 from plan_cutters.report.to_npz import write_arrays
@@ -21,18 +22,19 @@ def write_operations(result: Judged, _split: object, path: Path) -> None:
     `moving_axis` (n, 3), the axes proposed for simultaneous operations, else nan, and `moving_piece`, the proved piece of the
     operation about the sample, the largest first, -1 for none.
     `candidate_cutter` and `candidate_setup` (m,) are indices into the plan's cutters and setups, `candidate_angle` (m, 2) is in
-    degrees.
+    degrees; beside a process of the planner's own there are none.
     """
     operations = result.answers.operations
     assert operations is not None, "written where operations were requested"
     few, ids = operations.fewest, [entry.id for entry in result.cutters]
     number = np.array([ids.index(cutter.id) for cutter in operations.cutters], np.int32)
+    columns = columns_of(np.zeros((0, 3)), np.zeros((0, 2))) if few is None else few.columns
     arrays: dict[str, Any] = {
-        "candidate_cutter": number[few.columns.cutter],
-        "candidate_setup": few.columns.setup,
-        "candidate_angle": few.columns.angle,
-        "candidate_axis": few.columns.axis,
-        "chosen": few.chosen,
+        "candidate_cutter": number[columns.cutter],
+        "candidate_setup": columns.setup,
+        "candidate_angle": columns.angle,
+        "candidate_axis": columns.axis,
+        "chosen": np.zeros(0, np.int64) if few is None else few.chosen,
     }
     for k, plan in enumerate(operations.plans):
         behind = f"_{plan.name.replace(' ', '_')}" if k else ""

@@ -50,7 +50,8 @@ def _rest(operations: OperationsEntry) -> Iterator[str]:
     if rest.samples:
         yield f"No operation finishes {some(rest.share)} of the area: no cutter of the plan reaches it."
     # Where fewer orientations were requested than all needs, others may reach what is left to simultaneous motion.
-    first, most = operations.plans[0], operations.fewest.found
+    first = operations.plans[0]
+    most = first.orientations if operations.fewest is None else operations.fewest.found
     for each in first.operations:
         if each.mode == "simultaneous" and first.orientations < most:
             yield (
@@ -63,6 +64,9 @@ def _rest(operations: OperationsEntry) -> Iterator[str]:
 
 def _fewest(operations: OperationsEntry) -> Iterator[str]:
     few = operations.fewest
+    if few is None:
+        yield f"The planner's own process has {_count(operations.plans[0].orientations)}."
+        return
     if not few.found:
         yield "There is nothing that a fixed orientation reaches."
         return
@@ -145,7 +149,7 @@ def _little(each: OperationEntry) -> str:
 def _fastest(operations: OperationsEntry) -> Iterator[str]:
     """How the times of fixed orientations compare with simultaneous motion and with the best choice."""
     timed = operations.fastest
-    if timed is None:
+    if timed is None or operations.fewest is None:
         return
     for plan in operations.plans:
         again = plan is not operations.plans[0] and _choice(plan) == _choice(operations.plans[0])
