@@ -6,7 +6,7 @@ A motion of the whole part keeps the middle of all borders and their second mome
 """
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -107,12 +107,14 @@ class _Faces:
         return equal(self.shape[one], self.shape[other], motion, self.tolerance)
 
 
-def patterns(part: Part) -> tuple[Pattern, ...]:
+def patterns(part: Part, at: Callable[[int], None] = lambda face: None) -> tuple[Pattern, ...]:
     """The patterns of a part: first those that carry all of it onto itself, then those of some faces.
+
+    `at` is told which face is looked at.
 
     No face is in two patterns of some faces. Where nothing is alike, it takes a few ms.
     """
-    faces = _faces_of(part)
+    faces = _faces_of(part, at)
     if faces is None or not any(True for _ in faces.classes()):
         return ()
     found = [*_whole(faces)] if faces.whole else []
@@ -121,13 +123,14 @@ def patterns(part: Part) -> tuple[Pattern, ...]:
     return (*found, *_of_some(faces, taken))
 
 
-def _faces_of(part: Part) -> _Faces | None:
+def _faces_of(part: Part, at: Callable[[int], None]) -> _Faces | None:
     size = float(np.linalg.norm(part.size))
     judged = [f for f in part.faces if f.unjudged is None]
     if not 1 < len(judged) <= _MOST_FACES or not np.isfinite(size):
         return None
     shapes = list[FaceShape]()
     for face in judged:
+        at(face.number)
         trim, measured = part.trim(face.number), part.measure(face.number)
         if trim is None or measured is None:
             continue

@@ -74,6 +74,7 @@ class PlanOptions(SceneOptions, total=False):
     most_operations: int | None
     sharp_edges: str
     max_orientations: int
+    patterns: bool
     units: Literal["mm", "in"] | None
     unit: str | None
     placement: Placement | None

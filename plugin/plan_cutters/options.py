@@ -157,6 +157,8 @@ class Options:
     max_orientations : int
         Where the fastest plan would have more fixed orientations, simultaneous motion is recommended for the rest; without effect
         where `most_operations` is given.
+    patterns : bool
+        Equal faces are found, judged once and planned once; else each face is judged by itself.
     units : str, optional
         Of lengths in the words, `mm` or `in`; numbers in files stay mm. None: inches where all cutters were given in them.
     unit : str, optional
@@ -223,6 +225,7 @@ class Options:
     most_operations: int | None = None
     sharp_edges: str = "asked"
     max_orientations: int = 8
+    patterns: bool = True
     units: Literal["mm", "in"] | None = None
     unit: str | None = None
     fixtures: tuple[Fixture, ...] = ()
@@ -288,6 +291,7 @@ class Options:
         if self.map_budget is not None:
             take(map_budget=whole(self.map_budget, "map budget"))
         take(flip=flag(self.flip, "flip"), posture_maps=flag(self.posture_maps, "posture_maps"))
+        take(patterns=flag(self.patterns, "patterns"))
         take(answers=answers_of(self.answers), operations=operations_of(self.operations))
         if self.sharp_edges not in SHARP_EDGES:
             raise OptionError(f"sharp edges: {shown(self.sharp_edges)} is none of {', '.join(SHARP_EDGES)}")

@@ -1,0 +1,165 @@
+"""A part that motions carry onto itself is judged once: the samples that are no copies first, then their images.
+
+A posture of a sample, moved, is only a candidate at its image, and is tested there among the obstacles as they are: nothing is
+called reached without that. That an image is not reached follows where the motion leaves all that verdicts depend on as it is,
+and where a tenth of the images, judged by themselves, have the verdicts that follow; if one of them has another, none follows.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.verdicts import ACCESSIBLE, UNJUDGED, VerdictBuffer, Verdicts, blank
+from plan_cutters.scene.conditions import Context, rotations_of
+from plan_cutters.scene.copied import some_of
+from plan_cutters.scene.copies import Copies
+from plan_cutters.scene.ground import Ground
+from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.threads import in_chunks, part_of
+from plan_cutters.scene.work import Work
+from plan_cutters.stages.judge import Judge, judge
+
+Rows = NDArray[np.int64]
+#: Rotations and tilts are those of the range within this, rad; a tilt direction that is shorter than 1 by more is of the flat.
+_SAME = 1e-6
+
+
+@dataclass(slots=True)
+class Carried:
+    """How many verdicts followed from others.
+
+    Attributes
+    ----------
+    moved : int
+        Postures that were tested at images and taken.
+    followed : int
+        Samples called not reached without a search.
+    verified : int
+        Copies that were judged by themselves to verify that.
+    refused : int
+        Cutters for which nothing followed, for one of these had another verdict.
+    """
+
+    moved: int = 0
+    followed: int = 0
+    verified: int = 0
+    refused: int = 0
+
+
+class JudgeOnce:
+    """Judge as `judge` does, but for samples that are images of others; verdicts are the same, postures may be others.
+
+    Parameters
+    ----------
+    judged : Judge, optional
+        Judges what does not follow.
+
+    Attributes
+    ----------
+    carried : Carried
+        What followed so far.
+    """
+
+    def __init__(self, judged: Judge = judge) -> None:
+        self._judged, self.carried = judged, Carried()
+        self._of: tuple[object, ...] = ()
+        self._parts: tuple[Rows, Prepared, Rows, Prepared] | None = None
+
+    def __call__(
+        self, ready: Prepared, cutter: Cutter, rows: Rows | None = None, known: Verdicts | None = None,
+        *, progress: Callable[[int, int], None] | None = None, work: Work | None = None,
+    ) -> Verdicts:  # fmt: skip
+        """Find the verdicts of a cutter; parameters and result as of `judge`."""
+        copies = ready.copies
+        if copies is None or rows is not None:
+            return self._judged(ready, cutter, rows, known, progress=progress, work=work)
+        first, some, rest, others = self._split(ready, copies)
+        n = len(ready.samples)
+        known = blank(n).freeze() if known is None else known
+        result = blank(n)
+        tell = (None, None) if progress is None else (part_of(progress, 0, 2), part_of(progress, 1, 2))
+        _put(result, first, self._judged(some, cutter, known=known.of(first), progress=tell[0], work=work))
+        follows = blank(n)
+        follows.take(rest, known)
+        self._moved(ready, cutter, copies, rest, result, follows)
+        self._carry(copies, rest, result, follows)
+        _put(result, rest, self._judged(others, cutter, known=follows.freeze().of(rest), progress=tell[1], work=work))
+        return result.freeze()
+
+    def _split(self, ready: Prepared, copies: Copies) -> tuple[Rows, Prepared, Rows, Prepared]:
+        """Samples that are judged first and those that follow, each with the part that has these alone."""
+        of = Ground.made_of(ready)
+        if self._parts is None or not Ground.same(of, self._of):
+            early = ~copies.copy | copies.verified
+            first, rest = np.flatnonzero(early), np.flatnonzero(~early)
+            self._of, self._parts = of, (first, some_of(ready, first), rest, some_of(ready, rest))
+        return self._parts
+
+    def _moved(
+        self, ready: Prepared, cutter: Cutter, copies: Copies, rest: Rows, result: VerdictBuffer, follows: VerdictBuffer
+    ) -> None:
+        """Take the postures of masters, moved, where the cutter stands free in them."""
+        from plan_cutters.kernels.search.postures import free
+
+        samples, conditions = ready.samples, ready.conditions
+        context = Context.of(cutter, conditions)
+        rows = rest[(follows.verdict[rest] == UNJUDGED) & (result.verdict[copies.master[rest]] == ACCESSIBLE)]
+        if not len(rows) or not context.judges:
+            return
+        master, n = copies.master[rows], len(samples)
+        axis, direction = np.full((n, 3), np.nan), np.full((n, 3), np.nan)
+        axis[rows] = copies.moved(rows, result.axis[master])
+        direction[rows] = copies.moved(rows, result.tilt_direction[master])
+        tilt = result.tilt[master]
+        rotation, there = _rotation(ready, rows, direction[rows])
+        low, high = conditions.postures.tilt
+        there &= conditions.allows(axis[rows]) & (tilt >= low - _SAME) & (tilt <= high + _SAME)
+        tested = rows[there]
+        stands = np.zeros(n, bool)
+        in_chunks(
+            lambda piece: free(
+                piece, samples.point, samples.normal, axis, direction, context.outer, conditions.obstacles.solids, stands
+            ),
+            tested, conditions.jobs,
+        )  # fmt: skip
+        good = stands[rows]
+        taken, own = rows[good], master[good]
+        follows.verdict[taken], follows.axis[taken], follows.tilt_direction[taken] = ACCESSIBLE, axis[taken], direction[taken]
+        follows.tilt[taken], follows.rotation[taken] = result.tilt[own], rotation[good]
+        self.carried.moved += len(taken)
+
+    def _carry(self, copies: Copies, rest: Rows, result: VerdictBuffer, follows: VerdictBuffer) -> None:
+        """Take over that images are not reached, where all that were verified have the verdicts of their masters."""
+        may, tenth = copies.follow, np.flatnonzero(copies.verified)
+        tenth = tenth[may[tenth]]
+        master = copies.master[tenth]
+        self.carried.verified += len(tenth)
+        lost = result.not_reached
+        if (lost[tenth] != lost[master]).any() or (result.verdict[tenth] != result.verdict[master])[lost[tenth]].any():
+            self.carried.refused += 1
+            return
+        rows = rest[may[rest] & (follows.verdict[rest] == UNJUDGED) & lost[copies.master[rest]]]
+        master = copies.master[rows]
+        follows.verdict[rows], follows.reason[rows] = result.verdict[master], result.reason[master]
+        self.carried.followed += len(rows)
+
+
+def _rotation(ready: Prepared, rows: Rows, direction: np.ndarray) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
+    """The number of each rotation (m,), and whether it is one that is searched."""
+    postures, samples = ready.conditions.postures, ready.samples
+    turn = rotations_of(samples.normal[rows], samples.direction_max[rows], direction)
+    away = np.abs((turn[:, None] - postures.rotations + np.pi) % (2.0 * np.pi) - np.pi)
+    nearest = away.argmin(axis=1)
+    flat = np.linalg.norm(direction, axis=1) < 1.0 - _SAME
+    return nearest.astype(np.int32), (away.min(axis=1) <= _SAME) | flat
+
+
+def _put(result: VerdictBuffer, rows: Rows, verdicts: Verdicts) -> None:
+    """Write the verdicts (m,) of some samples."""
+    whole = np.full(len(result.verdict), -1, np.int64)
+    whole[rows] = np.arange(len(rows))
+    result.take(rows, verdicts, whole[rows])
+
