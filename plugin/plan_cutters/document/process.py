@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints
 from plan_cutters.document.over_setups import OverSetups
+from plan_cutters.document.repeats import repeats
 from plan_cutters.document.shares import sample_areas
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.operations import OperationPlan
@@ -16,7 +17,7 @@ from plan_cutters.plan_file.frozen import Vector, vector
 from plan_cutters.plan_file.model import CutterEntry
 from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.numbers import exact
-from plan_cutters.plan_file.operations import OperationPlanEntry, OperationsEntry
+from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry, OperationsEntry
 from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, ProcessEntry, ProcessStep, RemainingEntry
 from plan_cutters.scene.preparation import Prepared
 
@@ -95,12 +96,32 @@ def _operated(
         entry.operations,
         key=lambda e: (e.setup, e.mode != "fixed", -by_cutter[e.setup, e.cutter], e.cutter, -e.area_mm2, rank[id(e)]),
     )
-    return [
-        _step(ready, over, area, requested, plan.label == rank[id(each)], setup=each.setup, mode=each.mode,
-              strategy=each.strategy, cutter=each.cutter, angles_deg=each.angles_deg, axis=each.axis, seconds=each.seconds,
-              clearance_mm=each.clearance_mm)
-        for each in ordered
-    ]  # fmt: skip
+    steps = []
+    for same in _together(ordered):
+        first, mine = same[0], np.isin(plan.label, [rank[id(each)] for each in same])
+        seconds, clearance = [each.seconds for each in same], [each.clearance_mm for each in same]
+        step = _step(
+            ready, over, area, requested, mine, setup=first.setup, mode=first.mode, strategy=first.strategy, cutter=first.cutter,
+            angles_deg=first.angles_deg, axis=first.axis, seconds=_sum(seconds),
+            clearance_mm=None if None in clearance else min(each for each in clearance if each is not None),
+        )  # fmt: skip
+        repeat, by = repeats(ready, same, mine)
+        steps.append(step.model_copy(update={"repeat": repeat, "repeat_deg": by}))
+    # Those that are images of others count with all of them.
+    return sorted(steps, key=lambda s: (s.setup, s.mode != "fixed", -by_cutter[s.setup, s.cutter], s.cutter, -s.area_mm2))
+
+
+def _together(operations: Sequence[OperationEntry]) -> list[list[OperationEntry]]:
+    """Operations of one step each, those that are images of each other in one."""
+    steps: dict[object, list[OperationEntry]] = {}
+    for each in operations:
+        steps.setdefault(each.id if each.step is None else each.step, []).append(each)
+    return [sorted(same, key=lambda each: [angle % 360.0 for angle in (each.angles_deg or {}).values()]) for same in steps.values()]
+
+
+def _sum(seconds: Sequence[float | None]) -> float | None:
+    known = [each for each in seconds if each is not None]
+    return sum(known) if len(known) == len(seconds) else None
 
 
 def _runs(

@@ -202,6 +202,8 @@ class Operation:
     strategy : str
         `floor`: the flat part of the tip lies on the face; `wall`: the flutes lie along it; `point`: the tool touches in a point;
         `mixed`: several of them.
+    step : int
+        Of a plan of repeated orientations, the same number for all images of one; -1: it is not repeated.
     """
 
     name: str
@@ -217,6 +219,7 @@ class Operation:
     approaches: int | None = None
     clearance: float | None = None
     strategy: Strategy = "point"
+    step: int = -1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -290,6 +293,12 @@ class OperationPlan:
     def total(self) -> float:
         """Seconds of all that is counted; nan where they are not known."""
         return self.cutting + self.other
+
+    @property
+    def orientations(self) -> int:
+        """How many fixed orientations there are, those that are repeated once."""
+        fixed = [each.step for each in self.operations if each.mode == "fixed"]
+        return len({step for step in fixed if step >= 0}) + sum(step < 0 for step in fixed)
 
     def like(self, other: "OperationPlan") -> bool:
         """Whether each sample goes with the same cutter, setup and axis in another plan."""

@@ -59,7 +59,7 @@ class _Times:
         cutting = float(np.where(left, self.moving, own).sum())
         options, columns = self.task.ready.options, self.columns.of(np.array(some, np.int64))
         motions = {*zip(self.setup[left].tolist(), self.cutter[left].tolist(), strict=True)}
-        turns = self.task.indexing.together(columns) + self.task.indexing.constant * len(motions)
+        turns = self.task.together(columns) + self.task.indexing.constant * len(motions)
         cutters = {*columns.cutter.tolist(), *(c for _, c in motions)}
         setups = {*columns.setup.tolist(), *(s for s, _ in motions)}
         others = options.change_time * max(0, len(cutters) - 1) + options.setup_time * max(0, len(setups) - 1)
@@ -101,5 +101,5 @@ def recommended(task: Task, columns: Columns) -> Columns:
 def few_enough(task: Task, plan: OperationPlan) -> bool:
     """Whether a plan has no more fixed orientations than are recommended."""
     options = task.ready.options
-    fixed = sum(each.mode == "fixed" for each in plan.operations)
+    fixed = plan.orientations
     return options.most_operations is not None or options.index_step is not None or fixed <= options.max_orientations

@@ -63,6 +63,17 @@ class Orientations:
         held &= ((shown >= low - 1e-9) & (shown <= high + 1e-9)).all(axis=1)
         return shown[held], axis[held]
 
+    def nearest(self, axis: Floats) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+        """The angles (n, 2), deg, that come nearest to each of some axes (n, 3), what they hold, and whether the machine does."""
+        angle, taken, _ = self.kinematics.positions(axis)
+        found = taken >= 0
+        shown = np.round(np.degrees(angle[np.arange(len(axis)), np.maximum(taken, 0)]), DIGITS) + 0.0
+        shown = np.where(found[:, None], shown, 0.0)
+        held = self.kinematics.axis(np.radians(shown))
+        low, high = np.degrees(self.kinematics.limit).T
+        found &= self.conditions.allows(held) & ((shown >= low - 1e-9) & (shown <= high + 1e-9)).all(axis=1)
+        return shown, held, found
+
     def near(self, axis: Floats) -> tuple[Floats, Floats]:
         """The angles that come nearest to axes (n, 3), and the axes that they hold: those alone that the machine can hold."""
         angle, taken, _ = self.kinematics.positions(axis)

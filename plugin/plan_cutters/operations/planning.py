@@ -37,11 +37,12 @@ from plan_cutters.operations.plans import (
 )
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.proof import proved
+from plan_cutters.operations.repeated import repeated, symmetric
 from plan_cutters.operations.rest_areas import allowed, by_size, largest_first, with_and_without, worths
 from plan_cutters.operations.timing import Paths, Problems, shared_area
 from plan_cutters.operations.walls import Walls
 from plan_cutters.options import Options
-from plan_cutters.plan_file.numbers import duration, percent
+from plan_cutters.plan_file.numbers import count, duration, percent
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress, part_of
 
@@ -52,8 +53,8 @@ _CUTTERS = 4
 _EVEN, _TIMED, _ROUNDS = 250, 600, 12
 #: Parts of the work whose progress is told as one: the first table, the fewest, their bound and curve, the plans, their proof.
 _PARTS = 6
-#: Tries to exchange the fewest for as many that cut faster.
-_TRIES = 4
+#: Tries to exchange the fewest for as many that cut faster; times that differ by less are equal, as a share.
+_TRIES, _EQUAL = 4, 0.02
 
 
 @reporting(lambda ready: ready.options.reported_unit)
@@ -120,7 +121,7 @@ _Plans = tuple[list[OperationPlan], Fastest | None, tuple[Worth, ...], tuple[str
 def _plans(task: Task, search: Search, few: Columns, tell: Progress) -> _Plans:
     """Make the plans that were requested: the fastest is the one of all plans found here that takes the least time."""
     which = task.ready.options.operations
-    parts = [part_of(tell, k, 4) for k in range(4)]
+    parts = [part_of(tell, k, 5) for k in range(5)]
     fewest = _capped(task, "fewest", _quicker(task, search, few), parts[0])
     if which == "fewest":
         return [fewest], None, (), ()
@@ -130,10 +131,12 @@ def _plans(task: Task, search: Search, few: Columns, tell: Progress) -> _Plans:
     largest_first = list[OperationPlan]()
     if len(task.cutters) > 1:
         largest_first = [_capped(task, "largest first", _largest_first(task, search, few), parts[2])]
-    parts[3](0, 1)
+    images = _repeated(task, few, parts[3])
+    parts[4](0, 1)
     # Of those that take the same time the fewest.
     plans = [fewest, *others, *largest_first]
-    fastest, notes = _recommended(task, plans)
+    fastest, notes = _images_first(task, _recommended(task, plans), images)
+    plans += images
     at_best = float(problem.cost.min(axis=1, initial=np.inf).sum())
     # Canonical orientations need not be candidates: what the plan that is printed takes bounds the best from above.
     bound = min(bounded(problem, chosen).bound, np.nan_to_num(fastest.total, nan=np.inf))
@@ -149,7 +152,7 @@ def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationP
     """
     best = min(plans, key=_seconds)
     columns = recommended(task, _columns_of(task, best))
-    fixed = sum(each.mode == "fixed" for each in best.operations)
+    fixed = best.orientations
     if len(columns) == fixed:
         return replace(best, name="fastest"), ()
     tried = [plan_with(task, "fastest", columns), *(each for each in plans if few_enough(task, each))]
@@ -164,6 +167,49 @@ def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationP
         f"motion is recommended in place of {many}, for {why}."
     )
     return replace(chosen, name="fastest"), (words,) if any(each.mode == "simultaneous" for each in chosen.operations) else ()
+
+
+def _repeated(task: Task, few: Columns, tell: Progress) -> list[OperationPlan]:
+    """The plans of repeated steps, with fixed orientations alone and as it is recommended; none for a part without symmetry."""
+    own = symmetric(task)
+    if own is None:
+        return []
+    columns = repeated(own, _first(task).and_(few), partial(_stored, task), part_of(tell, 0, 2))
+    if columns is None:
+        return []
+    columns = _worth(own, "fastest", canonical(own, _worth(own, "fastest", columns), progress=part_of(tell, 1, 2)))
+    fewer = recommended(own, columns)
+    return [plan_with(own, "fastest", each) for each in ([columns] if len(fewer) == len(columns) else [columns, fewer])]
+
+
+def _images_first(
+    task: Task, found: tuple[OperationPlan, tuple[str, ...]], images: Sequence[OperationPlan]
+) -> tuple[OperationPlan, tuple[str, ...]]:
+    """The plan that is recommended: of images by a symmetry, if there are few enough that take the same time."""
+    few = [each for each in images if few_enough(task, each) and any(one.step >= 0 for one in each.operations)]
+    if not few:
+        return found
+    best, (other, _) = min(few, key=partial(_with_approaches, task)), found
+    if _with_approaches(task, best) > (1.0 + _EQUAL) * _with_approaches(task, other):
+        return found
+    if _seconds(best) <= _seconds(other):
+        return best, ()
+    words = f"Without repeated steps {count(other.orientations, 'orientation')}"
+    if moving := _pieces_in_motion(other):
+        words += f" and simultaneous motion in {count(moving, 'piece')}"
+    return best, (f"{words} would take {duration(other.total)}, without the ways between pieces.",)
+
+
+def _with_approaches(task: Task, plan: OperationPlan) -> float:
+    """Seconds of a plan, if each piece in simultaneous motion after the first is come to as an orientation is."""
+    motions = sum(each.mode == "simultaneous" for each in plan.operations)
+    return _seconds(plan) + task.indexing.constant * max(0, _pieces_in_motion(plan) - motions)
+
+
+def _pieces_in_motion(plan: OperationPlan) -> int:
+    """How many connected pieces are left to simultaneous motion."""
+    moving = [k for k, each in enumerate(plan.operations) if each.mode == "simultaneous"]
+    return len(np.unique(plan.region[np.isin(plan.label, moving)]))
 
 
 def _seconds(plan: OperationPlan) -> float:

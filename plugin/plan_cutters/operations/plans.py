@@ -17,6 +17,7 @@ from plan_cutters.operations.candidates import Orientations
 from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.labels import joined, labelled, regions_of
 from plan_cutters.operations.probes import Probes
+from plan_cutters.operations.symmetry import Symmetry
 from plan_cutters.operations.timing import Paths, Problems, costs_of, tip_widths, widths
 from plan_cutters.operations.walls import Walls
 from plan_cutters.operations.workplanes import workplanes
@@ -53,6 +54,8 @@ class Task:
     indexing : Indexing
     problems : Problems
     walls : Walls
+    symmetry : Symmetry, optional
+        Under which each column stands for itself and its images; None: for itself alone.
     """
 
     ready: Prepared
@@ -65,6 +68,20 @@ class Task:
     indexing: Indexing
     problems: Problems
     walls: Walls
+    symmetry: Symmetry | None = None
+
+    def images(self, columns: Columns) -> Columns:
+        """The columns that some stand for: each and its images, as many of each."""
+        return columns if self.symmetry is None else self.symmetry.images(columns)
+
+    def together(self, columns: Columns) -> float:
+        """Seconds that the rotary axes take to come to all that columns stand for."""
+        return self.indexing.together(self.images(columns))
+
+    def table(self, rows: Rows, columns: Columns) -> NDArray[np.bool_]:
+        """Where what each column stands for serves: (rows, columns)."""
+        served = self.probes.table(rows, self.images(columns))
+        return np.asarray(served.reshape(len(rows), len(columns), -1).any(axis=2)) if len(columns) else served
 
 
 def plan_with(
@@ -74,6 +91,7 @@ def plan_with(
 
     A `rule` says which of those that serve (n, k) a sample may go with.
     """
+    columns, step = _expanded(task, columns)
     samples, rows = task.ready.samples, task.rows
     n, overlap = len(samples), task.ready.options.overlap
     area, edge = np.nan_to_num(samples.area), samples.neighbours
@@ -89,7 +107,7 @@ def plan_with(
     may = finite if rule is None else rule(finite)
     # A rule is about areas that are worth an operation: crumbs go with what is beside them.
     label = joined(labelled(np.where(may, cost, np.inf), edge, border), finite, edge, area, _SMALL * overlap**2)
-    operations, order = _fixed(task, columns, finite, label, area)
+    operations, order = _fixed(task, columns, finite, label, area, step)
     place = np.full(len(columns) + 1, -1, np.int32)
     place[order] = np.arange(len(order))
     number, table = place[label], finite[:, order]
@@ -126,8 +144,18 @@ def _other(task: Task, operations: Sequence[Operation], planes: Sequence[Workpla
     return turns + options.change_time * max(0, cutters - 1) + options.setup_time * max(0, setups - 1)
 
 
+def _expanded(task: Task, columns: Columns) -> tuple[Columns, Rows]:
+    """What columns stand for, each column once, and to which of these it belongs; -1: it is repeated nowhere."""
+    if task.symmetry is None or not len(columns):
+        return columns, np.full(len(columns), -1, np.int64)
+    every = task.images(columns)
+    first = np.sort(np.unique(every.key, return_index=True)[1])
+    step = first // (len(every) // len(columns))
+    return every.of(first), np.where(np.bincount(step)[step] > 1, step, -1)
+
+
 def _fixed(
-    task: Task, columns: Columns, serves: NDArray[np.bool_], label: NDArray[np.int32], area: Floats
+    task: Task, columns: Columns, serves: NDArray[np.bool_], label: NDArray[np.int32], area: Floats, step: Rows
 ) -> tuple[list[Operation], list[int]]:
     """The operations of columns that some sample goes with, the largest first; and the columns in that order."""
     mine = label >= 0
@@ -139,7 +167,7 @@ def _fixed(
         Operation(
             f"op{i}", "fixed", task.cutters[columns.cutter[k]], int(columns.setup[k]), columns.axis[k], columns.angle[k],
             task.orientations[columns.setup[k]].other(columns.axis[k], columns.angle[k]), np.flatnonzero(label == k),
-            np.flatnonzero(serves[:, k] & (times == 1)),
+            np.flatnonzero(serves[:, k] & (times == 1)), step=int(step[k]),
         )
         for i, k in enumerate(order, 1)
     ]  # fmt: skip
@@ -293,10 +321,11 @@ def best_area(task: Task, columns: Columns, most: int | None) -> Columns:
 
 def costs_with(task: Task, columns: Columns) -> tuple[Floats, Floats]:
     """The area (r,) of the samples of a task, and what each costs with columns (r, k), infinite where one does not serve it."""
-    rows = task.rows
-    area, serves = np.nan_to_num(task.ready.samples.area[rows]), task.probes.kept(rows, columns)
-    width = _widths(task, columns, serves)
-    return area, costs_of(columns, width, serves, area, task.cutters, task.paths)
+    rows, every = task.rows, task.images(columns)
+    area, serves = np.nan_to_num(task.ready.samples.area[rows]), task.probes.kept(rows, every)
+    cost = costs_of(every, _widths(task, every, serves), serves, area, task.cutters, task.paths)
+    # Of images the best one cuts a sample.
+    return area, cost if task.symmetry is None else cost.reshape(len(rows), len(columns), -1).min(axis=2, initial=np.inf)
 
 
 def _widths(task: Task, columns: Columns, serves: NDArray[np.bool_]) -> Floats:
@@ -312,7 +341,7 @@ def worth_their_turn(task: Task, columns: Columns) -> Columns:
     """
     (area, cost), columns_left = costs_with(task, columns), np.arange(len(columns))
     least = MINOR_AREA * float(area @ np.isfinite(cost).any(axis=1))
-    turn = task.indexing.together(columns) / max(1, len(columns))
+    turn = task.together(columns) / max(1, len(columns))
     while len(columns_left) > 1:
         own = cost[:, columns_left]
         first, second = np.partition(own, 1, axis=1)[:, :2].T

@@ -1,0 +1,171 @@
+"""Orientations that are repeated about an axis: one of them, and its images, stand for one step.
+
+The axis is that of a pattern of the whole part, or of a part that nearly is one: then each image is tested on its own samples all
+the same, for nothing follows from a symmetry that is not exact. So a plan of repeated steps is made of ordinary operations.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from cad_io.arrays import Floats, SurfaceSamples
+from cad_io.part.motion import Motion
+from cad_io.part.patterns import Pattern
+from plan_cutters.domain.columns import Columns
+from plan_cutters.operations.candidates import Orientations
+
+#: Orders of a symmetry that are looked for, the share of the area that must agree, how well normals must, rad, and how many
+#: samples near to a place are looked at.
+_ORDERS, _AGREES, _NORMAL, _NEAR = range(2, 61), 0.98, math.radians(10.0), 8
+#: A sample lies on a surface of revolution where its normal is off its meridian by less, and a face where so much of it does.
+_OFF, _MOST = 0.02, 0.95
+#: Least share of the area beside such faces: a part without more is a part of revolution, and needs no pattern.
+_BESIDE = 0.02
+#: Samples that are compared, at most; a turn must carry them so many gaps away.
+_COMPARED, _GAPS = 20_000, 2.0
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Symmetry:
+    """Turns about an axis under which orientations are repeated.
+
+    Attributes
+    ----------
+    place, direction : (3,) float
+        The axis.
+    order : int
+        How many turns make a whole one.
+    exact : bool
+        Whether the part is a pattern; else its samples nearly are.
+    orientations : tuple of Orientations
+        Of each setup.
+    """
+
+    place: Floats
+    direction: Floats
+    order: int
+    exact: bool
+    orientations: tuple[Orientations, ...]
+
+    def images(self, columns: Columns) -> Columns:
+        """Each column, followed by its `order` - 1 images; where the machine cannot hold one, the column stands for it."""
+        n, m = self.order, len(columns)
+        axis, angle = np.repeat(columns.axis, n, axis=0), np.repeat(columns.angle, n, axis=0)
+        turns = [Motion.turn(self.place, self.direction, 2.0 * math.pi * k / n) for k in range(n)]
+        for k in range(1, n):
+            moved = turns[k].directions(columns.axis)
+            for s in np.unique(columns.setup).tolist():
+                mine = np.flatnonzero(columns.setup == s)
+                angles, axes, held = self.orientations[s].nearest(moved[mine])
+                at = mine[held] * n + k
+                axis[at], angle[at] = axes[held], angles[held]
+        which = np.repeat(np.arange(m), n)
+        return Columns(columns.cutter[which], columns.setup[which], axis, angle)
+
+    def sector(self, columns: Columns) -> NDArray[np.int64]:
+        """Numbers of the columns whose axes lie in the first sector: the images of these are all."""
+        x = np.cross(self.direction, np.eye(3)[int(np.abs(self.direction).argmin())])
+        x /= np.linalg.norm(x)
+        y = np.cross(self.direction, x)
+        along, across = columns.axis @ x, columns.axis @ y
+        azimuth = np.remainder(np.arctan2(across, along), 2.0 * math.pi)
+        return np.flatnonzero((azimuth < 2.0 * math.pi / self.order) | (np.hypot(along, across) < 1e-9))
+
+
+def symmetry_of(
+    samples: SurfaceSamples, patterns: Sequence[Pattern], orientations: tuple[Orientations, ...], machinable: NDArray[np.bool_]
+) -> Symmetry | None:
+    """The rotation under which orientations may be repeated, of the highest order; None where there is none."""
+    for each in patterns:
+        axis = each.motions[0].axis if each.kind == "rotation" and each.whole else None
+        if axis is not None:
+            return Symmetry(*axis, each.order, True, orientations)
+    rows = np.flatnonzero(machinable & (samples.unjudged < 0))
+    for place, direction in _axes(samples, rows):
+        order = _near_order(samples, rows, place, direction)
+        if order > 1:
+            return Symmetry(place, direction, order, False, orientations)
+    return None
+
+
+def _axes(samples: SurfaceSamples, rows: NDArray[np.int64]) -> Iterator[tuple[Floats, Floats]]:
+    """Axes about which faces are turned: the normal of each of their samples meets it. The one with most area."""
+    faces = samples.face[rows]
+    area = np.nan_to_num(samples.area[rows])
+    size = np.bincount(faces, area)
+    lines = list[tuple[float, Floats, Floats]]()
+    for number in np.argsort(-size, kind="stable")[:40].tolist():
+        mine = rows[faces == number]
+        if len(mine) < 12:
+            continue
+        line = _axis_of_normals(samples.point[mine], samples.normal[mine])
+        if line is not None:
+            lines.append((float(size[number]), *line))
+    gathered = list[tuple[float, Floats, Floats]]()
+    for own, place, direction in lines:
+        total = own
+        for other, place_, direction_ in lines:
+            away = place_ - place
+            off = np.linalg.norm(away - (away @ direction) * direction)
+            if other is not own and abs(direction @ direction_) > 1.0 - 1e-6 and off < 1e-3 * math.sqrt(max(own, other)):
+                total += other
+        gathered.append((total, place, direction))
+    for _, place, direction in sorted(gathered, key=lambda each: -each[0])[:1]:
+        yield place, direction
+
+
+def _axis_of_normals(point: Floats, normal: Floats) -> tuple[Floats, Floats] | None:
+    """The line that the normals of a surface of revolution meet; None of a plane, a sphere, or any other surface."""
+    middle = point.mean(axis=0)
+    scale = float(np.linalg.norm(point - middle, axis=1).max()) or 1.0
+    # A line with direction d and moment m meets a normal n at p where d . (p x n) + m . n = 0.
+    table = np.concatenate([np.cross((point - middle) / scale, normal), normal], axis=1)
+    values, vectors = np.linalg.svd(table, full_matrices=False)[1:]
+    small = values < 1e-3 * math.sqrt(len(point))
+    if len(values) < 6 or not 1 <= small.sum() <= 2:
+        return None
+    # All normals of a cylinder are square to its axis as well: what leans least on that alone is taken.
+    null = vectors[small]
+    line = np.linalg.svd(null[:, :3])[0][:, 0] @ null
+    length = float(np.linalg.norm(line[:3]))
+    if length < 1e-3:
+        return None
+    line = line / (length * (1.0 if line[:3][np.abs(line[:3]).argmax()] > 0.0 else -1.0))
+    direction, moment = line[:3], line[3:]
+    if len(null) == 2:
+        moment = moment - (moment @ direction) * direction
+    elif abs(direction @ moment) > 1e-3:
+        return None
+    return middle + scale * np.cross(direction, moment), direction
+
+
+def _near_order(samples: SurfaceSamples, rows: NDArray[np.int64], place: Floats, direction: Floats) -> int:
+    """The highest order of a turn about an axis that carries samples near to others with like normals; 1 for none."""
+    point, normal, face = samples.point[rows], samples.normal[rows], samples.face[rows]
+    area = np.nan_to_num(samples.area[rows])
+    around = np.cross(direction, point - place)
+    radius = np.linalg.norm(around, axis=1)
+    off = np.abs((around * normal).sum(axis=1)) > _OFF * np.maximum(radius, 1e-9)
+    revolved = np.bincount(face, area * ~off) >= _MOST * np.bincount(face, area)
+    beside = np.flatnonzero(~revolved[face])
+    if area[beside].sum() < _BESIDE * area.sum():
+        return 1
+    beside = beside[:: max(1, len(beside) // _COMPARED)]
+    tree, least = cKDTree(point), math.cos(_NORMAL)
+    for order in reversed(_ORDERS):
+        turn = Motion.turn(place, direction, 2.0 * math.pi / order)
+        far = 2.0 * math.pi / order * float(np.average(radius[beside], weights=area[beside] + 1e-300))
+        if far < _GAPS * samples.max_gap:
+            continue
+        distance, near = tree.query(turn.points(point[beside]), k=min(_NEAR, len(rows)), distance_upper_bound=samples.max_gap)
+        found = np.isfinite(distance)
+        moved = turn.directions(normal[beside])
+        alike = (moved[:, None] * normal[np.where(found, near, 0)]).sum(axis=2) >= least
+        agrees = (found & alike).any(axis=1)
+        if area[beside][agrees].sum() >= _AGREES * area[beside].sum():
+            return order
+    return 1
