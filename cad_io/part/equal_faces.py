@@ -166,8 +166,8 @@ def face_shape(number: int, kind: str, side: float, surface: Surface, trim: Trim
     # Where an edge is a single point, and where the face goes on behind a seam, there is no border.
     stays = weight > 1e-12 * size
     stays[_seams(d[:, 0], segment, stays, _SEAM * size)] = False
-    return FaceShape(number, kind, measured.area, measured.vector, side, surface, trim, d[stays, 0], weight[stays], segment[stays],
-                     share[stays])  # fmt: skip
+    border = d[stays, 0], weight[stays], segment[stays], share[stays]
+    return FaceShape(number, kind, measured.area, measured.vector, side, surface, trim, *border)
 
 
 def _seams(point: Floats, segment: Any, stays: Any, tolerance: float) -> Any:
@@ -208,7 +208,9 @@ def _same_side(one: FaceShape, other: FaceShape, motion: Motion) -> bool:
     if not len(rows) or not np.isfinite(inner).any():
         return False
     way = 1.0 if np.nanmean(inner) > 0.0 else -1.0
-    return way == one.side * other.side and bool(np.linalg.norm(way * motion.directions(one.vector[None])[0] - other.vector) <= _MEASURED * other.area)
+    if way != one.side * other.side:
+        return False
+    return bool(np.linalg.norm(way * motion.directions(one.vector[None])[0] - other.vector) <= _MEASURED * other.area)
 
 
 def _same_surface(one: FaceShape, other: FaceShape, motion: Motion, tolerance: float) -> bool:
@@ -219,7 +221,8 @@ def _same_surface(one: FaceShape, other: FaceShape, motion: Motion, tolerance: f
         return _same_elementary(one, other, motion, tolerance)
     if one.number == other.number and _onto_itself(one, motion, tolerance):
         return True
-    return any(_agrees(one, other, motion, way, tolerance) for way in product((False, True), repeat=3))
+    ways = product((False, True), (False, True), (False, True))
+    return any(_agrees(one, other, motion, way, tolerance) for way in ways)
 
 
 def _same_elementary(one: FaceShape, other: FaceShape, motion: Motion, tolerance: float) -> bool:
@@ -346,5 +349,3 @@ def _turns_onto_itself(face: FaceShape, place: Floats, direction: Floats, tolera
         # Turned by one radian a point leaves the surface by no more than this.
         off = np.abs((around * normal).sum(axis=1)) / np.linalg.norm(normal, axis=1)
     return bool((np.nan_to_num(off, nan=0.0) <= 0.1 * tolerance).all() and np.isfinite(off).any())
-
-

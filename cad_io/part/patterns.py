@@ -1,7 +1,7 @@
 """Patterns: motions that carry the whole part, or some of its faces, onto equal faces.
 
 Candidates come from what any motion keeps: the middles of borders, their lengths and second moments. Each candidate is then
-compared face by face (`equal_faces.equal`) within a millionth of the part's size, so that a part that is nearly a pattern is none.
+compared face by face (`equal_faces.equal`) within a millionth of the part's size: a part that is nearly a pattern is none.
 A motion of the whole part keeps the middle of all borders and their second moment: few axes and planes can be its own.
 """
 
@@ -12,10 +12,10 @@ from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
+from OCP.TopAbs import TopAbs_REVERSED
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
-from OCP.TopAbs import TopAbs_REVERSED
 
 from cad_io.arrays import Floats, Record
 from cad_io.part.equal_faces import FaceShape, axis_of, equal, face_shape
@@ -336,7 +336,7 @@ def _ring(faces: _Faces, rows: Which) -> Iterator[tuple[str, list[Motion], Which
         return
     middle = faces.centre[rows].mean(axis=0)
     away = faces.centre[rows] - middle
-    spread, across = np.linalg.svd(away, full_matrices=False)[1:]
+    across = np.linalg.svd(away, full_matrices=False)[2]
     direction = across[2] if n > 3 else np.cross(away[0], away[1])
     if n == 3 and np.linalg.norm(direction) > 0.0:
         direction = direction / np.linalg.norm(direction)

@@ -134,7 +134,7 @@ def _judge(begun: Callable[..., Prepared], part: Any, options: Options, clock: C
     ready = begun(part, options, clock)
     here: dict[Cutter, Verdicts] = {}
     seconds: dict[Cutter, float] = {}
-    searched, judged = Work(), JudgeOnce(judged)
+    searched, judged = Work(), (once := JudgeOnce(judged, sum(len(each.motions) for each in ready.patterns if each.whole)))
     for cutter in order(ready.cutters):
         with clock.stage(cutter.id) as tell:
             # In the order of rank, whatever the order of work.
@@ -143,7 +143,7 @@ def _judge(begun: Callable[..., Prepared], part: Any, options: Options, clock: C
             here[cutter] = judged(ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell, work=searched)
             seconds[cutter] = time.perf_counter() - began
     others = [(axis, _in_other_setup(ready, here, k, clock, judged)) for k, axis in enumerate(options.other_setups, 1)]
-    return JudgedPart.of(ready, here, others, seconds, clock, searched, started)
+    return JudgedPart.of(ready, here, others, seconds, clock, searched, started, once.carried)
 
 
 def _completed(

@@ -281,6 +281,14 @@ _OPTIONS = (
         "--most-operations", type=int, metavar="N", help="Fixed orientations, at most; simultaneous motion finishes the rest."
     ),
     _operations(
+        "--no-patterns",
+        "patterns",
+        is_flag=True,
+        default=True,
+        flag_value=False,
+        help="Judge and plan each face by itself, also where faces are equal.",
+    ),
+    _operations(
         "--max-orientations",
         type=int,
         default=8,

@@ -116,7 +116,11 @@ def _together(operations: Sequence[OperationEntry]) -> list[list[OperationEntry]
     steps: dict[object, list[OperationEntry]] = {}
     for each in operations:
         steps.setdefault(each.id if each.step is None else each.step, []).append(each)
-    return [sorted(same, key=lambda each: [angle % 360.0 for angle in (each.angles_deg or {}).values()]) for same in steps.values()]
+    return [sorted(same, key=_first_angles) for same in steps.values()]
+
+
+def _first_angles(operation: OperationEntry) -> list[float]:
+    return [angle % 360.0 for angle in (operation.angles_deg or {}).values()]
 
 
 def _sum(seconds: Sequence[float | None]) -> float | None:

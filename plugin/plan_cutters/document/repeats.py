@@ -48,7 +48,7 @@ def repeats(ready: Prepared, same: Sequence[OperationEntry], mine: NDArray[np.bo
 
 def _moving(ready: Prepared, setup: int, mine: NDArray[np.bool_]) -> tuple[int, dict[str, float] | None]:
     """The same of simultaneous motion: a rotation of the whole part repeats it, where limits and fixtures are kept as well."""
-    samples, conditions = ready.samples, ready.setups[setup]
+    conditions = ready.setups[setup]
     kinematics = conditions.kinematics
     if ready.copies is None or kinematics is None or len(kinematics.direction) != 2 or not mine.any():
         return 1, None

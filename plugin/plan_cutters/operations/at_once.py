@@ -98,6 +98,19 @@ def recommended(task: Task, columns: Columns) -> Columns:
     return columns if len(stay) == whole else columns.of(np.array(stay, np.int64))
 
 
+def fewer(task: Task, columns: Columns) -> list[tuple[Columns, float]]:
+    """Choices of fewer and fewer of some columns, with the time of each: simultaneous motion takes the area of the others.
+
+    All of them come first; then always that one is left out without which the rest takes the least time.
+    """
+    times, stay = _Times.of(task, columns), list(range(len(columns)))
+    choices = list[tuple[Columns, float]]()
+    while stay:
+        choices.append((columns.of(np.array(stay, np.int64)), times.total(stay)[0]))
+        stay = min(([each for each in stay if each != gone] for gone in stay), key=lambda each: times.total(each)[0])
+    return choices
+
+
 def few_enough(task: Task, plan: OperationPlan) -> bool:
     """Whether a plan has no more fixed orientations than are recommended."""
     options = task.ready.options

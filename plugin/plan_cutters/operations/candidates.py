@@ -72,7 +72,17 @@ class Orientations:
         held = self.kinematics.axis(np.radians(shown))
         low, high = np.degrees(self.kinematics.limit).T
         found &= self.conditions.allows(held) & ((shown >= low - 1e-9) & (shown <= high + 1e-9)).all(axis=1)
-        return shown, held, found
+        return np.asarray(shown, float), held, np.asarray(found)
+
+    def turned(self, angle: Floats, direction: Floats, turn: float) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+        """Angles (n, 2), deg, with the part turned about a direction, rad, by the axis next to it: the axes, and which can be."""
+        along = float(self.kinematics.direction[0] @ direction)
+        first = angle[:, 0] + math.degrees(turn) * np.sign(along)
+        shown = np.round(np.column_stack([first - 360.0 * np.round(first / 360.0), angle[:, 1]]), DIGITS) + 0.0
+        held = self.kinematics.axis(np.radians(shown))
+        low, high = np.degrees(self.kinematics.limit).T
+        can = self.conditions.allows(held) & ((shown >= low - 1e-9) & (shown <= high + 1e-9)).all(axis=1)
+        return np.asarray(shown, float), held, np.asarray(can & (abs(along) > 1.0 - 1e-9))
 
     def near(self, axis: Floats) -> tuple[Floats, Floats]:
         """The angles that come nearest to axes (n, 3), and the axes that they hold: those alone that the machine can hold."""

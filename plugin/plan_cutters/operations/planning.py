@@ -15,7 +15,7 @@ from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.lengths import reporting
 from plan_cutters.domain.operations import Fastest, OperationPlan, Operations, Worth
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.operations.at_once import few_enough, recommended
+from plan_cutters.operations.at_once import few_enough, fewer, recommended
 from plan_cutters.operations.candidates import STEP, apart, candidates
 from plan_cutters.operations.canonical import canonical
 from plan_cutters.operations.companions import accompanied
@@ -131,12 +131,12 @@ def _plans(task: Task, search: Search, few: Columns, tell: Progress) -> _Plans:
     largest_first = list[OperationPlan]()
     if len(task.cutters) > 1:
         largest_first = [_capped(task, "largest first", _largest_first(task, search, few), parts[2])]
-    images = _repeated(task, few, parts[3])
-    parts[4](0, 1)
     # Of those that take the same time the fewest.
     plans = [fewest, *others, *largest_first]
-    fastest, notes = _images_first(task, _recommended(task, plans), images)
-    plans += images
+    printed = [*([fewest] if which == "both" else []), *largest_first]
+    fastest, notes = _repeated(task, few, _recommended(task, plans), printed, parts[3])
+    parts[4](0, 1)
+    plans.append(fastest)
     at_best = float(problem.cost.min(axis=1, initial=np.inf).sum())
     # Canonical orientations need not be candidates: what the plan that is printed takes bounds the best from above.
     bound = min(bounded(problem, chosen).bound, np.nan_to_num(fastest.total, nan=np.inf))
@@ -169,47 +169,34 @@ def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationP
     return replace(chosen, name="fastest"), (words,) if any(each.mode == "simultaneous" for each in chosen.operations) else ()
 
 
-def _repeated(task: Task, few: Columns, tell: Progress) -> list[OperationPlan]:
-    """The plans of repeated steps, with fixed orientations alone and as it is recommended; none for a part without symmetry."""
-    own = symmetric(task)
-    if own is None:
-        return []
-    columns = repeated(own, _first(task).and_(few), partial(_stored, task), part_of(tell, 0, 2))
-    if columns is None:
-        return []
-    columns = _worth(own, "fastest", canonical(own, _worth(own, "fastest", columns), progress=part_of(tell, 1, 2)))
-    fewer = recommended(own, columns)
-    return [plan_with(own, "fastest", each) for each in ([columns] if len(fewer) == len(columns) else [columns, fewer])]
-
-
-def _images_first(
-    task: Task, found: tuple[OperationPlan, tuple[str, ...]], images: Sequence[OperationPlan]
+def _repeated(
+    task: Task, few: Columns, found: tuple[OperationPlan, tuple[str, ...]], printed: Sequence[OperationPlan], tell: Progress
 ) -> tuple[OperationPlan, tuple[str, ...]]:
-    """The plan that is recommended: of images by a symmetry, if there are few enough that take the same time."""
-    few = [each for each in images if few_enough(task, each) and any(one.step >= 0 for one in each.operations)]
-    if not few:
+    """The plan that is recommended, and what must be said of it: one of repeated steps, where that takes no more time.
+
+    Of those that take the same time as the plan that was found, and no more than those that are printed beside it, that which
+    leaves least to simultaneous motion is taken; else the plan that was found.
+    """
+    own, (other, _) = symmetric(task), found
+    columns = None if own is None else repeated(own, _first(task).and_(few), partial(_stored, task), part_of(tell, 0, 2))
+    if own is None or columns is None:
         return found
-    best, (other, _) = min(few, key=partial(_with_approaches, task)), found
-    if _with_approaches(task, best) > (1.0 + _EQUAL) * _with_approaches(task, other):
-        return found
-    if _seconds(best) <= _seconds(other):
-        return best, ()
-    words = f"Without repeated steps {count(other.orientations, 'orientation')}"
-    if moving := _pieces_in_motion(other):
-        words += f" and simultaneous motion in {count(moving, 'piece')}"
-    return best, (f"{words} would take {duration(other.total)}, without the ways between pieces.",)
-
-
-def _with_approaches(task: Task, plan: OperationPlan) -> float:
-    """Seconds of a plan, if each piece in simultaneous motion after the first is come to as an orientation is."""
-    motions = sum(each.mode == "simultaneous" for each in plan.operations)
-    return _seconds(plan) + task.indexing.constant * max(0, _pieces_in_motion(plan) - motions)
-
-
-def _pieces_in_motion(plan: OperationPlan) -> int:
-    """How many connected pieces are left to simultaneous motion."""
-    moving = [k for k, each in enumerate(plan.operations) if each.mode == "simultaneous"]
-    return len(np.unique(plan.region[np.isin(plan.label, moving)]))
+    columns = _worth(own, "fastest", canonical(own, _worth(own, "fastest", columns), progress=part_of(tell, 1, 2)))
+    most = min((1.0 + _EQUAL) * _seconds(other), *map(_seconds, printed), np.inf)
+    for choice, seconds in fewer(own, columns):
+        # What the choice is reckoned to take is not quite what its plan does.
+        if len(choice) > task.ready.options.max_orientations or seconds > (1.0 + _EQUAL) * most:
+            continue
+        plan = plan_with(own, "fastest", choice)
+        if _seconds(plan) > most or not any(each.step >= 0 for each in plan.operations):
+            continue
+        if _seconds(plan) <= _seconds(other):
+            return plan, ()
+        words = f"Without repeated steps {count(other.orientations, 'orientation')}"
+        if any(each.mode == "simultaneous" for each in other.operations):
+            words += " and simultaneous motion"
+        return plan, (f"{words} would take {duration(other.total)}.",)
+    return found
 
 
 def _seconds(plan: OperationPlan) -> float:

@@ -60,7 +60,11 @@ class Symmetry:
             moved = turns[k].directions(columns.axis)
             for s in np.unique(columns.setup).tolist():
                 mine = np.flatnonzero(columns.setup == s)
-                angles, axes, held = self.orientations[s].nearest(moved[mine])
+                where = self.orientations[s]
+                angles, axes, held = where.nearest(moved[mine])
+                turned, own, by = where.turned(columns.angle[mine], self.direction, 2.0 * math.pi * k / n)
+                # One rotary axis alone is turned, where it can be.
+                angles, axes, held = np.where(by[:, None], turned, angles), np.where(by[:, None], own, axes), held | by
                 at = mine[held] * n + k
                 axis[at], angle[at] = axes[held], angles[held]
         which = np.repeat(np.arange(m), n)

@@ -82,4 +82,5 @@ class Effective(Frozen):
     setup_time_s: float = 300.0
     overlap_mm: float = Field(default=2.0, description="of operations at a common border")
     most_operations: int | None = None
+    patterns: bool = Field(default=True, description="equal faces are judged and planned once")
     max_orientations: int = Field(default=8, description="of the fastest plan: with more, simultaneous motion is recommended")

@@ -18,7 +18,9 @@ class ProcessStep(Frozen):
         description="any: no operations were requested, each sample has a posture of its own"
     )
     angles_deg: dict[str, float] | None = Field(description="of the rotary axes by name, the first time; null unless fixed")
-    axis: Vector | None = Field(description="unit, from the tip to the spindle, part coordinates, the first time; null unless fixed")
+    axis: Vector | None = Field(
+        description="unit, from the tip to the spindle, part coordinates, as `angles_deg`; null unless fixed"
+    )
     cutter: str = Field(description="id")
     strategy: Literal["point", "floor", "wall", "mixed"] = Field(
         default="point", description="how most of it is cut, as of the operation; point where no operations were requested"

@@ -18,8 +18,8 @@ from plan_cutters.scene.preparation import Prepared
 _NEAR, _NORMAL, _ROTATION = 1e-5, 1e-6, 1e-6
 #: Directions that a motion leaves as they are, within this.
 _STILL = 1e-9
-#: A part with a smaller share of copies is judged as if it had none.
-_WORTH = 0.1
+#: A part with a smaller share of copies, or fewer of them, is judged as if it had none.
+_WORTH, _LEAST = 0.1, 500
 
 
 def with_copies(ready: Prepared, patterns: tuple[Pattern, ...]) -> Prepared:
@@ -52,7 +52,7 @@ def _copies(ready: Prepared, motions: tuple[Motion, ...], patterns: tuple[Patter
     # What is itself an image hands nothing on.
     second = number[master] >= 0
     master[second], number[second] = np.flatnonzero(second), -1
-    if (number >= 0).sum() < _WORTH * len(judged):
+    if (number >= 0).sum() < max(_LEAST, _WORTH * len(judged)):
         return None
     kept = tuple(tuple(_keeps(ready, each, motion, patterns) for motion in motions) for each in ready.setups)
     return Copies(master, number, motions, kept, _same_frames(samples, master, number, motions, ready.options.postures))
@@ -98,7 +98,8 @@ def _keeps_limits(conditions: Conditions, motion: Motion) -> bool:
         return True
     low, high = kinematics.limit[0]
     # The axis next to the part goes all round: what is held lies between circles about it.
-    return len(kinematics.direction) == 2 and high - low >= 2.0 * np.pi - _STILL and _still(motion, kinematics.direction[0])
+    whole = len(kinematics.direction) == 2 and bool(high - low >= 2.0 * np.pi - _STILL)
+    return whole and bool(_still(motion, kinematics.direction[0]))
 
 
 def _keeps_fixtures(conditions: Conditions, motion: Motion, size: float) -> bool:

@@ -6,7 +6,6 @@ and where a tenth of the images, judged by themselves, have the verdicts that fo
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,28 +26,6 @@ Rows = NDArray[np.int64]
 _SAME = 1e-6
 
 
-@dataclass(slots=True)
-class Carried:
-    """How many verdicts followed from others.
-
-    Attributes
-    ----------
-    moved : int
-        Postures that were tested at images and taken.
-    followed : int
-        Samples called not reached without a search.
-    verified : int
-        Copies that were judged by themselves to verify that.
-    refused : int
-        Cutters for which nothing followed, for one of these had another verdict.
-    """
-
-    moved: int = 0
-    followed: int = 0
-    verified: int = 0
-    refused: int = 0
-
-
 class JudgeOnce:
     """Judge as `judge` does, but for samples that are images of others; verdicts are the same, postures may be others.
 
@@ -56,15 +33,18 @@ class JudgeOnce:
     ----------
     judged : Judge, optional
         Judges what does not follow.
+    motions : int
+        How many motions of the whole part there are.
 
     Attributes
     ----------
-    carried : Carried
-        What followed so far.
+    carried : (motions, 3) int64
+        Of each motion the images at which the posture of the sample was tested and taken, those called not reached without a
+        search, and those that were judged by themselves to verify that: of all cutters and setups so far.
     """
 
-    def __init__(self, judged: Judge = judge) -> None:
-        self._judged, self.carried = judged, Carried()
+    def __init__(self, judged: Judge = judge, motions: int = 0) -> None:
+        self._judged, self.carried = judged, np.zeros((motions, 3), np.int64)
         self._of: tuple[object, ...] = ()
         self._parts: tuple[Rows, Prepared, Rows, Prepared] | None = None
 
@@ -74,7 +54,7 @@ class JudgeOnce:
     ) -> Verdicts:  # fmt: skip
         """Find the verdicts of a cutter; parameters and result as of `judge`."""
         copies = ready.copies
-        if copies is None or rows is not None:
+        if copies is None or rows is not None or not copies.follow.any():
             return self._judged(ready, cutter, rows, known, progress=progress, work=work)
         first, some, rest, others = self._split(ready, copies)
         n = len(ready.samples)
@@ -129,22 +109,25 @@ class JudgeOnce:
         taken, own = rows[good], master[good]
         follows.verdict[taken], follows.axis[taken], follows.tilt_direction[taken] = ACCESSIBLE, axis[taken], direction[taken]
         follows.tilt[taken], follows.rotation[taken] = result.tilt[own], rotation[good]
-        self.carried.moved += len(taken)
+        self._count(copies, taken, 0)
 
     def _carry(self, copies: Copies, rest: Rows, result: VerdictBuffer, follows: VerdictBuffer) -> None:
         """Take over that images are not reached, where all that were verified have the verdicts of their masters."""
         may, tenth = copies.follow, np.flatnonzero(copies.verified)
         tenth = tenth[may[tenth]]
         master = copies.master[tenth]
-        self.carried.verified += len(tenth)
+        self._count(copies, tenth, 2)
         lost = result.not_reached
         if (lost[tenth] != lost[master]).any() or (result.verdict[tenth] != result.verdict[master])[lost[tenth]].any():
-            self.carried.refused += 1
             return
         rows = rest[may[rest] & (follows.verdict[rest] == UNJUDGED) & lost[copies.master[rest]]]
         master = copies.master[rows]
         follows.verdict[rows], follows.reason[rows] = result.verdict[master], result.reason[master]
-        self.carried.followed += len(rows)
+        self._count(copies, rows, 1)
+
+    def _count(self, copies: Copies, rows: Rows, what: int) -> None:
+        """Book samples on the motions whose images they are."""
+        self.carried[:, what] += np.bincount(copies.motion[rows], minlength=len(self.carried))[: len(self.carried)]
 
 
 def _rotation(ready: Prepared, rows: Rows, direction: np.ndarray) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
@@ -162,4 +145,3 @@ def _put(result: VerdictBuffer, rows: Rows, verdicts: Verdicts) -> None:
     whole = np.full(len(result.verdict), -1, np.int64)
     whole[rows] = np.arange(len(rows))
     result.take(rows, verdicts, whole[rows])
-
