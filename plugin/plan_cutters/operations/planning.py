@@ -55,6 +55,8 @@ _EVEN, _TIMED, _ROUNDS = 250, 600, 12
 _PARTS = 6
 #: Tries to exchange the fewest for as many that cut faster; times that differ by less are equal, as a share.
 _TRIES, _EQUAL = 4, 0.02
+#: Share of the area that a plan of repeated steps may leave to simultaneous motion beyond what the plan without them does.
+_MOVING = 0.05
 
 
 @reporting(lambda ready: ready.options.reported_unit)
@@ -175,7 +177,7 @@ def _repeated(
     """The plan that is recommended, and what must be said of it: one of repeated steps, where that takes no more time.
 
     Of those that take the same time as the plan that was found, and no more than those that are printed beside it, that which
-    leaves least to simultaneous motion is taken; else the plan that was found.
+    leaves least to simultaneous motion is taken, if that is hardly more than it has there; else the plan that was found.
     """
     own, (other, _) = symmetric(task), found
     columns = None if own is None else repeated(own, _first(task).and_(few), partial(_stored, task), part_of(tell, 0, 2))
@@ -188,7 +190,8 @@ def _repeated(
         if len(choice) > task.ready.options.max_orientations or seconds > (1.0 + _EQUAL) * most:
             continue
         plan = plan_with(own, "fastest", choice)
-        if _seconds(plan) > most or not any(each.step >= 0 for each in plan.operations):
+        repeats = any(each.step >= 0 for each in plan.operations)
+        if not repeats or _seconds(plan) > most or _moving(task, plan) > _moving(task, other) + _MOVING:
             continue
         if _seconds(plan) <= _seconds(other):
             return plan, ()
@@ -197,6 +200,13 @@ def _repeated(
             words += " and simultaneous motion"
         return plan, (f"{words} would take {duration(other.total)}.",)
     return found
+
+
+def _moving(task: Task, plan: OperationPlan) -> float:
+    """The share of the area that a plan leaves to simultaneous motion."""
+    area = np.nan_to_num(task.ready.samples.area)
+    rows = [each.rows for each in plan.operations if each.mode == "simultaneous"]
+    return sum(float(area[mine].sum()) for mine in rows) / max(1e-300, float(area[task.rows].sum()))
 
 
 def _seconds(plan: OperationPlan) -> float:

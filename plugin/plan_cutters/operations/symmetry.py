@@ -27,6 +27,8 @@ _OFF, _MOST = 0.02, 0.95
 _BESIDE = 0.02
 #: Samples that are compared, at most; a turn must carry them so many gaps away.
 _COMPARED, _GAPS = 20_000, 2.0
+#: Axes that differ by less are one.
+_ONE = 1e-6
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -65,6 +67,8 @@ class Symmetry:
                 turned, own, by = where.turned(columns.angle[mine], self.direction, 2.0 * math.pi * k / n)
                 # One rotary axis alone is turned, where it can be.
                 angles, axes, held = np.where(by[:, None], turned, angles), np.where(by[:, None], own, axes), held | by
+                # Along the axis all images are one.
+                held &= np.linalg.norm(axes - columns.axis[mine], axis=1) > _ONE
                 at = mine[held] * n + k
                 axis[at], angle[at] = axes[held], angles[held]
         which = np.repeat(np.arange(m), n)

@@ -107,7 +107,8 @@ def _keeps_fixtures(conditions: Conditions, motion: Motion, size: float) -> bool
     fixtures = conditions.surroundings.fixtures
     if not all(each.fixture.kind == "table" and each.fixture.follows_setup for each in fixtures):
         return False
-    return not fixtures or (_still(motion, conditions.setup) and abs(motion.shift @ conditions.setup) <= _STILL * size)
+    along = abs(float(motion.shift @ conditions.setup))
+    return not fixtures or (_still(motion, conditions.setup) and along <= _STILL * size)
 
 
 def _still(motion: Motion, direction: Floats) -> bool:

@@ -65,7 +65,7 @@ class JudgeOnce:
         follows = blank(n)
         follows.take(rest, known)
         self._moved(ready, cutter, copies, rest, result, follows)
-        self._carry(copies, rest, result, follows)
+        self._carry(ready, copies, rest, result, follows)
         _put(result, rest, self._judged(others, cutter, known=follows.freeze().of(rest), progress=tell[1], work=work))
         return result.freeze()
 
@@ -111,9 +111,11 @@ class JudgeOnce:
         follows.tilt[taken], follows.rotation[taken] = result.tilt[own], rotation[good]
         self._count(copies, taken, 0)
 
-    def _carry(self, copies: Copies, rest: Rows, result: VerdictBuffer, follows: VerdictBuffer) -> None:
+    def _carry(self, ready: Prepared, copies: Copies, rest: Rows, result: VerdictBuffer, follows: VerdictBuffer) -> None:
         """Take over that images are not reached, where all that were verified have the verdicts of their masters."""
-        may, tenth = copies.follow, np.flatnonzero(copies.verified)
+        # What is clamped, or lies in a body, in this setup says nothing of what does not.
+        shut = ready.shut >= 0
+        may, tenth = copies.follow & (shut == shut[copies.master]), np.flatnonzero(copies.verified)
         tenth = tenth[may[tenth]]
         master = copies.master[tenth]
         self._count(copies, tenth, 2)
