@@ -344,8 +344,8 @@ def _turns_onto_itself(face: FaceShape, place: Floats, direction: Floats, tolera
         return False
     d = face.surface.first(*(each.ravel() for each in np.meshgrid(u, v, indexing="ij")))
     normal = np.cross(d[:, 1], d[:, 2])
-    around = np.cross(direction, d[:, 0] - place)
+    across = np.cross(direction, d[:, 0] - place)
     with np.errstate(invalid="ignore", divide="ignore"):
         # Turned by one radian a point leaves the surface by no more than this.
-        off = np.abs((around * normal).sum(axis=1)) / np.linalg.norm(normal, axis=1)
+        off = np.abs((across * normal).sum(axis=1)) / np.linalg.norm(normal, axis=1)
     return bool((np.nan_to_num(off, nan=0.0) <= 0.1 * tolerance).all() and np.isfinite(off).any())

@@ -117,10 +117,10 @@ def patterns(part: Part, at: Callable[[int], None] = lambda face: None) -> tuple
     faces = _faces_of(part, at)
     if faces is None or not any(True for _ in faces.classes()):
         return ()
-    found = [*_whole(faces)] if faces.whole else []
+    whole = [*_whole(faces)] if faces.whole else []
     # A plate of pockets goes onto itself by half a turn, and its pockets are shifted all the same.
-    taken = {number for each in found if each.order >= _LEAST_COPIES for ring in each.faces for number in ring}
-    return (*found, *_of_some(faces, taken))
+    taken = {number for each in whole if each.order >= _LEAST_COPIES for ring in each.faces for number in ring}
+    return (*whole, *_of_some(faces, taken))
 
 
 def _faces_of(part: Part, at: Callable[[int], None]) -> _Faces | None:
@@ -190,9 +190,8 @@ def _whole(faces: _Faces) -> Iterator[Pattern]:
 
 def _axes(faces: _Faces, middle: Floats, own: Floats) -> Iterator[tuple[Floats, Floats]]:
     """Axes through the middle: of faces of revolution, across circles of alike faces, and the principal ones."""
-    given = [axis_of(each) for each in faces.shape]
     directions = list[tuple[Floats, Floats]]()
-    for axis in given:
+    for axis in map(axis_of, faces.shape):
         if axis is not None:
             place, direction = axis
             foot = place + ((middle - place) @ direction) * direction

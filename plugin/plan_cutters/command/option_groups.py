@@ -281,14 +281,6 @@ _OPTIONS = (
         "--most-operations", type=int, metavar="N", help="Fixed orientations, at most; simultaneous motion finishes the rest."
     ),
     _operations(
-        "--no-patterns",
-        "patterns",
-        is_flag=True,
-        default=True,
-        flag_value=False,
-        help="Judge and plan each face by itself, also where faces are equal.",
-    ),
-    _operations(
         "--max-orientations",
         type=int,
         default=8,
@@ -299,6 +291,14 @@ _OPTIONS = (
         "--check-operations",
         type=File("FILE"),
         help="Check the operations in a plan.json against the exact part, with the options that it was made with; write nothing.",
+    ),
+    _run(
+        "--no-patterns",
+        "patterns",
+        is_flag=True,
+        default=True,
+        flag_value=False,
+        help="Judge and plan each face by itself, also where faces are equal.",
     ),
     _run("--jobs", type=int, metavar="N", help="Threads.  [default: all cores]"),
     _run(

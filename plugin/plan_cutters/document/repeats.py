@@ -52,7 +52,7 @@ def _moving(ready: Prepared, setup: int, mine: NDArray[np.bool_]) -> tuple[int, 
     kinematics = conditions.kinematics
     if ready.copies is None or kinematics is None or len(kinematics.direction) != 2 or not mine.any():
         return 1, None
-    keeps = dict(zip(map(id, ready.copies.motions), ready.copies.kept[setup], strict=True))
+    keeps = dict(zip(map(id, ready.copies.motions), ready.copies.unchanged[setup], strict=True))
     for each in ready.patterns:
         axis = each.motions[0].axis if each.whole and each.kind == "rotation" else None
         if axis is None or not all(keeps.get(id(motion), False) for motion in each.motions):
@@ -69,6 +69,6 @@ def _has_images(ready: Prepared, motion: Motion, mine: NDArray[np.bool_]) -> boo
     point, normal, area = samples.point[rows], samples.normal[rows], np.nan_to_num(samples.area[rows])
     near = cKDTree(point).query(motion.points(point), k=min(8, len(rows)), distance_upper_bound=samples.max_gap)
     distance, which = (each.reshape(len(rows), -1) for each in near)
-    found = np.isfinite(distance)
-    alike = (motion.directions(normal)[:, None] * normal[np.where(found, which, 0)]).sum(axis=2) >= _NORMAL
-    return bool(area[(found & alike).any(axis=1)].sum() >= _AGREES * area.sum())
+    is_near = np.isfinite(distance)
+    alike = (motion.directions(normal)[:, None] * normal[np.where(is_near, which, 0)]).sum(axis=2) >= _NORMAL
+    return bool(area[(is_near & alike).any(axis=1)].sum() >= _AGREES * area.sum())

@@ -66,13 +66,13 @@ class Orientations:
     def nearest(self, axis: Floats) -> tuple[Floats, Floats, NDArray[np.bool_]]:
         """The angles (n, 2), deg, that come nearest to each of some axes (n, 3), what they hold, and whether the machine does."""
         angle, taken, _ = self.kinematics.positions(axis)
-        found = taken >= 0
+        can = taken >= 0
         shown = np.round(np.degrees(angle[np.arange(len(axis)), np.maximum(taken, 0)]), DIGITS) + 0.0
-        shown = np.where(found[:, None], shown, 0.0)
+        shown = np.where(can[:, None], shown, 0.0)
         held = self.kinematics.axis(np.radians(shown))
         low, high = np.degrees(self.kinematics.limit).T
-        found &= self.conditions.allows(held) & ((shown >= low - 1e-9) & (shown <= high + 1e-9)).all(axis=1)
-        return np.asarray(shown, float), held, np.asarray(found)
+        can &= self.conditions.allows(held) & ((shown >= low - 1e-9) & (shown <= high + 1e-9)).all(axis=1)
+        return np.asarray(shown, float), held, np.asarray(can)
 
     def turned(self, angle: Floats, direction: Floats, turn: float) -> tuple[Floats, Floats, NDArray[np.bool_]]:
         """Angles (n, 2), deg, with the part turned about a direction, rad, by the axis next to it: the axes, and which can be."""

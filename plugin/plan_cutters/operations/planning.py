@@ -172,17 +172,17 @@ def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationP
 
 
 def _repeated(
-    task: Task, few: Columns, found: tuple[OperationPlan, tuple[str, ...]], printed: Sequence[OperationPlan], tell: Progress
+    task: Task, few: Columns, plain: tuple[OperationPlan, tuple[str, ...]], printed: Sequence[OperationPlan], tell: Progress
 ) -> tuple[OperationPlan, tuple[str, ...]]:
     """The plan that is recommended, and what must be said of it: one of repeated steps, where that takes no more time.
 
     Of those that take the same time as the plan that was found, and no more than those that are printed beside it, that which
     leaves least to simultaneous motion is taken, if that is hardly more than it has there; else the plan that was found.
     """
-    own, (other, _) = symmetric(task), found
+    own, (other, _) = symmetric(task), plain
     columns = None if own is None else repeated(own, _first(task).and_(few), partial(_stored, task), part_of(tell, 0, 2))
     if own is None or columns is None:
-        return found
+        return plain
     columns = _worth(own, "fastest", canonical(own, _worth(own, "fastest", columns), progress=part_of(tell, 1, 2)))
     most = min((1.0 + _EQUAL) * _seconds(other), *map(_seconds, printed), np.inf)
     for choice, seconds in fewer(own, columns):
@@ -199,7 +199,7 @@ def _repeated(
         if any(each.mode == "simultaneous" for each in other.operations):
             words += " and simultaneous motion"
         return plan, (f"{words} would take {duration(other.total)}.",)
-    return found
+    return plain
 
 
 def _moving(task: Task, plan: OperationPlan) -> float:

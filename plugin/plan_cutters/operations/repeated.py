@@ -1,6 +1,6 @@
-"""A plan of repeated steps: a few orientations and their images about an axis, found by what samples cost with the best image.
+"""A plan of repeated steps: a few orientations and their images about an axis, symmetry by what samples cost with the best image.
 
-Every image is tested at the samples, and the plan that comes of it has ordinary operations: it is found for one sector, and
+Every image is tested at the samples, and the plan that comes of it has ordinary operations: it is symmetry for one sector, and
 proved for all.
 """
 
@@ -33,8 +33,8 @@ def symmetric(task: Task) -> Task | None:
     options = task.ready.options
     if not options.patterns or options.index_step is not None or options.most_operations is not None or not len(task.rows):
         return None
-    found = symmetry_of(task.ready.samples, task.ready.patterns, task.orientations, task.ready.somewhere)
-    return None if found is None else replace(task, symmetry=found)
+    symmetry = symmetry_of(task.ready.samples, task.ready.patterns, task.orientations, task.ready.somewhere)
+    return None if symmetry is None else replace(task, symmetry=symmetry)
 
 
 def repeated(task: Task, candidates: Columns, stored: Callable[[Rows], Columns], tell: Progress) -> Columns | None:

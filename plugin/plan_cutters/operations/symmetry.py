@@ -24,7 +24,7 @@ _ORDERS, _AGREES, _NORMAL, _NEAR = range(2, 61), 0.98, math.radians(10.0), 8
 #: A sample lies on a surface of revolution where its normal is off its meridian by less, and a face where so much of it does.
 _OFF, _MOST = 0.02, 0.95
 #: Least share of the area beside such faces: a part without more is a part of revolution, and needs no pattern.
-_BESIDE = 0.02
+_OTHERS = 0.02
 #: Samples that are compared, at most; a turn must carry them so many gaps away.
 _COMPARED, _GAPS = 20_000, 2.0
 #: Axes that differ by less are one.
@@ -155,25 +155,25 @@ def _near_order(samples: SurfaceSamples, rows: NDArray[np.int64], place: Floats,
     """The highest order of a turn about an axis that carries samples near to others with like normals; 1 for none."""
     point, normal, face = samples.point[rows], samples.normal[rows], samples.face[rows]
     area = np.nan_to_num(samples.area[rows])
-    around = np.cross(direction, point - place)
-    radius = np.linalg.norm(around, axis=1)
-    off = np.abs((around * normal).sum(axis=1)) > _OFF * np.maximum(radius, 1e-9)
+    across_axis = np.cross(direction, point - place)
+    radius = np.linalg.norm(across_axis, axis=1)
+    off = np.abs((across_axis * normal).sum(axis=1)) > _OFF * np.maximum(radius, 1e-9)
     revolved = np.bincount(face, area * ~off) >= _MOST * np.bincount(face, area)
-    beside = np.flatnonzero(~revolved[face])
-    if area[beside].sum() < _BESIDE * area.sum():
+    others = np.flatnonzero(~revolved[face])
+    if area[others].sum() < _OTHERS * area.sum():
         return 1
-    beside = beside[:: max(1, len(beside) // _COMPARED)]
+    others = others[:: max(1, len(others) // _COMPARED)]
     tree, least = cKDTree(point), math.cos(_NORMAL)
     for order in reversed(_ORDERS):
         turn = Motion.turn(place, direction, 2.0 * math.pi / order)
-        far = 2.0 * math.pi / order * float(np.average(radius[beside], weights=area[beside] + 1e-300))
+        far = 2.0 * math.pi / order * float(np.average(radius[others], weights=area[others] + 1e-300))
         if far < _GAPS * samples.max_gap:
             continue
-        distance, near = tree.query(turn.points(point[beside]), k=min(_NEAR, len(rows)), distance_upper_bound=samples.max_gap)
-        found = np.isfinite(distance)
-        moved = turn.directions(normal[beside])
-        alike = (moved[:, None] * normal[np.where(found, near, 0)]).sum(axis=2) >= least
-        agrees = (found & alike).any(axis=1)
-        if area[beside][agrees].sum() >= _AGREES * area[beside].sum():
+        distance, near = tree.query(turn.points(point[others]), k=min(_NEAR, len(rows)), distance_upper_bound=samples.max_gap)
+        is_near = np.isfinite(distance)
+        moved = turn.directions(normal[others])
+        alike = (moved[:, None] * normal[np.where(is_near, near, 0)]).sum(axis=2) >= least
+        agrees = (is_near & alike).any(axis=1)
+        if area[others][agrees].sum() >= _AGREES * area[others].sum():
             return order
     return 1

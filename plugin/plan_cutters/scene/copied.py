@@ -41,8 +41,8 @@ def _copies(ready: Prepared, motions: tuple[Motion, ...], patterns: tuple[Patter
     tree = cKDTree(samples.point[judged])
     for k, motion in enumerate(motions):
         off, near = tree.query(motion.points(samples.point[judged]), distance_upper_bound=_NEAR * size)
-        found = np.isfinite(off)
-        one, other = judged[found], judged[near[found]]
+        is_near = np.isfinite(off)
+        one, other = judged[is_near], judged[near[is_near]]
         # Of one sample and several points at one place, on both sides of an edge, the normals tell.
         alike = (motion.directions(samples.normal[one]) * samples.normal[other]).sum(axis=1) >= 1.0 - _NORMAL
         alike &= (ready.shut[one] >= 0) == (ready.shut[other] >= 0)
@@ -54,8 +54,8 @@ def _copies(ready: Prepared, motions: tuple[Motion, ...], patterns: tuple[Patter
     master[second], number[second] = np.flatnonzero(second), -1
     if (number >= 0).sum() < max(_LEAST, _WORTH * len(judged)):
         return None
-    kept = tuple(tuple(_keeps(ready, each, motion, patterns) for motion in motions) for each in ready.setups)
-    return Copies(master, number, motions, kept, _same_frames(samples, master, number, motions, ready.options.postures))
+    unchanged = tuple(tuple(_keeps(ready, each, motion, patterns) for motion in motions) for each in ready.setups)
+    return Copies(master, number, motions, unchanged, _same_frames(samples, master, number, motions, ready.options.postures))
 
 
 def _same_frames(

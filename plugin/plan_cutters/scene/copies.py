@@ -24,7 +24,7 @@ class Copies(Record):
     motion : (n,) int32
         Which motion carries the master onto it, -1 for none.
     motions : tuple of Motion
-    kept : tuple of tuple of bool
+    unchanged : tuple of tuple of bool
         Of each setup, whether each motion leaves all that verdicts depend on as it is: limits of axes, fixtures, what is ignored.
     frames : (n,) bool
         Copies whose postures that are searched are the images of those searched at the master.
@@ -35,7 +35,7 @@ class Copies(Record):
     master: Rows
     motion: Ints
     motions: tuple[Motion, ...]
-    kept: tuple[tuple[bool, ...], ...]
+    unchanged: tuple[tuple[bool, ...], ...]
     frames: NDArray[np.bool_]
     setup: int = 0
 
@@ -51,8 +51,8 @@ class Copies(Record):
     @property
     def follow(self) -> NDArray[np.bool_]:
         """Copies (n,) of which it may follow that they are not reached, where their master is not."""
-        kept = np.append(np.array(self.kept[self.setup], bool), False)
-        return np.asarray(self.frames & self.copy & kept[self.motion])
+        follows = np.append(np.array(self.unchanged[self.setup], bool), False)
+        return np.asarray(self.frames & self.copy & follows[self.motion])
 
     @property
     def verified(self) -> NDArray[np.bool_]:

@@ -119,10 +119,10 @@ class JudgeOnce:
         tenth = tenth[may[tenth]]
         master = copies.master[tenth]
         self._count(copies, tenth, 2)
-        lost = result.not_reached
-        if (lost[tenth] != lost[master]).any() or (result.verdict[tenth] != result.verdict[master])[lost[tenth]].any():
+        missed = result.not_reached
+        if (missed[tenth] != missed[master]).any() or (result.verdict[tenth] != result.verdict[master])[missed[tenth]].any():
             return
-        rows = rest[may[rest] & (follows.verdict[rest] == UNJUDGED) & lost[copies.master[rest]]]
+        rows = rest[may[rest] & (follows.verdict[rest] == UNJUDGED) & missed[copies.master[rest]]]
         master = copies.master[rows]
         follows.verdict[rows], follows.reason[rows] = result.verdict[master], result.reason[master]
         self._count(copies, rows, 1)

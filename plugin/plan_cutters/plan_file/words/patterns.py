@@ -6,17 +6,17 @@ from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.numbers import ranges
 from plan_cutters.plan_file.patterns import PatternEntry
 
-#: Copies from which on a pattern is told in the summary; faces that are named; patterns that are told.
-_COPIES, _NAMED, _TOLD = 3, 24, 3
+#: Copies from which on a pattern stands in the summary; faces that are named; patterns that are listed.
+_COPIES, _NAMED, _LISTED = 3, 24, 3
 
 
 def patterns(plan: Plan) -> Iterator[str]:
     """Sentences on the patterns of a plan, those with most faces first."""
-    told = sorted(plan.patterns, key=lambda each: (not each.whole, -sum(map(len, each.faces))))[:_TOLD]
-    for each in told:
+    largest = sorted(plan.patterns, key=lambda each: (not each.whole, -sum(map(len, each.faces))))[:_LISTED]
+    for each in largest:
         yield _sentence(each)
-    if len(plan.patterns) > len(told):
-        yield f"{len(plan.patterns) - len(told)} more patterns of equal faces are in plan.json."
+    if len(plan.patterns) > len(largest):
+        yield f"{len(plan.patterns) - len(largest)} more patterns of equal faces are in plan.json."
 
 
 def in_summary(plan: Plan) -> str:
