@@ -81,7 +81,12 @@ class Task:
     def table(self, rows: Rows, columns: Columns) -> NDArray[np.bool_]:
         """Where what each column stands for serves: (rows, columns)."""
         served = self.probes.table(rows, self.images(columns))
-        return np.asarray(served.reshape(len(rows), len(columns), -1).any(axis=2)) if len(columns) else served
+        return np.asarray(served.reshape(len(rows), len(columns), self.times).any(axis=2))
+
+    @property
+    def times(self) -> int:
+        """How many columns each one stands for."""
+        return 1 if self.symmetry is None else self.symmetry.order
 
 
 def plan_with(
@@ -150,7 +155,7 @@ def _expanded(task: Task, columns: Columns) -> tuple[Columns, Rows]:
         return columns, np.full(len(columns), -1, np.int64)
     every = task.images(columns)
     first = np.sort(np.unique(every.key, return_index=True)[1])
-    step = first // (len(every) // len(columns))
+    step = first // task.times
     return every.of(first), np.where(np.bincount(step)[step] > 1, step, -1)
 
 
@@ -325,7 +330,7 @@ def costs_with(task: Task, columns: Columns) -> tuple[Floats, Floats]:
     area, serves = np.nan_to_num(task.ready.samples.area[rows]), task.probes.kept(rows, every)
     cost = costs_of(every, _widths(task, every, serves), serves, area, task.cutters, task.paths)
     # Of images the best one cuts a sample.
-    return area, cost if task.symmetry is None else cost.reshape(len(rows), len(columns), -1).min(axis=2, initial=np.inf)
+    return area, cost.reshape(len(rows), len(columns), task.times).min(axis=2)
 
 
 def _widths(task: Task, columns: Columns, serves: NDArray[np.bool_]) -> Floats:

@@ -65,14 +65,14 @@ def repeated(task: Task, candidates: Columns, stored: Callable[[Rows], Columns],
     cost = _costs(task, rows, every)
     for turn in range(_ROUNDS):
         part = part_of(tell, turn, _ROUNDS)
-        own = cost.reshape(len(rows), len(base), -1).min(axis=2)
+        own = cost.reshape(len(rows), len(base), task.times).min(axis=2)
         bare = np.flatnonzero(~np.isfinite(own).any(axis=1))
         if len(bare):
             new = stored(rows[spread(bare, samples.point[rows], _MORE)])
             new = new.of(np.flatnonzero(~np.isin(new.key, base.key)))
             base, every = base.and_(new), every.and_(symmetry.images(new))
             cost = np.concatenate([cost, _costs(task, rows, symmetry.images(new))], axis=1)
-            own = cost.reshape(len(rows), len(base), -1).min(axis=2)
+            own = cost.reshape(len(rows), len(base), task.times).min(axis=2)
         open_ = np.isfinite(own).any(axis=1)
         share = shared_area(samples, wanted, rows)
         chosen = cheap(_problem(task, symmetry, base, own[open_] * (share / np.maximum(area[rows], 1e-300))[open_, None]))

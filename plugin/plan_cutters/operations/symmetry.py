@@ -20,7 +20,7 @@ from plan_cutters.operations.candidates import Orientations
 
 #: Orders of a symmetry that are looked for, the share of the area that must agree, how well normals must, rad, and how many
 #: samples near to a place are looked at.
-_ORDERS, _AGREES, _NORMAL, _NEAR = range(2, 61), 0.98, math.radians(10.0), 8
+_ORDERS, _AGREES, _NORMAL, _NEAR = range(3, 61), 0.98, math.radians(10.0), 8
 #: A sample lies on a surface of revolution where its normal is off its meridian by less, and a face where so much of it does.
 _OFF, _MOST = 0.02, 0.95
 #: Least share of the area beside such faces: a part without more is a part of revolution, and needs no pattern.
@@ -89,7 +89,7 @@ def symmetry_of(
 ) -> Symmetry | None:
     """The rotation under which orientations may be repeated, of the highest order; None where there is none."""
     for each in patterns:
-        axis = each.motions[0].axis if each.kind == "rotation" and each.whole else None
+        axis = each.motions[0].axis if each.kind == "rotation" and each.whole and each.order in _ORDERS else None
         if axis is not None:
             return Symmetry(*axis, each.order, True, orientations)
     rows = np.flatnonzero(machinable & (samples.unjudged < 0))
