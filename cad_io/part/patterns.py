@@ -315,9 +315,9 @@ def _of_some(faces: _Faces, taken: set[int]) -> Iterator[Pattern]:
             # Classes that the same motions carry round are one pattern.
             step = np.concatenate([motions[0].linear.ravel(), *(each.shift / faces.size for each in motions)])
             key = kind, tuple(np.round(step, 4).tolist())
-            verified = all(faces.equal(int(copies[0]), int(k), m) for k, m in zip(copies[1:], motions, strict=True))
-            if verified:
-                groups.setdefault(key, (motions, []))[1].append(copies)
+            common = groups.get(key, (motions, []))[0]
+            if all(faces.equal(int(copies[0]), int(k), m) for k, m in zip(copies[1:], common, strict=True)):
+                groups.setdefault(key, (common, []))[1].append(copies)
                 if kind == "rotation":
                     break
     area = {key: sum(faces.shape[c[0]].area for c in each[1]) for key, each in groups.items()}

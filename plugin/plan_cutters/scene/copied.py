@@ -18,6 +18,8 @@ from plan_cutters.scene.preparation import Prepared
 _NEAR, _NORMAL, _ROTATION = 1e-5, 1e-6, 1e-6
 #: Directions that a motion leaves as they are, within this.
 _STILL = 1e-9
+#: Of the copies of a motion on a face, every so many is judged by itself, too.
+_VERIFIED = 10
 #: A part with a smaller share of copies, or fewer of them, is judged as if it had none.
 _WORTH, _LEAST = 0.1, 500
 
@@ -55,7 +57,19 @@ def _copies(ready: Prepared, motions: tuple[Motion, ...], patterns: tuple[Patter
     if (number >= 0).sum() < max(_LEAST, _WORTH * len(judged)):
         return None
     unchanged = tuple(tuple(_keeps(ready, each, motion, patterns) for motion in motions) for each in ready.setups)
-    return Copies(master, number, motions, unchanged, _same_frames(samples, master, number, motions, ready.options.postures))
+    frames = _same_frames(samples, master, number, motions, ready.options.postures)
+    group = np.where(number >= 0, number * (int(samples.face.max()) + 1) + samples.face, -1).astype(np.int64)
+    return Copies(master, number, motions, unchanged, frames, _verified(group, frames), group)
+
+
+def _verified(group: Rows, frames: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Of the copies of each group at which frames agree the first one, and every tenth after it."""
+    rows = np.flatnonzero(frames)
+    rows = rows[np.argsort(group[rows], kind="stable")]
+    _, first, size = np.unique(group[rows], return_index=True, return_counts=True)
+    chosen = np.zeros(len(group), bool)
+    chosen[rows[(np.arange(len(rows)) - np.repeat(first, size)) % _VERIFIED == 0]] = True
+    return chosen
 
 
 def _same_frames(

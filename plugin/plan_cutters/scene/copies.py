@@ -9,8 +9,6 @@ from cad_io.arrays import Floats, Ints, Record
 from cad_io.part.motion import Motion
 
 Rows = NDArray[np.int64]
-#: Of copies, every so many is judged by itself, too.
-VERIFIED = 10
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -28,6 +26,10 @@ class Copies(Record):
         Of each setup, whether each motion leaves all that verdicts depend on as it is: limits of axes, fixtures, what is ignored.
     frames : (n,) bool
         Copies whose postures that are searched are the images of those searched at the master.
+    verified : (n,) bool
+        Those of `frames` that are judged by themselves as well: a tenth of them, on each face that a motion carries onto another.
+    group : (n,) int64
+        The same for copies of one motion on one face, -1 for none.
     setup : int
         Counted from 0, in which the part is looked at.
     """
@@ -37,6 +39,8 @@ class Copies(Record):
     motions: tuple[Motion, ...]
     unchanged: tuple[tuple[bool, ...], ...]
     frames: NDArray[np.bool_]
+    verified: NDArray[np.bool_]
+    group: Rows
     setup: int = 0
 
     def there(self, setup: int) -> "Copies":
@@ -53,13 +57,6 @@ class Copies(Record):
         """Copies (n,) of which it may follow that they are not reached, where their master is not."""
         follows = np.append(np.array(self.unchanged[self.setup], bool), False)
         return np.asarray(self.frames & self.copy & follows[self.motion])
-
-    @property
-    def verified(self) -> NDArray[np.bool_]:
-        """Copies (n,) that are judged by themselves as well: a tenth of them, all over the part."""
-        chosen = np.zeros(len(self.master), bool)
-        chosen[np.flatnonzero(self.copy)[::VERIFIED]] = True
-        return chosen
 
     def moved(self, rows: Rows, vector: Floats) -> Floats:
         """Vectors (m, 3) at the masters of copies, as the motions carry them."""

@@ -2,7 +2,7 @@
 
 A posture of a sample, moved, is only a candidate at its image, and is tested there among the obstacles as they are: nothing is
 called reached without that. That an image is not reached follows where the motion leaves all that verdicts depend on as it is,
-and where a tenth of the images, judged by themselves, have the verdicts that follow; if one of them has another, none follows.
+and where a tenth of the images on each face, judged by themselves, have the verdicts that follow; if one has another, none follows.
 """
 
 from collections.abc import Callable
@@ -10,6 +10,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from cad_io.arrays import Floats
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import ACCESSIBLE, UNJUDGED, VerdictBuffer, Verdicts, blank
 from plan_cutters.scene.conditions import Context, rotations_of
@@ -22,8 +23,8 @@ from plan_cutters.scene.work import Work
 from plan_cutters.stages.judge import Judge, judge
 
 Rows = NDArray[np.int64]
-#: Rotations and tilts are those of the range within this, rad; a tilt direction that is shorter than 1 by more is of the flat.
-_SAME = 1e-6
+#: A tilt direction that is shorter than 1 by more is that of a contact under the flat of the tip.
+_FLAT = 1e-6
 
 
 class JudgeOnce:
@@ -64,7 +65,7 @@ class JudgeOnce:
         _put(result, first, self._judged(some, cutter, known=known.of(first), progress=tell[0], work=work))
         follows = blank(n)
         follows.take(rest, known)
-        self._moved(ready, cutter, copies, rest, result, follows)
+        self._moved(ready, cutter, copies, rest, result, follows, work)
         self._carry(ready, copies, rest, result, follows)
         _put(result, rest, self._judged(others, cutter, known=follows.freeze().of(rest), progress=tell[1], work=work))
         return result.freeze()
@@ -79,8 +80,9 @@ class JudgeOnce:
         return self._parts
 
     def _moved(
-        self, ready: Prepared, cutter: Cutter, copies: Copies, rest: Rows, result: VerdictBuffer, follows: VerdictBuffer
-    ) -> None:
+        self, ready: Prepared, cutter: Cutter, copies: Copies, rest: Rows, result: VerdictBuffer, follows: VerdictBuffer,
+        work: Work | None,
+    ) -> None:  # fmt: skip
         """Take the postures of masters, moved, where the cutter stands free in them."""
         from plan_cutters.kernels.search.postures import free
 
@@ -89,22 +91,20 @@ class JudgeOnce:
         rows = rest[(follows.verdict[rest] == UNJUDGED) & (result.verdict[copies.master[rest]] == ACCESSIBLE)]
         if not len(rows) or not context.judges:
             return
-        master, n = copies.master[rows], len(samples)
-        axis, direction = np.full((n, 3), np.nan), np.full((n, 3), np.nan)
-        axis[rows] = copies.moved(rows, result.axis[master])
-        direction[rows] = copies.moved(rows, result.tilt_direction[master])
-        tilt = result.tilt[master]
-        rotation, there = _rotation(ready, rows, direction[rows])
-        low, high = conditions.postures.tilt
-        there &= conditions.allows(axis[rows]) & (tilt >= low - _SAME) & (tilt <= high + _SAME)
-        tested = rows[there]
-        stands = np.zeros(n, bool)
-        in_chunks(
-            lambda piece: free(
-                piece, samples.point, samples.normal, axis, direction, context.outer, conditions.obstacles.solids, stands
+        master = copies.master[rows]
+        axis, direction = np.full((2, len(samples), 3), np.nan)
+        rotation, direction[rows], axis[rows] = _posture(
+            ready, rows, copies.moved(rows, result.tilt_direction[master]), result.tilt[master]
+        )
+        stands = np.zeros(len(samples), bool)
+        looked = in_chunks(
+            lambda piece: int(
+                free(piece, samples.point, samples.normal, axis, direction, context.outer, conditions.obstacles.solids, stands)
             ),
-            tested, conditions.jobs,
+            rows[conditions.allows(axis[rows])], conditions.jobs,
         )  # fmt: skip
+        if work is not None:
+            work.add(looked)
         good = stands[rows]
         taken, own = rows[good], master[good]
         follows.verdict[taken], follows.axis[taken], follows.tilt_direction[taken] = ACCESSIBLE, axis[taken], direction[taken]
@@ -115,13 +115,14 @@ class JudgeOnce:
         """Take over that images are not reached, where all that were verified have the verdicts of their masters."""
         # What is clamped, or lies in a body, in this setup says nothing of what does not.
         shut = ready.shut >= 0
-        may, tenth = copies.follow & (shut == shut[copies.master]), np.flatnonzero(copies.verified)
-        tenth = tenth[may[tenth]]
+        may = copies.follow & (shut == shut[copies.master])
+        tenth = np.flatnonzero(copies.verified & may)
         master = copies.master[tenth]
         self._count(copies, tenth, 2)
         missed = result.not_reached
         if (missed[tenth] != missed[master]).any() or (result.verdict[tenth] != result.verdict[master])[missed[tenth]].any():
             return
+        may &= np.isin(copies.group, copies.group[tenth])
         rows = rest[may[rest] & (follows.verdict[rest] == UNJUDGED) & missed[copies.master[rest]]]
         master = copies.master[rows]
         follows.verdict[rows], follows.reason[rows] = result.verdict[master], result.reason[master]
@@ -132,14 +133,17 @@ class JudgeOnce:
         self.carried[:, what] += np.bincount(copies.motion[rows], minlength=len(self.carried))[: len(self.carried)]
 
 
-def _rotation(ready: Prepared, rows: Rows, direction: np.ndarray) -> tuple[NDArray[np.int32], NDArray[np.bool_]]:
-    """The number of each rotation (m,), and whether it is one that is searched."""
-    postures, samples = ready.conditions.postures, ready.samples
-    turn = rotations_of(samples.normal[rows], samples.direction_max[rows], direction)
-    away = np.abs((turn[:, None] - postures.rotations + np.pi) % (2.0 * np.pi) - np.pi)
-    nearest = away.argmin(axis=1)
-    flat = np.linalg.norm(direction, axis=1) < 1.0 - _SAME
-    return nearest.astype(np.int32), (away.min(axis=1) <= _SAME) | flat
+def _posture(ready: Prepared, rows: Rows, moved: Floats, tilt: Floats) -> tuple[NDArray[np.int32], Floats, Floats]:
+    """The searched rotation (m,) next to each moved tilt direction (m, 3), and the tilt direction and axis there at a tilt."""
+    rotations, normal, first = ready.conditions.postures.rotations, ready.samples.normal[rows], ready.samples.direction_max[rows]
+    away = np.abs((rotations_of(normal, first, moved)[:, None] - rotations + np.pi) % (2.0 * np.pi) - np.pi)
+    nearest = away.argmin(axis=1).astype(np.int32)
+    turn = rotations[nearest][:, None]
+    direction = np.cos(turn) * first + np.sin(turn) * np.cross(normal, first)
+    flat = np.linalg.norm(moved, axis=1) < 1.0 - _FLAT
+    # Under the flat it says how far the contact is from the axis, and whereto.
+    direction[flat] = (moved - (moved * normal).sum(axis=1)[:, None] * normal)[flat]
+    return nearest, direction, np.cos(tilt)[:, None] * normal + np.sin(tilt)[:, None] * direction
 
 
 def _put(result: VerdictBuffer, rows: Rows, verdicts: Verdicts) -> None:
