@@ -92,10 +92,15 @@ class Orientations:
 
     def other(self, axis: Floats, angle: Floats) -> Floats | None:
         """The other angles (2,), deg, that hold an axis (3,); None where there are none."""
-        both = np.degrees(self.kinematics.positions(axis[None])[0][0])
-        apart_ = np.abs((both - angle + 180.0) % 360.0 - 180.0).sum(axis=1)
-        other = both[int(np.nan_to_num(apart_, nan=-1.0).argmax())]
-        return np.round(other, DIGITS) + 0.0 if np.isfinite(other).all() and np.nanmax(apart_) > _SAME_DEG else None
+        return self.others(axis[None], angle[None])[0]
+
+    def others(self, axis: Floats, angle: Floats) -> list[Floats | None]:
+        """The other angles (2,), deg, that hold each of some axes (n, 3) beside its angles (n, 2); None where there are none."""
+        both = np.degrees(self.kinematics.positions(axis)[0])
+        away = np.abs((both - angle[:, None] + 180.0) % 360.0 - 180.0).sum(axis=2)
+        other = both[np.arange(len(both)), np.nan_to_num(away, nan=-1.0).argmax(axis=1)]
+        there = np.isfinite(other).all(axis=1) & (np.nan_to_num(away, nan=-1.0).max(axis=1) > _SAME_DEG)
+        return [shown if is_there else None for shown, is_there in zip(np.round(other, DIGITS) + 0.0, there, strict=True)]
 
     def grid(self, step: float) -> tuple[Floats, Floats]:
         """Angles (n, 2) that are whole multiples of a step, deg, and their axes.

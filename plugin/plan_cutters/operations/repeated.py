@@ -19,8 +19,9 @@ from plan_cutters.operations.timing import costs_of, shared_area, widths
 from plan_cutters.scene.threads import Progress, part_of
 
 Rows = NDArray[np.int64]
-#: Columns and images that are compared; samples at first, and those that join them; rounds until a choice serves all.
-_MOST_COLUMNS, _FIRST, _MORE, _ROUNDS = 4000, 400, 60, 6
+#: Columns and images that are compared; samples at first, of one copy at least so many, and those that join them; rounds until a
+#: choice serves all.
+_MOST_COLUMNS, _FIRST, _LEAST, _MORE, _ROUNDS = 4000, 400, 80, 60, 6
 #: What a choice may leave, as a share of the area.
 _LEAVES = 0.001
 
@@ -60,8 +61,11 @@ def repeated(task: Task, candidates: Columns, stored: Callable[[Rows], Columns],
     assert symmetry is not None
     samples, wanted = task.ready.samples, task.rows
     area = np.nan_to_num(samples.area)
-    base = _thinned(candidates.of(symmetry.sector(candidates)), _MOST_COLUMNS // symmetry.order)
-    rows, every = wanted[:: max(1, len(wanted) // _FIRST)], symmetry.images(base)
+    base = _thinned(candidates.of(symmetry.sector(candidates.axis)), _MOST_COLUMNS // symmetry.order)
+    # One copy tells what all of them cost; where the part is no exact pattern, what is left elsewhere joins them.
+    copy = wanted[symmetry.sector(samples.point[wanted] - symmetry.place)]
+    copy = copy if len(copy) else wanted
+    rows, every = copy[:: max(1, len(copy) // max(_LEAST, _FIRST // symmetry.order))], symmetry.images(base)
     cost = _costs(task, rows, every)
     for turn in range(_ROUNDS):
         part = part_of(tell, turn, _ROUNDS)
@@ -74,7 +78,7 @@ def repeated(task: Task, candidates: Columns, stored: Callable[[Rows], Columns],
             cost = np.concatenate([cost, _costs(task, rows, symmetry.images(new))], axis=1)
             own = cost.reshape(len(rows), len(base), task.times).min(axis=2)
         open_ = np.isfinite(own).any(axis=1)
-        share = shared_area(samples, wanted, rows)
+        share = symmetry.order * shared_area(samples, np.union1d(copy, rows), rows)
         chosen = cheap(_problem(task, symmetry, base, own[open_] * (share / np.maximum(area[rows], 1e-300))[open_, None]))
         part(1, 2)
         served = task.probes.kept(wanted, symmetry.images(base.of(chosen))).any(axis=1)

@@ -74,12 +74,11 @@ class Symmetry:
         which = np.repeat(np.arange(m), n)
         return Columns(columns.cutter[which], columns.setup[which], axis, angle)
 
-    def sector(self, columns: Columns) -> NDArray[np.int64]:
-        """Numbers of the columns whose axes lie in the first sector: the images of these are all."""
+    def sector(self, vector: Floats) -> NDArray[np.int64]:
+        """Numbers of the vectors (m, 3) that lie in the first sector about the axis: the images of these are all."""
         x = np.cross(self.direction, np.eye(3)[int(np.abs(self.direction).argmin())])
         x /= np.linalg.norm(x)
-        y = np.cross(self.direction, x)
-        along, across = columns.axis @ x, columns.axis @ y
+        along, across = vector @ x, vector @ np.cross(self.direction, x)
         azimuth = np.remainder(np.arctan2(across, along), 2.0 * math.pi)
         return np.flatnonzero((azimuth < 2.0 * math.pi / self.order) | (np.hypot(along, across) < 1e-9))
 
