@@ -32,7 +32,7 @@ def pattern_entries(patterns: Sequence[Pattern], counts: NDArray[np.int64]) -> l
                 kind=each.kind, order=each.order, whole=each.whole, place_mm=None if place is None else vector(place),
                 direction=None if direction is None else vector(direction),
                 shifts_mm=[vector(m.shift) for m in each.motions] if each.kind == "shift" else [],
-                faces=[[f"F{ring[k]}" for ring in each.faces if k < len(ring)] for k in range(each.order)] if each.faces else [],
+                faces=[[f"F{ring[k % len(ring)]}" for ring in each.faces] for k in range(each.order)] if each.faces else [],
                 moved=int(own[0]), followed=int(own[1]), verified=int(own[2]),
             )
         )  # fmt: skip

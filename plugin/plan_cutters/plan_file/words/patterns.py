@@ -31,8 +31,8 @@ def in_summary(plan: Plan) -> str:
 
 
 def _names(each: PatternEntry) -> list[str]:
-    """Its faces, one after the other."""
-    return [name for copy in each.faces for name in copy]
+    """Its faces, one after the other: some may be in several copies."""
+    return list(dict.fromkeys(name for copy in each.faces for name in copy))
 
 
 def _sentence(each: PatternEntry) -> str:
