@@ -215,7 +215,7 @@ def _made_of(step: dict[str, Any], same: list[dict[str, Any]]) -> bool:
         by = turned.get(name)
         away = np.array([each["angles_deg"][name] - first for each in same])
         near = away if by is None else away - by * np.rint(away / by)
-        # One that is left out leaves a gap; what it is turned by is a whole part of the turn.
+        # What it is turned by is a whole part of the turn.
         if np.abs((near + 180.0) % 360.0 - 180.0).max() > _WRITTEN * len(same):
             return False
         if by is not None and not (by > 0.0 and abs(360.0 / by - round(360.0 / by)) < 1e-2 and len(set(away)) == len(same)):

@@ -40,9 +40,11 @@ def repeats(ready: Prepared, same: Sequence[OperationEntry], mine: NDArray[np.bo
         turned = np.sort([each[name] % 360.0 for each in angles])
         steps = np.diff(turned)
         if all(abs(each[key] - angles[0][key]) <= _WRITTEN for each in angles for key in others):
-            step = float(steps.min())
-            whole = step > _WRITTEN and np.abs(steps - step * np.rint(steps / step)).max() <= _WRITTEN * len(same)
-            return len(same), {name: round(360.0 / round(360.0 / step), 3)} if whole else None
+            step, number = float(steps.min()), len(same)
+            # One that is left out leaves a gap: then no angle leads from each to the next.
+            parts = max(1, round(360.0 / step)) if step > _WRITTEN else 1
+            even = np.ptp(steps) <= _WRITTEN * number and abs(step - 360.0 / parts) <= _WRITTEN
+            return number, {name: round(360.0 / parts, 3)} if even and parts >= number else None
     return len(same), None
 
 

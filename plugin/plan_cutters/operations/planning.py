@@ -191,7 +191,13 @@ def _repeated(
             continue
         plan = plan_with(own, "fastest", choice)
         repeats = any(each.step >= 0 for each in plan.operations)
-        if not repeats or _seconds(plan) > most or _moving(task, plan) > _moving(task, other) + _MOVING:
+        # A time that is not known is no time to compare.
+        if (
+            not repeats
+            or not np.isfinite(plan.total)
+            or plan.total > most
+            or _moving(task, plan) > _moving(task, other) + _MOVING
+        ):
             continue
         if _seconds(plan) <= _seconds(other):
             return plan, ()
