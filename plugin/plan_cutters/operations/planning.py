@@ -190,14 +190,9 @@ def _repeated(
         if len(choice) > task.ready.options.max_orientations or seconds > (1.0 + _EQUAL) * most:
             continue
         plan = plan_with(own, "fastest", choice)
-        repeats = any(each.step >= 0 for each in plan.operations)
         # A time that is not known is no time to compare.
-        if (
-            not repeats
-            or not np.isfinite(plan.total)
-            or plan.total > most
-            or _moving(task, plan) > _moving(task, other) + _MOVING
-        ):
+        as_quick = bool(np.isfinite(plan.total)) and plan.total <= most and any(each.step >= 0 for each in plan.operations)
+        if not as_quick or _moving(task, plan) > _moving(task, other) + _MOVING:
             continue
         if _seconds(plan) <= _seconds(other):
             return plan, ()
