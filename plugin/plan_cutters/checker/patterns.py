@@ -167,11 +167,9 @@ class Patterns:
         """Operations that are images of each other have one cutter, setup and mode."""
         for plan in self.question.document["operations"]["plans"]:
             for step, same in _by_step(plan).items():
-                if len({(each["cutter"], each["setup"], each["mode"]) for each in same}) > 1 or len(same) < 2:
-                    words = "are no images of each other" if len(same) > 1 else "is said to be repeated, and is alone"
-                    yield Finding(
-                        False, f"The {plan['name']} plan: {', '.join(each['id'] for each in same)} (step {step}) {words}."
-                    )
+                if len({(each["cutter"], each["setup"], each["mode"]) for each in same}) > 1:
+                    names = ", ".join(each["id"] for each in same)
+                    yield Finding(False, f"The {plan['name']} plan: {names} (step {step}) are no images of each other.")
 
     def _steps(self) -> Iterator[Finding]:
         """Steps of the process that are repeated are as many operations, evenly turned, of their area and time together."""
