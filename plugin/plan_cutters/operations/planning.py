@@ -177,30 +177,40 @@ def _repeated(
     """The plan that is recommended, and what must be said of it: one of repeated steps, where that takes no more time.
 
     Of those that take the same time as the plan that was found, and no more than those that are printed beside it, that which
-    leaves least to simultaneous motion is taken, if that is hardly more than it has there; else the plan that was found.
+    leaves least to simultaneous motion is taken, if that is hardly more than it has there; else the plan that was found. Where a
+    time is not known, it must be that of no more area.
     """
     own, (other, _) = symmetric(task), plain
     columns = None if own is None else repeated(own, _first(task).and_(few), partial(_stored, task), part_of(tell, 0, 2))
     if own is None or columns is None:
         return plain
     columns = _worth(own, "fastest", canonical(own, _worth(own, "fastest", columns), progress=part_of(tell, 1, 2)))
-    most = min((1.0 + _EQUAL) * _seconds(other), *map(_seconds, printed), np.inf)
+    most = min((1.0 + _EQUAL) * _known(other), *map(_known, printed), np.inf)
     for choice, seconds in fewer(own, columns):
         # What the choice is reckoned to take is not quite what its plan does.
         if len(choice) > task.ready.options.max_orientations or seconds > (1.0 + _EQUAL) * most:
             continue
         plan = plan_with(own, "fastest", choice)
-        # A time that is not known is no time to compare.
-        as_quick = bool(np.isfinite(plan.total)) and plan.total <= most and any(each.step >= 0 for each in plan.operations)
-        if not as_quick or _moving(task, plan) > _moving(task, other) + _MOVING:
+        as_quick = _known(plan) <= most and _untimed(task, plan) <= _untimed(task, other)
+        if not as_quick or all(each.step < 0 for each in plan.operations) or _moving(task, plan) > _moving(task, other) + _MOVING:
             continue
-        if _seconds(plan) <= _seconds(other):
+        if _known(plan) <= _known(other) or not np.isfinite(other.total):
             return plan, ()
         words = f"Without repeated steps {count(other.orientations, 'orientation')}"
         if any(each.mode == "simultaneous" for each in other.operations):
             words += " and simultaneous motion"
         return plan, (f"{words} would take {duration(other.total)}.",)
     return plain
+
+
+def _known(plan: OperationPlan) -> float:
+    """Seconds of a plan without those of the samples at which they are not known."""
+    return float(np.nansum(plan.seconds[plan.label >= 0])) + plan.other
+
+
+def _untimed(task: Task, plan: OperationPlan) -> float:
+    """The area of the samples of a plan whose seconds are not known, mm2."""
+    return float(np.nansum(task.ready.samples.area[(plan.label >= 0) & ~np.isfinite(plan.seconds)]))
 
 
 def _moving(task: Task, plan: OperationPlan) -> float:
