@@ -49,6 +49,11 @@ def test_nothing_is_repeated_where_axes_lock_or_it_was_refused():
     assert symmetric(task(most_operations=3)) is None
 
 
+def test_nothing_is_repeated_about_an_axis_that_is_not_the_machines():
+    # Each image would have other angles of both axes: no planner calls these one step.
+    assert symmetric(task(setup="x")) is None
+
+
 @pytest.mark.parametrize("angle", [(10.0, 40.0), (0.0, 0.0), (-170.0, -20.0)])
 def test_images_are_the_axes_turned_by_one_rotary_axis(angle):
     own = symmetric(task())

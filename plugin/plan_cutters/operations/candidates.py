@@ -16,6 +16,8 @@ from plan_cutters.scene.conditions import Conditions
 
 #: Digits of an angle in degrees that a control shows.
 DIGITS = 3
+#: A direction is along a rotary axis where their cosine is less below 1 than this: 0.008 deg.
+_ALONG = 1e-8
 #: Sums of angles that differ by less are the same position, deg.
 _SAME_DEG = 0.01
 #: Distance of grid angles unless one is requested, rad.
@@ -63,26 +65,20 @@ class Orientations:
         held &= ((shown >= low - 1e-9) & (shown <= high + 1e-9)).all(axis=1)
         return shown[held], axis[held]
 
-    def nearest(self, axis: Floats) -> tuple[Floats, Floats, NDArray[np.bool_]]:
-        """The angles (n, 2), deg, that come nearest to each of some axes (n, 3), what they hold, and whether the machine does."""
-        angle, taken, _ = self.kinematics.positions(axis)
-        can = taken >= 0
-        shown = np.round(np.degrees(angle[np.arange(len(axis)), np.maximum(taken, 0)]), DIGITS) + 0.0
-        shown = np.where(can[:, None], shown, 0.0)
-        held = self.kinematics.axis(np.radians(shown))
-        low, high = np.degrees(self.kinematics.limit).T
-        can &= self.conditions.allows(held) & ((shown >= low - 1e-9) & (shown <= high + 1e-9)).all(axis=1)
-        return np.asarray(shown, float), held, np.asarray(can)
+    def along(self, direction: Floats) -> float:
+        """+1 or -1 where the axis next to the part turns it about a direction, or the other way; else 0."""
+        cosine = float(self.kinematics.direction[0] @ direction)
+        return math.copysign(1.0, cosine) if abs(cosine) > 1.0 - _ALONG else 0.0
 
     def turned(self, angle: Floats, direction: Floats, turn: float) -> tuple[Floats, Floats, NDArray[np.bool_]]:
         """Angles (n, 2), deg, with the part turned about a direction, rad, by the axis next to it: the axes, and which can be."""
-        along = float(self.kinematics.direction[0] @ direction)
-        first = angle[:, 0] + math.degrees(turn) * np.sign(along)
+        along = self.along(direction)
+        first = angle[:, 0] + math.degrees(turn) * along
         shown = np.round(np.column_stack([first - 360.0 * np.round(first / 360.0), angle[:, 1]]), DIGITS) + 0.0
         held = self.kinematics.axis(np.radians(shown))
         low, high = np.degrees(self.kinematics.limit).T
         can = self.conditions.allows(held) & ((shown >= low - 1e-9) & (shown <= high + 1e-9)).all(axis=1)
-        return np.asarray(shown, float), held, np.asarray(can & (abs(along) > 1.0 - 1e-9))
+        return np.asarray(shown, float), held, np.asarray(can & (along != 0.0))
 
     def near(self, axis: Floats) -> tuple[Floats, Floats]:
         """The angles that come nearest to axes (n, 3), and the axes that they hold: those alone that the machine can hold."""

@@ -69,14 +69,16 @@ def repeated(task: Task, candidates: Columns, stored: Callable[[Rows], Columns],
     cost = _costs(task, rows, every)
     for turn in range(_ROUNDS):
         part = part_of(tell, turn, _ROUNDS)
-        own = cost.reshape(len(rows), len(base), task.times).min(axis=2)
+        own = _of_images(cost, task.times)
         bare = np.flatnonzero(~np.isfinite(own).any(axis=1))
         if len(bare):
             new = stored(rows[spread(bare, samples.point[rows], _MORE)])
             new = new.of(np.flatnonzero(~np.isin(new.key, base.key)))
             base, every = base.and_(new), every.and_(symmetry.images(new))
             cost = np.concatenate([cost, _costs(task, rows, symmetry.images(new))], axis=1)
-            own = cost.reshape(len(rows), len(base), task.times).min(axis=2)
+            own = _of_images(cost, task.times)
+        if not len(base):
+            return None
         open_ = np.isfinite(own).any(axis=1)
         share = symmetry.order * shared_area(samples, np.union1d(copy, rows), rows)
         chosen = cheap(_problem(task, symmetry, base, own[open_] * (share / np.maximum(area[rows], 1e-300))[open_, None]))
@@ -92,6 +94,11 @@ def repeated(task: Task, candidates: Columns, stored: Callable[[Rows], Columns],
         rows = np.concatenate([rows, more])
         cost = np.concatenate([cost, _costs(task, more, every)])
     return None
+
+
+def _of_images(cost: NDArray[np.float64], times: int) -> NDArray[np.float64]:
+    """What samples cost with the best of the images of each column."""
+    return np.asarray(cost.reshape(len(cost), cost.shape[1] // times, times).min(axis=2))
 
 
 def _thinned(columns: Columns, most: int) -> Columns:

@@ -54,19 +54,14 @@ class Symmetry:
     orientations: tuple[Orientations, ...]
 
     def images(self, columns: Columns) -> Columns:
-        """Each column, followed by its `order` - 1 images; where the machine cannot hold one, the column stands for it."""
+        """Each column, followed by its `order` - 1 images; where the machine cannot turn to one, the column stands for it."""
         n, m = self.order, len(columns)
         axis, angle = np.repeat(columns.axis, n, axis=0), np.repeat(columns.angle, n, axis=0)
-        turns = [Motion.turn(self.place, self.direction, 2.0 * math.pi * k / n) for k in range(n)]
         for k in range(1, n):
-            moved = turns[k].directions(columns.axis)
             for s in np.unique(columns.setup).tolist():
                 mine = np.flatnonzero(columns.setup == s)
-                where = self.orientations[s]
-                angles, axes, held = where.nearest(moved[mine])
-                turned, own, by = where.turned(columns.angle[mine], self.direction, 2.0 * math.pi * k / n)
-                # One rotary axis alone is turned, where it can be.
-                angles, axes, held = np.where(by[:, None], turned, angles), np.where(by[:, None], own, axes), held | by
+                # One rotary axis alone is turned, or it is not repeated: other angles each time would be other steps.
+                angles, axes, held = self.orientations[s].turned(columns.angle[mine], self.direction, 2.0 * math.pi * k / n)
                 # Along the axis all images are one.
                 held &= np.linalg.norm(axes - columns.axis[mine], axis=1) > _ONE
                 at = mine[held] * n + k
@@ -86,17 +81,25 @@ class Symmetry:
 def symmetry_of(
     samples: SurfaceSamples, patterns: Sequence[Pattern], orientations: tuple[Orientations, ...], machinable: NDArray[np.bool_]
 ) -> Symmetry | None:
-    """The rotation under which orientations may be repeated, of the highest order; None where there is none."""
+    """The rotation under which orientations may be repeated, of the highest order; None where there is none.
+
+    In some setup its axis is that of the rotary axis next to the part.
+    """
     for each in patterns:
         axis = each.motions[0].axis if each.kind == "rotation" and each.whole and each.order in _ORDERS else None
-        if axis is not None:
+        if axis is not None and _turns(orientations, axis[1]):
             return Symmetry(*axis, each.order, True, orientations)
     rows = np.flatnonzero(machinable & (samples.unjudged < 0))
     for place, direction in _axes(samples, rows):
-        order = _near_order(samples, rows, place, direction)
+        order = _near_order(samples, rows, place, direction) if _turns(orientations, direction) else 1
         if order > 1:
             return Symmetry(place, direction, order, False, orientations)
     return None
+
+
+def _turns(orientations: Sequence[Orientations], direction: Floats) -> bool:
+    """Whether the part is turned about a direction by the rotary axis next to it in some setup."""
+    return any(each.along(direction) for each in orientations)
 
 
 def _axes(samples: SurfaceSamples, rows: NDArray[np.int64]) -> Iterator[tuple[Floats, Floats]]:
