@@ -85,7 +85,7 @@ def test_a_plan_of_repeated_steps_has_ordinary_operations():
     columns = repeated(own, planning._first(task()), partial(planning._stored, task()), lambda done, total: None)
     made = plan_with(own, "fastest", columns)
     fixed = [each for each in made.operations if each.mode == "fixed"]
-    assert made.orientations == len({each.step if each.step >= 0 else each.name for each in fixed})
+    assert made.orientations == len({each.orbit if each.orbit >= 0 else each.name for each in fixed})
     assert made.orientations <= len(columns) < len(fixed)
     for each in fixed:
         one = columns_of(each.axis[None], each.angle[None], own.cutters.index(each.cutter), each.setup)
@@ -106,7 +106,7 @@ def test_the_process_has_each_step_once():
     step = next(each for each in process.steps if each.repeat > 1)
     assert (step.repeat, step.repeat_deg) == (8, {"C": 45.0})
     entry = found().plan.operations.plans[0]
-    same = [each for each in entry.operations if each.step is not None]
+    same = [each for each in entry.operations if each.orbit is not None]
     assert len(same) == 8
     assert step.area_mm2 == pytest.approx(sum(each.area_mm2 for each in same))
     assert step.seconds == pytest.approx(sum(each.seconds for each in same))

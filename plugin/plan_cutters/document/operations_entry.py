@@ -187,7 +187,7 @@ def _operation(
         strip_mm=_tenths(strip[known]), cut_length_mm=length,
         seconds=float(seconds.sum()) if np.isfinite(seconds).all() else None, proved_share=operation.proved,
         approaches_proved=operation.approaches, clearance_mm=operation.clearance,
-        step=None if operation.step < 0 else operation.step,
+        orbit=None if operation.orbit < 0 else operation.orbit,
         faces=_faces(rows, samples, area), frame=None if plane is None else _frame(plane),
         colour=operation_colour(number), index_s=None if plane is None else plane.index,
         index_from=None if plane is None else index_from,

@@ -115,7 +115,7 @@ def _together(operations: Sequence[OperationEntry]) -> list[list[OperationEntry]
     """Operations of one step each, those that are images of each other in one."""
     steps: dict[object, list[OperationEntry]] = {}
     for each in operations:
-        steps.setdefault(each.id if each.step is None else each.step, []).append(each)
+        steps.setdefault(each.id if each.orbit is None else each.orbit, []).append(each)
     return [sorted(same, key=_first_angles) for same in steps.values()]
 
 

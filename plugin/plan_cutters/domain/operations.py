@@ -202,7 +202,7 @@ class Operation:
     strategy : str
         `floor`: the flat part of the tip lies on the face; `wall`: the flutes lie along it; `point`: the tool touches in a point;
         `mixed`: several of them.
-    step : int
+    orbit : int
         Of a plan of repeated orientations, the same number for all images of one; -1: it is not repeated.
     """
 
@@ -219,7 +219,7 @@ class Operation:
     approaches: int | None = None
     clearance: float | None = None
     strategy: Strategy = "point"
-    step: int = -1
+    orbit: int = -1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -297,8 +297,8 @@ class OperationPlan:
     @property
     def orientations(self) -> int:
         """How many fixed orientations there are, those that are repeated once."""
-        fixed = [each.step for each in self.operations if each.mode == "fixed"]
-        return len({step for step in fixed if step >= 0}) + sum(step < 0 for step in fixed)
+        fixed = [each.orbit for each in self.operations if each.mode == "fixed"]
+        return len({orbit for orbit in fixed if orbit >= 0}) + sum(orbit < 0 for orbit in fixed)
 
     def like(self, other: "OperationPlan") -> bool:
         """Whether each sample goes with the same cutter, setup and axis in another plan."""

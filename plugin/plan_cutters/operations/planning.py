@@ -192,7 +192,7 @@ def _repeated(
             continue
         plan = plan_with(own, "fastest", choice)
         as_quick = _known(plan) <= most and _untimed(task, plan) <= _untimed(task, other)
-        if not as_quick or all(each.step < 0 for each in plan.operations) or _moving(task, plan) > _moving(task, other) + _MOVING:
+        if not as_quick or all(each.orbit < 0 for each in plan.operations) or _moving(task, plan) > _moving(task, other) + _MOVING:
             continue
         if _known(plan) <= _known(other) or not np.isfinite(other.total):
             return plan, ()

@@ -96,7 +96,7 @@ def plan_with(
 
     A `rule` says which of those that serve (n, k) a sample may go with.
     """
-    columns, step = _expanded(task, columns)
+    columns, orbit = _expanded(task, columns)
     samples, rows = task.ready.samples, task.rows
     n, overlap = len(samples), task.ready.options.overlap
     area, edge = np.nan_to_num(samples.area), samples.neighbours
@@ -112,7 +112,7 @@ def plan_with(
     may = finite if rule is None else rule(finite)
     # A rule is about areas that are worth an operation: crumbs go with what is beside them.
     label = joined(labelled(np.where(may, cost, np.inf), edge, border), finite, edge, area, _SMALL * overlap**2)
-    operations, order = _fixed(task, columns, finite, label, area, step)
+    operations, order = _fixed(task, columns, finite, label, area, orbit)
     place = np.full(len(columns) + 1, -1, np.int32)
     place[order] = np.arange(len(order))
     number, table = place[label], finite[:, order]
@@ -160,7 +160,7 @@ def _expanded(task: Task, columns: Columns) -> tuple[Columns, Rows]:
 
 
 def _fixed(
-    task: Task, columns: Columns, serves: NDArray[np.bool_], label: NDArray[np.int32], area: Floats, step: Rows
+    task: Task, columns: Columns, serves: NDArray[np.bool_], label: NDArray[np.int32], area: Floats, orbit: Rows
 ) -> tuple[list[Operation], list[int]]:
     """The operations of columns that some sample goes with, the largest first; and the columns in that order."""
     mine = label >= 0
@@ -172,7 +172,7 @@ def _fixed(
         Operation(
             f"op{i}", "fixed", task.cutters[columns.cutter[k]], int(columns.setup[k]), columns.axis[k], columns.angle[k],
             task.orientations[columns.setup[k]].other(columns.axis[k], columns.angle[k]), np.flatnonzero(label == k),
-            np.flatnonzero(serves[:, k] & (times == 1)), step=int(step[k]),
+            np.flatnonzero(serves[:, k] & (times == 1)), orbit=int(orbit[k]),
         )
         for i, k in enumerate(order, 1)
     ]  # fmt: skip
