@@ -76,6 +76,7 @@ class PlanOptions(SceneOptions, total=False):
     sharp_edges: str
     max_orientations: int
     process: OwnProcess | Mapping[str, Any] | str | os.PathLike[str] | None
+    patterns: bool
     units: Literal["mm", "in"] | None
     unit: str | None
     placement: Placement | None

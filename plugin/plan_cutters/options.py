@@ -165,6 +165,8 @@ class Options:
     process : OwnProcess, optional
         The planner's own steps, judged as they stand; may be given as a file or a mapping, as `process_of` takes them. The rest
         is planned as `operations` say; without them as the fastest, or as the fewest without a feed.
+    patterns : bool
+        Equal faces are found, judged once and planned once; else each face is judged by itself.
     units : str, optional
         Of lengths in the words, `mm` or `in`; numbers in files stay mm. None: inches where all cutters were given in them.
     unit : str, optional
@@ -232,6 +234,7 @@ class Options:
     sharp_edges: str = "asked"
     max_orientations: int = 8
     process: OwnProcess | None = None
+    patterns: bool = True
     units: Literal["mm", "in"] | None = None
     unit: str | None = None
     fixtures: tuple[Fixture, ...] = ()
@@ -293,6 +296,7 @@ class Options:
         if self.map_budget is not None:
             take(map_budget=whole(self.map_budget, "map budget"))
         take(flip=flag(self.flip, "flip"), posture_maps=flag(self.posture_maps, "posture_maps"))
+        take(patterns=flag(self.patterns, "patterns"))
         take(answers=answers_of(self.answers), operations=operations_of(self.operations))
         if self.sharp_edges not in SHARP_EDGES:
             raise OptionError(f"sharp edges: {shown(self.sharp_edges)} is none of {', '.join(SHARP_EDGES)}")

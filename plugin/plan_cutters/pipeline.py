@@ -11,6 +11,7 @@ import numpy as np
 
 from cad_io import Part, read_part
 from cad_io.copies import SideProcess
+from cad_io.part.patterns import patterns
 from cad_io.read.read import TIMEOUT
 from cad_io.tessellate.triangles import At
 from plan_cutters.answers.ask import ask
@@ -35,6 +36,7 @@ from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.proposal import judged_proposed
 from plan_cutters.result import Result
 from plan_cutters.scene.conditions import Context, contacts_of, warm
+from plan_cutters.scene.copied import with_copies
 from plan_cutters.scene.faces import choose
 from plan_cutters.scene.inside_material import inside_bodies, inside_material
 from plan_cutters.scene.preparation import Prepared
@@ -45,6 +47,7 @@ from plan_cutters.scene.spacing import affordable, sampled
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.classify import classify, regions
 from plan_cutters.stages.judge import Judge, judge
+from plan_cutters.stages.judge_once import JudgeOnce
 from plan_cutters.stages.other_setups import in_setup
 from plan_cutters.stages.posture_maps import posture_maps
 
@@ -131,7 +134,7 @@ def _judge(begun: Callable[..., Prepared], part: Any, options: Options, clock: C
     ready = begun(part, options, clock)
     here: dict[Cutter, Verdicts] = {}
     seconds: dict[Cutter, float] = {}
-    searched = Work()
+    searched, judged = Work(), (once := JudgeOnce(judged, sum(len(each.motions) for each in ready.patterns if each.whole)))
     for cutter in order(ready.cutters):
         with clock.stage(cutter.id) as tell:
             # In the order of rank, whatever the order of work.
@@ -140,7 +143,7 @@ def _judge(begun: Callable[..., Prepared], part: Any, options: Options, clock: C
             here[cutter] = judged(ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell, work=searched)
             seconds[cutter] = time.perf_counter() - began
     others = [(axis, _in_other_setup(ready, here, k, clock, judged)) for k, axis in enumerate(options.other_setups, 1)]
-    return JudgedPart.of(ready, here, others, seconds, clock, searched, started)
+    return JudgedPart.of(ready, here, others, seconds, clock, searched, started, once.carried)
 
 
 def _completed(
@@ -292,6 +295,9 @@ def prepare(
             ),
             each,
         )
+    if options.patterns:
+        with clock.stage("patterns"):
+            ready = with_copies(ready, patterns(whole, partial(at, "kernel")))
     if not ready.finished.any():
         raise UnjudgeableError(
             "every target sample lies inside another body of the part, so there is no surface to finish: leave a body out with "

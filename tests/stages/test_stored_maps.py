@@ -64,6 +64,7 @@ CASES = {
     "most_operations": [(3, None)],
     "sharp_edges": [("left", None)],
     "max_orientations": [(3, None)],
+    "patterns": [(False, None)],
     "units": [("in", None)],
     "unit": [("in", "unit as stated, not in")],
     "fixtures": [("box:200,200,200@-50,-50,-50", "other fixtures"), ("box:5,5,5@0,0,60", None), ((), "other fixtures")],

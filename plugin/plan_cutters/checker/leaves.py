@@ -32,6 +32,7 @@ UNCHECKED = {
     "plans[].operations[].clearance_mm": "the surroundings are not known, or the time was over",
     "plans[].operations[].index_s": "the best order of the rotary axes is not looked for",
     "plans[].operations[].colour": "the models are not read",
+    "plans[].operations[].orbit": "numbers of orbits are names: which operations share one is compared with the process",
     "fewest.at_least": "it is not proved by weights alone",
     "fewest.lp": "the best weights are not looked for",
     "fewest.spacing_deg": "how near candidates are where the weights lie is not looked at",

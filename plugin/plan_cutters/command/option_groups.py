@@ -298,6 +298,14 @@ _OPTIONS = (
         type=File("FILE"),
         help="Check the operations in a plan.json against the exact part, with the options that it was made with; write nothing.",
     ),
+    _run(
+        "--no-patterns",
+        "patterns",
+        is_flag=True,
+        default=True,
+        flag_value=False,
+        help="Judge and plan each face by itself, also where faces are equal.",
+    ),
     _run("--jobs", type=int, metavar="N", help="Threads.  [default: all cores]"),
     _run(
         "--cluster",

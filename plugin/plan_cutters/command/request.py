@@ -104,6 +104,7 @@ class PlanningRequest(JudgingRequest):
     overlap: float
     most_operations: int | None
     max_orientations: int
+    patterns: bool
     formats: str | None
     step_schema: str
     cluster: str | None
@@ -253,6 +254,7 @@ def planning_options(request: PlanningRequest) -> "PlanOptions":
         "overlap": request.overlap,
         "most_operations": request.most_operations,
         "max_orientations": request.max_orientations,
+        "patterns": request.patterns,
     }
 
 

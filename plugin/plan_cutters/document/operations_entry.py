@@ -192,6 +192,7 @@ def _operation(
         strip_mm=_tenths(strip[known]), cut_length_mm=length,
         seconds=float(seconds.sum()) if np.isfinite(seconds).all() else None, proved_share=operation.proved,
         approaches_proved=operation.approaches, turning=_turning(operation, names), clearance_mm=operation.clearance,
+        orbit=None if operation.orbit < 0 else operation.orbit,
         faces=_faces(rows, samples, area), frame=None if plane is None else _frame(plane),
         colour=operation_colour(number), index_s=None if plane is None else plane.index,
         index_from=None if plane is None else index_from,

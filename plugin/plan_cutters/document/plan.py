@@ -30,6 +30,7 @@ from plan_cutters.plan_file.model import CutterEntry, MachineEntry, Plan, Rotary
 from plan_cutters.plan_file.nearest import ANOTHER_SETUP, leaves, nearest
 from plan_cutters.plan_file.operations import OperationsEntry
 from plan_cutters.plan_file.palette import MEANING, PALETTE
+from plan_cutters.plan_file.patterns import PatternEntry
 from plan_cutters.plan_file.reasons import REASONS as WORDS
 from plan_cutters.plan_file.setups import SetupEntry, SetupReach
 from plan_cutters.plan_file.shares import unreached
@@ -50,6 +51,7 @@ def plan_of(
     setups: Sequence[SetupEntry] = (),
     sharp_edges: Sequence[SharpEdgeEntry] = (),
     inside_radii: Sequence[InsideRadiusEntry] = (),
+    patterns: Sequence[PatternEntry] = (),
 ) -> Plan:
     """The plan of a part from the entries of its cutters, and what was answered after them."""
     scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
@@ -90,6 +92,7 @@ def plan_of(
         selected_for_setup=None if selected else for_setup(entries),
         sharp_edges=list(sharp_edges),
         inside_radii=list(inside_radii),
+        patterns=list(patterns),
         setups=list(setups),
         least_set=None if answers.least_set is None else least_set_entry(answers.least_set, doubtful=surroundings.doubtful),
         operations=operations,

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints
 from plan_cutters.document.over_setups import OverSetups
+from plan_cutters.document.repeats import repeats
 from plan_cutters.document.shares import sample_areas
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.operations import OperationPlan, Operations, OwnFound
@@ -16,7 +17,7 @@ from plan_cutters.plan_file.frozen import Vector, vector
 from plan_cutters.plan_file.model import CutterEntry
 from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.numbers import exact
-from plan_cutters.plan_file.operations import OperationPlanEntry, OperationsEntry
+from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry, OperationsEntry
 from plan_cutters.plan_file.process import (
     NOT_PLANNED,
     OTHER_ORIENTATION,
@@ -112,13 +113,24 @@ def _operated(
         key=lambda e: (e.setup, e.mode != "fixed", -by_cutter[e.setup, e.cutter], e.cutter, -e.area_mm2, rank[id(e)]),
     )
     alone = _alone(plan, operations.own, len(area))
-    planned = [
-        _step(ready, over, area, requested, plan.label == rank[id(each)], setup=each.setup, mode=each.mode,
-              strategy=each.strategy, cutter=each.cutter, angles_deg=each.angles_deg, axis=each.axis, seconds=each.seconds,
-              clearance_mm=each.clearance_mm, operation=each.id, take="share",
-              alone_mm2=float(area[alone & (plan.label == rank[id(each)])].sum()) if operations.own else each.exclusive_mm2)
-        for each in ordered
-    ]  # fmt: skip
+    planned = list[ProcessStep]()
+    for same in _together(ordered):
+        first, ranks = same[0], [rank[id(each)] for each in same]
+        mine, seconds, clearance = (
+            np.isin(plan.label, ranks),
+            [each.seconds for each in same],
+            [each.clearance_mm for each in same],
+        )
+        step = _step(
+            ready, over, area, requested, mine, setup=first.setup, mode=first.mode, strategy=first.strategy, cutter=first.cutter,
+            angles_deg=first.angles_deg, axis=first.axis, seconds=_sum(seconds),
+            clearance_mm=None if None in clearance else min(each for each in clearance if each is not None),
+            operation=first.id, take="share", alone_mm2=_gone(plan, same, ranks, mine, area, alone if operations.own else None),
+        )  # fmt: skip
+        repeat, by = repeats(ready, same, mine)
+        planned.append(step.model_copy(update={"repeat": repeat, "repeat_deg": by}))
+    # Those that are images of others count with all of them.
+    planned.sort(key=lambda s: (s.setup, s.mode != "fixed", -by_cutter[s.setup, s.cutter], s.cutter, -s.area_mm2))
     done = {each.step: (k, each) for k, each in enumerate(entry.operations)}
     own, all_done = [], np.concatenate([np.zeros(0, np.int64), *(each.rows for each in operations.own)])
     for found in operations.own:
@@ -177,6 +189,35 @@ def _own_entry(
         number=found.number, asked_mm2=float(area[found.asked].sum()), wrong=found.wrong,
         leaves=sorted(leaves, key=lambda each: (-each.area_mm2, each.cause)), nearest=nearest_,
     )  # fmt: skip
+
+
+def _gone(
+    plan: OperationPlan, same: Sequence[OperationEntry], ranks: Sequence[int], mine: NDArray[np.bool_], area: Floats,
+    alone: NDArray[np.bool_] | None,
+) -> float:  # fmt: skip
+    """What no other step serves of the samples (n,) of one; `alone` (n,) where some steps are the planner's own."""
+    if alone is not None:
+        return float(area[alone & mine].sum())
+    if len(same) == 1:
+        return same[0].exclusive_mm2
+    return float(area[mine & ~np.delete(plan.serves, ranks, axis=1).any(axis=1)].sum())
+
+
+def _together(operations: Sequence[OperationEntry]) -> list[list[OperationEntry]]:
+    """Operations of one step each, those that are images of each other in one."""
+    steps: dict[object, list[OperationEntry]] = {}
+    for each in operations:
+        steps.setdefault(each.id if each.orbit is None else each.orbit, []).append(each)
+    return [sorted(same, key=_first_angles) for same in steps.values()]
+
+
+def _first_angles(operation: OperationEntry) -> list[float]:
+    return [angle % 360.0 for angle in (operation.angles_deg or {}).values()]
+
+
+def _sum(seconds: Sequence[float | None]) -> float | None:
+    known = [each for each in seconds if each is not None]
+    return sum(known) if len(known) == len(seconds) else None
 
 
 def _runs(

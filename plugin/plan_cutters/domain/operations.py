@@ -243,6 +243,8 @@ class Operation:
         `mixed`: several of them.
     step : int
         Its number in the planner's own process; 0: it was planned.
+    orbit : int
+        Of a plan of repeated orientations, the same number for all images of one; -1: it is not repeated.
     """
 
     name: str
@@ -260,6 +262,7 @@ class Operation:
     strategy: Strategy = "point"
     turning: Turning | None = None
     step: int = 0
+    orbit: int = -1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -382,6 +385,12 @@ class OperationPlan:
     def total(self) -> float:
         """Seconds of all that is counted; nan where they are not known."""
         return self.cutting + self.other
+
+    @property
+    def orientations(self) -> int:
+        """How many fixed orientations there are, those that are repeated once."""
+        fixed = [each.orbit for each in self.operations if each.mode == "fixed"]
+        return len({orbit for orbit in fixed if orbit >= 0}) + sum(orbit < 0 for orbit in fixed)
 
     def like(self, other: "OperationPlan") -> bool:
         """Whether each sample goes with the same cutter, setup and axis in another plan."""

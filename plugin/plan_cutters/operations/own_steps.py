@@ -14,8 +14,9 @@ from plan_cutters.domain.operations import Nearest, OperationPlan, OwnFound
 from plan_cutters.domain.own_process import OwnProcess, OwnStep, cutter_of
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.operations.candidates import DIGITS, Orientations, apart, directions, neighbours
-from plan_cutters.operations.plans import Reserved, Task, costs_with, plan_with
+from plan_cutters.operations.plans import Reserved, costs_with, plan_with
 from plan_cutters.operations.probes import Probes
+from plan_cutters.operations.task import Task
 from plan_cutters.operations.timing import Problems
 from plan_cutters.operations.walls import Walls
 

@@ -16,7 +16,7 @@ from plan_cutters.domain.lengths import reporting
 from plan_cutters.domain.operations import Fastest, OperationPlan, Operations, Worth
 from plan_cutters.domain.own_process import OwnProcess, cutter_of
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.operations.at_once import few_enough, recommended
+from plan_cutters.operations.at_once import few_enough, fewer, recommended
 from plan_cutters.operations.candidates import STEP, apart, candidates
 from plan_cutters.operations.canonical import canonical
 from plan_cutters.operations.companions import accompanied
@@ -28,7 +28,6 @@ from plan_cutters.operations.over_all_axes import over_all_axes
 from plan_cutters.operations.own_steps import own_plan
 from plan_cutters.operations.plans import (
     MINOR_AREA,
-    Task,
     best_area,
     considered,
     of_wanted_kinds,
@@ -39,11 +38,13 @@ from plan_cutters.operations.plans import (
 )
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.proof import proved
+from plan_cutters.operations.repeated import repeated, symmetric
 from plan_cutters.operations.rest_areas import allowed, by_size, largest_first, with_and_without, worths
+from plan_cutters.operations.task import Task
 from plan_cutters.operations.timing import Paths, Problems, shared_area
 from plan_cutters.operations.walls import Walls
 from plan_cutters.options import Options
-from plan_cutters.plan_file.numbers import duration, percent
+from plan_cutters.plan_file.numbers import count, duration, percent
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress, part_of
 
@@ -54,8 +55,10 @@ _CUTTERS = 4
 _EVEN, _TIMED, _ROUNDS = 250, 600, 12
 #: Parts of the work whose progress is told as one: the first table, the fewest, their bound and curve, the plans, their proof.
 _PARTS = 6
-#: Tries to exchange the fewest for as many that cut faster.
-_TRIES = 4
+#: Tries to exchange the fewest for as many that cut faster; times that differ by less are equal, as a share.
+_TRIES, _EQUAL = 4, 0.02
+#: Share of the area that a plan of repeated steps may leave to simultaneous motion beyond what the plan without them does.
+_MOVING = 0.05
 
 
 @reporting(lambda ready: ready.options.reported_unit)
@@ -145,7 +148,7 @@ _Plans = tuple[list[OperationPlan], Fastest | None, tuple[Worth, ...], tuple[str
 def _plans(task: Task, search: Search, few: Columns, tell: Progress) -> _Plans:
     """Make the plans that were requested: the fastest is the one of all plans found here that takes the least time."""
     which = task.ready.options.operations
-    parts = [part_of(tell, k, 4) for k in range(4)]
+    parts = [part_of(tell, k, 5) for k in range(5)]
     fewest = _capped(task, "fewest", _quicker(task, search, few), parts[0])
     if which == "fewest":
         return [fewest], None, (), ()
@@ -155,10 +158,12 @@ def _plans(task: Task, search: Search, few: Columns, tell: Progress) -> _Plans:
     largest_first = list[OperationPlan]()
     if len(task.cutters) > 1:
         largest_first = [_capped(task, "largest first", _largest_first(task, search, few), parts[2])]
-    parts[3](0, 1)
     # Of those that take the same time the fewest.
     plans = [fewest, *others, *largest_first]
-    fastest, notes = _recommended(task, plans)
+    printed = [*([fewest] if which == "both" else []), *largest_first]
+    fastest, notes = _repeated(task, few, _recommended(task, plans), printed, parts[3])
+    parts[4](0, 1)
+    plans.append(fastest)
     at_best = float(problem.cost.min(axis=1, initial=np.inf).sum())
     # Canonical orientations need not be candidates: what the plan that is printed takes bounds the best from above.
     bound = min(bounded(problem, chosen).bound, np.nan_to_num(fastest.total, nan=np.inf))
@@ -174,7 +179,7 @@ def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationP
     """
     best = min(plans, key=_seconds)
     columns = recommended(task, _columns_of(task, best))
-    fixed = sum(each.mode == "fixed" for each in best.operations)
+    fixed = best.orientations
     if len(columns) == fixed:
         return replace(best, name="fastest"), ()
     tried = [plan_with(task, "fastest", columns), *(each for each in plans if few_enough(task, each))]
@@ -189,6 +194,59 @@ def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationP
         f"motion is recommended in place of {many}, for {why}."
     )
     return replace(chosen, name="fastest"), (words,) if any(each.mode == "simultaneous" for each in chosen.operations) else ()
+
+
+def _repeated(
+    task: Task, few: Columns, plain: tuple[OperationPlan, tuple[str, ...]], printed: Sequence[OperationPlan], tell: Progress
+) -> tuple[OperationPlan, tuple[str, ...]]:
+    """The plan that is recommended, and what must be said of it: one of repeated steps, where that takes no more time.
+
+    Of those that take the same time as the plan that was found, and no more than those that are printed beside it, that which
+    leaves least to simultaneous motion is taken, if that is hardly more than it has there; else the plan that was found. Where a
+    time is not known, it must be that of no more area.
+    """
+    own, (other, _) = symmetric(task), plain
+    columns = None if own is None else repeated(own, _first(task).and_(few), partial(_stored, task), part_of(tell, 0, 2))
+    if own is None or columns is None:
+        return plain
+    columns = _worth(own, "fastest", canonical(own, _worth(own, "fastest", columns), progress=part_of(tell, 1, 2)))
+    most = min((1.0 + _EQUAL) * _known(other), *map(_known, printed), np.inf)
+    for choice, seconds in fewer(own, columns):
+        # What the choice is reckoned to take is not quite what its plan does.
+        if len(choice) > task.ready.options.max_orientations or seconds > (1.0 + _EQUAL) * most:
+            continue
+        plan = plan_with(own, "fastest", choice)
+        as_quick = _known(plan) <= most and _untimed(task, plan) <= _untimed(task, other)
+        if (
+            not as_quick
+            or all(each.orbit < 0 for each in plan.operations)
+            or _moving(task, plan) > _moving(task, other) + _MOVING
+        ):
+            continue
+        if _known(plan) <= _known(other) or not np.isfinite(other.total):
+            return plan, ()
+        words = f"Without repeated steps {count(other.orientations, 'orientation')}"
+        if any(each.mode == "simultaneous" for each in other.operations):
+            words += " and simultaneous motion"
+        return plan, (f"{words} would take {duration(other.total)}.",)
+    return plain
+
+
+def _known(plan: OperationPlan) -> float:
+    """Seconds of a plan without those of the samples at which they are not known."""
+    return float(np.nansum(plan.seconds[plan.label >= 0])) + plan.other
+
+
+def _untimed(task: Task, plan: OperationPlan) -> float:
+    """The area of the samples of a plan whose seconds are not known, mm2."""
+    return float(np.nansum(task.ready.samples.area[(plan.label >= 0) & ~np.isfinite(plan.seconds)]))
+
+
+def _moving(task: Task, plan: OperationPlan) -> float:
+    """The share of the area that a plan leaves to simultaneous motion."""
+    area = np.nan_to_num(task.ready.samples.area)
+    rows = [each.rows for each in plan.operations if each.mode == "simultaneous"]
+    return sum(float(area[mine].sum()) for mine in rows) / max(1e-300, float(area[task.rows].sum()))
 
 
 def _seconds(plan: OperationPlan) -> float:

@@ -14,11 +14,9 @@ from plan_cutters.domain.operations import STRATEGIES, Operation, OperationPlan,
 from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.operations.candidates import Orientations
-from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.labels import joined, labelled, regions_of
-from plan_cutters.operations.probes import Probes
-from plan_cutters.operations.timing import Paths, Problems, costs_of, tip_widths, widths
-from plan_cutters.operations.walls import Walls
+from plan_cutters.operations.task import Task
+from plan_cutters.operations.timing import costs_of, tip_widths, widths
 from plan_cutters.operations.workplanes import workplanes
 from plan_cutters.plan_file.numbers import area as size
 from plan_cutters.scene.clearance import least_clearance
@@ -31,40 +29,6 @@ Rows = NDArray[np.int64]
 _SMALL = 4.0
 #: An orientation that adds less of the area is not worth its turn.
 MINOR_AREA = 0.001
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Task:
-    """The same for all plans of a part.
-
-    Attributes
-    ----------
-    ready : Prepared
-    cutters : tuple of Cutter
-        Those that are compared; columns count in them.
-    orientations : tuple of Orientations
-        Of each setup.
-    everywhere : tuple of mapping
-        Of each setup, the verdicts by cutter.
-    rows : (r,) int64
-        Samples that are reached by one of the cutters in one of the setups.
-    probes : Probes
-    paths : Paths
-    indexing : Indexing
-    problems : Problems
-    walls : Walls
-    """
-
-    ready: Prepared
-    cutters: tuple[Cutter, ...]
-    orientations: tuple[Orientations, ...]
-    everywhere: tuple[Mapping[Cutter, Verdicts], ...]
-    rows: Rows
-    probes: Probes
-    paths: Paths
-    indexing: Indexing
-    problems: Problems
-    walls: Walls
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -98,6 +62,7 @@ def plan_with(
     A `rule` says which of those that serve (n, k) a sample may go with; where some columns are a person's `own`, crumbs keep to
     it, too.
     """
+    columns, orbit = _expanded(task, columns)
     samples, rows = task.ready.samples, task.rows
     n, overlap = len(samples), task.ready.options.overlap
     area, edge = np.nan_to_num(samples.area), samples.neighbours
@@ -114,7 +79,7 @@ def plan_with(
     # A rule is about areas that are worth an operation: crumbs go with what is beside them.
     joining = finite if own is None else may
     label = joined(labelled(np.where(may, cost, np.inf), edge, border), joining, edge, area, _SMALL * overlap**2)
-    operations, order = _fixed(task, columns, finite, label, area, (0,) * len(columns) if own is None else own.step)
+    operations, order = _fixed(task, columns, finite, label, area, orbit, (0,) * len(columns) if own is None else own.step)
     place = np.full(len(columns) + 1, -1, np.int32)
     place[order] = np.arange(len(order))
     number, table = place[label], finite[:, order]
@@ -151,8 +116,24 @@ def _other(task: Task, operations: Sequence[Operation], planes: Sequence[Workpla
     return turns + options.change_time * max(0, cutters - 1) + options.setup_time * max(0, setups - 1)
 
 
+def _expanded(task: Task, columns: Columns) -> tuple[Columns, Rows]:
+    """What columns stand for, each column once, and to which of these it belongs; -1: it is repeated nowhere."""
+    if task.symmetry is None or not len(columns):
+        return columns, np.full(len(columns), -1, np.int64)
+    every = task.images(columns)
+    first = np.sort(np.unique(every.key, return_index=True)[1])
+    step = first // task.times
+    return every.of(first), np.where(np.bincount(step)[step] > 1, step, -1)
+
+
 def _fixed(
-    task: Task, columns: Columns, serves: NDArray[np.bool_], label: NDArray[np.int32], area: Floats, step: Sequence[int]
+    task: Task,
+    columns: Columns,
+    serves: NDArray[np.bool_],
+    label: NDArray[np.int32],
+    area: Floats,
+    orbit: Rows,
+    step: Sequence[int],
 ) -> tuple[list[Operation], list[int]]:
     """The operations of columns that some sample goes with, the largest first; and the columns in that order."""
     mine = label >= 0
@@ -164,7 +145,7 @@ def _fixed(
         Operation(
             f"op{i}", "fixed", task.cutters[columns.cutter[k]], int(columns.setup[k]), columns.axis[k], columns.angle[k],
             task.orientations[columns.setup[k]].other(columns.axis[k], columns.angle[k]), np.flatnonzero(label == k),
-            np.flatnonzero(serves[:, k] & (times == 1) & (label == k)), step=step[k],
+            np.flatnonzero(serves[:, k] & (times == 1) & (label == k)), step=step[k], orbit=int(orbit[k]),
         )
         for i, k in enumerate(order, 1)
     ]  # fmt: skip
@@ -327,10 +308,11 @@ def best_area(task: Task, columns: Columns, most: int | None) -> Columns:
 
 def costs_with(task: Task, columns: Columns) -> tuple[Floats, Floats]:
     """The area (r,) of the samples of a task, and what each costs with columns (r, k), infinite where one does not serve it."""
-    rows = task.rows
-    area, serves = np.nan_to_num(task.ready.samples.area[rows]), task.probes.kept(rows, columns)
-    width = _widths(task, columns, serves)
-    return area, costs_of(columns, width, serves, area, task.cutters, task.paths)
+    rows, every = task.rows, task.images(columns)
+    area, serves = np.nan_to_num(task.ready.samples.area[rows]), task.probes.kept(rows, every)
+    cost = costs_of(every, _widths(task, every, serves), serves, area, task.cutters, task.paths)
+    # Of images the best one cuts a sample.
+    return area, cost.reshape(len(rows), len(columns), task.times).min(axis=2)
 
 
 def _widths(task: Task, columns: Columns, serves: NDArray[np.bool_]) -> Floats:
@@ -346,7 +328,7 @@ def worth_their_turn(task: Task, columns: Columns) -> Columns:
     """
     (area, cost), columns_left = costs_with(task, columns), np.arange(len(columns))
     least = MINOR_AREA * float(area @ np.isfinite(cost).any(axis=1))
-    turn = task.indexing.together(columns) / max(1, len(columns))
+    turn = task.together(columns) / max(1, len(columns))
     while len(columns_left) > 1:
         own = cost[:, columns_left]
         first, second = np.partition(own, 1, axis=1)[:, :2].T

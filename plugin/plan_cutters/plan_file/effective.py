@@ -85,4 +85,5 @@ class Effective(Frozen):
     process: dict[str, Any] | None = Field(
         default=None, description="the planner's own steps, as a file has them (`process.toml`); null: all steps were planned"
     )
+    patterns: bool = Field(default=True, description="equal faces are judged and planned once")
     max_orientations: int = Field(default=8, description="of the fastest plan: with more, simultaneous motion is recommended")

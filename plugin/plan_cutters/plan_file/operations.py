@@ -111,6 +111,9 @@ class OperationEntry(Frozen):
         description="least at any of its samples, as in axes.csv: what does not cut keeps so far from its surroundings; 100: "
         "that or more; null: not known",
     )
+    orbit: int | None = Field(
+        default=None, description="the same for all orientations that are images of each other about an axis; null: not repeated"
+    )
     faces: list[OperationFace] = Field(description="the one with the most of it first")
     frame: WorkplaneEntry | None = Field(description="null if simultaneous")
     index_s: float | None = Field(

@@ -55,13 +55,19 @@ class ProcessStep(Frozen):
     mode: Literal["fixed", "simultaneous", "any"] = Field(
         description="any: no operations were requested, each sample has a posture of its own"
     )
-    angles_deg: dict[str, float] | None = Field(description="of the rotary axes by name; null unless fixed")
-    axis: Vector | None = Field(description="unit, from the tip to the spindle, part coordinates; null unless fixed")
+    angles_deg: dict[str, float] | None = Field(description="of the rotary axes by name, the first time; null unless fixed")
+    axis: Vector | None = Field(
+        description="unit, from the tip to the spindle, part coordinates, as `angles_deg`; null unless fixed"
+    )
     cutter: str = Field(description="id")
     strategy: Literal["point", "floor", "wall", "mixed"] = Field(
         default="point", description="how most of it is cut, as of the operation; point where no operations were requested"
     )
     repeat: int = Field(default=1, description="how many times it is done, over a pattern of equal faces")
+    repeat_deg: dict[str, float] | None = Field(
+        default=None,
+        description="by how much rotary axes turn from one time to the next; null: it is done once, or several axes turn",
+    )
     faces: list[str] = Field(description="the one with the most of it first")
     area_mm2: float
     share: float = Field(description="of what is requested, 0 to 1")

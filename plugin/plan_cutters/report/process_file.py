@@ -36,9 +36,32 @@ def process_toml(plan: Plan) -> str:
     )
     asked = [] if plan.effective.process is None else plan.effective.process["step"]
     return head + "".join(
-        _step(number, step, words, asked[step.own.number - 1] if step.own else None)
+        _step(number, each, words, asked[each.own.number - 1] if each.own else None)
         for number, step in enumerate(process.steps, 1)
+        for each in _times(plan, step)
     )
+
+
+def _times(plan: Plan, step: ProcessStep) -> list[ProcessStep]:
+    """A step as often as it is done: each time has angles of its own, which the file writes out."""
+    made = [] if plan.operations is None else [each for each in plan.operations.plans if each.name == process_plan(plan)]
+    operations = [each for one in made for each in one.operations]
+    orbit = next((each.orbit for each in operations if each.id == step.operation), None)
+    if step.repeat == 1 or orbit is None:
+        return [step]
+    return [
+        step.model_copy(update={
+            "angles_deg": each.angles_deg, "axis": each.axis, "faces": [face.face for face in each.faces],
+            "area_mm2": each.area_mm2, "share": each.share, "seconds": each.seconds,
+        })
+        for each in operations
+        if each.orbit == orbit
+    ]  # fmt: skip
+
+
+def process_plan(plan: Plan) -> str:
+    """The name of the plan of operations that the process is."""
+    return plan.process.plan if plan.process is not None else ""
 
 
 def _step(number: int, step: ProcessStep, words: dict[str, str], own: dict[str, Any] | None) -> str:

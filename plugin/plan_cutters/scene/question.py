@@ -34,7 +34,7 @@ ANSWERED = frozenset({"machine", "setup", "placement", "tilt", "rotation", "rota
 #: Options that change nothing that maps say.
 IRRELEVANT = frozenset({"jobs", "area_budget", "length_over_radius", "feed", "scallop", "stepover", "index_step",
                         "axis_accuracy", "index_time", "change_time", "setup_time", "overlap", "most_operations",
-                        "max_orientations", "sharp_edges", "units"})  # fmt: skip
+                        "max_orientations", "patterns", "sharp_edges", "units"})  # fmt: skip
 
 _WORDS = {"libraries": "--cutters", "cutters": "--cutter", "fixtures": "--fixture", "other_setups": "a second --setup"}
 _TOLERATED = 1e-9

@@ -12,13 +12,13 @@ _STEPS, _FACES = 3, 3
 _CRUMBS = 0.001
 
 
-def angles_text(angles: Mapping[str, float]) -> str:
-    """Rotary axes with their angles.
+def angles_text(angles: Mapping[str, float], by: Mapping[str, float] | None = None) -> str:
+    """Rotary axes with their angles, and by how much some turn from one time to the next.
 
-    >>> angles_text({"C": 0.0, "A": 12.5})
-    'C 0 A 12.5'
+    >>> angles_text({"C": 0.0, "A": 12.5}, {"C": 36.0})
+    'C 0 + 36 A 12.5'
     """
-    return " ".join(f"{name} {angle:g}" for name, angle in angles.items())
+    return " ".join(f"{name} {angle:g}" + (f" + {by[name]:g}" if by and name in by else "") for name, angle in angles.items())
 
 
 def own_steps(process: ProcessEntry) -> Iterator[str]:

@@ -123,8 +123,11 @@ def cause_text(cause: str) -> str:
 def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bool, fixed: bool) -> StepRow:
     turned = ""
     if fixed:
-        angles = angles_text(step.angles_deg or {})
+        by = step.repeat_deg or {}
+        angles = angles_text(step.angles_deg or {}, by)
         turned = angles if step.mode == "fixed" else "simultaneous" if step.mode == "simultaneous" else "any angles"
+        if step.mode == "simultaneous":
+            turned += "".join(f", {name} + {angle:g}" for name, angle in by.items())
     what = " ".join(filter(None, (names.get(step.cutter, step.cutter), _STRATEGIES[step.strategy])))
     times = f"{step.repeat} x, " if step.repeat > 1 else ""
     return StepRow(
