@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from plan_cutters.scene.fixtures import box
+from plan_cutters.scene.solids import box
 from plan_cutters.scene.obstacles import divided
 
 

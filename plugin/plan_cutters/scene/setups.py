@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
+from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement, axis_words
 from plan_cutters.domain.verdicts import ANOTHER_SETUP, FIXTURE, Verdicts
 from plan_cutters.errors import FixtureError
@@ -24,6 +25,11 @@ from plan_cutters.scene.surroundings import Surroundings
 def places(options: Options) -> tuple[Placement | None, ...]:
     """How the part stands in each setup, as far as it is known, the first one first."""
     return options.placement, *(options.other_placements or (None,) * len(options.other_setups))
+
+
+def fixtures_of(options: Options) -> list[Fixture]:
+    """The fixtures of all setups."""
+    return [*options.fixtures, *(each for place in places(options) if place is not None for each in place.fixtures)]
 
 
 def conditions_of(scene: Scene, options: Options) -> list[Conditions]:
@@ -81,16 +87,16 @@ def _samples_of(ready: Prepared, place: Placement | None) -> NDArray[np.bool_]:
 
 
 def stood_on(ready: Prepared) -> NDArray[np.bool_]:
-    """Samples (n,) of faces that stand on the table of a setup that was proposed."""
+    """Samples (n,) of faces that are held by what was proposed: they stand on a proposed table, or a vise or chuck that was
+    placed for a setup grips them."""
     faces = {int(name[1:]) for place in places(ready.options) if place is not None for name in place.stands_on}
+    for conditions in ready.setups:
+        faces.update(*(each.hold.faces for each in conditions.surroundings.fixtures if each.hold is not None))
     return np.isin(ready.samples.face, sorted(faces))
 
 
 def for_another_setup(ready: Prepared, verdicts: Verdicts) -> Verdicts:
-    """The same verdicts with a reason of its own where only a proposed table is in the way, on faces that stand on it.
-
-    Beside a proposed table there are no other fixtures.
-    """
+    """The same verdicts with a reason of its own where only fixtures are in the way, on faces that are held by what was proposed."""
     mine = stood_on(ready) & verdicts.not_reached & (verdicts.reason == FIXTURE)
     if not mine.any():
         return verdicts
