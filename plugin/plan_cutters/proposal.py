@@ -1,4 +1,5 @@
-"""Setups that are proposed: ranked, then judged with a table each, and kept only if the verdicts hold what was promised."""
+"""Setups that are proposed: ranked, then judged with a table, vise or chuck each, and kept only if the verdicts hold what was
+promised."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -10,7 +11,8 @@ from scipy.spatial import cKDTree
 from plan_cutters.answers.setup_ranking import MOST, Ranking, ranked, touching
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.notes import noted
-from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.clamping import CHUCK, VISE
+from plan_cutters.domain.fixture import AUTO, TABLE
 from plan_cutters.domain.placement import Placement, axis_words
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.judged_part import JudgedPart
@@ -59,10 +61,12 @@ def judged_proposed(
     OptionError
         In no direction is anything within the limits or reached, or no proposal can be planned.
     """
-    unproposed = replace(options, propose=False)
+    words = _words(options)
+    unproposed = replace(options, propose=False, fixtures=())
     ready = prepare(unproposed, clock)
+    ready = replace(ready, scene=ready.scene.for_targets(ready.chosen.targets))
     with clock.stage("proposal"):
-        ranking = ranked(ready, MOST)
+        ranking = ranked(ready, MOST, words)
     best: tuple[float, JudgedPart, Callable[[Plan], Plan]] | None = None
     failed, why = frozenset[int](), ""
     for tried in range(1, _TRIES + 1):
@@ -86,10 +90,25 @@ def judged_proposed(
         return best[1:]
     if why:
         raise OptionError(f"setup auto: no proposal can be planned: {why}")
+    if not ranking.held and ranking.refused:
+        raise OptionError(
+            f"setup auto: nothing holds the part in {len(ranking.served)} directions: {next(iter(ranking.refused))}"
+        )
     raise OptionError(
-        f"setup auto: over a table, no cutter reaches any of {len(ranking.rows)} samples in the "
+        f"setup auto: {_among(words)}, no cutter reaches any of {len(ranking.rows)} samples in the "
         f"{len(ranking.served)} best directions; name a setup with its fixtures"
     )
+
+
+def _words(options: Options) -> tuple[str, ...]:
+    """What may hold the part in each setup: a table, unless something else was requested."""
+    (word,) = [each.source for each in options.fixtures] or [TABLE]
+    return (TABLE, VISE, CHUCK) if word.lower() == AUTO else (word,)
+
+
+def _among(words: tuple[str, ...]) -> str:
+    """What holds the part, in words."""
+    return "over a table" if words == (TABLE,) else f"held by {' or '.join(words)}"
 
 
 def _axis(ranking: Ranking, k: int) -> tuple[float, float, float]:
@@ -98,18 +117,19 @@ def _axis(ranking: Ranking, k: int) -> tuple[float, float, float]:
 
 
 def _options(options: Options, ranking: Ranking, chosen: tuple[int, ...], folder: str) -> Options:
-    """The options of a plan in the chosen setups, a table under the part in each; the scene has the unit already.
+    """The options of a plan in the chosen setups, with what holds the part in each; the scene has the unit already.
 
     Each setup knows the file in which it will be: advice names that.
     """
-    table = (Fixture.parse("table"),)
     stands_on = touching(ranking.ready, ranking.candidates.axis)
     first, *others = (
         Placement(
             _axis(ranking, k),
             clamped=tuple(f"F{n}" for n in ranking.candidates.stands_on[k]),
-            fixtures=table,
-            stands_on=tuple(f"F{n}" for n in ranking.candidates.stands_on[k] or stands_on[k]),
+            fixtures=(ranking.held[k].fixture,),
+            stands_on=tuple(
+                f"F{n}" for n in sorted({*ranking.held[k].faces, *(ranking.candidates.stands_on[k] or stands_on[k])})
+            ),
             file=f"{folder.rstrip('/')}/setup-{number}.toml" if folder else "",
             proposed=True,
         )
@@ -141,26 +161,39 @@ def _compared(part: JudgedPart, ranking: Ranking, chosen: tuple[int, ...]) -> tu
     )
 
 
+def _setup(ranking: Ranking, k: int, promised: float) -> ProposedSetup:
+    """The entry of a proposed setup."""
+    held = ranking.held[k]
+    return ProposedSetup(
+        axis=_axis(ranking, k),
+        stands_on=[f"F{n}" for n in ranking.candidates.stands_on[k]],
+        clamping=held.kind,
+        grips=[f"F{n}" for n in held.grips],
+        fixtures=[held.fixture.text],
+        why_held=held.why,
+        promised=promised,
+    )
+
+
+def _stands(setup: ProposedSetup) -> str:
+    if setup.clamping != TABLE:
+        return f"in a {setup.clamping} that grips {', '.join(setup.grips)}"
+    return f"on {', '.join(setup.stands_on)}" if setup.stands_on else "on no plane"
+
+
 def _described(plan: Plan, *, ranking: Ranking, chosen: tuple[int, ...], shares: tuple[float, float, int]) -> Plan:
     """The same plan with its proposal; its text is not made anew."""
     served = np.stack([ranking.served[k] for k in chosen], axis=1)
     alone, any_of = ranking.share(served), np.asarray(served.any(axis=1))
     together = exact(float(ranking.share(any_of[:, None])[0]), some=bool(any_of.any()), whole=bool(any_of.all()))
     share, held_share, tried = shares
-    setups = [
-        ProposedSetup(
-            axis=_axis(ranking, k), stands_on=[f"F{n}" for n in ranking.candidates.stands_on[k]], promised=min(1.0, float(each))
-        )
-        for k, each in zip(chosen, alone, strict=True)
-    ]
+    setups = [_setup(ranking, k, min(1.0, float(each))) for k, each in zip(chosen, alone, strict=True)]
     held = held_share >= _ENOUGH
-    where = [
-        axis_words(each.axis) + (f" (on {', '.join(each.stands_on)})" if each.stands_on else " (on no plane)") for each in setups
-    ]
+    where = [f"{axis_words(each.axis)} ({_stands(each)})" for each in setups]
     of = f"{len(ranking.served)} of {len(ranking.candidates.axis)} directions searched at {len(ranking.rows)} samples"
     why = (
-        f"With {of} over a table, {'this one serves' if len(setups) == 1 else 'these serve'} {percent(together)} of the "
-        f"samples' area. The plan reaches {percent(share)} of the target area"
+        f"With {of} {_among(ranking.words)}, {'this one serves' if len(setups) == 1 else 'these serve'} {percent(together)} of "
+        f"the samples' area. The plan reaches {percent(share)} of the target area"
         f"{'' if held else f', and holds only {percent(held_share)} of what was promised'}."
     )
     entry = SetupProposal(setups=setups, directions=len(ranking.candidates.axis), searched=len(ranking.served),

@@ -1,17 +1,20 @@
-"""Which setups are worth planning: directions of the part, ranked by what a machine could hold there over a table.
+"""Which setups are worth planning: directions of the part, ranked by what a machine could hold there over a table, or in a vise
+or chuck.
 
 First a bound that is cheap and sees no obstacle but the table: at which samples does the machine hold any tool axis at which a
 cutter touches, whose upper end is above the plane that the part stands on? Then, for the few best, a search on some samples among
-the real obstacles with the real table. It promises; the plan of that setup decides.
+the real obstacles with the real table, vise or chuck. It promises; the plan of that setup decides.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Record, SurfaceSamples, Triangles
+from plan_cutters.answers.holding import EVEN, Held, best_hold
 from plan_cutters.answers.least_set import cover
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.preference import group_of
@@ -19,6 +22,7 @@ from plan_cutters.domain.verdicts import blank
 from plan_cutters.errors import OptionError
 from plan_cutters.scene.conditions import Conditions, Context, contacts_of, search_postures
 from plan_cutters.scene.preparation import Axis, Prepared
+from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.stages.setups import within_limits
 
 Rows = NDArray[np.int64]
@@ -31,7 +35,7 @@ _ONE = float(np.cos(np.radians(0.1)))
 #: Samples on which directions are compared, at most; directions that are searched, for the first setup and for each more.
 COMPARED, _FIRST, _MORE = 400, 10, 6
 #: Heights over the table are told apart in so many steps; shares nearer than the second are equal.
-_HEIGHTS, _EVEN = 12, 0.002
+_HEIGHTS, _EVEN = 12, EVEN
 #: A setup that stands on no plane counts so much: it needs more to hold it than a table.
 _ON_NO_PLANE = 0.75
 #: Share of the area that a setup has to serve alone: of a few hundred samples one or two may be served by chance.
@@ -194,7 +198,13 @@ class Ranking:
         Where the machine holds an axis over the table at all, the face is not stood on, and a posture was found without table
         and machine: what the part itself is in the way of is not searched again in each direction.
     served : mapping
-        By candidate, where a posture was found over a real table, (r,).
+        By candidate, where a posture was found among what holds the part, (r,).
+    held : mapping
+        By candidate that was searched and can be held, how.
+    words : tuple of str
+        What may hold the part: `table`, and the words of vises and chucks.
+    refused : mapping
+        Why nothing holds it in directions that were searched, the first cause first.
     usual : (r,) bool
         Where cutters that finish surfaces serve without table and machine: there no engraving, chamfer or form cutter makes a
         setup look better than it is.
@@ -206,10 +216,13 @@ class Ranking:
     bound: Table
     served: dict[int, NDArray[np.bool_]]
     usual: NDArray[np.bool_]
+    words: tuple[str, ...] = ("table",)
+    held: dict[int, Held] = field(default_factory=dict)
+    refused: dict[str, None] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, ready: Prepared) -> "Ranking":
-        """Rank the directions of a part by the bound.
+    def of(cls, ready: Prepared, words: tuple[str, ...] = ("table",)) -> "Ranking":
+        """Rank the directions of a part by the bound; `words` as the attribute.
 
         Raises
         ------
@@ -222,7 +235,9 @@ class Ranking:
         few = replace(ready.conditions, setup=np.array([0.0, 0.0, 1.0]), x=None)
         bound = np.zeros((len(rows), len(candidates.axis)), bool)
         for k, axis in enumerate(candidates.axis):
-            held = holdable(samples, ready.cutters, few, axis, float(candidates.lowest[k]), rows)
+            # A vise or chuck stands on a riser: beside it a tool may be lower than the part.
+            table = float(candidates.lowest[k]) if words == ("table",) else None
+            held = holdable(samples, ready.cutters, few, axis, table, rows)
             bound[:, k] = held[rows] & ~np.isin(samples.face[rows], candidates.stands_on[k])
         if not bound.any():
             low, high = np.degrees(few.postures.tilt)
@@ -235,7 +250,7 @@ class Ranking:
         free = usual = _reached(ready, rows, bare, usual=True)
         if len(_usual(ready.cutters)) < len(ready.cutters):
             free = usual | _reached(ready, rows[~usual[rows]], bare, usual=False)
-        return cls(ready, candidates, rows, bound & free[rows, None] if free.any() else bound, {}, usual[rows])
+        return cls(ready, candidates, rows, bound & free[rows, None] if free.any() else bound, {}, usual[rows], words)
 
     @property
     def area(self) -> Floats:
@@ -261,10 +276,17 @@ class Ranking:
             best = max(best, float(worth[k] * self.share((self.served[k] & open_rows)[:, None])[0]))
 
     def _searched(self, k: int) -> NDArray[np.bool_]:
-        """Where any cutter has a posture with a table under the part, of the rows (r,)."""
+        """Where any cutter has a posture in what holds the part best, of the rows (r,); nowhere if nothing can hold it."""
         x, y, z = self.candidates.axis[k].tolist()
-        surroundings = self.ready.scene.surround_on_table((x, y, z))
-        conditions = replace(self.ready.conditions, setup=np.array([x, y, z]), x=None, surroundings=surroundings)
+        reached, held, refused = best_hold(self.ready, (x, y, z), self.words, partial(self._among, k), self.area)
+        if held is not None:
+            self.held[k] = held
+        self.refused.update(dict.fromkeys(refused))
+        return reached
+
+    def _among(self, k: int, surroundings: Surroundings) -> NDArray[np.bool_]:
+        """Where any cutter has a posture among some obstacles, of the rows (r,)."""
+        conditions = replace(self.ready.conditions, setup=self.candidates.axis[k], x=None, surroundings=surroundings)
         reached = np.zeros(len(self.ready.samples), bool)
         for usual in (True, False):
             reached |= _reached(self.ready, self.rows[self.bound[:, k] & (self.usual == usual)], conditions, usual=usual)
@@ -284,7 +306,7 @@ class Ranking:
         tuple of int
             Candidates, that with the most area first; none where none serves anything.
         """
-        every = sorted(set(self.served) - without)
+        every = sorted(set(self.held) - without)
         flat = self._chosen([k for k in every if self.candidates.stands_on[k]], most)
         free = self._chosen(every, most)
         return self._worth(flat if self._together(flat) >= _ON_NO_PLANE * self._together(free) else free)
@@ -344,7 +366,7 @@ def _reached(ready: Prepared, rows: Rows, conditions: Conditions, *, usual: bool
     return reached
 
 
-def ranked(ready: Prepared, most: int) -> Ranking:
+def ranked(ready: Prepared, most: int, words: tuple[str, ...] = ("table",)) -> Ranking:
     """Rank the setups of a part, and search those that may be the best one, or the best few together.
 
     Parameters
@@ -353,13 +375,15 @@ def ranked(ready: Prepared, most: int) -> Ranking:
         In any setup, without fixtures.
     most : int
         Setups that may be proposed together.
+    words : tuple of str
+        What may hold the part: `table`, and words of vises and chucks.
 
     Raises
     ------
     OptionError
         As for `Ranking.of`.
     """
-    ranking = Ranking.of(ready)
+    ranking = Ranking.of(ready, words)
     ranking.search(np.ones(len(ranking.rows), bool), _FIRST)
     for number in range(1, most):
         chosen = ranking.choose(number)

@@ -21,11 +21,11 @@ _LEDGE, _LEDGE_SHARE = 3.0, 0.25
 #: Of a vise, as shares of the jaw width: the thickness of a jaw and the least one, mm; the height of the body and the least one;
 #: the side of the riser.
 _JAW, _BODY, _RISER = (0.3, 15.0), (0.6, 30.0), 1.2
-#: Of a chuck, as shares of its diameter: width, depth and height of a jaw, height of the body, diameter of the riser. What it grips
-#: has at most 0.7 of it, so that the jaws stay over the body.
+#: Of a chuck, as shares of its diameter: width, depth and height of a jaw, height of the body, diameter of the riser, and the
+#: most that it grips, so that the jaws stay over the body.
 _WIDE, _DEEP, _TALL, _CHUCK, _FOOT, _GRIPPED = 0.16, 0.15, 0.25, 0.45, 0.8, 0.7
-#: Heights of risers, mm; the table below reaches so far from the middle, and is as thick; drawings show this much of it beyond the
-#: riser, and so thick.
+#: Heights of risers, mm; the table below reaches so far from the middle, and is as thick; drawings show this much of it beyond
+#: the riser, and so thick.
 _RISER_HIGH, _REACH, _SHOWN, _PLATE = 100.0, 4000.0, 60.0, 20.0
 #: Chords of a jaw's bore, at most.
 _MOST_SIDES = 200
@@ -179,7 +179,7 @@ class Chuck:
         return 0.5 * self.diameter * (1.0 / math.cos(self.half_angle / self.sides(arc_error)) - 1.0)
 
     def solids(self, arc_error: float, *, shown: bool = False) -> tuple[Solid, ...]:
-        """Jaws, body, riser, and the table that it stands on; no arc of a jaw is farther than `arc_error`, mm, from its chords."""
+        """Jaws, body, riser, and the table that it stands on; chords of a jaw are no farther from its bore than an error, mm."""
         assert self.diameter is not None, "a chuck has bodies where it was placed"
         radius, size = 0.5 * self.diameter, chuck_for(self.diameter)
         ledge = min(_LEDGE, _LEDGE_SHARE * radius)
@@ -241,7 +241,8 @@ class Requested:
         if self.sizes is None:
             return None
         if self.kind == VISE:
-            return Vise(*self.sizes, self.grip, self.last)
+            width, height, opening = self.sizes
+            return Vise(width, height, opening, self.grip, self.last)
         return Chuck(int(self.sizes[0]), self.sizes[1], self.grip, self.last)
 
     @property
@@ -285,7 +286,7 @@ def requested(kind: str, text: str | None, scale: float, which: str) -> Requeste
         parts = parts[1:]
         sizes = tuple(size * scale for size in sizes) if kind == VISE else (sizes[0], sizes[1] * scale)
     rest = [each * scale for each in _numbers(parts, kind, which)]
-    if text is not None and not (sizes or rest) or len(rest) > (1 if sizes is None else 2):
+    if (text is not None and not (sizes or rest)) or len(rest) > (1 if sizes is None else 2):
         raise FixtureError(f"{which}: give {FORMS[kind]}")
     grip, last = rest[0] if rest else GRIP, rest[1] if len(rest) > 1 else None
     every = [*(sizes or ()), grip, *([] if last is None else [last])]

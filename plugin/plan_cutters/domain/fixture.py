@@ -17,6 +17,7 @@ from plan_cutters.errors import FixtureError
 
 #: Simple fixtures by words: what each number is.
 WORDS = {"box": "x,y,z", "cylinder": "r,h", "table": "h", **FORMS}
+TABLE = "table"
 #: The word for the best of table, vise and chuck in each setup that is proposed.
 AUTO = "auto"
 _WORD = re.compile(rf"({'|'.join(WORDS)}):(.*)|(table|{VISE}|{CHUCK}|{AUTO})", re.IGNORECASE | re.DOTALL)
@@ -93,7 +94,8 @@ class Fixture:
         _ = self.sizes
         if self.to_place and any(self.placement):
             raise FixtureError(
-                f"{self}: a {self.kind} is placed for the setup; leave its placement out, or give all its numbers, as plans write them"
+                f"{self}: a {self.kind} is placed for the setup; leave its placement out, or give all its numbers, as plans "
+                "write them"
             )
 
     def __str__(self) -> str:
@@ -128,7 +130,7 @@ class Fixture:
 
     @property
     def follows_setup(self) -> bool:
-        """Whether where it lies depends on the setup axis: a table that is not turned by angles, or what is still to be placed."""
+        """Whether where it lies depends on the setup axis: a table that is not turned by angles, or what is to be placed."""
         return self.to_place or (self.kind == "table" and not any(self.placement[3:]))
 
     @property

@@ -23,8 +23,8 @@ from plan_cutters.domain.fixture import CAD, MESH, Fixture
 from plan_cutters.domain.placement import axis_words, frame_of
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.plan_file.numbers import mm
-from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.holds import Hold
+from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.solids import box, cylinder, sides_of, triangles_of
 from plan_cutters.scene.surroundings import PlacedFixture, Surroundings, surroundings
 
@@ -85,7 +85,9 @@ def _read(fixture: Fixture, timeout: float) -> Part | Mesh:
         return read_mesh(source, fixture.unit)
     if suffix not in CAD:
         what = f"{suffix!r} is no format of fixtures" if suffix else "its name does not say its format"
-        raise ReadError(f"{what}: give STEP, IGES, BREP, STL, OBJ, PLY or GLB, or box:, cylinder:, table, vise or chuck", file=source)
+        raise ReadError(
+            f"{what}: give STEP, IGES, BREP, STL, OBJ, PLY or GLB, or box:, cylinder:, table, vise or chuck", file=source
+        )
     return read_part(source, unit=fixture.unit, timeout=timeout)
 
 

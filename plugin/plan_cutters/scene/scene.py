@@ -20,8 +20,8 @@ from plan_cutters.domain.tolerance import CHORD_REQUESTED
 from plan_cutters.errors import OptionError
 from plan_cutters.option_types import SceneOptions
 from plan_cutters.options import MOST_TOLERANCE, Options
-from plan_cutters.scene.faces import ignored_faces, ignored_words
 from plan_cutters.scene.clamping import Workpiece, held
+from plan_cutters.scene.faces import ignored_faces, ignored_words
 from plan_cutters.scene.fixtures import FixtureCache, joined, packable, placed_body, read
 from plan_cutters.scene.holds import Hold
 from plan_cutters.scene.overlap import overlap, refuse_overlaps
@@ -274,10 +274,10 @@ class Scene(Record):
             piece = Workpiece.of(
                 triangles.vertex[own], triangles.face[own], self.orientation.sign, planes, self.targets, tuple(setup)
             )
+            chord = CHORD_REQUESTED * self.asked
             memory.holds[key] = held(
-                fixture, piece, lambda placed: overlap(alone.certain, placed_body(placed, CHORD_REQUESTED * self.asked), tolerance)
-                is not None
-            )  # fmt: skip
+                fixture, piece, lambda placed: overlap(alone.certain, placed_body(placed, chord), tolerance) is not None
+            )
         return memory.holds[key]
 
     def surround_closer(self, chord: float) -> Surroundings:

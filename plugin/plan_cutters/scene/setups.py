@@ -96,7 +96,7 @@ def stood_on(ready: Prepared) -> NDArray[np.bool_]:
 
 
 def for_another_setup(ready: Prepared, verdicts: Verdicts) -> Verdicts:
-    """The same verdicts with a reason of its own where only fixtures are in the way, on faces that are held by what was proposed."""
+    """The same verdicts with a reason of its own where fixtures alone are in the way, on faces that what was proposed holds."""
     mine = stood_on(ready) & verdicts.not_reached & (verdicts.reason == FIXTURE)
     if not mine.any():
         return verdicts

@@ -12,7 +12,7 @@ _SIDES = 720
 
 
 def sides_of(radius: float, chord: float) -> int:
-    """Sides of a prism in a cylinder, whose chords are no farther from the arc than asked, mm, as far as that takes not too many."""
+    """Sides of a prism in a cylinder: its chords are no farther from the arc than asked, mm, unless that takes too many."""
     sides = math.ceil(math.pi / math.acos(max(0.0, 1.0 - min(1.0, chord / radius))))
     return min(max(sides, 8), _SIDES)
 

@@ -16,9 +16,14 @@ def proposal(plan: Plan) -> tuple[str, ...]:
     where[0] += " of the part along the spindle"
     text = where[0] if one else "; ".join(f"{k} {each}" for k, each in enumerate(where, 1))
     share = percent(entry.found)
-    lines = [
-        f"Proposed {'setup' if one else 'setups'}: {text}. Over a table and nothing else that holds the part, "
-        f"{'it reaches' if one else 'they reach'} {share} of the area to machine."
+    among = "Over a table and nothing else that holds the part, " + ("it reaches" if one else "they reach")
+    if any(each.clamping != "table" for each in entry.setups):
+        among = "So held, it reaches" if one else "So held, they reach"
+    lines = [f"Proposed {'setup' if one else 'setups'}: {text}. {among} {share} of the area to machine."]
+    lines += [
+        f"Setup {k}: {each.why_held}." if not one else f"{each.why_held.capitalize()}."
+        for k, each in enumerate(entry.setups, 1)
+        if each.why_held
     ]
     if not entry.held:
         lines.append(
@@ -29,4 +34,6 @@ def proposal(plan: Plan) -> tuple[str, ...]:
 
 
 def _stands(each: ProposedSetup) -> str:
+    if each.clamping != "table":
+        return f"in a {each.clamping} that grips {', '.join(each.grips)}"
     return f"on {', '.join(each.stands_on)}" if each.stands_on else "on no plane (something must hold it)"
