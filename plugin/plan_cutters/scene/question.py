@@ -66,7 +66,8 @@ def question(ready: Prepared, cutter: Cutter) -> dict[str, Any]:
         "x": None if options.placement is None or options.placement.x is None else list(options.placement.x),
         "sides_follow_setup": _sides_follow(scene),
         "fixtures": [
-            _fixture(each.fixture, None if each.source is None else _bytes(each.source)) for each in surroundings.fixtures
+            _fixture(each.requested or each.fixture, None if each.source is None else _bytes(each.source))
+            for each in surroundings.fixtures
         ],
         "tolerance": scene.asked,
         "tolerance_kept": ready.conditions.tolerance,
