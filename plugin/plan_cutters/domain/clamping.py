@@ -292,7 +292,7 @@ def requested(kind: str, text: str | None, scale: float, which: str) -> Requeste
     every = [*(sizes or ()), grip, *([] if last is None else [last])]
     if not all(0.0 < each <= _FARTHEST for each in every):
         wrong = next(each for each in every if not 0.0 < each <= _FARTHEST)
-        raise FixtureError(f"{which}: its sizes must be positive numbers up to {_FARTHEST:g} mm, not {wrong:g}: {FORMS[kind]}")
+        raise FixtureError(f"{which}: its sizes must be positive numbers up to {_FARTHEST:,.0f} mm, not {wrong:g}: {FORMS[kind]}")
     if sizes is not None:
         _check(kind, sizes, grip, last, which)
     return Requested(kind, sizes, grip, last)
@@ -312,7 +312,7 @@ def _numbers(words: Sequence[str], kind: str, which: str) -> tuple[float, ...]:
     try:
         numbers = tuple(float(word) for word in words)
     except ValueError:
-        raise FixtureError(f"{which}: {':'.join(words)!r} is no number: give {FORMS[kind]}") from None
+        raise FixtureError(f"{which}: what follows {kind} are numbers: give {FORMS[kind]}") from None
     if not all(math.isfinite(each) for each in numbers):
         raise FixtureError(f"{which}: its sizes must be finite numbers: {FORMS[kind]}")
     return numbers

@@ -78,14 +78,13 @@ def _angles(axes: Floats) -> Floats:
 
 
 def _hold(asked: Requested, fixture: Fixture, part: Workpiece, place: Place) -> Hold:
-    clamping, names = place.clamping, [f"F{n}" for n in place.grips]
+    clamping, names, rests = place.clamping, [f"F{n}" for n in place.grips], part.rests_on(place.above)
     size = "" if asked.sizes is not None else ", the smallest usual size that takes the part"
     across = f"{mm(clamping.gap or 0.0)} apart" if isinstance(clamping, Vise) else f"{mm(clamping.diameter or 0.0)} wide"
     above = f", from {mm(place.above)} above its lowest point," if place.above > 0.0 else ""
-    left = (
-        f"what the jaws cover of the faces to machine, {place.hidden:.4g} mm2, is left for another setup"
-        if place.hidden > 0.0
-        else "its jaws cover none of the faces to machine"
-    )
-    words = f"{clamping.called}{size}; it grips {listed(names)}, {across},{above} {mm(clamping.grip)} deep; {left}"
-    return Hold(fixture, place.grips, part.rests_on(place.above), place.hidden, words)
+    on = f"; the part rests on {listed([f'F{n}' for n in rests])}" if rests else ""
+    under = [f"{place.hidden:.4g} mm2 under the jaws"] if place.hidden > 0.0 else []
+    under += [f"F{n}" for n in rests if n in part.targets]
+    left = f"left for another setup: {' and '.join(under)}" if under else "it holds none of the faces to machine"
+    words = f"{clamping.called}{size}; it grips {listed(names)}, {across},{above} {mm(clamping.grip)} deep{on}; {left}"
+    return Hold(fixture, place.grips, rests, place.hidden, words)

@@ -64,7 +64,7 @@ def _x(place: Placement | None) -> Floats | None:
 
 def with_setups(ready: Prepared, conditions: list[Conditions]) -> Prepared:
     """Add what is held in the first setup, and the other setups with what cannot be machined there."""
-    held = [_samples_of(ready, place) for place in places(ready.options)]
+    held = [_samples_of(ready, place, each) for place, each in zip(places(ready.options), conditions, strict=True)]
     others = []
     for each, clamped in zip(conditions[1:], held[1:], strict=True):
         inside = ready.inside
@@ -81,9 +81,10 @@ def with_setups(ready: Prepared, conditions: list[Conditions]) -> Prepared:
     return replace(ready, held=held[0], others=tuple(others))
 
 
-def _samples_of(ready: Prepared, place: Placement | None) -> NDArray[np.bool_]:
-    """Samples (n,) of the faces that a setup clamps."""
-    return np.isin(ready.samples.face, sorted(clamped_faces(ready.scene.part, place)))
+def _samples_of(ready: Prepared, place: Placement | None, conditions: Conditions) -> NDArray[np.bool_]:
+    """Samples (n,) of the faces that a setup clamps, or with which the part rests in a vise or chuck."""
+    rests_on = [number for each in conditions.surroundings.fixtures if each.hold is not None for number in each.hold.rests_on]
+    return np.isin(ready.samples.face, sorted({*clamped_faces(ready.scene.part, place), *rests_on}))
 
 
 def stood_on(ready: Prepared) -> NDArray[np.bool_]:
