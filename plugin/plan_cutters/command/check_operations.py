@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 #: Files that must stand with plan.json, and what they hold.
 _FILES = {"operations.npz": "operations of a plan", "samples.npz": "samples of a plan"}
 #: How far the chords of a chuck's jaws may be from their bore, mm.
-_BORE = 1e-4
+_BORE = 1e-3
 
 
 def checked(part: str, file: str, options: "Options", *, quiet: bool, read_timeout: float) -> int:

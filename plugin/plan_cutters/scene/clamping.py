@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from cad_io.arrays import Floats
-from plan_cutters.domain.clamping import VISE, Requested, Vise
+from plan_cutters.domain.clamping import VISE, Clamping, Requested, Vise
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.errors import FixtureError
@@ -18,10 +18,10 @@ from plan_cutters.scene.vise_places import vise_places
 from plan_cutters.scene.workpiece import Place, Workpiece
 
 #: Shares of the target area that jaws hide are equal if they differ by less; places that are looked at, at most.
-_EVEN, _TRIED = 0.01, 12
+_EVEN, _TRIED = 0.05, 12
 
 
-def held(fixture: Fixture, part: Workpiece, overlaps: Callable[[Fixture], bool]) -> Hold:
+def held(fixture: Fixture, part: Workpiece, overlaps: Callable[[Fixture, Clamping], bool]) -> Hold:
     """Place a vise or chuck.
 
     Parameters
@@ -30,7 +30,7 @@ def held(fixture: Fixture, part: Workpiece, overlaps: Callable[[Fixture], bool])
         With `to_place`.
     part : Workpiece
     overlaps : callable
-        Whether a fixture in its place stands in the part.
+        Whether a fixture in its place, a vise or chuck, stands in the part.
 
     Raises
     ------
@@ -42,12 +42,10 @@ def held(fixture: Fixture, part: Workpiece, overlaps: Callable[[Fixture], bool])
         raise FixtureError(f"{fixture} is for --setup auto, which takes the best of table, vise and chuck; name one of them")
     places, why = vise_places(part, asked) if asked.kind == VISE else chuck_places(part, asked)
     least, step = min((each.hidden for each in places), default=0.0), _EVEN * max(1e-300, part.area)
-    places.sort(
-        key=lambda each: (int((each.hidden - least) / step), each.above > 0.0, -round(each.touched, 6), each.grips, each.above)
-    )
+    places.sort(key=lambda each: (int((each.hidden - least) / step), -round(each.firm, 6), each.above, each.grips))
     for place in places[:_TRIED]:
         placed = _fixture(fixture, part, place)
-        if not overlaps(placed):
+        if not overlaps(placed, place.clamping):
             return _hold(asked, placed, part, place)
     if places:
         why = "something of the part is in the way of the jaws wherever they could grip"

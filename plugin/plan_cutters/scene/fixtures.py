@@ -19,6 +19,7 @@ from cad_io.part.bodies import Body
 from cad_io.read.mesh import Mesh, is_mesh, read_mesh
 from cad_io.read.read import TIMEOUT
 from cad_io.tessellate.proxies import StandIn
+from plan_cutters.domain.clamping import Clamping
 from plan_cutters.domain.fixture import CAD, MESH, Fixture
 from plan_cutters.domain.placement import axis_words, frame_of
 from plan_cutters.errors import UnjudgeableError
@@ -204,10 +205,14 @@ def _body(fixture: Fixture, chord: float, cache: FixtureCache) -> _Body:
     return body
 
 
-def placed_body(fixture: Fixture, chord: float) -> Obstacles:
-    """A fixture that a word describes, in its place, by itself; `chord`: the chord error to ask for, mm."""
-    body = _word(fixture, chord).certain
-    return Obstacles(replace(body.triangles, vertex=fixture.placed(body.triangles.vertex)), body.weight)
+def body_near(clamping: Clamping, fixture: Fixture, chord: float, part: Obstacles) -> Obstacles:
+    """A vise or chuck in its place, without those of its bodies that are wholly lower than a part, so none of it is in them.
+
+    `chord`: the chord error to ask for, mm.
+    """
+    lowest = float(((part.triangles.vertex - fixture.shift) @ fixture.rotation[:, 2]).min())
+    vertex, error = triangles_of(clamping, chord, above=lowest)
+    return _solid(fixture.placed(vertex), error).certain
 
 
 def _of_part(part: Part, fixture: Fixture, chord: float) -> _Body:

@@ -6,6 +6,7 @@ import numpy as np
 
 from cad_io.arrays import Floats, Record
 from plan_cutters.errors import FixtureError
+from plan_cutters.scene.fixtures import body_near
 from plan_cutters.scene.obstacles import Obstacles, divided
 from plan_cutters.scene.surroundings import Surroundings
 
@@ -40,7 +41,10 @@ def refuse_overlaps(surroundings: Surroundings, tolerance: float) -> None:
     """
     part = (surroundings.alone or surroundings).certain
     for each in surroundings.fixtures:
-        result = overlap(part, each.obstacles, tolerance)
+        clamping, near = each.fixture.clamping, each.obstacles
+        if clamping is not None:
+            near = body_near(clamping, each.fixture, near.triangles.chord_error, part)
+        result = overlap(part, near, tolerance)
         if result is not None:
             x, y, z = (f"{value + 0.0:.4g}" for value in np.round(result.point, 6))
             raise FixtureError(

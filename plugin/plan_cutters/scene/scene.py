@@ -11,6 +11,7 @@ from cad_io.arrays import Record
 from cad_io.part.orient import orient
 from cad_io.tessellate.triangles import At
 from plan_cutters.domain.checks import flag, number
+from plan_cutters.domain.clamping import Clamping
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.host_axes import plane_of
 from plan_cutters.domain.placement import Placement
@@ -22,7 +23,7 @@ from plan_cutters.option_types import SceneOptions
 from plan_cutters.options import MOST_TOLERANCE, Options
 from plan_cutters.scene.clamping import Workpiece, held
 from plan_cutters.scene.faces import ignored_faces, ignored_words
-from plan_cutters.scene.fixtures import FixtureCache, joined, packable, placed_body, read
+from plan_cutters.scene.fixtures import FixtureCache, body_near, joined, packable, read
 from plan_cutters.scene.holds import Hold
 from plan_cutters.scene.overlap import overlap, refuse_overlaps
 from plan_cutters.scene.surroundings import Surroundings, surroundings
@@ -275,9 +276,11 @@ class Scene(Record):
                 triangles.vertex[own], triangles.face[own], self.orientation.sign, planes, self.targets, tuple(setup)
             )
             chord = CHORD_REQUESTED * self.asked
-            memory.holds[key] = held(
-                fixture, piece, lambda placed: overlap(alone.certain, placed_body(placed, chord), tolerance) is not None
-            )
+
+            def overlaps(placed: Fixture, clamping: Clamping) -> bool:
+                return overlap(alone.certain, body_near(clamping, placed, chord, alone.certain), tolerance) is not None
+
+            memory.holds[key] = held(fixture, piece, overlaps)
         return memory.holds[key]
 
     def surround_closer(self, chord: float) -> Surroundings:

@@ -88,12 +88,16 @@ def _samples_of(ready: Prepared, place: Placement | None, conditions: Conditions
 
 
 def stood_on(ready: Prepared) -> NDArray[np.bool_]:
-    """Samples (n,) of faces that are held by what was proposed: they stand on a proposed table, or a vise or chuck that was
-    placed for a setup grips them."""
-    faces = {int(name[1:]) for place in places(ready.options) if place is not None for name in place.stands_on}
-    for conditions in ready.setups:
-        faces.update(*(each.hold.faces for each in conditions.surroundings.fixtures if each.hold is not None))
-    return np.isin(ready.samples.face, sorted(faces))
+    """Samples (n,) that what was proposed may hide: of faces that stand on a proposed table, or that a vise or chuck holds which
+    was placed for a setup; of all faces where nothing but such vises and chucks stands anywhere."""
+    faces, clamped = set[int](), True
+    for place, conditions in zip(places(ready.options), ready.setups, strict=True):
+        faces.update(int(name[1:]) for name in (() if place is None else place.stands_on))
+        proposed = place is not None and place.proposed
+        for each in conditions.surroundings.fixtures:
+            faces.update(() if each.hold is None else each.hold.faces)
+            clamped &= each.hold is not None or (proposed and each.fixture.clamping is not None)
+    return np.isin(ready.samples.face, sorted(faces)) | (clamped and bool(faces))
 
 
 def for_another_setup(ready: Prepared, verdicts: Verdicts) -> Verdicts:

@@ -17,7 +17,7 @@ def sides_of(radius: float, chord: float) -> int:
     return min(max(sides, 8), _SIDES)
 
 
-def triangles_of(clamping: Clamping, chord: float, *, shown: bool = False) -> tuple[Floats, float]:
+def triangles_of(clamping: Clamping, chord: float, *, shown: bool = False, above: float = -math.inf) -> tuple[Floats, float]:
     """Triangles of a vise or chuck in its own frame, each body closed by itself.
 
     Parameters
@@ -28,6 +28,8 @@ def triangles_of(clamping: Clamping, chord: float, *, shown: bool = False) -> tu
         Chord error to ask for, mm.
     shown : bool
         Of the table, what is drawn alone.
+    above : float
+        Bodies that end below this height, mm, are left out, unless all do.
 
     Returns
     -------
@@ -36,7 +38,8 @@ def triangles_of(clamping: Clamping, chord: float, *, shown: bool = False) -> tu
     error : float
         How far they are from what they stand for, mm.
     """
-    solids = clamping.solids(chord, shown=shown)
+    every = clamping.solids(chord, shown=shown)
+    solids = [each for each in every if each.high > above] or every
     off = [_off(each, chord) for each in solids]
     if isinstance(clamping, Chuck):
         off.append(clamping.off(chord))

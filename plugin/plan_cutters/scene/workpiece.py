@@ -94,7 +94,20 @@ class Wall:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Place:
-    """A vise or chuck at a place of a setup's frame, and what it grips there; `order`: what comes first is taken first."""
+    """A vise or chuck at a place of a setup's frame, and what it grips there.
+
+    Attributes
+    ----------
+    clamping : Vise or Chuck
+    x, origin : (3,) float
+        Its x axis and its origin.
+    grips : tuple of int
+        Numbers of the faces that its jaws touch.
+    touched, hidden : float
+        Area that they touch, of a vise on the side where that is less; and of the targets on all sides, mm2.
+    above : float
+        Height of what it rests on over the part's lowest point, mm.
+    """
 
     clamping: Clamping
     x: Floats
@@ -103,6 +116,11 @@ class Place:
     touched: float
     hidden: float
     above: float
+
+    @property
+    def firm(self) -> float:
+        """How well it holds, by what its jaws touch: half as much where something of the part hangs below them."""
+        return self.touched if self.above == 0.0 else 0.5 * self.touched
 
 
 def wall_of(faces: Sequence[int], vertex: Floats, face: Ints, normal: Floats) -> Wall:
