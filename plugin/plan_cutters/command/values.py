@@ -7,6 +7,8 @@ from typing import Any
 import click
 from click.shell_completion import CompletionItem
 
+#: Where the context of a command says that setups are named behind `auto`.
+_NAMED = "plan_cutters.named_setups"
 #: The same as a type of click: completed by the shell itself, which knows about `~` and blanks.
 FILE, _FOLDER = CompletionItem("", type="file"), CompletionItem("", type="dir")
 
@@ -91,10 +93,31 @@ def named_setups(ctx: click.Context, _: click.Parameter, value: Any) -> Any:
     from plan_cutters.workers.assignment import is_child
 
     named = value[1:]
+    ctx.meta[_NAMED] = True
+    if "fixture" in ctx.params:
+        ctx.params["fixture"] = _without_clampings(ctx.params["fixture"])
     # The command reads its words twice: the child that does the work need not say it again.
     if not (is_child() or ctx.resilient_parsing):
         click.echo(f"--setup auto: {len(named)} named behind it take its place; nothing is proposed", err=True)
     return named
+
+
+def fixtures_of_setups(ctx: click.Context, _: click.Parameter, value: Any) -> Any:
+    """Leave out what proposed setups were to be held by, where others are named behind `auto`: these say it themselves."""
+    return _without_clampings(value) if ctx.meta.get(_NAMED) else value
+
+
+def _without_clampings(texts: Sequence[str]) -> tuple[str, ...]:
+    from plan_cutters.domain.fixture import Fixture
+    from plan_cutters.errors import PlanError
+
+    def to_place(text: str) -> bool:
+        try:
+            return Fixture.parse(text).to_place
+        except PlanError:
+            return False
+
+    return tuple(text for text in texts if not to_place(text))
 
 
 class Setup(click.ParamType):
