@@ -121,7 +121,7 @@ def test_what_hangs_below_the_gripped_faces_hangs_between_the_jaws():
     shape = BRepAlgoAPI_Fuse(box(60, 40, 20), box(20, 10, 8, at=(20, 15, -8))).Shape()
     hold = hold_of(shape, "vise")
     assert hold.fixture.placement[2] == pytest.approx(0.0)
-    assert "from 8 mm above its lowest point" in hold.words
+    assert " apart, from 8 mm above its lowest point, 3 mm deep" in hold.words
     with pytest.raises(FixtureError, match="nothing to grip"):
         hold_of(BRepAlgoAPI_Fuse(box(60, 40, 20), box(20, 10, 300, at=(20, 15, -300))).Shape(), "vise")
 

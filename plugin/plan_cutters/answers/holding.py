@@ -1,4 +1,4 @@
-"""What holds a part best in a direction: a table, a vise or a chuck, by what cutters reach among each."""
+"""Find what holds a part best in a direction: a table, a vise or a chuck, by what cutters reach among each."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -46,7 +46,7 @@ class Held:
 def best_hold(
     ready: Prepared, axis: Axis, words: Sequence[str], among: Callable[[Surroundings], NDArray[np.bool_]], area: Floats
 ) -> tuple[NDArray[np.bool_], Held | None, list[str]]:
-    """What holds a part best along an axis: where a posture is found in it (r,), how it holds, and why others do not.
+    """Find what holds a part best along an axis: where a posture is tried in it (r,), how it holds, and why others do not.
 
     Parameters
     ----------
@@ -67,7 +67,7 @@ def best_hold(
     refused : list of str
         Why vises and chucks do not.
     """
-    found: list[tuple[float, NDArray[np.bool_], Held]] = []
+    tried: list[tuple[float, NDArray[np.bool_], Held]] = []
     refused: list[str] = []
     for word in words:
         try:
@@ -75,17 +75,17 @@ def best_hold(
         except FixtureError as error:
             refused.append(error.cause)
             continue
-        (standing,) = surroundings.fixtures
-        reached, hold = among(surroundings), standing.hold
+        (placed,) = surroundings.fixtures
+        reached, hold = among(surroundings), placed.hold
         share = float(area @ reached / max(1e-300, float(area.sum())))
         faces = ((), ()) if hold is None else (hold.grips, hold.faces)
-        found.append((share, reached, Held(standing.fixture, *faces)))
-    if not found:
+        tried.append((share, reached, Held(placed.fixture, *faces)))
+    if not tried:
         return np.zeros(len(area), bool), None, refused
     # Of equals what grips the part: a table alone does not hold it.
-    best = max(found, key=lambda each: (round(each[0] / EVEN), each[2].kind != "table"))
+    best = max(tried, key=lambda each: (round(each[0] / EVEN), each[2].kind != "table"))
     if len(words) == 1:
         return best[1], best[2], refused
-    served = [f"{each[2].kind} {percent(each[0])}" for each in sorted(found, key=lambda each: each is not best)]
-    nothing = [f"a {word} has nothing to grip" for word in words if word not in [each[2].kind for each in found]]
+    served = [f"{each[2].kind} {percent(each[0])}" for each in sorted(tried, key=lambda each: each is not best)]
+    nothing = [f"a {word} has nothing to grip" for word in words if word not in [each[2].kind for each in tried]]
     return best[1], replace(best[2], why=f"of these samples' area {', '.join([*served, *nothing])}"), refused

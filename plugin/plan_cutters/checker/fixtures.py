@@ -116,17 +116,17 @@ def _word(body: Body, setup: Setup, rotation: Floats, shift: Floats, low: Floats
 
 def _prism(low: float, high: float, lines: Floats) -> Floats:
     """Triangles (n, 3, 3) between two polylines (2, m, 2), which need not be convex together: a fan over each piece of both."""
-    found = []
+    triangles = []
     (inner, outer), count = lines, lines.shape[1]
     for k in range(count - 1):
         ring = [inner[k], inner[k + 1], outer[k + 1], outer[k]]
         for i, j in ((1, 2), (2, 3)):
-            found.append([(*ring[0], high), (*ring[i], high), (*ring[j], high)])
-            found.append([(*ring[0], low), (*ring[j], low), (*ring[i], low)])
+            triangles.append([(*ring[0], high), (*ring[i], high), (*ring[j], high)])
+            triangles.append([(*ring[0], low), (*ring[j], low), (*ring[i], low)])
     loop = [*inner, *outer[::-1]]
     for p, q in zip(loop, [*loop[1:], loop[0]], strict=True):
-        found += [[(*p, low), (*q, low), (*q, high)], [(*p, low), (*q, high), (*p, high)]]
-    return np.array(found, float)
+        triangles += [[(*p, low), (*q, low), (*q, high)], [(*p, low), (*q, high), (*p, high)]]
+    return np.array(triangles, float)
 
 
 def _box(low: Floats, high: Floats) -> Floats:

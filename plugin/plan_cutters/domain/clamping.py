@@ -102,11 +102,6 @@ class Vise:
         """As on a command line."""
         return f"{VISE}:{_joined(self.numbers[:3])}:{':'.join(map(_shown, self.numbers[3:]))}"
 
-    @property
-    def called(self) -> str:
-        """For people."""
-        return f"a self-centring vise, jaws {self.width:g} mm wide and {self.height:g} high, opening {self.opening:g} mm"
-
     def solids(self, arc_error: float, *, shown: bool = False) -> tuple[Solid, ...]:
         """Jaws, body, riser, and the table that it stands on; `shown`: of the table, what is drawn."""
         assert self.gap is not None, "a vise has bodies where it was placed"
@@ -154,12 +149,6 @@ class Chuck:
     def word(self) -> str:
         """As on a command line."""
         return f"{CHUCK}:{_joined(self.numbers[:2])}:{':'.join(map(_shown, self.numbers[2:]))}"
-
-    @property
-    def called(self) -> str:
-        """For people."""
-        size = "" if self.diameter is None else f" of {chuck_for(self.diameter):g} mm"
-        return f"a chuck{size} with {self.jaws} jaws {self.height:g} mm high"
 
     @property
     def half_angle(self) -> float:
@@ -228,7 +217,7 @@ def chuck_about(diameter: float, grip: float) -> Chuck:
 
 @dataclass(frozen=True, slots=True)
 class Requested:
-    """What the word of a vise or chuck says: sizes are None where none were given, the last number where it is to be placed."""
+    """The word of a vise or chuck says this: sizes are None where none were given, the last number where it is to be placed."""
 
     kind: str
     sizes: tuple[float, ...] | None
@@ -324,9 +313,9 @@ def _box(one: float, other: float, width: float, low: float, high: float) -> Blo
     return Block(((left, half), (left, -half)), ((right, half), (right, -half)), low, high)
 
 
-def _table(top: float, beside: float, *, shown: bool) -> Block:
+def _table(top: float, half_width: float, *, shown: bool) -> Block:
     """The table below a height: all of it, or what is drawn about what stands on it."""
-    half, thick = (beside + _SHOWN, _PLATE) if shown else (_REACH, _REACH)
+    half, thick = (half_width + _SHOWN, _PLATE) if shown else (_REACH, _REACH)
     return _box(-half, half, 2.0 * half, top - thick, top)
 
 

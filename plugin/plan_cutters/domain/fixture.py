@@ -135,7 +135,7 @@ class Fixture:
 
     @property
     def grips(self) -> Requested | None:
-        """What the word of a vise or chuck says; None for all else.
+        """Read what the word of a vise or chuck says; None for all else.
 
         Raises
         ------

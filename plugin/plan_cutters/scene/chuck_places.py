@@ -16,27 +16,27 @@ _TURN, _BINS = 5, 360
 _ARC = 20
 
 
-def chuck_places(part: Workpiece, asked: Requested) -> tuple[list[Place], str]:
+def chuck_places(part: Workpiece, requested: Requested) -> tuple[list[Place], str]:
     """Where a chuck may grip, and why it may not if there is no such place."""
     places, wide = list[Place](), list[float]()
     for wall, centre, radius in _upright_cylinders(part):
         if 2.0 * radius > largest_gripped():
             wide.append(2.0 * radius)
             continue
-        above = resting(wall.low, asked.grip)
-        chuck = chuck_about(2.0 * radius, asked.grip)
-        if asked.sizes is not None:
-            chuck = Chuck(int(asked.sizes[0]), asked.sizes[1], asked.grip, 2.0 * radius)
+        above = resting(wall.low, requested.grip)
+        chuck = chuck_about(2.0 * radius, requested.grip)
+        if requested.sizes is not None:
+            chuck = Chuck(int(requested.sizes[0]), requested.sizes[1], requested.grip, 2.0 * radius)
         if above <= chuck.height - chuck.grip:
             places += _about(part, chuck, wall, centre, above)
     if wide and not places:
         return places, f"the cylinder is {mm(min(wide))} wide, and chucks grip up to {mm(largest_gripped())}"
-    return places, f"no outside cylinder along it reaches all round in the lowest {mm(asked.grip)} of the part"
+    return places, f"no outside cylinder along it reaches all round in the lowest {mm(requested.grip)} of the part"
 
 
 def _upright_cylinders(part: Workpiece) -> list[tuple[Wall, Floats, float]]:
     """Upright outside cylinders, the faces of one together: each with its centre (3,) and the largest radius, mm."""
-    found: list[tuple[Wall, Floats, float]] = []
+    cylinders: list[tuple[Wall, Floats, float]] = []
     for number, rows in rows_by_face(part.face).items():
         if number in part.planes:
             continue
@@ -48,13 +48,13 @@ def _upright_cylinders(part: Workpiece) -> list[tuple[Wall, Floats, float]]:
             continue
         wall = wall_of([number], vertex, part.face[rows], np.zeros(3))
         centre, radius = circle
-        same = next((k for k, each in enumerate(found) if _one_cylinder(each, circle)), None)
+        same = next((k for k, each in enumerate(cylinders) if _one_cylinder(each, circle)), None)
         if same is None:
-            found.append((wall, centre, radius))
+            cylinders.append((wall, centre, radius))
         else:
-            first, centre, known = found[same]
-            found[same] = merged(first, wall), centre, max(radius, known)
-    return sorted(found, key=lambda each: (-each[2], each[0].faces))
+            first, centre, known = cylinders[same]
+            cylinders[same] = merged(first, wall), centre, max(radius, known)
+    return sorted(cylinders, key=lambda each: (-each[2], each[0].faces))
 
 
 def _one_cylinder(known: tuple[Wall, Floats, float], circle: tuple[Floats, float]) -> bool:
@@ -86,8 +86,8 @@ def _about(part: Workpiece, chuck: Chuck, wall: Wall, centre: Floats, above: flo
     vertex, face = clipped(wall.vertex, wall.face, np.array([0.0, 0.0, 1.0]), above, above + chuck.grip)
     if not len(vertex) or chuck.diameter is None:
         return
-    touched = _around(vertex, centre)
-    hidden = _around(vertex[np.isin(face, list(part.targets))], centre)
+    touched = _degrees_of(vertex, centre)
+    hidden = _degrees_of(vertex[np.isin(face, list(part.targets))], centre)
     first = wall.vertex[0, 0] - centre
     start, half = math.degrees(math.atan2(first[1], first[0])), math.degrees(chuck.half_angle)
     degree = math.radians(1.0) * 0.5 * chuck.diameter * chuck.grip
@@ -102,7 +102,7 @@ def _about(part: Workpiece, chuck: Chuck, wall: Wall, centre: Floats, above: flo
         yield Place(chuck, x, centre + np.array([0.0, 0.0, above]), wall.faces, float(touched[mine].sum()) * degree, shown, above)
 
 
-def _around(vertex: Floats, centre: Floats) -> Floats:
+def _degrees_of(vertex: Floats, centre: Floats) -> Floats:
     """Which degrees (360,) about an upright axis triangles (n, 3, 3) take: 1 or 0."""
     taken = np.zeros(_BINS)
     away = vertex - centre

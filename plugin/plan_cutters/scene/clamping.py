@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 
 from cad_io.arrays import Floats
-from plan_cutters.domain.clamping import VISE, Clamping, Requested, Vise
+from plan_cutters.domain.clamping import VISE, Clamping, Requested, Vise, chuck_for
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.errors import FixtureError
-from plan_cutters.plan_file.numbers import listed, mm
+from plan_cutters.plan_file.numbers import area, listed, mm
 from plan_cutters.scene.chuck_places import chuck_places
 from plan_cutters.scene.holds import Hold
 from plan_cutters.scene.vise_places import vise_places
@@ -37,21 +37,21 @@ def held(fixture: Fixture, part: Workpiece, overlaps: Callable[[Fixture, Clampin
     FixtureError
         There is nothing that it can grip, in a line that says why and what to try.
     """
-    asked = fixture.grips
-    if asked is None:
+    requested = fixture.grips
+    if requested is None:
         raise FixtureError(f"{fixture} is for --setup auto, which takes the best of table, vise and chuck; name one of them")
-    places, why = vise_places(part, asked) if asked.kind == VISE else chuck_places(part, asked)
+    places, why = vise_places(part, requested) if requested.kind == VISE else chuck_places(part, requested)
     least, step = min((each.hidden for each in places), default=0.0), _EVEN * max(1e-300, part.area)
     places.sort(key=lambda each: (int((each.hidden - least) / step), -round(each.firm, 6), each.above, each.grips))
     for place in places[:_TRIED]:
         placed = _fixture(fixture, part, place)
         if not overlaps(placed, place.clamping):
-            return _hold(asked, placed, part, place)
+            return _hold(requested, placed, part, place)
     if places:
         why = "something of the part is in the way of the jaws wherever they could grip"
     raise FixtureError(
         f"{fixture}: nothing to grip with the setup axis {axis_words(part.frame[2].tolist())}: {why}; try another setup, "
-        f"--fixture {'chuck' if asked.kind == VISE else 'vise'} or table, or a file of your own fixture"
+        f"--fixture {'chuck' if requested.kind == VISE else 'vise'} or table, or a file of your own fixture"
     )
 
 
@@ -75,14 +75,23 @@ def _angles(axes: Floats) -> Floats:
     return np.degrees(angles)
 
 
-def _hold(asked: Requested, fixture: Fixture, part: Workpiece, place: Place) -> Hold:
+def _hold(requested: Requested, fixture: Fixture, part: Workpiece, place: Place) -> Hold:
     clamping, names, rests = place.clamping, [f"F{n}" for n in place.grips], part.rests_on(place.above)
-    size = "" if asked.sizes is not None else ", the smallest usual size that takes the part"
-    across = f"{mm(clamping.gap or 0.0)} apart" if isinstance(clamping, Vise) else f"{mm(clamping.diameter or 0.0)} wide"
-    above = f", from {mm(place.above)} above its lowest point," if place.above > 0.0 else ""
+    size = "" if requested.sizes is not None else ", the smallest usual size that takes the part"
+    above = f" from {mm(place.above)} above its lowest point," if place.above > 0.0 else ""
     on = f"; the part rests on {listed([f'F{n}' for n in rests])}" if rests else ""
-    under = [f"{place.hidden:.4g} mm2 under the jaws"] if place.hidden > 0.0 else []
+    under = [f"{area(place.hidden)} under the jaws"] if place.hidden > 0.0 else []
     under += [f"F{n}" for n in rests if n in part.targets]
     left = f"left for another setup: {' and '.join(under)}" if under else "it holds none of the faces to machine"
-    words = f"{clamping.called}{size}; it grips {listed(names)}, {across},{above} {mm(clamping.grip)} deep{on}; {left}"
+    what, across = _called(clamping)
+    words = f"{what}{size}; it grips {listed(names)}, {across},{above} {mm(clamping.grip)} deep{on}; {left}"
     return Hold(fixture, place.grips, rests, place.hidden, words)
+
+
+def _called(clamping: Clamping) -> tuple[str, str]:
+    """A vise or chuck in its place for people, and how far apart or wide it is where it grips."""
+    if isinstance(clamping, Vise):
+        jaws = f"jaws {mm(clamping.width)} wide and {mm(clamping.height)} high, opening {mm(clamping.opening)}"
+        return f"a self-centring vise, {jaws}", f"{mm(clamping.gap or 0.0)} apart"
+    wide = clamping.diameter or 0.0
+    return f"a chuck of {mm(chuck_for(wide))} with {clamping.jaws} jaws {mm(clamping.height)} high", f"{mm(wide)} wide"

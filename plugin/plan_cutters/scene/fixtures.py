@@ -139,10 +139,10 @@ def joined(
         shown = None if bed is None else bed(_SHOWN * float(np.ptp(near, axis=0).max()))
         if (clamping := fixture.clamping) is not None:
             shown, _ = triangles_of(clamping, chord, shown=True)
-        standing = _placed(-number, packable(fixture, cache), body, read(fixture, cache), shown, across)
+        in_place = _placed(-number, packable(fixture, cache), body, read(fixture, cache), shown, across)
         if held is not None:
-            standing = replace(standing, notes=(*standing.notes, held.words), requested=requested, hold=held)
-        placed_fixtures.append(standing)
+            in_place = replace(in_place, notes=(*in_place.notes, held.words), requested=requested, hold=held)
+        placed_fixtures.append(in_place)
         bodies.append(body)
     possible = _together(surroundings.possible, placed_fixtures, [body.possible for body in bodies], near)
     certain = possible

@@ -19,9 +19,9 @@ _TOUCHED, _ALONG = 0.2, 0.5
 _TALL = 6.0
 
 
-def vise_places(part: Workpiece, asked: Requested) -> tuple[list[Place], str]:
+def vise_places(part: Workpiece, requested: Requested) -> tuple[list[Place], str]:
     """Where a vise may grip, and why it may not if there is no such place."""
-    walls = _upright_planes(part, max(each[1] for each in VISES) if asked.sizes is None else asked.sizes[1])
+    walls = _upright_planes(part, max(each[1] for each in VISES) if requested.sizes is None else requested.sizes[1])
     places: list[Place] = []
     apart: list[float] = []
     tall = float(part.vertex[..., 2].max())
@@ -34,18 +34,18 @@ def vise_places(part: Workpiece, asked: Requested) -> tuple[list[Place], str]:
             gap = float((one.vertex @ x).max() - (other.vertex @ x).min())
             if gap > 0.0:
                 apart.append(gap)
-                places += _between(part, asked, one, other, x)
-    firm = [each for each in places if tall - each.above - asked.grip <= _TALL * each.touched / asked.grip]
+                places += _between(part, requested, one, other, x)
+    firm = [each for each in places if tall - each.above - requested.grip <= _TALL * each.touched / requested.grip]
     if places and not firm:
-        most = max(each.touched for each in places) / asked.grip
+        most = max(each.touched for each in places) / requested.grip
         return [], f"the part stands {mm(tall)} high, and jaws touch no more than {mm(most)} of its length"
     places = firm
-    widest = max(each[2] for each in VISES) if asked.sizes is None else asked.sizes[2]
+    widest = max(each[2] for each in VISES) if requested.sizes is None else requested.sizes[2]
     if not apart:
         return places, "no two opposite plane faces stand along it near the bottom"
     if min(apart) > widest:
         return places, f"the nearest parallel faces are {mm(min(apart))} apart, and the vise opens to {mm(widest)}"
-    return places, f"no two opposite plane faces lie side by side in the {mm(asked.grip)} that the jaws grip"
+    return places, f"no two opposite plane faces lie side by side in the {mm(requested.grip)} that the jaws grip"
 
 
 def _upright_planes(part: Workpiece, reach: float) -> list[Wall]:
@@ -76,9 +76,9 @@ def _one_plane(one: Wall, other: Wall) -> bool:
     return abs(float((one.vertex @ one.normal).max() - (other.vertex @ one.normal).max())) <= TOGETHER
 
 
-def _between(part: Workpiece, asked: Requested, one: Wall, other: Wall, x: Floats) -> Iterator[Place]:
+def _between(part: Workpiece, requested: Requested, one: Wall, other: Wall, x: Floats) -> Iterator[Place]:
     """Places of a vise on two walls: in the middle of what its jaws can touch, and at both ends of that."""
-    grip, y = asked.grip, np.array([-x[1], x[0], 0.0])
+    grip, y = requested.grip, np.array([-x[1], x[0], 0.0])
     above = resting(max(one.low, other.low), grip)
     strips = [clipped(each.vertex, each.face, np.array([0.0, 0.0, 1.0]), above, above + grip) for each in (one, other)]
     if not all(len(vertex) for vertex, _ in strips):
@@ -86,7 +86,7 @@ def _between(part: Workpiece, asked: Requested, one: Wall, other: Wall, x: Float
     along = [(float((vertex @ y).min()), float((vertex @ y).max())) for vertex, _ in strips]
     start, end = max(low for low, _ in along), min(high for _, high in along)
     right, left = float((strips[0][0] @ x).max()), float((strips[1][0] @ x).min())
-    vise = _vise(part, asked, right - left, float(np.ptp(part.vertex @ y)), above)
+    vise = _vise(part, requested, right - left, float(np.ptp(part.vertex @ y)), above)
     if vise is None or not end - start > part.flat:
         return
     half = 0.5 * vise.width
@@ -102,10 +102,10 @@ def _between(part: Workpiece, asked: Requested, one: Wall, other: Wall, x: Float
         yield Place(vise, x, origin, grips, least, hidden, above)
 
 
-def _vise(part: Workpiece, asked: Requested, gap: float, length: float, above: float) -> Vise | None:
-    """The vise that was asked for, or the smallest that takes a part so long along its jaws; None where there is none."""
-    vises = vises_for(gap) if asked.sizes is None else (Vise(*asked.sizes),)
-    vises = tuple(replace(each, grip=asked.grip, gap=gap) for each in vises if each.height > asked.grip and each.opening >= gap)
+def _vise(part: Workpiece, requested: Requested, gap: float, length: float, above: float) -> Vise | None:
+    """The vise that was requested, or the smallest that takes a part so long along its jaws; None where there is none."""
+    grip, vises = requested.grip, vises_for(gap) if requested.sizes is None else (Vise(*requested.sizes),)
+    vises = tuple(replace(each, grip=grip, gap=gap) for each in vises if each.height > grip and each.opening >= gap)
     # What is below the faces that are gripped hangs between the jaws.
     vises = tuple(each for each in vises if above <= each.height - each.grip)
     wide = [each for each in vises if each.width >= _ALONG * length]

@@ -142,14 +142,14 @@ def area_of(vertex: Floats) -> float:
 
 
 def clipped(vertex: Floats, face: Ints, direction: Floats, low: float, high: float) -> tuple[Floats, Ints]:
-    """What of triangles (n, 3, 3) of faces (n,) lies between two heights along a direction, as triangles."""
+    """Cut triangles (n, 3, 3) of faces (n,) to what lies between two heights along a direction."""
     for way, limit in ((direction, low), (-direction, -high)):
         vertex, face = _beyond(vertex, face, way, limit)
     return vertex, face
 
 
 def _beyond(vertex: Floats, face: Ints, direction: Floats, limit: float) -> tuple[Floats, Ints]:
-    """What of triangles lies above a height along a direction."""
+    """Cut triangles to what lies above a height along a direction."""
     height = vertex @ direction - limit
     count = (height > 0.0).sum(axis=1)
     parts, faces = [vertex[count == 3]], [face[count == 3]]
