@@ -196,6 +196,8 @@ def _described(plan: Plan, *, ranking: Ranking, chosen: tuple[int, ...], shares:
         f"the samples' area. The plan reaches {percent(share)} of the target area"
         f"{'' if held else f', and holds only {percent(held_share)} of what was promised'}."
     )
+    if ranking.words == (TABLE,):
+        why += " Nothing but a table was tried: --fixture auto tries a vise and a chuck, too."
     entry = SetupProposal(setups=setups, directions=len(ranking.candidates.axis), searched=len(ranking.served),
                           samples=len(ranking.rows), promised=together, found=share, kept=held_share, held=held, tried=tried,
                           why=why)  # fmt: skip

@@ -78,9 +78,26 @@ def test_a_table_is_proposed_where_nothing_is_said_and_may_be_said():
     one, other = plan(box(), **HOW), plan(box(), fixtures="table", **HOW)
     assert one.plan.setup_proposal == other.plan.setup_proposal
     assert one.plan.setup_proposal.setups[0].fixtures == ["table"]
+    assert "--fixture auto tries a vise and a chuck" in one.plan.setup_proposal.why
 
 
 def test_where_no_vise_holds_the_part_one_line_says_so():
     with pytest.raises(OptionError, match="nothing to grip") as caught:
         plan(ball(), fixtures="vise", **HOW)
     assert "\n" not in str(caught.value)
+
+
+def test_setups_named_behind_auto_bring_what_holds_them(tmp_path, held):
+    """What `--fixture auto` asked for falls away with `auto`: the files say how the part is held."""
+    from tests.support.forked import run
+    from tests.support.places import SAMPLES
+
+    file = tmp_path / "setup-1.toml"
+    file.write_text('unit = "mm"\naxis = [0, 0, 1]\nfixtures = ["vise"]\n', encoding="utf-8")
+    for order in ([0, 1, 2], [1, 0, 2], [0, 2, 1]):
+        words = [("--setup", "auto"), ("--fixture", "auto"), ("--setup", str(file))]
+        ordered = [word for k in order for word in words[k]]
+        done = run(SAMPLES / "pocket_top.step", "--cutter", "R5L60", *ordered, "--spacing", "8", "--area-budget", "0",
+                   "--json", "-", "--quiet", cwd=tmp_path)  # fmt: skip
+        assert '"clamping": "vise:' in done.stdout, done.stderr
+        assert done.stdout.count('"name": "fixture:') == 1
