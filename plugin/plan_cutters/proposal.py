@@ -1,18 +1,20 @@
 """Setups that are proposed: ranked, then judged with a table, vise or chuck each, and kept only if the verdicts hold what was
 promised."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from plan_cutters.answers.setup_ranking import MOST, Ranking, ranked, touching
+from plan_cutters.answers.candidates import touching
+from plan_cutters.answers.holding import Held
+from plan_cutters.answers.setup_ranking import MOST, Ranking, ranked
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.notes import noted
 from plan_cutters.domain.clamping import CHUCK, VISE
-from plan_cutters.domain.fixture import AUTO, TABLE
+from plan_cutters.domain.fixture import TABLE
 from plan_cutters.domain.placement import Placement, axis_words
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.judged_part import JudgedPart
@@ -71,7 +73,9 @@ def judged_proposed(
     failed, why = frozenset[int](), ""
     for tried in range(1, _TRIES + 1):
         chosen = ranking.choose(MOST, failed)
-        promised = np.logical_or.reduce([ranking.served[k] for k in chosen]) if chosen else np.zeros(0, bool)
+        with clock.stage("proposal"):
+            ranking.settle(chosen)
+        promised = np.logical_or.reduce([ranking.served(k) for k in chosen]) if chosen else np.zeros(0, bool)
         if not promised.any():
             break
         try:
@@ -90,25 +94,37 @@ def judged_proposed(
         return best[1:]
     if why:
         raise OptionError(f"setup auto: no proposal can be planned: {why}")
-    if not ranking.held and ranking.refused:
-        raise OptionError(
-            f"setup auto: nothing holds the part in {len(ranking.served)} directions: {next(iter(ranking.refused))}"
-        )
+    if ranking.refused and not any(ranking.held.values()):
+        raise OptionError(f"setup auto: nothing holds the part in {len(ranking.held)} directions: {next(iter(ranking.refused))}")
     raise OptionError(
         f"setup auto: {_among(words)}, no cutter reaches any of {len(ranking.rows)} samples in the "
-        f"{len(ranking.served)} best directions; name a setup with its fixtures"
+        f"{len(ranking.held)} best directions; name a setup with its fixtures"
     )
 
 
 def _words(options: Options) -> tuple[str, ...]:
-    """What may hold the part in each setup: a table, unless something else was requested."""
-    (word,) = [each.source for each in options.fixtures] or [TABLE]
-    return (TABLE, VISE, CHUCK) if word.lower() == AUTO else (word,)
+    """What may hold the part in each setup: what was requested, or any of them."""
+    return tuple(each.text for each in options.fixtures) or (TABLE, VISE, CHUCK)
 
 
 def _among(words: tuple[str, ...]) -> str:
     """What holds the part, in words."""
-    return "over a table" if words == (TABLE,) else f"held by {' or '.join(words)}"
+    return "over a table" if words[0] == TABLE else f"held by {words[0]}"
+
+
+def _held(ranking: Ranking, k: int) -> Held:
+    held = ranking.held[k]
+    assert held is not None, "what is chosen is held"
+    return held
+
+
+def _rests_on(ranking: Ranking, k: int) -> tuple[str, ...]:
+    """Planar faces on which the part stands in a direction, on the table or in the jaws."""
+    return _named({*ranking.candidates.stands_on[k], *_held(ranking, k).rests_on})
+
+
+def _named(faces: Collection[int]) -> tuple[str, ...]:
+    return tuple(f"F{n}" for n in sorted(faces))
 
 
 def _axis(ranking: Ranking, k: int) -> tuple[float, float, float]:
@@ -125,11 +141,9 @@ def _options(options: Options, ranking: Ranking, chosen: tuple[int, ...], folder
     first, *others = (
         Placement(
             _axis(ranking, k),
-            clamped=tuple(f"F{n}" for n in ranking.candidates.stands_on[k]),
-            fixtures=(ranking.held[k].fixture,),
-            stands_on=tuple(
-                f"F{n}" for n in sorted({*ranking.held[k].faces, *(ranking.candidates.stands_on[k] or stands_on[k])})
-            ),
+            clamped=_rests_on(ranking, k),
+            fixtures=(_held(ranking, k).fixture,),
+            stands_on=_named({*_held(ranking, k).faces, *(ranking.candidates.stands_on[k] or stands_on[k])}),
             file=f"{folder.rstrip('/')}/setup-{number}.toml" if folder else "",
             proposed=True,
         )
@@ -148,7 +162,7 @@ def _compared(part: JudgedPart, ranking: Ranking, chosen: tuple[int, ...]) -> tu
     # Samples may stand elsewhere, for another tolerance is kept: the nearest one answers.
     near = cKDTree(samples.point).query(ranking.ready.samples.point[ranking.rows])[1]
     held = reached[near]
-    served = np.stack([ranking.served[k] for k in chosen], axis=1)
+    served = np.stack([ranking.served(k) for k in chosen], axis=1)
     promised = served.any(axis=1)
     held_share = float(ranking.area[promised & held].sum()) / max(1e-300, float(ranking.area[promised].sum()))
     missed = np.asarray(ranking.area @ (served & ~held[:, None]))
@@ -163,12 +177,14 @@ def _compared(part: JudgedPart, ranking: Ranking, chosen: tuple[int, ...]) -> tu
 
 def _setup(ranking: Ranking, k: int, promised: float) -> ProposedSetup:
     """The entry of a proposed setup."""
-    held = ranking.held[k]
+    held = _held(ranking, k)
     return ProposedSetup(
         axis=_axis(ranking, k),
-        stands_on=[f"F{n}" for n in ranking.candidates.stands_on[k]],
+        stands_on=list(_rests_on(ranking, k)),
         clamping=held.kind,
-        grips=[f"F{n}" for n in held.grips],
+        grips=list(_named(held.grips)),
+        hidden_mm2=held.hidden,
+        how_held=held.words,
         fixtures=[held.fixture.text],
         why_held=held.why,
         promised=promised,
@@ -183,22 +199,20 @@ def _stands(setup: ProposedSetup) -> str:
 
 def _described(plan: Plan, *, ranking: Ranking, chosen: tuple[int, ...], shares: tuple[float, float, int]) -> Plan:
     """The same plan with its proposal; its text is not made anew."""
-    served = np.stack([ranking.served[k] for k in chosen], axis=1)
+    served = np.stack([ranking.served(k) for k in chosen], axis=1)
     alone, any_of = ranking.share(served), np.asarray(served.any(axis=1))
     together = exact(float(ranking.share(any_of[:, None])[0]), some=bool(any_of.any()), whole=bool(any_of.all()))
     share, held_share, tried = shares
     setups = [_setup(ranking, k, min(1.0, float(each))) for k, each in zip(chosen, alone, strict=True)]
     held = held_share >= _ENOUGH
     where = [f"{axis_words(each.axis)} ({_stands(each)})" for each in setups]
-    of = f"{len(ranking.served)} of {len(ranking.candidates.axis)} directions searched at {len(ranking.rows)} samples"
+    of = f"{len(ranking.held)} of {len(ranking.candidates.axis)} directions searched at {len(ranking.rows)} samples"
     why = (
         f"With {of} {_among(ranking.words)}, {'this one serves' if len(setups) == 1 else 'these serve'} {percent(together)} of "
         f"the samples' area. The plan reaches {percent(share)} of the target area"
         f"{'' if held else f', and holds only {percent(held_share)} of what was promised'}."
     )
-    if ranking.words == (TABLE,):
-        why += " Nothing but a table was tried: --fixture auto tries a vise and a chuck, too."
-    entry = SetupProposal(setups=setups, directions=len(ranking.candidates.axis), searched=len(ranking.served),
+    entry = SetupProposal(setups=setups, directions=len(ranking.candidates.axis), searched=len(ranking.held),
                           samples=len(ranking.rows), promised=together, found=share, kept=held_share, held=held, tried=tried,
                           why=why)  # fmt: skip
     return noted(plan, setup_proposed(where, why)).model_copy(update={"setup_proposal": entry})

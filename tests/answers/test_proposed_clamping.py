@@ -1,9 +1,12 @@
 """Setups that are proposed in a vise or chuck: what holds the part there, why, and the file that says it again."""
 
+import click
 import numpy as np
 import pytest
 
 from plan_cutters import plan
+from plan_cutters.answers.holding import Held, best_hold
+from plan_cutters.command.values import fixtures_of_setups
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.verdicts import ANOTHER_SETUP
 from plan_cutters.errors import OptionError
@@ -59,26 +62,48 @@ def test_the_setup_file_is_the_same_clamping_again(held, tmp_path):
     assert np.array_equal(held.reaches[name].verdict, again.reaches[name].verdict)
 
 
-def test_auto_takes_what_serves_most_and_says_what_the_others_do():
-    found = plan(box(40, 30, 20), fixtures="auto", **HOW)
-    (setup, *_) = found.plan.setup_proposal.setups
-    assert setup.clamping == "vise"
-    assert setup.why_held.startswith("of these samples' area vise ")
-    assert "table" in setup.why_held
-    assert "a chuck has nothing to grip" in setup.why_held
-    round_ = plan(rod(12, 40), fixtures="auto", **HOW)
-    clamped = {each.clamping for each in round_.plan.setup_proposal.setups}
-    assert "chuck" in clamped
-    assert "vise" not in clamped
-    nothing = plan(ball(), fixtures="auto", **HOW)
-    assert {each.clamping for each in nothing.plan.setup_proposal.setups} == {"table"}
+@pytest.mark.parametrize(
+    ("shape", "taken", "why"),
+    [
+        (box(40, 30, 20), {"vise"}, "a chuck has nothing to grip (no outside cylinder"),
+        (rod(12, 40), {"chuck"}, "a vise has nothing to grip (no two opposite plane faces"),
+        (ball(), {"table"}, "a vise has nothing to grip"),
+    ],
+    ids=["block", "bar", "ball"],
+)
+def test_what_grips_the_part_is_proposed_and_a_table_where_nothing_does(shape, taken, why):
+    said = plan(shape, **HOW).plan.setup_proposal
+    first = said.setups[0]
+    assert {each.clamping for each in said.setups} <= {*taken, "table"}
+    assert first.clamping in taken
+    assert f"the {first.clamping} serves " in first.why_held
+    assert why in first.why_held
+    assert bool(first.hidden_mm2) == bool(first.grips) == bool(first.how_held) == (first.clamping != "table")
 
 
-def test_a_table_is_proposed_where_nothing_is_said_and_may_be_said():
-    one, other = plan(box(), **HOW), plan(box(), fixtures="table", **HOW)
-    assert one.plan.setup_proposal == other.plan.setup_proposal
-    assert one.plan.setup_proposal.setups[0].fixtures == ["table"]
-    assert "--fixture auto tries a vise and a chuck" in one.plan.setup_proposal.why
+def test_a_block_lies_on_its_largest_faces():
+    """Upright it would show more of itself in each setup, and as much in both: it lies low all the same."""
+    said = plan(box(80, 50, 40), **HOW).plan.setup_proposal
+    assert sorted(each.axis for each in said.setups) == [(0.0, 0.0, -1.0), (0.0, 0.0, 1.0)]
+    assert said.promised == 1.0
+
+
+def test_of_table_vise_and_chuck_one_may_be_requested():
+    said = plan(box(), **HOW, fixtures="table").plan.setup_proposal
+    assert {each.clamping for each in said.setups} == {"table"}
+    assert said.setups[0].fixtures == ["table"]
+    assert not said.setups[0].why_held
+
+
+def test_a_table_is_taken_where_jaws_hide_too_much():
+    area = np.array([1.0, 1.0, 1.0, 1.0])
+    table, vise = (
+        Held(Fixture.parse("table"), area > 0),
+        Held(Fixture.parse("vise:46x25x65:3:40@1,0,0"), np.arange(4) > 0, (1, 2)),
+    )
+    assert best_hold([table, vise], {}, area).kind == "table"
+    assert best_hold([table, vise], {}, np.array([0.2, 1.0, 1.0, 1.0])).kind == "vise"
+    assert "the vise serves 75 % of the samples' area" in best_hold([table, vise], {"chuck": "none"}, area).why
 
 
 def test_where_no_vise_holds_the_part_one_line_says_so():
@@ -88,16 +113,31 @@ def test_where_no_vise_holds_the_part_one_line_says_so():
 
 
 def test_setups_named_behind_auto_bring_what_holds_them(tmp_path, held):
-    """What `--fixture auto` asked for falls away with `auto`: the files say how the part is held."""
+    """What `--fixture` asked for falls away with `auto`, and that is told: the files say how the part is held."""
     from tests.support.forked import run
     from tests.support.places import SAMPLES
 
     file = tmp_path / "setup-1.toml"
     file.write_text('unit = "mm"\naxis = [0, 0, 1]\nfixtures = ["vise"]\n', encoding="utf-8")
     for order in ([0, 1, 2], [1, 0, 2], [0, 2, 1]):
-        words = [("--setup", "auto"), ("--fixture", "auto"), ("--setup", str(file))]
+        words = [("--setup", "auto"), ("--fixture", "chuck"), ("--setup", str(file))]
         ordered = [word for k in order for word in words[k]]
         done = run(SAMPLES / "pocket_top.step", "--cutter", "R5L60", *ordered, "--spacing", "8", "--area-budget", "0",
                    "--json", "-", "--quiet", cwd=tmp_path)  # fmt: skip
         assert '"clamping": "vise:' in done.stdout, done.stderr
         assert done.stdout.count('"name": "fixture:') == 1
+        assert done.stderr.count("--fixture chuck is left out") == 1
+
+
+def test_a_vise_stays_where_what_is_named_behind_auto_says_nothing_of_it(tmp_path):
+    bare = tmp_path / "bare.toml"
+    bare.write_text('unit = "mm"\naxis = [0, 0, 1]\n', encoding="utf-8")
+    context = click.Context(click.Command("plan"))
+    for named, texts, left in [
+        (((0.0, 0.0, 1.0),), ("vise",), ("vise",)),
+        ((str(bare),), ("vise",), ("vise",)),
+        (((0.0, 0.0, 1.0),), ("vise", "vise:46x25x65:3:40@1,0,0"), ("vise:46x25x65:3:40@1,0,0",)),
+        (((0.0, 0.0, 1.0),), ("clamp.step", "table"), ("clamp.step", "table")),
+    ]:
+        context.meta["plan_cutters.named_setups"] = named
+        assert fixtures_of_setups(context, None, texts) == left

@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from plan_cutters import Options, plan
+from plan_cutters.answers.candidates import Candidates, cube, distinct, fibonacci
 from plan_cutters.answers.least_set import cover
-from plan_cutters.answers.setup_ranking import Candidates, cube, distinct, fibonacci, holdable, ranked
+from plan_cutters.answers.setup_ranking import holdable, ranked
 from plan_cutters.document.clock import Clock
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement

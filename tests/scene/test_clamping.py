@@ -188,9 +188,11 @@ def test_a_scene_and_a_posture_map_take_them_too():
     assert any(len(each) for each in free[1])
 
 
-def test_auto_is_no_fixture_of_a_named_setup():
-    with pytest.raises(OptionError, match="fixture auto is for --setup auto"):
-        plan(box(), fixtures="auto", **HOW)
+@pytest.mark.parametrize("words", [["vise", "vise"], ["vise", "chuck"], ["vise", "vise:46x25x65:3:40@30,20,0,0,0,-90"]])
+def test_one_vise_or_chuck_is_placed_on_a_part(words):
+    with pytest.raises(OptionError, match="one vise or chuck is placed on a part") as error:
+        plan(box(), fixtures=words, **HOW)
+    assert "\n" not in str(error.value)
 
 
 @pytest.mark.parametrize("file", real("hard/ampath_propeller.stp"), ids=lambda path: path.stem)

@@ -1,6 +1,6 @@
 """Find what holds a part best in a direction: a table, a vise or a chuck, by what cutters reach among each."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -8,17 +8,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.domain.fixture import Fixture
-from plan_cutters.errors import FixtureError
-from plan_cutters.plan_file.numbers import percent
+from plan_cutters.domain.fixture import TABLE, Fixture
+from plan_cutters.plan_file.numbers import area, percent
 from plan_cutters.scene.preparation import Axis, Prepared
 from plan_cutters.scene.surroundings import Surroundings
 
-#: Shares nearer than this are equal.
-EVEN = 0.002
+#: A table holds nothing: it is taken only where what grips the part serves less than this share of what it serves.
+_GRIPPED_FOR = 0.9
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class Held:
     """How a part is held in a direction that was searched.
 
@@ -26,15 +25,24 @@ class Held:
     ----------
     fixture : Fixture
         In its place.
-    grips, faces : tuple of int
-        Faces that jaws touch, and all that a vise or chuck holds; none for a table.
+    served : (r,) bool
+        Where a posture was found among it.
+    grips, rests_on : tuple of int
+        Faces that jaws touch, and planar ones with which the part rests in them; none for a table.
+    hidden : float
+        Area of the target faces that jaws touch, mm2.
+    words : str
+        What it is and what it grips; empty for a table.
     why : str
-        What it and the others serve, or cannot grip; empty where only one was tried.
+        Why it was taken; empty where only one was tried.
     """
 
     fixture: Fixture
+    served: NDArray[np.bool_]
     grips: tuple[int, ...] = ()
-    faces: tuple[int, ...] = ()
+    rests_on: tuple[int, ...] = ()
+    hidden: float = 0.0
+    words: str = ""
     why: str = ""
 
     @property
@@ -42,50 +50,55 @@ class Held:
         """`table`, `vise` or `chuck`."""
         return self.fixture.kind
 
+    @property
+    def faces(self) -> tuple[int, ...]:
+        """All faces that a vise or chuck holds."""
+        return (*self.grips, *self.rests_on)
 
-def best_hold(
-    ready: Prepared, axis: Axis, words: Sequence[str], among: Callable[[Surroundings], NDArray[np.bool_]], area: Floats
-) -> tuple[NDArray[np.bool_], Held | None, list[str]]:
-    """Find what holds a part best along an axis: where a posture is tried in it (r,), how it holds, and why others do not.
+
+def held_by(ready: Prepared, axis: Axis, word: str, among: Callable[[Surroundings], NDArray[np.bool_]]) -> Held:
+    """Hold a part along an axis by a table, vise or chuck, and find where a posture is among it.
 
     Parameters
     ----------
     ready : Prepared
     axis : (float, float, float)
-    words : sequence of str
-        `table`, and words of vises and chucks.
+    word : str
+        `table`, or the word of a vise or chuck.
     among : callable
         Where any cutter has a posture among some obstacles, (r,).
-    area : (r,) float
-        What each of these samples stands for.
 
-    Returns
-    -------
-    reached : (r,) bool
-    held : Held or None
-        None where nothing holds it.
-    refused : list of str
-        Why vises and chucks do not.
+    Raises
+    ------
+    NothingToGripError
     """
-    tried: list[tuple[float, NDArray[np.bool_], Held]] = []
-    refused: list[str] = []
-    for word in words:
-        try:
-            surroundings = ready.scene.surround_held(axis, word)
-        except FixtureError as error:
-            refused.append(error.cause)
-            continue
-        (placed,) = surroundings.fixtures
-        reached, hold = among(surroundings), placed.hold
-        share = float(area @ reached / max(1e-300, float(area.sum())))
-        faces = ((), ()) if hold is None else (hold.grips, hold.faces)
-        tried.append((share, reached, Held(placed.fixture, *faces)))
-    if not tried:
-        return np.zeros(len(area), bool), None, refused
-    # Of equals what grips the part: a table alone does not hold it.
-    best = max(tried, key=lambda each: (round(each[0] / EVEN), each[2].kind != "table"))
-    if len(words) == 1:
-        return best[1], best[2], refused
-    served = [f"{each[2].kind} {percent(each[0])}" for each in sorted(tried, key=lambda each: each is not best)]
-    nothing = [f"a {word} has nothing to grip" for word in words if word not in [each[2].kind for each in tried]]
-    return best[1], replace(best[2], why=f"of these samples' area {', '.join([*served, *nothing])}"), refused
+    surroundings = ready.scene.surround_held(axis, word)
+    (placed,) = surroundings.fixtures
+    held, hold = Held(placed.fixture, among(surroundings)), placed.hold
+    if hold is None:
+        return held
+    return replace(held, grips=hold.grips, rests_on=hold.rests_on, hidden=hold.hidden, words=hold.words)
+
+
+def best_hold(tried: list[Held], refused: dict[str, str], weight: Floats) -> Held:
+    """Take what holds a part best, and say why.
+
+    Parameters
+    ----------
+    tried : list of Held
+        At least one.
+    refused : dict of str
+        Of each kind that cannot hold it, why not.
+    weight : (r,) float
+        The area that each sample stands for.
+    """
+    whole = max(1e-300, float(weight.sum()))
+    share = {each.kind: float(weight @ each.served) / whole for each in tried}
+    gripping = [each for each in tried if each.kind != TABLE]
+    best = max(gripping or tried, key=lambda each: share[each.kind])
+    if share[best.kind] < _GRIPPED_FOR * share.get(TABLE, 0.0):
+        best = next(each for each in tried if each.kind == TABLE)
+    served = [f"the {each.kind} serves {percent(share[each.kind])} of the samples' area" for each in tried]
+    nothing = [f"a {kind} has nothing to grip ({why})" for kind, why in refused.items()]
+    left = f"; {area(best.hidden)} under its jaws" if best.hidden > 0.0 else ""
+    return replace(best, why=f"{', '.join([*served, *nothing])}{left}")

@@ -7,12 +7,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from plan_cutters.answers.setup_ranking import planes_below
+from plan_cutters.answers.candidates import planes_below
 from plan_cutters.answers.trial import Case
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.errors import FixtureError
 from plan_cutters.machines.requested_setups import without
+from plan_cutters.scene.holds import NothingToGripError
 from plan_cutters.scene.inside_material import inside_material
 from plan_cutters.scene.preparation import Prepared
 
@@ -94,7 +94,7 @@ def on_table(ready: Prepared, axis: Axis) -> Prepared:
     scene = ready.scene
     try:
         surroundings = scene.surround_in(axis, without(scene.fixtures, own), own)
-    except FixtureError:
+    except NothingToGripError:
         # A vise or chuck has nothing to grip there: nothing can be machined.
         return replace(ready, conditions=conditions, held=np.ones(len(ready.samples), bool), others=())
     inside = inside_material(

@@ -18,9 +18,7 @@ from plan_cutters.errors import FixtureError
 #: Simple fixtures by words: what each number is.
 WORDS = {"box": "x,y,z", "cylinder": "r,h", "table": "h", **FORMS}
 TABLE = "table"
-#: The word for the best of table, vise and chuck in each setup that is proposed.
-AUTO = "auto"
-_WORD = re.compile(rf"({'|'.join(WORDS)}):(.*)|(table|{VISE}|{CHUCK}|{AUTO})", re.IGNORECASE | re.DOTALL)
+_WORD = re.compile(rf"({'|'.join(WORDS)}):(.*)|({TABLE}|{VISE}|{CHUCK})", re.IGNORECASE | re.DOTALL)
 #: Suffixes of files that are known, and what they are.
 CAD = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
 MESH = (".stl", ".obj", ".ply", ".glb")
@@ -151,7 +149,7 @@ class Fixture:
     def to_place(self) -> bool:
         """Whether it is a vise or chuck that is to be placed for the setup."""
         grips = self.grips
-        return self.kind == AUTO or (grips is not None and grips.last is None)
+        return grips is not None and grips.last is None
 
     @property
     def clamping(self) -> Clamping | None:
@@ -239,10 +237,22 @@ class Fixture:
 
     @classmethod
     def each_of(cls, given: Any) -> tuple["Fixture", ...]:
-        """One fixture, text or object, or a list of such, each with a name of its own."""
+        """One fixture, text or object, or a list of such, each with a name of its own.
+
+        Raises
+        ------
+        FixtureError
+            A fixture has no meaning, or one that is to be placed on the part stands beside another that grips it.
+        """
         if given is None:
             return ()
         fixtures = [cls.of(each) for each in (given if isinstance(given, list | tuple) else [given])]
+        gripping = [each for each in fixtures if each.grips is not None]
+        if len(gripping) > 1 and any(each.to_place for each in gripping):
+            raise FixtureError(
+                f"{' and '.join(map(str, gripping[:2]))}: one vise or chuck is placed on a part; leave the others out, "
+                "or give all numbers of each, as plans write them"
+            )
         return tuple(replace(each, name=name) for each, name in zip(fixtures, _distinct_names(fixtures), strict=True))
 
     def placed(self, points: Floats) -> Floats:

@@ -6,8 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from plan_cutters.domain.checks import items, shown
-from plan_cutters.domain.fixture import AUTO as AUTO_FIXTURE
-from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.fixture import TABLE, Fixture
 from plan_cutters.domain.host_axes import plane_of
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import along, unit
@@ -71,11 +70,9 @@ def setups_requested(
         raise OptionError("setup auto proposes all setups: leave out the other setups, or auto")
     if propose and not _proposable(common):
         raise OptionError(
-            "setup auto puts a table under the part in each setup, or what --fixture auto, vise or chuck says: leave out other "
+            "setup auto tries a table, a vise and a chuck in each setup, or the one that --fixture says: leave out other "
             "fixtures, or name the setup"
         )
-    if not propose and any(each.kind == AUTO_FIXTURE for each in (*common, *_fixtures(placed))):
-        raise OptionError("fixture auto is for --setup auto: name table, vise or chuck")
     shared = without(common, () if placed is None else placed.fixtures)
     if listed and (gripping := tuple(each for each in shared if each.to_place)):
         # What grips the part is placed for each setup: it is that one's own.
@@ -90,16 +87,12 @@ def setups_requested(
             "other_placements": tuple(place for _, place in setups) if known else ()}  # fmt: skip
 
 
-def _fixtures(placed: Placement | None) -> tuple[Fixture, ...]:
-    return () if placed is None else placed.fixtures
-
-
 def _proposable(fixtures: Sequence[Fixture]) -> bool:
     """Whether fixtures are what may be proposed with a setup: nothing, or one word without a place."""
     if not fixtures:
         return True
     (first, *more) = fixtures
-    return not more and (first.to_place or (first.kind == "table" and not first.sizes and not any(first.placement)))
+    return not more and (first.to_place or (first.kind == TABLE and not first.sizes and not any(first.placement)))
 
 
 def _holding(setup: tuple[tuple[float, float, float], Placement | None], gripping: Sequence[Fixture]) -> Placement:

@@ -30,6 +30,8 @@ class ProposedSetup(Frozen):
     clamping: Literal["table", "vise", "chuck"] = "table"
     grips: list[str] = Field(default=[], description="faces that the jaws touch")
     fixtures: list[str] = Field(default=["table"], description="what holds the part, as --fixture takes it")
+    hidden_mm2: float = Field(default=0.0, description="area of the faces to machine that the jaws touch: for another setup")
+    how_held: str = Field(default="", description="what the vise or chuck is and what it grips; empty for a table")
     why_held: str = Field(default="", description="why it is held so; empty where nothing else was tried")
     promised: float = Field(description="share of the compared samples' area that it serves by itself, 0 to 1")
 

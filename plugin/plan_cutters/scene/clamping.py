@@ -10,10 +10,9 @@ from cad_io.arrays import Floats
 from plan_cutters.domain.clamping import VISE, Clamping, Requested, Vise, chuck_for
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import axis_words
-from plan_cutters.errors import FixtureError
 from plan_cutters.plan_file.numbers import area, listed, mm
 from plan_cutters.scene.chuck_places import chuck_places
-from plan_cutters.scene.holds import Hold
+from plan_cutters.scene.holds import Hold, NothingToGripError
 from plan_cutters.scene.vise_places import vise_places
 from plan_cutters.scene.workpiece import Place, Workpiece
 
@@ -34,12 +33,11 @@ def held(fixture: Fixture, part: Workpiece, overlaps: Callable[[Fixture, Clampin
 
     Raises
     ------
-    FixtureError
+    NothingToGripError
         There is nothing that it can grip, in a line that says why and what to try.
     """
     requested = fixture.grips
-    if requested is None:
-        raise FixtureError(f"{fixture} is for --setup auto, which takes the best of table, vise and chuck; name one of them")
+    assert requested is not None, "only a vise or chuck is placed"
     places, why = vise_places(part, requested) if requested.kind == VISE else chuck_places(part, requested)
     least, step = min((each.hidden for each in places), default=0.0), _EVEN * max(1e-300, part.area)
     places.sort(key=lambda each: (int((each.hidden - least) / step), -round(each.firm, 6), each.above, each.grips))
@@ -49,10 +47,12 @@ def held(fixture: Fixture, part: Workpiece, overlaps: Callable[[Fixture, Clampin
             return _hold(requested, placed, part, place)
     if places:
         why = "something of the part is in the way of the jaws wherever they could grip"
-    raise FixtureError(
+    error = NothingToGripError(
         f"{fixture}: nothing to grip with the setup axis {axis_words(part.frame[2].tolist())}: {why}; try another setup, "
         f"--fixture {'chuck' if requested.kind == VISE else 'vise'} or table, or a file of your own fixture"
     )
+    error.why = why
+    raise error
 
 
 def _fixture(fixture: Fixture, part: Workpiece, place: Place) -> Fixture:

@@ -3,6 +3,13 @@
 from dataclasses import dataclass
 
 from plan_cutters.domain.fixture import Fixture
+from plan_cutters.errors import FixtureError
+
+
+class NothingToGripError(FixtureError):
+    """A vise or chuck has nothing to grip in a setup; `why` is the cause alone."""
+
+    why: str = ""
 
 
 @dataclass(frozen=True, slots=True)

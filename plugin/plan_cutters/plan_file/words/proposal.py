@@ -20,11 +20,7 @@ def proposal(plan: Plan) -> tuple[str, ...]:
     if any(each.clamping != "table" for each in entry.setups):
         among = "So held, it reaches" if one else "So held, they reach"
     lines = [f"Proposed {'setup' if one else 'setups'}: {text}. {among} {share} of the area to machine."]
-    lines += [
-        f"Setup {k}: {each.why_held}." if not one else f"{each.why_held.capitalize()}."
-        for k, each in enumerate(entry.setups, 1)
-        if each.why_held
-    ]
+    lines += [f"{'It' if one else f'Setup {k}'}: {each.why_held}." for k, each in enumerate(entry.setups, 1) if each.why_held]
     if not entry.held:
         lines.append(
             f"The proposal does not hold: the plan reaches {some(entry.kept)} of what the search promised, and no other "
