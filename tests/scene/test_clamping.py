@@ -2,6 +2,7 @@
 
 import math
 
+import cadquery as cq
 import numpy as np
 import pytest
 from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
@@ -121,9 +122,28 @@ def test_what_hangs_below_the_gripped_faces_hangs_between_the_jaws():
     shape = BRepAlgoAPI_Fuse(box(60, 40, 20), box(20, 10, 8, at=(20, 15, -8))).Shape()
     hold = hold_of(shape, "vise")
     assert hold.fixture.placement[2] == pytest.approx(0.0)
-    assert " apart, from 8 mm above its lowest point, 3 mm deep" in hold.words
+    assert " apart, from 8 mm above its lowest point; the jaws reach 3 mm above where it rests" in hold.words
     with pytest.raises(FixtureError, match="nothing to grip"):
         hold_of(BRepAlgoAPI_Fuse(box(60, 40, 20), box(20, 10, 300, at=(20, 15, -300))).Shape(), "vise")
+
+
+@pytest.mark.parametrize("radius", [1.0, 2.0, 4.0])
+def test_above_a_fillet_jaws_reach_as_far_as_without_it(radius):
+    """The part stands on what the fillet leaves of its lower face: the jaws are higher, and the ledges longer."""
+    block = cq.Workplane().box(60, 40, 30, centered=(True, True, False)).faces("<Z").edges().fillet(radius)
+    bar = cq.Workplane().circle(20).extrude(60).faces("<Z").edges().chamfer(radius)
+    for body, word in ((block, "vise"), (bar, "chuck")):
+        hold = hold_of(body.val().wrapped, word)
+        assert hold.fixture.placement[2] == pytest.approx(0.0, abs=1e-9)
+        assert hold.fixture.clamping.grip == pytest.approx(3.0 if radius < 1.5 else radius + 3.0, abs=0.02)
+        assert len(hold.rests_on) == 1
+        again = Scene.of(body.val().wrapped, fixtures=hold.fixture.text)
+        assert again.surround().fixtures[0].fixture.clamping == hold.fixture.clamping
+
+
+def test_the_longer_faces_of_a_block_are_gripped_where_jaws_are_narrower_than_both():
+    assert hold_of(box(80, 50, 40), "vise").fixture.clamping.gap == pytest.approx(50.0)
+    assert hold_of(box(50, 80, 40), "vise").fixture.clamping.gap == pytest.approx(50.0)
 
 
 @pytest.mark.parametrize(

@@ -16,8 +16,8 @@ CHUCKS = (80.0, 100.0, 125.0, 160.0, 200.0, 250.0, 315.0, 400.0, 500.0, 630.0)
 _JAWS, _FEWEST, _MOST = 3, 2, 6
 #: How deep jaws grip unless it is said, mm.
 GRIP = 3.0
-#: Jaws support the part from below so far inward, mm, and never more than this share of what is between them.
-_LEDGE, _LEDGE_SHARE = 3.0, 0.25
+#: Jaws support the part from below as far inward as they grip, and never more than this share of what is between them.
+_LEDGE_SHARE = 0.25
 #: Of a vise, as shares of the jaw width: the thickness of a jaw and the least one, mm; the height of the body and the least one;
 #: the side of the riser.
 _JAW, _BODY, _RISER = (0.3, 15.0), (0.6, 30.0), 1.2
@@ -102,18 +102,23 @@ class Vise:
         """As on a command line."""
         return f"{VISE}:{_joined(self.numbers[:3])}:{':'.join(map(_shown, self.numbers[3:]))}"
 
+    @property
+    def ledge(self) -> float:
+        """How far inward its jaws support the part from below, mm."""
+        assert self.gap is not None, "a vise has jaws where it was placed"
+        return min(self.grip, _LEDGE_SHARE * self.gap)
+
     def solids(self, arc_error: float, *, shown: bool = False) -> tuple[Solid, ...]:
         """Jaws, body, riser, and the table that it stands on; `shown`: of the table, what is drawn."""
         assert self.gap is not None, "a vise has bodies where it was placed"
         half, thick = 0.5 * self.gap, max(_JAW[1], _JAW[0] * self.width)
-        ledge = min(_LEDGE, _LEDGE_SHARE * self.gap)
         body, foot = self.grip - self.height, self.grip - self.height - max(_BODY[1], _BODY[0] * self.width)
         down, long = foot - _RISER_HIGH, self.opening + 2.0 * thick
         riser = _RISER * self.width
         jaws = [
             _box(sign * near, sign * (half + thick), self.width, low, high)
             for sign in (-1.0, 1.0)
-            for near, low, high in ((half, 0.0, self.grip), (half - ledge, body, 0.0))
+            for near, low, high in ((half, 0.0, self.grip), (half - self.ledge, body, 0.0))
         ]
         below = [_box(-0.5 * long, 0.5 * long, self.width, foot, body), _box(-0.5 * riser, 0.5 * riser, riser, down, foot)]
         return (*jaws, *below, _table(down, 0.5 * riser, shown=shown))
@@ -156,6 +161,12 @@ class Chuck:
         assert self.diameter is not None, "a chuck has jaws where it was placed"
         return min(math.asin(min(0.7, _WIDE * chuck_for(self.diameter) / self.diameter)), 0.9 * math.pi / self.jaws)
 
+    @property
+    def ledge(self) -> float:
+        """How far inward its jaws support the part from below, mm."""
+        assert self.diameter is not None, "a chuck has jaws where it was placed"
+        return min(self.grip, _LEDGE_SHARE * 0.5 * self.diameter)
+
     def sides(self, arc_error: float) -> int:
         """Chords of a jaw's bore, so that none is farther from the arc than an error, mm, as far as that takes not too many."""
         assert self.diameter is not None, "a chuck has jaws where it was placed"
@@ -171,14 +182,13 @@ class Chuck:
         """Jaws, body, riser, and the table that it stands on; chords of a jaw are no farther from its bore than an error, mm."""
         assert self.diameter is not None, "a chuck has bodies where it was placed"
         radius, size = 0.5 * self.diameter, chuck_for(self.diameter)
-        ledge = min(_LEDGE, _LEDGE_SHARE * radius)
         body = self.grip - self.height
         foot = body - _CHUCK * size
         down = foot - _RISER_HIGH
         jaws = [
             self._jaw(turn, low_radius, radius + _DEEP * size, low, high, arc_error)
             for turn in (2.0 * math.pi * k / self.jaws for k in range(self.jaws))
-            for low_radius, low, high in ((radius, 0.0, self.grip), (radius - ledge, body, 0.0))
+            for low_radius, low, high in ((radius, 0.0, self.grip), (radius - self.ledge, body, 0.0))
         ]
         below = (Disc(0.5 * size, foot, body), Disc(0.5 * _FOOT * size, down, foot))
         return (*jaws, *below, _table(down, 0.5 * size, shown=shown))

@@ -8,7 +8,7 @@ import numpy as np
 from cad_io.arrays import Floats, rows_by_face
 from plan_cutters.domain.clamping import Chuck, Requested, chuck_about, largest_gripped
 from plan_cutters.plan_file.numbers import mm
-from plan_cutters.scene.workpiece import PARALLEL, TOGETHER, Place, Wall, Workpiece, clipped, merged, resting, wall_of
+from plan_cutters.scene.workpiece import PARALLEL, TOGETHER, Place, Wall, Workpiece, clipped, merged, stands, wall_of
 
 #: Jaws of a chuck are turned by so many degrees to find their best place; what they touch is told apart by one degree.
 _TURN, _BINS = 5, 360
@@ -23,15 +23,22 @@ def chuck_places(part: Workpiece, requested: Requested) -> tuple[list[Place], st
         if 2.0 * radius > largest_gripped():
             wide.append(2.0 * radius)
             continue
-        above = resting(wall.low, requested.grip)
-        chuck = chuck_about(2.0 * radius, requested.grip)
-        if requested.sizes is not None:
-            chuck = Chuck(int(requested.sizes[0]), requested.sizes[1], requested.grip, 2.0 * radius)
-        if above <= chuck.height - chuck.grip:
-            places += _about(part, chuck, wall, centre, above)
+        for above, reach in stands(wall.low, requested.grip):
+            chuck = chuck_about(2.0 * radius, reach)
+            if requested.sizes is not None:
+                chuck = Chuck(int(requested.sizes[0]), requested.sizes[1], reach, 2.0 * radius)
+            if reach < chuck.height and above <= chuck.height - reach and _supported(part, chuck, centre, above):
+                places += _about(part, chuck, wall, centre, above)
     if wide and not places:
         return places, f"the cylinder is {mm(min(wide))} wide, and chucks grip up to {mm(largest_gripped())}"
     return places, f"no outside cylinder along it reaches all round in the lowest {mm(requested.grip)} of the part"
+
+
+def _supported(part: Workpiece, chuck: Chuck, centre: Floats, above: float) -> bool:
+    """Whether something of a part that does not hang between the jaws lies on their ledges."""
+    corner = part.vertex.reshape(-1, 3)
+    away = np.linalg.norm((corner - centre)[corner[:, 2] <= part.flat][:, :2], axis=1)
+    return above > 0.0 or bool((away >= 0.5 * (chuck.diameter or 0.0) - chuck.ledge - part.flat).any())
 
 
 def _upright_cylinders(part: Workpiece) -> list[tuple[Wall, Floats, float]]:

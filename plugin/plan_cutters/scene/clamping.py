@@ -40,7 +40,8 @@ def held(fixture: Fixture, part: Workpiece, overlaps: Callable[[Fixture, Clampin
     assert requested is not None, "only a vise or chuck is placed"
     places, why = vise_places(part, requested) if requested.kind == VISE else chuck_places(part, requested)
     least, step = min((each.hidden for each in places), default=0.0), _EVEN * max(1e-300, part.area)
-    places.sort(key=lambda each: (int((each.hidden - least) / step), -round(each.firm, 6), each.above, each.grips))
+    # Of even ones on the longer faces, which are nearer to each other.
+    places.sort(key=lambda each: (int((each.hidden - least) / step), -round(each.firm, 6), each.above, each.apart, each.grips))
     for place in places[:_TRIED]:
         placed = _fixture(fixture, part, place)
         if not overlaps(placed, place.clamping):
@@ -78,14 +79,14 @@ def _angles(axes: Floats) -> Floats:
 def _hold(requested: Requested, fixture: Fixture, part: Workpiece, place: Place) -> Hold:
     clamping, names, rests = place.clamping, [f"F{n}" for n in place.grips], part.rests_on(place.above)
     size = "" if requested.sizes is not None else ", the smallest usual size that takes the part"
-    above = f" from {mm(place.above)} above its lowest point," if place.above > 0.0 else ""
+    above = f", from {mm(place.above)} above its lowest point" if place.above > 0.0 else ""
     on = f"; the part rests on {listed([f'F{n}' for n in rests])}" if rests else ""
     under = [f"{area(place.hidden)} under the jaws"] if place.hidden > 0.0 else []
     under += [f"F{n}" for n in rests if n in part.targets]
     left = f"left for another setup: {' and '.join(under)}" if under else "it holds none of the faces to machine"
     what, across = _called(clamping)
-    words = f"{what}{size}; it grips {listed(names)}, {across},{above} {mm(clamping.grip)} deep{on}; {left}"
-    return Hold(fixture, place.grips, rests, place.hidden, words)
+    words = f"{what}{size}; it grips {listed(names)}, {across}{above}; the jaws reach {mm(clamping.grip)} above where it rests"
+    return Hold(fixture, place.grips, rests, place.hidden, f"{words}{on}; {left}")
 
 
 def _called(clamping: Clamping) -> tuple[str, str]:

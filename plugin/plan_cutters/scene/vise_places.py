@@ -9,7 +9,7 @@ import numpy as np
 from cad_io.arrays import Floats, rows_by_face
 from plan_cutters.domain.clamping import VISES, Requested, Vise, vises_for
 from plan_cutters.plan_file.numbers import mm
-from plan_cutters.scene.workpiece import PARALLEL, TOGETHER, Place, Wall, Workpiece, area_of, clipped, merged, resting, wall_of
+from plan_cutters.scene.workpiece import PARALLEL, TOGETHER, Place, Wall, Workpiece, area_of, clipped, merged, stands, wall_of
 
 #: Walls that are looked at, at most, the largest of them.
 _WALLS = 300
@@ -78,16 +78,21 @@ def _one_plane(one: Wall, other: Wall) -> bool:
 
 def _between(part: Workpiece, requested: Requested, one: Wall, other: Wall, x: Floats) -> Iterator[Place]:
     """Places of a vise on two walls: in the middle of what its jaws can touch, and at both ends of that."""
+    for above, reach in stands(max(one.low, other.low), requested.grip):
+        yield from _at(part, replace(requested, grip=reach), (one, other), x, above)
+
+
+def _at(part: Workpiece, requested: Requested, walls: tuple[Wall, Wall], x: Floats, above: float) -> Iterator[Place]:
+    """The same where the part rests at a height over its lowest point."""
     grip, y = requested.grip, np.array([-x[1], x[0], 0.0])
-    above = resting(max(one.low, other.low), grip)
-    strips = [clipped(each.vertex, each.face, np.array([0.0, 0.0, 1.0]), above, above + grip) for each in (one, other)]
+    strips = [clipped(each.vertex, each.face, np.array([0.0, 0.0, 1.0]), above, above + grip) for each in walls]
     if not all(len(vertex) for vertex, _ in strips):
         return
     along = [(float((vertex @ y).min()), float((vertex @ y).max())) for vertex, _ in strips]
     start, end = max(low for low, _ in along), min(high for _, high in along)
     right, left = float((strips[0][0] @ x).max()), float((strips[1][0] @ x).min())
     vise = _vise(part, requested, right - left, float(np.ptp(part.vertex @ y)), above)
-    if vise is None or not end - start > part.flat:
+    if vise is None or not end - start > part.flat or not _supported(part, vise, 0.5 * (left + right), x, above):
         return
     half = 0.5 * vise.width
     middles = [0.5 * (start + end), *([start + half, end - half] if end - start > vise.width else [])]
@@ -100,6 +105,13 @@ def _between(part: Workpiece, requested: Requested, one: Wall, other: Wall, x: F
         grips = tuple(sorted({int(n) for _, face in touched for n in face}))
         origin = 0.5 * (left + right) * x + middle * y + np.array([0.0, 0.0, above])
         yield Place(vise, x, origin, grips, least, hidden, above)
+
+
+def _supported(part: Workpiece, vise: Vise, middle: float, x: Floats, above: float) -> bool:
+    """Whether something of a part that does not hang between the jaws lies on their ledges."""
+    corner = part.vertex.reshape(-1, 3)
+    corner = corner[corner[:, 2] <= part.flat]
+    return above > 0.0 or bool((np.abs(corner @ x - middle) >= 0.5 * (vise.gap or 0.0) - vise.ledge - part.flat).any())
 
 
 def _vise(part: Workpiece, requested: Requested, gap: float, length: float, above: float) -> Vise | None:

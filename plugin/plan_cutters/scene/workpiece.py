@@ -118,6 +118,11 @@ class Place:
     above: float
 
     @property
+    def apart(self) -> float:
+        """How far the jaws of a vise stand apart, or how wide is what a chuck grips, mm."""
+        return self.clamping.numbers[-1]
+
+    @property
     def firm(self) -> float:
         """How well it holds, by what its jaws touch: half as much where something of the part hangs below them."""
         return self.touched if self.above == 0.0 else 0.5 * self.touched
@@ -132,9 +137,13 @@ def merged(one: Wall, other: Wall) -> Wall:
     return wall_of(sorted({*one.faces, *other.faces}), vertex, face, one.normal)
 
 
-def resting(low: float, grip: float) -> float:
-    """How far above the part's lowest point it rests in the jaws, where what they grip begins at a height."""
-    return 0.0 if low <= 0.5 * grip else low
+def stands(low: float, grip: float) -> tuple[tuple[float, float], ...]:
+    """How a part may stand in jaws where what they grip begins at a height over its lowest point.
+
+    Each is how far above its lowest point it rests, and how far the jaws reach above that: where a fillet, a chamfer or more is
+    below what they grip, it hangs between them, or it stands on its lowest point in jaws that reach so much higher.
+    """
+    return ((0.0, grip),) if low <= 0.5 * grip else ((low, grip), (0.0, low + grip))
 
 
 def area_of(vertex: Floats) -> float:
