@@ -22,7 +22,7 @@ from plan_cutters.options import Options
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.notes import setup_proposed
 from plan_cutters.plan_file.numbers import exact, percent
-from plan_cutters.plan_file.setups import ProposedSetup, SetupProposal
+from plan_cutters.plan_file.setups import HiddenFaces, ProposedSetup, SetupProposal
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene
 
@@ -84,7 +84,8 @@ def judged_proposed(
             why, failed = error.cause, failed | {chosen[0]}
             continue
         reached_share, held_share, worst = _compared(part, ranking, chosen)
-        describe = partial(_described, ranking=ranking, chosen=chosen, shares=(reached_share, held_share, tried))
+        left = _left_for(part, ranking, chosen)
+        describe = partial(_described, ranking=ranking, chosen=chosen, left=left, shares=(reached_share, held_share, tried))
         if held_share >= _ENOUGH:
             return part, describe
         if best is None or reached_share > best[0]:
@@ -175,7 +176,24 @@ def _compared(part: JudgedPart, ranking: Ranking, chosen: tuple[int, ...]) -> tu
     )
 
 
-def _setup(ranking: Ranking, k: int, promised: float) -> ProposedSetup:
+def _left_for(part: JudgedPart, ranking: Ranking, chosen: tuple[int, ...]) -> list[list[HiddenFaces]]:
+    """Of each setup: in which others samples of the faces are served that it stands on and grips."""
+    face, result = part.ready.samples.face, []
+    for own, k in enumerate(chosen):
+        mine = np.isin(face, [int(name[1:]) for name in (*_rests_on(ranking, k), *_named(_held(ranking, k).grips))])
+        others = [other for other in range(len(chosen)) if other != own]
+        served = {other: mine & np.logical_or.reduce([each.which == other for each in part.cutters.values()]) for other in others}
+        result.append(
+            [
+                HiddenFaces(setup=other, faces=list(_named(np.unique(face[rows]).tolist())))
+                for other, rows in served.items()
+                if rows.any()
+            ]
+        )
+    return result
+
+
+def _setup(ranking: Ranking, k: int, left: list[HiddenFaces], promised: float) -> ProposedSetup:
     """The entry of a proposed setup."""
     held = _held(ranking, k)
     return ProposedSetup(
@@ -187,6 +205,7 @@ def _setup(ranking: Ranking, k: int, promised: float) -> ProposedSetup:
         how_held=held.words,
         fixtures=[held.fixture.text],
         why_held=held.why,
+        left_for=left,
         promised=promised,
     )
 
@@ -197,13 +216,15 @@ def _stands(setup: ProposedSetup) -> str:
     return f"on {', '.join(setup.stands_on)}" if setup.stands_on else "on no plane"
 
 
-def _described(plan: Plan, *, ranking: Ranking, chosen: tuple[int, ...], shares: tuple[float, float, int]) -> Plan:
+def _described(
+    plan: Plan, *, ranking: Ranking, chosen: tuple[int, ...], left: list[list[HiddenFaces]], shares: tuple[float, float, int]
+) -> Plan:
     """The same plan with its proposal; its text is not made anew."""
     served = np.stack([ranking.served(k) for k in chosen], axis=1)
     alone, any_of = ranking.share(served), np.asarray(served.any(axis=1))
     together = exact(float(ranking.share(any_of[:, None])[0]), some=bool(any_of.any()), whole=bool(any_of.all()))
     share, held_share, tried = shares
-    setups = [_setup(ranking, k, min(1.0, float(each))) for k, each in zip(chosen, alone, strict=True)]
+    setups = [_setup(ranking, k, own, min(1.0, float(each))) for k, own, each in zip(chosen, left, alone, strict=True)]
     held = held_share >= _ENOUGH
     where = [f"{axis_words(each.axis)} ({_stands(each)})" for each in setups]
     of = f"{len(ranking.held)} of {len(ranking.candidates.axis)} directions searched at {len(ranking.rows)} samples"

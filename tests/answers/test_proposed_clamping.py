@@ -11,6 +11,7 @@ from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.verdicts import ANOTHER_SETUP
 from plan_cutters.errors import OptionError
 from plan_cutters.machines.setups import read_setup
+from plan_cutters.plan_file.words.proposal import proposal
 from plan_cutters.plan_file.words.story import story_of
 from plan_cutters.report.setup_files import setup_toml
 from tests.support.cad_parts import ball, box, rod
@@ -83,9 +84,16 @@ def test_what_grips_the_part_is_proposed_and_a_table_where_nothing_does(shape, t
 
 def test_a_block_lies_on_its_largest_faces():
     """Upright it would show more of itself in each setup, and as much in both: it lies low all the same."""
-    said = plan(box(80, 50, 40), **HOW).plan.setup_proposal
+    found = plan(box(80, 50, 40), **HOW)
+    said = found.plan.setup_proposal
     assert sorted(each.axis for each in said.setups) == [(0.0, 0.0, -1.0), (0.0, 0.0, 1.0)]
     assert said.promised == 1.0
+    # What the one stands on and grips, the other one machines.
+    for own, setup in enumerate(said.setups):
+        (left,) = setup.left_for
+        assert left.setup == 1 - own
+        assert set(setup.stands_on) <= set(left.faces) <= {*setup.stands_on, *setup.grips}
+    assert f"what it hides of {', '.join(said.setups[0].left_for[0].faces)} is machined in setup 2" in proposal(found.plan)[1]
 
 
 def test_of_table_vise_and_chuck_one_may_be_requested():
@@ -103,7 +111,7 @@ def test_a_table_is_taken_where_jaws_hide_too_much():
     )
     assert best_hold([table, vise], {}, area).kind == "table"
     assert best_hold([table, vise], {}, np.array([0.2, 1.0, 1.0, 1.0])).kind == "vise"
-    assert "the vise serves 75 % of the samples' area" in best_hold([table, vise], {"chuck": "none"}, area).why
+    assert "the vise serves 75 %" in best_hold([table, vise], {"chuck": "none"}, area).why
 
 
 def test_where_no_vise_holds_the_part_one_line_says_so():

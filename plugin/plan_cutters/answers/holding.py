@@ -98,7 +98,8 @@ def best_hold(tried: list[Held], refused: dict[str, str], weight: Floats) -> Hel
     best = max(gripping or tried, key=lambda each: share[each.kind])
     if share[best.kind] < _GRIPPED_FOR * share.get(TABLE, 0.0):
         best = next(each for each in tried if each.kind == TABLE)
-    served = [f"the {each.kind} serves {percent(share[each.kind])} of the samples' area" for each in tried]
+    served = [f"the {each.kind} serves {percent(share[each.kind])}" for each in sorted(tried, key=lambda each: each is not best)]
+    served[0] += " of the samples' area"
     nothing = [f"a {kind} has nothing to grip ({why})" for kind, why in refused.items()]
     left = f"; {area(best.hidden)} under its jaws" if best.hidden > 0.0 else ""
     return replace(best, why=f"{', '.join([*served, *nothing])}{left}")

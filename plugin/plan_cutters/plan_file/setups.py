@@ -20,6 +20,13 @@ class SetupEntry(Frozen):
     reached_share: float | None = Field(default=None, description="of the judged samples' area, 0 to 1")
 
 
+class HiddenFaces(Frozen):
+    """Of these faces another proposed setup machines what this one hides."""
+
+    setup: int = Field(description="that setup, counted from 0 for the first")
+    faces: list[str]
+
+
 class ProposedSetup(Frozen):
     """A setup that was proposed, with a table, a vise or a chuck as all that holds the part."""
 
@@ -33,6 +40,7 @@ class ProposedSetup(Frozen):
     hidden_mm2: float = Field(default=0.0, description="area of the faces to machine that the jaws touch: for another setup")
     how_held: str = Field(default="", description="what the vise or chuck is and what it grips; empty for a table")
     why_held: str = Field(default="", description="why it is held so; empty where nothing else was tried")
+    left_for: list[HiddenFaces] = Field(default=[], description="which other setups machine what it stands on and grips")
     promised: float = Field(description="share of the compared samples' area that it serves by itself, 0 to 1")
 
 

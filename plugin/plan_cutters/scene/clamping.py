@@ -16,11 +16,12 @@ from plan_cutters.scene.holds import Hold, NothingToGripError
 from plan_cutters.scene.vise_places import vise_places
 from plan_cutters.scene.workpiece import Place, Workpiece
 
-#: Shares of the target area that jaws hide are equal if they differ by less; places that are looked at, at most.
+#: Shares of the target area that jaws hide are equal if they differ by less; places that are searched for overlaps, at most.
 _EVEN, _TRIED = 0.05, 12
+Overlaps = Callable[[Fixture, Clamping], bool]
 
 
-def held(fixture: Fixture, part: Workpiece, overlaps: Callable[[Fixture, Clamping], bool]) -> Hold:
+def held(fixture: Fixture, part: Workpiece, plainly: Overlaps, overlaps: Overlaps) -> Hold:
     """Place a vise or chuck.
 
     Parameters
@@ -28,8 +29,8 @@ def held(fixture: Fixture, part: Workpiece, overlaps: Callable[[Fixture, Clampin
     fixture : Fixture
         With `to_place`.
     part : Workpiece
-    overlaps : callable
-        Whether a fixture in its place, a vise or chuck, stands in the part.
+    plainly, overlaps : callable
+        Whether a fixture in its place, a vise or chuck, stands in the part: where that is seen at once, and by a search.
 
     Raises
     ------
@@ -42,10 +43,14 @@ def held(fixture: Fixture, part: Workpiece, overlaps: Callable[[Fixture, Clampin
     least, step = min((each.hidden for each in places), default=0.0), _EVEN * max(1e-300, part.area)
     # Of even ones on the longer faces, which are nearer to each other.
     places.sort(key=lambda each: (int((each.hidden - least) / step), -round(each.firm, 6), each.above, each.apart, each.grips))
-    for place in places[:_TRIED]:
+    searched = 0
+    for place in places:
         placed = _fixture(fixture, part, place)
+        if searched == _TRIED or plainly(placed, place.clamping):
+            continue
         if not overlaps(placed, place.clamping):
             return _hold(requested, placed, part, place)
+        searched += 1
     if places:
         why = "something of the part is in the way of the jaws wherever they could grip"
     error = NothingToGripError(

@@ -46,6 +46,27 @@ def triangles_of(clamping: Clamping, chord: float, *, shown: bool = False, above
     return np.concatenate([_of(each, chord) for each in solids]), max(off)
 
 
+def entered(clamping: Clamping, points: Floats, deep: float) -> bool:
+    """Whether any of some points (n, 3) of its own frame surely lies deeper in a vise or chuck than a length, mm.
+
+    Boxes and discs are looked at, not the jaws of a chuck: no does not mean that nothing lies in it.
+    """
+    for solid in clamping.solids(deep):
+        height = points[:, 2]
+        within = (height > solid.low + deep) & (height < solid.high - deep)
+        if isinstance(solid, Disc):
+            within &= np.hypot(points[:, 0], points[:, 1]) < solid.radius - deep
+        elif len(solid.inner) == 2:
+            corners = np.array([*solid.inner, *solid.outer])
+            low, high = corners.min(axis=0) + deep, corners.max(axis=0) - deep
+            within &= ((points[:, :2] > low) & (points[:, :2] < high)).all(axis=1)
+        else:
+            continue
+        if within.any():
+            return True
+    return False
+
+
 def _off(solid: Solid, chord: float) -> float:
     if isinstance(solid, Block):
         return 0.0

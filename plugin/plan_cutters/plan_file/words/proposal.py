@@ -2,7 +2,7 @@
 
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import percent, some
+from plan_cutters.plan_file.numbers import listed, percent, some
 from plan_cutters.plan_file.setups import ProposedSetup
 
 
@@ -20,7 +20,11 @@ def proposal(plan: Plan) -> tuple[str, ...]:
     if any(each.clamping != "table" for each in entry.setups):
         among = "So held, it reaches" if one else "So held, they reach"
     lines = [f"Proposed {'setup' if one else 'setups'}: {text}. {among} {share} of the area to machine."]
-    lines += [f"{'It' if one else f'Setup {k}'}: {each.why_held}." for k, each in enumerate(entry.setups, 1) if each.why_held]
+    for k, each in enumerate(entry.setups, 1):
+        said = [each.why_held] * bool(each.why_held)
+        said += [f"what it hides of {listed(left.faces)} is machined in setup {left.setup + 1}" for left in each.left_for]
+        if said:
+            lines.append(f"{'Compared' if one else f'Setup {k}'}: {'; '.join(said)}.")
     if not entry.held:
         lines.append(
             f"The proposal does not hold: the plan reaches {some(entry.kept)} of what the search promised, and no other "
