@@ -115,7 +115,7 @@ _OPTIONS = (
         default=["0,0,1"],
         help="Direction of the part along the machine's spindle, +z, -y or x,y,z, or a setup file (TOML) that says where the "
         "part stands. Repeatable: every cutter is judged in each, and the summary says what they reach together. `auto` "
-        "proposes the fewest that reach most, over a table or in what --fixture says, and plans what it proposes; setups named "
+        "proposes the fewest that reach most, in a vise, a chuck or on a table, and plans what it proposes; setups named "
         "behind it take its place.  "
         "[default: 0,0,1]",
     ),
@@ -127,7 +127,7 @@ _OPTIONS = (
         help="A body in the way: STEP, IGES, BREP, STL, OBJ, PLY, GLB, or `box:X,Y,Z`, `cylinder:R,H`, placed in part "
         "coordinates (mm, degrees); `table`, all below the part along the setup axis, or `table:H`, all below H. "
         "`vise[:JAW_WIDTHxJAW_HEIGHTxOPENING][:GRIP]` and `chuck[:JAWSxHEIGHT][:GRIP]` are placed for each setup, on what they "
-        "can grip there. With --setup auto: `table`, `vise`, `chuck`, or `auto` for the best of them. Repeatable.",
+        "can grip there. With --setup auto all three are tried, or the one that is given. Repeatable.",
     ),
     _faces(
         "--faces",

@@ -117,10 +117,10 @@ def fixtures_of_setups(ctx: click.Context, _: click.Parameter, value: Any) -> An
 
     try:
         first = Fixture.parse(value[0])
-        said = len(value) > 1 or all(isinstance(each, str) and read_setup(each).fixtures for each in named)
+        stated = len(value) > 1 or all(isinstance(each, str) and read_setup(each).fixtures for each in named)
     except PlanError:
         return value
-    if not said or not (first.to_place or value[0].strip().lower() == TABLE):
+    if not stated or not (first.to_place or value[0].strip().lower() == TABLE):
         return value
     if not (is_child() or ctx.resilient_parsing):
         click.echo(f"--setup auto: the setups behind it say what holds the part; --fixture {value[0]} is left out", err=True)

@@ -21,10 +21,10 @@ def proposal(plan: Plan) -> tuple[str, ...]:
         among = "So held, it reaches" if one else "So held, they reach"
     lines = [f"Proposed {'setup' if one else 'setups'}: {text}. {among} {share} of the area to machine."]
     for k, each in enumerate(entry.setups, 1):
-        said = [each.why_held] * bool(each.why_held)
-        said += [f"what it hides of {listed(left.faces)} is machined in setup {left.setup + 1}" for left in each.left_for]
-        if said:
-            lines.append(f"{'Compared' if one else f'Setup {k}'}: {'; '.join(said)}.")
+        texts = [each.why_held] * bool(each.why_held)
+        texts += [f"what it hides of {listed(left.faces)} is machined in setup {left.setup + 1}" for left in each.left_for]
+        if texts:
+            lines.append(f"{'Compared' if one else f'Setup {k}'}: {'; '.join(texts)}.")
     if not entry.held:
         lines.append(
             f"The proposal does not hold: the plan reaches {some(entry.kept)} of what the search promised, and no other "
