@@ -84,7 +84,7 @@ def judged_proposed(
             why, failed = error.cause, failed | {chosen[0]}
             continue
         reached_share, held_share, worst = _compared(part, ranking, chosen)
-        left = _machined_elsewhere(part, ranking, chosen)
+        left = _in_other_setups(part, ranking, chosen)
         describe = partial(_described, ranking=ranking, chosen=chosen, left=left, shares=(reached_share, held_share, tried))
         if held_share >= _ENOUGH:
             return part, describe
@@ -176,7 +176,7 @@ def _compared(part: JudgedPart, ranking: Ranking, chosen: tuple[int, ...]) -> tu
     )
 
 
-def _machined_elsewhere(part: JudgedPart, ranking: Ranking, chosen: tuple[int, ...]) -> list[list[HiddenFaces]]:
+def _in_other_setups(part: JudgedPart, ranking: Ranking, chosen: tuple[int, ...]) -> list[list[HiddenFaces]]:
     """Of each setup: in which others samples of the faces are served that it stands on and grips."""
     face, result = part.ready.samples.face, []
     for own, k in enumerate(chosen):
