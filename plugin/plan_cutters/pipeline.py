@@ -42,7 +42,7 @@ from plan_cutters.scene.inside_material import inside_bodies, inside_material
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.question import question
 from plan_cutters.scene.scene import Scene
-from plan_cutters.scene.setups import conditions_of, places, with_setups
+from plan_cutters.scene.setups import conditions_of, fixtures_of, places, with_setups
 from plan_cutters.scene.spacing import affordable, sampled
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.classify import classify, regions
@@ -260,6 +260,8 @@ def prepare(
     with clock.stage("sample"):
         first, *others = places(options)
         chosen = choose(whole, options.faces, scene.ignored, scene.ignore, first, others)
+        if any(each.to_place for each in fixtures_of(options)):
+            scene = scene.for_targets(chosen.targets)
         cutters = tuple(wanted(options.judged, free_form=chosen.free_form))
         if options.process is not None:
             options.process.check_faces(chosen.targets)

@@ -69,7 +69,11 @@ class MachineAxes:
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """A fixture: a word (`box`, `cylinder`, `table`) with its sizes, or a file; placed by x, y, z, mm, and rx, ry, rz, deg."""
+    """A fixture: a word (`box`, `cylinder`, `table`, `prism`) with its sizes, or a file; placed by x, y, z, mm, rx, ry, rz, deg.
+
+    A prism is given by two heights and the corners, x and y, of two polylines of as many points: its outline runs along the first
+    one and back along the second one, counter-clockwise.
+    """
 
     name: str
     kind: str

@@ -44,8 +44,8 @@ def process_toml(plan: Plan) -> str:
 
 def _times(plan: Plan, step: ProcessStep) -> list[ProcessStep]:
     """A step as often as it is done: each time has angles of its own, which the file writes out."""
-    made = [] if plan.operations is None else [each for each in plan.operations.plans if each.name == process_plan(plan)]
-    operations = [each for one in made for each in one.operations]
+    plans = [] if plan.operations is None or plan.process is None else plan.operations.plans
+    operations = [each for one in plans if plan.process and one.name == plan.process.plan for each in one.operations]
     orbit = next((each.orbit for each in operations if each.id == step.operation), None)
     if step.repeat == 1 or orbit is None:
         return [step]
@@ -57,11 +57,6 @@ def _times(plan: Plan, step: ProcessStep) -> list[ProcessStep]:
         for each in operations
         if each.orbit == orbit
     ]  # fmt: skip
-
-
-def process_plan(plan: Plan) -> str:
-    """The name of the plan of operations that the process is."""
-    return plan.process.plan if plan.process is not None else ""
 
 
 def _step(number: int, step: ProcessStep, words: dict[str, str], own: dict[str, Any] | None) -> str:
