@@ -255,8 +255,8 @@ class Options:
         self._check_numbers()
         if self.operations is not None or self.process is not None:
             setups = MOST_PROPOSED if self.propose else 1 + len(self.other_setups)
-            asked = self.operations, self.process, self.judged, self.feeds, self.machine, setups
-            object.__setattr__(self, "operations", operations_requested(*asked))
+            which = operations_requested(self.operations, self.process, self.judged, self.feeds, self.machine, setups)
+            object.__setattr__(self, "operations", which)
         for cutter in self.judged:
             if not cutter.large_enough(self.tolerance):
                 raise OptionError(f"tolerance {self.tolerance:g} mm is too coarse for cutter {cutter.typed}")

@@ -36,7 +36,7 @@ def along(part, cutter, axes, *, budget, tolerance=0.01, machine="unlimited", **
         rows = grid.index[there]
         axis[there] = axes(samples.point[rows], samples.normal[rows], found.axis[rows])
         fields[grid.face] = AxisField.of(grid, axis)
-    return between(samples, found, context, whole, side, budget=budget, turning=fields), geometry, whole, fields
+    return between(samples, found, context, whole, side, budget=budget, axes=fields), geometry, whole, fields
 
 
 def turned_contacts(found, geometry, whole, fields, cloud, count, rng):

@@ -126,7 +126,7 @@ class OfPlan(Answer):
     more_missing: int = 0
 
 
-class LeftOver(Entry):
+class Remaining(Entry):
     """An area that no step finishes, for one cause."""
 
     cause: str = Field(
@@ -156,7 +156,7 @@ class OwnStepAnswer(Entry):
     text: str = Field(default="", description="what is wrong with it, a sentence; empty where it does all")
     asked_mm2: float
     wrong: str = Field(default="", description="why it does nothing; empty where it can be judged")
-    leaves: list[LeftOver]
+    leaves: list[Remaining]
     more_leaves: int = 0
     nearest: NearestOrientation | None = None
 
@@ -167,7 +167,7 @@ class StepAnswer(Entry):
     setup: int = Field(description="from 1")
     mode: Literal["fixed", "simultaneous", "any"]
     angles: dict[str, float] | None = Field(description="of the rotary axes by name, deg; null unless fixed")
-    axis: Vector | None = Field(description="of a fixed orientation without angles; null elsewhere")
+    axis: Vector | None = Field(description="of a fixed orientation without angles; else null")
     cutter: str
     faces: list[str] = Field(description="the one with the most of it first")
     more_faces: int = Field(default=0, description="left out here: take all from plan.json before you give the step back")
@@ -187,7 +187,7 @@ class PlanAnswer(OfPlan):
     seconds: float | None = Field(default=None, description="of all steps, turns and changes of cutters; null without a feed")
     steps: list[StepAnswer] = Field(default=[], description="of the process, in their order")
     more_steps: int = 0
-    left: list[LeftOver] = Field(default=[], description="what no step finishes, the largest area first")
+    left: list[Remaining] = Field(default=[], description="what no step finishes, the largest area first")
     more_left: int = 0
     notes: list[Note] = Field(description="what these verdicts do not say")
     more_notes: int = 0

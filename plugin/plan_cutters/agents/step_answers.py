@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from plan_cutters.agents.answers import LeftOver, NearestOrientation, OwnStepAnswer, StepAnswer, first
+from plan_cutters.agents.answers import Remaining, NearestOrientation, OwnStepAnswer, StepAnswer, first
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.process import OwnStepEntry, ProcessStep, RemainingEntry
 
@@ -40,11 +40,11 @@ def _own(own: OwnStepEntry, most: int) -> OwnStepAnswer:
     )  # fmt: skip
 
 
-def _left(entries: Sequence[RemainingEntry], most: int) -> tuple[list[LeftOver], int]:
+def _left(entries: Sequence[RemainingEntry], most: int) -> tuple[list[Remaining], int]:
     listed, more = first([*entries], most)
     return [_area(each, most) for each in listed], more
 
 
-def _area(entry: RemainingEntry, most: int) -> LeftOver:
+def _area(entry: RemainingEntry, most: int) -> Remaining:
     faces, more = first(entry.faces, most)
-    return LeftOver.model_validate(entry).model_copy(update={"faces": faces, "more_faces": more})
+    return Remaining.model_validate(entry).model_copy(update={"faces": faces, "more_faces": more})

@@ -384,13 +384,9 @@ class Reckoned:
 
 def _runs(rows: Rows) -> list[list[int]]:
     """First and last of runs of consecutive numbers."""
-    runs: list[list[int]] = []
-    for row in rows.tolist():
-        if runs and runs[-1][1] == row - 1:
-            runs[-1][1] = row
-        else:
-            runs.append([row, row])
-    return runs
+    ends = np.flatnonzero(np.diff(rows) != 1)
+    first, last = rows[np.append(0, ends + 1)[: len(rows)]], rows[np.append(ends, len(rows) - 1)[: len(rows)]]
+    return np.column_stack([first, last]).tolist()
 
 
 def _proved(held: Sequence[Mapping[str, Any]]) -> dict[str, Any]:

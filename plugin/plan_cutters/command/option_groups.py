@@ -293,7 +293,7 @@ _OPTIONS = (
     _operations(
         "--process",
         type=File("FILE"),
-        help="Your own steps, a process.toml as it is written beside a plan, edited: they are judged as they stand, in their "
+        help="Your own steps, a process.toml as it is written with a plan, edited: they are judged as they stand, in their "
         "order, and the rest is planned behind them.",
     ),
     _operations(

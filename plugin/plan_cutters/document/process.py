@@ -11,7 +11,7 @@ from plan_cutters.document.over_setups import OverSetups
 from plan_cutters.document.repeats import repeats
 from plan_cutters.document.shares import sample_areas
 from plan_cutters.domain.answers import Answers
-from plan_cutters.domain.operations import OperationPlan, Operations, OwnFound
+from plan_cutters.domain.operations import OperationPlan, Operations, OwnResult
 from plan_cutters.domain.verdicts import NO_REASON, REASONS, SHARP_EDGE
 from plan_cutters.plan_file.frozen import Vector, vector
 from plan_cutters.plan_file.model import CutterEntry
@@ -91,7 +91,7 @@ def _exempt(ready: Prepared, sampled: Floats, requested: float) -> RemainingEntr
 
 
 def _preferred(plans: Sequence[OperationPlan], entries: Sequence[OperationPlanEntry]) -> tuple[OperationPlan, OperationPlanEntry]:
-    """The plan of operations that is recommended, as it was found and as it is in the plan file."""
+    """The plan of operations that is recommended, as it was outcome and as it is in the plan file."""
     k = min(range(len(plans)), key=lambda k: (*_PREFERRED, plans[k].name).index(plans[k].name))
     return plans[k], entries[k]
 
@@ -133,38 +133,38 @@ def _operated(
     planned.sort(key=lambda s: (s.setup, s.mode != "fixed", -by_cutter[s.setup, s.cutter], s.cutter, -s.area_mm2))
     done = {each.step: (k, each) for k, each in enumerate(entry.operations)}
     own, all_done = [], np.concatenate([np.zeros(0, np.int64), *(each.rows for each in operations.own)])
-    for found in operations.own:
-        k, made = done.get(found.number, (-2, None))
-        angles = None if found.angle is None else dict(zip(operations.names, found.angle.tolist(), strict=True))
+    for outcome in operations.own:
+        k, made = done.get(outcome.number, (-2, None))
+        angles = None if outcome.angle is None else dict(zip(operations.names, outcome.angle.tolist(), strict=True))
         own.append(
-            _step(ready, over, area, requested, plan.label == k, setup=found.setup, mode=found.mode,
-                  strategy="point" if made is None else made.strategy, cutter=found.cutter.id,
-                  angles_deg=angles if found.angle is not None and np.isfinite(found.angle).all() else None,
-                  axis=None if found.axis is None else vector(found.axis),
+            _step(ready, over, area, requested, plan.label == k, setup=outcome.setup, mode=outcome.mode,
+                  strategy="point" if made is None else made.strategy, cutter=outcome.cutter.id,
+                  angles_deg=angles if outcome.angle is not None and np.isfinite(outcome.angle).all() else None,
+                  axis=None if outcome.axis is None else vector(outcome.axis),
                   seconds=0.0 if made is None else made.seconds, clearance_mm=None if made is None else made.clearance_mm,
-                  operation="" if made is None else made.id, take=_take(ready, found),
+                  operation="" if made is None else made.id, take=_take(ready, outcome),
                   alone_mm2=float(area[alone & (plan.label == k)].sum()),
-                  own=_own_entry(ready, over, area, requested, found, operations.names, all_done))
+                  own=_own_entry(ready, over, area, requested, outcome, operations.names, all_done))
         )  # fmt: skip
     return [*own, *planned]
 
 
-def _take(ready: Prepared, found: OwnFound) -> Literal["first", "share"]:
+def _take(ready: Prepared, outcome: OwnResult) -> Literal["first", "share"]:
     process = ready.options.process
-    return "first" if process is None else process.steps[found.number - 1].take
+    return "first" if process is None else process.steps[outcome.number - 1].take
 
 
-def _alone(plan: OperationPlan, own: Sequence[OwnFound], count: int) -> NDArray[np.bool_]:
+def _alone(plan: OperationPlan, own: Sequence[OwnResult], count: int) -> NDArray[np.bool_]:
     """Samples (n,) that one step alone serves: one of the planner's own serves what it could finish of its faces."""
     times = np.zeros(count, np.int64)
-    for found in own:
-        times[found.serves] += 1
+    for outcome in own:
+        times[outcome.serves] += 1
     planned = [k for k, each in enumerate(plan.operations) if not each.step]
     return times + plan.serves[:, planned].sum(axis=1) == 1
 
 
 def _own_entry(
-    ready: Prepared, over: OverSetups, area: Floats, requested: float, found: OwnFound, names: tuple[str, str], done: Rows
+    ready: Prepared, over: OverSetups, area: Floats, requested: float, outcome: OwnResult, names: tuple[str, str], done: Rows
 ) -> OwnStepEntry:
     """What a step of the planner's own is asked, what none of them does of the faces that it names, and what would do.
 
@@ -172,21 +172,21 @@ def _own_entry(
     """
     process = ready.options.process
     leaves, missed = list[RemainingEntry](), np.zeros(len(area), bool)
-    missed[found.asked] = True
+    missed[outcome.requested] = True
     missed[done] = False
-    if process is not None and process.steps[found.number - 1].faces is not None:
-        verdicts = over.each()[found.setup][1][found.cutter.id]
+    if process is not None and process.steps[outcome.number - 1].faces is not None:
+        verdicts = over.each()[outcome.setup][1][outcome.cutter.id]
         cause = np.where(verdicts.reached, _OTHER, verdicts.reason.astype(np.int32))
         for code in np.unique(cause[missed]).tolist():
             word = OTHER_ORIENTATION if code == _OTHER else REASONS[code] if code != NO_REASON else NOT_PLANNED
             leaves.append(_remaining_entry(ready, word, missed & (cause == code), area, requested))
-    near = found.nearest
+    near = outcome.nearest
     nearest_ = None if near is None else NearestEntry(
         angles_deg=dict(zip(names, near.angle.tolist(), strict=True)), axis=vector(near.axis),
         area_mm2=float(area[near.rows].sum())
     )  # fmt: skip
     return OwnStepEntry(
-        number=found.number, asked_mm2=float(area[found.asked].sum()), wrong=found.wrong,
+        number=outcome.number, asked_mm2=float(area[outcome.requested].sum()), wrong=outcome.wrong,
         leaves=sorted(leaves, key=lambda each: (-each.area_mm2, each.cause)), nearest=nearest_,
     )  # fmt: skip
 

@@ -173,41 +173,6 @@ class Worth:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Turning:
-    """How the tool axis turns in simultaneous motion, where that is proved.
-
-    Attributes
-    ----------
-    axis : (n, 3) float
-        Unit tool axis of the proposed field at each sample; nan where there is none.
-    piece : (n,) int32
-        Connected proved piece about each sample, the largest first; -1: nothing is proved there.
-    area : tuple of float
-        Of each piece that counts, mm2: the largest, until they hold 99 % of what is proved.
-    steepest : float
-        Largest turn of the axis from one sample to the next in a piece, over their distance, deg/mm.
-    low, high : (2,) float, optional
-        Least and largest angles of the rotary axes, deg, over the pieces that one solution holds; None where there is none, or
-        the machine has no two rotary axes.
-    held, both : float
-        Shares of what is proved that lie in pieces which one solution of the rotary axes holds from end to end, without a turn
-        back; and which both hold.
-    singular : float
-        Proved area in which the axis is within 2 deg of the first rotary axis, mm2: that one may have to turn fast.
-    """
-
-    axis: Floats
-    piece: Ints
-    area: tuple[float, ...]
-    steepest: float
-    low: Floats | None
-    high: Floats | None
-    held: float
-    both: float
-    singular: float
-
-
-@dataclass(frozen=True, slots=True, eq=False)
 class Operation:
     """One operation of a plan.
 
@@ -263,55 +228,6 @@ class Operation:
     turning: Turning | None = None
     step: int = 0
     orbit: int = -1
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Nearest:
-    """The orientation next to one that a person wrote which serves more: its angles (2,), deg, its axis (3,), and the rows."""
-
-    angle: Floats
-    axis: Floats
-    rows: NDArray[np.int64]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class OwnFound:
-    """A step of the planner's own process does this.
-
-    Attributes
-    ----------
-    number : int
-        In the file, from 1.
-    setup : int
-    mode : str
-    cutter : Cutter
-    axis : (3,) float, optional
-        None where it is simultaneous.
-    angle : (2,) float, optional
-        As written, deg, or the nearest that the machine has for an axis; None where it is simultaneous.
-    asked : (m,) int64
-        Samples of its faces that no step before it finishes.
-    rows : (r,) int64
-        Those of them that it finishes.
-    serves : (k,) int64
-        All samples of its faces that it could finish, whoever takes them.
-    wrong : str
-        Why it does less than is asked of it, in words; empty where it does all.
-    nearest : Nearest, optional
-        An orientation that would do, where there is one.
-    """
-
-    number: int
-    setup: int
-    mode: Mode
-    cutter: Cutter
-    axis: Floats | None
-    angle: Floats | None
-    asked: NDArray[np.int64]
-    rows: NDArray[np.int64]
-    serves: NDArray[np.int64]
-    wrong: str = ""
-    nearest: Nearest | None = None
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -427,7 +343,7 @@ class Operations:
         Of each cutter, the largest first, where the fastest were requested and several were compared.
     index_from : str
         What the times between orientations follow from: the rates of the rotary axes, what was given, or what is assumed.
-    own : tuple of OwnFound
+    own : tuple of OwnResult
         What the planner's own steps do, in their order; empty where all steps were planned.
     """
 
@@ -443,7 +359,7 @@ class Operations:
     worth: tuple[Worth, ...] = ()
     notes: tuple[str, ...] = field(default_factory=tuple)
     index_from: IndexFrom = "assumed"
-    own: tuple[OwnFound, ...] = ()
+    own: tuple[OwnResult, ...] = ()
 
     def plan(self, name: str) -> OperationPlan | None:
         """The plan of a name."""

@@ -101,8 +101,8 @@ class OwnProcess:
                 there = "is the only setup" if setups == 1 else f"to {setups} are the setups"
                 raise OptionError(f"{self._where(step)}: setup {step.setup + 1}: 1 {there}; name another with --setup")
             if step.angles is not None and {name for name, _ in step.angles} != set(names):
-                given = ", ".join(name if name.isidentifier() else shown(name) for name, _ in step.angles) or "none"
-                raise OptionError(f"{self._where(step)}: angles: {given}; the rotary axes are {' and '.join(names)}")
+                names = ", ".join(name if name.isidentifier() else shown(name) for name, _ in step.angles) or "none"
+                raise OptionError(f"{self._where(step)}: angles: {names}; the rotary axes are {' and '.join(names)}")
         for number, each in enumerate(self.forbidden, 1):
             cutter_of(each.cutter, cutters, f"{self._named()}forbid {number}")
 

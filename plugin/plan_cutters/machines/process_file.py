@@ -114,7 +114,7 @@ def _document(read: Content) -> Any:
             raise read.broken_json()
         return read.json
     if read.head.startswith("<"):
-        raise OptionError("is a web page or XML, no process file: give the process.toml beside a plan", file=read.name)
+        raise OptionError("is a web page or XML, no process file: give the process.toml of a plan", file=read.name)
     try:
         return tomllib.loads(read.text)
     except RecursionError:

@@ -24,7 +24,7 @@ _ROUNDS, _SHARES = 40, (1.0, 0.5, 0.2)
 #: Smaller turns are not tried, rad.
 _LEAST = math.radians(0.5)
 #: Room to the local gouging bound that an axis must have to be drawn, unless it had less before.
-_ROOM = 0.1
+_MARGIN = 0.1
 #: Nodes beside the samples take the mean of those around them, so many rings of them.
 _RINGS = 2
 
@@ -37,7 +37,7 @@ class _Test:
     context: Context
     tensor: Floats
 
-    def room(self, rows: Rows, axis: Floats) -> Floats:
+    def margin(self, rows: Rows, axis: Floats) -> Floats:
         """Room (m,) to the local gouging bound of axes (m, 3)."""
         return margin(axis, self.samples.normal[rows], self.tensor[rows], self.context)
 
@@ -48,7 +48,7 @@ class _Test:
         conditions, samples = self.context.conditions, self.samples
         normal, (low, high) = samples.normal[rows], conditions.postures.tilt
         tilt = angle_between(axis, normal)
-        good = (tilt >= low) & (tilt <= high) & (self.room(rows, axis) > 0.0)
+        good = (tilt >= low) & (tilt <= high) & (self.margin(rows, axis) > 0.0)
         good[good] = conditions.allows(axis[good])
         across = axis - (axis * normal).sum(axis=1)[:, None] * normal
         length = np.linalg.norm(across, axis=1)[:, None]
@@ -88,10 +88,10 @@ def moving_axes(samples: SurfaceSamples, rows: Rows, verdicts: Verdicts, context
     edge = samples.neighbours.astype(np.int64)
     edge = edge[mine[edge].all(axis=1)]
     axis = np.where(mine[:, None], verdicts.axis, np.nan)
-    return _drawn(test, rows, edge, axis)
+    return _smoothed(test, rows, edge, axis)
 
 
-def _drawn(test: _Test, rows: Rows, edge: Rows, axis: Floats) -> Floats:
+def _smoothed(test: _Test, rows: Rows, edge: Rows, axis: Floats) -> Floats:
     """Draw axes to the mean of those around them, where the tool stands free then."""
     n = len(axis)
     both = np.concatenate([edge, edge[:, ::-1]])
@@ -111,7 +111,7 @@ def _drawn(test: _Test, rows: Rows, edge: Rows, axis: Floats) -> Floats:
             wanted = (1.0 - share) * axis[some] + share * mean[open_]
             wanted /= np.linalg.norm(wanted, axis=1)[:, None]
             good = test.free(some, wanted)
-            good &= test.room(some, wanted) >= np.minimum(_ROOM, test.room(some, axis[some]))
+            good &= test.margin(some, wanted) >= np.minimum(_MARGIN, test.margin(some, axis[some]))
             axis[some[good]], moved = wanted[good], moved or bool(good.any())
             open_ = open_[~good]
         if not moved:

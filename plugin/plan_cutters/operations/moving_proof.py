@@ -57,20 +57,20 @@ def proved_moving(
     axis = moving_axes(samples, operation.rows, verdicts, context)
     own = np.zeros(len(samples) + 1, bool)
     own[operation.rows] = True
-    found = between(
+    result = between(
         samples, verdicts, context, ready.scene.part, ready.scene.orientation, budget=budget, most=most,
-        covered_samples=ready.not_required, turning=fields(samples, axis), own=own, progress=progress,
+        covered_samples=ready.not_required, axes=fields(samples, axis), own=own, progress=progress,
     )  # fmt: skip
-    whole = float(found.surrounding_area[operation.rows].sum())
-    proved = float(found.cells.area.sum())
+    whole = float(result.surrounding_area[operation.rows].sum())
+    proved = float(result.cells.area.sum())
     share = math.floor(1e6 * min(1.0, proved / whole + 1e-9)) / 1e6 if whole > 0.0 else 0.0
-    turning = _turning(samples, axis, found, kinematics)
+    turning = _turning(samples, axis, result, kinematics)
     return replace(operation, proved=share, approaches=len(turning.area), turning=turning)
 
 
-def _turning(samples: SurfaceSamples, axis: Floats, found: Between, kinematics: Kinematics | None) -> Turning:
+def _turning(samples: SurfaceSamples, axis: Floats, result: Between, kinematics: Kinematics | None) -> Turning:
     """How the axes turn in what was proved."""
-    cells, n = found.cells, len(samples)
+    cells, n = result.cells, len(samples)
     number, which = np.unique(cells.piece, return_inverse=True)
     size = np.asarray(np.bincount(which, cells.area, len(number)), float)
     order = np.argsort(-size, kind="stable")

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.operations import Nearest, OperationPlan, OwnFound
+from plan_cutters.domain.operations import Nearest, OperationPlan, OwnResult
 from plan_cutters.domain.own_process import OwnProcess, OwnStep, cutter_of
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.operations.candidates import DIGITS, Orientations, apart, directions, neighbours
@@ -25,7 +25,7 @@ Rows = NDArray[np.int64]
 _RING, _FARTHEST = 5.0, 60.0
 #: Samples by which such orientations are compared first.
 _COMPARED = 120
-#: A step that leaves less of what is asked of it does all, as a share: crumbs at borders are no fault.
+#: A step that leaves less of what is requested of it does all, as a share: crumbs at borders are no fault.
 _ALL = 0.001
 
 
@@ -39,17 +39,17 @@ class _Judged:
 
     Attributes
     ----------
-    found : tuple of OwnFound
+    outcome : tuple of OwnResult
         In their order; of those that share, with all that they could take.
     owner : (n,) int64
         The number of the step that each sample goes with, `_SHARED`, or 0 for none.
     """
 
-    found: tuple[OwnFound, ...]
+    outcome: tuple[OwnResult, ...]
     owner: NDArray[np.int64]
 
 
-def own_plan(task: Task, process: OwnProcess, planned: Callable[[Task], Columns]) -> tuple[OperationPlan, tuple[OwnFound, ...]]:
+def own_plan(task: Task, process: OwnProcess, planned: Callable[[Task], Columns]) -> tuple[OperationPlan, tuple[OwnResult, ...]]:
     """Make the plan of a process that a person wrote.
 
     Parameters
@@ -64,7 +64,7 @@ def own_plan(task: Task, process: OwnProcess, planned: Callable[[Task], Columns]
     -------
     OperationPlan
         Called `process`; its operations know their steps.
-    tuple of OwnFound
+    tuple of OwnResult
         What each step does, in their order.
     """
     judged = _judged(task, process)
@@ -74,7 +74,7 @@ def own_plan(task: Task, process: OwnProcess, planned: Callable[[Task], Columns]
     }
     others, columns = replace(task, everywhere=_masked(task, barred)), columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
     step = list[int]()
-    for each in judged.found:
+    for each in judged.outcome:
         if each.axis is not None and each.angle is not None and len(each.rows):
             cutter = task.cutters.index(each.cutter)
             columns = columns.and_(columns_of(each.axis[None], each.angle[None], cutter, each.setup))
@@ -84,7 +84,7 @@ def own_plan(task: Task, process: OwnProcess, planned: Callable[[Task], Columns]
         columns, step = columns.and_(more), [*step, *([0] * len(more))]
     number = np.array(step, np.int64)
 
-    shared = {each.number: each.rows for each in judged.found if _shares(process, each) and each.mode == "fixed"}
+    shared = {each.number: each.rows for each in judged.outcome if _shares(process, each) and each.mode == "fixed"}
 
     def rule(serves: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Each sample goes with the step that takes it, or one of those that share it; what none takes, with what was planned."""
@@ -97,18 +97,18 @@ def own_plan(task: Task, process: OwnProcess, planned: Callable[[Task], Columns]
 
     moving = tuple(
         (each.number, task.cutters.index(each.cutter), each.setup, each.rows)
-        for each in judged.found
+        for each in judged.outcome
         if each.mode == "simultaneous"
     )
     reserved = Reserved(tuple(step), moving, process.rest == "leave", others.everywhere)
     plan = plan_with(task, "process", columns, rule, reserved)
     place = {each.step: k for k, each in enumerate(plan.operations)}
     taken = {number: np.flatnonzero(plan.label == place.get(number, -2)) for number in shared}
-    return plan, tuple(replace(each, rows=taken.get(each.number, each.rows)) for each in judged.found)
+    return plan, tuple(replace(each, rows=taken.get(each.number, each.rows)) for each in judged.outcome)
 
 
-def _shares(process: OwnProcess, found: OwnFound) -> bool:
-    return process.steps[found.number - 1].take == "share"
+def _shares(process: OwnProcess, outcome: OwnResult) -> bool:
+    return process.steps[outcome.number - 1].take == "share"
 
 
 def _masked(task: Task, barred: Mapping[int, NDArray[np.bool_]]) -> tuple[Mapping[Cutter, Verdicts], ...]:
@@ -140,46 +140,46 @@ def _judged(task: Task, process: OwnProcess) -> _Judged:
 
     Behind them come those that share: what fixed ones serve is divided later, and simultaneous ones take what is left.
     """
-    owner, found = np.zeros(len(task.ready.samples), np.int64), list[OwnFound]()
+    owner, outcome = np.zeros(len(task.ready.samples), np.int64), list[OwnResult]()
     for step in sorted(process.steps, key=lambda each: (each.take == "share", each.take == "share" and each.mode != "fixed")):
         mine = task.rows if step.faces is None else task.rows[np.isin(task.ready.samples.face[task.rows], step.faces)]
         one = _moving(task, step, mine) if step.mode == "simultaneous" else _fixed(task, step, mine)
         divided = step.take == "share" and step.mode == "fixed"
         open_ = owner <= 0 if divided else owner == 0
-        one = replace(one, asked=mine[open_[mine]], rows=one.serves[open_[one.serves]])
+        one = replace(one, requested=mine[open_[mine]], rows=one.serves[open_[one.serves]])
         owner[one.rows] = _SHARED if divided else step.number
-        found.append(one)
-    found.sort(key=lambda each: each.number)
-    return _Judged(tuple(_helped(task, each, process.steps[each.number - 1], owner) for each in found), owner)
+        outcome.append(one)
+    outcome.sort(key=lambda each: each.number)
+    return _Judged(tuple(_helped(task, each, process.steps[each.number - 1], owner) for each in outcome), owner)
 
 
-def _moving(task: Task, step: OwnStep, rows: Rows) -> OwnFound:
+def _moving(task: Task, step: OwnStep, rows: Rows) -> OwnResult:
     """A simultaneous step over samples (m,) of its faces: it serves what its cutter reaches in its setup with any posture."""
     cutter = cutter_of(step.cutter, task.cutters, f"step {step.number}")
     serves = task.everywhere[step.setup][cutter].reached[rows] & task.ready.machinable[step.setup][rows]
-    return OwnFound(step.number, step.setup, "simultaneous", cutter, None, None, rows, rows[serves], rows[serves])
+    return OwnResult(step.number, step.setup, "simultaneous", cutter, None, None, rows, rows[serves], rows[serves])
 
 
-def _fixed(task: Task, step: OwnStep, rows: Rows) -> OwnFound:
+def _fixed(task: Task, step: OwnStep, rows: Rows) -> OwnResult:
     """A fixed step over samples (m,) of its faces: it serves what its cutter finishes with its axis."""
     cutter, where = cutter_of(step.cutter, task.cutters, f"step {step.number}"), task.orientations[step.setup]
     angle, axis, held = _set_to(where, step)
-    found = OwnFound(step.number, step.setup, "fixed", cutter, axis, angle, rows, rows[:0], rows[:0])
+    outcome = OwnResult(step.number, step.setup, "fixed", cutter, axis, angle, rows, rows[:0], rows[:0])
     if not held:
-        return replace(found, wrong="the machine cannot hold this orientation")
-    return replace(found, serves=rows[_serves(task, found, rows, axis[None], angle[None])[:, 0]])
+        return replace(outcome, wrong="the machine cannot hold this orientation")
+    return replace(outcome, serves=rows[_serves(task, outcome, rows, axis[None], angle[None])[:, 0]])
 
 
-def _helped(task: Task, found: OwnFound, step: OwnStep, owner: NDArray[np.int64]) -> OwnFound:
-    """A fixed step with the orientation next to it that would do, where no step finishes much of what it is asked."""
-    if found.axis is None or (step.faces is None and len(found.rows)):
-        return found
-    area, asked = np.nan_to_num(task.ready.samples.area), found.asked
-    reached = task.everywhere[found.setup][found.cutter].reached[asked] & task.ready.machinable[found.setup][asked]
-    missed = asked[reached & (owner[asked] == 0)]
-    if float(area[missed].sum()) <= _ALL * float(area[asked].sum()):
-        return found
-    return replace(found, nearest=_nearest(task, task.orientations[found.setup], found, asked[reached]))
+def _helped(task: Task, outcome: OwnResult, step: OwnStep, owner: NDArray[np.int64]) -> OwnResult:
+    """A fixed step with the orientation next to it that would do, where no step finishes much of what it is requested."""
+    if outcome.axis is None or (step.faces is None and len(outcome.rows)):
+        return outcome
+    area, requested = np.nan_to_num(task.ready.samples.area), outcome.requested
+    reached = task.everywhere[outcome.setup][outcome.cutter].reached[requested] & task.ready.machinable[outcome.setup][requested]
+    missed = requested[reached & (owner[requested] == 0)]
+    if float(area[missed].sum()) <= _ALL * float(area[requested].sum()):
+        return outcome
+    return replace(outcome, nearest=_nearest(task, task.orientations[outcome.setup], outcome, requested[reached]))
 
 
 def _set_to(where: Orientations, step: OwnStep) -> tuple[Floats, Floats, bool]:
@@ -198,15 +198,15 @@ def _set_to(where: Orientations, step: OwnStep) -> tuple[Floats, Floats, bool]:
     return np.full(2, np.nan), wanted, False
 
 
-def _serves(task: Task, found: OwnFound, rows: Rows, axis: Floats, angle: Floats) -> NDArray[np.bool_]:
+def _serves(task: Task, outcome: OwnResult, rows: Rows, axis: Floats, angle: Floats) -> NDArray[np.bool_]:
     """Where the cutter of a step cuts samples (m,) with some axes: (m, k)."""
-    columns = columns_of(axis, angle, task.cutters.index(found.cutter), found.setup)
+    columns = columns_of(axis, angle, task.cutters.index(outcome.cutter), outcome.setup)
     return np.isfinite(costs_with(replace(task, rows=rows), columns)[1])
 
 
-def _nearest(task: Task, where: Orientations, found: OwnFound, wanted: Rows) -> Nearest | None:
+def _nearest(task: Task, where: Orientations, outcome: OwnResult, wanted: Rows) -> Nearest | None:
     """The orientation next to a step's that serves all that its cutter reaches of its faces, or else the most; None: none."""
-    written = np.asarray(found.axis)
+    written = np.asarray(outcome.axis)
     rings = [neighbours(written[None], math.radians(angle)) for angle in np.arange(_RING, _FARTHEST + 1.0, _RING).tolist()]
     angle, axis = where.near(np.concatenate([directions(task.ready.samples, where.conditions.setup), *rings]))
     distinct = apart(axis)
@@ -217,13 +217,13 @@ def _nearest(task: Task, where: Orientations, found: OwnFound, wanted: Rows) -> 
         return None
     few = wanted[:: max(1, len(wanted) // _COMPARED)]
     area = np.nan_to_num(task.ready.samples.area)
-    size = area[few] @ _serves(task, found, few, axis[near], angle[near])
+    size = area[few] @ _serves(task, outcome, few, axis[near], angle[near])
     best = near[int(size.argmax())]
     # As short as it does as much: whole degrees first.
     angles, axes = where.set_to(np.stack([np.round(angle[best], digits) for digits in (0, 1, DIGITS)]))
-    served = _serves(task, found, wanted, axes, angles)
+    served = _serves(task, outcome, wanted, axes, angles)
     best = int(np.argmax(served.T @ area[wanted] >= (served.T @ area[wanted]).max() * (1.0 - _ALL)))
     angle, axis, rows = angles, axes, wanted[served[:, best]]
-    if float(area[rows].sum()) <= float(area[found.rows].sum()) * (1.0 + _ALL):
+    if float(area[rows].sum()) <= float(area[outcome.rows].sum()) * (1.0 + _ALL):
         return None
     return Nearest(angle[best], axis[best], rows)

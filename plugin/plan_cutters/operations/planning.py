@@ -136,10 +136,10 @@ def _own(task: Task, process: OwnProcess, stage: Callable[[str], AbstractContext
         return _columns_of(rest, next((each for each in plans if each.name == "fastest"), plans[0]))
 
     with stage("operations") as tell:
-        plan, found = own_plan(task, process, planned)
+        plan, outcomes = own_plan(task, process, planned)
         plan = proved(ready, task.everywhere, plan, progress=part_of(tell, 5, _PARTS))
     return Operations(options.operations or "", task.cutters, (plan,), None, (), task.orientations[0].names, task.probes.made,
-                      task.paths.feed, index_from=task.indexing.source, own=found)  # fmt: skip
+                      task.paths.feed, index_from=task.indexing.source, own=outcomes)  # fmt: skip
 
 
 _Plans = tuple[list[OperationPlan], Fastest | None, tuple[Worth, ...], tuple[str, ...]]

@@ -91,7 +91,7 @@ def _proved(ready: Prepared, plan: OperationPlan, group: list[int], budget: int,
     proved = between(
         samples, held_at(axes, first, samples, context), context, ready.scene.part,
         ready.scene.orientation, budget=budget, most=most, covered_samples=ready.not_required,
-        fixed=Fixed(axes, serves), progress=tell,
+        axes=Fixed(axes, serves), progress=tell,
     )  # fmt: skip
     cells = proved.cells
     by_sample = np.bincount(cells.sample, cells.area, len(samples))

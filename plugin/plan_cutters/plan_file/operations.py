@@ -274,7 +274,7 @@ class OperationsEntry(Frozen):
     asked: Literal["fewest", "fastest", "both"]
     rotary: tuple[str, str] = Field(description="names of the angles")
     plans: list[OperationPlanEntry]
-    fewest: FewestEntry | None = Field(default=None, description="null beside the planner's own process")
+    fewest: FewestEntry | None = Field(default=None, description="null with the planner's own process")
     fastest: FastestEntry | None = Field(description="null unless the fastest were requested")
     cutters: list[CutterUse] = Field(
         description="the largest first; empty unless the fastest were requested and several cutters were compared"

@@ -34,9 +34,9 @@ def process_toml(plan: Plan) -> str:
         'format = "plan-cutters-process"\nversion = 1\n'
         '# "leave": nothing more is planned behind these steps.\nrest = "plan"\n'
     )
-    asked = [] if plan.effective.process is None else plan.effective.process["step"]
+    requested = [] if plan.effective.process is None else plan.effective.process["step"]
     return head + "".join(
-        _step(number, each, words, asked[each.own.number - 1] if each.own else None)
+        _step(number, each, words, requested[each.own.number - 1] if each.own else None)
         for number, step in enumerate(process.steps, 1)
         for each in _times(plan, step)
     )

@@ -121,8 +121,7 @@ def between(
     most: float = np.inf,
     work: Work | None = None,
     covered_samples: NDArray[np.bool_] | None = None,
-    fixed: Fixed | None = None,
-    turning: Mapping[int, AxisField] | None = None,
+    axes: Fixed | Mapping[int, AxisField] | None = None,
     own: NDArray[np.bool_] | None = None,
     progress: Progress | None = None,
 ) -> Between:
@@ -145,11 +144,10 @@ def between(
         Where it is counted.
     covered_samples : (n,) bool, optional
         Samples that are no surface of the finished part: cells about them are left out where all around them are such, too.
-    fixed : Fixed, optional
-        Each cell keeps the axis of its sample, or takes one of these that serve the sample: no other posture is searched.
-    turning : mapping of int to AxisField, optional
-        Each contact has the axis that the field of its face has there: cells are served where every axis in them serves all of
-        the cell. Faces without one are not looked at.
+    axes : Fixed or mapping of int to AxisField, optional
+        Fixed: each cell keeps the axis of its sample, or takes one of these that serve the sample. Fields by face: each contact has
+        the axis that the field has there, cells are served where every axis in them serves all of the cell, and faces without a
+        field are not looked at. No other posture is searched.
     own : (n + 1,) bool, optional
         Samples whose cells are looked at, and behind them whether those about no sample are; the others are as if they were not
         there, but `share` is of all the same.
@@ -157,6 +155,7 @@ def between(
         Called with how much is done of the most that may be.
     """
     whole, unknown = _areas(samples, part)
+    fixed, turning = (axes, None) if axes is None or isinstance(axes, Fixed) else (None, axes)
     covered_samples = np.zeros(len(samples), bool) if covered_samples is None else covered_samples
     own = np.ones(len(samples) + 1, bool) if own is None else own
     counted, short = own[:-1] & ~covered_samples, 0

@@ -117,7 +117,7 @@ def _decided(status):
 
 @kernel
 def _wander(row, patches, nodes, frame, sine, offset, turn, lift):
-    """How a contact's cutter that leans to a known side moves as the contact wanders."""
+    """How a contact's cutter that changes to a known side moves as the contact wanders."""
     k_ff, k_tt, k_ft, home, h = 0.0, 0.0, 0.0, patches.home[row], patches.patch[row]
     for k in range(3):
         for m in range(3):
@@ -249,16 +249,16 @@ def _bounded(stance, row, patches, nodes, frame, sweeping, depth, workspace):
         # How far the normal turns within the patch, and how far the surface leaves the tangent plane; the lean changes by what
         # the axis turns, too.
         turn, lift = STRETCH * most[0, 3] * h, LIFT * most[0, 3] * h * h
-        leans = turn + patches.swing[row]
-        settled = _settled(stance, leans, tilt, high, len(tool.mode)) if upright and not flat else -1
+        changes = turn + patches.swing[row]
+        settled = _settled(stance, changes, tilt, high, len(tool.mode)) if upright and not flat else -1
         if settled >= 0:
             return _decided(settled)
-        if not turn <= MOST_TURN or too_steep(pose, leans, upright, nose):
+        if not turn <= MOST_TURN or too_steep(pose, changes, upright, nose):
             return _decided(halvings(most, h, pose, upright, nose, depth, chord, near))
         wander = Wander(-1, turn, lift, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         if not upright:
             wander = _wander(row, patches, nodes, frame, stance.sine, offset, turn, lift)
-        held = extent(most, last, full, h, pose, upright, wander.psi + wander.sway, leans, nose, depth, chord, near)
+        held = extent(most, last, full, h, pose, upright, wander.psi + wander.sway, changes, nose, depth, chord, near)
         if held < 0:
             return _decided(halvings(most, h, pose, upright, nose, depth, chord, near))
         if held < last:
@@ -321,7 +321,7 @@ def _status_by(rule, row, patches, nodes, sweeping, obstacles, body, workspace):
     if rule == _LEVEL:
         if not STRETCH * seen_nodes.most[0, 3] * _SMALLEST * patches.patch[row] <= _ALONG:
             return NEVER, -1
-        # What a cutter that stands exactly enters of a plane that leans this little.
+        # What a cutter that stands exactly enters of a plane that changes this little.
         wide = _longest(sweeping.tool.piece[mode]) if stance.along else 2.0 * sweeping.tool.mode[mode, 0]
         depth -= wide * (2.0 * _ALONG)
     wander = _bounded(stance, row, patches, nodes, frame, sweeping, depth, workspace)

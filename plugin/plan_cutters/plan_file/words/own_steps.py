@@ -9,7 +9,7 @@ from plan_cutters.plan_file.reasons import REASONS
 #: Steps whose faults are told, and faces that are named of one.
 _STEPS, _FACES = 3, 3
 #: A step that leaves less of what it is asked does all, as a share: crumbs at borders are no fault.
-_CRUMBS = 0.001
+_MINOR = 0.001
 
 
 def angles_text(angles: Mapping[str, float], by: Mapping[str, float] | None = None) -> str:
@@ -53,7 +53,7 @@ def fault(number: int, step: ProcessStep) -> str:
     if own.wrong:
         return f"Step {number}: {own.wrong}{near}."
     left = sum(each.area_mm2 for each in own.leaves)
-    if left > _CRUMBS * own.asked_mm2:
+    if left > _MINOR * own.asked_mm2:
         worst = own.leaves[0]
         cause = "it needs another orientation" if worst.cause == OTHER_ORIENTATION else _cause(worst.cause)
         return f"Step {number} leaves {area(left)} of {area(own.asked_mm2)}, {listed(worst.faces, _FACES)}: {cause}{near}."
