@@ -30,8 +30,8 @@ class Step:
         `F3 F6`, or `left`: all that no step before it finishes.
     take : str
         `share`: it divides its faces with others that share them, by time; else `first`: all that no such step before it takes.
-    share : float, optional
-        Of the area that was asked, as it was judged; None where it is not.
+    area : float, optional
+        mm2 that it finishes, as it was judged; None where it was not.
     alone : float, optional
         mm2 that no other step serves; None where that is not known.
     fault : str
@@ -43,7 +43,7 @@ class Step:
     cutter: str
     faces: str
     take: str = "first"
-    share: float | None = None
+    area: float | None = None
     alone: float | None = None
     fault: str = ""
 
@@ -69,7 +69,7 @@ def _step(entry: dict[str, Any], plan: dict[str, Any]) -> Step:
         written = asked[place]["faces"] if 0 <= place < len(asked) else "left"
         faces = written if isinstance(written, str) else " ".join(written)
     return Step(
-        entry["setup"] + 1, turned, _called(entry["cutter"], plan), faces, entry.get("take", "first"), entry["share"],
+        entry["setup"] + 1, turned, _called(entry["cutter"], plan), faces, entry.get("take", "first"), entry["area_mm2"],
         entry.get("alone_mm2"), own.get("text", ""),
     )  # fmt: skip
 
@@ -153,5 +153,5 @@ def edited(step: Step, column: str, text: str) -> Step:
     """A step with another text in a column: what was judged of it is no longer known."""
     if getattr(step, column) == text:
         return step
-    changed: dict[str, Any] = {column: text, "share": None, "alone": None, "fault": ""}
+    changed: dict[str, Any] = {column: text, "area": None, "alone": None, "fault": ""}
     return replace(step, **changed)

@@ -9,7 +9,7 @@ from . import model, objects, own_process, results, runner, windows
 from .windows import QtCore, QtGui
 
 #: Columns: their heads, and the part of a step that is edited in each; none is edited where that is empty.
-_COLUMNS = (("Setup", ""), ("Orientation", "turned"), ("Cutter", "cutter"), ("Faces", "faces"), ("Share", ""))
+_COLUMNS = (("Setup", ""), ("Orientation", "turned"), ("Cutter", "cutter"), ("Faces", "faces"), ("Area, mm²", ""))
 
 
 class StepsBox:
@@ -53,6 +53,8 @@ class StepsBox:
         layout.addRow(self.again)
         self.told = windows.words("", "steps_told")
         layout.addRow(self.told)
+        self.bar = QtGui.QProgressBar()
+        layout.addRow(self.bar)
         self._fill(0)
 
     def _fill(self, place: int) -> None:
@@ -60,8 +62,8 @@ class StepsBox:
         self.list.blockSignals(True)
         self.list.clear()
         for step in self.steps:
-            share = "" if step.share is None else f"{100.0 * step.share:.1f} %"
-            item = QtGui.QTreeWidgetItem([str(step.setup), step.turned, step.cutter, step.faces, share])
+            area = "" if step.area is None else f"{step.area:,.4g}"
+            item = QtGui.QTreeWidgetItem([str(step.setup), step.turned, step.cutter, step.faces, area])
             item.setFlags(item.flags() | QtCore.Qt.ItemIsEditable)
             for column in range(len(_COLUMNS)):
                 item.setToolTip(column, step.fault or step.faces)
@@ -80,6 +82,7 @@ class StepsBox:
     def _tell(self) -> None:
         """Say what is known of the current step."""
         place = self.place
+        self.bar.setVisible(self._run is not None)
         for button in (self._up, self._down, self._out):
             button.setEnabled(place >= 0 and self._run is None)
         if self._run is not None:
@@ -132,7 +135,10 @@ class StepsBox:
         self._tell()
 
     def _progress(self, words: str, fraction: float | None) -> None:
-        self.told.setText(words + ("" if fraction is None else f", {100.0 * fraction:.0f} %"))
+        self.told.setText(words)
+        self.bar.setRange(0, 0 if fraction is None else 1000)
+        if fraction is not None:
+            self.bar.setValue(round(1000 * fraction))
 
     def _ended(self) -> None:
         self._run = None

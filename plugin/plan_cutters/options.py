@@ -25,8 +25,7 @@ from plan_cutters.domain.spec import notation
 from plan_cutters.errors import OptionError
 from plan_cutters.library.presets import feed_of
 from plan_cutters.library.records import Entry, Library, libraries_of
-from plan_cutters.machines.process_file import process_of
-from plan_cutters.machines.requested_operations import operations_requested
+from plan_cutters.machines.requested_operations import operations_requested, process_requested
 from plan_cutters.machines.requested_setups import setups_requested, without
 from plan_cutters.option_types import ANGLES, PlanOptions
 
@@ -302,8 +301,7 @@ class Options:
             raise OptionError(f"sharp edges: {shown(self.sharp_edges)} is none of {', '.join(SHARP_EDGES)}")
         if self.units not in (None, "mm", "in"):
             raise OptionError(f"units: {shown(self.units)} is none of mm, in")
-        if self.process is not None:
-            take(process=process_of(self.process))
+        take(process=process_requested(self.process))
         if self.most_operations is not None:
             take(most_operations=whole(self.most_operations, "most operations"))
         take(max_orientations=whole(self.max_orientations, "max orientations"))

@@ -66,7 +66,7 @@ def test_rows_are_moved_left_out_and_changed(own, document):
     assert own.moved(steps, 0, -1) == own.moved(steps, 2, 1) == own.moved(steps, -1, 1) == steps
     assert own.without(steps, 1) == [first, third]
     other = own.edited(first, "turned", "C 0 A 0")
-    assert (other.turned, other.share, other.alone, other.fault) == ("C 0 A 0", None, None, "")
+    assert (other.turned, other.area, other.alone, other.fault) == ("C 0 A 0", None, None, "")
     assert own.edited(first, "cutter", first.cutter) is first
 
 
@@ -260,7 +260,7 @@ def test_the_list_of_steps_is_edited_in_the_window(tmp_path):
                 LIBGL_ALWAYS_SOFTWARE="1")  # fmt: skip
     rows = found["rows"]
     assert len(rows) > 1
-    assert all(row[1] and row[3].startswith("F") and row[4].endswith(" %") for row in rows)
+    assert all(row[1] and row[3].startswith("F") and row[4] for row in rows)
     assert found["moved"] == [[rows[1], rows[0], *rows[2:]], 1]
     assert "step 1: “C 5 A five” is no orientation" in found["wrong"][0]
     assert found["wrong"][1]

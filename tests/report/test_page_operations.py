@@ -71,7 +71,7 @@ def test_each_step_says_what_is_gone_without_it_and_which_operation_it_is(planne
         assert area(step.alone_mm2) in text
         one = fastest.operations[int(attributes["data-operation"])]
         assert (attributes["data-plan"], one.id, one.cutter, one.setup) == ("fastest", step.operation, step.cutter, step.setup)
-        assert (one.area_mm2, one.exclusive_mm2) == (step.area_mm2, step.alone_mm2)
+        assert (one.area_mm2, one.exclusive_mm2) == pytest.approx((step.area_mm2, step.alone_mm2))
 
 
 def test_the_text_of_the_plan_says_each_thing_once(planned):

@@ -98,7 +98,7 @@ def kept(part: Scene, known: Options) -> None:
         change_time=known.change_time, setup_time=known.setup_time, overlap=known.overlap,
         most_operations=known.most_operations, max_orientations=known.max_orientations, patterns=known.patterns,
         sharp_edges=known.sharp_edges,
-        units=known.units,
+        units=known.units, process=known.process,
     )  # fmt: skip
 
 

@@ -150,7 +150,7 @@ class NearestOrientation(Entry):
 
 
 class OwnStepAnswer(Entry):
-    """What a step of `process` is asked, and what it leaves of that."""
+    """A step of `process` is asked this, and leaves this of it."""
 
     number: int = Field(description="in `process`, from 1")
     text: str = Field(default="", description="what is wrong with it, a sentence; empty where it does all")

@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from typing import Any
 
-from plan_cutters.agents.answers import Remaining, NearestOrientation, OwnStepAnswer, StepAnswer, first
+from plan_cutters.agents.answers import NearestOrientation, OwnStepAnswer, Remaining, StepAnswer, first
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.process import OwnStepEntry, ProcessStep, RemainingEntry
 
@@ -14,7 +14,7 @@ def stepped(plan: Plan, most: int) -> dict[str, Any]:
     if process is None:
         return {}
     steps, more_steps = first(process.steps, most)
-    left, more_left = _left(process.left, most)
+    left, more_left = _areas(process.left, most)
     return {
         "asked_mm2": process.asked_mm2, "finished_share": process.finished_share, "seconds": process.seconds,
         "steps": [_step(each, most) for each in steps], "more_steps": more_steps, "left": left, "more_left": more_left,
@@ -32,7 +32,7 @@ def _step(step: ProcessStep, most: int) -> StepAnswer:
 
 
 def _own(own: OwnStepEntry, most: int) -> OwnStepAnswer:
-    leaves, more = _left(own.leaves, most)
+    leaves, more = _areas(own.leaves, most)
     near = own.nearest
     return OwnStepAnswer(
         number=own.number, text=own.text, asked_mm2=own.asked_mm2, wrong=own.wrong, leaves=leaves, more_leaves=more,
@@ -40,7 +40,7 @@ def _own(own: OwnStepEntry, most: int) -> OwnStepAnswer:
     )  # fmt: skip
 
 
-def _left(entries: Sequence[RemainingEntry], most: int) -> tuple[list[Remaining], int]:
+def _areas(entries: Sequence[RemainingEntry], most: int) -> tuple[list[Remaining], int]:
     listed, more = first([*entries], most)
     return [_area(each, most) for each in listed], more
 

@@ -1,11 +1,21 @@
 """Which operations are planned, from what was requested of them, of the planner's own process, and of the machine."""
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.own_process import OwnProcess, cutter_of
 from plan_cutters.errors import OptionError
+
+
+def process_requested(value: Any) -> OwnProcess | None:
+    """The planner's own process as it was requested: a file, a mapping, or None. What reads it is loaded where it is needed."""
+    if value is None:
+        return None
+    from plan_cutters.machines.process_file import process_of
+
+    return process_of(value)
 
 
 def operations_requested(

@@ -33,7 +33,7 @@ MINOR_AREA = 0.001
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Reserved:
-    """What the planner's own steps take of a plan.
+    """The planner's own steps take this of a plan.
 
     Attributes
     ----------

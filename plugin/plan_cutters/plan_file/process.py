@@ -36,7 +36,7 @@ class NearestEntry(Frozen):
 
 
 class OwnStepEntry(Frozen):
-    """What a step of the planner's own process is asked, and what it leaves of that."""
+    """A step of the planner's own process is asked this, and leaves this of it."""
 
     number: int = Field(description="in `effective.process`, from 1")
     asked_mm2: float = Field(description="of its faces, that no step before it finishes")

@@ -45,7 +45,7 @@ def shortened(sentences: Sequence[str]) -> list[str]:
 
 
 def fault(number: int, step: ProcessStep) -> str:
-    """What is wrong with a step; empty where it does what it is asked, and where it was planned."""
+    """Say what is wrong with a step; empty where it does what it is asked, and where it was planned."""
     own = step.own
     if own is None:
         return ""
