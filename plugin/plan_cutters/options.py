@@ -26,7 +26,7 @@ from plan_cutters.errors import OptionError
 from plan_cutters.library.presets import feed_of
 from plan_cutters.library.records import Entry, Library, libraries_of
 from plan_cutters.machines.requested_operations import operations_requested, process_requested
-from plan_cutters.machines.requested_setups import setups_requested, without
+from plan_cutters.machines.requested_setups import MOST_PROPOSED, setups_requested, without
 from plan_cutters.option_types import ANGLES, PlanOptions
 
 #: Gouge tolerances that can be requested, mm.
@@ -37,8 +37,6 @@ SHARP_EDGES = ("asked", "left")
 _ACCURACY = math.radians(0.05)
 #: Longest length that can be requested, mm: longer ones are rather a mistake. Most threads.
 _LONGEST, _MOST_JOBS = 1e6, 1024
-#: Setups that are proposed, at most.
-MOST_PROPOSED = 3
 #: The least and the largest value of options, and their unit: the tolerance, and what the plan of operations reckons with.
 _RECKONED = {"tolerance": (LEAST_TOLERANCE, MOST_TOLERANCE, "mm"), "feed": (0.1, 1e6, "mm/min"),
              "scallop": (1e-5, 10.0, "mm"), "stepover": (0.01, 1.0, "diameters"),
@@ -162,10 +160,9 @@ class Options:
         Where the fastest plan would have more fixed orientations, simultaneous motion is recommended for the rest; without effect
         where `most_operations` is given.
     process : OwnProcess, optional
-        The planner's own steps, judged as they stand; may be given as a file or a mapping, as `process_of` takes them. The rest
-        is planned as `operations` say; without them as the fastest, or as the fewest without a feed.
+        The planner's own steps, as a file or a mapping too; the rest is planned by `operations`, else the fastest or the fewest.
     patterns : bool
-        Equal faces are found, judged once and planned once; else each face is judged by itself.
+        Equal faces are judged once and planned once.
     units : str, optional
         Of lengths in the words, `mm` or `in`; numbers in files stay mm. None: inches where all cutters were given in them.
     unit : str, optional

@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from plan_cutters.answers.candidates import touching
 from plan_cutters.answers.holding import Held
-from plan_cutters.answers.setup_ranking import MOST, Ranking, ranked
+from plan_cutters.answers.setup_ranking import Ranking, ranked
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.notes import noted
 from plan_cutters.domain.clamping import CHUCK, VISE
@@ -18,6 +18,7 @@ from plan_cutters.domain.fixture import TABLE
 from plan_cutters.domain.placement import Placement, axis_words
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.judged_part import JudgedPart
+from plan_cutters.machines.requested_setups import MOST_PROPOSED
 from plan_cutters.options import Options
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.notes import setup_proposed
@@ -68,11 +69,11 @@ def judged_proposed(
     ready = prepare(unproposed, clock)
     ready = replace(ready, scene=ready.scene.for_targets(ready.chosen.targets))
     with clock.stage("proposal"):
-        ranking = ranked(ready, MOST, words)
+        ranking = ranked(ready, MOST_PROPOSED, words)
     best: tuple[float, JudgedPart, Callable[[Plan], Plan]] | None = None
     failed, why = frozenset[int](), ""
     for tried in range(1, _TRIES + 1):
-        chosen = ranking.choose(MOST, failed)
+        chosen = ranking.choose(MOST_PROPOSED, failed)
         with clock.stage("proposal"):
             ranking.settle(chosen)
         promised = np.logical_or.reduce([ranking.served(k) for k in chosen]) if chosen else np.zeros(0, bool)

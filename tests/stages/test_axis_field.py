@@ -16,10 +16,10 @@ from plan_cutters.kernels.codes import COLUMNS
 from plan_cutters.kernels.tool.pieces import inset
 from plan_cutters.scene.conditions import tools
 from plan_cutters.stages.axis_field import AxisField, angle_between
-from tests.stages.test_between_tools import TOOLS
 from tests.support import shapes
 from tests.support.contacts import dense
 from tests.support.places import SAMPLES
+from tests.support.tool_kinds import TOOLS
 from tests.support.tool_profile import deepest_of
 from tests.support.turning import along, turned_contacts
 

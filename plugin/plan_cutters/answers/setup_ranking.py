@@ -40,8 +40,6 @@ _LOW, _EVEN_HEIGHT = 2, 1e-3
 _ON_NO_PLANE = 0.75
 #: Share of the area that a setup has to serve alone: of a few hundred samples one or two may be served by chance.
 _CLAMPED_FOR = 0.005
-#: Setups that are proposed together, at most.
-MOST = 3
 
 
 def holdable(

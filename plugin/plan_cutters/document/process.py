@@ -11,7 +11,8 @@ from plan_cutters.document.over_setups import OverSetups
 from plan_cutters.document.repeats import repeats
 from plan_cutters.document.shares import sample_areas
 from plan_cutters.domain.answers import Answers
-from plan_cutters.domain.operations import OperationPlan, Operations, OwnResult
+from plan_cutters.domain.operations import OperationPlan, Operations
+from plan_cutters.domain.own_results import OwnResult
 from plan_cutters.domain.verdicts import NO_REASON, REASONS, SHARP_EDGE
 from plan_cutters.plan_file.frozen import Vector, vector
 from plan_cutters.plan_file.model import CutterEntry

@@ -14,11 +14,13 @@ from cad_io.arrays import Floats, Ints, Record
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.own_process import Mode
+from plan_cutters.domain.own_results import OwnResult
+from plan_cutters.domain.turning import Turning
 from plan_cutters.errors import OptionError
 
 #: Plans that may be requested.
 WHICH = ("fewest", "fastest", "both")
-Mode = Literal["fixed", "simultaneous"]
 Strategy = Literal["point", "floor", "wall", "mixed"]
 #: How a sample is cut, in the numbers of `OperationPlan.strategy`.
 STRATEGIES: tuple[Strategy, ...] = ("point", "floor", "wall")

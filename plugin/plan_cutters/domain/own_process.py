@@ -9,9 +9,10 @@ from typing import Any, Literal
 
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.domain.operations import Mode
 from plan_cutters.errors import OptionError
 
+#: One tool axis for all contacts of a step, or one for each.
+Mode = Literal["fixed", "simultaneous"]
 #: What stands for the faces of a step that takes all that no step before it finishes.
 LEFT = "left"
 
@@ -101,8 +102,8 @@ class OwnProcess:
                 there = "is the only setup" if setups == 1 else f"to {setups} are the setups"
                 raise OptionError(f"{self._where(step)}: setup {step.setup + 1}: 1 {there}; name another with --setup")
             if step.angles is not None and {name for name, _ in step.angles} != set(names):
-                names = ", ".join(name if name.isidentifier() else shown(name) for name, _ in step.angles) or "none"
-                raise OptionError(f"{self._where(step)}: angles: {names}; the rotary axes are {' and '.join(names)}")
+                written = ", ".join(name if name.isidentifier() else shown(name) for name, _ in step.angles) or "none"
+                raise OptionError(f"{self._where(step)}: angles: {written}; the rotary axes are {' and '.join(names)}")
         for number, each in enumerate(self.forbidden, 1):
             cutter_of(each.cutter, cutters, f"{self._named()}forbid {number}")
 

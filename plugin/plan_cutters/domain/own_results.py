@@ -6,7 +6,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.own_process import Mode
 

@@ -14,6 +14,8 @@ from plan_cutters.errors import OptionError
 
 #: The word that asks for setups to be proposed.
 AUTO = "auto"
+#: Setups that are proposed together, at most.
+MOST_PROPOSED = 3
 
 
 def is_auto(value: Any) -> bool:

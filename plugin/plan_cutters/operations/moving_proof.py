@@ -10,7 +10,8 @@ from scipy.sparse.csgraph import breadth_first_order
 
 from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.domain.kinematics import SINGULAR, Kinematics
-from plan_cutters.domain.operations import Operation, Turning
+from plan_cutters.domain.operations import Operation
+from plan_cutters.domain.turning import Turning
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.moving_axes import fields, moving_axes
 from plan_cutters.scene.conditions import Context

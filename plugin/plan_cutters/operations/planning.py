@@ -30,12 +30,12 @@ from plan_cutters.operations.plans import (
     MINOR_AREA,
     best_area,
     considered,
-    of_wanted_kinds,
     orientations_of,
     plan_with,
     small_pieces,
     worth_their_turn,
 )
+from plan_cutters.operations.priced import comparable, feeds, without_feed
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.proof import proved
 from plan_cutters.operations.repeated import repeated, symmetric
@@ -43,7 +43,6 @@ from plan_cutters.operations.rest_areas import allowed, by_size, largest_first, 
 from plan_cutters.operations.task import Task
 from plan_cutters.operations.timing import Paths, Problems, shared_area
 from plan_cutters.operations.walls import Walls
-from plan_cutters.options import Options
 from plan_cutters.plan_file.numbers import count, duration, percent
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress, part_of
@@ -106,8 +105,8 @@ def plan_operations(
     if unpriced := [each.id for each in without_feed(ready)]:
         has = "has no feed" if len(unpriced) == 1 else "have no feed"
         small += (f"No operation is planned with what {has}: {', '.join(unpriced)}. Give --feed MM/MIN, or ask for the fewest.",)
-    comparable = _comparable(ready, least)
-    if late := [each.id for each in ready.cutters if each.id not in (*unpriced, *(one.id for one in comparable))]:
+    compared = comparable(ready, least)
+    if late := [each.id for each in ready.cutters if each.id not in (*unpriced, *(one.id for one in compared))]:
         kind = "whose kind comes" if len(late) == 1 else "whose kinds come"
         small += (f"No operation is planned with {', '.join(late)}, {kind} last on these faces: the others reach all without.",)
     moving = max(sum(len(each.rows) for each in plan.operations if each.mode == "simultaneous") for plan in plans)
@@ -274,7 +273,7 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
             [each for each in ready.cutters if each not in unpriced], [*dict.fromkeys([*needed, *named])], _CUTTERS
         )
     else:
-        cutters = considered(_comparable(ready, least), needed, _CUTTERS)
+        cutters = considered(comparable(ready, least), needed, _CUTTERS)
     open_ = ready.machinable
     reached = np.logical_or.reduce(
         [open_[s] & verdicts[cutter].reached for s, verdicts in enumerate(everywhere) for cutter in cutters]
@@ -286,29 +285,6 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
     indexing = Indexing(where, options.index_time)
     return Task(ready, cutters, where, tuple(everywhere), np.flatnonzero(reached), probes, paths, indexing,
                 Problems(ready.samples, cutters, paths, indexing, walls), walls)  # fmt: skip
-
-
-def _comparable(ready: Prepared, least: LeastSet | None) -> list[Cutter]:
-    """The cutters with a feed, without kinds that come after all that are needed, if these have feeds."""
-    unpriced = without_feed(ready)
-    priced, needed = [each for each in ready.cutters if each not in unpriced], [run.cutter for run in least.runs] if least else []
-    if not needed or any(each in unpriced for each in needed):
-        return priced
-    return of_wanted_kinds(priced, needed, ready.chosen.free_form)
-
-
-def feeds(options: Options, cutters: Sequence[Cutter]) -> Mapping[Cutter, float] | None:
-    """The feed of each cutter, mm/min; None where one has none."""
-    stated = options.feeds if options.feed is None else dict.fromkeys(cutters, options.feed)
-    return {each: stated[each] for each in cutters} if all(each in stated for each in cutters) else None
-
-
-def without_feed(ready: Prepared) -> tuple[Cutter, ...]:
-    """The cutters that no operation is planned with, for times are requested and they have no feed."""
-    if ready.options.operations not in ("fastest", "both"):
-        return ()
-    stated = ready.options.feeds
-    return tuple(each for each in ready.cutters if each not in stated)
 
 
 def _first(task: Task) -> Columns:

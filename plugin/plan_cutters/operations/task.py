@@ -1,4 +1,4 @@
-"""What plans of operations are made of: samples, cutters, setups, and the tests and prices of columns."""
+"""One task for all plans of operations of a part: samples, cutters, setups, and the tests and prices of columns."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -145,9 +145,9 @@ def between(
     covered_samples : (n,) bool, optional
         Samples that are no surface of the finished part: cells about them are left out where all around them are such, too.
     axes : Fixed or mapping of int to AxisField, optional
-        Fixed: each cell keeps the axis of its sample, or takes one of these that serve the sample. Fields by face: each contact has
-        the axis that the field has there, cells are served where every axis in them serves all of the cell, and faces without a
-        field are not looked at. No other posture is searched.
+        Fixed: each cell keeps the axis of its sample, or takes one of these that serve the sample. Fields by face: each contact
+        has the axis that the field has there, cells are served where every axis in them serves all of the cell, and faces without
+        a field are not looked at. No other posture is searched.
     own : (n + 1,) bool, optional
         Samples whose cells are looked at, and behind them whether those about no sample are; the others are as if they were not
         there, but `share` is of all the same.
