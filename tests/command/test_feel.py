@@ -235,6 +235,7 @@ def everywhere(value, text):
             "units",
             "group",
             "mode",
+            "kind",
             "strategy",
             "take",
             "cutter",

@@ -130,7 +130,7 @@ def _held(
     whole = float(sizes.sum())
     if not np.isfinite(low).all() or whole <= 0.0:
         return None, None, 0.0, 0.0
-    return np.degrees(low), np.degrees(high), one / whole, both / whole
+    return np.degrees(low), np.degrees(high), round(one / whole, 9), round(both / whole, 9)
 
 
 def _span(angle: Floats, edge: Rows, limit: Floats) -> tuple[Floats, Floats] | None:

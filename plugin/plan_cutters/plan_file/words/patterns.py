@@ -1,5 +1,6 @@
 """Say which faces are equal, and that they were judged once."""
 
+import re
 from collections.abc import Iterator
 
 from plan_cutters.plan_file.model import Plan
@@ -39,7 +40,10 @@ def _sentence(each: PatternEntry) -> str:
     """One pattern, and what was done with it."""
     names = _names(each)
     few = names if len(names) <= _NAMED else names[:1]
-    listed, more = ranges(int(name[1:]) for name in few), f" and {len(names) - 1} more" if len(names) > _NAMED else ""
+    # A file may have any words there.
+    numbered = all(re.fullmatch(r"F\d{1,9}", name) for name in few)
+    listed = ranges(int(name[1:]) for name in few) if numbered else ", ".join(few)
+    more = f" and {len(names) - 1} more" if len(names) > _NAMED else ""
     per = len(each.faces[0]) if each.faces else 0
     what = "equal faces" if per <= 1 else f"equal groups of {per} faces"
     if each.kind == "mirror":

@@ -108,7 +108,7 @@ def test_a_part_that_is_nearly_a_pattern_is_none():
 
 def _operation(k: int, **changes) -> dict:
     angles = {"A": 60.0, "C": -100.0 + 60.0 * k}
-    known = {"id": f"op{k}", "step": 0, "cutter": "a", "setup": 0, "mode": "fixed", "angles_deg": angles}
+    known = {"id": f"op{k}", "orbit": 0, "cutter": "a", "setup": 0, "mode": "fixed", "angles_deg": angles}
     return {**known, "area_mm2": 10.0 + k, "seconds": 5.0, **changes}
 
 
@@ -131,5 +131,5 @@ def test_a_step_that_is_repeated_is_its_operations():
     ):  # fmt: skip
         assert repeated(_STEP | forged, *three), forged
     for forged in ({"cutter": "b"}, {"setup": 1}, {"angles_deg": {"A": 60.0, "C": 21.0}}, {"angles_deg": {"A": 61.0, "C": 20.0}},
-                   {"step": 1}):  # fmt: skip
+                   {"orbit": 1}):  # fmt: skip
         assert repeated(_STEP, *three[:2], _operation(2, **forged)), forged
