@@ -183,16 +183,16 @@ def held(machine: MachineAxes, setup: Setup, axis: Floats) -> NDArray[np.bool_]:
     tilt = np.arccos(np.clip(wanted[:, 2], -1.0, 1.0))
     able = np.zeros(len(wanted), bool)
     along = (tool @ second) * second
-    base, aside = tool - along, np.cross(second, tool)
-    even, reach = float(first @ along), math.hypot(first @ base, first @ aside)
+    base, square = tool - along, np.cross(second, tool)
+    even, reach = float(first @ along), math.hypot(first @ base, first @ square)
     if reach < 1e-9:
         raise ValueError("the second rotary axis does not turn the tool towards the first one")
-    nearest = math.atan2(first @ aside, first @ base)
+    nearest = math.atan2(first @ square, first @ base)
     part = (wanted @ first - even) / reach
     away = np.arccos(np.clip(part, -1.0, 1.0))
     for way in (1.0, -1.0):
         b = nearest + way * away
-        before = along + np.cos(b)[:, None] * base + np.sin(b)[:, None] * aside
+        before = along + np.cos(b)[:, None] * base + np.sin(b)[:, None] * square
         p, q = (v - (v @ first)[:, None] * first for v in (before, wanted))
         a = np.arctan2(np.cross(p, q) @ first, (p * q).sum(axis=1))
         # Where the tool axis lies along the first axis, any angle of that one will do.
