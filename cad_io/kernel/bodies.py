@@ -1,14 +1,19 @@
-"""Bodies that are made: a profile turned about an axis, triangles as faces, a shape put in its place."""
+"""Bodies that are made: a profile turned about an axis or swept along it, triangles as faces, a shape put in its place."""
 
 from collections.abc import Iterable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 from OCP.BRep import BRep_Builder
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeWire
-from OCP.BRepPrimAPI import BRepPrimAPI_MakeRevol
+from OCP.BRepBuilderAPI import (
+    BRepBuilderAPI_MakeEdge,
+    BRepBuilderAPI_MakeFace,
+    BRepBuilderAPI_MakePolygon,
+    BRepBuilderAPI_MakeWire,
+)
+from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism, BRepPrimAPI_MakeRevol
 from OCP.GC import GC_MakeArcOfCircle
-from OCP.gp import gp_Ax1, gp_Dir, gp_Pnt, gp_Trsf
+from OCP.gp import gp_Ax1, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 from OCP.Poly import Poly_Array1OfTriangle, Poly_Triangle, Poly_Triangulation
 from OCP.TColgp import TColgp_Array1OfPnt
 from OCP.TopLoc import TopLoc_Location
@@ -59,6 +64,22 @@ def turned(shape: Any, origin: Sequence[float], direction: Sequence[float]) -> A
     with translated("turning a profile"):
         made = BRepPrimAPI_MakeRevol(shape, gp_Ax1(gp_Pnt(*origin), gp_Dir(*direction)))
         return made.Shape()
+
+
+def prism(outline: Sequence[tuple[float, float]], low: float, high: float) -> Any:
+    """The solid over a polygon of x and y, from a height along the z axis to another.
+
+    Raises
+    ------
+    CadIoError
+        The kernel makes no solid of it.
+    """
+    with translated("sweeping a profile"):
+        wire = BRepBuilderAPI_MakePolygon()
+        for x, y in outline:
+            wire.Add(gp_Pnt(x, y, low))
+        wire.Close()
+        return BRepPrimAPI_MakePrism(BRepBuilderAPI_MakeFace(wire.Wire()).Face(), gp_Vec(0.0, 0.0, high - low)).Shape()
 
 
 def of_triangles(vertex: Floats) -> Any:

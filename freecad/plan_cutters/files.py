@@ -78,6 +78,11 @@ def words(job: model.Job, folder: str) -> tuple[list[str], dict[str, str]]:
         found += ["--fixture", exported(fixture, held, folder)]
     if job.faces:
         found += ["--faces", ",".join(f"F{number}" for number in job.faces)]
+    if job.process:
+        path = os.path.join(folder, "process.json")
+        with open(path, "w", encoding="utf-8") as file:
+            file.write(job.process)
+        found += ["--process", path]
     return [*found, source], fingerprints
 
 
@@ -94,7 +99,7 @@ def of_one_point(result: results.Result) -> model.Job:
     setup = job.setup
     if setup == "auto":
         setup = ",".join(repr(value) for value in result.plan["effective"]["setup"])
-    return dataclasses.replace(job, faces=(), tools=model.Tools(), options=tuple(options), setup=setup)
+    return dataclasses.replace(job, faces=(), tools=model.Tools(), options=tuple(options), setup=setup, process="")
 
 
 def library(result: results.Result, cutter: dict[str, Any], folder: str) -> str:

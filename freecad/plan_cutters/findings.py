@@ -8,7 +8,7 @@ from typing import Any
 import FreeCAD as App
 import FreeCADGui as Gui
 
-from . import camera, model, objects, remembered, runner, windows
+from . import camera, model, objects, remembered, runner, steps, windows
 from .windows import QtCore, QtGui
 
 #: Sign and colour of a verdict on a cutter, by its tone.
@@ -51,6 +51,10 @@ class Findings(windows.Panel):
         self._here: Any = None
         self._drawing: runner.Map | None = None
         self.form = [self._verdict_box(), self._legend_box(), self._spots_box()]
+        self.steps: steps.StepsBox | None = None
+        if (self.result.plan.get("process") or {}).get("steps"):
+            self.steps = steps.StepsBox(group, self.result, self._judged_again)
+            self.form.insert(2, self.steps.form)
         windows.choose(self._cutters, group.Cutter)
         self._cutters.currentIndexChanged.connect(lambda *_: self._other_cutter())
         self._fill(group.Cutter)
@@ -250,6 +254,16 @@ class Findings(windows.Panel):
         self._list.setCurrentItem(None)
         self._at(sample, self.result.sentence(sample))
 
+    def _judged_again(self, result) -> None:
+        """Show the plan of steps that were judged again, in a panel of its own."""
+        group = objects.show(App.getDocument(result.document), result)
+        QtCore.QTimer.singleShot(0, lambda: self._hand_over(group))
+
+    def _hand_over(self, group) -> None:
+        self.leave()
+        Gui.Control.closeDialog()
+        open_panel(group)
+
     def _draw_map(self) -> None:
         if self._here is None or self._drawing is not None:
             return
@@ -312,6 +326,8 @@ class Findings(windows.Panel):
         App.removeDocumentObserver(self)
         if self._drawing is not None:
             self._drawing.cancel()
+        if self.steps is not None:
+            self.steps.leave()
 
 
 def open_panel(group=None) -> Findings:

@@ -63,6 +63,8 @@ class Job:
         mm of stock left on the surface.
     options : tuple of str
         More words for the program, as `("--operations", "fewest")`.
+    process : str
+        The steps that are judged, JSON as `plan-cutters --process` reads it; empty: all are planned.
     """
 
     document: str
@@ -74,6 +76,7 @@ class Job:
     fixtures: tuple[str, ...] = ()
     allowance: float = 0.0
     options: tuple[str, ...] = ()
+    process: str = ""
 
 
 def job_of(entry: dict[str, Any]) -> Job:

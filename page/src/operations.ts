@@ -62,13 +62,15 @@ export function nextPlan(app: App): void {
   app.say(plan ? titleOf(plan) : "Verdicts");
 }
 
-/** The tables of operations: an entry lights its regions up, and shows its tool along its axis. */
+/** The tables of operations and of steps: an entry lights its regions up, and shows its tool along its axis. */
 export class OperationTables {
-  private readonly rows = new Map<Operation, HTMLElement[]>();
+  private readonly rows: { found: Operation; made: HTMLElement; both: HTMLElement[] }[] = [];
 
   constructor(private readonly app: App) {
     for (const plan of plansOf(app.meta)) {
-      for (const row of document.querySelectorAll<HTMLElement>(`#operations table[data-plan="${plan.key}"] tr[data-operation]`)) {
+      const of = `[data-plan="${plan.key}"]`;
+      const entries = `#operations table${of} tr[data-operation], #process tr${of}[data-operation]`;
+      for (const row of document.querySelectorAll<HTMLElement>(entries)) {
         const number = Number(row.dataset.operation);
         const found = plan.operations[number];
         if (found) this.enliven(row, plan, found, number);
@@ -82,8 +84,8 @@ export class OperationTables {
     const { app } = this;
     const more = row.nextElementSibling as HTMLElement | null;
     const both = more?.classList.contains("more") ? [row, more] : [row];
-    this.rows.set(found, both);
     const made = press(row.querySelector<HTMLElement>("th") ?? row, () => this.show(plan, found));
+    this.rows.push({ found, made, both });
     made.prepend(swatch(found.colour, found.pattern), " ");
     const light = (): void => app.lightOperation(plan, number);
     const dark = (): void => app.lightOperation(null, -1);
@@ -99,10 +101,10 @@ export class OperationTables {
   }
 
   private mark(): void {
-    for (const [each, rows] of this.rows) {
-      const shown = each === this.app.operation;
-      for (const row of rows) row.classList.toggle("shown", shown);
-      rows[0].querySelector("button")!.setAttribute("aria-pressed", String(shown));
+    for (const { found, made, both } of this.rows) {
+      const shown = found === this.app.operation;
+      for (const row of both) row.classList.toggle("shown", shown);
+      made.setAttribute("aria-pressed", String(shown));
     }
   }
 

@@ -5,6 +5,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from cad_io.arrays import Ints
 from cad_io.part.inside_edges import inside_edges
@@ -12,6 +13,7 @@ from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.inside_radii import inside_radius_entries
 from plan_cutters.document.over_setups import OtherSetup, OverSetups
+from plan_cutters.document.patterns import pattern_entries
 from plan_cutters.document.plan import completed, plan_of, selection
 from plan_cutters.document.setup_table import setup_table
 from plan_cutters.document.sharp_edges import sharp_edge_entries
@@ -84,6 +86,8 @@ class JudgedPart:
         The work of all searches, which bounds that between the samples unless a budget was requested.
     started : datetime
         When the work began.
+    carried : (m, 3) int64
+        Of each motion of the whole part, as `JudgeOnce.carried` counts.
     """
 
     ready: Prepared
@@ -92,11 +96,13 @@ class JudgedPart:
     travels: dict[str, Travel]
     searched: Work
     started: datetime.datetime
+    carried: NDArray[np.int64]
 
     @classmethod
     def of(
         cls, ready: Prepared, here: Mapping[Cutter, Verdicts], other_setups: Sequence[OtherSetup],
         seconds: Mapping[Cutter, float], clock: Clock, searched: Work, started: datetime.datetime,
+        carried: NDArray[np.int64],
     ) -> "JudgedPart":  # fmt: skip
         """Combine the verdicts of each cutter over all setups, find the reasons and what is not required, and make its line."""
         samples, convex, surroundings = ready.samples, ready.surface_class == CONVEX, ready.conditions.surroundings
@@ -125,7 +131,7 @@ class JudgedPart:
                 fillets = sharp_edge_entries(edges, at_edge, samples, cutter)
                 judged[cutter] = JudgedCutter(verdicts, which, mine if other_setups else verdicts, entry, fillets)
         moved = travels(ready.options, samples, {cutter: each.here for cutter, each in judged.items()})
-        return cls(ready, judged, other_setups, moved, searched, started)
+        return cls(ready, judged, other_setups, moved, searched, started, carried)
 
     @property
     def here(self) -> dict[Cutter, Verdicts]:
@@ -196,7 +202,8 @@ def assembled(part: JudgedPart, clock: Clock, answers: Answers, between: Mapping
         shown = selected or nearest(entries).id
         tool, its = next((cutter, each) for cutter, each in judged.items() if cutter.id == shown)
         radii, table = inside_radius_entries(ready, tool, its.verdicts), setup_table(ready, within, over)
-        document = plan_of(ready, entries, selected, chosen, part.started, answers, over, table, its.strips, radii)
+        equal = pattern_entries(ready.patterns, part.carried)
+        document = plan_of(ready, entries, selected, chosen, part.started, answers, over, table, its.strips, radii, equal)
     return Result(clock.stamp(with_text(document)), ready, over, part.travels, answers)
 
 

@@ -1,7 +1,7 @@
 """The options as callers may give them: what type checkers and editors know of each."""
 
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Literal, TypedDict
 
 from plan_cutters.domain.cutter import Cutter
@@ -9,6 +9,7 @@ from plan_cutters.domain.degrees import Angle
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.host_axes import Heading, HostPlane
 from plan_cutters.domain.machine import Machine
+from plan_cutters.domain.own_process import OwnProcess
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import ROTATIONS, STEP, TILTS, Range
 from plan_cutters.library.records import Library
@@ -74,6 +75,8 @@ class PlanOptions(SceneOptions, total=False):
     most_operations: int | None
     sharp_edges: str
     max_orientations: int
+    process: OwnProcess | Mapping[str, Any] | str | os.PathLike[str] | None
+    patterns: bool
     units: Literal["mm", "in"] | None
     unit: str | None
     placement: Placement | None

@@ -18,13 +18,15 @@ from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.operations import operations_of
+from plan_cutters.domain.own_process import OwnProcess
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.spec import notation
 from plan_cutters.errors import OptionError
 from plan_cutters.library.presets import feed_of
 from plan_cutters.library.records import Entry, Library, libraries_of
-from plan_cutters.machines.requested_setups import setups_requested, without
+from plan_cutters.machines.requested_operations import operations_requested, process_requested
+from plan_cutters.machines.requested_setups import MOST_PROPOSED, setups_requested, without
 from plan_cutters.option_types import ANGLES, PlanOptions
 
 #: Gouge tolerances that can be requested, mm.
@@ -157,6 +159,10 @@ class Options:
     max_orientations : int
         Where the fastest plan would have more fixed orientations, simultaneous motion is recommended for the rest; without effect
         where `most_operations` is given.
+    process : OwnProcess, optional
+        The planner's own steps, as a file or a mapping too; the rest is planned by `operations`, else the fastest or the fewest.
+    patterns : bool
+        Equal faces are judged once and planned once.
     units : str, optional
         Of lengths in the words, `mm` or `in`; numbers in files stay mm. None: inches where all cutters were given in them.
     unit : str, optional
@@ -223,6 +229,8 @@ class Options:
     most_operations: int | None = None
     sharp_edges: str = "asked"
     max_orientations: int = 8
+    process: OwnProcess | None = None
+    patterns: bool = True
     units: Literal["mm", "in"] | None = None
     unit: str | None = None
     fixtures: tuple[Fixture, ...] = ()
@@ -241,14 +249,10 @@ class Options:
         if self.unit is not None and self.unit not in UNITS:
             raise OptionError(f"unit {self.unit!r} is not one of {', '.join(UNITS)}")
         self._check_numbers()
-        if self.operations is not None and self.machine.turns and self.machine.turning < 2:
-            axes = "one rotary axis turns" if self.machine.turning else "no rotary axis turns"
-            raise OptionError(
-                f"on machine {self.machine.name} {axes} the tool: a plan of operations chooses the angles of two; "
-                "leave out --operations, or name a machine that has them"
-            )
-        if self.operations in ("fastest", "both") and not self.feeds:
-            raise OptionError("the fastest operations need a feed: give --feed MM/MIN, or ask for the fewest")
+        if self.operations is not None or self.process is not None:
+            setups = MOST_PROPOSED if self.propose else 1 + len(self.other_setups)
+            which = operations_requested(self.operations, self.process, self.judged, self.feeds, self.machine, setups)
+            object.__setattr__(self, "operations", which)
         for cutter in self.judged:
             if not cutter.large_enough(self.tolerance):
                 raise OptionError(f"tolerance {self.tolerance:g} mm is too coarse for cutter {cutter.typed}")
@@ -288,11 +292,13 @@ class Options:
         if self.map_budget is not None:
             take(map_budget=whole(self.map_budget, "map budget"))
         take(flip=flag(self.flip, "flip"), posture_maps=flag(self.posture_maps, "posture_maps"))
+        take(patterns=flag(self.patterns, "patterns"))
         take(answers=answers_of(self.answers), operations=operations_of(self.operations))
         if self.sharp_edges not in SHARP_EDGES:
             raise OptionError(f"sharp edges: {shown(self.sharp_edges)} is none of {', '.join(SHARP_EDGES)}")
         if self.units not in (None, "mm", "in"):
             raise OptionError(f"units: {shown(self.units)} is none of mm, in")
+        take(process=process_requested(self.process))
         if self.most_operations is not None:
             take(most_operations=whole(self.most_operations, "most operations"))
         take(max_orientations=whole(self.max_orientations, "max orientations"))
@@ -302,8 +308,7 @@ class Options:
         take(length_over_radius=number(self.length_over_radius, "length over radius"))
         take(allowance=number(self.allowance, "allowance"))
         take(holder_clearance=number(self.holder_clearance, "holder clearance"))
-        if self.holder is not None:
-            take(holder=Holder.of(self.holder))
+        take(holder=None if self.holder is None else Holder.of(self.holder))
         choice(self.faces, "faces")
         choice(self.ignore, "ignore")
         if self.grid is not None:

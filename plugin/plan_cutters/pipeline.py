@@ -11,6 +11,7 @@ import numpy as np
 
 from cad_io import Part, read_part
 from cad_io.copies import SideProcess
+from cad_io.part.patterns import patterns
 from cad_io.read.read import TIMEOUT
 from cad_io.tessellate.triangles import At
 from plan_cutters.answers.ask import ask
@@ -35,16 +36,18 @@ from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.proposal import judged_proposed
 from plan_cutters.result import Result
 from plan_cutters.scene.conditions import Context, contacts_of, warm
+from plan_cutters.scene.copied import with_copies
 from plan_cutters.scene.faces import choose
 from plan_cutters.scene.inside_material import inside_bodies, inside_material
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.question import question
 from plan_cutters.scene.scene import Scene
-from plan_cutters.scene.setups import conditions_of, places, with_setups
+from plan_cutters.scene.setups import conditions_of, fixtures_of, places, with_setups
 from plan_cutters.scene.spacing import affordable, sampled
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.classify import classify, regions
 from plan_cutters.stages.judge import Judge, judge
+from plan_cutters.stages.judge_once import JudgeOnce
 from plan_cutters.stages.other_setups import in_setup
 from plan_cutters.stages.posture_maps import posture_maps
 
@@ -131,7 +134,7 @@ def _judge(begun: Callable[..., Prepared], part: Any, options: Options, clock: C
     ready = begun(part, options, clock)
     here: dict[Cutter, Verdicts] = {}
     seconds: dict[Cutter, float] = {}
-    searched = Work()
+    searched, judged = Work(), (once := JudgeOnce(judged, sum(len(each.motions) for each in ready.patterns if each.whole)))
     for cutter in order(ready.cutters):
         with clock.stage(cutter.id) as tell:
             # In the order of rank, whatever the order of work.
@@ -140,7 +143,7 @@ def _judge(begun: Callable[..., Prepared], part: Any, options: Options, clock: C
             here[cutter] = judged(ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell, work=searched)
             seconds[cutter] = time.perf_counter() - began
     others = [(axis, _in_other_setup(ready, here, k, clock, judged)) for k, axis in enumerate(options.other_setups, 1)]
-    return JudgedPart.of(ready, here, others, seconds, clock, searched, started)
+    return JudgedPart.of(ready, here, others, seconds, clock, searched, started, once.carried)
 
 
 def _completed(
@@ -154,7 +157,7 @@ def _completed(
     options = part.ready.options
     answers, between = Answers(least_set=least_set(part.ready, part.here, part.other_setups)), dict[str, AreaEntry]()
     later = later_stages(area=part.looks_between, answers=options.answers, operations=options.operations,
-                         maps=options.posture_maps)  # fmt: skip
+                         maps=options.posture_maps, process=options.process is not None)  # fmt: skip
 
     def done(number: int) -> None:
         """So many of the later stages are done: let the plan stand if that is news, and some follow."""
@@ -257,7 +260,11 @@ def prepare(
     with clock.stage("sample"):
         first, *others = places(options)
         chosen = choose(whole, options.faces, scene.ignored, scene.ignore, first, others)
+        if any(each.to_place for each in fixtures_of(options)):
+            scene = scene.for_targets(chosen.targets)
         cutters = tuple(wanted(options.judged, free_form=chosen.free_form))
+        if options.process is not None:
+            options.process.check_faces(chosen.targets)
         affordable(whole, chosen.targets, options)
         job = partial(sampled, whole, scene.orientation, options, chosen.targets, cutters)
     # Sampling and meshing need nothing of each other.
@@ -290,6 +297,9 @@ def prepare(
             ),
             each,
         )
+    if options.patterns:
+        with clock.stage("patterns"):
+            ready = with_copies(ready, patterns(whole, partial(at, "kernel")))
     if not ready.finished.any():
         raise UnjudgeableError(
             "every target sample lies inside another body of the part, so there is no surface to finish: leave a body out with "

@@ -1,24 +1,29 @@
-"""Setups that are proposed: ranked, then judged with a table each, and kept only if the verdicts hold what was promised."""
+"""Setups that are proposed: ranked, then judged with a table, vise or chuck each, and kept only if the verdicts hold what was
+promised."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 from scipy.spatial import cKDTree
 
-from plan_cutters.answers.setup_ranking import MOST, Ranking, ranked, touching
+from plan_cutters.answers.candidates import touching
+from plan_cutters.answers.holding import Held
+from plan_cutters.answers.setup_ranking import Ranking, ranked
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.notes import noted
-from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.clamping import CHUCK, VISE
+from plan_cutters.domain.fixture import TABLE
 from plan_cutters.domain.placement import Placement, axis_words
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.judged_part import JudgedPart
+from plan_cutters.machines.requested_setups import MOST_PROPOSED
 from plan_cutters.options import Options
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.notes import setup_proposed
 from plan_cutters.plan_file.numbers import exact, percent
-from plan_cutters.plan_file.setups import ProposedSetup, SetupProposal
+from plan_cutters.plan_file.setups import HiddenFaces, ProposedSetup, SetupProposal
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene
 
@@ -59,15 +64,19 @@ def judged_proposed(
     OptionError
         In no direction is anything within the limits or reached, or no proposal can be planned.
     """
-    unproposed = replace(options, propose=False)
+    words = _words(options)
+    unproposed = replace(options, propose=False, fixtures=())
     ready = prepare(unproposed, clock)
+    ready = replace(ready, scene=ready.scene.for_targets(ready.chosen.targets))
     with clock.stage("proposal"):
-        ranking = ranked(ready, MOST)
+        ranking = ranked(ready, MOST_PROPOSED, words)
     best: tuple[float, JudgedPart, Callable[[Plan], Plan]] | None = None
     failed, why = frozenset[int](), ""
     for tried in range(1, _TRIES + 1):
-        chosen = ranking.choose(MOST, failed)
-        promised = np.logical_or.reduce([ranking.served[k] for k in chosen]) if chosen else np.zeros(0, bool)
+        chosen = ranking.choose(MOST_PROPOSED, failed)
+        with clock.stage("proposal"):
+            ranking.settle(chosen)
+        promised = np.logical_or.reduce([ranking.served(k) for k in chosen]) if chosen else np.zeros(0, bool)
         if not promised.any():
             break
         try:
@@ -76,7 +85,8 @@ def judged_proposed(
             why, failed = error.cause, failed | {chosen[0]}
             continue
         reached_share, held_share, worst = _compared(part, ranking, chosen)
-        describe = partial(_described, ranking=ranking, chosen=chosen, shares=(reached_share, held_share, tried))
+        left = _in_other_setups(part, ranking, chosen)
+        describe = partial(_described, ranking=ranking, chosen=chosen, left=left, shares=(reached_share, held_share, tried))
         if held_share >= _ENOUGH:
             return part, describe
         if best is None or reached_share > best[0]:
@@ -86,10 +96,37 @@ def judged_proposed(
         return best[1:]
     if why:
         raise OptionError(f"setup auto: no proposal can be planned: {why}")
+    if ranking.refused and not any(ranking.held.values()):
+        raise OptionError(f"setup auto: nothing holds the part in {len(ranking.held)} directions: {next(iter(ranking.refused))}")
     raise OptionError(
-        f"setup auto: over a table, no cutter reaches any of {len(ranking.rows)} samples in the "
-        f"{len(ranking.served)} best directions; name a setup with its fixtures"
+        f"setup auto: {_among(words)}, no cutter reaches any of {len(ranking.rows)} samples in the "
+        f"{len(ranking.held)} best directions; name a setup with its fixtures"
     )
+
+
+def _words(options: Options) -> tuple[str, ...]:
+    """What may hold the part in each setup: what was requested, or any of them."""
+    return tuple(each.text for each in options.fixtures) or (TABLE, VISE, CHUCK)
+
+
+def _among(words: tuple[str, ...]) -> str:
+    """What holds the part, in words."""
+    return "over a table" if words[0] == TABLE else f"held by {words[0]}"
+
+
+def _held(ranking: Ranking, k: int) -> Held:
+    held = ranking.held[k]
+    assert held is not None, "what is chosen is held"
+    return held
+
+
+def _rests_on(ranking: Ranking, k: int) -> tuple[str, ...]:
+    """Planar faces on which the part stands in a direction, on the table or in the jaws."""
+    return _named({*ranking.candidates.stands_on[k], *_held(ranking, k).rests_on})
+
+
+def _named(faces: Collection[int]) -> tuple[str, ...]:
+    return tuple(f"F{n}" for n in sorted(faces))
 
 
 def _axis(ranking: Ranking, k: int) -> tuple[float, float, float]:
@@ -98,18 +135,17 @@ def _axis(ranking: Ranking, k: int) -> tuple[float, float, float]:
 
 
 def _options(options: Options, ranking: Ranking, chosen: tuple[int, ...], folder: str) -> Options:
-    """The options of a plan in the chosen setups, a table under the part in each; the scene has the unit already.
+    """The options of a plan in the chosen setups, with what holds the part in each; the scene has the unit already.
 
     Each setup knows the file in which it will be: advice names that.
     """
-    table = (Fixture.parse("table"),)
     stands_on = touching(ranking.ready, ranking.candidates.axis)
     first, *others = (
         Placement(
             _axis(ranking, k),
-            clamped=tuple(f"F{n}" for n in ranking.candidates.stands_on[k]),
-            fixtures=table,
-            stands_on=tuple(f"F{n}" for n in ranking.candidates.stands_on[k] or stands_on[k]),
+            clamped=_rests_on(ranking, k),
+            fixtures=(_held(ranking, k).fixture,),
+            stands_on=_named({*_held(ranking, k).faces, *(ranking.candidates.stands_on[k] or stands_on[k])}),
             file=f"{folder.rstrip('/')}/setup-{number}.toml" if folder else "",
             proposed=True,
         )
@@ -128,7 +164,7 @@ def _compared(part: JudgedPart, ranking: Ranking, chosen: tuple[int, ...]) -> tu
     # Samples may stand elsewhere, for another tolerance is kept: the nearest one answers.
     near = cKDTree(samples.point).query(ranking.ready.samples.point[ranking.rows])[1]
     held = reached[near]
-    served = np.stack([ranking.served[k] for k in chosen], axis=1)
+    served = np.stack([ranking.served(k) for k in chosen], axis=1)
     promised = served.any(axis=1)
     held_share = float(ranking.area[promised & held].sum()) / max(1e-300, float(ranking.area[promised].sum()))
     missed = np.asarray(ranking.area @ (served & ~held[:, None]))
@@ -141,29 +177,64 @@ def _compared(part: JudgedPart, ranking: Ranking, chosen: tuple[int, ...]) -> tu
     )
 
 
-def _described(plan: Plan, *, ranking: Ranking, chosen: tuple[int, ...], shares: tuple[float, float, int]) -> Plan:
+def _in_other_setups(part: JudgedPart, ranking: Ranking, chosen: tuple[int, ...]) -> list[list[HiddenFaces]]:
+    """Of each setup: in which others samples of the faces are served that it stands on and grips."""
+    face, result = part.ready.samples.face, []
+    for own, k in enumerate(chosen):
+        mine = np.isin(face, [int(name[1:]) for name in (*_rests_on(ranking, k), *_named(_held(ranking, k).grips))])
+        others = [other for other in range(len(chosen)) if other != own]
+        served = {other: mine & np.logical_or.reduce([each.which == other for each in part.cutters.values()]) for other in others}
+        result.append(
+            [
+                HiddenFaces(setup=other, faces=list(_named(np.unique(face[rows]).tolist())))
+                for other, rows in served.items()
+                if rows.any()
+            ]
+        )
+    return result
+
+
+def _setup(ranking: Ranking, k: int, left: list[HiddenFaces], promised: float) -> ProposedSetup:
+    """The entry of a proposed setup."""
+    held = _held(ranking, k)
+    return ProposedSetup(
+        axis=_axis(ranking, k),
+        stands_on=list(_rests_on(ranking, k)),
+        clamping=held.kind,
+        grips=list(_named(held.grips)),
+        hidden_mm2=held.hidden,
+        how_held=held.words,
+        fixtures=[held.fixture.text],
+        why_held=held.why,
+        left_for=left,
+        promised=promised,
+    )
+
+
+def _stands(setup: ProposedSetup) -> str:
+    if setup.clamping != TABLE:
+        return f"in a {setup.clamping} that grips {', '.join(setup.grips)}"
+    return f"on {', '.join(setup.stands_on)}" if setup.stands_on else "on no plane"
+
+
+def _described(
+    plan: Plan, *, ranking: Ranking, chosen: tuple[int, ...], left: list[list[HiddenFaces]], shares: tuple[float, float, int]
+) -> Plan:
     """The same plan with its proposal; its text is not made anew."""
-    served = np.stack([ranking.served[k] for k in chosen], axis=1)
+    served = np.stack([ranking.served(k) for k in chosen], axis=1)
     alone, any_of = ranking.share(served), np.asarray(served.any(axis=1))
     together = exact(float(ranking.share(any_of[:, None])[0]), some=bool(any_of.any()), whole=bool(any_of.all()))
     share, held_share, tried = shares
-    setups = [
-        ProposedSetup(
-            axis=_axis(ranking, k), stands_on=[f"F{n}" for n in ranking.candidates.stands_on[k]], promised=min(1.0, float(each))
-        )
-        for k, each in zip(chosen, alone, strict=True)
-    ]
+    setups = [_setup(ranking, k, own, min(1.0, float(each))) for k, own, each in zip(chosen, left, alone, strict=True)]
     held = held_share >= _ENOUGH
-    where = [
-        axis_words(each.axis) + (f" (on {', '.join(each.stands_on)})" if each.stands_on else " (on no plane)") for each in setups
-    ]
-    of = f"{len(ranking.served)} of {len(ranking.candidates.axis)} directions searched at {len(ranking.rows)} samples"
+    where = [f"{axis_words(each.axis)} ({_stands(each)})" for each in setups]
+    of = f"{len(ranking.held)} of {len(ranking.candidates.axis)} directions searched at {len(ranking.rows)} samples"
     why = (
-        f"With {of} over a table, {'this one serves' if len(setups) == 1 else 'these serve'} {percent(together)} of the "
-        f"samples' area. The plan reaches {percent(share)} of the target area"
+        f"With {of} {_among(ranking.words)}, {'this one serves' if len(setups) == 1 else 'these serve'} {percent(together)} of "
+        f"the samples' area. The plan reaches {percent(share)} of the target area"
         f"{'' if held else f', and holds only {percent(held_share)} of what was promised'}."
     )
-    entry = SetupProposal(setups=setups, directions=len(ranking.candidates.axis), searched=len(ranking.served),
+    entry = SetupProposal(setups=setups, directions=len(ranking.candidates.axis), searched=len(ranking.held),
                           samples=len(ranking.rows), promised=together, found=share, kept=held_share, held=held, tried=tried,
                           why=why)  # fmt: skip
     return noted(plan, setup_proposed(where, why)).model_copy(update={"setup_proposal": entry})

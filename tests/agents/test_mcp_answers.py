@@ -290,3 +290,26 @@ def test_an_internal_error_is_one_line(monkeypatch):
     service = module.Service(Roots(()), Limits(), client_roots=False)
     found = anyio.run(service.call_tool, None, SimpleNamespace(name="render", arguments={}))
     assert (found.is_error, found.content[0].text) == (True, "internal error (RuntimeError: a b)")
+
+
+def test_steps_are_told_in_the_words_in_which_they_are_given_back():
+    """A step that is cut says so; a step of the planner's carries what it leaves; an axis is told where there are no angles."""
+    left = {"cause": "orientation", "area_mm2": 3.0, "share": 0.1, "samples": 2, "faces": ["F2", "F1"], "place_mm": None}
+    own = {"number": 1, "asked_mm2": 20.0, "leaves": [left] * 3,
+           "nearest": {"angles_deg": {"C": 0.0, "A": 90.0}, "axis": [0, -1, 0], "area_mm2": 3.0}}  # fmt: skip
+    step = {"setup": 1, "mode": "fixed", "angles_deg": {"C": 0.0, "A": 10.0}, "axis": [0, 0, 1], "cutter": "R1L80",
+            "faces": ["F1", "F2"], "area_mm2": 17.0, "share": 0.85, "seconds": 4.0, "clearance_mm": 1.0, "alone_mm2": 6.0,
+            "own": own}  # fmt: skip
+    planned_step = {**step, "setup": 0, "mode": "any", "angles_deg": None, "axis": None, "own": None, "alone_mm2": None}
+    process = {"steps": [step, planned_step], "finished_share": 0.85, "finished_mm2": 17.0, "asked_mm2": 20.0, "left": [left],
+               "seconds": 9.0}  # fmt: skip
+    found = planned(read(process=process), 1, 1, {}).model_dump(mode="json")
+    (first,) = found["steps"]
+    assert (found["more_steps"], found["asked_mm2"], found["finished_share"], found["seconds"]) == (1, 20.0, 0.85, 9.0)
+    assert (first["setup"], first["angles"], first["axis"]) == (2, {"C": 0.0, "A": 10.0}, None)
+    assert (first["faces"], first["more_faces"]) == (["F1"], 1)
+    assert (first["alone_mm2"], first["own"]["number"], first["own"]["more_leaves"]) == (6.0, 1, 2)
+    assert (first["own"]["leaves"][0]["faces"], first["own"]["leaves"][0]["more_faces"]) == (["F2"], 1)
+    assert first["own"]["nearest"]["angles"] == {"C": 0.0, "A": 90.0}
+    assert planned(read(process=process), 1, 9, {}).steps[1].own is None
+    assert planned(read(), 1, 9, {}).steps == []

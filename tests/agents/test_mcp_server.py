@@ -316,3 +316,40 @@ def test_what_a_file_in_the_root_names_outside_says_nothing(server):
     assert not any(word in line for line in said for word in ("secret bit", "furlongs"))
     assert "its bit is neither" in said[0]
     assert all("outside the folders that may be read" in line for line in said[1:])
+
+
+#: The groove, with operations of one machine.
+STEPPED = {"cutters": ["R3L60"], "machine": "trunnion-ac", "feed_mm_min": 1000.0, "spacing_mm": 8.0}
+
+
+def test_steps_of_an_answer_are_edited_and_judged_again(server):
+    """What the first answer proposes is handed back: the same is finished; on fewer faces, a step does just these."""
+    first = server.answer(server.begin("plan_part", part=GROOVE, operations="fastest", **STEPPED))
+    steps = first["steps"]
+    assert steps
+    assert sum(each["area_mm2"] for each in [*steps, *first["left"]]) == pytest.approx(first["asked_mm2"])
+    assert sum(each["area_mm2"] for each in steps) == pytest.approx(first["finished_share"] * first["asked_mm2"])
+    mine = [{name: each[name] for name in ("setup", "mode", "angles", "cutter", "faces", "take")} for each in steps]
+    same = server.answer(server.begin("plan_part", part=GROOVE, process={"step": mine, "rest": "leave"}, **STEPPED))
+    assert [each["own"]["number"] for each in same["steps"]] == [*range(1, 1 + len(steps))]
+    assert same["finished_share"] == pytest.approx(first["finished_share"], abs=0.001)
+    one = {"step": [{**mine[0], "faces": ["F1"]}], "rest": "leave", "forbid": [{"cutter": "R3L60", "faces": ["F1"]}]}
+    (step,) = server.answer(server.begin("plan_part", part=GROOVE, process=one, **STEPPED))["steps"]
+    assert step["own"]["asked_mm2"] < first["asked_mm2"]
+    assert step["area_mm2"] == step["alone_mm2"] == pytest.approx(step["own"]["asked_mm2"])
+
+
+@pytest.mark.parametrize(
+    ("process", "said"),
+    [
+        ({"step": [{"cutter": "R3L60"}]}, "process: step 1: angles are missing"),
+        ({"step": [{"angles": {"C": 0, "A": 0}}]}, "process: step 1: cutter is missing"),
+        ({"step": [{"cutter": "R3L60", "mode": "simultaneous", "faces": []}]}, "process: step 1: faces is"),
+        ({"rest": "leave"}, "process: has no step"),
+        ("process.toml", "process: "),
+        ({"step": [{"cutter": "R9L60", "mode": "simultaneous"}]}, "process.json: step 1: cutter 'R9L60'"),
+        ({"step": [{"cutter": "R3L60", "mode": "simultaneous", "faces": ["F99"]}]}, "process.json: step 1: faces: F99"),
+    ],
+)  # fmt: skip
+def test_a_wrong_process_is_one_line_with_its_place(server, process, said):
+    assert said in server.refused("plan_part", part=GROOVE, process=process, **STEPPED)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from plan_cutters import Cutter, plan
+from plan_cutters.answers.candidates import touching
 from plan_cutters.answers.least_set import by_kind, least_set
-from plan_cutters.answers.setup_ranking import touching
 from plan_cutters.command.codes import NONE_FEASIBLE, code_of
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement

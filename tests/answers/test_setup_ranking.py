@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from plan_cutters import Options, plan
+from plan_cutters.answers.candidates import Candidates, cube, distinct, fibonacci
 from plan_cutters.answers.least_set import cover
-from plan_cutters.answers.setup_ranking import Candidates, cube, distinct, fibonacci, holdable, ranked
+from plan_cutters.answers.setup_ranking import holdable, ranked
 from plan_cutters.document.clock import Clock
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
@@ -77,7 +78,7 @@ def test_a_table_only_takes_away_and_more_so_near_it():
 
 def test_the_table_of_a_ranking_is_the_fixture():
     scene, axis = ready(box(), 89.0, "unlimited").scene, (0.0, -0.6, 0.8)
-    fixture, laid = scene.turned_to(axis).clamped("table").surround(), scene.surround_on_table(axis)
+    fixture, laid = scene.turned_to(axis).clamped("table").surround(), scene.surround_held(axis, "table")
     assert laid.possible.triangles.vertex.tolist() == fixture.possible.triangles.vertex.tolist()
     assert laid.possible.weight.tolist() == fixture.possible.weight.tolist()
 
@@ -152,8 +153,8 @@ def test_a_promise_that_is_not_held_is_followed_by_the_next_one(monkeypatch):
     """A ranking that promises too much: its plan falls short, the next direction is tried, and the plan says which one it is."""
     import plan_cutters.proposal as proposal
 
-    def boastful(one, most):
-        made = ranked(one, most)
+    def boastful(one, *how):
+        made = ranked(one, *how)
         first = made.choose(1)[0]
         made.served[first] = np.ones(len(made.rows), bool)
         return made
@@ -163,8 +164,8 @@ def test_a_promise_that_is_not_held_is_followed_by_the_next_one(monkeypatch):
     assert said.held
     assert said.tried == 2
 
-    def all_boastful(one, most):
-        made = ranked(one, most)
+    def all_boastful(one, *how):
+        made = ranked(one, *how)
         made.served = {k: np.ones(len(made.rows), bool) for k in made.served}
         return made
 
@@ -193,7 +194,7 @@ def test_where_nothing_is_within_the_limits_it_is_one_line():
     [
         ({"setup": "auto", "other_setups": ["+x"]}, "leave out the other setups"),
         ({"setup": "+x", "other_setups": ["auto"]}, "leave out the other setups"),
-        ({"setup": "auto", "fixtures": "table"}, "leave out the fixtures"),
+        ({"setup": "auto", "fixtures": "table:-5"}, "leave out other fixtures"),
         ({"setup": "auto", "placement": Placement()}, "leave out the other setups"),
     ],
 )
@@ -206,7 +207,7 @@ def test_auto_stands_alone(words, cause):
     ("words", "cause"),
     [
         (("--setup", "+x", "--setup", "auto"), "leave out the other setups"),
-        (("--setup", "auto", "--fixture", "table"), "leave out the fixtures"),
+        (("--setup", "auto", "--fixture", "table:-5"), "leave out other fixtures"),
         (("--setup", "auto", "--postures", SAMPLES / "v_groove.step"), "name the setup"),
         (("--setup", "auto", "--check-operations", "x"), "name the setup"),
     ],

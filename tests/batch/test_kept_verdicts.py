@@ -20,7 +20,7 @@ from plan_cutters.stages.judge import judge
 from tests.support.places import SAMPLES
 
 PART, OTHER = SAMPLES / "v_groove.step", SAMPLES / "peaks_and_valleys.step"
-ASKED = {"cutters": ("R6L60", "R3L40"), "grid": 21, "rotation_step": 0.35, "area_budget": 0}
+ASKED = {"cutters": ("R6L60", "R3L40"), "grid": 21, "rotation_step": 0.35, "area_budget": 0, "patterns": False}
 
 
 def told(result):

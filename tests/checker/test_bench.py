@@ -165,13 +165,13 @@ def test_the_search_and_the_checker_agree(words):
     ready = prepare(part, options)
     samples, cutter = ready.samples, ready.cutters[0]
     from plan_cutters.checker.question import MachineAxes, Question
-    from plan_cutters.command.check_operations import _body
+    from plan_cutters.command.check_operations import _bodies
 
     machine = MachineAxes(
         ("C", "A"), np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]), np.array([[-math.inf, math.inf], np.radians([-30.0, 120.0])]),
         np.array([0.0, 0.0, 1.0]), math.pi, False,
     )  # fmt: skip
-    setup = Setup((0.0, 0.0, 1.0), None, None, tuple(map(_body, options.fixtures)), frozenset())
+    setup = Setup((0.0, 0.0, 1.0), None, None, tuple(body for each in options.fixtures for body in _bodies(each)), frozenset())
     arrays = {"point": samples.point, "normal": samples.normal, "direction_max": samples.direction_max, "face": samples.face}
     document = {"effective": {"tilt_deg": [0.0, 90.0], "rotation_deg": [0.0, 360.0]}}
     question = Question(

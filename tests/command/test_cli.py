@@ -132,7 +132,7 @@ def test_the_files_of_a_plan(tmp_path):
     assert done.returncode == 0, done.stderr
     out = tmp_path / "pocket_top-plan"
     assert leftovers(tmp_path) == ["pocket_top-plan"]
-    assert leftovers(out) == ["annotated.glb", "annotated.step", "plan.json", "review.html", "samples.npz"]
+    assert leftovers(out) == ["annotated.glb", "annotated.step", "plan.json", "process.toml", "review.html", "samples.npz"]
     plan = json.loads((out / "plan.json").read_text())
     schema = json.loads((ROOT / "plugin/plan_cutters/plan.schema.json").read_text())
     jsonschema.Draft202012Validator(schema).validate(plan)

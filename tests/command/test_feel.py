@@ -235,7 +235,9 @@ def everywhere(value, text):
             "units",
             "group",
             "mode",
+            "kind",
             "strategy",
+            "take",
             "cutter",
             "cause",
         }
@@ -449,7 +451,7 @@ def test_a_summary_that_nobody_can_read_costs_no_file(tmp_path, close, code, sai
                           cwd=tmp_path, env=ENV, capture_output=True, text=True, check=False)  # fmt: skip
     assert done.returncode == code
     assert [line for line in done.stderr.splitlines() if " s  " not in line] == said
-    assert leftovers(tmp_path / "out") == ["annotated.glb", "annotated.step", "plan.json", "samples.npz"]
+    assert leftovers(tmp_path / "out") == ["annotated.glb", "annotated.step", "plan.json", "process.toml", "samples.npz"]
     assert json.loads((tmp_path / "out/plan.json").read_text())["not_written"] == {}
 
 
@@ -474,7 +476,7 @@ def test_closed_streams(tmp_path):
     assert (done.returncode, done.stderr) == (2, "plan-cutters: --json -: standard output is closed\n")
     done = closed(GROOVE, *QUICK, *FILES, cwd=tmp_path, close="<&- >&- 2>&-")
     assert done.returncode == 0
-    assert leftovers(tmp_path / "out") == ["annotated.glb", "annotated.step", "plan.json", "samples.npz"]
+    assert leftovers(tmp_path / "out") == ["annotated.glb", "annotated.step", "plan.json", "process.toml", "samples.npz"]
 
 
 def test_a_reader_that_has_seen_enough_ends_it_quietly(tmp_path):
@@ -493,7 +495,7 @@ def test_standard_error_that_cannot_be_written_changes_nothing(tmp_path):
                               stdout=subprocess.PIPE, stderr=full, check=False)  # fmt: skip
     assert done.returncode == 0
     assert done.stdout.startswith(b"\nTake flat end D12 x 80")
-    assert leftovers(tmp_path / "out") == ["annotated.glb", "annotated.step", "plan.json", "samples.npz"]
+    assert leftovers(tmp_path / "out") == ["annotated.glb", "annotated.step", "plan.json", "process.toml", "samples.npz"]
 
 
 # ---- names

@@ -205,7 +205,7 @@ def test_a_step_that_fails_costs_the_step_alone(result, tmp_path, monkeypatch):
     monkeypatch.setattr(models, "write_cad", fails)
     document = result.write(tmp_path / "out")
     assert document.not_written == {"step": "the CAD kernel cannot turn the part into STEP"}
-    assert sorted(document.files) == ["glb", "html", "npz"]
+    assert sorted(document.files) == ["glb", "html", "npz", "process"]
     assert read(tmp_path / "out")["not_written"] == document.not_written
     check_files(tmp_path / "out")
     assert [p.name for p in tmp_path.iterdir()] == ["out"]
@@ -221,7 +221,7 @@ def test_splitting_that_fails_costs_the_models_alone(result, tmp_path, monkeypat
     assert sorted(document.not_written) == ["glb", "step"]
     assert all("no curve" in why or "memory" in why or "space" in why for why in document.not_written.values())
     check_files(tmp_path)
-    assert sorted(read(tmp_path)["files"]) == ["html", "npz"]
+    assert sorted(read(tmp_path)["files"]) == ["html", "npz", "process"]
 
 
 def test_the_plan_is_there_before_the_models_begin(result, tmp_path, monkeypatch):
@@ -235,7 +235,7 @@ def test_the_plan_is_there_before_the_models_begin(result, tmp_path, monkeypatch
     monkeypatch.setattr(models, "split", looks)
     document = result.write(tmp_path)
     (before,) = seen
-    assert sorted(before["files"]) == ["npz"]
+    assert sorted(before["files"]) == ["npz", "process"]
     assert sorted(before["not_written"]) == ["glb", "html", "step"]  # the page is made meanwhile
     assert document.not_written == {}
     check_files(tmp_path)
@@ -246,6 +246,7 @@ def test_the_plan_is_there_before_the_models_begin(result, tmp_path, monkeypatch
         "start",
         "html",
         "npz",
+        "process",
         "json",
         "split",
         "glb",
@@ -257,11 +258,11 @@ def test_files_of_an_earlier_run_are_removed_if_they_are_surely_ours(result, tmp
     result.write(tmp_path)
     (tmp_path / "notes.txt").write_text("mine")
     result.write(tmp_path, ("json", "npz"))
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["notes.txt", "plan.json", "samples.npz"]
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["notes.txt", "plan.json", "process.toml", "samples.npz"]
     result.write(tmp_path)
     (tmp_path / "annotated.step").write_text("edited")
     result.write(tmp_path, ("json",))
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["annotated.step", "notes.txt", "plan.json"]
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["annotated.step", "notes.txt", "plan.json", "process.toml"]
     assert (tmp_path / "annotated.step").read_text() == "edited"
     (tmp_path / "plan.json").write_text('{"format": "other", "files": {"step": {"name": "annotated.step"}}}')
     (tmp_path / "annotated.glb").write_text("whose?")

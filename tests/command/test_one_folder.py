@@ -193,7 +193,7 @@ def test_whatever_step_of_writing_fails_nothing_is_mixed(results, tmp_path, monk
         found = whole(out)
         assert found in (before, PARTS[1], None)
         if found == before:
-            assert sorted(p.name for p in out.iterdir()) == ["axes.csv", "plan.json", "samples.npz"]
+            assert sorted(p.name for p in out.iterdir()) == ["axes.csv", "plan.json", "process.toml", "samples.npz"]
         results[1].write(out, formats)
         assert whole(out) == PARTS[1]
         steps = max(steps, count[0])

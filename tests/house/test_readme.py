@@ -64,7 +64,7 @@ def test_the_python_block_of_the_readme_runs_as_it_stands(somewhere, capsys):
     (chosen,) = capsys.readouterr().out.splitlines()
     assert chosen.startswith("R8L90 True {")
     assert sorted(p.name for p in (somewhere / "v_groove-plan").iterdir()) == [
-        "annotated.glb", "annotated.step", "plan.json", "review.html", "samples.npz",
+        "annotated.glb", "annotated.step", "plan.json", "process.toml", "review.html", "samples.npz",
     ]  # fmt: skip
 
 

@@ -380,15 +380,15 @@ def test_formats_are_written_on_request_and_a_failure_costs_one_file(tmp_path, m
     result = plan("samples/v_groove.step", cutters="R4L50", grid=7, area_budget=0)
     written = result.write(tmp_path / "a", ["json", "csv", "vtk", "regions"])
     names = {path.name for path in (tmp_path / "a").iterdir()}
-    assert names == {"plan.json", "axes.csv", "axes.vtp", "axis_regions.json"}
-    assert set(written.files) == {"csv", "vtk", "regions"}
+    assert names == {"plan.json", "process.toml", "axes.csv", "axes.vtp", "axis_regions.json"}
+    assert set(written.files) == {"csv", "vtk", "regions", "process"}
 
     def refuses(result):
         raise ValueError("no columns today")
 
     monkeypatch.setattr(to_csv, "columns", refuses)
     written = result.write(tmp_path / "b", ["json", "csv", "vtk"])
-    assert set(written.files) == {"vtk"}
+    assert set(written.files) == {"vtk", "process"}
     assert "no columns today" in written.not_written["csv"]
     assert not (tmp_path / "b/axes.csv").exists()
 

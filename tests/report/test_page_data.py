@@ -490,7 +490,7 @@ def test_a_page_that_cannot_be_made_costs_only_itself(valley, tmp_path, monkeypa
     monkeypatch.setattr(write, "render_mesh", fails)
     document = result.write(tmp_path, ("json", "html", "npz"))
     assert document.not_written == {"html": "the CAD kernel made no triangle of the part"}
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["plan.json", "postures.npz", "samples.npz"]
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["plan.json", "postures.npz", "process.toml", "samples.npz"]
 
 
 def test_the_part_keeps_no_mesh(valley):

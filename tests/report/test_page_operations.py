@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from plan_cutters import plan
-from plan_cutters.plan_file.numbers import bound
+from plan_cutters.plan_file.numbers import area, bound
 from plan_cutters.plan_file.operations import CurveStepEntry
 from plan_cutters.plan_file.palette import operation_colour
 from plan_cutters.plan_file.words.operations import in_short, of_the_whole, share_text
@@ -61,6 +61,19 @@ def test_operations_are_told_as_they_are_in_the_plan(planned, read):
             assert found.serves[one["sample"], k]
 
 
+def test_each_step_says_what_is_gone_without_it_and_which_operation_it_is(planned, read):
+    rows = [(a, text) for tag, a, text in read.elements if tag == "tr" and "data-plan" in a]
+    process, (name, fastest) = planned.plan.process, (planned.plan.operations.plans[1].name, planned.plan.operations.plans[1])
+    assert (process.plan, name) == ("fastest", "fastest")
+    assert len(rows) == len(process.steps)
+    for k, ((attributes, text), step) in enumerate(zip(rows, process.steps, strict=True), 1):
+        assert text.startswith(str(k))
+        assert area(step.alone_mm2) in text
+        one = fastest.operations[int(attributes["data-operation"])]
+        assert (attributes["data-plan"], one.id, one.cutter, one.setup) == ("fastest", step.operation, step.cutter, step.setup)
+        assert (one.area_mm2, one.exclusive_mm2) == pytest.approx((step.area_mm2, step.alone_mm2))
+
+
 def test_the_text_of_the_plan_says_each_thing_once(planned):
     text = " ".join(planned.plan.text.lines)
     assert in_short(planned.plan)
@@ -68,7 +81,7 @@ def test_the_text_of_the_plan_says_each_thing_once(planned):
 
 
 def test_each_operation_is_listed(planned, read):
-    rows = [text for tag, a, text in read.elements if tag == "tr" and "data-operation" in a]
+    rows = [text for tag, a, text in read.elements if tag == "tr" and "data-operation" in a and "data-plan" not in a]
     more = [text for tag, a, text in read.elements if tag == "td" and a.get("colspan") == "4"]
     wanted = [one for _, entry, _ in each_plan(planned, read) for one in entry.operations]
     assert len(rows) == len(wanted)
@@ -199,7 +212,7 @@ def test_simultaneous_operations_and_none_are_shown_too(planned):
     assert read.array(few["array"]).tolist() == (label + 1).tolist()
     assert nothing["operations"] == []
     assert not read.array(nothing["array"]).any()
-    row = next(text for tag, a, text in read.elements if tag == "tr" and "data-operation" in a)
+    row = next(text for tag, a, text in read.elements if tag == "tr" and "data-operation" in a and "data-plan" not in a)
     assert row.startswith("op1simultaneous–")
     assert not any(a.get("class") == "curve" for _, a, _ in read.elements)
 
@@ -289,6 +302,17 @@ def test_hovering_or_focusing_an_entry_lights_its_regions(page, planned, read):
     assert changed() == lit
     entry(page, told["key"], 0).evaluate("button => button.blur()")
     assert not any(changed())
+
+
+def test_a_step_of_the_process_is_its_operation(page, planned, read):
+    """Its row puts the tool there and lights up with the entry in the list of operations."""
+    step = page.locator("#process tr[data-operation]").first
+    key, k = step.get_attribute("data-plan"), int(step.get_attribute("data-operation"))
+    told = next(each for each in read.meta["operations"]["plans"] if each["key"] == key)["operations"][k]
+    step.locator("button").click()
+    assert page.evaluate("review.sample.row") == told["sample"]
+    assert page.inner_text("#status") == told["text"]
+    assert [each.get_attribute("aria-pressed") for each in (step.locator("button"), entry(page, key, k))] == ["true", "true"]
 
 
 def test_the_keyboard_switches_and_the_help_says_so(page, read):

@@ -42,7 +42,7 @@ def proposed(tmp_path):
                           tried=1, why="")  # fmt: skip
     document = result.plan.model_copy(update={"setup_proposal": entry})
     replace(result, plan=document).write(tmp_path, ("json",))
-    assert sorted(each.name for each in tmp_path.iterdir()) == ["plan.json", "setup-1.toml"]
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["plan.json", "process.toml", "setup-1.toml"]
     return tmp_path
 
 
@@ -58,4 +58,4 @@ def test_a_plan_in_a_setup_of_its_own_folder_leaves_that_there(proposed):
 
 def test_a_plan_without_it_takes_it_away(proposed):
     plan(PART, cutters="R6L80", grid=3, area_budget=0).write(proposed, ("json",))
-    assert [each.name for each in proposed.iterdir()] == ["plan.json"]
+    assert sorted(each.name for each in proposed.iterdir()) == ["plan.json", "process.toml"]

@@ -1,7 +1,5 @@
 """The area between samples for tools of other kinds: random contacts in served cells, against the exact surface."""
 
-import math
-
 import numpy as np
 import pytest
 
@@ -10,20 +8,8 @@ from plan_cutters import Cutter
 from tests.support import shapes
 from tests.support.contacts import dense, served
 from tests.support.places import SAMPLES
+from tests.support.tool_kinds import TOOLS
 from tests.support.tool_profile import deepest
-
-HOLDER = "R10:20L5+R20L55"
-TOOLS = {
-    "bull": Cutter.bull(radius=2, corner_radius=0.5, length=40),
-    "ball": Cutter.ball(radius=2, length=40),
-    "taper": Cutter.ball(radius=1.5, length=40, taper=math.radians(4)),
-    "tapered bull": Cutter.bull(radius=2, corner_radius=0.5, length=40, taper=math.radians(4)),
-    "tapered flat": Cutter.flat(radius=2, length=40, taper=math.radians(3)),
-    "lollipop": Cutter.lollipop(radius=2, neck_radius=1, length=40),
-    "barrel": Cutter.barrel(radius=2, flank_radius=20, tip_radius=0.7, length=40, flutes=7.0),
-    "lens": Cutter.lens(radius=3, bottom_radius=15, corner_radius=0.5, length=40),
-    "holder": Cutter.bull(radius=2, corner_radius=1, length=12, flutes=6.0, shank_radius=2.0, holder=HOLDER),
-}
 
 
 @pytest.mark.parametrize("kind", TOOLS)

@@ -64,6 +64,8 @@ CASES = {
     "most_operations": [(3, None)],
     "sharp_edges": [("left", None)],
     "max_orientations": [(3, None)],
+    "patterns": [(False, None)],
+    "process": [({"step": [{"cutter": "R1L20F6N0.95x9S3HR10.5L60", "mode": "simultaneous"}]}, "--process")],
     "units": [("in", None)],
     "unit": [("in", "unit as stated, not in")],
     "fixtures": [("box:200,200,200@-50,-50,-50", "other fixtures"), ("box:5,5,5@0,0,60", None), ((), "other fixtures")],

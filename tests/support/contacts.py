@@ -39,7 +39,7 @@ def served(part, cutter, *, budget, tolerance=0.01, chord=None, machine="unlimit
         upright = np.where(serves, samples.normal @ axes.T, -2.0)
         verdicts = held_at(axes, np.where(serves.any(axis=1), upright.argmax(axis=1), -1), samples, context)
         fixed = Fixed(axes, serves)
-    found = between(samples, verdicts, context, whole, side, budget=budget, fixed=fixed)
+    found = between(samples, verdicts, context, whole, side, budget=budget, axes=fixed)
     return found, geometry, whole
 
 

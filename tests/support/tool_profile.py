@@ -51,8 +51,13 @@ def touching(cutter, normal, axis, x_t):
 
 def deepest(found, geometry, whole, cutter, cloud, count, rng):
     """Largest of the depths of the surface in the tool over random contacts in served cells, mm, to the profile's grain."""
+    return deepest_of(cutter, wandering(found, geometry, whole, cloud, count, rng))
+
+
+def deepest_of(cutter, contacts):
+    """Largest of the depths, mm, of points in the tool; of contacts with normal, axis, x_T and the points of a surface."""
     worst, (w, q) = -math.inf, profile(cutter)
-    for contact, normal, axis, x_t, surface in wandering(found, geometry, whole, cloud, count, rng):
+    for contact, normal, axis, x_t, surface in contacts:
         points = surface - contact - touching(cutter, normal, axis, x_t)
         height = points @ axis
         radial = np.linalg.norm(points - height[:, None] * axis, axis=1)

@@ -96,8 +96,9 @@ def kept(part: Scene, known: Options) -> None:
         scallop=known.scallop, stepover=known.stepover, index_step=known.index_step, axis_accuracy=known.axis_accuracy,
         index_time=known.index_time,
         change_time=known.change_time, setup_time=known.setup_time, overlap=known.overlap,
-        most_operations=known.most_operations, max_orientations=known.max_orientations, sharp_edges=known.sharp_edges,
-        units=known.units,
+        most_operations=known.most_operations, max_orientations=known.max_orientations, patterns=known.patterns,
+        sharp_edges=known.sharp_edges,
+        units=known.units, process=known.process,
     )  # fmt: skip
 
 

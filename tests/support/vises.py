@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from plan_cutters.scene.fixtures import box
 from plan_cutters.scene.obstacles import divided
+from plan_cutters.scene.solids import box
 
 
 def block(low, high, longest=np.inf):

@@ -29,14 +29,14 @@ def write(folder: Path) -> None:
 class Written:
     """The files of a plan, to be forged: each call of `question` is about copies of them."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, part: str = PART, words: dict | None = None) -> None:
         self.document = json.loads((folder / "plan.json").read_text())
         self.arrays = {}
         for name in FILES:
             with np.load(folder / name) as archive:
                 self.arrays[name] = {each: archive[each] for each in archive.files}
-        self.part = read_part(PART)
-        self._of = question_of(self.part, Options(**WORDS), self.document, self.arrays)
+        self.part = read_part(part)
+        self._of = question_of(self.part, Options(**(words or WORDS)), self.document, self.arrays)
 
     def copies(self) -> tuple[dict, dict]:
         """plan.json and the arrays, to be altered."""

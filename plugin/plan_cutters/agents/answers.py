@@ -126,8 +126,69 @@ class OfPlan(Answer):
     more_missing: int = 0
 
 
+class Remaining(Entry):
+    """An area that no step finishes, for one cause."""
+
+    cause: str = Field(
+        description="code of a reason; `unjudged`; `not_planned`: reached, and in no step; `orientation`, of what a step leaves: "
+        "its cutter reaches it in this setup at other angles"
+    )
+    area_mm2: float
+    share: float
+    faces: list[str] = Field(description="the one with the most of it first")
+    more_faces: int = 0
+    place_mm: Vector | None = Field(default=None, description="a sample in the middle of it, on the first of the faces")
+    needs: str = Field(default="", description="what would help, in words")
+
+
+class NearestOrientation(Entry):
+    """The orientation next to that of a step, that takes more of what the step is asked."""
+
+    angles: dict[str, float]
+    axis: Vector
+    area_mm2: float
+
+
+class OwnStepAnswer(Entry):
+    """A step of `process` is asked this, and leaves this of it."""
+
+    number: int = Field(description="in `process`, from 1")
+    text: str = Field(default="", description="what is wrong with it, a sentence; empty where it does all")
+    asked_mm2: float
+    wrong: str = Field(default="", description="why it does nothing; empty where it can be judged")
+    leaves: list[Remaining]
+    more_leaves: int = 0
+    nearest: NearestOrientation | None = None
+
+
+class StepAnswer(Entry):
+    """A step of the process, in the words of `process`: to edit and to judge again."""
+
+    setup: int = Field(description="from 1")
+    mode: Literal["fixed", "simultaneous", "any"]
+    angles: dict[str, float] | None = Field(description="of the rotary axes by name, deg; null unless fixed")
+    axis: Vector | None = Field(description="of a fixed orientation without angles; else null")
+    cutter: str
+    faces: list[str] = Field(description="the one with the most of it first")
+    more_faces: int = Field(default=0, description="left out here: take all from plan.json before you give the step back")
+    take: Literal["first", "share"] = Field(description="as in `process`: share: by time, with other steps that share its faces")
+    area_mm2: float
+    share: float = Field(description="of `asked_mm2`")
+    alone_mm2: float | None = Field(description="that no other step serves: gone if it is left out; null: not known")
+    seconds: float | None = Field(description="cutting alone; null where it is not known")
+    clearance_mm: float | None = None
+    own: OwnStepAnswer | None = Field(default=None, description="null: the step was planned")
+
+
 class PlanAnswer(OfPlan):
     format: Literal["plan-cutters-agent-plan"] = "plan-cutters-agent-plan"
+    asked_mm2: float | None = Field(default=None, description="of the faces to machine, that the steps are to finish")
+    finished_share: float | None = Field(default=None, description="by all steps together; 1 only where nothing is left")
+    seconds: float | None = Field(default=None, description="of all steps, turns and changes of cutters; null without a feed")
+    steps: list[StepAnswer] = Field(default=[], description="of the process, in their order")
+    more_steps: int = 0
+    left: list[Remaining] = Field(default=[], description="what no step finishes, the largest area first")
+    more_left: int = 0
     notes: list[Note] = Field(description="what these verdicts do not say")
     more_notes: int = 0
     files: dict[str, str] = Field(default={}, description="format -> path, where `out` was given")

@@ -27,6 +27,7 @@ from plan_cutters.agents.answers import (
     first,
 )
 from plan_cutters.agents.limits import CallError
+from plan_cutters.agents.step_answers import stepped
 from plan_cutters.plan_file.answers import StepEntry
 from plan_cutters.plan_file.model import CutterEntry, Plan, WitnessEntry
 from plan_cutters.plan_file.nearest import leaves
@@ -47,7 +48,10 @@ def planned(plan: Plan, code: int, most: int, files: Mapping[str, str]) -> PlanA
     codes = [*plan.note_codes, *[""] * len(plan.notes)]
     every = [*zip(codes, plan.notes, strict=False), *(("warning", text) for text in plan.part.warnings)]
     notes, more = first([Note(code=c, text=t) for c, t in every], most)
-    return PlanAnswer(**_of_plan(plan, code, most), notes=notes, more_notes=more, files=dict(files), not_written=plan.not_written)
+    return PlanAnswer(
+        **_of_plan(plan, code, most), **stepped(plan, most), notes=notes, more_notes=more, files=dict(files),
+        not_written=plan.not_written,
+    )  # fmt: skip
 
 
 def compared(plan: Plan, code: int, most: int) -> Comparison:

@@ -1,10 +1,23 @@
 """The questions of an agent: their fields are the input schemas of the tools."""
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import AfterValidator, BaseModel, ConfigDict, Field, WithJsonSchema, model_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    ConfigDict,
+    Field,
+    ValidationError,
+    ValidatorFunctionWrapHandler,
+    WithJsonSchema,
+    WrapValidator,
+    model_validator,
+)
 
 from plan_cutters.domain.answer_kinds import ANSWERS, KINDS
+from plan_cutters.errors import OptionError
+from plan_cutters.machines.process_file import ProcessTable, process_of
+from plan_cutters.machines.toml_in import explained
 
 #: Words of the command line are short.
 Word = Annotated[str, Field(min_length=1, max_length=300)]
@@ -23,6 +36,22 @@ def _answer(word: str) -> str:
 
 #: A question that a plan may answer beside its verdicts.
 Answer = Annotated[str, AfterValidator(_answer), WithJsonSchema({"type": "string", "enum": [*ANSWERS]})]
+
+
+def _process(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
+    """The planner's own steps; what is wrong with them is said as of a file, with the place."""
+    try:
+        table = handler(value)
+        process_of(table.model_dump(exclude_none=True))
+    except ValidationError as error:
+        raise ValueError(explained(error)) from None
+    except OptionError as error:
+        raise ValueError(error.cause) from None
+    return table
+
+
+#: The planner's own steps, as a file has them.
+Process = Annotated[ProcessTable, WrapValidator(_process)]
 #: Files that a plan may write.
 Format = Literal["json", "step", "glb", "merged", "npz", "html", "png", "csv", "vtk", "regions"]
 
@@ -94,6 +123,15 @@ class PlanQuestion(PartQuestion):
     """Which cutters finish a part?"""
 
     answers: list[Answer] = Field(default=[], description="; ".join(f"{kind.word}: {kind.meaning}" for kind in KINDS))
+    operations: Literal["fewest", "fastest", "both"] | None = Field(
+        default=None, description="plan fixed orientations and simultaneous steps: `steps` has them; fastest and both need a feed"
+    )
+    feed_mm_min: float | None = Field(default=None, ge=0.1, le=1e6, description="of all cutters; a library may state feeds")
+    process: Process | None = Field(
+        default=None,
+        description="your own steps, judged as they stand, in their order: edit `steps` of an answer; the rest is planned behind "
+        "them, or left; needs no `operations`",
+    )
     out: Path | None = Field(default=None, description="folder in a root for files; without it, none is written")
     formats: list[Format] = Field(default=["json"], min_length=1, description="of these files")
 

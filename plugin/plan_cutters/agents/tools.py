@@ -56,11 +56,12 @@ class Call:
     tell: ProgressListener
 
     async def _run(self, words: Sequence[str], **more: Any) -> Ended:
-        return await run(words, self.cwd, self.permissions.limits, self.tell, within=self.permissions.roots.folders, **more)
+        more = {"within": self.permissions.roots.folders, **more}
+        return await run(words, self.cwd, self.permissions.limits, self.tell, **more)
 
     async def plan(self, words: Sequence[str]) -> tuple[Plan, int]:
         """Plan a part; the plan and the exit code."""
-        ended = await self._run(["plan", *words, "--json=-"])
+        ended = await self._run(["plan", *words, "--json=-"], within=(*self.permissions.roots.folders, self.cwd))
         return plan_of(ended.output, "the plan", CallError), ended.code
 
     async def map(self, question: MapQuestion, most: int, spec: str | None = None) -> tuple[bytes, int]:
@@ -129,6 +130,13 @@ async def plan_part(question: PlanQuestion, call: Call) -> Reply:
     """Plan a part, into a folder where one is named."""
     words = await _part(question, call)
     words += [f"--answers={','.join(question.answers)}"] if question.answers else []
+    words += [f"--operations={question.operations}"] if question.operations is not None else []
+    words += [f"--feed={question.feed_mm_min!r}"] if question.feed_mm_min is not None else []
+    if question.process is not None:
+        # Beside nothing else: the name is the place that its faults are told with.
+        file = call.cwd / "process.json"
+        file.write_text(question.process.model_dump_json(exclude_none=True), encoding="utf-8")
+        words += [f"--process={file}"]
     if question.out is None:
         plan, code = await call.plan(words)
         files = {}
@@ -322,8 +330,8 @@ TOOLS = (
     Tool(
         "plan_part", "Which cutters finish a part",
         "Judge cutters on a part (STEP, IGES, BREP) without any toolpath: which finish its sculptured faces without gouging or "
-        "collision, what each one reaches, where and why the others fail. Writes files only where `out` is given. Takes seconds "
-        "to minutes.",
+        "collision, what each one reaches, where and why the others fail; with `operations`, in which steps; with `process`, "
+        "what your own steps do and leave. Writes files only where `out` is given. Takes seconds to minutes.",
         PlanQuestion, PlanAnswer, plan_part, writes=True,
     ),
     Tool(

@@ -75,10 +75,12 @@ def _nameable(ready: Prepared) -> bool:
 
 
 def _pinned(ready: Prepared, faces: Sequence[int]) -> list[str]:
-    """Name the proposed setups, their tables, and the faces to be finished."""
+    """Name the proposed setups, what holds the part there, and the faces to be finished."""
     part = ready.scene.part
     words = [word for file in _files(ready) for word in ("--setup", shlex.quote(file))]
-    words = words or ["--setup", ",".join(f"{each:.12g}" for each in ready.scene.setup), "--fixture", "table"]
+    if not words:
+        fixtures = [word for each in ready.options.fixtures for word in ("--fixture", each.text)]
+        words = ["--setup", ",".join(f"{each:.12g}" for each in ready.scene.setup), *fixtures]
     selected = select_faces(part.faces, ready.chosen.asked, tree=part.tree, ignored=ready.scene.ignored, blends=part.blends)
     return words if tuple(selected) == tuple(faces) else [*words, "--faces", ranges(faces)]
 

@@ -2,137 +2,44 @@
 
 First a bound that is cheap and sees no obstacle but the table: at which samples does the machine hold any tool axis at which a
 cutter touches, whose upper end is above the plane that the part stands on? Then, for the few best, a search on some samples among
-the real obstacles with the real table. It promises; the plan of that setup decides.
+the real obstacles with the real table. In those that are chosen, vise and chuck are tried as well. It promises; the plan of that
+setup decides.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, Record, SurfaceSamples, Triangles
+from cad_io.arrays import Floats, SurfaceSamples
+from plan_cutters.answers.candidates import Candidates
+from plan_cutters.answers.holding import Held, best_hold, held_by
 from plan_cutters.answers.least_set import cover
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.fixture import TABLE
 from plan_cutters.domain.preference import group_of
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.errors import OptionError
 from plan_cutters.scene.conditions import Conditions, Context, contacts_of, search_postures
+from plan_cutters.scene.holds import NothingToGripError
 from plan_cutters.scene.preparation import Axis, Prepared
+from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.stages.setups import within_limits
 
 Rows = NDArray[np.int64]
 Table = NDArray[np.bool_]
 
-#: Families of parallel planes whose normals are tried, and directions spread over the sphere.
-_FAMILIES, _SPREAD = 40, 60
-#: Directions nearer than this are one: cosine of 0.1 deg.
-_ONE = float(np.cos(np.radians(0.1)))
 #: Samples on which directions are compared, at most; directions that are searched, for the first setup and for each more.
 COMPARED, _FIRST, _MORE = 400, 10, 6
 #: Heights over the table are told apart in so many steps; shares nearer than the second are equal.
 _HEIGHTS, _EVEN = 12, 0.002
+#: Directions in which the part lies lowest are searched, too, at most so many; heights nearer than this share are equal.
+_LOW, _EVEN_HEIGHT = 2, 1e-3
 #: A setup that stands on no plane counts so much: it needs more to hold it than a table.
 _ON_NO_PLANE = 0.75
 #: Share of the area that a setup has to serve alone: of a few hundred samples one or two may be served by chance.
 _CLAMPED_FOR = 0.005
-#: Setups that are proposed together, at most.
-MOST = 3
-
-
-@dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Candidates(Record):
-    """Directions of the part along the spindle that are compared.
-
-    Attributes
-    ----------
-    axis : (m, 3) float
-        Unit directions.
-    stands_on : tuple of tuple of int
-        For each the numbers of the planar faces that lie on the table.
-    lowest : (m,) float
-        Height along each of the part's lowest point, mm.
-    """
-
-    axis: Floats
-    stands_on: tuple[tuple[int, ...], ...]
-    lowest: Floats
-
-    @classmethod
-    def of(cls, ready: Prepared) -> "Candidates":
-        """Directions of a cube's corners, edges and faces, normals of planes both ways, and some all over the sphere."""
-        triangles, planar = _of_part(ready)
-        axis = distinct(np.concatenate([cube(), _normals(triangles.vertex, triangles.face, planar), fibonacci(_SPREAD)]))
-        return cls(axis, *planes_below(ready, axis))
-
-
-def _of_part(ready: Prepared) -> tuple[Triangles, list[int]]:
-    """The triangles of the part alone, and the numbers of its planes."""
-    surroundings = ready.conditions.surroundings
-    planar = [face.number for face in ready.scene.part.faces if face.shape == "plane"]
-    return (surroundings.alone or surroundings).certain.triangles, planar
-
-
-def planes_below(ready: Prepared, axis: Floats) -> tuple[tuple[tuple[int, ...], ...], Floats]:
-    """On which planes a part stands, by their numbers, and the height of its lowest point (m,), along some axes (m, 3)."""
-    triangles, planar = _of_part(ready)
-    height = triangles.vertex.reshape(-1, 3) @ axis.T
-    lowest, flat = height.min(axis=0), triangles.chord_error + 1e-6 * float(np.linalg.norm(ready.scene.part.size))
-    face = np.repeat(triangles.face, 3)
-    tops = {number: height[face == number].max(axis=0) for number in planar if (face == number).any()}
-    stands = [tuple(number for number, top in tops.items() if top[k] <= lowest[k] + flat) for k in range(len(axis))]
-    return tuple(stands), lowest
-
-
-def touching(ready: Prepared, axis: Floats) -> tuple[tuple[int, ...], ...]:
-    """Faces with which a part touches the plane below it, by their numbers, along some axes (m, 3)."""
-    triangles, _ = _of_part(ready)
-    height = triangles.vertex.reshape(-1, 3) @ axis.T
-    reach = triangles.chord_error + 1e-6 * float(np.linalg.norm(ready.scene.part.size))
-    low, face = height <= height.min(axis=0) + reach, np.repeat(triangles.face, 3)
-    return tuple(tuple(int(n) for n in np.unique(face[low[:, k]]) if n > 0) for k in range(len(axis)))
-
-
-def cube() -> Floats:
-    """Directions (26, 3) of a cube's faces, edges and corners; the part's own axes come first, +z as the first of all."""
-    every = np.array([(x, y, z) for z in (1, 0, -1) for y in (0, 1, -1) for x in (0, 1, -1) if (x, y, z) != (0, 0, 0)], float)
-    every = every[np.argsort(np.abs(every).sum(axis=1), kind="stable")]
-    return np.asarray(every / np.linalg.norm(every, axis=1)[:, None])
-
-
-def fibonacci(count: int) -> Floats:
-    """So many unit directions (count, 3), evenly spread."""
-    step = np.arange(count) + 0.5
-    z, turn = 1.0 - 2.0 * step / count, np.pi * (1.0 + np.sqrt(5.0)) * step
-    across = np.sqrt(1.0 - z * z)
-    return np.stack([across * np.cos(turn), across * np.sin(turn), z], axis=1)
-
-
-def distinct(axis: Floats) -> Floats:
-    """Directions without those that are nearly one before them."""
-    result: list[int] = []
-    for k in range(len(axis)):
-        if not result or (axis[result] @ axis[k]).max() < _ONE:
-            result.append(k)
-    return axis[result]
-
-
-def _normals(vertex: Floats, face: NDArray[np.int32], planar: Sequence[int]) -> Floats:
-    """Normals of the families of parallel planes with the most area, both ways: the machine may look at them or away."""
-    wide = np.cross(vertex[:, 1] - vertex[:, 0], vertex[:, 2] - vertex[:, 0])
-    normals: list[tuple[float, Floats]] = []
-    for number in planar:
-        normal = wide[face == number].sum(axis=0)
-        size = float(np.linalg.norm(normal))
-        if not size > 0.0:
-            continue
-        same = next((k for k, (_, known) in enumerate(normals) if abs(known @ normal) >= _ONE * size), None)
-        if same is None:
-            normals.append((size, normal / size))
-        else:
-            normals[same] = normals[same][0] + size, normals[same][1]
-    normals = sorted(normals, key=lambda each: -each[0])[:_FAMILIES]
-    return np.array([way * normal for _, normal in normals for way in (1.0, -1.0)]).reshape(-1, 3)
 
 
 def holdable(
@@ -190,11 +97,19 @@ class Ranking:
     candidates : Candidates
     rows : (r,) int64
         Samples on which directions are compared.
+    free : (r,) bool
+        Where a posture was found without table and machine: what the part itself is in the way of is not searched again in each
+        direction.
     bound : (r, m) bool
-        Where the machine holds an axis over the table at all, the face is not stood on, and a posture was found without table
-        and machine: what the part itself is in the way of is not searched again in each direction.
-    served : mapping
-        By candidate, where a posture was found over a real table, (r,).
+        Those of them where the machine holds an axis over the table at all, and the face is not stood on.
+    words : tuple of str
+        What may hold the part: `table`, and the words of vises and chucks. Directions are searched with the first of them.
+    held : mapping
+        By candidate that was searched, how it is held; None where it cannot be.
+    settled : set
+        Candidates for which the other words were tried.
+    refused : mapping
+        Why nothing holds it in directions that were searched, the first cause first.
     usual : (r,) bool
         Where cutters that finish surfaces serve without table and machine: there no engraving, chamfer or form cutter makes a
         setup look better than it is.
@@ -203,27 +118,30 @@ class Ranking:
     ready: Prepared
     candidates: Candidates
     rows: Rows
+    free: NDArray[np.bool_]
     bound: Table
-    served: dict[int, NDArray[np.bool_]]
     usual: NDArray[np.bool_]
+    words: tuple[str, ...] = (TABLE,)
+    held: dict[int, Held | None] = field(default_factory=dict)
+    settled: set[int] = field(default_factory=set)
+    refused: dict[str, None] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, ready: Prepared) -> "Ranking":
-        """Rank the directions of a part by the bound.
+    def of(cls, ready: Prepared, words: tuple[str, ...] = (TABLE,)) -> "Ranking":
+        """Rank the directions of a part by the bound; `words` as the attribute.
 
         Raises
         ------
         OptionError
             In no direction does the machine hold any axis at which a cutter touches.
         """
-        candidates, samples = Candidates.of(ready), ready.samples
+        candidates = Candidates.of(ready)
         open_ = np.flatnonzero(ready.somewhere)
         rows = open_[np.unique(np.linspace(0, len(open_) - 1, min(COMPARED, len(open_))).astype(np.int64))]
-        few = replace(ready.conditions, setup=np.array([0.0, 0.0, 1.0]), x=None)
+        few = ready.conditions
         bound = np.zeros((len(rows), len(candidates.axis)), bool)
-        for k, axis in enumerate(candidates.axis):
-            held = holdable(samples, ready.cutters, few, axis, float(candidates.lowest[k]), rows)
-            bound[:, k] = held[rows] & ~np.isin(samples.face[rows], candidates.stands_on[k])
+        for k in range(len(candidates.axis)):
+            bound[:, k] = _bound(ready, candidates, rows, k, words[0])
         if not bound.any():
             low, high = np.degrees(few.postures.tilt)
             raise OptionError(
@@ -235,7 +153,8 @@ class Ranking:
         free = usual = _reached(ready, rows, bare, usual=True)
         if len(_usual(ready.cutters)) < len(ready.cutters):
             free = usual | _reached(ready, rows[~usual[rows]], bare, usual=False)
-        return cls(ready, candidates, rows, bound & free[rows, None] if free.any() else bound, {}, usual[rows])
+        every = free[rows] if free.any() else np.ones(len(rows), bool)
+        return cls(ready, candidates, rows, every, bound & every[:, None], usual[rows], words)
 
     @property
     def area(self) -> Floats:
@@ -255,23 +174,62 @@ class Ranking:
         for k in order.tolist():
             if tried == most or upper[k] <= best + 0.5 * _EVEN:
                 break
-            if k not in self.served:
-                self.served[k] = self._searched(k)
-                tried += 1
-            best = max(best, float(worth[k] * self.share((self.served[k] & open_rows)[:, None])[0]))
+            tried += k not in self.held
+            best = max(best, float(worth[k] * self.share((self._searched(k) & open_rows)[:, None])[0]))
+
+    def search_lowest(self) -> None:
+        """Search the directions in which the part lies lowest on a plane, as one would clamp it if nothing speaks against it."""
+        flat = [k for k, planes in enumerate(self.candidates.stands_on) if planes and self.bound[:, k].any()]
+        for k in self._lowest_first(flat)[:_LOW]:
+            self._searched(k)
+
+    def _lowest_first(self, every: Sequence[int]) -> list[int]:
+        least = max(1e-300, float(self.candidates.tall.min()))
+        return sorted(every, key=lambda k: (round(float(self.candidates.tall[k]) / (_EVEN_HEIGHT * least)), k))
 
     def _searched(self, k: int) -> NDArray[np.bool_]:
-        """Where any cutter has a posture with a table under the part, of the rows (r,)."""
+        """Where any cutter has a posture in a direction, of the rows (r,); nowhere if nothing can hold the part."""
+        if k not in self.held:
+            try:
+                self.held[k] = self._held_by(k, self.words[0], self.bound[:, k])
+            except NothingToGripError as error:
+                self.held[k] = None
+                self.refused[error.cause] = None
+        return self.served(k)
+
+    def served(self, k: int) -> NDArray[np.bool_]:
+        """Where a posture was found in a direction that was searched, (r,)."""
+        held = self.held[k]
+        return np.zeros(len(self.rows), bool) if held is None else held.served
+
+    def settle(self, chosen: Sequence[int]) -> None:
+        """Try in directions that were chosen whatever else may hold the part, and take what holds it best."""
+        for k in [k for k in chosen if k not in self.settled and len(self.words) > 1]:
+            self.settled.add(k)
+            tried, refused = [held for held in [self.held[k]] if held is not None], {}
+            for word in self.words[1:]:
+                try:
+                    tried.append(self._held_by(k, word, self.free & _bound(self.ready, self.candidates, self.rows, k, word)))
+                except NothingToGripError as error:
+                    refused[word] = error.why
+            self.held[k] = best_hold(tried, refused, self.area)
+
+    def _held_by(self, k: int, word: str, bound: NDArray[np.bool_]) -> Held:
         x, y, z = self.candidates.axis[k].tolist()
-        surroundings = self.ready.scene.surround_on_table((x, y, z))
-        conditions = replace(self.ready.conditions, setup=np.array([x, y, z]), x=None, surroundings=surroundings)
-        reached = np.zeros(len(self.ready.samples), bool)
-        for usual in (True, False):
-            reached |= _reached(self.ready, self.rows[self.bound[:, k] & (self.usual == usual)], conditions, usual=usual)
-        return reached[self.rows]
+
+        def among(surroundings: Surroundings) -> NDArray[np.bool_]:
+            conditions = replace(self.ready.conditions, setup=self.candidates.axis[k], x=None, surroundings=surroundings)
+            reached = np.zeros(len(self.ready.samples), bool)
+            for usual in (True, False):
+                reached |= _reached(self.ready, self.rows[bound & (self.usual == usual)], conditions, usual=usual)
+            return reached[self.rows]
+
+        return held_by(self.ready, (x, y, z), word, among)
 
     def choose(self, most: int, without: frozenset[int] = frozenset()) -> tuple[int, ...]:
         """Choose the fewest directions that serve all that any of those searched serves, or as many as there may be.
+
+        Of as many that serve as much, those are taken in which the part lies lower.
 
         Parameters
         ----------
@@ -284,7 +242,7 @@ class Ranking:
         tuple of int
             Candidates, that with the most area first; none where none serves anything.
         """
-        every = sorted(set(self.served) - without)
+        every = self._lowest_first([k for k, held in self.held.items() if held is not None and k not in without])
         flat = self._chosen([k for k in every if self.candidates.stands_on[k]], most)
         free = self._chosen(every, most)
         return self._worth(flat if self._together(flat) >= _ON_NO_PLANE * self._together(free) else free)
@@ -292,7 +250,7 @@ class Ranking:
     def _worth(self, chosen: tuple[int, ...]) -> tuple[int, ...]:
         """Leave out, one after the other, the setup that alone serves least, while that is too little to clamp the part again."""
         while len(chosen) > 1:
-            table = np.stack([self.served[k] for k in chosen], axis=1)
+            table = np.stack([self.served(k) for k in chosen], axis=1)
             alone = self.share(table & (table.sum(axis=1) == 1)[:, None])
             least = int(alone.argmin())
             if alone[least] >= _CLAMPED_FOR:
@@ -304,14 +262,14 @@ class Ranking:
         """The share of area that some candidates serve together."""
         whole = np.zeros(len(self.rows), bool)
         for k in chosen:
-            whole |= self.served[k]
+            whole |= self.served(k)
         return float(self.share(whole[:, None])[0])
 
     def _chosen(self, every: Sequence[int], most: int) -> tuple[int, ...]:
         """The same among some candidates."""
         if not every:
             return ()
-        table = np.stack([self.served[k] for k in every], axis=1)
+        table = np.stack([self.served(k) for k in every], axis=1)
         share = self.share(table)
         chosen = cover(table, range(len(every)), range(len(every)))[0] if most > 1 else []
         if not chosen or len(chosen) > most:
@@ -324,6 +282,15 @@ class Ranking:
                 chosen.append(k)
                 uncovered &= ~table[:, k]
         return tuple(every[k] for k in sorted(chosen, key=lambda k: -round(float(share[k]) / _EVEN)))
+
+
+def _bound(ready: Prepared, candidates: Candidates, rows: Rows, k: int, word: str) -> NDArray[np.bool_]:
+    """Rows (r,) where the machine holds an axis at all in a direction, in what holds the part; not on what it stands on."""
+    # A vise or chuck stands on a riser: beside it a tool may be lower than the part.
+    table = float(candidates.lowest[k]) if word == TABLE else None
+    conditions = replace(ready.conditions, setup=np.array([0.0, 0.0, 1.0]), x=None)
+    held = holdable(ready.samples, ready.cutters, conditions, candidates.axis[k], table, rows)
+    return np.asarray(held[rows] & ~np.isin(ready.samples.face[rows], candidates.stands_on[k]))
 
 
 def _usual(cutters: Sequence[Cutter]) -> list[Cutter]:
@@ -344,7 +311,7 @@ def _reached(ready: Prepared, rows: Rows, conditions: Conditions, *, usual: bool
     return reached
 
 
-def ranked(ready: Prepared, most: int) -> Ranking:
+def ranked(ready: Prepared, most: int, words: tuple[str, ...] = (TABLE,)) -> Ranking:
     """Rank the setups of a part, and search those that may be the best one, or the best few together.
 
     Parameters
@@ -353,17 +320,20 @@ def ranked(ready: Prepared, most: int) -> Ranking:
         In any setup, without fixtures.
     most : int
         Setups that may be proposed together.
+    words : tuple of str
+        What may hold the part: as the attribute of `Ranking`.
 
     Raises
     ------
     OptionError
         As for `Ranking.of`.
     """
-    ranking = Ranking.of(ready)
+    ranking = Ranking.of(ready, words)
     ranking.search(np.ones(len(ranking.rows), bool), _FIRST)
+    ranking.search_lowest()
     for number in range(1, most):
         chosen = ranking.choose(number)
-        done = np.logical_or.reduce([ranking.served[k] for k in chosen]) if chosen else np.zeros(len(ranking.rows), bool)
+        done = np.logical_or.reduce([ranking.served(k) for k in chosen]) if chosen else np.zeros(len(ranking.rows), bool)
         if done.all():
             break
         ranking.search(~done, _MORE)

@@ -7,11 +7,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from plan_cutters.answers.setup_ranking import planes_below
+from plan_cutters.answers.candidates import planes_below
 from plan_cutters.answers.trial import Case
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.machines.requested_setups import without
+from plan_cutters.scene.holds import NothingToGripError
 from plan_cutters.scene.inside_material import inside_material
 from plan_cutters.scene.preparation import Prepared
 
@@ -83,14 +84,19 @@ class State:
 def on_table(ready: Prepared, axis: Axis) -> Prepared:
     """A part in a setup that is not planned yet, and in no other: it is held as in the first one.
 
-    A table that the first setup brings itself lies across this axis, and holds the faces that stand on it here, no others.
+    A table that the first setup brings itself lies across this axis, and holds the faces that stand on it here, no others; a vise
+    or chuck grips the part anew.
     """
     place, conditions = ready.options.placement, replace(ready.conditions, setup=np.array(axis), x=None)
     own = () if place is None else tuple(each for each in place.fixtures if each.follows_setup)
     if not own:
         return replace(ready, conditions=conditions, others=())
     scene = ready.scene
-    surroundings = scene.surround_in(axis, without(scene.fixtures, own), own)
+    try:
+        surroundings = scene.surround_in(axis, without(scene.fixtures, own), own)
+    except NothingToGripError:
+        # A vise or chuck has nothing to grip there: nothing can be machined.
+        return replace(ready, conditions=conditions, held=np.ones(len(ready.samples), bool), others=())
     inside = inside_material(
         ready.samples, scene.orientation, surroundings.enclosing, surroundings.certain, conditions.tolerance, conditions.jobs
     )

@@ -15,7 +15,9 @@ from plan_cutters.checker.clash import Clock
 from plan_cutters.checker.expected import Reckoned
 from plan_cutters.checker.findings import Answer, Finding
 from plan_cutters.checker.leaves import Compared, compared
+from plan_cutters.checker.moving import ill_formed
 from plan_cutters.checker.paper import Paper
+from plan_cutters.checker.patterns import Patterns
 from plan_cutters.checker.question import Question
 from plan_cutters.checker.reading import faults
 from plan_cutters.checker.trials import Trials
@@ -57,7 +59,8 @@ def check(question: Question, *, seconds: float = SECONDS, tell: Callable[[str],
 
 def _answer(question: Question, seconds: float, tell: Callable[[str], None]) -> Answer:
     start, rng, reckoned = time.monotonic(), np.random.default_rng(0), Reckoned(question)
-    findings = [*Paper(question, reckoned, rng).findings()]
+    findings = [*Paper(question, reckoned, rng).findings(), *Patterns(question).findings()]
+    findings += ill_formed(question, reckoned)
     entry = reckoned.entry()
     first = _compared(question, findings, entry)
     if not first.holds:

@@ -50,6 +50,12 @@ class Reckoned:
         self.finished = ~unjudged & ~samples["inside_bodies"] & ~samples.get("exempt", np.zeros(len(unjudged), bool))
         least = document.get("least_set") or {"runs": []}
         needed = list(dict.fromkeys(run["cutter"] for run in least["runs"]))
+        #: Steps of the planner's own process, as they were requested; None where all steps were planned.
+        self.own = None if document["effective"].get("process") is None else document["effective"]["process"]["step"]
+        forbidden = document["effective"]["process"]["forbid"] if self.own is not None else []
+        #: Whether each sample that is reached must go with an operation.
+        self.all_planned = self.own is None or (document["effective"]["process"]["rest"] == "plan" and not forbidden)
+        needed = list(dict.fromkeys([*needed, *(each["cutter"] for each in [*(self.own or []), *forbidden])]))
         wanted = [*needed, *(each for each in self.ids if each not in needed)][: max(_CUTTERS, len(needed))]
         self.considered = [each for each in self.ids if each in wanted]
         self.reached_by = {name: self.finished & np.isin(self.verdict[name], _REACHED) for name in self.considered}
@@ -66,26 +72,22 @@ class Reckoned:
         """Reckon what `operations` must hold, as far as it follows from samples and labels."""
         question = self.question
         document, written = question.document, question.document["operations"]
-        effective, few = document["effective"], written["fewest"]
+        effective = document["effective"]
         plans = [self._plan(k, plan) for k, plan in enumerate(written["plans"])]
         many = len(self.considered) > 1
         names = {"fewest": ["fewest"], "fastest": ["fastest"], "both": ["fewest", "fastest"]}[effective["operations"]]
         names = [*names, *(["largest first"] if many and "fastest" in names else [])]
+        names = names if self.own is None else ["process"]
         if [plan["name"] for plan in written["plans"]] != names:
             plans = [{"name": name} for name in names]
         timed_ = any(plan["seconds"] is not None for plan in plans if "seconds" in plan)
         stated = effective["index_time_s"]
-        total, count = sum(weight for _, weight in few["weights"]), len(question.operations["chosen"])
+        count = len(question.operations["chosen"])
         return {
             "asked": effective["operations"],
             "rotary": list(question.machine.names),
             "plans": plans,
-            "fewest": {
-                "found": count, "proof": self._proof(few), "weights": self._weights(few), "bound": total / 1e6,
-                "lp": Loose(total / 1e6 - 1e-6, count), "samples": int(self.reached.sum()),
-                "candidates": len(question.operations["candidate_cutter"]), "at_least": self._at_least(few, total, count),
-                "at_least_any": Loose(0, few["at_least"]),
-            },
+            "fewest": None if self.own is not None else self._fewest(written["fewest"], count),
             "fastest": self._fastest(written) if "fastest" in names else None,
             "cutters": self._cutters(written) if many and "fastest" in names and timed_ else [],
             "curve": self._curve(written["curve"], count),
@@ -96,6 +98,15 @@ class Reckoned:
                 "index_from": self._index_from(written["assumed"]["index_from"]),
                 "change_s": effective["change_time_s"], "setup_s": effective["setup_time_s"],
             },
+        }  # fmt: skip
+
+    def _fewest(self, few: Mapping[str, Any], count: int) -> dict[str, Any]:
+        total = sum(weight for _, weight in few["weights"])
+        return {
+            "found": count, "proof": self._proof(few), "weights": self._weights(few), "bound": total / 1e6,
+            "lp": Loose(total / 1e6 - 1e-6, count), "samples": int(self.reached.sum()),
+            "candidates": len(self.question.operations["candidate_cutter"]), "at_least": self._at_least(few, total, count),
+            "at_least_any": Loose(0, few["at_least"]),
         }  # fmt: skip
 
     def _feeds(self, written: Mapping[str, Any], effective: Mapping[str, Any]) -> Any:
@@ -254,6 +265,7 @@ class Reckoned:
         widths = np.percentile(strip[known], (10, 50, 90)).tolist() if known.any() else None
         entry: dict[str, Any] = {
             "id": f"op{i + 1}",
+            "step": self._step(each),
             "mode": mode,
             "strategy": self._strategy(k, rows),
             "cutter": each["cutter"] if each["cutter"] in self.considered else "one of the cutters that were compared",
@@ -276,6 +288,20 @@ class Reckoned:
         if entry["setup"] != each["setup"]:
             return entry
         return entry | self._orientation(each)
+
+    def _step(self, each: Mapping[str, Any]) -> Any:
+        """The number of an operation's step, if that is about the same cutter, setup and mode."""
+        number = each.get("step")
+        if number is None:
+            return None
+        steps = self.own or []
+        if not (type(number) is int and 1 <= number <= len(steps)):
+            return "one of the steps that were requested"
+        step = steps[number - 1]
+        mode = "simultaneous" if each["axis"] is None else "fixed"
+        same = (step["cutter"], step["setup"] - 1, step["mode"]) == (each["cutter"], each["setup"], mode)
+        same = same and (step["faces"] == "left" or {one["face"] for one in each["faces"]} <= {*step["faces"]})
+        return number if same else "a step with this cutter, setup and mode, on these faces"
 
     def _strategy(self, k: int, rows: Rows) -> str:
         """How most of the samples of an operation are cut."""
@@ -358,13 +384,9 @@ class Reckoned:
 
 def _runs(rows: Rows) -> list[list[int]]:
     """First and last of runs of consecutive numbers."""
-    runs: list[list[int]] = []
-    for row in rows.tolist():
-        if runs and runs[-1][1] == row - 1:
-            runs[-1][1] = row
-        else:
-            runs.append([row, row])
-    return runs
+    ends = np.flatnonzero(np.diff(rows) != 1)
+    first, last = rows[np.append(0, ends + 1)[: len(rows)]], rows[np.append(ends, len(rows) - 1)[: len(rows)]]
+    return np.column_stack([first, last]).tolist()
 
 
 def _proved(held: Sequence[Mapping[str, Any]]) -> dict[str, Any]:

@@ -102,6 +102,8 @@ def _word(body: Body, setup: Setup, rotation: Floats, shift: Floats, low: Floats
         b, up, middle = np.roll(a, -1, axis=0), np.array([0.0, 0.0, height]), np.zeros_like(a)
         sides = [(a, b, b + up), (a, b + up, a + up), (b, a, middle), (a + up, b + up, middle + up)]
         return np.concatenate([np.stack(each, axis=1) for each in sides])
+    if body.kind == "prism":
+        return _prism(body.sizes[0], body.sizes[1], np.array(body.sizes[2:]).reshape(2, -1, 2))
     # A table lies across the setup axis or, if it is turned, across its own z; all below its top is in the way.
     frame = np.eye(3) if any(body.placement[3:]) else frame_of(setup)
     corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
@@ -110,6 +112,21 @@ def _word(body: Body, setup: Setup, rotation: Floats, shift: Floats, low: Floats
     end[2] = body.sizes[0]
     start[2] = min(start[2], end[2] - _TABLE)
     return np.asarray(_box(start, end) @ frame)
+
+
+def _prism(low: float, high: float, lines: Floats) -> Floats:
+    """Triangles (n, 3, 3) between two polylines (2, m, 2), which need not be convex together: a fan over each piece of both."""
+    triangles = []
+    (inner, outer), count = lines, lines.shape[1]
+    for k in range(count - 1):
+        ring = [inner[k], inner[k + 1], outer[k + 1], outer[k]]
+        for i, j in ((1, 2), (2, 3)):
+            triangles.append([(*ring[0], high), (*ring[i], high), (*ring[j], high)])
+            triangles.append([(*ring[0], low), (*ring[j], low), (*ring[i], low)])
+    loop = [*inner, *outer[::-1]]
+    for p, q in zip(loop, [*loop[1:], loop[0]], strict=True):
+        triangles += [[(*p, low), (*q, low), (*q, high)], [(*p, low), (*q, high), (*p, high)]]
+    return np.array(triangles, float)
 
 
 def _box(low: Floats, high: Floats) -> Floats:

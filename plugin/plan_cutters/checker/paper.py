@@ -94,6 +94,8 @@ class Paper:
         question, arrays = self.question, self.question.operations
         cutter, setup, angle = (arrays[f"candidate_{name}"] for name in ("cutter", "setup", "angle"))
         ids = self.reckoned.ids
+        if self.reckoned.own is not None:
+            return
         if not len(cutter) and self.reckoned.reached.any():
             yield Finding(None, "There are no candidates.")
             return
@@ -147,7 +149,8 @@ class Paper:
         """Samples go with operations that there are, and only those that are finished."""
         plan, label, tilt_direction = self.plans[k], self.reckoned.array(k, "operation"), self.reckoned.array(k, "lean")
         bad = (label < -1) | (label >= len(plan["operations"])) | ((label >= 0) & ~self.reckoned.finished)
-        bad |= (label < 0) & self.reckoned.reached
+        if self.reckoned.all_planned:
+            bad |= (label < 0) & self.reckoned.reached
         bad |= (label < 0) & (np.isfinite(tilt_direction).any(axis=1) | self.reckoned.array(k, "exclusive"))
         if bad.any():
             yield Finding(

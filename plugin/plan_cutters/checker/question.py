@@ -69,7 +69,11 @@ class MachineAxes:
 
 @dataclass(frozen=True, slots=True)
 class Body:
-    """A fixture: a word (`box`, `cylinder`, `table`) with its sizes, or a file; placed by x, y, z, mm, and rx, ry, rz, deg."""
+    """A fixture: a word (`box`, `cylinder`, `table`, `prism`) with its sizes, or a file; placed by x, y, z, mm, rx, ry, rz, deg.
+
+    A prism is given by two heights and the corners, x and y, of two polylines of as many points: its outline runs along the first
+    one and back along the second one, counter-clockwise.
+    """
 
     name: str
     kind: str
@@ -166,6 +170,43 @@ def allowed(machine: MachineAxes, setup: Setup, degrees: Floats) -> NDArray[np.b
     within = ((degrees >= low - 1e-6) & (degrees <= high + 1e-6)).all(axis=1)
     tilt = np.arccos(np.clip(axes_of(machine, setup, degrees) @ frame_of(setup)[2], -1.0, 1.0))
     return np.asarray(within & (tilt <= machine.tilt_limit + 1e-9))
+
+
+def held(machine: MachineAxes, setup: Setup, axis: Floats) -> NDArray[np.bool_]:
+    """Which tool axes (n, 3), part coordinates, the machine holds with one of its two solutions, within its limits.
+
+    The axis next to the part changes nothing of the tool axis along itself: that gives the two angles of the second rotary axis,
+    and from each the first one's follows.
+    """
+    (first, second), tool = machine.direction, machine.tool
+    wanted = np.asarray(axis, float) @ frame_of(setup).T
+    tilt = np.arccos(np.clip(wanted[:, 2], -1.0, 1.0))
+    able = np.zeros(len(wanted), bool)
+    along = (tool @ second) * second
+    base, square = tool - along, np.cross(second, tool)
+    even, reach = float(first @ along), math.hypot(first @ base, first @ square)
+    if reach < 1e-9:
+        raise ValueError("the second rotary axis does not turn the tool towards the first one")
+    nearest = math.atan2(first @ square, first @ base)
+    part = (wanted @ first - even) / reach
+    away = np.arccos(np.clip(part, -1.0, 1.0))
+    for way in (1.0, -1.0):
+        b = nearest + way * away
+        before = along + np.cos(b)[:, None] * base + np.sin(b)[:, None] * square
+        p, q = (v - (v @ first)[:, None] * first for v in (before, wanted))
+        a = np.arctan2(np.cross(p, q) @ first, (p * q).sum(axis=1))
+        # Where the tool axis lies along the first axis, any angle of that one will do.
+        free = np.linalg.norm(q, axis=1) < 1e-9
+        able |= _turns_to(b, machine.limits[1]) & (free | _turns_to(a, machine.limits[0]))
+    return np.asarray(able & (np.abs(part) <= 1.0 + 1e-9) & (tilt <= machine.tilt_limit + 1e-9))
+
+
+def _turns_to(angle: Floats, limits: Floats) -> NDArray[np.bool_]:
+    """Which angles, rad, lie within limits, or do after whole turns."""
+    low, high = float(limits[0]) - 2e-8, float(limits[1]) + 2e-8
+    if not math.isfinite(low) or not math.isfinite(high):
+        return np.ones(len(angle), bool)
+    return np.asarray(angle + 2.0 * math.pi * np.ceil((low - angle) / (2.0 * math.pi)) <= high)
 
 
 def other_angles(question: Question, setup: int, degrees: Floats) -> tuple[float, ...] | None:

@@ -12,6 +12,7 @@ from plan_cutters.checker.clash import FREE, MET, OPEN, Clock
 from plan_cutters.checker.expected import Reckoned
 from plan_cutters.checker.findings import Finding
 from plan_cutters.checker.leaves import Between, Loose
+from plan_cutters.checker.moving import put_down
 from plan_cutters.checker.question import Question, allowed, axes_of
 from plan_cutters.checker.strategies import Contacts, contacts_at
 from plan_cutters.checker.tool import Tool
@@ -70,8 +71,10 @@ class Trials:
         if self.bench.hollow:
             yield Finding(None, f"Whether a tool stands wholly within {', '.join(self.bench.hollow)} is not looked at.")
         yield from self.placed()
-        yield self.weights()
-        yield from self.covered(entry)
+        yield from put_down(question, self.reckoned, self.bench, np.random.default_rng(0), self.clock("placed"))
+        if self.reckoned.own is None:
+            yield self.weights()
+            yield from self.covered(entry)
         yield from self.alone()
         self.clearances(entry)
 

@@ -60,7 +60,7 @@ _many = heading("Many parts")
 )
 @options(
     "answers", "length_over_radius", "operations", "feed", "scallop", "stepover", "index_step", "axis_accuracy", "index_time",
-    "change_time", "setup_time", "overlap", "most_operations", "max_orientations",
+    "change_time", "setup_time", "overlap", "most_operations", "max_orientations", "no_patterns",
 )  # fmt: skip
 @_many(
     "--cluster",

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 #: Files that must stand with plan.json, and what they hold.
 _FILES = {"operations.npz": "operations of a plan", "samples.npz": "samples of a plan"}
+#: How far the chords of a chuck's jaws may be from their bore, mm.
+_BORE = 1e-3
 
 
 def checked(part: str, file: str, options: "Options", *, quiet: bool, read_timeout: float) -> int:
@@ -78,7 +80,7 @@ def question_of(
 
     if not isinstance(document.get("operations"), dict):
         raise OptionError("the plan has no operations: make it with --operations")
-    cutters, setups = {cutter.id: cutter for cutter in options.judged}, _setups(part, options)
+    cutters, setups = {cutter.id: cutter for cutter in options.judged}, _setups(part, options, document)
     tolerance = _fits(part, options, document, [*cutters], setups)
     sign = orient(part, options.setup, options.flip).sign
     return Question(
@@ -92,16 +94,29 @@ def _places(options: "Options") -> "tuple[Placement | None, ...]":
     return options.placement, *(options.other_placements or (None,) * len(options.other_setups))
 
 
-def _setups(part: "Part", options: "Options") -> "tuple[Setup, ...]":
+def _where(fixture: "Fixture", setup: int, document: Mapping[str, Any]) -> "Fixture":
+    """A vise or chuck that was placed for a setup, where the plan says that it stands."""
+    from plan_cutters.domain.fixture import Fixture
+    from plan_cutters.errors import OptionError
+
+    if not fixture.to_place:
+        return fixture
+    for entry in document["fixtures"]:
+        if entry["name"] == f"fixture:{fixture.name}" and setup in entry.get("setups", [0]) and entry.get("clamping"):
+            return replace(Fixture.parse(entry["clamping"]), name=fixture.name)
+    raise OptionError(f"the plan of operations does not fit: it does not say where {fixture} stands; plan again")
+
+
+def _setups(part: "Part", options: "Options", document: Mapping[str, Any]) -> "tuple[Setup, ...]":
     from plan_cutters.checker.question import Setup
     from plan_cutters.scene.faces import clamped_faces
 
     setups = []
     for s, (axis, place) in enumerate(zip((options.setup, *options.other_setups), _places(options), strict=True)):
         x, origin, own = (None, None, ()) if place is None else (place.x, place.origin, place.fixtures)
-        fixtures = options.fixtures if s == 0 else (*options.shared_fixtures, *own)
+        fixtures = [_where(each, s, document) for each in (options.fixtures if s == 0 else (*options.shared_fixtures, *own))]
         z = (float(axis[0]), float(axis[1]), float(axis[2]))
-        setups.append(Setup(z, x, origin, tuple(map(_body, fixtures)), clamped_faces(part, place)))
+        setups.append(Setup(z, x, origin, tuple(body for each in fixtures for body in _bodies(each)), clamped_faces(part, place)))
     return tuple(setups)
 
 
@@ -122,10 +137,27 @@ def _axes(machine: "Machine") -> "MachineAxes":
     )
 
 
-def _body(fixture: "Fixture") -> "Body":
-    from plan_cutters.checker.question import Body
+def _bodies(fixture: "Fixture") -> "tuple[Body, ...]":
+    """A fixture as the checker takes it: a vise or chuck by each of its bodies."""
+    import numpy as np
 
-    return Body(fixture.name, fixture.kind, fixture.sizes, fixture.source, fixture.unit, fixture.placement)
+    from plan_cutters.checker.question import Body
+    from plan_cutters.domain.clamping import Block
+
+    clamping = fixture.clamping
+    if clamping is None:
+        return (Body(fixture.name, fixture.kind, fixture.sizes, fixture.source, fixture.unit, fixture.placement),)
+    bodies = []
+    # Among chords so fine, the checker's own distance to a bore is that to the chords.
+    for solid in clamping.solids(_BORE):
+        if isinstance(solid, Block):
+            sizes = (solid.low, solid.high, *(x for point in (*solid.inner, *solid.outer) for x in point))
+            bodies.append(Body(fixture.name, "prism", sizes, None, None, fixture.placement))
+        else:
+            at = fixture.placed(np.array([0.0, 0.0, solid.low]))
+            place = (*at.tolist(), *fixture.placement[3:])
+            bodies.append(Body(fixture.name, "cylinder", (solid.radius, solid.high - solid.low), None, None, place))
+    return tuple(bodies)
 
 
 def _sizes(cutter: "Cutter") -> "ToolSizes":
@@ -190,7 +222,11 @@ def _of_setups(options: "Options", document: Mapping[str, Any], setups: "tuple[S
             [round(x, 9) for setup in setups for x in setup.z],
         ),
         # Not their places: where a fixture stands shows in what it serves.
-        ("fixtures (--fixture, --setup)", named, [[f"fixture:{each.name}" for each in one.fixtures] for one in setups]),
+        (
+            "fixtures (--fixture, --setup)",
+            named,
+            [[*dict.fromkeys(f"fixture:{each.name}" for each in one.fixtures)] for one in setups],
+        ),
         (
             "clamped faces (--setup)",
             [(place or {}).get("clamped", []) for place in places],

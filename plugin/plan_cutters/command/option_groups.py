@@ -8,7 +8,7 @@ import click
 from cad_io.units import UNITS
 from plan_cutters.command import values
 from plan_cutters.command.help_groups import heading
-from plan_cutters.command.values import Faces, File, Folder, Range, Setup, Words, named_setups
+from plan_cutters.command.values import Faces, File, Folder, Range, Setup, Words, fixtures_of_setups, named_setups
 from plan_cutters.domain.answer_kinds import KINDS
 from plan_cutters.report.folder import DEFAULT_FORMATS, FORMATS
 
@@ -115,16 +115,19 @@ _OPTIONS = (
         default=["0,0,1"],
         help="Direction of the part along the machine's spindle, +z, -y or x,y,z, or a setup file (TOML) that says where the "
         "part stands. Repeatable: every cutter is judged in each, and the summary says what they reach together. `auto` "
-        "proposes the best one over a table, with --operations the fewest, and plans what it proposes; setups named behind it "
-        "take its place.  "
+        "proposes the fewest that reach most, in a vise, a chuck or on a table, and plans what it proposes; setups named "
+        "behind it take its place.  "
         "[default: 0,0,1]",
     ),
     _machine(
         "--fixture",
         type=File("FILE[@X,Y,Z[,RX,RY,RZ]][:UNIT]"),
         multiple=True,
+        callback=fixtures_of_setups,
         help="A body in the way: STEP, IGES, BREP, STL, OBJ, PLY, GLB, or `box:X,Y,Z`, `cylinder:R,H`, placed in part "
-        "coordinates (mm, degrees); `table`, all below the part along the setup axis, or `table:H`, all below H. Repeatable.",
+        "coordinates (mm, degrees); `table`, all below the part along the setup axis, or `table:H`, all below H. "
+        "`vise[:JAW_WIDTHxJAW_HEIGHTxOPENING][:GRIP]` and `chuck[:JAWSxHEIGHT][:GRIP]` are placed for each setup, on what they "
+        "can grip there. With --setup auto all three are tried, or the one that is given. Repeatable.",
     ),
     _faces(
         "--faces",
@@ -288,9 +291,23 @@ _OPTIONS = (
         help="Where the fastest plan has more fixed orientations, simultaneous motion is recommended for the rest.  [default: 8]",
     ),
     _operations(
+        "--process",
+        type=File("FILE"),
+        help="Your own steps, a process.toml as it is written with a plan, edited: they are judged as they stand, in their "
+        "order, and the rest is planned behind them.",
+    ),
+    _operations(
         "--check-operations",
         type=File("FILE"),
         help="Check the operations in a plan.json against the exact part, with the options that it was made with; write nothing.",
+    ),
+    _run(
+        "--no-patterns",
+        "patterns",
+        is_flag=True,
+        default=True,
+        flag_value=False,
+        help="Judge and plan each face by itself, also where faces are equal.",
     ),
     _run("--jobs", type=int, metavar="N", help="Threads.  [default: all cores]"),
     _run(

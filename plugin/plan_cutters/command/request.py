@@ -104,6 +104,7 @@ class PlanningRequest(JudgingRequest):
     overlap: float
     most_operations: int | None
     max_orientations: int
+    patterns: bool
     formats: str | None
     step_schema: str
     cluster: str | None
@@ -118,6 +119,7 @@ class PlanRequest(PlanningRequest):
     parts: tuple[str, ...]
     postures: str | None
     check_operations: str | None
+    process: str | None
     out: str | None
     json_out: str | None
     verbose: bool
@@ -232,6 +234,7 @@ class McpRequest:
 def planning_options(request: PlanningRequest) -> "PlanOptions":
     """The options of a plan that a command line requests, as `Options` takes them."""
     return judging_options(request) | {
+        "process": request.process if isinstance(request, PlanRequest) else None,
         "sharp_edges": request.sharp_edges,
         "units": request.units,
         "area_budget": request.area_budget,
@@ -251,6 +254,7 @@ def planning_options(request: PlanningRequest) -> "PlanOptions":
         "overlap": request.overlap,
         "most_operations": request.most_operations,
         "max_orientations": request.max_orientations,
+        "patterns": request.patterns,
     }
 
 

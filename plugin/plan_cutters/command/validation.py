@@ -102,6 +102,8 @@ def _words(request: PlanRequest) -> None:
 def _json_out(request: PlanRequest) -> None:
     from plan_cutters.errors import OptionError
 
+    if request.process is not None and len(request.parts) > 1:
+        raise OptionError("--process names faces of one part: give one part")
     if request.json_out not in (None, "-"):
         raise OptionError("--json takes -, for standard output; --formats json writes plan.json into the folder")
     if request.json_out and len(request.parts) > 1:
@@ -137,7 +139,7 @@ def refuse_unplanned_operations(request: PlanningRequest) -> None:
     """
     from plan_cutters.errors import OptionError
 
-    if request.operations is not None:
+    if request.operations is not None or getattr(request, "process", None) is not None:
         return
     from plan_cutters.option_types import ANGLES
     from plan_cutters.options import Options

@@ -7,6 +7,8 @@ from typing import Any
 import click
 from click.shell_completion import CompletionItem
 
+#: Where the context of a command says that setups are named behind `auto`.
+_NAMED = "plan_cutters.named_setups"
 #: The same as a type of click: completed by the shell itself, which knows about `~` and blanks.
 FILE, _FOLDER = CompletionItem("", type="file"), CompletionItem("", type="dir")
 
@@ -91,10 +93,38 @@ def named_setups(ctx: click.Context, _: click.Parameter, value: Any) -> Any:
     from plan_cutters.workers.assignment import is_child
 
     named = value[1:]
+    ctx.meta[_NAMED] = named
+    if "fixture" in ctx.params:
+        ctx.params["fixture"] = fixtures_of_setups(ctx, _, ctx.params["fixture"])
     # The command reads its words twice: the child that does the work need not say it again.
     if not (is_child() or ctx.resilient_parsing):
         click.echo(f"--setup auto: {len(named)} named behind it take its place; nothing is proposed", err=True)
     return named
+
+
+def fixtures_of_setups(ctx: click.Context, _: click.Parameter, value: Any) -> Any:
+    """Leave out what proposed setups were to be held by, where others are named behind `auto` that say it themselves.
+
+    They say it by their files, or by a fixture behind the first one: beside `auto` there is one at most.
+    """
+    named = ctx.meta.get(_NAMED)
+    if named is None or not value:
+        return value
+    from plan_cutters.domain.fixture import TABLE, Fixture
+    from plan_cutters.errors import PlanError
+    from plan_cutters.machines.setups import read_setup
+    from plan_cutters.workers.assignment import is_child
+
+    try:
+        first = Fixture.parse(value[0])
+        stated = len(value) > 1 or all(isinstance(each, str) and read_setup(each).fixtures for each in named)
+    except PlanError:
+        return value
+    if not stated or not (first.to_place or value[0].strip().lower() == TABLE):
+        return value
+    if not (is_child() or ctx.resilient_parsing):
+        click.echo(f"--setup auto: the setups behind it say what holds the part; --fixture {value[0]} is left out", err=True)
+    return value[1:]
 
 
 class Setup(click.ParamType):

@@ -110,7 +110,7 @@ def _requested(plan: Plan) -> dict[str, Any]:
             *((a.name, a.carries, a.direction, a.limits_deg) for a in plan.machine.rotary or ()),
         ),
         "setup": [(e.setup, e.placement), *zip(e.other_setups, e.other_placements or [None] * len(e.other_setups), strict=False)],
-        "fixtures": [(f.name, _bytes(f), f.unit, f.placement, tuple(f.setups)) for f in plan.fixtures],
+        "fixtures": [(f.name, _bytes(f), f.unit, f.placement, f.clamping, tuple(f.setups)) for f in plan.fixtures],
     }
 
 

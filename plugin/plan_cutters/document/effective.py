@@ -1,6 +1,7 @@
 """The plan file states here the options in force, after defaults."""
 
 import re
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,6 +9,7 @@ import numpy as np
 from plan_cutters.document.build import degrees
 from plan_cutters.document.travel import placement_entry
 from plan_cutters.domain.operations import INDEX_TIME
+from plan_cutters.domain.own_process import cutter_of
 from plan_cutters.domain.tolerance import effective_tolerance
 from plan_cutters.options import Options
 from plan_cutters.plan_file.effective import Effective, LocalTolerance
@@ -39,6 +41,7 @@ def effective(ready: Prepared) -> Effective:
         "chord_measured_share": surroundings.certain.triangles.measured_share,
         "obstacle_triangles": len(surroundings.possible.triangles),
         "area_budget": options.contacts_between(len(ready.samples)),
+        "process": _process(ready),
         "axis_accuracy_deg": float(np.degrees(options.accuracy)),
         "index_time_s": INDEX_TIME if options.index_time is None else options.index_time,
     }
@@ -59,6 +62,20 @@ def _local(ready: Prepared) -> list[LocalTolerance]:
         for number, error in ready.conditions.surroundings.loose.items()
     ]
     return sorted(changes, key=lambda each: (-each.chord_error_mm, int(each.face[1:])))
+
+
+def _process(ready: Prepared) -> dict[str, Any] | None:
+    """The planner's own steps, their cutters by id."""
+    process = ready.options.process
+    if process is None:
+        return None
+
+    def called(word: str) -> str:
+        return cutter_of(word, ready.cutters, "process").id
+
+    steps = tuple(replace(each, cutter=called(each.cutter)) for each in process.steps)
+    forbidden = tuple(replace(each, cutter=called(each.cutter)) for each in process.forbidden)
+    return replace(process, steps=steps, forbidden=forbidden).written()
 
 
 def _as_requested(options: Options, name: str) -> Any:

@@ -50,4 +50,7 @@ def fixture_entry(placed: PlacedFixture) -> FixtureEntry:
         chord_error_mm=triangles.chord_error,
         watertight=placed.body is not None,
         notes=list(placed.notes),
+        clamping=fixture.text if fixture.clamping is not None else None,
+        grips=[] if placed.hold is None else [f"F{number}" for number in placed.hold.grips],
+        hidden_mm2=None if placed.hold is None else placed.hold.hidden,
     )

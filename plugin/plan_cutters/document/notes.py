@@ -159,6 +159,6 @@ def _of_fixtures(fixtures: Sequence[PlacedFixture], shared: Sequence[Fixture], *
         for each in fixtures:
             if each.fixture.follows_setup and each.fixture in shared:
                 yield notes.fixture_stays(each.name)
-    meshes = [each.name for each in fixtures if not isinstance(each.source, Part)]
+    meshes = [each.name for each in fixtures if not isinstance(each.source, Part) and each.fixture.clamping is None]
     if meshes:
         yield notes.fixture_not_cad(meshes)

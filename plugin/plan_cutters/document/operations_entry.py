@@ -31,6 +31,7 @@ from plan_cutters.plan_file.operations import (
     OperationRegion,
     OperationsEntry,
     RestEntry,
+    TurningEntry,
     WorkplaneEntry,
     runs,
 )
@@ -41,7 +42,7 @@ _SAME_AREA = 1e-3
 
 
 def operations_entry(
-    operations: Operations, samples: SurfaceSamples, wanted: NDArray[np.bool_], options: Options
+    operations: Operations, samples: SurfaceSamples, wanted: NDArray[np.bool_], reason: NDArray[np.uint8], options: Options
 ) -> OperationsEntry:
     """Make the entry of what was found.
 
@@ -51,6 +52,8 @@ def operations_entry(
     samples : SurfaceSamples
     wanted : (n,) bool
         Judged samples of the finished surface.
+    reason : (n,) uint8
+        Why the most wanted cutter reaches a sample in no setup, an index into REASONS, or NO_REASON.
     options : Options
     """
     area = np.where(wanted, np.nan_to_num(samples.area), 0.0)
@@ -64,14 +67,14 @@ def operations_entry(
         change_s=options.change_time,
         setup_s=options.setup_time,
     )
-    plans = [_plan(each, operations, samples, area, wanted) for each in operations.plans]
+    plans = [_plan(each, operations, samples, area, wanted, reason) for each in operations.plans]
     uses = [_use(each, plans, area) for each in operations.worth]
     steps = [CurveStepEntry(orientations=s.orientations, share=s.share, at_most=s.at_most) for s in operations.curve]
     return OperationsEntry(
         asked=operations.which,  # type: ignore[arg-type]
         rotary=operations.names,
         plans=plans,
-        fewest=_fewest(operations.fewest),
+        fewest=None if operations.fewest is None else _fewest(operations.fewest),
         cutters=uses,
         curve=steps,
         fastest=_fastest(operations),
@@ -128,8 +131,9 @@ def _use(worth: Worth, plans: list[OperationPlanEntry], area: Floats) -> CutterU
 
 
 def _plan(
-    plan: OperationPlan, results: Operations, samples: SurfaceSamples, area: Floats, wanted: NDArray[np.bool_]
-) -> OperationPlanEntry:
+    plan: OperationPlan, results: Operations, samples: SurfaceSamples, area: Floats, wanted: NDArray[np.bool_],
+    reason: NDArray[np.uint8],
+) -> OperationPlanEntry:  # fmt: skip
     whole = float(area.sum())
     operations = [
         _operation(i, each, plan, plane, results.names, samples, area, whole, results.index_from)
@@ -150,7 +154,7 @@ def _plan(
         pieces=len(np.unique(plan.region[plan.region >= 0])),
         approaches_proved=sum(each.approaches_proved or 0 for each in held) if held else None,
         rest=RestEntry(samples=int(rest.sum()), area_mm2=unserved, share=unserved / whole if whole > 0.0 else 0.0,
-                       reason_counts=_reasons(results.reason[rest])),
+                       reason_counts=_reasons(reason[rest])),
     )  # fmt: skip
 
 
@@ -180,13 +184,15 @@ def _operation(
     length = float((mine[known] / strip[known]).sum()) if known.all() else None
     seconds = plan.seconds[rows]
     return OperationEntry(
-        id=operation.name, mode=operation.mode, strategy=operation.strategy, cutter=operation.cutter.id, setup=operation.setup,
+        id=operation.name, step=operation.step or None, mode=operation.mode,
+        strategy=operation.strategy, cutter=operation.cutter.id, setup=operation.setup,
         axis=None if operation.axis is None else vector(operation.axis), angles_deg=_angles(operation.angle, names),
         other_angles_deg=_angles(operation.other_angle, names), samples=len(rows), area_mm2=float(mine.sum()),
         share=min(1.0, float(mine.sum()) / whole) if whole > 0.0 else 0.0, exclusive_mm2=float(area[operation.only].sum()),
         strip_mm=_tenths(strip[known]), cut_length_mm=length,
         seconds=float(seconds.sum()) if np.isfinite(seconds).all() else None, proved_share=operation.proved,
-        approaches_proved=operation.approaches, clearance_mm=operation.clearance,
+        approaches_proved=operation.approaches, turning=_turning(operation, names), clearance_mm=operation.clearance,
+        orbit=None if operation.orbit < 0 else operation.orbit,
         faces=_faces(rows, samples, area), frame=None if plane is None else _frame(plane),
         colour=operation_colour(number), index_s=None if plane is None else plane.index,
         index_from=None if plane is None else index_from,
@@ -194,6 +200,20 @@ def _operation(
             _region(k, np.flatnonzero(plan.region == k), samples, area)
             for k in np.unique(plan.region[rows]).tolist()
         ],
+    )  # fmt: skip
+
+
+def _turning(operation: Operation, names: tuple[str, str]) -> TurningEntry | None:
+    turning = operation.turning
+    if turning is None:
+        return None
+    angles = None
+    if turning.low is not None and turning.high is not None:
+        (a, b), (c, d) = turning.low.tolist(), turning.high.tolist()
+        angles = {names[0]: (a, c), names[1]: (b, d)}
+    return TurningEntry(
+        pieces_mm2=list(turning.area), steepest_deg_mm=turning.steepest, angles_deg=angles, held_share=turning.held,
+        both_share=turning.both, singular_mm2=turning.singular,
     )  # fmt: skip
 
 

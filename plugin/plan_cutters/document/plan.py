@@ -30,6 +30,7 @@ from plan_cutters.plan_file.model import CutterEntry, MachineEntry, Plan, Rotary
 from plan_cutters.plan_file.nearest import ANOTHER_SETUP, leaves, nearest
 from plan_cutters.plan_file.operations import OperationsEntry
 from plan_cutters.plan_file.palette import MEANING, PALETTE
+from plan_cutters.plan_file.patterns import PatternEntry
 from plan_cutters.plan_file.reasons import REASONS as WORDS
 from plan_cutters.plan_file.setups import SetupEntry, SetupReach
 from plan_cutters.plan_file.shares import unreached
@@ -50,13 +51,14 @@ def plan_of(
     setups: Sequence[SetupEntry] = (),
     sharp_edges: Sequence[SharpEdgeEntry] = (),
     inside_radii: Sequence[InsideRadiusEntry] = (),
+    patterns: Sequence[PatternEntry] = (),
 ) -> Plan:
     """The plan of a part from the entries of its cutters, and what was answered after them."""
     scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
     part, surroundings = scene.part, ready.conditions.surroundings
     faces, remarks = (face_entries(part, samples, choice, dict(surroundings.certain.triangles.errors)), notes_of(ready, entries))
     absent = {*(() if _anything_held(ready) else ("fixture",)), *(() if ready.inside_bodies.any() else ("inside_bodies",))}
-    operations = _operations(ready, answers)
+    operations = _operations(ready, answers, over)
     return Plan(
         process=process_entry(ready, entries, answers, over, operations),
         part=part_info(scene, surroundings),
@@ -90,6 +92,7 @@ def plan_of(
         selected_for_setup=None if selected else for_setup(entries),
         sharp_edges=list(sharp_edges),
         inside_radii=list(inside_radii),
+        patterns=list(patterns),
         setups=list(setups),
         least_set=None if answers.least_set is None else least_set_entry(answers.least_set, doubtful=surroundings.doubtful),
         operations=operations,
@@ -108,10 +111,11 @@ def _anything_held(ready: Prepared) -> bool:
     return any(each.surroundings.fixtures for each in ready.setups) or not ready.alike
 
 
-def _operations(ready: Prepared, answers: Answers) -> OperationsEntry | None:
+def _operations(ready: Prepared, answers: Answers, over: OverSetups) -> OperationsEntry | None:
     if answers.operations is None:
         return None
-    return operations_entry(answers.operations, ready.samples, ready.finished, ready.options)
+    reason = over.reaches[answers.operations.cutters[0].id].reason
+    return operations_entry(answers.operations, ready.samples, ready.finished, reason, ready.options)
 
 
 def machine_entry(ready: Prepared) -> MachineEntry:

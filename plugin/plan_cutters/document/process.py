@@ -1,27 +1,41 @@
 """Make the process of a plan: its steps, and what they leave by cause."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints
 from plan_cutters.document.over_setups import OverSetups
+from plan_cutters.document.repeats import repeats
 from plan_cutters.document.shares import sample_areas
 from plan_cutters.domain.answers import Answers
-from plan_cutters.domain.operations import OperationPlan
+from plan_cutters.domain.operations import OperationPlan, Operations
+from plan_cutters.domain.own_results import OwnResult
 from plan_cutters.domain.verdicts import NO_REASON, REASONS, SHARP_EDGE
 from plan_cutters.plan_file.frozen import Vector, vector
 from plan_cutters.plan_file.model import CutterEntry
 from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.numbers import exact
-from plan_cutters.plan_file.operations import OperationPlanEntry, OperationsEntry
-from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, ProcessEntry, ProcessStep, RemainingEntry
+from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry, OperationsEntry
+from plan_cutters.plan_file.process import (
+    NOT_PLANNED,
+    OTHER_ORIENTATION,
+    UNJUDGED_CAUSE,
+    NearestEntry,
+    OwnStepEntry,
+    ProcessEntry,
+    ProcessStep,
+    RemainingEntry,
+)
 from plan_cutters.scene.preparation import Prepared
 
 #: Which plan of operations is the process: the first of these that there is.
-_PREFERRED = ("fastest", "fewest")
+_PREFERRED = ("process", "fastest", "fewest")
+Rows = NDArray[np.int64]
+#: A number of a reason that is none: another orientation would do.
+_OTHER = 1000
 #: Cosine from the setup axis under which a tool comes from below: walls that are drawn out of true by half a degree are walls.
 _BELOW = -0.01
 
@@ -44,11 +58,12 @@ def process_entry(
     """
     sampled, not_sampled = sample_areas(entries[0].faces, ready.samples, ready.scene.part)
     area = np.where(ready.not_required, 0.0, sampled)
-    requested, clamping = float(area.sum()) + not_sampled, None
+    requested, clamping, name = float(area.sum()) + not_sampled, None, ""
     if answers.operations is not None and operations is not None:
         chosen, entry = _preferred(answers.operations.plans, operations.plans)
         done = (chosen.label >= 0) & ready.finished
-        steps, seconds = _operated(ready, chosen, entry, over, area, requested), entry.seconds
+        steps, seconds = _operated(ready, answers.operations, chosen, entry, over, area, requested), entry.seconds
+        name = entry.name
         if seconds is not None:
             clamping = ready.options.setup_time * max(0, len({step.setup for step in steps}) - 1)
             seconds -= clamping
@@ -64,7 +79,7 @@ def process_entry(
     finished = float(area[done].sum())
     share = exact(finished / max(1e-300, requested), some=bool(done.any()), whole=not remaining)
     return ProcessEntry(
-        steps=steps, finished_share=share, finished_mm2=finished, asked_mm2=requested, left=remaining, seconds=seconds,
+        steps=steps, plan=name, finished_share=share, finished_mm2=finished, asked_mm2=requested, left=remaining, seconds=seconds,
         setup_seconds=clamping, exempt=_exempt(ready, sampled, requested),
     )  # fmt: skip
 
@@ -77,30 +92,133 @@ def _exempt(ready: Prepared, sampled: Floats, requested: float) -> RemainingEntr
 
 
 def _preferred(plans: Sequence[OperationPlan], entries: Sequence[OperationPlanEntry]) -> tuple[OperationPlan, OperationPlanEntry]:
-    """The plan of operations that is recommended, as it was found and as it is in the plan file."""
+    """The plan of operations that is recommended, as it was outcome and as it is in the plan file."""
     k = min(range(len(plans)), key=lambda k: (*_PREFERRED, plans[k].name).index(plans[k].name))
     return plans[k], entries[k]
 
 
 def _operated(
-    ready: Prepared, plan: OperationPlan, entry: OperationPlanEntry, over: OverSetups, area: Floats, requested: float
-) -> list[ProcessStep]:
-    """The steps of a plan of operations: by setup, fixed orientations first, by cutter, the largest area first."""
+    ready: Prepared, operations: Operations, plan: OperationPlan, entry: OperationPlanEntry, over: OverSetups, area: Floats,
+    requested: float,
+) -> list[ProcessStep]:  # fmt: skip
+    """The steps of a plan of operations: the planner's own in their order, then by setup, fixed orientations first, by cutter,
+    the largest area first.
+    """
     by_cutter: dict[tuple[int, str], float] = {}
     for each in entry.operations:
         key = each.setup, each.cutter
         by_cutter[key] = by_cutter.get(key, 0.0) + each.area_mm2
     rank = {id(each): k for k, each in enumerate(entry.operations)}
     ordered = sorted(
-        entry.operations,
+        (each for each in entry.operations if each.step is None),
         key=lambda e: (e.setup, e.mode != "fixed", -by_cutter[e.setup, e.cutter], e.cutter, -e.area_mm2, rank[id(e)]),
     )
-    return [
-        _step(ready, over, area, requested, plan.label == rank[id(each)], setup=each.setup, mode=each.mode,
-              strategy=each.strategy, cutter=each.cutter, angles_deg=each.angles_deg, axis=each.axis, seconds=each.seconds,
-              clearance_mm=each.clearance_mm)
-        for each in ordered
-    ]  # fmt: skip
+    alone = _alone(plan, operations.own, len(area))
+    planned = list[ProcessStep]()
+    for same in _together(ordered):
+        first, ranks = same[0], [rank[id(each)] for each in same]
+        mine, seconds, clearance = (
+            np.isin(plan.label, ranks),
+            [each.seconds for each in same],
+            [each.clearance_mm for each in same],
+        )
+        step = _step(
+            ready, over, area, requested, mine, setup=first.setup, mode=first.mode, strategy=first.strategy, cutter=first.cutter,
+            angles_deg=first.angles_deg, axis=first.axis, seconds=_sum(seconds),
+            clearance_mm=None if None in clearance else min(each for each in clearance if each is not None),
+            operation=first.id, take="share", alone_mm2=_gone(plan, same, ranks, mine, area, alone if operations.own else None),
+        )  # fmt: skip
+        repeat, by = repeats(ready, same, mine)
+        planned.append(step.model_copy(update={"repeat": repeat, "repeat_deg": by}))
+    # Those that are images of others count with all of them.
+    planned.sort(key=lambda s: (s.setup, s.mode != "fixed", -by_cutter[s.setup, s.cutter], s.cutter, -s.area_mm2))
+    done = {each.step: (k, each) for k, each in enumerate(entry.operations)}
+    own, all_done = [], np.concatenate([np.zeros(0, np.int64), *(each.rows for each in operations.own)])
+    for outcome in operations.own:
+        k, made = done.get(outcome.number, (-2, None))
+        angles = None if outcome.angle is None else dict(zip(operations.names, outcome.angle.tolist(), strict=True))
+        own.append(
+            _step(ready, over, area, requested, plan.label == k, setup=outcome.setup, mode=outcome.mode,
+                  strategy="point" if made is None else made.strategy, cutter=outcome.cutter.id,
+                  angles_deg=angles if outcome.angle is not None and np.isfinite(outcome.angle).all() else None,
+                  axis=None if outcome.axis is None else vector(outcome.axis),
+                  seconds=0.0 if made is None else made.seconds, clearance_mm=None if made is None else made.clearance_mm,
+                  operation="" if made is None else made.id, take=_take(ready, outcome),
+                  alone_mm2=float(area[alone & (plan.label == k)].sum()),
+                  own=_own_entry(ready, over, area, requested, outcome, operations.names, all_done))
+        )  # fmt: skip
+    return [*own, *planned]
+
+
+def _take(ready: Prepared, outcome: OwnResult) -> Literal["first", "share"]:
+    process = ready.options.process
+    return "first" if process is None else process.steps[outcome.number - 1].take
+
+
+def _alone(plan: OperationPlan, own: Sequence[OwnResult], count: int) -> NDArray[np.bool_]:
+    """Samples (n,) that one step alone serves: one of the planner's own serves what it could finish of its faces."""
+    times = np.zeros(count, np.int64)
+    for outcome in own:
+        times[outcome.serves] += 1
+    planned = [k for k, each in enumerate(plan.operations) if not each.step]
+    return times + plan.serves[:, planned].sum(axis=1) == 1
+
+
+def _own_entry(
+    ready: Prepared, over: OverSetups, area: Floats, requested: float, outcome: OwnResult, names: tuple[str, str], done: Rows
+) -> OwnStepEntry:
+    """What a step of the planner's own is asked, what none of them does of the faces that it names, and what would do.
+
+    `done` (d,) is what all of them do together.
+    """
+    process = ready.options.process
+    leaves, missed = list[RemainingEntry](), np.zeros(len(area), bool)
+    missed[outcome.requested] = True
+    missed[done] = False
+    if process is not None and process.steps[outcome.number - 1].faces is not None:
+        verdicts = over.each()[outcome.setup][1][outcome.cutter.id]
+        cause = np.where(verdicts.reached, _OTHER, verdicts.reason.astype(np.int32))
+        for code in np.unique(cause[missed]).tolist():
+            word = OTHER_ORIENTATION if code == _OTHER else REASONS[code] if code != NO_REASON else NOT_PLANNED
+            leaves.append(_remaining_entry(ready, word, missed & (cause == code), area, requested))
+    near = outcome.nearest
+    nearest_ = None if near is None else NearestEntry(
+        angles_deg=dict(zip(names, near.angle.tolist(), strict=True)), axis=vector(near.axis),
+        area_mm2=float(area[near.rows].sum())
+    )  # fmt: skip
+    return OwnStepEntry(
+        number=outcome.number, asked_mm2=float(area[outcome.requested].sum()), wrong=outcome.wrong,
+        leaves=sorted(leaves, key=lambda each: (-each.area_mm2, each.cause)), nearest=nearest_,
+    )  # fmt: skip
+
+
+def _gone(
+    plan: OperationPlan, same: Sequence[OperationEntry], ranks: Sequence[int], mine: NDArray[np.bool_], area: Floats,
+    alone: NDArray[np.bool_] | None,
+) -> float:  # fmt: skip
+    """What no other step serves of the samples (n,) of one; `alone` (n,) where some steps are the planner's own."""
+    if alone is not None:
+        return float(area[alone & mine].sum())
+    if len(same) == 1:
+        return same[0].exclusive_mm2
+    return float(area[mine & ~np.delete(plan.serves, ranks, axis=1).any(axis=1)].sum())
+
+
+def _together(operations: Sequence[OperationEntry]) -> list[list[OperationEntry]]:
+    """Operations of one step each, those that are images of each other in one."""
+    steps: dict[object, list[OperationEntry]] = {}
+    for each in operations:
+        steps.setdefault(each.id if each.orbit is None else each.orbit, []).append(each)
+    return [sorted(same, key=_first_angles) for same in steps.values()]
+
+
+def _first_angles(operation: OperationEntry) -> list[float]:
+    return [angle % 360.0 for angle in (operation.angles_deg or {}).values()]
+
+
+def _sum(seconds: Sequence[float | None]) -> float | None:
+    known = [each for each in seconds if each is not None]
+    return sum(known) if len(known) == len(seconds) else None
 
 
 def _runs(

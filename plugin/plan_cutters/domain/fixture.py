@@ -12,15 +12,17 @@ import numpy as np
 from cad_io.arrays import Floats
 from cad_io.units import UNITS
 from plan_cutters.domain.checks import name, number, numbers, shown
+from plan_cutters.domain.clamping import CHUCK, FORMS, VISE, Clamping, Requested, requested
 from plan_cutters.errors import FixtureError
 
 #: Simple fixtures by words: what each number is.
-WORDS = {"box": "x,y,z", "cylinder": "r,h", "table": "h"}
-_WORD = re.compile(rf"({'|'.join(WORDS)}):(.*)|(table)", re.IGNORECASE | re.DOTALL)
+WORDS = {"box": "x,y,z", "cylinder": "r,h", "table": "h", **FORMS}
+TABLE = "table"
+_WORD = re.compile(rf"({'|'.join(WORDS)}):(.*)|({TABLE}|{VISE}|{CHUCK})", re.IGNORECASE | re.DOTALL)
 #: Suffixes of files that are known, and what they are.
 CAD = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")
 MESH = (".stl", ".obj", ".ply", ".glb")
-_FORM = "FILE[@x,y,z[,rx,ry,rz]][:UNIT], box:x,y,z, cylinder:r,h, table or table:h"
+_FORM = "FILE[@x,y,z[,rx,ry,rz]][:UNIT], box:x,y,z, cylinder:r,h, table, table:h, vise or chuck"
 #: Lengths beyond this, mm, are rather a mistake.
 _FARTHEST = 1e6
 _NOWHERE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
@@ -35,12 +37,14 @@ class Fixture:
     source : str or object
         Path of a STEP, IGES, BREP, STL, OBJ, PLY or GLB file; `box:x,y,z` (its least corner at the origin), `cylinder:r,h` (it
         stands on the origin, along z), `table` (all that is below the part along the setup axis, as far as any cutter goes) or
-        `table:h` (all below the height h along it, from the part's origin); or an object: a kernel shape, a CadQuery or
-        build123d object, a `cad_io.Part`, a trimesh mesh.
+        `table:h` (all below the height h along it, from the part's origin); `vise` or `chuck`, with sizes or without, which grip
+        the part in the setup (`domain.clamping`); or an object: a kernel shape, a CadQuery or build123d object, a
+        `cad_io.Part`, a trimesh mesh.
     placement : tuple of float
         x, y, z, mm, and rx, ry, rz, degrees, in part coordinates: turned about the part's fixed x axis, then about its y axis,
         then about its z axis, all through the origin, then shifted. Three numbers are a shift alone. A table with angles lies
-        across the part's z, so turned, whatever the setup.
+        across the part's z, so turned, whatever the setup. A vise or chuck has a place of its own only where all its numbers
+        are given, as plans write them.
     unit : str, optional
         What lengths in the source are in, one of `cad_io.units.UNITS`. Default: what the format says; mm for STL, OBJ, PLY and
         words. A placement is in mm always.
@@ -86,6 +90,11 @@ class Fixture:
         object.__setattr__(self, "chord_error", error)
         object.__setattr__(self, "name", label or name(self._named(), "a fixture's name"))
         _ = self.sizes
+        if self.to_place and any(self.placement):
+            raise FixtureError(
+                f"{self}: a {self.kind} is placed for the setup; leave its placement out, or give all its numbers, as plans "
+                "write them"
+            )
 
     def __str__(self) -> str:
         text = self.source if isinstance(self.source, str) else type(self.source).__name__
@@ -119,12 +128,40 @@ class Fixture:
 
     @property
     def follows_setup(self) -> bool:
-        """Whether where it lies depends on the setup axis: a table that is not turned by angles."""
-        return self.kind == "table" and not any(self.placement[3:])
+        """Whether where it lies depends on the setup axis: a table that is not turned by angles, or what is to be placed."""
+        return self.to_place or (self.kind == "table" and not any(self.placement[3:]))
+
+    @property
+    def grips(self) -> Requested | None:
+        """Read what the word of a vise or chuck says; None for all else.
+
+        Raises
+        ------
+        FixtureError
+            It has no meaning.
+        """
+        if self.kind not in FORMS:
+            return None
+        _, colon, numbers = self.source.partition(":")
+        return requested(self.kind, numbers if colon else None, UNITS[self.unit or "mm"], str(self))
+
+    @property
+    def to_place(self) -> bool:
+        """Whether it is a vise or chuck that is to be placed for the setup."""
+        grips = self.grips
+        return grips is not None and grips.last is None
+
+    @property
+    def clamping(self) -> Clamping | None:
+        """The vise or chuck that it is, in its own frame; None for all else, and for one that is to be placed."""
+        grips = self.grips
+        return None if grips is None or grips.last is None else grips.clamping
 
     @property
     def sizes(self) -> tuple[float, ...]:
         """Numbers of a word, mm; none for files, objects and a table right below the part."""
+        if (grips := self.grips) is not None:
+            return grips.numbers
         match = _WORD.fullmatch(self.source) if isinstance(self.source, str) else None
         if match is None or match[1] is None:
             return ()
@@ -200,10 +237,22 @@ class Fixture:
 
     @classmethod
     def each_of(cls, given: Any) -> tuple["Fixture", ...]:
-        """One fixture, text or object, or a list of such, each with a name of its own."""
+        """One fixture, text or object, or a list of such, each with a name of its own.
+
+        Raises
+        ------
+        FixtureError
+            A fixture has no meaning, or one that is to be placed on the part stands beside another that grips it.
+        """
         if given is None:
             return ()
         fixtures = [cls.of(each) for each in (given if isinstance(given, list | tuple) else [given])]
+        gripping = [each for each in fixtures if each.grips is not None]
+        if len(gripping) > 1 and any(each.to_place for each in gripping):
+            raise FixtureError(
+                f"{' and '.join(map(str, gripping[:2]))}: one vise or chuck is placed on a part; leave the others out, "
+                "or give all numbers of each, as plans write them"
+            )
         return tuple(replace(each, name=name) for each, name in zip(fixtures, _distinct_names(fixtures), strict=True))
 
     def placed(self, points: Floats) -> Floats:

@@ -160,6 +160,34 @@ class Kinematics(Record):
         """Which tool axes (n, 3) the machine can hold."""
         return np.asarray(self.positions(axis)[1] >= 0)
 
+    def allows_about(self, axis: Floats, swing: Floats) -> NDArray[np.bool_]:
+        """Where the machine can hold every tool axis within an angle (n,), rad, of axes (n, 3), all by one of its solutions.
+
+        False as well where that is not known.
+        """
+        machine, _ = self.turning()
+        held = np.asarray(self.allows(axis))
+        if len(machine.direction) < 2:
+            # A machine that turns a tool in one plane cannot turn it in all directions.
+            return held & (swing <= 0.0)
+        (first, second), (start, most, base) = machine.direction, machine.swing
+        away = _between(axis, first)
+        shares = [(np.cos(np.clip(away + sign * swing, 0.0, math.pi)) - base) / most for sign in (-1.0, 1.0)]
+        known = held & (np.abs(shares) <= 1.0).all(axis=0)
+        ends = np.arccos(np.clip(shares, -1.0, 1.0))
+        middle, half = 0.5 * (ends[0] + ends[1]), 0.5 * np.abs(ends[1] - ends[0])
+        low, high = machine.limit[1]
+        one = np.zeros(len(axis), bool)
+        for sign in (1.0, -1.0):
+            placed = within(start + sign * middle, float(low), float(high))
+            one |= (placed - half >= low - ON_LIMIT) & (placed + half <= high + ON_LIMIT)
+        low, high = machine.limit[0]
+        if high - low < 2.0 * math.pi:
+            for end in (low, high):
+                across = turned(first, np.array(end), second)
+                one &= np.abs(_between(axis, across) - math.acos(min(1.0, max(-1.0, float(second @ machine.tool))))) > swing
+        return np.asarray(known & one)
+
     def circles(self) -> Floats:
         """Circles (m, 4) on the sphere of directions, a unit direction and a cosine each: across them what is allowed changes."""
         if len(self.direction) == 0:
@@ -213,3 +241,8 @@ class Kinematics(Record):
     def _reach(self) -> float:
         # What rounding may take an axis out of reach by.
         return 1e-12 if len(self.direction) == 2 else PARALLEL
+
+
+def _between(axis: Floats, direction: Floats) -> Floats:
+    """Angles (n,), rad, of unit axes (n, 3) to a unit direction (3,)."""
+    return np.asarray(np.arctan2(np.linalg.norm(np.cross(axis, direction), axis=1), axis @ direction))

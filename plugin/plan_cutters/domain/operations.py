@@ -14,11 +14,13 @@ from cad_io.arrays import Floats, Ints, Record
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.own_process import Mode
+from plan_cutters.domain.own_results import OwnResult
+from plan_cutters.domain.turning import Turning
 from plan_cutters.errors import OptionError
 
 #: Plans that may be requested.
 WHICH = ("fewest", "fastest", "both")
-Mode = Literal["fixed", "simultaneous"]
 Strategy = Literal["point", "floor", "wall", "mixed"]
 #: How a sample is cut, in the numbers of `OperationPlan.strategy`.
 STRATEGIES: tuple[Strategy, ...] = ("point", "floor", "wall")
@@ -194,14 +196,22 @@ class Operation:
     only : (n,) int64
         Samples that no other operation of the plan serves.
     proved : float, optional
-        Share of its area that is proved between the samples, with its axis or that of another operation of the plan.
+        Share of its area that is proved between the samples, with its axis or that of another operation of the plan; of a
+        simultaneous one, with the field of axes in `turning`.
     approaches : int, optional
-        Connected pieces of the area proved with its axis, the largest, until they hold 99 % of it: inside one, any path is safe.
+        Connected pieces of the area proved with its axis, or its field, the largest, until they hold 99 % of it: inside one, any
+        path is safe.
+    turning : Turning, optional
+        Of a simultaneous one.
     clearance : float, optional
         Least clearance at its samples, mm, of what does not cut; None where nothing is proved.
     strategy : str
         `floor`: the flat part of the tip lies on the face; `wall`: the flutes lie along it; `point`: the tool touches in a point;
         `mixed`: several of them.
+    step : int
+        Its number in the planner's own process; 0: it was planned.
+    orbit : int
+        Of a plan of repeated orientations, the same number for all images of one; -1: it is not repeated.
     """
 
     name: str
@@ -217,6 +227,9 @@ class Operation:
     approaches: int | None = None
     clearance: float | None = None
     strategy: Strategy = "point"
+    turning: Turning | None = None
+    step: int = 0
+    orbit: int = -1
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -245,7 +258,7 @@ class OperationPlan:
     Attributes
     ----------
     name : str
-        `fewest`, `fastest` or `largest first`.
+        `fewest`, `fastest` or `largest first`; `process`: the planner's own steps, and those planned behind them.
     operations : tuple of Operation
     label : (n,) int32
         Index into the operations, -1 for none.
@@ -291,6 +304,12 @@ class OperationPlan:
         """Seconds of all that is counted; nan where they are not known."""
         return self.cutting + self.other
 
+    @property
+    def orientations(self) -> int:
+        """How many fixed orientations there are, those that are repeated once."""
+        fixed = [each.orbit for each in self.operations if each.mode == "fixed"]
+        return len({orbit for orbit in fixed if orbit >= 0}) + sum(orbit < 0 for orbit in fixed)
+
     def like(self, other: "OperationPlan") -> bool:
         """Whether each sample goes with the same cutter, setup and axis in another plan."""
         mine, others = (
@@ -311,7 +330,8 @@ class Operations:
     cutters : tuple of Cutter
         Those whose operations were compared; columns count in them.
     plans : tuple of OperationPlan
-    fewest : Fewest
+    fewest : Fewest, optional
+        None beside a process of the planner's own.
     curve : tuple of Step
     names : tuple of str
         Of the two rotary axes, or `azimuth` and `tilt`.
@@ -319,29 +339,29 @@ class Operations:
         How many times a tool was put down.
     feed : mapping, optional
         mm/min; None: times are not known.
-    reason : (n,) uint8
-        Why the most wanted cutter does not reach a sample in the first setup, an index into REASONS, or NO_REASON.
     fastest : Fastest, optional
         Where the fastest were requested.
     worth : tuple of Worth
         Of each cutter, the largest first, where the fastest were requested and several were compared.
     index_from : str
         What the times between orientations follow from: the rates of the rotary axes, what was given, or what is assumed.
+    own : tuple of OwnResult
+        What the planner's own steps do, in their order; empty where all steps were planned.
     """
 
     which: str
     cutters: tuple[Cutter, ...]
     plans: tuple[OperationPlan, ...]
-    fewest: Fewest
+    fewest: Fewest | None
     curve: tuple[Step, ...]
     names: tuple[str, str]
     probes: int
     feed: Mapping[Cutter, float] | None
-    reason: NDArray[np.uint8]
     fastest: Fastest | None = None
     worth: tuple[Worth, ...] = ()
     notes: tuple[str, ...] = field(default_factory=tuple)
     index_from: IndexFrom = "assumed"
+    own: tuple[OwnResult, ...] = ()
 
     def plan(self, name: str) -> OperationPlan | None:
         """The plan of a name."""

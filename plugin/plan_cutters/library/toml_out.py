@@ -10,7 +10,7 @@ from plan_cutters.library.raw_tool import name_of
 from plan_cutters.library.records import Library
 
 
-def _text(text: str) -> str:
+def toml_text(text: str) -> str:
     """A TOML string."""
     clean = text.encode("utf-8", "replace").decode("utf-8")
     return json.dumps(clean, ensure_ascii=False).replace("\x7f", "\\u007f")
@@ -44,7 +44,7 @@ def _kind(cutter: Cutter) -> str:
 def _holder(holder: Holder | None) -> str:
     if holder is None:
         return '"none"'
-    name = f"name = {_text(holder.name)}, " if holder.name else ""
+    name = f"name = {toml_text(holder.name)}, " if holder.name else ""
     return f"{{ {name}stages = {_rows(holder.stages)} }}"
 
 
@@ -53,7 +53,7 @@ def _written(cutter: Cutter, name: str, number: int | None, feed: float | None =
     if number is not None:
         lines.append(f"number = {number}")
     if name:
-        lines.append(f"name = {_text(name)}")
+        lines.append(f"name = {toml_text(name)}")
     lines.append(f'type = "{_kind(cutter)}"')
     if cutter.shape != "form":
         lines.append(f"DC = {2.0 * cutter.radius!r}")
@@ -107,7 +107,7 @@ def to_toml(cutters: Library | Iterable[Cutter]) -> str:
     lines.insert(0, f"# From {name_of(cutters.file)} ({cutters.format})")
     for holder in cutters.holders:
         name = "" if holder.name == "none" else holder.name
-        lines += ["", "[[holder]]", f"name = {_text(name)}", f"stages = {_rows(holder.stages)}"]
+        lines += ["", "[[holder]]", f"name = {toml_text(name)}", f"stages = {_rows(holder.stages)}"]
     for entry in cutters.entries:
         if entry.cutter is None:
             lines += ["", f"# Not used: {name_of(entry.label)}: {name_of(entry.unused)}"]

@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Any
 
 from plan_cutters.domain.checks import items, shown
-from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.fixture import TABLE, Fixture
 from plan_cutters.domain.host_axes import plane_of
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import along, unit
@@ -14,6 +14,8 @@ from plan_cutters.errors import OptionError
 
 #: The word that asks for setups to be proposed.
 AUTO = "auto"
+#: Setups that are proposed together, at most.
+MOST_PROPOSED = 3
 
 
 def is_auto(value: Any) -> bool:
@@ -68,14 +70,39 @@ def setups_requested(
         raise OptionError(f"{len(places)} other placements were given for {len(listed)} other setups")
     if any(is_auto(each) for each in listed) or (propose and (listed or placed is not None)):
         raise OptionError("setup auto proposes all setups: leave out the other setups, or auto")
-    if propose and common:
-        raise OptionError("setup auto puts a table under the part in each setup: leave out the fixtures, or name the setup")
+    if propose and not _proposable(common):
+        raise OptionError(
+            "setup auto tries a table, a vise and a chuck in each setup, or the one that --fixture says: leave out other "
+            "fixtures, or name the setup"
+        )
     shared = without(common, () if placed is None else placed.fixtures)
+    if listed and (gripping := tuple(each for each in shared if each.to_place)):
+        # What grips the part is placed for each setup: it is that one's own.
+        shared = without(shared, gripping)
+        placed = _holding((axis, placed), gripping)
+        places = [_holding(_setup(each, place), gripping) for each, place in zip(listed, places, strict=True)]
+        listed = [each.z for each in places]
     setups = [_own(_setup(each, place), shared) for each, place in zip(listed, places, strict=True)]
     known = any(place is not None for _, place in setups)
     return {"setup": axis, "placement": placed, "fixtures": common, "propose": propose,
             "other_setups": tuple(each for each, _ in setups),
             "other_placements": tuple(place for _, place in setups) if known else ()}  # fmt: skip
+
+
+def _proposable(fixtures: Sequence[Fixture]) -> bool:
+    """Whether fixtures are what may be proposed with a setup: nothing, or one word without a place."""
+    if not fixtures:
+        return True
+    (first, *more) = fixtures
+    return not more and (first.to_place or (first.kind == TABLE and not first.sizes and not any(first.placement)))
+
+
+def _holding(setup: tuple[tuple[float, float, float], Placement | None], gripping: Sequence[Fixture]) -> Placement:
+    """A setup that is held by some fixtures of its own, too."""
+    axis, place = setup
+    if place is None:
+        return Placement(axis, fixtures=gripping)
+    return replace(place, fixtures=joined_fixtures(place.fixtures, gripping))
 
 
 def _own(

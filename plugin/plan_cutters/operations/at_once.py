@@ -13,7 +13,8 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.operations import OperationPlan
-from plan_cutters.operations.plans import Task, costs_with, moving_over
+from plan_cutters.operations.plans import costs_with, moving_over
+from plan_cutters.operations.task import Task
 from plan_cutters.operations.timing import speed_of
 
 Rows = NDArray[np.int64]
@@ -59,7 +60,7 @@ class _Times:
         cutting = float(np.where(left, self.moving, own).sum())
         options, columns = self.task.ready.options, self.columns.of(np.array(some, np.int64))
         motions = {*zip(self.setup[left].tolist(), self.cutter[left].tolist(), strict=True)}
-        turns = self.task.indexing.together(columns) + self.task.indexing.constant * len(motions)
+        turns = self.task.together(columns) + self.task.indexing.constant * len(motions)
         cutters = {*columns.cutter.tolist(), *(c for _, c in motions)}
         setups = {*columns.setup.tolist(), *(s for s, _ in motions)}
         others = options.change_time * max(0, len(cutters) - 1) + options.setup_time * max(0, len(setups) - 1)
@@ -98,8 +99,21 @@ def recommended(task: Task, columns: Columns) -> Columns:
     return columns if len(stay) == whole else columns.of(np.array(stay, np.int64))
 
 
+def fewer(task: Task, columns: Columns) -> list[tuple[Columns, float]]:
+    """Choices of fewer and fewer of some columns, with the time of each: simultaneous motion takes the area of the others.
+
+    All of them come first; then always that one is left out without which the rest takes the least time.
+    """
+    times, stay = _Times.of(task, columns), list(range(len(columns)))
+    choices = list[tuple[Columns, float]]()
+    while stay:
+        choices.append((columns.of(np.array(stay, np.int64)), times.total(stay)[0]))
+        stay = min(([each for each in stay if each != gone] for gone in stay), key=lambda each: times.total(each)[0])
+    return choices
+
+
 def few_enough(task: Task, plan: OperationPlan) -> bool:
     """Whether a plan has no more fixed orientations than are recommended."""
     options = task.ready.options
-    fixed = sum(each.mode == "fixed" for each in plan.operations)
+    fixed = plan.orientations
     return options.most_operations is not None or options.index_step is not None or fixed <= options.max_orientations

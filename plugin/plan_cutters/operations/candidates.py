@@ -16,6 +16,8 @@ from plan_cutters.scene.conditions import Conditions
 
 #: Digits of an angle in degrees that a control shows.
 DIGITS = 3
+#: A direction is along a rotary axis where their cosine is less below 1 than this: 0.008 deg.
+_ALONG = 1e-8
 #: Sums of angles that differ by less are the same position, deg.
 _SAME_DEG = 0.01
 #: Distance of grid angles unless one is requested, rad.
@@ -63,6 +65,21 @@ class Orientations:
         held &= ((shown >= low - 1e-9) & (shown <= high + 1e-9)).all(axis=1)
         return shown[held], axis[held]
 
+    def along(self, direction: Floats) -> float:
+        """+1 or -1 where the axis next to the part turns it about a direction, or the other way; else 0."""
+        cosine = float(self.kinematics.direction[0] @ direction)
+        return math.copysign(1.0, cosine) if abs(cosine) > 1.0 - _ALONG else 0.0
+
+    def turned(self, angle: Floats, direction: Floats, turn: float) -> tuple[Floats, Floats, NDArray[np.bool_]]:
+        """Angles (n, 2), deg, with the part turned about a direction, rad, by the axis next to it: the axes, and which can be."""
+        along = self.along(direction)
+        first = angle[:, 0] + math.degrees(turn) * along
+        shown = np.round(np.column_stack([first - 360.0 * np.round(first / 360.0), angle[:, 1]]), DIGITS) + 0.0
+        held = self.kinematics.axis(np.radians(shown))
+        low, high = np.degrees(self.kinematics.limit).T
+        can = self.conditions.allows(held) & ((shown >= low - 1e-9) & (shown <= high + 1e-9)).all(axis=1)
+        return np.asarray(shown, float), held, np.asarray(can & (along != 0.0))
+
     def near(self, axis: Floats) -> tuple[Floats, Floats]:
         """The angles that come nearest to axes (n, 3), and the axes that they hold: those alone that the machine can hold."""
         angle, taken, _ = self.kinematics.positions(axis)
@@ -71,10 +88,15 @@ class Orientations:
 
     def other(self, axis: Floats, angle: Floats) -> Floats | None:
         """The other angles (2,), deg, that hold an axis (3,); None where there are none."""
-        both = np.degrees(self.kinematics.positions(axis[None])[0][0])
-        apart_ = np.abs((both - angle + 180.0) % 360.0 - 180.0).sum(axis=1)
-        other = both[int(np.nan_to_num(apart_, nan=-1.0).argmax())]
-        return np.round(other, DIGITS) + 0.0 if np.isfinite(other).all() and np.nanmax(apart_) > _SAME_DEG else None
+        return self.others(axis[None], angle[None])[0]
+
+    def others(self, axis: Floats, angle: Floats) -> list[Floats | None]:
+        """The other angles (2,), deg, that hold each of some axes (n, 3) beside its angles (n, 2); None where there are none."""
+        both = np.degrees(self.kinematics.positions(axis)[0])
+        away = np.abs((both - angle[:, None] + 180.0) % 360.0 - 180.0).sum(axis=2)
+        other = both[np.arange(len(both)), np.nan_to_num(away, nan=-1.0).argmax(axis=1)]
+        there = np.isfinite(other).all(axis=1) & (np.nan_to_num(away, nan=-1.0).max(axis=1) > _SAME_DEG)
+        return [shown if is_there else None for shown, is_there in zip(np.round(other, DIGITS) + 0.0, there, strict=True)]
 
     def grid(self, step: float) -> tuple[Floats, Floats]:
         """Angles (n, 2) that are whole multiples of a step, deg, and their axes.

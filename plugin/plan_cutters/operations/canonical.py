@@ -17,7 +17,8 @@ from cad_io.arrays import Floats
 from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.operations import Operation
 from plan_cutters.operations.candidates import Orientations, face_directions
-from plan_cutters.operations.plans import Task, clearance_of, costs_with
+from plan_cutters.operations.plans import clearance_of, costs_with
+from plan_cutters.operations.task import Task
 from plan_cutters.scene.threads import Progress
 
 Served = NDArray[np.bool_]
@@ -61,7 +62,7 @@ class _Choice:
 
     def seconds(self) -> float:
         """The cost with the time of the rotary axes; without a feed the length of the cuts alone."""
-        return self.cutting + (0.0 if self.task.paths.feed is None else self.task.indexing.together(self.columns))
+        return self.cutting + (0.0 if self.task.paths.feed is None else self.task.together(self.columns))
 
     def own(self, k: int) -> Rows:
         """Samples, numbers in the task's rows, that are cheapest with a column."""
@@ -175,7 +176,7 @@ def _as_good(choice: _Choice, k: int, angle: Floats, axis: Floats, most: float) 
     # Most of them do not serve: few samples tell.
     for rows in (needed[:: max(1, len(needed) // _FIRST)], needed):
         if len(others):
-            others = others.of(np.flatnonzero(task.probes.table(task.rows[rows], others).all(axis=0)))
+            others = others.of(np.flatnonzero(task.table(task.rows[rows], others).all(axis=0)))
     exchanged = (choice.exchanged(k, others.of(np.array([i]))) for i in range(len(others)))
     return [each for each in exchanged if each.as_good(choice, most)]
 

@@ -7,7 +7,8 @@ a millimetre. Where feeds are known, another cutter that saves more than its cha
 import numpy as np
 
 from plan_cutters.domain.columns import Columns, columns_of
-from plan_cutters.operations.plans import Task, costs_with, worth_their_turn
+from plan_cutters.operations.plans import costs_with, worth_their_turn
+from plan_cutters.operations.task import Task
 
 
 def accompanied(task: Task, columns: Columns) -> Columns:

@@ -62,7 +62,7 @@ class Indexing:
         seconds = 0.0
         for c, s in {*zip(columns.cutter.tolist(), columns.setup.tolist(), strict=True)}:
             mine = columns.of(np.flatnonzero((columns.cutter == c) & (columns.setup == s)))
-            others = [self.orientations[s].other(axis, angle) for axis, angle in zip(mine.axis, mine.angle, strict=True)]
+            others = self.orientations[s].others(mine.axis, mine.angle)
             both = [[angle] if other is None else [angle, other] for angle, other in zip(mine.angle, others, strict=True)]
             seconds += float(self.times(s, both).sum())
         return seconds

@@ -14,8 +14,9 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.lengths import reporting
 from plan_cutters.domain.operations import Fastest, OperationPlan, Operations, Worth
+from plan_cutters.domain.own_process import OwnProcess, cutter_of
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.operations.at_once import few_enough, recommended
+from plan_cutters.operations.at_once import few_enough, fewer, recommended
 from plan_cutters.operations.candidates import STEP, apart, candidates
 from plan_cutters.operations.canonical import canonical
 from plan_cutters.operations.companions import accompanied
@@ -24,24 +25,25 @@ from plan_cutters.operations.fastest import Costs, Problem, bounded, cheap, exch
 from plan_cutters.operations.fewest import FINEST, Search, search_fewest
 from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.over_all_axes import over_all_axes
+from plan_cutters.operations.own_steps import own_plan
 from plan_cutters.operations.plans import (
     MINOR_AREA,
-    Task,
     best_area,
     considered,
-    of_wanted_kinds,
     orientations_of,
     plan_with,
     small_pieces,
     worth_their_turn,
 )
+from plan_cutters.operations.priced import comparable, feeds, without_feed
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.proof import proved
+from plan_cutters.operations.repeated import repeated, symmetric
 from plan_cutters.operations.rest_areas import allowed, by_size, largest_first, with_and_without, worths
+from plan_cutters.operations.task import Task
 from plan_cutters.operations.timing import Paths, Problems, shared_area
 from plan_cutters.operations.walls import Walls
-from plan_cutters.options import Options
-from plan_cutters.plan_file.numbers import duration, percent
+from plan_cutters.plan_file.numbers import count, duration, percent
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress, part_of
 
@@ -52,8 +54,10 @@ _CUTTERS = 4
 _EVEN, _TIMED, _ROUNDS = 250, 600, 12
 #: Parts of the work whose progress is told as one: the first table, the fewest, their bound and curve, the plans, their proof.
 _PARTS = 6
-#: Tries to exchange the fewest for as many that cut faster.
-_TRIES = 4
+#: Tries to exchange the fewest for as many that cut faster; times that differ by less are equal, as a share.
+_TRIES, _EQUAL = 4, 0.02
+#: Share of the area that a plan of repeated steps may leave to simultaneous motion beyond what the plan without them does.
+_MOVING = 0.05
 
 
 @reporting(lambda ready: ready.options.reported_unit)
@@ -77,6 +81,8 @@ def plan_operations(
     """
     options = ready.options
     task = _task(ready, everywhere, least)
+    if options.process is not None:
+        return _own(task, options.process, stage)
     finest = FINEST if options.index_step is None else options.index_step
     with stage("operations") as tell:
         search = Search(task.probes, _first(task), task.rows, lambda bare: _stored(task, bare), part_of(tell, 0, _PARTS))
@@ -93,14 +99,14 @@ def plan_operations(
         for k, each in enumerate(plans):
             same = next((other for other in different if each.like(other)), None)
             mine = part_of(proving, k, len(plans))
-            plans[k] = proved(ready, each, progress=mine) if same is None else replace(same, name=each.name)
+            plans[k] = proved(ready, everywhere, each, progress=mine) if same is None else replace(same, name=each.name)
             different += [plans[k]] if same is None else []
     small = instead + tuple(note for each in different for note in small_pieces(each, ready.samples, options.overlap))
     if unpriced := [each.id for each in without_feed(ready)]:
         has = "has no feed" if len(unpriced) == 1 else "have no feed"
         small += (f"No operation is planned with what {has}: {', '.join(unpriced)}. Give --feed MM/MIN, or ask for the fewest.",)
-    comparable = _comparable(ready, least)
-    if late := [each.id for each in ready.cutters if each.id not in (*unpriced, *(one.id for one in comparable))]:
+    compared = comparable(ready, least)
+    if late := [each.id for each in ready.cutters if each.id not in (*unpriced, *(one.id for one in compared))]:
         kind = "whose kind comes" if len(late) == 1 else "whose kinds come"
         small += (f"No operation is planned with {', '.join(late)}, {kind} last on these faces: the others reach all without.",)
     moving = max(sum(len(each.rows) for each in plan.operations if each.mode == "simultaneous") for plan in plans)
@@ -110,8 +116,29 @@ def plan_operations(
             "--most-operations with a large number takes all.",
         )
     return Operations(options.operations or "", task.cutters, tuple(plans), fewest, steps, task.orientations[0].names,
-                      task.probes.made, task.paths.feed, everywhere[0][task.cutters[0]].reason, timed, worth=worth,
+                      task.probes.made, task.paths.feed, timed, worth=worth,
                       notes=small, index_from=task.indexing.source)  # fmt: skip
+
+
+def _own(task: Task, process: OwnProcess, stage: Callable[[str], AbstractContextManager[Progress]]) -> Operations:
+    """The planner's own process, with the rest planned behind it as it was requested."""
+    ready, options = task.ready, task.ready.options
+
+    def planned(rest: Task) -> Columns:
+        """The fixed orientations of the best plan for what the steps leave."""
+        if not len(rest.rows):
+            return columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
+        search = Search(rest.probes, _first(rest), rest.rows, lambda bare: _stored(rest, bare), part_of(tell, 1, _PARTS))
+        finest = FINEST if options.index_step is None else options.index_step
+        fewest = search_fewest(search, rest.orientations, options.index_step or STEP, finest, part_of(tell, 2, _PARTS))
+        plans, *_ = _plans(rest, search, fewest.columns.of(fewest.chosen), part_of(tell, 3, _PARTS))
+        return _columns_of(rest, next((each for each in plans if each.name == "fastest"), plans[0]))
+
+    with stage("operations") as tell:
+        plan, outcomes = own_plan(task, process, planned)
+        plan = proved(ready, task.everywhere, plan, progress=part_of(tell, 5, _PARTS))
+    return Operations(options.operations or "", task.cutters, (plan,), None, (), task.orientations[0].names, task.probes.made,
+                      task.paths.feed, index_from=task.indexing.source, own=outcomes)  # fmt: skip
 
 
 _Plans = tuple[list[OperationPlan], Fastest | None, tuple[Worth, ...], tuple[str, ...]]
@@ -120,7 +147,7 @@ _Plans = tuple[list[OperationPlan], Fastest | None, tuple[Worth, ...], tuple[str
 def _plans(task: Task, search: Search, few: Columns, tell: Progress) -> _Plans:
     """Make the plans that were requested: the fastest is the one of all plans found here that takes the least time."""
     which = task.ready.options.operations
-    parts = [part_of(tell, k, 4) for k in range(4)]
+    parts = [part_of(tell, k, 5) for k in range(5)]
     fewest = _capped(task, "fewest", _quicker(task, search, few), parts[0])
     if which == "fewest":
         return [fewest], None, (), ()
@@ -130,10 +157,12 @@ def _plans(task: Task, search: Search, few: Columns, tell: Progress) -> _Plans:
     largest_first = list[OperationPlan]()
     if len(task.cutters) > 1:
         largest_first = [_capped(task, "largest first", _largest_first(task, search, few), parts[2])]
-    parts[3](0, 1)
     # Of those that take the same time the fewest.
     plans = [fewest, *others, *largest_first]
-    fastest, notes = _recommended(task, plans)
+    printed = [*([fewest] if which == "both" else []), *largest_first]
+    fastest, notes = _repeated(task, few, _recommended(task, plans), printed, parts[3])
+    parts[4](0, 1)
+    plans.append(fastest)
     at_best = float(problem.cost.min(axis=1, initial=np.inf).sum())
     # Canonical orientations need not be candidates: what the plan that is printed takes bounds the best from above.
     bound = min(bounded(problem, chosen).bound, np.nan_to_num(fastest.total, nan=np.inf))
@@ -149,7 +178,7 @@ def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationP
     """
     best = min(plans, key=_seconds)
     columns = recommended(task, _columns_of(task, best))
-    fixed = sum(each.mode == "fixed" for each in best.operations)
+    fixed = best.orientations
     if len(columns) == fixed:
         return replace(best, name="fastest"), ()
     tried = [plan_with(task, "fastest", columns), *(each for each in plans if few_enough(task, each))]
@@ -164,6 +193,59 @@ def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationP
         f"motion is recommended in place of {many}, for {why}."
     )
     return replace(chosen, name="fastest"), (words,) if any(each.mode == "simultaneous" for each in chosen.operations) else ()
+
+
+def _repeated(
+    task: Task, few: Columns, plain: tuple[OperationPlan, tuple[str, ...]], printed: Sequence[OperationPlan], tell: Progress
+) -> tuple[OperationPlan, tuple[str, ...]]:
+    """The plan that is recommended, and what must be said of it: one of repeated steps, where that takes no more time.
+
+    Of those that take the same time as the plan that was found, and no more than those that are printed beside it, that which
+    leaves least to simultaneous motion is taken, if that is hardly more than it has there; else the plan that was found. Where a
+    time is not known, it must be that of no more area.
+    """
+    own, (other, _) = symmetric(task), plain
+    columns = None if own is None else repeated(own, _first(task).and_(few), partial(_stored, task), part_of(tell, 0, 2))
+    if own is None or columns is None:
+        return plain
+    columns = _worth(own, "fastest", canonical(own, _worth(own, "fastest", columns), progress=part_of(tell, 1, 2)))
+    most = min((1.0 + _EQUAL) * _known(other), *map(_known, printed), np.inf)
+    for choice, seconds in fewer(own, columns):
+        # What the choice is reckoned to take is not quite what its plan does.
+        if len(choice) > task.ready.options.max_orientations or seconds > (1.0 + _EQUAL) * most:
+            continue
+        plan = plan_with(own, "fastest", choice)
+        as_quick = _known(plan) <= most and _untimed(task, plan) <= _untimed(task, other)
+        if (
+            not as_quick
+            or all(each.orbit < 0 for each in plan.operations)
+            or _moving(task, plan) > _moving(task, other) + _MOVING
+        ):
+            continue
+        if _known(plan) <= _known(other) or not np.isfinite(other.total):
+            return plan, ()
+        words = f"Without repeated steps {count(other.orientations, 'orientation')}"
+        if any(each.mode == "simultaneous" for each in other.operations):
+            words += " and simultaneous motion"
+        return plan, (f"{words} would take {duration(other.total)}.",)
+    return plain
+
+
+def _known(plan: OperationPlan) -> float:
+    """Seconds of a plan without those of the samples at which they are not known."""
+    return float(np.nansum(plan.seconds[plan.label >= 0])) + plan.other
+
+
+def _untimed(task: Task, plan: OperationPlan) -> float:
+    """The area of the samples of a plan whose seconds are not known, mm2."""
+    return float(np.nansum(task.ready.samples.area[(plan.label >= 0) & ~np.isfinite(plan.seconds)]))
+
+
+def _moving(task: Task, plan: OperationPlan) -> float:
+    """The share of the area that a plan leaves to simultaneous motion."""
+    area = np.nan_to_num(task.ready.samples.area)
+    rows = [each.rows for each in plan.operations if each.mode == "simultaneous"]
+    return sum(float(area[mine].sum()) for mine in rows) / max(1e-300, float(area[task.rows].sum()))
 
 
 def _seconds(plan: OperationPlan) -> float:
@@ -184,7 +266,14 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
     options = ready.options
     unpriced = without_feed(ready)
     needed = [run.cutter for run in least.runs if run.cutter not in unpriced] if least else []
-    cutters = considered(_comparable(ready, least), needed, _CUTTERS)
+    if options.process is not None:
+        named = [cutter_of(each.cutter, ready.cutters, f"step {each.number}") for each in options.process.steps]
+        named += [cutter_of(each.cutter, ready.cutters, "forbid") for each in options.process.forbidden]
+        cutters = considered(
+            [each for each in ready.cutters if each not in unpriced], [*dict.fromkeys([*needed, *named])], _CUTTERS
+        )
+    else:
+        cutters = considered(comparable(ready, least), needed, _CUTTERS)
     open_ = ready.machinable
     reached = np.logical_or.reduce(
         [open_[s] & verdicts[cutter].reached for s, verdicts in enumerate(everywhere) for cutter in cutters]
@@ -196,29 +285,6 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
     indexing = Indexing(where, options.index_time)
     return Task(ready, cutters, where, tuple(everywhere), np.flatnonzero(reached), probes, paths, indexing,
                 Problems(ready.samples, cutters, paths, indexing, walls), walls)  # fmt: skip
-
-
-def _comparable(ready: Prepared, least: LeastSet | None) -> list[Cutter]:
-    """The cutters with a feed, without kinds that come after all that are needed, if these have feeds."""
-    unpriced = without_feed(ready)
-    priced, needed = [each for each in ready.cutters if each not in unpriced], [run.cutter for run in least.runs] if least else []
-    if not needed or any(each in unpriced for each in needed):
-        return priced
-    return of_wanted_kinds(priced, needed, ready.chosen.free_form)
-
-
-def feeds(options: Options, cutters: Sequence[Cutter]) -> Mapping[Cutter, float] | None:
-    """The feed of each cutter, mm/min; None where one has none."""
-    stated = options.feeds if options.feed is None else dict.fromkeys(cutters, options.feed)
-    return {each: stated[each] for each in cutters} if all(each in stated for each in cutters) else None
-
-
-def without_feed(ready: Prepared) -> tuple[Cutter, ...]:
-    """The cutters that no operation is planned with, for times are requested and they have no feed."""
-    if ready.options.operations not in ("fastest", "both"):
-        return ()
-    stated = ready.options.feeds
-    return tuple(each for each in ready.cutters if each not in stated)
 
 
 def _first(task: Task) -> Columns:

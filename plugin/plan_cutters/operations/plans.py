@@ -14,11 +14,9 @@ from plan_cutters.domain.operations import STRATEGIES, Operation, OperationPlan,
 from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.operations.candidates import Orientations
-from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.labels import joined, labelled, regions_of
-from plan_cutters.operations.probes import Probes
-from plan_cutters.operations.timing import Paths, Problems, costs_of, tip_widths, widths
-from plan_cutters.operations.walls import Walls
+from plan_cutters.operations.task import Task
+from plan_cutters.operations.timing import costs_of, tip_widths, widths
 from plan_cutters.operations.workplanes import workplanes
 from plan_cutters.plan_file.numbers import area as size
 from plan_cutters.scene.clearance import least_clearance
@@ -34,46 +32,37 @@ MINOR_AREA = 0.001
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Task:
-    """The same for all plans of a part.
+class Reserved:
+    """The planner's own steps take this of a plan.
 
     Attributes
     ----------
-    ready : Prepared
-    cutters : tuple of Cutter
-        Those that are compared; columns count in them.
-    orientations : tuple of Orientations
-        Of each setup.
-    everywhere : tuple of mapping
-        Of each setup, the verdicts by cutter.
-    rows : (r,) int64
-        Samples that are reached by one of the cutters in one of the setups.
-    probes : Probes
-    paths : Paths
-    indexing : Indexing
-    problems : Problems
-    walls : Walls
+    step : tuple of int
+        Of each column the number of the step that it is of; 0: it was planned.
+    moving : tuple of (int, int, int, (r,) int64)
+        Simultaneous steps: their number, cutter, setup, and the samples that they take.
+    leave : bool
+        Whether what no step takes is left, and not given to simultaneous operations.
+    others : tuple of mapping
+        Of each setup the verdicts by cutter for these: without those of cutters where they are forbidden.
     """
 
-    ready: Prepared
-    cutters: tuple[Cutter, ...]
-    orientations: tuple[Orientations, ...]
-    everywhere: tuple[Mapping[Cutter, Verdicts], ...]
-    rows: Rows
-    probes: Probes
-    paths: Paths
-    indexing: Indexing
-    problems: Problems
-    walls: Walls
+    step: tuple[int, ...]
+    moving: tuple[tuple[int, int, int, Rows], ...]
+    leave: bool
+    others: tuple[Mapping[Cutter, Verdicts], ...]
 
 
 def plan_with(
-    task: Task, name: str, columns: Columns, rule: Callable[[NDArray[np.bool_]], NDArray[np.bool_]] | None = None
-) -> OperationPlan:
+    task: Task, name: str, columns: Columns, rule: Callable[[NDArray[np.bool_]], NDArray[np.bool_]] | None = None,
+    own: Reserved | None = None,
+) -> OperationPlan:  # fmt: skip
     """Make the plan of some columns: each sample goes with one that serves it, the rest with simultaneous operations.
 
-    A `rule` says which of those that serve (n, k) a sample may go with.
+    A `rule` says which of those that serve (n, k) a sample may go with; where some columns are a person's `own`, crumbs keep to
+    it, too.
     """
+    columns, orbit = _expanded(task, columns)
     samples, rows = task.ready.samples, task.rows
     n, overlap = len(samples), task.ready.options.overlap
     area, edge = np.nan_to_num(samples.area), samples.neighbours
@@ -88,13 +77,14 @@ def plan_with(
     border = np.sqrt(0.5 * area[edge].sum(axis=1)) * overlap * each
     may = finite if rule is None else rule(finite)
     # A rule is about areas that are worth an operation: crumbs go with what is beside them.
-    label = joined(labelled(np.where(may, cost, np.inf), edge, border), finite, edge, area, _SMALL * overlap**2)
-    operations, order = _fixed(task, columns, finite, label, area)
+    joining = finite if own is None else may
+    label = joined(labelled(np.where(may, cost, np.inf), edge, border), joining, edge, area, _SMALL * overlap**2)
+    operations, order = _fixed(task, columns, finite, label, area, orbit, (0,) * len(columns) if own is None else own.step)
     place = np.full(len(columns) + 1, -1, np.int32)
     place[order] = np.arange(len(order))
     number, table = place[label], finite[:, order]
     strip = np.where(label >= 0, width[np.arange(n), np.maximum(label, 0)], np.nan) if len(columns) else np.full(n, np.nan)
-    number, table, strip, others = _simultaneous(task, len(operations), number, table, strip)
+    number, table, strip, others = _simultaneous(task, len(operations), number, table, strip, own)
     operations += others
     speed = np.full(n, np.nan)
     if task.paths.feed is not None:
@@ -126,8 +116,24 @@ def _other(task: Task, operations: Sequence[Operation], planes: Sequence[Workpla
     return turns + options.change_time * max(0, cutters - 1) + options.setup_time * max(0, setups - 1)
 
 
+def _expanded(task: Task, columns: Columns) -> tuple[Columns, Rows]:
+    """What columns stand for, each column once, and to which of these it belongs; -1: it is repeated nowhere."""
+    if task.symmetry is None or not len(columns):
+        return columns, np.full(len(columns), -1, np.int64)
+    every = task.images(columns)
+    first = np.sort(np.unique(every.key, return_index=True)[1])
+    step = first // task.times
+    return every.of(first), np.where(np.bincount(step)[step] > 1, step, -1)
+
+
 def _fixed(
-    task: Task, columns: Columns, serves: NDArray[np.bool_], label: NDArray[np.int32], area: Floats
+    task: Task,
+    columns: Columns,
+    serves: NDArray[np.bool_],
+    label: NDArray[np.int32],
+    area: Floats,
+    orbit: Rows,
+    step: Sequence[int],
 ) -> tuple[list[Operation], list[int]]:
     """The operations of columns that some sample goes with, the largest first; and the columns in that order."""
     mine = label >= 0
@@ -139,7 +145,7 @@ def _fixed(
         Operation(
             f"op{i}", "fixed", task.cutters[columns.cutter[k]], int(columns.setup[k]), columns.axis[k], columns.angle[k],
             task.orientations[columns.setup[k]].other(columns.axis[k], columns.angle[k]), np.flatnonzero(label == k),
-            np.flatnonzero(serves[:, k] & (times == 1)),
+            np.flatnonzero(serves[:, k] & (times == 1) & (label == k)), step=step[k], orbit=int(orbit[k]),
         )
         for i, k in enumerate(order, 1)
     ]  # fmt: skip
@@ -157,36 +163,45 @@ class Motion:
 
 def moving_over(task: Task, rows: Rows) -> Motion:
     """Simultaneous motion over samples (m,): with the first cutter in the first setup that reaches each, in the posture found."""
-    samples, paths, n = task.ready.samples, task.paths, len(rows)
+    n = len(rows)
     motion = Motion(np.full(n, -1, np.int64), np.full(n, -1, np.int64), np.full(n, np.nan))
     for s, verdicts in enumerate(task.everywhere):
         for c, cutter in enumerate(task.cutters):
             mine = np.flatnonzero((motion.cutter < 0) & verdicts[cutter].reached[rows])
             if len(mine):
                 motion.cutter[mine], motion.setup[mine] = c, s
-                axis = verdicts[cutter].axis[rows[mine]]
-                motion.width[mine] = tip_widths(cutter, samples, rows[mine], axis, paths)[0]
+                motion.width[mine] = _moving_width(task, c, s, rows[mine])
     return motion
 
 
 def _simultaneous(
-    task: Task, before: int, number: NDArray[np.int32], table: NDArray[np.bool_], strip: Floats
+    task: Task, before: int, number: NDArray[np.int32], table: NDArray[np.bool_], strip: Floats, own: Reserved | None
 ) -> tuple[NDArray[np.int32], NDArray[np.bool_], Floats, list[Operation]]:
     """Give what no fixed operation takes to simultaneous ones: number, what serves, strips and operations."""
     operations, rest = list[Operation](), task.rows[number[task.rows] < 0]
-    motion = moving_over(task, rest)
-    for s, c in sorted({*zip(motion.setup.tolist(), motion.cutter.tolist(), strict=True)}):
-        if c < 0:
+    pieces = [(step, c, s, rows, _moving_width(task, c, s, rows)) for step, c, s, rows in (own.moving if own else ())]
+    if own is None or not own.leave:
+        rest = rest[~np.isin(rest, np.concatenate([np.zeros(0, np.int64), *(each[3] for each in pieces)]))]
+        motion = moving_over(task if own is None else replace(task, everywhere=own.others), rest)
+        for s, c in sorted({*zip(motion.setup.tolist(), motion.cutter.tolist(), strict=True)}):
+            chosen = (motion.cutter == c) & (motion.setup == s)
+            pieces += [(0, c, s, rest[chosen], motion.width[chosen])] if c >= 0 else []
+    for step, c, s, mine, width in pieces:
+        if not len(mine):
             continue
-        chosen = (motion.cutter == c) & (motion.setup == s)
-        mine = rest[chosen]
-        number[mine], strip[mine] = before + len(operations), motion.width[chosen]
-        column = np.zeros((len(number), 1), bool)
+        number[mine], strip[mine] = before + len(operations), width
+        only, column = mine[~table[mine].any(axis=1)], np.zeros((len(number), 1), bool)
         column[mine] = True
         table = np.concatenate([table, column], axis=1)
         name = f"op{before + len(operations) + 1}"
-        operations.append(Operation(name, "simultaneous", task.cutters[c], s, None, None, None, mine, mine))
+        operations.append(Operation(name, "simultaneous", task.cutters[c], s, None, None, None, mine, only, step=step))
     return number, table, strip, operations
+
+
+def _moving_width(task: Task, c: int, s: int, rows: Rows) -> Floats:
+    """Width of a pass at samples (m,), mm, by a cutter in the postures that were found for it in a setup."""
+    cutter = task.cutters[c]
+    return tip_widths(cutter, task.ready.samples, rows, task.everywhere[s][cutter].axis[rows], task.paths)[0]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -293,10 +308,11 @@ def best_area(task: Task, columns: Columns, most: int | None) -> Columns:
 
 def costs_with(task: Task, columns: Columns) -> tuple[Floats, Floats]:
     """The area (r,) of the samples of a task, and what each costs with columns (r, k), infinite where one does not serve it."""
-    rows = task.rows
-    area, serves = np.nan_to_num(task.ready.samples.area[rows]), task.probes.kept(rows, columns)
-    width = _widths(task, columns, serves)
-    return area, costs_of(columns, width, serves, area, task.cutters, task.paths)
+    rows, every = task.rows, task.images(columns)
+    area, serves = np.nan_to_num(task.ready.samples.area[rows]), task.probes.kept(rows, every)
+    cost = costs_of(every, _widths(task, every, serves), serves, area, task.cutters, task.paths)
+    # Of images the best one cuts a sample.
+    return area, cost.reshape(len(rows), len(columns), task.times).min(axis=2)
 
 
 def _widths(task: Task, columns: Columns, serves: NDArray[np.bool_]) -> Floats:
@@ -312,7 +328,7 @@ def worth_their_turn(task: Task, columns: Columns) -> Columns:
     """
     (area, cost), columns_left = costs_with(task, columns), np.arange(len(columns))
     least = MINOR_AREA * float(area @ np.isfinite(cost).any(axis=1))
-    turn = task.indexing.together(columns) / max(1, len(columns))
+    turn = task.together(columns) / max(1, len(columns))
     while len(columns_left) > 1:
         own = cost[:, columns_left]
         first, second = np.partition(own, 1, axis=1)[:, :2].T

@@ -1,6 +1,6 @@
 """Probes: whether a cutter in a setup with a fixed tool axis stands free at a sample, by the certified test."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +26,8 @@ class Probes:
         Of each setup, with its own machine frame, fixtures and obstacles.
     outside : sequence of (n,) bool
         Of each setup the samples that can be machined there: not clamped faces, not inside material.
+    barred : mapping, optional
+        Index of a cutter -> samples (n,) at which it is not to be planned.
 
     Attributes
     ----------
@@ -41,7 +43,9 @@ class Probes:
         cutters: Sequence[Cutter],
         setups: Sequence[Conditions],
         outside: Sequence[NDArray[np.bool_]],
+        barred: Mapping[int, NDArray[np.bool_]] | None = None,
     ) -> None:
+        self._barred = barred or {}
         self.samples, self.cutters, self.setups, self.outside, self.made = samples, cutters, setups, outside, 0
         self.contexts = [[Context.of(cutter, setup) for setup in setups] for cutter in cutters]
         self._kept: dict[str, NDArray[np.bool_]] = {}
@@ -54,7 +58,8 @@ class Probes:
         for k, (c, s) in enumerate(kinds):
             mine_of = None if progress is None else part_of(progress, k, len(kinds))
             mine = np.flatnonzero((columns.cutter == c) & (columns.setup == s))
-            open_ = np.flatnonzero(self.outside[s][rows])
+            may = self.outside[s][rows]
+            open_ = np.flatnonzero(may & ~self._barred[c][rows] if c in self._barred else may)
             if len(open_):
                 free, made = served_by(rows[open_], columns.axis[mine], self.samples, self.contexts[c][s], mine_of)
                 table[np.ix_(mine, open_)] = free

@@ -1,12 +1,16 @@
-"""Fixed operations between the samples: their proved share, and in how many pieces; inside one, any path is safe."""
+"""Operations between the samples: their proved share, and in how many pieces; inside one, any path is safe."""
 
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, SurfaceSamples
+from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import Operation, OperationPlan
+from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.operations.moving_proof import proved_moving
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import held_at
 from plan_cutters.scene.preparation import Prepared
@@ -24,17 +28,21 @@ _CONTACTS = 4
 _MOST_OF = 0.99
 
 
-def proved(ready: Prepared, plan: OperationPlan, *, progress: Progress | None = None) -> OperationPlan:
-    """Write into fixed operations which share of their area is proved, and in how many pieces.
+def proved(
+    ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], plan: OperationPlan, *, progress: Progress | None = None
+) -> OperationPlan:
+    """Write into operations which share of their area is proved, and in how many pieces.
 
     Of the operations of the plan with the same cutter and setup that serve a sample, its cell is tried with the one that has
     most room to the gouging bound, and then with the others, before it is cut into four: its area is proved if one does,
-    and counts for the operation of its sample. Where no area between samples was requested, nothing is looked at and nothing is
-    written.
+    and counts for the operation of its sample. A simultaneous operation is proved with a field of axes. Where no area between
+    samples was requested, nothing is looked at and nothing is written.
 
     Parameters
     ----------
     ready : Prepared
+    everywhere : sequence of mapping
+        Of each setup the verdicts by cutter.
     plan : OperationPlan
     progress : callable, optional
         Called with how much is done of the most that may be.
@@ -54,13 +62,20 @@ def proved(ready: Prepared, plan: OperationPlan, *, progress: Progress | None = 
     for k, each in enumerate(operations):
         if each.mode == "fixed":
             alike.setdefault((each.cutter.id, each.setup), []).append(k)
-    whole = sum(len(operations[k].rows) for group in alike.values() for k in group)
-    tell = progress or (lambda done, total: None)
+    moving = [k for k, each in enumerate(operations) if each.mode == "simultaneous" and len(each.rows)]
+    whole = sum(len(each.rows) for each in operations)
+    tell, count = progress or (lambda done, total: None), len(alike) + len(moving)
     for number, group in enumerate(alike.values()):
         part = sum(len(operations[k].rows) for k in group) / max(1, whole)
-        mine = part_of(tell, number, len(alike))
+        mine = part_of(tell, number, count)
         for k, each in zip(group, _proved(ready, plan, group, int(budget * part), most * part, mine), strict=True):
             operations[k] = each
+    for number, k in enumerate(moving, len(alike)):
+        each, part = operations[k], len(operations[k].rows) / max(1, whole)
+        operations[k] = proved_moving(
+            ready, each, everywhere[each.setup][each.cutter], budget=int(budget * part), most=most * part,
+            progress=part_of(tell, number, count),
+        )  # fmt: skip
     return replace(plan, operations=tuple(operations))
 
 
@@ -76,7 +91,7 @@ def _proved(ready: Prepared, plan: OperationPlan, group: list[int], budget: int,
     proved = between(
         samples, held_at(axes, first, samples, context), context, ready.scene.part,
         ready.scene.orientation, budget=budget, most=most, covered_samples=ready.not_required,
-        fixed=Fixed(axes, serves), progress=tell,
+        axes=Fixed(axes, serves), progress=tell,
     )  # fmt: skip
     cells = proved.cells
     by_sample = np.bincount(cells.sample, cells.area, len(samples))

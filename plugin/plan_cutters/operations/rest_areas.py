@@ -10,7 +10,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import OperationPlan, Worth
 from plan_cutters.domain.preference import by_radius
 from plan_cutters.operations.fastest import Problem, cheap
-from plan_cutters.operations.plans import Task
+from plan_cutters.operations.task import Task
 
 Rows = NDArray[np.int64]
 

@@ -1,6 +1,6 @@
 """The options in force, after defaults, as the plan file states them."""
 
-from typing import Literal
+from typing import Any, Literal
 
 from pydantic import Field
 
@@ -82,4 +82,8 @@ class Effective(Frozen):
     setup_time_s: float = 300.0
     overlap_mm: float = Field(default=2.0, description="of operations at a common border")
     most_operations: int | None = None
+    process: dict[str, Any] | None = Field(
+        default=None, description="the planner's own steps, as a file has them (`process.toml`); null: all steps were planned"
+    )
+    patterns: bool = Field(default=True, description="equal faces are judged and planned once")
     max_orientations: int = Field(default=8, description="of the fastest plan: with more, simultaneous motion is recommended")

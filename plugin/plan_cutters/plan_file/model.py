@@ -14,6 +14,7 @@ from plan_cutters.plan_file.inside import InsideEntry
 from plan_cutters.plan_file.inside_radii import InsideRadiusEntry
 from plan_cutters.plan_file.operations import OperationsEntry
 from plan_cutters.plan_file.part_info import FixtureEntry, PartInfo, Scope
+from plan_cutters.plan_file.patterns import PatternEntry
 from plan_cutters.plan_file.process import ProcessEntry
 from plan_cutters.plan_file.setups import SetupEntry, SetupProposal, SetupReach
 from plan_cutters.plan_file.shares import AreaShare, FaceVerdicts, VerdictCounts
@@ -365,6 +366,7 @@ class Plan(Frozen):
     sharp_edges: list[SharpEdgeEntry] = Field(
         default=[], description="sharp inside edges at which the cutter `shown` leaves a fillet, the largest area first"
     )
+    patterns: list[PatternEntry] = Field(default=[], description="equal faces; those of motions of the whole part first")
     inside_radii: list[InsideRadiusEntry] = Field(
         default=[], description="faces that bend inwards more than the cutter `shown`, the smallest radius first"
     )

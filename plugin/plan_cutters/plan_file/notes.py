@@ -29,7 +29,9 @@ class Note(NamedTuple):
 # Of the run.
 
 
-def later_stages(*, area: bool, answers: Sequence[str], operations: str | None, maps: bool) -> tuple[str, str, str, str]:
+def later_stages(
+    *, area: bool, answers: Sequence[str], operations: str | None, maps: bool, process: bool = False
+) -> tuple[str, str, str, str]:
     """Name the stages that follow the verdicts, in their order, by their options; empty for one that was not requested.
 
     >>> later_stages(area=True, answers=(), operations="fewest", maps=False)
@@ -38,7 +40,7 @@ def later_stages(*, area: bool, answers: Sequence[str], operations: str | None, 
     return (
         "the proof between the samples" if area else "",
         f"--answers {','.join(answers)}" if answers else "",
-        f"--operations {operations}" if operations is not None else "",
+        "your steps (--process)" if process else f"--operations {operations}" if operations is not None else "",
         "--posture-maps" if maps else "",
     )
 

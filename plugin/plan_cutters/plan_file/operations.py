@@ -54,10 +54,28 @@ class WorkplaneEntry(Frozen):
     z: Vector
 
 
+class TurningEntry(Frozen):
+    """How the tool axis turns in simultaneous motion, over the pieces that are proved."""
+
+    pieces_mm2: list[float] = Field(description="area of each of `approaches_proved`, the largest first")
+    steepest_deg_mm: float = Field(description="largest turn of the axis between neighbouring samples, over their distance")
+    angles_deg: dict[str, tuple[float, float]] | None = Field(
+        description="least and largest angle of each rotary axis over the pieces that one solution holds; null: none is"
+    )
+    held_share: float = Field(
+        description="of what is proved, in pieces that one solution of the rotary axes holds from end to end, within limits"
+    )
+    both_share: float = Field(description="in pieces that both solutions hold")
+    singular_mm2: float = Field(
+        description="proved area with the axis within 2 deg of the first rotary axis: that one may have to turn fast there"
+    )
+
+
 class OperationEntry(Frozen):
     """One cutter in one setup, with one orientation of its axis or with simultaneous motion."""
 
     id: str
+    step: int | None = Field(default=None, description="of the planner's own process, its number there; null: it was planned")
     mode: Literal["fixed", "simultaneous"]
     strategy: Literal["point", "floor", "wall", "mixed"] = Field(
         default="point",
@@ -81,15 +99,20 @@ class OperationEntry(Frozen):
     cut_length_mm: float | None = Field(description="area over width, summed up: without links and lead-ins")
     seconds: float | None = Field(description="cutting alone, at the feed; null without a feed")
     proved_share: float | None = Field(
-        description="of its area, proved between the samples with its axis or another of the plan; null: not looked at"
+        description="of its area, proved between the samples with its axis or another of the plan, or with a field of axes if "
+        "simultaneous; null: not looked at"
     )
     approaches_proved: int | None = Field(
-        description="connected pieces that hold 99 % of what is proved with its axis; inside one, any path is safe"
+        description="connected pieces that hold 99 % of what is proved with its axis or field; inside one, any path is safe"
     )
+    turning: TurningEntry | None = Field(default=None, description="of a simultaneous one; null: nothing was looked at")
     clearance_mm: float | None = Field(
         default=None,
         description="least at any of its samples, as in axes.csv: what does not cut keeps so far from its surroundings; 100: "
         "that or more; null: not known",
+    )
+    orbit: int | None = Field(
+        default=None, description="the same for all orientations that are images of each other about an axis; null: not repeated"
     )
     faces: list[OperationFace] = Field(description="the one with the most of it first")
     frame: WorkplaneEntry | None = Field(description="null if simultaneous")
@@ -129,7 +152,9 @@ class AssumedEntry(Frozen):
 class OperationPlanEntry(Frozen):
     """A plan of operations: each reached sample goes with one of them."""
 
-    name: Literal["fewest", "fastest", "largest first"]
+    name: Literal["fewest", "fastest", "largest first", "process"] = Field(
+        description="process: the planner's own steps, and those planned behind them"
+    )
     orientations: int = Field(description="fixed ones, each with one cutter and setup")
     cut_length_mm: float
     seconds: float | None = Field(description="cutting and other_seconds together; null without a feed")
@@ -143,7 +168,9 @@ class OperationPlanEntry(Frozen):
         description="cutting of the fixed operations over at_best_seconds of the fastest: they take at most so many times as "
         "long as simultaneous motion, by the samples compared; null where that is not known"
     )
-    proved_share: float | None = Field(description="of the area of all fixed operations, proved between the samples")
+    proved_share: float | None = Field(
+        description="of the area of the operations that were looked at, proved between the samples"
+    )
     approaches_proved: int | None = Field(description="of all of them together")
     operations: list[OperationEntry] = Field(description="the largest share first")
     rest: RestEntry
@@ -247,7 +274,7 @@ class OperationsEntry(Frozen):
     asked: Literal["fewest", "fastest", "both"]
     rotary: tuple[str, str] = Field(description="names of the angles")
     plans: list[OperationPlanEntry]
-    fewest: FewestEntry
+    fewest: FewestEntry | None = Field(default=None, description="null with the planner's own process")
     fastest: FastestEntry | None = Field(description="null unless the fastest were requested")
     cutters: list[CutterUse] = Field(
         description="the largest first; empty unless the fastest were requested and several cutters were compared"

@@ -27,6 +27,13 @@ class FixtureEntry(Frozen):
     chord_error_mm: float = Field(description="how far they are from what they stand for; of a mesh, as stated")
     watertight: bool = Field(description="it encloses something; else only its surface is in the way")
     notes: list[str]
+    clamping: str | None = Field(
+        default=None, description="of a built-in vise or chuck: its word with all numbers and its place, as --fixture takes it"
+    )
+    grips: list[str] = Field(default=[], description="faces that its jaws touch, where it was placed for the setup")
+    hidden_mm2: float | None = Field(
+        default=None, description="area of the faces to machine that its jaws touch; null: it was not placed for the setup"
+    )
     setups: list[int] = Field(default=[0], description="setups in which it stands, counted from 0 for the first")
 
 

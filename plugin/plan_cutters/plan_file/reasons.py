@@ -51,8 +51,8 @@ _ROWS = (
     Reason("sharp_edge", "sharp inside edge", "sharp inside edges",
            "Two faces meet without a fillet, and the cutter leaves one of its own radius there.",
            "a fillet in the model, or a smaller radius or corner radius", "#44AA99", "dots", ".."),
-    Reason("another_setup", "for another setup", "the table of the proposed setup",
-           "The face stands on the table of the setup that was proposed, and is left for another setup.",
+    Reason("another_setup", "for another setup", "what was proposed to hold the part",
+           "The face stands on a table that was proposed, or a vise or chuck grips it; it is left for another setup.",
            "another setup, or a clamping that leaves it free", "#88CCEE", "lines", "--"),
 )  # fmt: skip
 REASONS = {each.code: each for each in _ROWS}

@@ -1,5 +1,7 @@
 """The plan file states here how much is reached in each of several setups."""
 
+from typing import Literal
+
 from pydantic import Field
 
 from plan_cutters.plan_file.frozen import Frozen, Vector
@@ -18,11 +20,27 @@ class SetupEntry(Frozen):
     reached_share: float | None = Field(default=None, description="of the judged samples' area, 0 to 1")
 
 
+class HiddenFaces(Frozen):
+    """Of these faces another proposed setup machines what this one hides."""
+
+    setup: int = Field(description="that setup, counted from 0 for the first")
+    faces: list[str]
+
+
 class ProposedSetup(Frozen):
-    """A setup that was proposed, with a table as all that holds the part."""
+    """A setup that was proposed, with a table, a vise or a chuck as all that holds the part."""
 
     axis: Vector
-    stands_on: list[str] = Field(description="planar faces that lie on the table: no targets in this setup")
+    stands_on: list[str] = Field(
+        description="planar faces that lie on the table, or on the ledges of the jaws: no targets in this setup"
+    )
+    clamping: Literal["table", "vise", "chuck"] = "table"
+    grips: list[str] = Field(default=[], description="faces that the jaws touch")
+    fixtures: list[str] = Field(default=["table"], description="what holds the part, as --fixture takes it")
+    hidden_mm2: float = Field(default=0.0, description="area of the faces to machine that the jaws touch: for another setup")
+    how_held: str = Field(default="", description="what the vise or chuck is and what it grips; empty for a table")
+    why_held: str = Field(default="", description="why it is held so; empty where nothing else was tried")
+    left_for: list[HiddenFaces] = Field(default=[], description="which other setups machine what it stands on and grips")
     promised: float = Field(description="share of the compared samples' area that it serves by itself, 0 to 1")
 
 
@@ -31,7 +49,7 @@ class SetupProposal(Frozen):
 
     setups: list[ProposedSetup] = Field(description="those of the plan, in its order")
     directions: int = Field(description="directions of the part that were compared by the limits of the machine")
-    searched: int = Field(description="those of them that were searched for postures over a table")
+    searched: int = Field(description="those of them that were searched for postures over a table, or in a vise or chuck")
     samples: int = Field(description="at which they were compared")
     promised: float = Field(description="share of these samples' area that the setups serve together, 0 to 1")
     found: float = Field(description="share of all target area that the plan reaches, faces that are stood on included")

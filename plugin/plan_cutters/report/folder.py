@@ -21,8 +21,10 @@ if TYPE_CHECKING:
     from plan_cutters.plan_file.model import FileEntry, Plan
 
 PLAN = "plan.json"
-#: Written where setups were to be proposed, or posture maps or operations were requested.
+_STAYS = "the process.toml there was edited, and stays: give it with --process, or delete it"
+#: Written where there are steps, setups were to be proposed, or posture maps or operations were requested.
 _SIDE_FILES = {
+    "process",
     "setup_1",
     "setup_2",
     "setup_3",
@@ -188,9 +190,10 @@ def write_all(
     later = [name for name in LATER if name in wanted]
     with staging or Staging(out) as staging:
         making = Making(result, staging.folder, step_schema, clock, listener.begins if listener else lambda what: None)
-        written = _Written(result.plan, staging, clock, out, dict.fromkeys(later, PENDING), as_json="json" in formats)
+        stays = {"process": _STAYS} if result.ready.options.process is None and _edited(result, out) else {}
+        written = _Written(result.plan, staging, clock, out, dict.fromkeys(later, PENDING) | stays, as_json="json" in formats)
         try:
-            for name in _arrays(result, formats):
+            for name in _arrays(result, formats, out):
                 with clock.stage(name, shown=False):
                     written.files[name] = making.file(name)
         except OSError as error:
@@ -258,11 +261,22 @@ def _setup_files(result: Judged) -> list[str]:
     return [f"setup_{number}" for number in range(1, 1 + len(proposal.setups))] if proposal else []
 
 
-def _arrays(result: Judged, formats: Sequence[str]) -> Iterator[str]:
+def _edited(result: Judged, out: Path) -> bool:
+    """Whether a person wrote what stands in the place of the process: it was read, or no plan there lists it as it is."""
+    from plan_cutters.report.to_json import listed
+
+    own, path = result.ready.options.process, out / file_name("process")
+    read = own is not None and bool(own.file) and os.path.abspath(own.file) == os.path.abspath(path)
+    return read or (path.is_file() and (listed(out / PLAN) or {}).get(path.name) != sha256(path))
+
+
+def _arrays(result: Judged, formats: Sequence[str], out: Path) -> Iterator[str]:
     """The files of arrays: they are written before the plan is safe."""
     if "npz" in formats:
         yield "npz"
     yield from _setup_files(result)
+    if result.plan.process is not None and result.plan.process.steps and not _edited(result, out):
+        yield "process"
     if result.maps:
         yield "postures"
     if result.plan.operations:
@@ -322,15 +336,15 @@ def _cause(error: Exception) -> str:
 def _clear(out: Path, result: Judged) -> None:
     """Remove what an earlier run of ours has surely written into the output: the plan there lists it as it is.
 
-    The plan goes first: it must not name files that are gone, or others of the same names. Setup files that this run has read
-    stay: the same command is to find them again.
+    The plan goes first: it must not name files that are gone, or others of the same names. Setup and process files that this
+    run has read stay: the same command is to find them again.
     """
     from plan_cutters.report.to_json import listed
 
     before = listed(out / PLAN)
     if before is None:
         return
-    read, ours = _setups_read(result), []
+    read, ours = _files_read(result), []
     for name, checksum in before.items():
         path = out / name
         if name in _names() and name not in read and path.is_file() and not path.is_symlink():
@@ -346,10 +360,11 @@ def _clear(out: Path, result: Judged) -> None:
             path.unlink()
 
 
-def _setups_read(result: Judged) -> set[str]:
-    """The names of the files in which the setups of a plan were: they may be those of this folder."""
+def _files_read(result: Judged) -> set[str]:
+    """The names of the files in which the setups and the process of a plan were: they may be those of this folder."""
     options = result.ready.options
-    return {each.file for each in (options.placement, *options.other_placements) if each is not None}
+    read = {each.file for each in (options.placement, *options.other_placements) if each is not None}
+    return read | ({Path(options.process.file).name} if options.process is not None else set())
 
 
 def ended(out: Path, cause: str) -> tuple[str, ...]:
@@ -372,6 +387,7 @@ def ended(out: Path, cause: str) -> tuple[str, ...]:
 def stale_files(out: Path, plan: "Plan", formats: Collection[str]) -> list[str]:
     """Files in the output that have names of ours, but are not of this plan: it has neither written nor read them."""
     mine = {entry.name for entry in plan.files.values()} | ({PLAN} if "json" in formats else set())
+    mine |= {file_name("process")} if plan.effective.process is not None or "process" in plan.not_written else set()
     mine |= {each.file for each in (plan.effective.placement, *plan.effective.other_placements) if each and each.file}
     return [name for name in (PLAN, *_names()) if name not in mine and (out / name).is_file()]
 

@@ -24,6 +24,7 @@ WRITERS = {
     "glb": ("annotated.glb", "models", "write_glb"),
     "merged": ("merged.glb", "models", "write_merged"),
     "npz": ("samples.npz", "to_npz", "write_npz"),
+    "process": ("process.toml", "process_file", "write_process"),
     "setup_1": ("setup-1.toml", "setup_files", "write_first"),
     "setup_2": ("setup-2.toml", "setup_files", "write_second"),
     "setup_3": ("setup-3.toml", "setup_files", "write_third"),

@@ -21,7 +21,9 @@ from cad_io.write.step import write_step as write_cad
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INTERFERENCE_FREE, UNDECIDED, UNJUDGED
 from plan_cutters.plan_file.model import FaceEntry, Plan, SplitEntry
 from plan_cutters.plan_file.palette import LABELS, MEANING, rgb
+from plan_cutters.report.clamping_shapes import clamping_shape
 from plan_cutters.report.protocol import Judged
+from plan_cutters.scene.surroundings import PlacedFixture
 
 _LABEL = {
     INTERFERENCE_FREE: LABELS.index("interference_free"),
@@ -155,16 +157,25 @@ def write_step(result: Judged, split: Any, path: Path, *, schema: str = "ap242")
 
 
 def write_styled_step(result: Judged, split: Any, path: Path, style: Callable[[Any], Style], schema: str) -> None:
-    """Write a split part with names and colours, and the fixtures that are CAD files beside it."""
+    """Write a split part with names and colours, and beside it the fixtures that are CAD files, vises and chucks."""
     part = result.part
     others = [
-        Product(each.name, each.source.shape, np.column_stack([each.fixture.rotation, each.fixture.shift]), rgb("fixture"))
+        Product(each.name, shape, np.column_stack([each.fixture.rotation, each.fixture.shift]), rgb("fixture"))
         for each in result.conditions.surroundings.fixtures
-        if isinstance(each.source, Part)
+        if (shape := _shape(each)) is not None
     ]
     write_cad(
         split, path, style, product=product(result), tree=part.tree, layers=part.layers, schema=SCHEMAS[schema], others=others
     )
+
+
+def _shape(placed: PlacedFixture) -> Any:
+    """A fixture as a CAD body in its own frame; None where it is none."""
+    if isinstance(placed.source, Part):
+        return placed.source.shape
+    if (clamping := placed.fixture.clamping) is not None:
+        return clamping_shape(clamping, placed.obstacles.triangles.chord_error)
+    return None
 
 
 def face_facts(result: Judged, entry: FaceEntry) -> dict[str, Any]:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from plan_cutters.domain.columns import columns_of
 from plan_cutters.domain.operations import OperationPlan
 from plan_cutters.report.protocol import Judged
 from plan_cutters.report.to_npz import write_arrays
@@ -17,20 +18,23 @@ def write_operations(result: Judged, _split: object, path: Path) -> None:
     Of the first plan, and of others with `_` and their name behind the words: `operation` (n,) int16, an index into its
     operations, -1 for none; `strip_mm`, the width of a pass; `seconds`, nan without a feed; `exclusive`, that no other operation
     serves it; `lean` (n, 3), where the tool leans, on a floor the side of its bottom that touches; `strategy`, 0: in a point,
-    1: on a floor, 2: along a wall; `contact` (n, 3), where the tool touches as it cuts a sample of a wall, else nan.
+    1: on a floor, 2: along a wall; `contact` (n, 3), where the tool touches as it cuts a sample of a wall, else nan;
+    `moving_axis` (n, 3), the axes proposed for simultaneous operations, else nan, and `moving_piece`, the proved piece of the
+    operation about the sample, the largest first, -1 for none.
     `candidate_cutter` and `candidate_setup` (m,) are indices into the plan's cutters and setups, `candidate_angle` (m, 2) is in
-    degrees.
+    degrees; beside a process of the planner's own there are none.
     """
     operations = result.answers.operations
     assert operations is not None, "written where operations were requested"
     few, ids = operations.fewest, [entry.id for entry in result.cutters]
     number = np.array([ids.index(cutter.id) for cutter in operations.cutters], np.int32)
+    columns = columns_of(np.zeros((0, 3)), np.zeros((0, 2))) if few is None else few.columns
     arrays: dict[str, Any] = {
-        "candidate_cutter": number[few.columns.cutter],
-        "candidate_setup": few.columns.setup,
-        "candidate_angle": few.columns.angle,
-        "candidate_axis": few.columns.axis,
-        "chosen": few.chosen,
+        "candidate_cutter": number[columns.cutter],
+        "candidate_setup": columns.setup,
+        "candidate_angle": columns.angle,
+        "candidate_axis": columns.axis,
+        "chosen": np.zeros(0, np.int64) if few is None else few.chosen,
     }
     for k, plan in enumerate(operations.plans):
         behind = f"_{plan.name.replace(' ', '_')}" if k else ""
@@ -42,6 +46,10 @@ def _columns(plan: OperationPlan) -> dict[str, Any]:
     alone = np.zeros(len(plan.label), bool)
     for each in plan.operations:
         alone[each.only] = True
+    axis, piece = np.full((len(plan.label), 3), np.nan), np.full(len(plan.label), -1, np.int32)
+    for each in plan.operations:
+        if each.turning is not None:
+            axis[each.rows], piece[each.rows] = each.turning.axis[each.rows], each.turning.piece[each.rows]
     return {
         "operation": plan.label.astype(np.int16),
         "strip_mm": plan.strip,
@@ -50,6 +58,8 @@ def _columns(plan: OperationPlan) -> dict[str, Any]:
         "lean": plan.lean,
         "strategy": plan.strategy,
         "contact": plan.contact,
+        "moving_axis": axis,
+        "moving_piece": piece,
     }
 
 

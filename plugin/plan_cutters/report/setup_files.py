@@ -9,7 +9,7 @@ from plan_cutters.report.protocol import Judged
 
 
 def setup_toml(setup: ProposedSetup) -> str:
-    """Write a proposed setup as TOML: the part stands on a table across its axis.
+    """Write a proposed setup as TOML: the part stands on a table across its axis, or in a vise or chuck.
 
     >>> print(setup_toml(ProposedSetup(axis=(0.0, 0.6, 0.8), stands_on=["F2"], promised=1.0)), end="")
     # Proposed by --setup auto: add the vise or the clamps to `fixtures`.
@@ -18,10 +18,12 @@ def setup_toml(setup: ProposedSetup) -> str:
     clamped = ["F2"]
     fixtures = ["table"]
     """
+    first = "add the vise or the clamps to `fixtures`."
+    if setup.clamping != "table":
+        first = f"the {setup.clamping} grips {', '.join(setup.grips)}; put your own into `fixtures`."
     return (
-        "# Proposed by --setup auto: add the vise or the clamps to `fixtures`.\n"
-        f'unit = "mm"\naxis = {json.dumps(list(setup.axis))}\n'
-        f'clamped = {json.dumps(setup.stands_on)}\nfixtures = ["table"]\n'
+        f'# Proposed by --setup auto: {first}\nunit = "mm"\naxis = {json.dumps(list(setup.axis))}\n'
+        f"clamped = {json.dumps(setup.stands_on)}\nfixtures = {json.dumps(setup.fixtures)}\n"
     )
 
 

@@ -19,19 +19,20 @@ from cad_io.part.bodies import Body
 from cad_io.read.mesh import Mesh, is_mesh, read_mesh
 from cad_io.read.read import TIMEOUT
 from cad_io.tessellate.proxies import StandIn
+from plan_cutters.domain.clamping import Clamping
 from plan_cutters.domain.fixture import CAD, MESH, Fixture
 from plan_cutters.domain.placement import axis_words, frame_of
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.plan_file.numbers import mm
+from plan_cutters.scene.holds import Hold
 from plan_cutters.scene.obstacles import Obstacles
+from plan_cutters.scene.solids import box, cylinder, sides_of, triangles_of
 from plan_cutters.scene.surroundings import PlacedFixture, Surroundings, surroundings
 
 #: A table reaches this much farther than the part, mm: as far as a cutter may.
 TABLE = 2000.0
 #: Of a table, models show this much beyond the part, as a share of its size.
 _SHOWN = 0.1
-#: Sides of a cylinder, at most.
-_SIDES = 720
 
 #: What was read of each fixture's source, whatever its place; and its triangles, by the chord error asked for, too.
 FixtureCache = MutableMapping[Any, Any]
@@ -85,7 +86,9 @@ def _read(fixture: Fixture, timeout: float) -> Part | Mesh:
         return read_mesh(source, fixture.unit)
     if suffix not in CAD:
         what = f"{suffix!r} is no format of fixtures" if suffix else "its name does not say its format"
-        raise ReadError(f"{what}: give STEP, IGES, BREP, STL, OBJ, PLY or GLB, or box:, cylinder: or table:", file=source)
+        raise ReadError(
+            f"{what}: give STEP, IGES, BREP, STL, OBJ, PLY or GLB, or box:, cylinder:, table, vise or chuck", file=source
+        )
     return read_part(source, unit=fixture.unit, timeout=timeout)
 
 
@@ -97,6 +100,7 @@ def joined(
     setup: Sequence[float] = (0.0, 0.0, 1.0),
     own: Sequence[Fixture] = (),
     own_setup: Sequence[float] = (0.0, 0.0, 1.0),
+    hold: Callable[[Fixture, Sequence[float]], Hold] | None = None,
 ) -> Surroundings:
     """Add the fixtures to the surroundings of a part.
 
@@ -113,11 +117,13 @@ def joined(
         Unit setup axis, across which tables lie.
     own, own_setup : sequence of Fixture, sequence of float
         More fixtures, whose tables lie across another unit setup axis.
+    hold : callable, optional
+        Places a vise or chuck for a unit setup axis. None: there is none to be placed.
 
     Raises
     ------
-    ReadError, UnjudgeableError
-        A fixture cannot be read, or has no triangles.
+    ReadError, UnjudgeableError, FixtureError
+        A fixture cannot be read, or has no triangles; a vise or chuck has nothing to grip.
     """
     placed = [(each, setup) for each in fixtures] + [(each, own_setup) for each in own]
     if not placed:
@@ -125,11 +131,18 @@ def joined(
     vertex = surroundings.possible.triangles.vertex
     near = np.array([vertex.min(axis=(0, 1)), vertex.max(axis=(0, 1))])
     placed_fixtures, bodies = [], []
-    for number, (fixture, across) in enumerate(placed, 1):
+    for number, (requested, across) in enumerate(placed, 1):
+        held = None if hold is None or not requested.to_place else hold(requested, across)
+        fixture = requested if held is None else held.fixture
         bed = _bed(fixture, surroundings, across, near) if fixture.kind == "table" else None
         body = _body(fixture, chord, cache) if bed is None else _solid(bed(TABLE), 0.0)
         shown = None if bed is None else bed(_SHOWN * float(np.ptp(near, axis=0).max()))
-        placed_fixtures.append(_placed(-number, packable(fixture, cache), body, read(fixture, cache), shown, across))
+        if (clamping := fixture.clamping) is not None:
+            shown, _ = triangles_of(clamping, chord, shown=True)
+        in_place = _placed(-number, packable(fixture, cache), body, read(fixture, cache), shown, across)
+        if held is not None:
+            in_place = replace(in_place, notes=(*in_place.notes, held.words), requested=requested, hold=held)
+        placed_fixtures.append(in_place)
         bodies.append(body)
     possible = _together(surroundings.possible, placed_fixtures, [body.possible for body in bodies], near)
     certain = possible
@@ -149,7 +162,7 @@ def _placed(
     if isinstance(source, Mesh) and not fixture.chord_error:
         notes.append("how far it is from what it stands for is not known: it counts as exact")
     shown = whole.triangles.vertex if extruded is None else fixture.placed(extruded)
-    if fixture.follows_setup and (not fixture.sizes or tuple(setup) != (0.0, 0.0, 1.0)):
+    if fixture.kind == "table" and fixture.follows_setup and (not fixture.sizes or tuple(setup) != (0.0, 0.0, 1.0)):
         high = float((vertex @ np.asarray(setup, float)).max())
         notes.append(f"its top is {mm(high)} from the part's origin along the setup axis {axis_words(setup)}")
     return PlacedFixture(
@@ -190,6 +203,16 @@ def _body(fixture: Fixture, chord: float, cache: FixtureCache) -> _Body:
         cache[key] = _word(fixture, chord) if source is None else _of_part(source, fixture, chord)
     body: _Body = cache[key]
     return body
+
+
+def body_near(clamping: Clamping, fixture: Fixture, chord: float, part: Obstacles) -> Obstacles:
+    """A vise or chuck in its place, without those of its bodies that are wholly lower than a part, so none of it is in them.
+
+    `chord`: the chord error to ask for, mm.
+    """
+    lowest = float(((part.triangles.vertex - fixture.shift) @ fixture.rotation[:, 2]).min())
+    vertex, error = triangles_of(clamping, chord, above=lowest)
+    return _solid(fixture.placed(vertex), error).certain
 
 
 def _of_part(part: Part, fixture: Fixture, chord: float) -> _Body:
@@ -249,13 +272,14 @@ def _bed(fixture: Fixture, surroundings: Surroundings, setup: Sequence[float], n
 
 
 def _word(fixture: Fixture, chord: float) -> _Body:
-    """A box or a cylinder by its sizes."""
+    """A box, a cylinder, or a vise or chuck in its place, by its sizes."""
     if fixture.kind == "box":
         return _solid(box(np.zeros(3), np.array(fixture.sizes)), 0.0)
+    if (clamping := fixture.clamping) is not None:
+        return _solid(*triangles_of(clamping, chord))
     radius, height = fixture.sizes
+    sides = sides_of(radius, chord)
     # The chord of a side is this far from the arc.
-    sides = math.ceil(math.pi / math.acos(max(0.0, 1.0 - min(1.0, chord / radius))))
-    sides = min(max(sides, 8), _SIDES)
     return _solid(cylinder(radius, height, sides), radius * (1.0 - math.cos(math.pi / sides)))
 
 
@@ -266,22 +290,3 @@ def _solid(vertex: Floats, error: float) -> _Body:
 
 def _triangles(vertex: Floats, error: float) -> Triangles:
     return Triangles(vertex, np.zeros(len(vertex), np.int32), error, ())
-
-
-def box(low: Floats, high: Floats) -> Floats:
-    """Triangles (12, 3, 3) of a box, counter-clockwise from outside."""
-    corner = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)])
-    sides = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
-    split = [(a, b, c) for a, b, c, _ in sides] + [(a, c, d) for a, _, c, d in sides]
-    return np.asarray((low + corner * (high - low))[np.array(split)])
-
-
-def cylinder(radius: float, height: float, sides: int) -> Floats:
-    """Triangles (4 sides, 3, 3) of a prism in a cylinder that stands on the origin, counter-clockwise from outside."""
-    turn = 2.0 * np.pi * np.arange(sides) / sides
-    x, y = radius * np.cos(turn), radius * np.sin(turn)
-    a = np.stack([x, y, np.zeros(sides)], axis=1)
-    b, up = np.roll(a, -1, axis=0), np.array([0.0, 0.0, height])
-    middle = np.zeros((sides, 3))
-    parts = [(a, b, b + up), (a, b + up, a + up), (b, a, middle), (a + up, b + up, middle + up)]
-    return np.concatenate([np.stack(part, axis=1) for part in parts])

@@ -6,8 +6,9 @@ import numpy as np
 
 from cad_io.arrays import Floats, Record
 from plan_cutters.errors import FixtureError
+from plan_cutters.scene.fixtures import body_near
 from plan_cutters.scene.obstacles import Obstacles, divided
-from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
+from plan_cutters.scene.surroundings import Surroundings
 
 #: Points are looked at this share apart of the box that a fixture and the part have in common; and at most about so many.
 _APART, _MOST = 1 / 64, 200_000
@@ -40,7 +41,10 @@ def refuse_overlaps(surroundings: Surroundings, tolerance: float) -> None:
     """
     part = (surroundings.alone or surroundings).certain
     for each in surroundings.fixtures:
-        result = overlap(part, each, tolerance)
+        clamping, near = each.fixture.clamping, each.obstacles
+        if clamping is not None:
+            near = body_near(clamping, each.fixture, near.triangles.chord_error, part)
+        result = overlap(part, near, tolerance)
         if result is not None:
             x, y, z = (f"{value + 0.0:.4g}" for value in np.round(result.point, 6))
             raise FixtureError(
@@ -49,7 +53,7 @@ def refuse_overlaps(surroundings: Surroundings, tolerance: float) -> None:
             )
 
 
-def overlap(part: Obstacles, placed: PlacedFixture, tolerance: float) -> Overlap | None:
+def overlap(part: Obstacles, fixture: Obstacles, tolerance: float) -> Overlap | None:
     """How deep a fixture stands in a part, or the part in it; None where they touch at most.
 
     Only what is closed has an inside: two surfaces that enclose nothing are not compared.
@@ -58,11 +62,11 @@ def overlap(part: Obstacles, placed: PlacedFixture, tolerance: float) -> Overlap
     ----------
     part : Obstacles
         The part alone, with what it surely encloses.
-    placed : Standing
+    fixture : Obstacles
+        In its place.
     tolerance : float
         Depth that is no fault, mm, beside the chord errors of both.
     """
-    fixture = placed.obstacles
     deep = tolerance + part.triangles.chord_error + fixture.triangles.chord_error
     ends = [(o.triangles.vertex.min(axis=(0, 1)), o.triangles.vertex.max(axis=(0, 1))) for o in (part, fixture)]
     low, high = np.max([a for a, _ in ends], axis=0), np.min([b for _, b in ends], axis=0)

@@ -8,9 +8,11 @@ from numpy.typing import NDArray
 
 from cad_io import SurfaceSamples
 from cad_io.arrays import Ints, Record
+from cad_io.part.patterns import Pattern
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.options import Options
 from plan_cutters.scene.conditions import Conditions
+from plan_cutters.scene.copies import Copies
 from plan_cutters.scene.faces import Chosen
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.spacing import Spacing
@@ -69,6 +71,10 @@ class Prepared(Record):
         The setups beside the first.
     exempt : (n,) bool, optional
         Samples at sharp inside edges that no cutter has to reach (`stages.sharp_edges.exempt`); None: all are required.
+    patterns : tuple of Pattern
+        Equal faces of the part, and motions that carry it onto itself.
+    copies : Copies, optional
+        Samples that these motions carry onto others; None where there are few, or patterns are not to be used.
     """
 
     scene: Scene
@@ -86,6 +92,8 @@ class Prepared(Record):
     held: NDArray[np.bool_] | None = None
     others: tuple[OtherSetup, ...] = ()
     exempt: NDArray[np.bool_] | None = None
+    patterns: tuple[Pattern, ...] = ()
+    copies: Copies | None = None
 
     @property
     def axes(self) -> tuple[tuple[Axis, Axis | None], ...]:
@@ -104,7 +112,8 @@ class Prepared(Record):
         if setup == 0:
             return self
         other = self.others[setup - 1]
-        return replace(self, conditions=other.conditions, inside=other.inside, held=other.clamped)
+        copies = None if self.copies is None else self.copies.there(setup)
+        return replace(self, conditions=other.conditions, inside=other.inside, held=other.clamped, copies=copies)
 
     def alone(self, setup: int) -> "Prepared":
         """One setup, counted from 0, as if there were no other one."""

@@ -34,7 +34,7 @@ ANSWERED = frozenset({"machine", "setup", "placement", "tilt", "rotation", "rota
 #: Options that change nothing that maps say.
 IRRELEVANT = frozenset({"jobs", "area_budget", "length_over_radius", "feed", "scallop", "stepover", "index_step",
                         "axis_accuracy", "index_time", "change_time", "setup_time", "overlap", "most_operations",
-                        "max_orientations", "sharp_edges", "units"})  # fmt: skip
+                        "max_orientations", "patterns", "sharp_edges", "units"})  # fmt: skip
 
 _WORDS = {"libraries": "--cutters", "cutters": "--cutter", "fixtures": "--fixture", "other_setups": "a second --setup"}
 _TOLERATED = 1e-9
@@ -66,7 +66,8 @@ def question(ready: Prepared, cutter: Cutter) -> dict[str, Any]:
         "x": None if options.placement is None or options.placement.x is None else list(options.placement.x),
         "sides_follow_setup": _sides_follow(scene),
         "fixtures": [
-            _fixture(each.fixture, None if each.source is None else _bytes(each.source)) for each in surroundings.fixtures
+            _fixture(each.requested or each.fixture, None if each.source is None else _bytes(each.source))
+            for each in surroundings.fixtures
         ],
         "tolerance": scene.asked,
         "tolerance_kept": ready.conditions.tolerance,
@@ -118,6 +119,8 @@ def refuse_others(about: Mapping[str, Any], options: Options, stated: Collection
             if fault := _SAME[word](about, options):
                 raise OptionError(f"these maps are of {fault}: plan again")
         _places(about, options)
+        if {"setup", "placement"} & set(stated):
+            _placed_there(about, options)
         if ({"cutters", "libraries"} & set(stated)) and cutter not in (ids := _ids(about, options, stated)):
             raise OptionError(f"these maps are of cutter {cutter}, which was not requested ({', '.join(ids[:3])}): plan again")
     except (KeyError, TypeError, ValueError, AttributeError):
@@ -222,7 +225,8 @@ def _fixture(fixture: Fixture, bytes_of: str | None) -> dict[str, Any]:
     """A fixture by what it is made of: its words, or the bytes of its file."""
     made: dict[str, Any] = {"placement": list(fixture.placement), "chord_error": fixture.chord_error}
     if fixture.kind:
-        return made | {"kind": fixture.kind, "sizes": list(fixture.sizes)}
+        placed = {"placed_for_setup": True} if fixture.to_place else {}
+        return made | {"kind": fixture.kind, "sizes": list(fixture.sizes), **placed}
     return made | {"sha256": bytes_of, "unit": fixture.unit}
 
 
@@ -330,6 +334,16 @@ def _places(about: Mapping[str, Any], options: Options) -> None:
             )
         if place.fixtures and (fault := _fixtures(about, options)):
             raise OptionError(f"these maps are of {fault}: plan again")
+
+
+def _placed_there(about: Mapping[str, Any], options: Options) -> None:
+    """Refuse another setup where a vise or chuck was placed for that of the maps: it would stand elsewhere."""
+    gripping = [each["kind"] for each in about["fixtures"] if each.get("placed_for_setup")]
+    if gripping and not np.allclose(options.setup, about["setup"], atol=_TOLERATED):
+        raise OptionError(
+            f"these maps are of a {gripping[0]} that was placed for the setup {axis_words(about['setup'])}, not "
+            f"{axis_words(options.setup)}: plan again"
+        )
 
 
 def _ids(about: Mapping[str, Any], options: Options, stated: Collection[str]) -> list[str]:

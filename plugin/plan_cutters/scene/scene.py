@@ -11,6 +11,7 @@ from cad_io.arrays import Record
 from cad_io.part.orient import orient
 from cad_io.tessellate.triangles import At
 from plan_cutters.domain.checks import flag, number
+from plan_cutters.domain.clamping import Clamping
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.host_axes import plane_of
 from plan_cutters.domain.placement import Placement
@@ -20,9 +21,12 @@ from plan_cutters.domain.tolerance import CHORD_REQUESTED
 from plan_cutters.errors import OptionError
 from plan_cutters.option_types import SceneOptions
 from plan_cutters.options import MOST_TOLERANCE, Options
+from plan_cutters.scene.clamping import Workpiece, held
 from plan_cutters.scene.faces import ignored_faces, ignored_words
-from plan_cutters.scene.fixtures import FixtureCache, joined, packable, read
-from plan_cutters.scene.overlap import refuse_overlaps
+from plan_cutters.scene.fixtures import FixtureCache, body_near, joined, packable, read
+from plan_cutters.scene.holds import Hold
+from plan_cutters.scene.overlap import overlap, refuse_overlaps
+from plan_cutters.scene.solids import entered
 from plan_cutters.scene.surroundings import Surroundings, surroundings
 
 #: The options of a plan that are a scene's.
@@ -36,6 +40,7 @@ class _Memory:
     sources: FixtureCache = field(default_factory=dict)
     alone: Surroundings | None = None
     around: Surroundings | None = None
+    holds: dict[Any, Hold] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -59,6 +64,8 @@ class Scene(Record):
         The gouge tolerance that was requested, mm.
     fixtures : tuple of Fixture
         What holds the part: obstacles, never targets.
+    targets : tuple of int
+        Faces of which a vise or chuck is to hide as little as it can; empty: of all.
     """
 
     part: Part
@@ -69,6 +76,7 @@ class Scene(Record):
     ignored: tuple[int, ...]
     asked: float
     fixtures: tuple[Fixture, ...] = ()
+    targets: tuple[int, ...] = ()
     _memory: _Memory = field(default_factory=_Memory, init=False, compare=False)
 
     @classmethod
@@ -129,7 +137,15 @@ class Scene(Record):
         others = Fixture.each_of(fixtures)
         if others == self.fixtures:
             return self
-        scene = replace(self, fixtures=others)
+        return self._sharing(fixtures=others)
+
+    def for_targets(self, targets: Sequence[int]) -> "Scene":
+        """The same part, of which other faces are to be machined: a vise or chuck is to hide as little of them as it can."""
+        return self if tuple(targets) == self.targets else self._sharing(targets=tuple(targets))
+
+    def _sharing(self, **changes: Any) -> "Scene":
+        """The same part with what was read and tessellated of it."""
+        scene = replace(self, **changes)
         scene._memory.sources, scene._memory.alone = self._memory.sources, self._memory.alone
         return scene
 
@@ -189,7 +205,7 @@ class Scene(Record):
         if memory.around is None:
             if memory.alone is None:
                 memory.alone = surroundings(self.part, chord, ignored=self.ignored, jobs=jobs, at=at)
-            obstacles = joined(memory.alone, self.fixtures, chord, memory.sources, self.setup)
+            obstacles = joined(memory.alone, self.fixtures, chord, memory.sources, self.setup, hold=self.hold)
             refuse_overlaps(obstacles, obstacles.tolerance(self.asked))
             memory.around = obstacles
         return memory.around
@@ -214,27 +230,70 @@ class Scene(Record):
         alone = memory.alone
         if alone is None or (mine == self.fixtures and not (setup != self.setup and any(f.follows_setup for f in own))):
             return self.surround()
-        surroundings = joined(alone, mine[: len(shared)], chord, memory.sources, self.setup, mine[len(shared) :], setup)
+        surroundings = joined(
+            alone, mine[: len(shared)], chord, memory.sources, self.setup, mine[len(shared) :], setup, hold=self.hold
+        )
         refuse_overlaps(surroundings, surroundings.tolerance(self.asked))
         return surroundings
 
     def turned_to(self, setup: tuple[float, float, float]) -> "Scene":
         """The same part in another setup, the sides of its faces as they are, without fixtures: it is not tessellated again."""
-        scene = replace(self, setup=setup, fixtures=())
-        scene._memory.sources, scene._memory.alone = self._memory.sources, self._memory.alone
-        return scene
+        return self._sharing(setup=setup, fixtures=())
 
-    def surround_on_table(self, setup: tuple[float, float, float]) -> Surroundings:
-        """Gather the obstacles where the part stands on a table across a setup axis, and nothing else holds it.
+    def surround_held(self, setup: tuple[float, float, float], word: str) -> Surroundings:
+        """Gather the obstacles where the part stands on a `table` across a setup axis, or in a vise or chuck, and nothing else
+        holds it.
 
-        The table touches the part at its lowest point: nothing is to be refused.
+        The table touches the part at its lowest point, and a vise or chuck where it grips: nothing is to be refused.
+
+        Raises
+        ------
+        FixtureError
+            The vise or chuck has nothing to grip.
         """
         memory, chord = self._memory, CHORD_REQUESTED * self.asked
         if memory.alone is None:
             memory.alone = surroundings(self.part, chord, ignored=self.ignored)
-        return joined(memory.alone, Fixture.each_of("table"), chord, memory.sources, setup)
+        return joined(memory.alone, Fixture.each_of(word), chord, memory.sources, setup, hold=self.hold)
+
+    def hold(self, fixture: Fixture, setup: Sequence[float]) -> Hold:
+        """Place a vise or chuck for a unit setup axis; `surround` must have been called.
+
+        Raises
+        ------
+        FixtureError
+            It has nothing to grip.
+        """
+        memory = self._memory
+        key = (fixture, tuple(setup), self.targets)
+        if key not in memory.holds:
+            alone = memory.alone
+            assert alone is not None, "a part is tessellated before it is clamped"
+            obstacles = alone.certain if len(alone.certain.triangles) else alone.possible
+            triangles, tolerance = obstacles.triangles, alone.tolerance(self.asked)
+            planes = [face.number for face in self.part.faces if face.shape == "plane"]
+            own = triangles.face > 0
+            piece = Workpiece.of(
+                triangles.vertex[own], triangles.face[own], self.orientation.sign, planes, self.targets, tuple(setup)
+            )
+            chord = CHORD_REQUESTED * self.asked
+            # What the full search would find as well, for most places where the part is in the way, at once.
+            corner, edge = triangles.vertex[own], np.roll(triangles.vertex[own], -1, axis=1)
+            points = np.concatenate([corner.reshape(-1, 3), 0.5 * (corner + edge).reshape(-1, 3), corner.mean(axis=1)])
+            deep = tolerance + triangles.chord_error
+
+            def plainly(placed: Fixture, clamping: Clamping) -> bool:
+                return entered(clamping, (points - placed.shift) @ placed.rotation, deep)
+
+            def overlaps(placed: Fixture, clamping: Clamping) -> bool:
+                return overlap(alone.certain, body_near(clamping, placed, chord, alone.certain), tolerance) is not None
+
+            memory.holds[key] = held(fixture, piece, plainly, overlaps)
+        return memory.holds[key]
 
     def surround_closer(self, chord: float) -> Surroundings:
         """The same, with triangles for another chord error, mm, which are not kept."""
-        alone = surroundings(self.part, chord, ignored=self.ignored)
-        return joined(alone, self.fixtures, chord, self._memory.sources, self.setup)
+        alone, memory = surroundings(self.part, chord, ignored=self.ignored), self._memory
+        # A vise stays where it is, however close triangles are.
+        memory.alone = alone if memory.alone is None else memory.alone
+        return joined(alone, self.fixtures, chord, memory.sources, self.setup, hold=self.hold)

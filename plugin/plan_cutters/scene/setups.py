@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
+from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement, axis_words
 from plan_cutters.domain.verdicts import ANOTHER_SETUP, FIXTURE, Verdicts
 from plan_cutters.errors import FixtureError
@@ -24,6 +25,11 @@ from plan_cutters.scene.surroundings import Surroundings
 def places(options: Options) -> tuple[Placement | None, ...]:
     """How the part stands in each setup, as far as it is known, the first one first."""
     return options.placement, *(options.other_placements or (None,) * len(options.other_setups))
+
+
+def fixtures_of(options: Options) -> list[Fixture]:
+    """The fixtures of all setups."""
+    return [*options.fixtures, *(each for place in places(options) if place is not None for each in place.fixtures)]
 
 
 def conditions_of(scene: Scene, options: Options) -> list[Conditions]:
@@ -58,7 +64,7 @@ def _x(place: Placement | None) -> Floats | None:
 
 def with_setups(ready: Prepared, conditions: list[Conditions]) -> Prepared:
     """Add what is held in the first setup, and the other setups with what cannot be machined there."""
-    held = [_samples_of(ready, place) for place in places(ready.options)]
+    held = [_samples_of(ready, place, each) for place, each in zip(places(ready.options), conditions, strict=True)]
     others = []
     for each, clamped in zip(conditions[1:], held[1:], strict=True):
         inside = ready.inside
@@ -75,22 +81,27 @@ def with_setups(ready: Prepared, conditions: list[Conditions]) -> Prepared:
     return replace(ready, held=held[0], others=tuple(others))
 
 
-def _samples_of(ready: Prepared, place: Placement | None) -> NDArray[np.bool_]:
-    """Samples (n,) of the faces that a setup clamps."""
-    return np.isin(ready.samples.face, sorted(clamped_faces(ready.scene.part, place)))
+def _samples_of(ready: Prepared, place: Placement | None, conditions: Conditions) -> NDArray[np.bool_]:
+    """Samples (n,) of the faces that a setup clamps, or with which the part rests in a vise or chuck."""
+    rests_on = [number for each in conditions.surroundings.fixtures if each.hold is not None for number in each.hold.rests_on]
+    return np.isin(ready.samples.face, sorted({*clamped_faces(ready.scene.part, place), *rests_on}))
 
 
 def stood_on(ready: Prepared) -> NDArray[np.bool_]:
-    """Samples (n,) of faces that stand on the table of a setup that was proposed."""
-    faces = {int(name[1:]) for place in places(ready.options) if place is not None for name in place.stands_on}
-    return np.isin(ready.samples.face, sorted(faces))
+    """Samples (n,) that what was proposed may hide: of faces that stand on a proposed table, or that a vise or chuck holds which
+    was placed for a setup; of all faces where nothing but such vises and chucks stands anywhere."""
+    faces, clamped = set[int](), True
+    for place, conditions in zip(places(ready.options), ready.setups, strict=True):
+        faces.update(int(name[1:]) for name in (() if place is None else place.stands_on))
+        proposed = place is not None and place.proposed
+        for each in conditions.surroundings.fixtures:
+            faces.update(() if each.hold is None else each.hold.faces)
+            clamped &= each.hold is not None or (proposed and each.fixture.clamping is not None)
+    return np.isin(ready.samples.face, sorted(faces)) | (clamped and bool(faces))
 
 
 def for_another_setup(ready: Prepared, verdicts: Verdicts) -> Verdicts:
-    """The same verdicts with a reason of its own where only a proposed table is in the way, on faces that stand on it.
-
-    Beside a proposed table there are no other fixtures.
-    """
+    """The same verdicts with a reason of its own where fixtures alone are in the way, on faces that what was proposed holds."""
     mine = stood_on(ready) & verdicts.not_reached & (verdicts.reason == FIXTURE)
     if not mine.any():
         return verdicts

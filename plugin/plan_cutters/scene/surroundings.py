@@ -17,6 +17,7 @@ from cad_io.tessellate.triangles import At
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.tolerance import effective_tolerance
 from plan_cutters.errors import UnjudgeableError
+from plan_cutters.scene.holds import Hold
 from plan_cutters.scene.obstacles import Obstacles, weights
 from plan_cutters.scene.thickened import boxed, thickened
 
@@ -45,6 +46,10 @@ class PlacedFixture(Record):
         What the plan must say of it.
     shown : (n, 3, 3) float
         Triangles to draw of it, mm.
+    requested : Fixture, optional
+        What was requested where it was placed for the setup; None: `fixture` itself.
+    hold : Hold, optional
+        What it grips, where it was placed for the setup.
     """
 
     number: int
@@ -55,6 +60,8 @@ class PlacedFixture(Record):
     missing: tuple[tuple[str, str, StandIn], ...]
     notes: tuple[str, ...]
     shown: Floats
+    requested: Fixture | None = None
+    hold: Hold | None = None
 
     @property
     def name(self) -> str:

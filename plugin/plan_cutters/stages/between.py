@@ -5,7 +5,7 @@ another one with more room to the local gouging bound is tried. Then the cell is
 most area may be gained for each contact, until that is too little or a budget of contacts is spent.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -18,6 +18,7 @@ from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.threads import Progress, part_of
 from plan_cutters.scene.work import Work
+from plan_cutters.stages.axis_field import AxisField
 from plan_cutters.stages.cells import CellContacts, Field, laid
 from plan_cutters.stages.connected import connected
 from plan_cutters.stages.face_cells import FaceCells, Fixed, best
@@ -120,7 +121,7 @@ def between(
     most: float = np.inf,
     work: Work | None = None,
     covered_samples: NDArray[np.bool_] | None = None,
-    fixed: Fixed | None = None,
+    axes: Fixed | Mapping[int, AxisField] | None = None,
     own: NDArray[np.bool_] | None = None,
     progress: Progress | None = None,
 ) -> Between:
@@ -143,8 +144,10 @@ def between(
         Where it is counted.
     covered_samples : (n,) bool, optional
         Samples that are no surface of the finished part: cells about them are left out where all around them are such, too.
-    fixed : Fixed, optional
-        Each cell keeps the axis of its sample, or takes one of these that serve the sample: no other posture is searched.
+    axes : Fixed or mapping of int to AxisField, optional
+        Fixed: each cell keeps the axis of its sample, or takes one of these that serve the sample. Fields by face: each contact
+        has the axis that the field has there, cells are served where every axis in them serves all of the cell, and faces without
+        a field are not looked at. No other posture is searched.
     own : (n + 1,) bool, optional
         Samples whose cells are looked at, and behind them whether those about no sample are; the others are as if they were not
         there, but `share` is of all the same.
@@ -152,6 +155,7 @@ def between(
         Called with how much is done of the most that may be.
     """
     whole, unknown = _areas(samples, part)
+    fixed, turning = (axes, None) if axes is None or isinstance(axes, Fixed) else (None, axes)
     covered_samples = np.zeros(len(samples), bool) if covered_samples is None else covered_samples
     own = np.ones(len(samples) + 1, bool) if own is None else own
     counted, short = own[:-1] & ~covered_samples, 0
@@ -168,7 +172,7 @@ def between(
     faces, nodes, strips = list[FaceCells](), list[CellContacts](), list[CellContacts]()
     for grid in samples.grids:
         trim = part.trim(grid.face)
-        if trim is None or not trim.closed:
+        if trim is None or not trim.closed or (turning is not None and grid.face not in turning):
             continue  # which part of the surface it uses is not known well enough
         field, mine, bare = laid(part, orientation, samples, grid, verdicts, context.conditions)
         on_grid = grid.index[grid.index >= 0]
@@ -180,7 +184,7 @@ def between(
             mine, bare = (cells.of(~deep[tuple(cells.home.T)]) for cells in (mine, bare))
         # Row -1, of no sample, is the last.
         mine, bare = (cells.of(own[cells.sample]) for cells in (mine, bare))
-        faces.append(FaceCells(field, context, work, fixed, reported))
+        faces.append(FaceCells(field, context, work, fixed, None if turning is None else turning[grid.face], reported))
         nodes.append(mine)
         strips.append(bare)
     contacts = budget + sum(map(len, nodes))
@@ -307,7 +311,7 @@ def _cells(faces: Sequence[FaceCells]) -> Cells:
             continue
         each = CellContacts(*(np.concatenate([getattr(c, n) for c in face_cells.found]) for n in CellContacts.__slots__))
         level = np.repeat(np.array(face_cells.levels, np.int64), [len(c) for c in face_cells.found])
-        piece = last + connected(face_cells.field, each, level)
+        piece = last + connected(face_cells.field, each, level, turning=face_cells.turning is not None)
         last += len(each)
         pieces.append(Cells(np.full(len(each), face_cells.field.number, np.int32), each.middle, each.span, each.axis, each.side,
                             each.whole, each.area, each.sample, piece))  # fmt: skip

@@ -15,7 +15,7 @@ _MOST_LEVELS = 10
 _ALONG, _ONE = 1e-9, 1e-9
 
 
-def connected(field: Field, cells: CellContacts, level: Indices) -> Indices:
+def connected(field: Field, cells: CellContacts, level: Indices, *, turning: bool = False) -> Indices:
     """Number the pieces of served cells of a face, from 0.
 
     Cells that lie in the trim altogether are joined across a common side if they have the same axis, and where that is the normal
@@ -28,6 +28,8 @@ def connected(field: Field, cells: CellContacts, level: Indices) -> Indices:
         Served, none of them within another.
     level : (m,) int64
         How often each was cut into four.
+    turning : bool
+        Both sides of a common side have the axes of one field.
 
     Returns
     -------
@@ -50,7 +52,7 @@ def connected(field: Field, cells: CellContacts, level: Indices) -> Indices:
             there = known[at] == wanted
             pairs.append(np.column_stack([which[mine[there]], order[at[there]]]))
     pair = np.concatenate(pairs)
-    a, b = pair[_alike(cells, pair)].T
+    a, b = (pair if turning else pair[_alike(cells, pair)]).T
     both, one = cells.whole[a] & cells.whole[b], cells.whole[a] != cells.whole[b]
     # Of a cell that is cut, the first whole neighbour.
     cut, neighbours = np.where(cells.whole[a[one]], b[one], a[one]), np.where(cells.whole[a[one]], a[one], b[one])

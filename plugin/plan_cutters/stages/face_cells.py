@@ -15,6 +15,7 @@ from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.conditions import Context, search_postures
 from plan_cutters.scene.threads import CHUNK, in_chunks
 from plan_cutters.scene.work import Work
+from plan_cutters.stages.axis_field import AxisField, angle_between, held_within
 from plan_cutters.stages.cells import CellContacts, Field, quartered, tensors
 from plan_cutters.stages.margin import roomiest
 
@@ -73,6 +74,8 @@ class FaceCells:
         What was looked at, for this face and others.
     fixed : Fixed, optional
         Where postures are not searched.
+    turning : AxisField, optional
+        Each contact has its own axis: no other posture is tried.
     reported : callable
         Called as often as contacts were looked at.
     found : list of CellContacts
@@ -97,6 +100,7 @@ class FaceCells:
     context: Context
     work: Work = dataclasses_field(default_factory=Work)
     fixed: Fixed | None = None
+    turning: AxisField | None = None
     reported: Callable[[], None] = lambda: None
     found: list[CellContacts] = dataclasses_field(default_factory=list)
     levels: list[int] = dataclasses_field(default_factory=list)
@@ -239,6 +243,8 @@ def _served(contacts: CellContacts, face_cells: FaceCells, rooms: Sequence[float
     context = face_cells.context
     status = np.full(len(contacts), _UNTOLD, np.uint8)
     tensor = tensors(contacts.normal, contacts.direction_max, contacts.curvature)
+    if face_cells.turning is not None:
+        return _along(face_cells.turning, contacts, tensor, face_cells)
     known = np.isfinite(contacts.axis).all(axis=1) & _whole(contacts)
     rows = np.flatnonzero(known)
     status[rows] = _cover(contacts, tensor, contacts.axis, contacts.flat, face_cells, rows)
@@ -274,6 +280,20 @@ def _served(contacts: CellContacts, face_cells: FaceCells, rooms: Sequence[float
             rows, new = rows[better], new[better]
             contacts.axis[rows], contacts.flat[rows], status[rows], known[rows] = verdicts.axis[rows], False, new, True
             contacts.side[rows] = verdicts.tilt_direction[rows]
+    return status
+
+
+def _along(turning: AxisField, contacts: CellContacts, tensor: Floats, face_cells: FaceCells) -> CellStatus:
+    """Outlook of contacts whose cells are served with every axis that the field has in them, and all between."""
+    axis, swing = turning.within(contacts.middle, contacts.span)
+    conditions, (low, high) = face_cells.context.conditions, face_cells.context.conditions.postures.tilt
+    contacts.axis[:], contacts.flat[:] = axis, False
+    tilt = angle_between(axis, contacts.normal)
+    known = _whole(contacts) & np.isfinite(axis).all(axis=1) & np.isfinite(swing)
+    held = known & held_within(axis, swing, conditions) & (tilt - swing >= low - _UPRIGHT) & (tilt + swing <= high + _UPRIGHT)
+    status = np.where(known, np.uint8(1), np.uint8(NEVER))
+    rows = np.flatnonzero(held)
+    status[rows] = _cover(contacts, tensor, axis, contacts.flat, face_cells, rows, swings=swing)
     return status
 
 
@@ -344,14 +364,16 @@ def _cover(
     face_cells: FaceCells,
     rows: NDArray[np.int64],
     sides: Floats | None = None,
+    swings: Floats | None = None,
 ) -> CellStatus:
-    """Outlook (m,) of rows of contacts with tensors and axes; on the sides that they have, or others."""
+    """Outlook (m,) of rows of contacts with tensors and axes, that may turn; on the sides that they have, or others."""
     from plan_cutters.kernels.area.cover import Patches, cover
     from plan_cutters.kernels.area.zone import Nodes
 
     field, conditions, sweeping = face_cells.field, face_cells.context.conditions, face_cells.sweeping
     sides, obstacles = contacts.side if sides is None else sides, conditions.obstacles
-    patches = Patches(contacts.point, contacts.normal, tensor, axes, flats, sides, contacts.patch, contacts.home)
+    patches = Patches(contacts.point, contacts.normal, tensor, axes, flats, sides, contacts.patch, contacts.home,
+                      np.zeros(len(contacts)) if swings is None else swings)  # fmt: skip
     nodes, status = Nodes(field.index, field.closed, face_cells.about), np.zeros(len(contacts), np.uint8)
 
     def covered(piece: NDArray[np.int64]) -> int:

@@ -33,7 +33,9 @@ def margin(axis: Floats, normal: Floats, tensor: Floats, context: Context) -> ND
     sine = np.linalg.norm(across, axis=1)
     t = across / np.maximum(sine, 1e-12)[:, None]
     bend = np.einsum("ni,nij,nj->n", t, tensor.reshape(-1, 3, 3), t)
-    remainder = sine / (mode[OFFSET_OF] + mode[RISE] * sine) - bend
+    # Upright, a ball has the curvature of its tip.
+    ratio = np.maximum(sine, 1e-12)
+    remainder = ratio / (mode[OFFSET_OF] + mode[RISE] * ratio) - bend
     return np.asarray(np.where(cosine > -1e-9, context.cutter.radius * remainder, -np.inf))
 
 

@@ -121,7 +121,7 @@ def test_samples_and_files_are_the_same_with_copies_and_without(tmp_path, monkey
     assert one.samples == other.samples
     wanted = ("json", "npz", "html", "glb", "step")
     written = [write_all(each, tmp_path / str(k), wanted) for k, each in enumerate((one, other))]
-    assert [set(each.files) for each in written] == 2 * [set(wanted) - {"json"}]
+    assert [set(each.files) for each in written] == 2 * [{*wanted, "process"} - {"json"}]
     assert not any(each.not_written for each in written)
     assert written[0].split == written[1].split
     for name in ("npz", "glb"):
@@ -135,7 +135,7 @@ def test_a_split_that_fails_costs_the_models_not_the_page(tmp_path, monkeypatch)
     monkeypatch.setattr(models, "split_result", fails)
     result = plan(GROOVE, cutters="R2L30", grid=9, jobs=2)
     document = write_all(result, tmp_path / "out", ("json", "html", "glb", "step"))
-    assert set(document.files) == {"html"}
+    assert set(document.files) == {"html", "process"}
     assert set(document.not_written) == {"glb", "step"}
     assert all("no faces" in why for why in document.not_written.values())
 
@@ -151,7 +151,7 @@ def test_a_page_whose_copy_crashes_is_written_here(tmp_path, monkeypatch):
     monkeypatch.setattr(formats.Making, "file", file)
     result = plan(GROOVE, cutters="R2L30", grid=9, jobs=2)
     document = write_all(result, tmp_path / "out", ("json", "html", "glb", "step"))
-    assert set(document.files) == {"html", "glb", "step"}
+    assert set(document.files) == {"html", "glb", "step", "process"}
 
 
 def test_one_thread_asked_for_is_one_process(tmp_path, monkeypatch):

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from plan_cutters.kernels.area.moved_cutter import BODIES, Workspace, extruded, first_in_the_way, grown
+from plan_cutters.kernels.area.moved_cutter import BODIES, Workspace, extruded, first_in_the_way, grown, swung
 from plan_cutters.kernels.area.near import LIFT, MOST_TURN, STRETCH, extent, halvings, spared, too_steep
 from plan_cutters.kernels.area.zone import EXTENTS, Nose, begin, distance_of, held_below, look_round, seen
 from plan_cutters.kernels.codes import BOTTOM, COLUMNS, NEVER, TOP, WIDE
@@ -52,6 +52,7 @@ class Patches(NamedTuple):
     side: Any
     patch: Any
     home: Any
+    swing: Any
 
 
 class Sweeping(NamedTuple):
@@ -93,7 +94,7 @@ class Wander(NamedTuple):
     status: as of `cover` where bounds alone decide, -1 where they do not. turn: of the normal, rad; lift: of the surface off the
     tangent plane, mm; k_ff, k_tt, k_ft: curvature along the tilt direction, across it and mixed, 1/mm; psi: the turn about the
     axis in all, lateral: the part of it that does not follow from the curvature at the contact, rad; rest: that part of the
-    normal's change.
+    normal's change; sway: the turn about the axis by what the axis itself turns, rad.
     """
 
     status: int
@@ -105,17 +106,18 @@ class Wander(NamedTuple):
     psi: float
     lateral: float
     rest: float
+    sway: float
 
 
 @kernel
 def _decided(status):
     """What wanders where bounds alone decide."""
-    return Wander(status, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    return Wander(status, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
 @kernel
 def _wander(row, patches, nodes, frame, sine, offset, turn, lift):
-    """How a contact's cutter that leans to a known side moves as the contact wanders."""
+    """How a contact's cutter that changes to a known side moves as the contact wanders."""
     k_ff, k_tt, k_ft, home, h = 0.0, 0.0, 0.0, patches.home[row], patches.patch[row]
     for k in range(3):
         for m in range(3):
@@ -125,10 +127,11 @@ def _wander(row, patches, nodes, frame, sine, offset, turn, lift):
     variation = nodes.about[nodes.index[home[0], home[1]], 12]
     rest = 2.0 * variation * h + turn * turn
     if offset == 0.0:
-        return Wander(-1, turn, lift, k_ff, k_tt, k_ft, 0.0, 0.0, rest)
+        return Wander(-1, turn, lift, k_ff, k_tt, k_ft, 0.0, 0.0, rest, 0.0)
     lateral = (2.0 * variation * h + 0.5 * turn * turn + turn * turn / (sine - turn)) / (sine - turn)
     psi = min(turn / (sine - turn), (abs(k_tt) + abs(k_ft)) * h / sine + lateral)
-    return Wander(-1, turn, lift, k_ff, k_tt, k_ft, psi, lateral, rest)
+    swing = patches.swing[row]
+    return Wander(-1, turn, lift, k_ff, k_tt, k_ft, psi, lateral, rest, swing / (sine - turn - swing))
 
 
 class Obstacles(NamedTuple):
@@ -243,17 +246,19 @@ def _bounded(stance, row, patches, nodes, frame, sweeping, depth, workspace):
             full = look_round(frame, h, home, nodes, workspace.seen, h * distance_of(last))
         if full < 0.0:
             return _decided(1)
-        # How far the normal turns within the patch, and how far the surface leaves the tangent plane.
+        # How far the normal turns within the patch, and how far the surface leaves the tangent plane; the lean changes by what
+        # the axis turns, too.
         turn, lift = STRETCH * most[0, 3] * h, LIFT * most[0, 3] * h * h
-        settled = _settled(stance, turn, tilt, high, len(tool.mode)) if upright and not flat else -1
+        changes = turn + patches.swing[row]
+        settled = _settled(stance, changes, tilt, high, len(tool.mode)) if upright and not flat else -1
         if settled >= 0:
             return _decided(settled)
-        if not turn <= MOST_TURN or too_steep(pose, turn, upright, nose):
+        if not turn <= MOST_TURN or too_steep(pose, changes, upright, nose):
             return _decided(halvings(most, h, pose, upright, nose, depth, chord, near))
-        wander = Wander(-1, turn, lift, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        wander = Wander(-1, turn, lift, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         if not upright:
             wander = _wander(row, patches, nodes, frame, stance.sine, offset, turn, lift)
-        held = extent(most, last, full, h, pose, upright, wander.psi, turn, nose, depth, chord, near)
+        held = extent(most, last, full, h, pose, upright, wander.psi + wander.sway, changes, nose, depth, chord, near)
         if held < 0:
             return _decided(halvings(most, h, pose, upright, nose, depth, chord, near))
         if held < last:
@@ -264,7 +269,7 @@ def _bounded(stance, row, patches, nodes, frame, sweeping, depth, workspace):
 @kernel
 def _move(stance, wander, row, patches, frame, sweeping, body, workspace):
     """Write the bodies and pieces that hold the cutter wherever it moves with its contact in the patch."""
-    sine, cosine, h, piece = stance.sine, stance.cosine, patches.patch[row], sweeping.tool.piece[stance.mode]
+    sine, cosine, h, swing = stance.sine, stance.cosine, patches.patch[row], patches.swing[row]
     offset, rise, _, _, _ = sweeping.tool.mode[stance.mode]
     turn, lift, steepness = wander.turn, wander.lift, stance.steepness
     for k in range(3):
@@ -279,7 +284,8 @@ def _move(stance, wander, row, patches, frame, sweeping, body, workspace):
             workspace.bodies[0, k] = body[k]
         # What the contact and the centre of curvature move across the axis, and along it.
         along = lift + h * steepness + rise * turn * (steepness + turn)
-        grown(sweeping.dummy, workspace.pieces[0], h + rise * turn, along)
+        swung(sweeping.dummy, workspace.swung, swing, 0.0, 0.0)
+        grown(workspace.swung[: len(sweeping.dummy)], workspace.pieces[0], h + rise * turn, along)
         return
     if stance.rule == _LEVEL:
         grow, slides = lift + (h + rise + 2.0 * offset) * 2.0 * _ALONG, (1.0, 0.0, 0.0, 1.0, 0.0)
@@ -289,7 +295,8 @@ def _move(stance, wander, row, patches, frame, sweeping, body, workspace):
         lever = rise + (offset / sine if sine > 0.0 else 0.0)
         across, mixed = abs(1.0 - lever * wander.k_tt), lever * wander.k_ft
         slides = (1.0 - rise * wander.k_ff, rise * abs(wander.k_ft), mixed, across, abs(offset) * wander.lateral)
-    extruded(body, piece, frame, h, (sine, cosine), slides, grow, workspace, 18)
+    swung(sweeping.tool.piece[stance.mode], workspace.swung, swing, wander.sway, offset)
+    extruded(body, workspace.swung, frame, h, (sine, cosine), slides, grow, workspace, 18)
 
 
 @kernel
@@ -298,6 +305,9 @@ def _status_by(rule, row, patches, nodes, sweeping, obstacles, body, workspace):
     f, t, near, flat, depth = workspace.f, workspace.t, workspace.near, patches.flat[row], sweeping.depth
     if not patches.patch[row] > 0.0:
         return 1, -1
+    if patches.swing[row] > 0.0 and (flat or rule == _LEVEL):
+        # What stands exactly is off a plane as soon as the axis turns.
+        return NEVER, -1
     known, stance = _leaning(rule, row, patches, f)
     if not known:
         return NEVER, -1
@@ -311,7 +321,7 @@ def _status_by(rule, row, patches, nodes, sweeping, obstacles, body, workspace):
     if rule == _LEVEL:
         if not STRETCH * seen_nodes.most[0, 3] * _SMALLEST * patches.patch[row] <= _ALONG:
             return NEVER, -1
-        # What a cutter that stands exactly enters of a plane that leans this little.
+        # What a cutter that stands exactly enters of a plane that changes this little.
         wide = _longest(sweeping.tool.piece[mode]) if stance.along else 2.0 * sweeping.tool.mode[mode, 0]
         depth -= wide * (2.0 * _ALONG)
     wander = _bounded(stance, row, patches, nodes, frame, sweeping, depth, workspace)
@@ -353,7 +363,14 @@ def cover(rows, patches, nodes, face, sweeping, tree, triangle_face, status):
     """
     count = sweeping.tool.piece.shape[1]
     workspace = Workspace(
-        np.empty(3), np.empty(3), np.empty((BODIES, BODY)), np.empty((BODIES, count, COLUMNS)), np.empty(9), seen(), hit.scratch()
+        np.empty(3),
+        np.empty(3),
+        np.empty((BODIES, BODY)),
+        np.empty((BODIES, count, COLUMNS)),
+        np.empty((count, COLUMNS)),
+        np.empty(9),
+        seen(),
+        hit.scratch(),
     )
     body, blocker = np.empty(BODY), -1
     for row in rows:

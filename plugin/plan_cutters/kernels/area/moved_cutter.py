@@ -1,6 +1,6 @@
 """The cutter moved along with its contact: bodies that hold all that it sweeps, and what reaches into them.
 
-The argument is in `docs/between_samples.md`, lemmas B10 and B13.
+The argument is in `docs/between_samples.md`, lemmas B10, B13 and B16.
 """
 
 from typing import Any, NamedTuple
@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from plan_cutters.kernels.area.zone import near_by
-from plan_cutters.kernels.codes import ARC, BOTTOM, COLUMNS, HIGH, KIND, LOW, RADIUS, ROUND, SLOPE, TOP, WIDE
+from plan_cutters.kernels.codes import ARC, BOTTOM, COLUMNS, CONE, HIGH, KIND, LOW, RADIUS, ROUND, SCALE, SLOPE, TOP, WIDE
 from plan_cutters.kernels.jit import kernel
 from plan_cutters.kernels.rows import Scratch
 from plan_cutters.kernels.tool import hit
@@ -22,17 +22,36 @@ _TRIANGLE = 2
 
 
 class Workspace(NamedTuple):
-    """This is a workspace for a contact: tilt direction f and t = n x f, bodies and their pieces, bounds of curvature, what
-    counts as near.
+    """This is a workspace for a contact: tilt direction f and t = n x f, bodies and their pieces, those of a tool whose axis
+    turns, bounds of curvature, what counts as near.
     """
 
     f: Any
     t: Any
     bodies: Any
     pieces: Any
+    swung: Any
     near: Any
     seen: Any
     scratch: Scratch
+
+
+@kernel
+def _grow(out, k, radial, axial):
+    """Let piece k hold itself moved by no more than `radial` across the axis and `axial` along it."""
+    out[k, LOW] -= axial
+    out[k, HIGH] += axial
+    if out[k, KIND] == ARC:
+        both = np.sqrt(radial * radial + axial * axial)
+        out[k, ROUND] += both
+        out[k, BOTTOM] = max(out[k, LOW], out[k, SLOPE] - out[k, ROUND])
+        out[k, TOP] = min(out[k, HIGH], out[k, SLOPE] + out[k, ROUND])
+        out[k, WIDE] += both
+    else:
+        slope = out[k, SLOPE]
+        out[k, RADIUS] += radial + (abs(slope) - slope) * axial
+        out[k, WIDE] += radial + (abs(slope) + slope) * axial
+        out[k, BOTTOM], out[k, TOP] = out[k, LOW], out[k, HIGH]
 
 
 @kernel
@@ -41,19 +60,33 @@ def grown(piece, out, radial, axial):
     for k in range(len(piece)):
         for c in range(COLUMNS):
             out[k, c] = piece[k, c]
-        out[k, LOW] -= axial
-        out[k, HIGH] += axial
-        if piece[k, KIND] == ARC:
-            both = np.sqrt(radial * radial + axial * axial)
-            out[k, ROUND] += both
-            out[k, BOTTOM] = max(out[k, LOW], piece[k, SLOPE] - out[k, ROUND])
-            out[k, TOP] = min(out[k, HIGH], piece[k, SLOPE] + out[k, ROUND])
-            out[k, WIDE] += both
-        else:
-            slope = piece[k, SLOPE]
-            out[k, RADIUS] += radial + (abs(slope) - slope) * axial
-            out[k, WIDE] += radial + (abs(slope) + slope) * axial
-            out[k, BOTTOM], out[k, TOP] = out[k, LOW], out[k, HIGH]
+        _grow(out, k, radial, axial)
+
+
+@kernel
+def swung(piece, out, swing, sway, offset):
+    """Write pieces that hold these, their axis turned by no more than `swing` about the centre of curvature (lemma B16).
+
+    `sway` is how far the side on which the tool stands turns about the axis then, rad.
+    """
+    for k in range(len(piece)):
+        for c in range(COLUMNS):
+            out[k, c] = piece[k, c]
+        if swing == 0.0:
+            continue
+        low, far = abs(out[k, BOTTOM]), max(abs(out[k, BOTTOM]), abs(out[k, TOP]))
+        wide = max(0.0, max(out[k, RADIUS], out[k, WIDE]))
+        across = abs(offset) * (sway + swing) + 0.5 * swing * swing * wide
+        along = (abs(offset) + wide) * swing + 0.5 * swing * swing * far
+        if out[k, KIND] == ARC:
+            _grow(out, k, across + swing * far, along)
+            continue
+        # What is farther along the axis moves farther: the piece widens.
+        out[k, KIND], out[k, SLOPE] = CONE, out[k, SLOPE] + swing
+        out[k, SCALE] = 1.0 / np.sqrt(1.0 + out[k, SLOPE] ** 2)
+        out[k, RADIUS] += across + swing * low
+        out[k, WIDE] += across + swing * (low + out[k, HIGH] - out[k, LOW])
+        _grow(out, k, 0.0, along)
 
 
 @kernel

@@ -75,6 +75,8 @@ def _stands(plan: Plan) -> str:
     """The part, on which machine, and on what it stands where that was proposed."""
     proposed = plan.setup_proposal.setups if plan.setup_proposal else []
     machine = "" if plan.machine.name == "unlimited" else f" on {plan.machine.name}"
+    if len(proposed) == 1 and proposed[0].clamping != "table":
+        return f"{plan.part.file or 'part'}{machine}, in a {proposed[0].clamping} on {listed(proposed[0].grips, 2)}"
     if len(proposed) == 1 and proposed[0].stands_on:
         return f"{plan.part.file or 'part'}{machine}, stood on {listed(proposed[0].stands_on, 2)}"
     setups = 1 + len(plan.effective.other_setups)

@@ -50,7 +50,8 @@ def _rest(operations: OperationsEntry) -> Iterator[str]:
     if rest.samples:
         yield f"No operation finishes {some(rest.share)} of the area: no cutter of the plan reaches it."
     # Where fewer orientations were requested than all needs, others may reach what is left to simultaneous motion.
-    first, most = operations.plans[0], operations.fewest.found
+    first = operations.plans[0]
+    most = first.orientations if operations.fewest is None else operations.fewest.found
     for each in first.operations:
         if each.mode == "simultaneous" and first.orientations < most:
             yield (
@@ -63,6 +64,9 @@ def _rest(operations: OperationsEntry) -> Iterator[str]:
 
 def _fewest(operations: OperationsEntry) -> Iterator[str]:
     few = operations.fewest
+    if few is None:
+        yield f"The planner's own process has {_count(operations.plans[0].orientations)}."
+        return
     if not few.found:
         yield "There is nothing that a fixed orientation reaches."
         return
@@ -111,6 +115,7 @@ def _plan(operations: OperationsEntry, plan: OperationPlanEntry) -> Iterator[str
         yield f"  {_listed(each, _setups(operations))}"
     if len(plan.operations) > _LISTED:
         yield f"  and {len(plan.operations) - _LISTED} more in plan.json."
+    yield from (line for each in plan.operations if (line := turning(each)))
     if plan.proved_share is not None and plan.proved_share < 1.0:
         yield f"Not proved between samples: {some(1.0 - plan.proved_share)} of the area of the {plan.name} plan."
 
@@ -144,7 +149,7 @@ def _little(each: OperationEntry) -> str:
 def _fastest(operations: OperationsEntry) -> Iterator[str]:
     """How the times of fixed orientations compare with simultaneous motion and with the best choice."""
     timed = operations.fastest
-    if timed is None:
+    if timed is None or operations.fewest is None:
         return
     for plan in operations.plans:
         again = plan is not operations.plans[0] and _choice(plan) == _choice(operations.plans[0])
@@ -214,6 +219,29 @@ def _listed(each: OperationEntry, setups: bool) -> str:
     where = f" in setup {each.setup + 1}" if setups else ""
     how = f"{each.cutter}{where}, {_turned(each)}{_strategy(each)}"
     return f"{each.id}: {how}: {share_text(each.share)} of the area{took}, {_faces(each)}."
+
+
+def turning(each: OperationEntry) -> str:
+    """Say over what share simultaneous motion is proved, and how the axes turn there; empty where nothing was looked at."""
+    turn = each.turning
+    if turn is None or each.proved_share is None:
+        return ""
+    if not turn.pieces_mm2:
+        return f"Simultaneous motion in {each.id}: nothing of it is proved between the samples."
+    pieces = "1 piece" if len(turn.pieces_mm2) == 1 else f"{len(turn.pieces_mm2)} pieces"
+    text = (
+        f"Simultaneous motion in {each.id}: {share_text(each.proved_share)} of its area is proved, in {pieces}, with axes that "
+        f"turn by at most {turn.steepest_deg_mm:.2g} deg a mm"
+    )
+    if turn.angles_deg is not None:
+        text += f"; {', '.join(f'{name} {low:.0f} to {high:.0f} deg' for name, (low, high) in turn.angles_deg.items())}"
+    if turn.angles_deg is not None and turn.held_share < 1.0 - ROUNDING:
+        text += (
+            f"; in {some(1.0 - turn.held_share)} of that no solution of the rotary axes goes from end to end without turning back"
+        )
+    if turn.singular_mm2 > 0.0:
+        text += f"; {size(turn.singular_mm2)} lie near the singular direction, where the first rotary axis may turn fast"
+    return f"{text}."
 
 
 class OperationText(NamedTuple):

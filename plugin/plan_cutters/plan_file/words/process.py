@@ -13,6 +13,7 @@ from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters.plan_file.words.doubts import doubts
 from plan_cutters.plan_file.words.names import named
 from plan_cutters.plan_file.words.next_steps import is_excluded
+from plan_cutters.plan_file.words.own_steps import angles_text, fault, own_steps
 from plan_cutters.plan_file.words.scope import shown_cutter
 
 #: Columns of a line; steps and causes that are listed; faces that are named of a cause; next steps.
@@ -27,7 +28,10 @@ _OTHER_CAUSES = {UNJUDGED_CAUSE: "not judged", NOT_PLANNED: "in no step"}
 
 @dataclass(frozen=True, slots=True)
 class StepRow:
-    """A step as a row of texts; `setup`, `turned` and `took` are empty where there is nothing to tell apart, or not known."""
+    """A step as a row of texts; `setup`, `turned` and `took` are empty where there is nothing to tell apart, or not known.
+
+    `alone` is what is gone if it is left out, empty where that is not known, and `operation` the id of its operation.
+    """
 
     number: str
     setup: str
@@ -36,6 +40,8 @@ class StepRow:
     share: str
     took: str
     faces: list[str]
+    alone: str
+    operation: str
 
     def cells(self) -> list[str]:
         """All but the faces."""
@@ -44,10 +50,13 @@ class StepRow:
 
 @dataclass(frozen=True, slots=True)
 class ProcessStory:
-    """A process in words: rows of steps and how many more there are, sentences on what is left, next steps, and clearance."""
+    """A process in words: rows of steps and how many more there are, sentences on the planner's own steps and on what is left,
+    next steps, and clearance.
+    """
 
     rows: tuple[StepRow, ...]
     more: str
+    own: tuple[str, ...]
     remaining: tuple[str, ...]
     next: tuple[str, ...]
     clearance: str
@@ -85,6 +94,7 @@ def process_story(plan: Plan, names: Mapping[str, str]) -> ProcessStory | None:
     return ProcessStory(
         rows=rows,
         more=more,
+        own=tuple(own_steps(process)),
         remaining=tuple(_remaining(process, plan)),
         next=tuple(named(plan, _next(each)) for each in process.next[:_NEXT]),
         clearance=_clearance(process),
@@ -92,11 +102,15 @@ def process_story(plan: Plan, names: Mapping[str, str]) -> ProcessStory | None:
 
 
 def with_process_words(plan: Plan) -> Plan:
-    """The plan with the words of its process made anew: doubts, what each area that is left needs, and what to do next."""
+    """The plan with the words of its process made anew: of steps, of what each area that is left needs, and what to do next."""
     if plan.process is None:
         return plan
     needed = [each.model_copy(update={"needs": _needs(plan, each)}) for each in plan.process.left]
-    update = {"left": needed, "next": list(_next_entries(plan)), "doubts": doubts(plan)}
+    steps = [
+        step if step.own is None else step.model_copy(update={"own": step.own.model_copy(update={"text": fault(k, step)})})
+        for k, step in enumerate(plan.process.steps, 1)
+    ]
+    update = {"steps": steps, "left": needed, "next": list(_next_entries(plan)), "doubts": doubts(plan)}
     process = plan.process.model_copy(update=update)
     return plan.model_copy(update={"process": process})
 
@@ -109,8 +123,11 @@ def cause_text(cause: str) -> str:
 def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bool, fixed: bool) -> StepRow:
     turned = ""
     if fixed:
-        angles = " ".join(f"{name} {angle:g}" for name, angle in (step.angles_deg or {}).items())
+        by = step.repeat_deg or {}
+        angles = angles_text(step.angles_deg or {}, by)
         turned = angles if step.mode == "fixed" else "simultaneous" if step.mode == "simultaneous" else "any angles"
+        if step.mode == "simultaneous":
+            turned += "".join(f", {name} + {angle:g}" for name, angle in by.items())
     what = " ".join(filter(None, (names.get(step.cutter, step.cutter), _STRATEGIES[step.strategy])))
     times = f"{step.repeat} x, " if step.repeat > 1 else ""
     return StepRow(
@@ -118,9 +135,11 @@ def _row(number: int, step: ProcessStep, names: Mapping[str, str], *, setups: bo
         setup=f"setup {step.setup + 1}" if setups else "",
         turned=times + turned,
         cutter=what if len(what) <= _name_width(fixed) else f"{what[: _name_width(fixed) - 3]}...",
-        share=percent(step.share, some=True),
+        share=percent(step.share, some=step.area_mm2 > 0.0),
         took=duration(step.seconds),
         faces=step.faces,
+        alone="" if step.alone_mm2 is None else area(step.alone_mm2),
+        operation=step.operation,
     )
 
 

@@ -2,7 +2,7 @@
 
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import percent, some
+from plan_cutters.plan_file.numbers import listed, percent, some
 from plan_cutters.plan_file.setups import ProposedSetup
 
 
@@ -16,10 +16,15 @@ def proposal(plan: Plan) -> tuple[str, ...]:
     where[0] += " of the part along the spindle"
     text = where[0] if one else "; ".join(f"{k} {each}" for k, each in enumerate(where, 1))
     share = percent(entry.found)
-    lines = [
-        f"Proposed {'setup' if one else 'setups'}: {text}. Over a table and nothing else that holds the part, "
-        f"{'it reaches' if one else 'they reach'} {share} of the area to machine."
-    ]
+    among = "Over a table and nothing else that holds the part, " + ("it reaches" if one else "they reach")
+    if any(each.clamping != "table" for each in entry.setups):
+        among = "So held, it reaches" if one else "So held, they reach"
+    lines = [f"Proposed {'setup' if one else 'setups'}: {text}. {among} {share} of the area to machine."]
+    for k, each in enumerate(entry.setups, 1):
+        texts = [each.why_held] * bool(each.why_held)
+        texts += [f"what it hides of {listed(left.faces)} is machined in setup {left.setup + 1}" for left in each.left_for]
+        if texts:
+            lines.append(f"{'Compared' if one else f'Setup {k}'}: {'; '.join(texts)}.")
     if not entry.held:
         lines.append(
             f"The proposal does not hold: the plan reaches {some(entry.kept)} of what the search promised, and no other "
@@ -29,4 +34,6 @@ def proposal(plan: Plan) -> tuple[str, ...]:
 
 
 def _stands(each: ProposedSetup) -> str:
+    if each.clamping != "table":
+        return f"in a {each.clamping} that grips {', '.join(each.grips)}"
     return f"on {', '.join(each.stands_on)}" if each.stands_on else "on no plane (something must hold it)"

@@ -17,6 +17,7 @@ from plan_cutters.plan_file.words.line import Line
 from plan_cutters.plan_file.words.names import named, short_names
 from plan_cutters.plan_file.words.next_steps import together
 from plan_cutters.plan_file.words.operations import in_short, operations
+from plan_cutters.plan_file.words.patterns import patterns
 from plan_cutters.plan_file.words.process import ProcessStory, process_story
 from plan_cutters.plan_file.words.proposal import proposal
 from plan_cutters.plan_file.words.scope import not_judged, not_seen
@@ -102,7 +103,7 @@ def story_of(plan: Plan) -> Story:
             "faces that are not judged": tuple(notes.unjudged(plan)),
             "missing obstacles": tuple(notes.missing(plan)),
         },
-        notes=(notes.side(plan), *notes.libraries(plan), *notes.notes(plan)),
+        notes=(notes.side(plan), *map(Line, patterns(plan)), *notes.libraries(plan), *notes.notes(plan)),
     )
 
 

@@ -8,6 +8,8 @@ from plan_cutters.plan_file.numbers import count
 from plan_cutters.plan_file.words.chip import TONES, chip, cutter_chip
 from plan_cutters.plan_file.words.cutters import CutterStory
 from plan_cutters.plan_file.words.doubts import repeated_warnings
+from plan_cutters.plan_file.words.own_steps import shortened
+from plan_cutters.plan_file.words.patterns import in_summary
 from plan_cutters.plan_file.words.process import with_process_words, wrapped
 from plan_cutters.plan_file.words.scope import not_judged, not_seen, unseen
 from plan_cutters.plan_file.words.story import Story, story_of
@@ -50,8 +52,9 @@ def process_lines(plan: Plan, story: Story, most: int) -> list[str]:
     blocks: list[list[str]] = [
         wrapped(plan.process.doubts if plan.process else [], 2),
         [*wrapped(inside, 6), *wrapped(_doubts(plan, story), 1)[:_DOUBTS], *wrapped([judged] if judged else [], 3)],
+        wrapped([in_summary(plan)] if process and in_summary(plan) else [], 2),
         process.table() if process else [],
-        wrapped(list(process.remaining), 2) if process else [],
+        wrapped([*shortened(process.own), *process.remaining], 2) if process else [],
         wrapped(list(process.next), 3) if process else [],
         wrapped(_unsure(plan, story), 2),
         wrapped([process.clearance] if process and process.clearance else [], 1),

@@ -113,12 +113,13 @@ class Curve(NamedTuple):
 
 
 class OperationTables(NamedTuple):
-    """These are what the template shows of the operations."""
+    """These are what the template shows of the operations; `process`: the plan and the place in it of each one of the process."""
 
     lines: list[Line]
     plans: list[tuple[OperationPlanEntry, str, list[OperationText], bool]]
     steps: list[tuple[int, str, str]]
     curve: Curve | None
+    process: dict[str, tuple[str, int]]
 
 
 def tables(plan: Plan, story: Story) -> OperationTables | None:
@@ -136,7 +137,13 @@ def tables(plan: Plan, story: Story) -> OperationTables | None:
         for each in operations.plans
     ]
     steps = [(s.orientations, share_text(s.share), "" if s.at_most is None else bound(s.at_most)) for s in operations.curve]
-    return OperationTables(of_the_whole(story.operations, story.in_short), plans, steps, curve(operations.curve))
+    places = {
+        one.id: (key(each), k)
+        for each in operations.plans
+        if plan.process is not None and each.name == plan.process.plan
+        for k, one in enumerate(each.operations)
+    }
+    return OperationTables(of_the_whole(story.operations, story.in_short), plans, steps, curve(operations.curve), places)
 
 
 def curve(steps: Sequence[CurveStepEntry]) -> Curve | None:

@@ -1,0 +1,374 @@
+"""Patterns: motions that carry the whole part, or some of its faces, onto equal faces.
+
+Candidates come from what any motion keeps: the middles of borders, their lengths and second moments. Each candidate is then
+compared face by face (`equal_faces.equal`) within a millionth of the part's size: a part that is nearly a pattern is none.
+A motion of the whole part keeps the middle of all borders and their second moment: few axes and planes can be its own.
+"""
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.TopAbs import TopAbs_REVERSED
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from cad_io.arrays import Floats, Record
+from cad_io.part.equal_faces import FaceShape, axis_of, equal, face_shape
+from cad_io.part.motion import Motion
+from cad_io.part.part import NO_AREA, Part
+
+Kind = Literal["rotation", "mirror", "shift"]
+Which = NDArray[np.int64]
+#: Faces are equal within this share of the part's size; candidates are looked for within that one.
+EXACT, _NEAR = 1e-6, 2e-5
+#: Parts with more faces are not looked at; orders of a rotation; copies of a shift; patterns of some faces.
+_MOST_FACES, _MOST_ORDER, _MOST_COPIES, _MOST_PATTERNS = 3000, 360, 2000, 24
+#: Axes and planes that are tried, at most, and times that two faces are compared.
+_MOST_TRIED, _MOST_COMPARED = 200, 20_000
+#: Copies that some faces have at least.
+_LEAST_COPIES = 3
+
+
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Pattern(Record):
+    """Faces that are equal under motions.
+
+    Attributes
+    ----------
+    kind : str
+        `rotation`, `mirror` or `shift`.
+    order : int
+        How many copies there are: the whole turn over the angle of a rotation, 2 of a mirror.
+    whole : bool
+        Whether each motion carries each face of the part onto a face of it.
+    motions : tuple of Motion
+        Of the first copy to each other one, `order` - 1.
+    images : tuple of mapping
+        Of each motion: which face goes onto which, by their numbers; all faces of a whole part, else those of the first copy.
+    faces : tuple of tuple of int
+        By class of equal faces, the first copy's first; of a whole part without faces that go onto themselves.
+    """
+
+    kind: Kind
+    order: int
+    whole: bool
+    motions: tuple[Motion, ...]
+    images: tuple[Mapping[int, int], ...]
+    faces: tuple[tuple[int, ...], ...]
+
+
+@dataclass(frozen=True, eq=False)
+class _Faces:
+    """All faces of a part that can be compared.
+
+    Attributes
+    ----------
+    shape : list of FaceShape
+    kind : (n,) int64
+        Class of each: those of one class are alike as far as area, border and its moments say.
+    centre : (n, 3) float
+    size : float
+        Of the part, mm.
+    whole : bool
+        Whether these are all faces of the part.
+    """
+
+    shape: list[FaceShape]
+    kind: Which
+    centre: Floats
+    size: float
+    whole: bool
+    compared: list[int]
+
+    @property
+    def tolerance(self) -> float:
+        return EXACT * self.size
+
+    @property
+    def near(self) -> float:
+        return _NEAR * self.size
+
+    def classes(self) -> Iterator[Which]:
+        """Faces of each class with more than one of them, the largest area first."""
+        every = [np.flatnonzero(self.kind == k) for k in np.unique(self.kind)]
+        several = [each for each in every if len(each) > 1]
+        yield from sorted(several, key=lambda rows: (-sum(self.shape[k].area for k in rows), int(rows[0])))
+
+    def equal(self, one: int, other: int, motion: Motion) -> bool:
+        """Whether a face, moved, is another one; False where enough was compared."""
+        self.compared[0] += 1
+        if self.compared[0] > _MOST_COMPARED:
+            return False
+        return equal(self.shape[one], self.shape[other], motion, self.tolerance)
+
+
+def patterns(part: Part, at: Callable[[int], None] = lambda face: None) -> tuple[Pattern, ...]:
+    """The patterns of a part: first those that carry all of it onto itself, then those of some faces.
+
+    `at` is told which face is looked at.
+
+    No face is in two patterns of some faces. Where nothing is alike, it takes a few ms.
+    """
+    faces = _faces_of(part, at)
+    if faces is None or not any(True for _ in faces.classes()):
+        return ()
+    whole = [*_whole(faces)] if faces.whole else []
+    # A plate of pockets goes onto itself by half a turn, and its pockets are shifted all the same.
+    taken = {number for each in whole if each.order >= _LEAST_COPIES for ring in each.faces for number in ring}
+    return (*whole, *_of_some(faces, taken))
+
+
+def _faces_of(part: Part, at: Callable[[int], None]) -> _Faces | None:
+    size = float(np.linalg.norm(part.size))
+    judged = [f for f in part.faces if f.unjudged is None]
+    if not 1 < len(judged) <= _MOST_FACES or not np.isfinite(size):
+        return None
+    shapes = list[FaceShape]()
+    for face in judged:
+        at(face.number)
+        trim, measured = part.trim(face.number), part.measure(face.number)
+        if trim is None or measured is None:
+            continue
+        side = -1.0 if part.face(face.number).Orientation() == TopAbs_REVERSED else 1.0
+        shape = face_shape(face.number, face.surface, side, part.surface(face.number), trim, measured, size)
+        if shape is not None:
+            shapes.append(shape)
+    whole = not part.lost and not part.aside and len(shapes) == sum(f.unjudged != NO_AREA for f in part.faces)
+    centre = np.array([each.centre for each in shapes]).reshape(-1, 3)
+    return _Faces(shapes, _classes(shapes, size), centre, size, whole, [0])
+
+
+def _classes(shapes: Sequence[FaceShape], size: float) -> Which:
+    """Class of each face, by its kind, area, border length and second moments."""
+    if not shapes:
+        return np.zeros(0, np.int64)
+    kinds = {kind: k for k, kind in enumerate(sorted({each.kind for each in shapes}))}
+    # In lengths, so that one distance tells; kinds are far apart.
+    feature = np.array([
+        [kinds[each.kind] * 10.0 * size, math.sqrt(abs(each.area)), each.length, *_spread(each)] for each in shapes
+    ])  # fmt: skip
+    pairs = cKDTree(feature).query_pairs(1e-4 * size, output_type="ndarray")
+    n = len(shapes)
+    graph = coo_array((np.ones(len(pairs)), (pairs[:, 0], pairs[:, 1])), shape=(n, n))
+    return np.asarray(connected_components(graph, directed=False)[1], np.int64)
+
+
+def _spread(shape: FaceShape) -> list[float]:
+    return np.sqrt(np.maximum(0.0, np.linalg.eigvalsh(shape.tensor))).tolist()
+
+
+# Motions of the whole part.
+
+
+def _whole(faces: _Faces) -> Iterator[Pattern]:
+    """Rotations about each axis, of the highest order, then mirrors."""
+    weight = np.array([each.length for each in faces.shape])
+    middle = weight @ faces.centre / weight.sum()
+    away = faces.centre - middle
+    tensor = (away * weight[:, None]).T @ away / weight.sum() + sum(
+        w * each.tensor for w, each in zip(weight, faces.shape, strict=True)
+    ) / weight.sum()  # fmt: skip
+    own = np.linalg.eigh(tensor)[1].T
+    axes = list(_axes(faces, middle, own))
+    for place, direction in axes[:_MOST_TRIED]:
+        for order in _orders(faces, place, direction):
+            images = _images(faces, Motion.turn(place, direction, 2.0 * math.pi / order))
+            if images is not None:
+                yield _rotation(faces, place, direction, order, images)
+                break
+    for normal in list(_normals(faces, middle, own, axes))[:_MOST_TRIED]:
+        motion = Motion.mirror(middle, normal)
+        images = _images(faces, motion)
+        if images is not None:
+            yield Pattern("mirror", 2, True, (motion,), (_numbers(faces, images),), _rings(faces, [images]))
+
+
+def _axes(faces: _Faces, middle: Floats, own: Floats) -> Iterator[tuple[Floats, Floats]]:
+    """Axes through the middle: of faces of revolution, across circles of alike faces, and the principal ones."""
+    directions = list[tuple[Floats, Floats]]()
+    for axis in map(axis_of, faces.shape):
+        if axis is not None:
+            place, direction = axis
+            foot = place + ((middle - place) @ direction) * direction
+            if np.linalg.norm(foot - middle) <= faces.near:
+                directions.append((foot, direction))
+    for rows in faces.classes():
+        if len(rows) >= 3:
+            spread, across = np.linalg.svd(faces.centre[rows] - faces.centre[rows].mean(axis=0))[1:]
+            if spread[2] <= faces.near and spread[1] > faces.near:
+                directions.append((middle, across[2]))
+    directions += [(middle, each) for each in own]
+    tried = np.zeros((0, 3))
+    for place, direction in directions:
+        direction = direction * (1.0 if direction[np.abs(direction).argmax()] > 0.0 else -1.0)
+        if not (np.linalg.norm(tried - direction, axis=1) < 1e-5).any():
+            tried = np.concatenate([tried, direction[None]])
+            yield place, direction
+
+
+def _orders(faces: _Faces, place: Floats, direction: Floats) -> Iterator[int]:
+    """Orders that a rotation of all faces about an axis may have, the highest first, by the middles of faces alone."""
+    away = faces.centre - place
+    radius = np.linalg.norm(away - np.outer(away @ direction, direction), axis=1)
+    off = radius > faces.near
+    counts = np.bincount(faces.kind[off])
+    common = int(np.gcd.reduce(counts[counts > 0])) if off.any() else 1
+    for order in range(min(common, _MOST_ORDER), 1, -1):
+        if common % order == 0 and _moved(faces, Motion.turn(place, direction, 2.0 * math.pi / order)) is not None:
+            yield order
+
+
+def _moved(faces: _Faces, motion: Motion) -> Which | None:
+    """Onto which face of its class each one is moved, by their middles; None where one has none."""
+    far = 10.0 * faces.size
+    there = np.column_stack([faces.centre, far * faces.kind])
+    moved = np.column_stack([motion.points(faces.centre), far * faces.kind])
+    off, image = cKDTree(there).query(moved)
+    if (off > faces.near).any() or len(np.unique(image)) < len(image):
+        # Faces of one class and middle: each is told apart by its border.
+        return _sorted_out(faces, motion, there, moved) if (off <= faces.near).all() else None
+    return np.asarray(image, np.int64)
+
+
+def _sorted_out(faces: _Faces, motion: Motion, there: Floats, moved: Floats) -> Which | None:
+    """As `_moved`, for faces that share their middle with others."""
+    image, taken = np.full(len(moved), -1, np.int64), set[int]()
+    for k, near in enumerate(cKDTree(there).query_ball_point(moved, faces.near)):
+        mine = next((j for j in near if j not in taken and faces.equal(k, j, motion)), None)
+        if mine is None:
+            return None
+        taken.add(mine)
+        image[k] = mine
+    return image
+
+
+def _images(faces: _Faces, motion: Motion) -> Which | None:
+    """Onto which face each one is moved, compared; None where one is moved onto none."""
+    image = _moved(faces, motion)
+    if image is None:
+        return None
+    # Those that go elsewhere tell sooner.
+    order = np.argsort(image == np.arange(len(image)), kind="stable").tolist()
+    return image if all(faces.equal(k, int(image[k]), motion) for k in order) else None
+
+
+def _rotation(faces: _Faces, place: Floats, direction: Floats, order: int, images: Which) -> Pattern:
+    powers, step = [images], images
+    for _ in range(order - 2):
+        step = images[step]
+        powers.append(step)
+    motions = tuple(Motion.turn(place, direction, 2.0 * math.pi * k / order) for k in range(1, order))
+    return Pattern("rotation", order, True, motions, tuple(_numbers(faces, each) for each in powers), _rings(faces, powers))
+
+
+def _rings(faces: _Faces, powers: Sequence[Which]) -> tuple[tuple[int, ...], ...]:
+    """Faces that go onto others: the first one of each class, then its images."""
+    rings, seen = list[tuple[int, ...]](), set[int]()
+    for k in range(len(faces.shape)):
+        ring = tuple(dict.fromkeys([k, *(int(each[k]) for each in powers)]))
+        if k not in seen and len(ring) > 1:
+            rings.append(tuple(faces.shape[j].number for j in ring))
+        seen |= set(ring)
+    area = {each.number: each.area for each in faces.shape}
+    return tuple(sorted(rings, key=lambda ring: (-area[ring[0]], ring[0])))
+
+
+def _numbers(faces: _Faces, images: Which) -> dict[int, int]:
+    return {each.number: faces.shape[j].number for each, j in zip(faces.shape, images.tolist(), strict=True)}
+
+
+def _normals(faces: _Faces, middle: Floats, own: Floats, axes: Sequence[tuple[Floats, Floats]]) -> Iterator[Floats]:
+    """Normals of planes through the middle that may mirror the part: by the middles of faces."""
+    some = [*own]
+    # With equal principal moments there may be others: one face goes onto another one of its class.
+    rows = min(faces.classes(), key=len, default=np.zeros(0, np.int64))
+    for k in rows[1:_MOST_TRIED]:
+        away = faces.centre[k] - faces.centre[rows[0]]
+        if np.linalg.norm(away) > faces.near:
+            some.append(away / np.linalg.norm(away))
+    some += [np.cross(direction, faces.centre[rows[0]] - middle) for _, direction in axes if len(rows)]
+    tried = np.zeros((0, 3))
+    for normal in some:
+        length = np.linalg.norm(normal)
+        if length <= 1e-9:
+            continue
+        normal = normal / length * (1.0 if normal[np.abs(normal).argmax()] > 0.0 else -1.0)
+        if not (np.linalg.norm(tried - normal, axis=1) < 1e-5).any():
+            tried = np.concatenate([tried, normal[None]])
+            yield normal
+
+
+# Motions of some faces.
+
+
+def _of_some(faces: _Faces, taken: set[int]) -> Iterator[Pattern]:
+    """Rings of faces that a rotation carries round, and faces that shifts carry onto each other: those with most area first."""
+    groups: dict[tuple[str, tuple[float, ...]], tuple[list[Motion], list[Which]]] = {}
+    for rows in faces.classes():
+        free = rows[[faces.shape[k].number not in taken for k in rows]]
+        for kind, motions, copies in (*_ring(faces, free), *_shifted(faces, free)):
+            # Classes that the same motions carry round are one pattern.
+            step = np.concatenate([motions[0].linear.ravel(), *(each.shift / faces.size for each in motions)])
+            key = kind, tuple(np.round(step, 4).tolist())
+            common = groups.get(key, (motions, []))[0]
+            if all(faces.equal(int(copies[0]), int(k), m) for k, m in zip(copies[1:], common, strict=True)):
+                groups.setdefault(key, (common, []))[1].append(copies)
+                if kind == "rotation":
+                    break
+    area = {key: sum(faces.shape[c[0]].area for c in each[1]) for key, each in groups.items()}
+    for key in sorted(groups, key=lambda key: -area[key])[:_MOST_PATTERNS]:
+        motions, every = groups[key]
+        number = [tuple(faces.shape[k].number for k in copies) for copies in every]
+        images = tuple({ring[0]: ring[k] for ring in number} for k in range(1, len(motions) + 1))
+        yield Pattern(key[0], len(motions) + 1, False, tuple(motions), images, tuple(number))  # type: ignore[arg-type]
+
+
+def _ring(faces: _Faces, rows: Which) -> Iterator[tuple[str, list[Motion], Which]]:
+    """Faces evenly spread on one circle, with the rotations that carry the first one to each other one."""
+    n = len(rows)
+    if not _LEAST_COPIES <= n <= _MOST_ORDER:
+        return
+    middle = faces.centre[rows].mean(axis=0)
+    away = faces.centre[rows] - middle
+    across = np.linalg.svd(away, full_matrices=False)[2]
+    direction = across[2] if n > 3 else np.cross(away[0], away[1])
+    if n == 3 and np.linalg.norm(direction) > 0.0:
+        direction = direction / np.linalg.norm(direction)
+    radius = np.linalg.norm(away, axis=1)
+    if np.abs(away @ direction).max() > faces.near or np.ptp(radius) > faces.near or radius.min() <= faces.near:
+        return
+    direction = direction * (1.0 if direction[np.abs(direction).argmax()] > 0.0 else -1.0)
+    x = away[0] / radius[0]
+    angle = np.remainder(np.arctan2(away @ np.cross(direction, x), away @ x), 2.0 * math.pi)
+    order = np.argsort(np.where(angle > 2.0 * math.pi - 1e-6, 0.0, angle), kind="stable")
+    if np.abs(angle[order] - 2.0 * math.pi * np.arange(n) / n)[1:].max() * radius[0] > faces.near:
+        return
+    yield "rotation", [Motion.turn(middle, direction, 2.0 * math.pi * k / n) for k in range(1, n)], rows[order]
+
+
+def _shifted(faces: _Faces, rows: Which) -> Iterator[tuple[str, list[Motion], Which]]:
+    """Faces that are shifted copies of each other: those whose borders have the second moment of the first one left."""
+    left = rows
+    while len(left) >= _LEAST_COPIES:
+        first = faces.shape[left[0]]
+        alike = [_parallel(first, faces.shape[k], faces.near) for k in left]
+        mine, left = left[alike], left[~np.array(alike)]
+        if not _LEAST_COPIES <= len(mine) <= _MOST_COPIES:
+            continue
+        # In one order whatever the class: along the coordinates, to what can be told apart.
+        place = np.round((faces.centre[mine] - faces.centre[mine[0]]) / (50.0 * faces.near))
+        order = np.lexsort(place.T[::-1])
+        mine = mine[order]
+        yield "shift", [Motion.translation(faces.centre[k] - faces.centre[mine[0]]) for k in mine[1:]], mine
+
+
+def _parallel(one: FaceShape, other: FaceShape, near: float) -> bool:
+    """Whether a face may be another one shifted, by what a shift keeps."""
+    if np.abs(one.tensor - other.tensor).max() > near * one.length:
+        return False
+    return bool(np.abs(one.side * one.vector - other.side * other.vector).max() <= 1e-3 * one.area)

@@ -1,0 +1,77 @@
+"""Axes that a plan proposes for simultaneous motion: is their form right, does the machine hold them, do tools stand free?"""
+
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
+from plan_cutters.checker.bench import Bench
+from plan_cutters.checker.clash import MET, OPEN, Clock
+from plan_cutters.checker.expected import Reckoned
+from plan_cutters.checker.findings import Finding
+from plan_cutters.checker.question import Question, held
+
+#: Lengths of unit vectors that differ from 1 by less.
+_SAME = 1e-6
+
+
+def ill_formed(question: Question, reckoned: Reckoned) -> Iterator[Finding]:
+    """Axes and pieces that no operation has, that are no unit vectors, that are missing, or that the machine does not hold."""
+    for k, plan in enumerate(question.document["operations"]["plans"]):
+        label, axis, piece = (reckoned.array(k, name) for name in ("operation", "moving_axis", "moving_piece"))
+        turning = [i for i, each in enumerate(plan["operations"]) if each["turning"] is not None]
+        if any(plan["operations"][i]["mode"] == "fixed" for i in turning):
+            yield Finding(False, f"The {plan['name']} plan: the axis of a fixed operation turns.")
+        mine, known, proved = np.isin(label, turning), ~np.isnan(axis).all(axis=1), piece >= 0
+        if turning or known.any() or proved.any() or (piece < -1).any():
+            wrong = (known & (~mine | ~_unit(axis))) | (proved & ~known) | (piece < -1)
+            for i in turning:
+                each, rows = plan["operations"][i], np.flatnonzero((label == i) & proved)
+                # A piece is named where it has most of the area about a sample: of those that are counted some may have none.
+                if len(rows) and not each["turning"]["pieces_mm2"]:
+                    wrong[rows] = True
+                wrong[rows[~held(question.machine, question.setups[each["setup"]], axis[rows])]] = True
+            yield Finding(
+                not wrong.any(),
+                f"The {plan['name']} plan: axes for simultaneous motion at {int(known.sum())} samples, {int(proved.sum())} of "
+                f"them in proved pieces; {int(wrong.sum())} are no axes, of no such operation, or beyond the machine's limits.",
+            )
+
+
+def put_down(question: Question, reckoned: Reckoned, bench: Bench, rng: np.random.Generator, clock: Clock) -> Iterator[Finding]:
+    """Each simultaneous operation, put down at the samples of its proved pieces with the axes that are proposed there."""
+    for k, plan in enumerate(question.document["operations"]["plans"]):
+        tested, wrong, open_, words = 0, 0, 0, list[str]()
+        for each, rows in _proved(plan, reckoned, k, rng):
+            axis = reckoned.array(k, "moving_axis")[rows]
+            tool, tilted = bench.tools[each["cutter"]], bench.own_tilt_direction(rows, axis)
+            verdicts, more = bench.looked(each["setup"], tool, rows, axis, tilted, clock)
+            wrong, open_ = wrong + int((verdicts == MET).sum()), open_ + int((verdicts == OPEN).sum())
+            tested += int((verdicts != OPEN).sum())
+            words += [f"{each['id']}, {one}" for one in more]
+        if not tested and not open_:
+            continue
+        late = f" of {tested + open_} (taken by seed 0)" if open_ else ""
+        text = f" {'; '.join(words[:3])}." if words else ""
+        yield Finding(
+            None if not tested else wrong == 0,
+            f"The {plan['name']} plan: tools were put down with the axes for simultaneous motion at {tested} samples{late}; "
+            f"at {wrong} the tool is too deep in something, or cannot stand. Between samples the plan alone proves them.{text}",
+        )
+
+
+def _proved(
+    plan: dict[str, Any], reckoned: Reckoned, k: int, rng: np.random.Generator
+) -> Iterator[tuple[dict[str, Any], NDArray[np.int64]]]:
+    """The simultaneous operations of a plan, with the samples of their proved pieces in a drawn order."""
+    label, piece = reckoned.array(k, "operation"), reckoned.array(k, "moving_piece")
+    for i, each in enumerate(plan["operations"]):
+        rows = np.flatnonzero((label == i) & (piece >= 0))
+        if len(rows):
+            yield each, rng.permutation(rows)
+
+
+def _unit(axis: Floats) -> NDArray[np.bool_]:
+    return np.asarray(np.abs(np.linalg.norm(axis, axis=1) - 1.0) <= _SAME)

@@ -1,0 +1,257 @@
+"""Are the patterns of a plan those of the part, and are repeated operations and steps what they say they are?
+
+Each copy of a pattern is expanded: points of its first faces, moved, must lie on the faces that are named, within their borders,
+on their outer side; what is left of a whole part must be carried onto itself.
+"""
+
+import math
+from collections.abc import Iterator
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
+from cad_io.kernel import first_derivatives
+from plan_cutters.checker.findings import Finding
+from plan_cutters.checker.question import Question
+
+#: Faces are equal within this share of the part's size; areas, cosines of normals, and unit vectors.
+_EXACT, _AREA, _NORMAL, _SAME = 2e-6, 2e-4, 1.0 - 1e-4, 1e-6
+#: Lines of points in a face, points of its border, places from which its points are looked for, and steps that are taken.
+_LINES, _BORDER, _SEEDS, _STEPS = 7, 24, 24, 12
+#: Pairs of faces that are compared, at most, and angles that are written to three digits, deg.
+_MOST, _WRITTEN = 1500, 0.0021
+
+Motion = tuple[Floats, Floats]
+
+
+class Patterns:
+    """The checks of equal faces and of what is repeated.
+
+    Parameters
+    ----------
+    question : Question
+    """
+
+    def __init__(self, question: Question) -> None:
+        # With draws of its own: those of the other checks stay as they are.
+        self.question, self.rng = question, np.random.default_rng(0)
+        self._size = float(np.linalg.norm(question.part.size))
+        self._sided = any(True for _ in question.part.solid_shapes())
+        self._face = cache(self._points_of)
+        self._net = cache(self._seeds_of)
+
+    def findings(self) -> Iterator[Finding]:
+        """All of them."""
+        entries = self.question.document.get("patterns", [])
+        if entries and not self.question.document["effective"].get("patterns", True):
+            yield Finding(False, "The plan names patterns, and was made without them.")
+        for number, entry in enumerate(entries, 1):
+            name = f"Pattern {number} ({entry['kind']}, {entry['order']} copies)"
+            wrong = _ill_formed(entry, len(self.question.part.faces))
+            yield Finding(False, f"{name}: {wrong}.") if wrong else self._expanded(name, entry)
+        if entries:
+            yield Finding(None, "How many samples of a pattern were moved, followed or verified is not looked at.")
+        yield from self._operations()
+        yield from self._steps()
+
+    def _expanded(self, name: str, entry: dict[str, Any]) -> Finding:
+        """Compare each face of each copy with the first one's, and faces that no copy has with themselves."""
+        copies = [[int(face[1:]) for face in copy] for copy in entry["faces"]]
+        motions = _motions(entry)
+        pairs = [
+            (one, other, m)
+            for copy, m in zip(copies[1:], motions, strict=True)
+            for one, other in zip(copies[0], copy, strict=True)
+        ]
+        named = {number for copy in copies for number in copy}
+        if entry["whole"]:
+            left = [f.number for f in self.question.part.faces if f.unjudged is None and f.number not in named]
+            pairs += [(number, number, motions[0]) for number in left]
+        chosen = self.rng.permutation(len(pairs))[:_MOST].tolist()
+        wrong = [(one, other, why) for one, other, m in map(pairs.__getitem__, chosen) if (why := self._differ(one, other, m))]
+        late = f" of {len(pairs)} (taken by seed 0)" if len(pairs) > len(chosen) else ""
+        text = f": F{wrong[0][0]}, moved, is not F{wrong[0][1]}: {wrong[0][2]}" if wrong else ""
+        return Finding(not wrong, f"{name}: {len(chosen)}{late} pairs of faces were compared; {len(wrong)} differ{text}.")
+
+    def _differ(self, one: int, other: int, motion: Motion) -> str:
+        """Why a face, moved, is not another one; empty where no difference is found."""
+        faces, (linear, shift) = self.question.part.faces, motion
+        mine, theirs = faces[one - 1].area, faces[other - 1].area
+        if not abs(mine - theirs) <= _AREA * theirs:
+            return f"{mine:.6g} mm2 and {theirs:.6g} mm2"
+        point, normal, deflection = self._face(one)
+        trim = self.question.part.trim(other)
+        if trim is None or not len(point):
+            return "its border cannot be read"
+        off, uv, there = self._nearest(other, point @ linear.T + shift)
+        if not (off <= _EXACT * self._size).all():
+            return f"it is {float(np.nanmax(off)):.3g} mm off"
+        slack = _EXACT * self._size + 2.0 * (deflection + trim.deflection + trim.tolerance)
+        if not self._within(other, uv, slack).all():
+            return "it leaves its border"
+        known = np.isfinite(normal).all(axis=1) & np.isfinite(there).all(axis=1)
+        if self._sided and not (((normal @ linear.T) * there).sum(axis=1)[known] >= _NORMAL).all():
+            return "its outer side is another one"
+        return ""
+
+    def _points_of(self, number: int) -> tuple[Floats, Floats, float]:
+        """Points (n, 3) in a face and on its border, their outer normals, and how far its polygon may be off, mm."""
+        trim = self.question.part.trim(number)
+        if trim is None:
+            return np.zeros((0, 3)), np.zeros((0, 3)), 0.0
+        u0, u1, v0, v1 = trim.box
+        uv = np.zeros((0, 2))
+        for lines in (_LINES, 4 * _LINES):
+            share = (np.arange(lines) + 0.5) / lines
+            every = np.stack(np.meshgrid(u0 + share * (u1 - u0), v0 + share * (v1 - v0)), axis=-1).reshape(-1, 2)
+            uv = every[trim.inside(*every.T)]
+            if len(uv) >= _LINES:
+                break
+        uv = uv[:: max(1, len(uv) // _LINES**2)]
+        ends = trim.segments.mean(axis=1)
+        uv = np.concatenate([uv, ends[:: max(1, len(ends) // _BORDER)]])
+        point, normal = self._at(number, uv)[:2]
+        return point, normal, float(trim.deflection)
+
+    def _at(self, number: int, uv: Floats) -> tuple[Floats, Floats, Floats]:
+        """Points of a surface, its outer unit normals (n, 3), and its derivatives (n, 2, 3)."""
+        d = first_derivatives(self.question.part.adaptor(number), *uv.T)
+        normal = np.cross(d[:, 1], d[:, 2]) * self.question.sign[number - 1]
+        with np.errstate(invalid="ignore", divide="ignore"):
+            return d[:, 0], normal / np.linalg.norm(normal, axis=1)[:, None], d[:, 1:]
+
+    def _seeds_of(self, number: int) -> tuple[Floats, Floats]:
+        """Parameters (n, 2) all over a face, and their points."""
+        u0, u1, v0, v1 = self.question.part.trim(number).box  # type: ignore[union-attr]
+        every = np.stack(np.meshgrid(np.linspace(u0, u1, _SEEDS), np.linspace(v0, v1, _SEEDS)), axis=-1).reshape(-1, 2)
+        return every, self._at(number, every)[0]
+
+    def _nearest(self, number: int, point: Floats) -> tuple[Floats, Floats, Floats]:
+        """Distances (n,) of points from a face's surface, as found from the nearest seeds, the places there, and normals."""
+        seed, places = self._net(number)
+        near = np.argsort(((point[:, None] - places) ** 2).sum(axis=2), axis=1)[:, :3]
+        box = np.array(self.question.part.trim(number).box).reshape(2, 2)  # type: ignore[union-attr]
+        best, uv, normal = np.full(len(point), np.inf), seed[near[:, 0]], np.full((len(point), 3), np.nan)
+        for start in near.T:
+            at = seed[start].copy()
+            for _ in range(_STEPS):
+                there, outward, slope = self._at(number, at)
+                off = np.linalg.norm(point - there, axis=1)
+                better = off < best
+                best[better], uv[better], normal[better] = off[better], at[better], outward[better]
+                if (best <= 0.1 * _EXACT * self._size).all():
+                    return best, uv, normal
+                gram = slope @ slope.transpose(0, 2, 1)
+                gram += np.eye(2) * (1e-12 * np.trace(gram, axis1=1, axis2=2)[:, None, None] + 1e-300)
+                step = np.linalg.solve(gram, slope @ (point - there)[:, :, None])[:, :, 0]
+                at = np.clip(at + step, box[:, 0], box[:, 1])
+        return best, uv, normal
+
+    def _within(self, number: int, uv: Floats, slack: float) -> NDArray[np.bool_]:
+        """Which parameters (n, 2) lie in a face, or are nearer than a slack, mm, to what does."""
+        trim = self.question.part.trim(number)
+        assert trim is not None
+        length = np.linalg.norm(self._at(number, uv)[2], axis=2)
+        by = slack / np.maximum(length, 1e-9 * length.max(initial=1e-300))
+        inside = np.zeros(len(uv), bool)
+        for way in ((0, 0), (1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1)):
+            left = np.flatnonzero(~inside)
+            if len(left):
+                inside[left] = trim.inside(*(uv[left] + by[left] * np.array(way)).T)
+        return inside
+
+    def _operations(self) -> Iterator[Finding]:
+        """Operations that are images of each other have one cutter, setup and mode."""
+        for plan in self.question.document["operations"]["plans"]:
+            for orbit, same in _by_orbit(plan).items():
+                if len({(each["cutter"], each["setup"], each["mode"]) for each in same}) > 1:
+                    names = ", ".join(each["id"] for each in same)
+                    yield Finding(False, f"The {plan['name']} plan: {names} (orbit {orbit}) are no images of each other.")
+
+    def _steps(self) -> Iterator[Finding]:
+        """Steps of the process that are repeated are as many operations, evenly turned, of their area and time together."""
+        plans = self.question.document["operations"]["plans"]
+        process = self.question.document.get("process") or {"steps": []}
+        fixed = [each for each in process["steps"] if each["mode"] == "fixed" and each.get("repeat", 1) > 1]
+        groups = [same for plan in plans for same in _by_orbit(plan).values()]
+        for step in fixed:
+            if not any(_made_of(step, same) for same in groups):
+                angles = " ".join(f"{name} {angle:g}" for name, angle in (step["angles_deg"] or {}).items())
+                yield Finding(False, f"The process: {step['repeat']} x {angles} are no operations of one orbit of a plan.")
+        if fixed:
+            yield Finding(True, f"{len(fixed)} steps of the process are repeated; each was compared with its operations.")
+
+
+def _by_orbit(plan: dict[str, Any]) -> dict[int, list[dict[str, Any]]]:
+    """The operations of a plan that are repeated, by their orbit."""
+    steps: dict[int, list[dict[str, Any]]] = {}
+    for each in plan["operations"]:
+        if each.get("orbit") is not None:
+            steps.setdefault(each["orbit"], []).append(each)
+    return steps
+
+
+def _made_of(step: dict[str, Any], same: list[dict[str, Any]]) -> bool:
+    """Whether a step of the process is some operations: as many, evenly turned, with their area and time."""
+    if len(same) != step["repeat"] or {(each["cutter"], each["setup"]) for each in same} != {(step["cutter"], step["setup"])}:
+        return False
+    if not any(each["angles_deg"] == step["angles_deg"] for each in same):
+        return False
+    sums = [(step["area_mm2"], [each["area_mm2"] for each in same]), (step["seconds"], [each["seconds"] for each in same])]
+    for stated, parts in sums:
+        if (stated is None) != (None in parts) or (
+            stated is not None and not math.isclose(stated, math.fsum(parts), rel_tol=1e-6)
+        ):
+            return False
+    turned = step.get("repeat_deg")
+    if turned is None:
+        return True
+    for name, first in step["angles_deg"].items():
+        by = turned.get(name)
+        away = np.array([each["angles_deg"][name] - first for each in same])
+        near = away if by is None else away - by * np.rint(away / by)
+        # What it is turned by is a whole part of the turn.
+        if np.abs((near + 180.0) % 360.0 - 180.0).max() > _WRITTEN * len(same):
+            return False
+        if by is not None and not (by > 0.0 and abs(360.0 / by - round(360.0 / by)) < 1e-2 and len(set(away)) == len(same)):
+            return False
+    return len(turned) == 1
+
+
+def _ill_formed(entry: dict[str, Any], faces: int) -> str:
+    """What of a pattern contradicts itself; empty for nothing."""
+    order, copies = entry["order"], entry["faces"]
+    known = {f"F{number}" for number in range(1, faces + 1)}
+    if order < 2 or (copies and len(copies) != order) or (entry["kind"] == "mirror" and order != 2):
+        return "it has another number of copies"
+    if len({len(copy) for copy in copies}) > 1 or not all(face in known for copy in copies for face in copy):
+        return "its copies have other faces than the part, or not as many as each other"
+    if not copies and not entry["whole"]:
+        return "it has no faces"
+    if entry["kind"] == "shift":
+        right = len(entry["shifts_mm"]) == order - 1
+        return (
+            "" if right and entry["place_mm"] is None and entry["direction"] is None else "its shifts are not those of its copies"
+        )
+    place, direction = entry["place_mm"], entry["direction"]
+    if place is None or direction is None or abs(np.linalg.norm(direction) - 1.0) > _SAME or entry["shifts_mm"]:
+        return "it has no axis or mirror"
+    return ""
+
+
+def _motions(entry: dict[str, Any]) -> list[Motion]:
+    """What carries the first copy onto each other one: `linear @ x + shift`."""
+    if entry["kind"] == "shift":
+        return [(np.eye(3), np.array(shift, float)) for shift in entry["shifts_mm"]]
+    place, n = np.array(entry["place_mm"], float), np.array(entry["direction"], float)
+    n = n / np.linalg.norm(n)
+    along = np.outer(n, n)
+    linear = [np.eye(3) - 2.0 * along]
+    if entry["kind"] == "rotation":
+        turns = [2.0 * math.pi * k / entry["order"] for k in range(1, entry["order"])]
+        cross = np.cross(n, np.eye(3)).T
+        linear = [along + math.cos(turn) * (np.eye(3) - along) + math.sin(turn) * cross for turn in turns]
+    return [(each, place - each @ place) for each in linear]

@@ -1,0 +1,188 @@
+"""The planner's own process: steps that a person wrote, each with its setup, orientation, cutter and faces."""
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from difflib import get_close_matches
+from pathlib import Path
+from typing import Any, Literal
+
+from plan_cutters.domain.checks import shown
+from plan_cutters.domain.cutter import Cutter
+from plan_cutters.errors import OptionError
+
+#: One tool axis for all contacts of a step, or one for each.
+Mode = Literal["fixed", "simultaneous"]
+#: What stands for the faces of a step that takes all that no step before it finishes.
+LEFT = "left"
+
+
+@dataclass(frozen=True, slots=True)
+class OwnStep:
+    """One step.
+
+    Attributes
+    ----------
+    number : int
+        In the file, from 1.
+    setup : int
+        0 for the first.
+    mode : str
+        `fixed` or `simultaneous`.
+    cutter : str
+        Its id, the word by which it was given, or its name.
+    angles : tuple of (str, float), optional
+        Positions of the rotary axes by name, deg; None where the axis is written instead, or it is simultaneous.
+    axis : tuple of float, optional
+        Unit tool axis, part coordinates.
+    faces : tuple of int, optional
+        Face numbers; None: all that no step before it finishes.
+    take : str
+        `first`: all that no such step before it takes. `share`: of what those leave; fixed steps that share divide it by time,
+        and simultaneous ones take what no fixed one serves.
+    """
+
+    number: int
+    setup: int
+    mode: Mode
+    cutter: str
+    angles: tuple[tuple[str, float], ...] | None = None
+    axis: tuple[float, float, float] | None = None
+    faces: tuple[int, ...] | None = None
+    take: Literal["first", "share"] = "first"
+
+
+@dataclass(frozen=True, slots=True)
+class Forbidden:
+    """A cutter that may not be planned on some faces, by their numbers; steps that name it there are judged all the same."""
+
+    cutter: str
+    faces: tuple[int, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class OwnProcess:
+    """The steps in their order, and what is to be done with what they leave.
+
+    Attributes
+    ----------
+    steps : tuple of OwnStep
+    forbidden : tuple of Forbidden
+    rest : str
+        `plan`: more steps are planned behind them for what they leave; `leave`: it is left.
+    file : str
+        Where it was read from; empty: it was given in Python.
+    """
+
+    steps: tuple[OwnStep, ...]
+    forbidden: tuple[Forbidden, ...] = ()
+    rest: Literal["plan", "leave"] = "plan"
+    file: str = ""
+
+    def check(self, cutters: Sequence[Cutter], setups: int, names: tuple[str, str]) -> None:
+        """See to it that every cutter, setup and angle is one that there is.
+
+        Parameters
+        ----------
+        cutters : sequence of Cutter
+            All that are judged.
+        setups : int
+            How many setups there are.
+        names : (str, str)
+            Of the two rotary axes.
+
+        Raises
+        ------
+        OptionError
+            It names the step.
+        """
+        for step in self.steps:
+            cutter_of(step.cutter, cutters, self._where(step))
+            if step.setup >= setups:
+                there = "is the only setup" if setups == 1 else f"to {setups} are the setups"
+                raise OptionError(f"{self._where(step)}: setup {step.setup + 1}: 1 {there}; name another with --setup")
+            if step.angles is not None and {name for name, _ in step.angles} != set(names):
+                written = ", ".join(name if name.isidentifier() else shown(name) for name, _ in step.angles) or "none"
+                raise OptionError(f"{self._where(step)}: angles: {written}; the rotary axes are {' and '.join(names)}")
+        for number, each in enumerate(self.forbidden, 1):
+            cutter_of(each.cutter, cutters, f"{self._named()}forbid {number}")
+
+    def check_faces(self, targets: Iterable[int]) -> None:
+        """See to it that every face is one that is to be machined.
+
+        Raises
+        ------
+        OptionError
+        """
+        known = set(targets)
+        for where, faces in [(self._where(step), step.faces or ()) for step in self.steps] + [
+            (f"{self._named()}forbid {number}", each.faces) for number, each in enumerate(self.forbidden, 1)
+        ]:
+            if missing := [f"F{number}" for number in faces if number not in known]:
+                raise OptionError(f"{where}: faces: {', '.join(missing[:4])}: no target face has this number; see --faces")
+
+    def written(self) -> dict[str, Any]:
+        """The same as a file has it, for `machines.process_file.process_of`."""
+        return {
+            "rest": self.rest,
+            "step": [_written(step) for step in self.steps],
+            "forbid": [{"cutter": each.cutter, "faces": _ids(each.faces)} for each in self.forbidden],
+        }
+
+    def _named(self) -> str:
+        return f"{Path(self.file).name}: " if self.file else "process: "
+
+    def _where(self, step: OwnStep) -> str:
+        return f"{self._named()}step {step.number}"
+
+
+def cutter_of(word: str, cutters: Sequence[Cutter], where: str) -> Cutter:
+    """The cutter with an id, the word by which it was given, or a name.
+
+    Raises
+    ------
+    OptionError
+        There is none, or there are several.
+    """
+    for names in ([c.id for c in cutters], [c.typed for c in cutters], [c.name for c in cutters]):
+        if names.count(word) == 1:
+            return cutters[names.index(word)]
+        if names.count(word) > 1:
+            ids = ", ".join(c.id for c, name in zip(cutters, names, strict=True) if name == word)
+            raise OptionError(f"{where}: cutter {word!r} may be each of {ids}: give the id")
+    words: Mapping[str, None] = dict.fromkeys([*(c.typed for c in cutters), *(c.id for c in cutters)])
+    near = get_close_matches(word, list(words), 1)
+    hint = f"{near[0]}?" if near else ", ".join(list(words)[:6])
+    raise OptionError(f"{where}: cutter {word!r} is none of those that are judged: {hint}")
+
+
+def _written(step: OwnStep) -> dict[str, Any]:
+    turned: dict[str, Any] = {}
+    if step.angles is not None:
+        turned = {"angles": dict(step.angles)}
+    elif step.axis is not None:
+        turned = {"axis": list(step.axis)}
+    faces = LEFT if step.faces is None else _ids(step.faces)
+    rest = {"take": step.take} if step.take == "share" else {}
+    return {"setup": step.setup + 1, "mode": step.mode, **turned, "cutter": step.cutter, "faces": faces, **rest}
+
+
+def _ids(faces: Iterable[int]) -> list[str]:
+    return [f"F{number}" for number in faces]
+
+
+def unit_axis(axis: Sequence[float], where: str) -> tuple[float, float, float]:
+    """An axis (3,) of length 1.
+
+    Raises
+    ------
+    OptionError
+        It has no direction.
+    """
+    largest = max(abs(each) for each in axis)
+    # Numbers next to 0 have few digits.
+    if not 1e-100 < largest < math.inf:
+        raise OptionError(f"{where}: axis {list(axis)} has no direction")
+    scaled = [float(each) / largest for each in axis]
+    x, y, z = (each / math.hypot(*scaled) for each in scaled)
+    return x, y, z

@@ -1,0 +1,87 @@
+"""The process as a file that people edit and `--process` reads: `process.toml`."""
+
+import json
+from collections import Counter
+from pathlib import Path
+from typing import Any
+
+from plan_cutters.domain.spec import typed
+from plan_cutters.library.toml_out import toml_text
+from plan_cutters.plan_file.model import Plan
+from plan_cutters.plan_file.numbers import area, duration, percent
+from plan_cutters.plan_file.process import ProcessStep
+from plan_cutters.report.protocol import Judged
+
+
+def process_toml(plan: Plan) -> str:
+    """Write the process of a plan as TOML: a `[[step]]` each, in their order, with what it does as a comment."""
+    process = plan.process
+    assert process is not None, "every new plan has one"
+    setups = ""
+    if plan.setup_proposal is not None:
+        files = " ".join(f"--setup setup-{number}.toml" for number in range(1, 1 + len(plan.setup_proposal.setups)))
+        setups = f"# In place of --setup auto: {files}\n"
+    names = {each.id: typed(each.id, each.name) for each in plan.cutters}
+    often = Counter(names.values())
+    words = {each: name if often[name] == 1 else each for each, name in names.items()}
+    share = percent(process.finished_share, some=process.finished_share > 0.0, whole=not process.left)
+    head = (
+        f"# {share} of {area(process.asked_mm2)}. Edit the steps, and judge them again: the same command with --process FILE.\n"
+        f"{setups}"
+        '# Steps take in this order what they serve of their faces; faces = "left" is all that no step before it finishes.\n'
+        '# take = "share": such steps divide their faces by time, as proposed. A step without it comes before them.\n'
+        "# To keep a cutter off some faces: [[forbid]] with cutter and faces, as in a step.\n"
+        'format = "plan-cutters-process"\nversion = 1\n'
+        '# "leave": nothing more is planned behind these steps.\nrest = "plan"\n'
+    )
+    requested = [] if plan.effective.process is None else plan.effective.process["step"]
+    return head + "".join(
+        _step(number, each, words, requested[each.own.number - 1] if each.own else None)
+        for number, step in enumerate(process.steps, 1)
+        for each in _times(plan, step)
+    )
+
+
+def _times(plan: Plan, step: ProcessStep) -> list[ProcessStep]:
+    """A step as often as it is done: each time has angles of its own, which the file writes out."""
+    plans = [] if plan.operations is None or plan.process is None else plan.operations.plans
+    operations = [each for one in plans if plan.process and one.name == plan.process.plan for each in one.operations]
+    orbit = next((each.orbit for each in operations if each.id == step.operation), None)
+    if step.repeat == 1 or orbit is None:
+        return [step]
+    return [
+        step.model_copy(update={
+            "angles_deg": each.angles_deg, "axis": each.axis, "faces": [face.face for face in each.faces],
+            "area_mm2": each.area_mm2, "share": each.share, "seconds": each.seconds,
+        })
+        for each in operations
+        if each.orbit == orbit
+    ]  # fmt: skip
+
+
+def _step(number: int, step: ProcessStep, words: dict[str, str], own: dict[str, Any] | None) -> str:
+    took = f", {duration(step.seconds)}" if step.seconds is not None else ""
+    turned = "" if step.mode == "fixed" else f'mode = "{step.mode}"\n'
+    if step.angles_deg is not None:
+        turned = f"angles = {{ {', '.join(f'{toml_key(name)} = {angle!r}' for name, angle in step.angles_deg.items())} }}\n"
+    elif step.axis is not None:
+        turned = f"axis = {[float(each) for each in step.axis]}\n"
+    faces = f"[{', '.join(toml_text(face) for face in step.faces)}]"
+    if not step.faces:
+        # A step of the planner's own that does nothing stays as it is.
+        faces = '"left"' if own is None or own["faces"] == "left" else json.dumps(own["faces"])
+    take = 'take = "share"\n' if step.take == "share" else ""
+    return (
+        f"\n# {number}: {percent(step.share, some=step.area_mm2 > 0.0)}{took}\n[[step]]\nsetup = {step.setup + 1}\n{turned}"
+        f"cutter = {toml_text(words.get(step.cutter, step.cutter))}\nfaces = {faces}\n{take}"
+    )
+
+
+def toml_key(name: str) -> str:
+    """A name as a key of TOML: bare where it may be."""
+    return name if name.isascii() and name.replace("_", "").replace("-", "").isalnum() else toml_text(name)
+
+
+def write_process(result: Judged, _split: object, path: Path) -> None:
+    """Write `process.toml`."""
+    path.write_text(process_toml(result.plan), encoding="utf-8")

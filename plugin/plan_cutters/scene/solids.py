@@ -1,0 +1,118 @@
+"""Boxes, cylinders, and the bodies of vises and chucks as triangles."""
+
+import math
+
+import numpy as np
+
+from cad_io.arrays import Floats
+from plan_cutters.domain.clamping import Block, Chuck, Clamping, Disc, Solid
+
+#: Sides of a disc, at most.
+_SIDES = 720
+
+
+def sides_of(radius: float, chord: float) -> int:
+    """Sides of a prism in a cylinder: its chords are no farther from the arc than asked, mm, unless that takes too many."""
+    sides = math.ceil(math.pi / math.acos(max(0.0, 1.0 - min(1.0, chord / radius))))
+    return min(max(sides, 8), _SIDES)
+
+
+def triangles_of(clamping: Clamping, chord: float, *, shown: bool = False, above: float = -math.inf) -> tuple[Floats, float]:
+    """Triangles of a vise or chuck in its own frame, each body closed by itself.
+
+    Parameters
+    ----------
+    clamping : Vise or Chuck
+        In its place: how far its jaws stand apart is known.
+    chord : float
+        Chord error to ask for, mm.
+    shown : bool
+        Of the table, what is drawn alone.
+    above : float
+        Bodies that end below this height, mm, are left out, unless all do.
+
+    Returns
+    -------
+    vertex : (n, 3, 3) float
+        mm, counter-clockwise from outside.
+    error : float
+        How far they are from what they stand for, mm.
+    """
+    every = clamping.solids(chord, shown=shown)
+    solids = [each for each in every if each.high > above] or every
+    off = [_off(each, chord) for each in solids]
+    if isinstance(clamping, Chuck):
+        off.append(clamping.off(chord))
+    return np.concatenate([_of(each, chord) for each in solids]), max(off)
+
+
+def entered(clamping: Clamping, points: Floats, deep: float) -> bool:
+    """Whether any of some points (n, 3) of its own frame surely lies deeper in a vise or chuck than a length, mm.
+
+    Boxes and discs are looked at, not the jaws of a chuck: no does not mean that nothing lies in it.
+    """
+    for solid in clamping.solids(deep):
+        height = points[:, 2]
+        within = (height > solid.low + deep) & (height < solid.high - deep)
+        if isinstance(solid, Disc):
+            within &= np.hypot(points[:, 0], points[:, 1]) < solid.radius - deep
+        elif len(solid.inner) == 2:
+            corners = np.array([*solid.inner, *solid.outer])
+            low, high = corners.min(axis=0) + deep, corners.max(axis=0) - deep
+            within &= ((points[:, :2] > low) & (points[:, :2] < high)).all(axis=1)
+        else:
+            continue
+        if within.any():
+            return True
+    return False
+
+
+def _off(solid: Solid, chord: float) -> float:
+    if isinstance(solid, Block):
+        return 0.0
+    return solid.radius * (1.0 - math.cos(math.pi / sides_of(solid.radius, chord)))
+
+
+def _of(solid: Solid, chord: float) -> Floats:
+    if isinstance(solid, Disc):
+        sides = sides_of(solid.radius, chord)
+        return cylinder(solid.radius, solid.high - solid.low, sides) + np.array([0.0, 0.0, solid.low])
+    return strip(np.array(solid.inner), np.array(solid.outer), solid.low, solid.high)
+
+
+def strip(inner: Floats, outer: Floats, low: float, high: float) -> Floats:
+    """Triangles (n, 3, 3) of a prism between two polylines (m, 2), counter-clockwise from outside.
+
+    The outline runs along `inner` and back along `outer`, counter-clockwise seen from above.
+    """
+
+    def at(points: Floats, height: float) -> Floats:
+        return np.column_stack([points, np.full(len(points), height)])
+
+    a, b, d, c = inner[:-1], inner[1:], outer[:-1], outer[1:]
+    top, bottom = [at(each, high) for each in (a, b, c, d)], [at(each, low) for each in (d, c, b, a)]
+    outline = np.concatenate([inner, outer[::-1]])
+    foot, after = at(outline, low), np.roll(at(outline, low), -1, axis=0)
+    up = np.array([0.0, 0.0, high - low])
+    sides = [foot, after, after + up, foot + up]
+    quads = [np.stack(each, axis=1) for each in (top, bottom, sides)]
+    return np.concatenate([quad[:, corners] for quad in quads for corners in ([0, 1, 2], [0, 2, 3])])
+
+
+def box(low: Floats, high: Floats) -> Floats:
+    """Triangles (12, 3, 3) of a box, counter-clockwise from outside."""
+    corner = np.array([[x, y, z] for z in (0, 1) for y in (0, 1) for x in (0, 1)])
+    sides = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]
+    split = [(a, b, c) for a, b, c, _ in sides] + [(a, c, d) for a, _, c, d in sides]
+    return np.asarray((low + corner * (high - low))[np.array(split)])
+
+
+def cylinder(radius: float, height: float, sides: int) -> Floats:
+    """Triangles (4 sides, 3, 3) of a prism in a cylinder that stands on the origin, counter-clockwise from outside."""
+    turn = 2.0 * np.pi * np.arange(sides) / sides
+    x, y = radius * np.cos(turn), radius * np.sin(turn)
+    a = np.stack([x, y, np.zeros(sides)], axis=1)
+    b, up = np.roll(a, -1, axis=0), np.array([0.0, 0.0, height])
+    middle = np.zeros((sides, 3))
+    parts = [(a, b, b + up), (a, b + up, a + up), (b, a, middle), (a + up, b + up, middle + up)]
+    return np.concatenate([np.stack(part, axis=1) for part in parts])

@@ -1,0 +1,175 @@
+"""A part as it stands in a setup: what may be gripped of it, and what of its triangles lies where.
+
+All is looked at in a frame of the setup: z along the setup axis, counted from the part's lowest point.
+"""
+
+from collections.abc import Collection, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from cad_io.arrays import Floats, Ints, Record
+from plan_cutters.domain.clamping import Clamping
+from plan_cutters.domain.placement import frame_of
+
+#: Faces that are off the setup axis, or off each other, by a smaller sine are parallel: 0.1 deg.
+PARALLEL = float(np.sin(np.radians(0.1)))
+#: Faces are in one plane, or on one cylinder, if they are no farther apart than this, mm.
+TOGETHER = 0.01
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Workpiece(Record):
+    """A part as it stands in a setup, as far as clamping it matters.
+
+    Attributes
+    ----------
+    frame : (3, 3) float
+        The setup's x, y and z in part coordinates, as rows.
+    lowest : float
+        Height of the part's lowest point along z, mm.
+    vertex : (n, 3, 3) float
+        Triangles in that frame, z from the lowest point, mm.
+    normal : (n, 3) float
+        Outward normals of them, as long as twice their area.
+    face : (n,) int
+        Face numbers of them.
+    planes : set of int
+        Planar faces.
+    targets : set of int
+        Faces to machine.
+    flat : float
+        Heights that differ by less are one, mm.
+    """
+
+    frame: Floats
+    lowest: float
+    vertex: Floats
+    normal: Floats
+    face: Ints
+    planes: frozenset[int]
+    targets: frozenset[int]
+    flat: float
+
+    @classmethod
+    def of(
+        cls, vertex: Floats, face: Ints, sign: Floats, planes: Collection[int], targets: Collection[int], setup: Sequence[float]
+    ) -> "Workpiece":
+        """A part's triangles (n, 3, 3) of faces (n,) in a setup; `sign` (faces,): side of each face that is out of the material.
+
+        Without targets, all faces are.
+        """
+        frame = frame_of(np.asarray(setup, float))
+        local = vertex @ frame.T
+        lowest = float(local[..., 2].min())
+        local = local - np.array([0.0, 0.0, lowest])
+        normal = np.cross(local[:, 1] - local[:, 0], local[:, 2] - local[:, 0]) * sign[face - 1][:, None]
+        flat = 1e-6 * float(np.linalg.norm(np.ptp(vertex, axis=(0, 1)))) + 1e-6
+        wanted = frozenset(targets) or frozenset(np.unique(face).tolist())
+        return cls(frame, lowest, local, normal, face, frozenset(planes), wanted, flat)
+
+    @property
+    def area(self) -> float:
+        """Of the target faces, mm2."""
+        mine = np.isin(self.face, list(self.targets))
+        return 0.5 * float(np.linalg.norm(self.normal[mine], axis=1).sum())
+
+    def rests_on(self, height: float) -> tuple[int, ...]:
+        """Numbers of the planar faces that look down at a height."""
+        low = (self.vertex[..., 2] <= height + self.flat).all(axis=1) & (self.vertex[..., 2] >= height - self.flat).all(axis=1)
+        return tuple(int(n) for n in np.unique(self.face[low & (self.normal[:, 2] < 0.0)]) if int(n) in self.planes)
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Wall:
+    """Faces of one upright plane or cylinder: their numbers and triangles, and heights between which they lie."""
+
+    faces: tuple[int, ...]
+    vertex: Floats
+    face: Ints
+    normal: Floats
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Place:
+    """A vise or chuck at a place of a setup's frame, and what it grips there.
+
+    Attributes
+    ----------
+    clamping : Vise or Chuck
+    x, origin : (3,) float
+        Its x axis and its origin.
+    grips : tuple of int
+        Numbers of the faces that its jaws touch.
+    touched, hidden : float
+        Area that they touch, of a vise on the side where that is less; and of the targets on all sides, mm2.
+    above : float
+        Height of what it rests on over the part's lowest point, mm.
+    """
+
+    clamping: Clamping
+    x: Floats
+    origin: Floats
+    grips: tuple[int, ...]
+    touched: float
+    hidden: float
+    above: float
+
+    @property
+    def apart(self) -> float:
+        """How far the jaws of a vise stand apart, or how wide is what a chuck grips, mm."""
+        return self.clamping.numbers[-1]
+
+    @property
+    def firm(self) -> float:
+        """How well it holds, by what its jaws touch: half as much where something of the part hangs below them."""
+        return self.touched if self.above == 0.0 else 0.5 * self.touched
+
+
+def wall_of(faces: Sequence[int], vertex: Floats, face: Ints, normal: Floats) -> Wall:
+    return Wall(tuple(faces), vertex, face, normal, float(vertex[..., 2].min()), float(vertex[..., 2].max()))
+
+
+def merged(one: Wall, other: Wall) -> Wall:
+    vertex, face = np.concatenate([one.vertex, other.vertex]), np.concatenate([one.face, other.face])
+    return wall_of(sorted({*one.faces, *other.faces}), vertex, face, one.normal)
+
+
+def stands(low: float, grip: float) -> tuple[tuple[float, float], ...]:
+    """How a part may stand in jaws where what they grip begins at a height over its lowest point.
+
+    Each is how far above its lowest point it rests, and how far the jaws reach above that: where a fillet, a chamfer or more is
+    below what they grip, it hangs between them, or it stands on its lowest point in jaws that reach so much higher.
+    """
+    return ((0.0, grip),) if low <= 0.5 * grip else ((low, grip), (0.0, low + grip))
+
+
+def area_of(vertex: Floats) -> float:
+    return 0.5 * float(np.linalg.norm(np.cross(vertex[:, 1] - vertex[:, 0], vertex[:, 2] - vertex[:, 0]), axis=1).sum())
+
+
+def clipped(vertex: Floats, face: Ints, direction: Floats, low: float, high: float) -> tuple[Floats, Ints]:
+    """Cut triangles (n, 3, 3) of faces (n,) to what lies between two heights along a direction."""
+    for way, limit in ((direction, low), (-direction, -high)):
+        vertex, face = _beyond(vertex, face, way, limit)
+    return vertex, face
+
+
+def _beyond(vertex: Floats, face: Ints, direction: Floats, limit: float) -> tuple[Floats, Ints]:
+    """Cut triangles to what lies above a height along a direction."""
+    height = vertex @ direction - limit
+    count = (height > 0.0).sum(axis=1)
+    parts, faces = [vertex[count == 3]], [face[count == 3]]
+    for number in (1, 2):
+        some, tall = vertex[count == number], height[count == number]
+        # The corner that is alone on its side comes first.
+        alone = np.argmax(tall > 0.0, axis=1) if number == 1 else np.argmax(tall <= 0.0, axis=1)
+        a, b, c = (np.take_along_axis(some, ((alone + k) % 3)[:, None, None], axis=1)[:, 0] for k in range(3))
+        p, q, r = (np.take_along_axis(tall, ((alone + k) % 3)[:, None], axis=1) for k in range(3))
+        ab, ac = a + (b - a) * (p / (p - q)), a + (c - a) * (p / (p - r))
+        pieces = [np.stack([a, ab, ac], axis=1)] if number == 1 else [np.stack([ab, b, c], axis=1), np.stack([ab, c, ac], axis=1)]
+        parts += pieces
+        faces += [face[count == number]] * len(pieces)
+    return np.concatenate(parts), np.concatenate(faces)

@@ -1,0 +1,110 @@
+"""A field of tool axes over a face: one axis at every contact, that turns steadily from each node of its grid to the next."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import FaceGrid, Floats
+from plan_cutters.scene.conditions import Conditions
+
+#: Axes of neighbouring nodes that are farther apart, rad, have none between them that is worth looking at.
+_APART = math.radians(60.0)
+#: What rounding may turn an axis by, rad.
+_ROUNDING = 1e-9
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class AxisField:
+    """Tool axes at the nodes of a face's grid, and between them: the sum of the four around, weighted as in a bilinear map.
+
+    Beyond the grid the field stays as at its rim.
+
+    Attributes
+    ----------
+    u, v : (nu,), (nv,) float
+        Grid lines; those of a closed direction have the first one again, a period later.
+    axis : (nu, nv, 3) float
+        Unit, part coordinates; nan where a node has none, and then in all that is next to it.
+    """
+
+    u: Floats
+    v: Floats
+    axis: Floats
+
+    @classmethod
+    def of(cls, grid: FaceGrid, axis: Floats) -> "AxisField":
+        """Lay axes (nu, nv, 3) over a face's grid."""
+        u, v = grid.u, grid.v
+        if grid.closed_u:
+            u, axis = np.append(u, u[0] + grid.span[1] - grid.span[0]), np.concatenate([axis, axis[:1]])
+        if grid.closed_v:
+            v, axis = np.append(v, v[0] + grid.span[3] - grid.span[2]), np.concatenate([axis, axis[:, :1]], axis=1)
+        return cls(u, v, axis)
+
+    def at(self, uv: Floats) -> Floats:
+        """Unit axes (n, 3) at parameters (n, 2); nan where there is none."""
+        (i, s), (j, t) = _place(self.u, uv[:, 0]), _place(self.v, uv[:, 1])
+        corners = [(i, j, (1.0 - s) * (1.0 - t)), (i + 1, j, s * (1.0 - t)), (i, j + 1, (1.0 - s) * t), (i + 1, j + 1, s * t)]
+        axes = [self.axis[np.minimum(a, len(self.u) - 1), np.minimum(b, len(self.v) - 1)] for a, b, _ in corners]
+        total = np.zeros((len(uv), 3))
+        apart = np.zeros(len(uv))
+        for k, (_, _, weight) in enumerate(corners):
+            # A node without weight has no say, known or not.
+            total += np.where(weight[:, None] > 0.0, weight[:, None] * axes[k], 0.0)
+            for m in range(k):
+                both = (weight > 0.0) & (corners[m][2] > 0.0)
+                apart = np.where(both, np.maximum(apart, angle_between(axes[k], axes[m])), apart)
+        length = np.linalg.norm(total, axis=1)
+        total[~((apart <= _APART) & (length > 0.0))] = np.nan
+        return np.asarray(total / np.linalg.norm(total, axis=1)[:, None])
+
+    def within(self, middle: Floats, span: Floats) -> tuple[Floats, Floats]:
+        """The axis (n, 3) in the middle of rectangles (n, 2) of parameters, and how far from it any other one in it is, rad.
+
+        nan where the field has no axis somewhere in a rectangle. Between its ends and the grid lines in it the axes lie between
+        those at the corners, so that the farthest of these is the farthest of all.
+        """
+        low, high = middle - 0.5 * span, middle + 0.5 * span
+        marks = [_marks(lines, low[:, k], high[:, k]) for k, lines in enumerate((self.u, self.v))]
+        centre, swing = self.at(middle), np.zeros(len(middle))
+        for a in marks[0]:
+            for b in marks[1]:
+                there = self.at(np.column_stack([a, b]))
+                swing = np.maximum(swing, angle_between(centre, there))
+        return centre, swing + _ROUNDING
+
+
+def _place(lines: Floats, value: Floats) -> tuple[NDArray[np.intp], Floats]:
+    """The number of the grid line before each value, and how far the value is on the way to the next one, 0 to 1."""
+    if len(lines) < 2:
+        return np.zeros(len(value), np.intp), np.zeros(len(value))
+    i = np.clip(np.searchsorted(lines, value, side="right") - 1, 0, len(lines) - 2)
+    return i, np.clip((value - lines[i]) / (lines[i + 1] - lines[i]), 0.0, 1.0)
+
+
+def _marks(lines: Floats, low: Floats, high: Floats) -> list[Floats]:
+    """The ends of intervals, and grid lines in them: nan in an interval that has several."""
+    first, last = np.searchsorted(lines, low, side="right"), np.searchsorted(lines, high, side="left")
+    inner = np.where(last > first, lines[np.minimum(first, len(lines) - 1)], low)
+    return [low, np.where(last - first > 1, np.nan, inner), high]
+
+
+def angle_between(a: Floats, b: Floats) -> Floats:
+    """Angles (n,), rad, between unit vectors (n, 3), exact where they are small."""
+    return np.asarray(2.0 * np.arctan2(np.linalg.norm(a - b, axis=-1), np.linalg.norm(a + b, axis=-1)))
+
+
+def held_within(axis: Floats, swing: Floats, conditions: Conditions) -> NDArray[np.bool_]:
+    """Where a machine holds every tool axis within an angle (n,), rad, of some axes (n, 3); nan: it does not."""
+    known = np.flatnonzero(np.isfinite(axis).all(axis=1) & np.isfinite(swing))
+    axis, swing, held = axis[known], swing[known], np.zeros(len(axis), bool)
+    good = conditions.allows(axis)
+    if conditions.kinematics is not None:
+        good &= conditions.kinematics.allows_about(axis, swing)
+    if conditions.ranges.limit_cos > -1.0:
+        away = angle_between(axis, np.broadcast_to(conditions.setup, axis.shape))
+        good &= away + swing <= math.acos(min(1.0, conditions.ranges.limit_cos))
+    held[known] = good
+    return held

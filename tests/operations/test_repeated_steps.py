@@ -1,0 +1,142 @@
+"""Orientations are repeated about the axis of a part, and each image is an operation like any other."""
+
+import json
+from functools import cache, partial
+
+import numpy as np
+import pytest
+
+from cad_io import read_part
+from cad_io.part.motion import Motion
+from plan_cutters import plan
+from plan_cutters.checker.check import check
+from plan_cutters.command.check_operations import question_of
+from plan_cutters.domain.columns import columns_of
+from plan_cutters.operations import planning
+from plan_cutters.operations.plans import plan_with
+from plan_cutters.operations.repeated import repeated, symmetric
+from plan_cutters.operations.task import Task
+from plan_cutters.options import Options
+from plan_cutters.pipeline import prepare
+from plan_cutters.result import Result
+from plan_cutters.stages.judge import judge
+from tests.support.patterns import impeller
+
+WORDS = {"cutters": ["D4L30rc2F16S4"], "holder": "er16", "faces": "all", "spacing": 4.0, "jobs": 2, "machine": "trunnion-ac",
+         "operations": "fastest", "feed": 1500.0}  # fmt: skip
+
+
+@cache
+def task(off: float = 0.0, **options) -> Task:
+    ready = prepare(read_part(impeller(6, off=off, fillet=1.5)), Options.of({**WORDS, **options}))
+    return planning._task(ready, [{c: judge(ready, c) for c in ready.cutters}], None)
+
+
+def test_the_axis_is_that_of_the_pattern():
+    found = symmetric(task()).symmetry
+    assert (found.order, found.exact) == (6, True)
+
+
+def test_a_part_that_nearly_is_a_pattern_is_told_by_its_samples():
+    found = symmetric(task(0.02)).symmetry
+    assert (found.order, found.exact) == (6, False)
+    assert abs(found.direction[2]) == pytest.approx(1.0, abs=1e-6)
+    assert np.hypot(*found.place[:2]) < 1e-3
+
+
+def test_nothing_is_repeated_where_axes_lock_or_it_was_refused():
+    assert symmetric(task(index_step_deg=15.0)) is None
+    assert symmetric(task(patterns=False)) is None
+    assert symmetric(task(most_operations=3)) is None
+
+
+def test_nothing_is_repeated_about_an_axis_that_is_not_the_machines():
+    # Each image would have other angles of both axes: no planner calls these one step.
+    assert symmetric(task(setup="x")) is None
+
+
+@pytest.mark.parametrize("angle", [(10.0, 40.0), (0.0, 0.0), (-170.0, -20.0)])
+def test_images_are_the_axes_turned_by_one_rotary_axis(angle):
+    own = symmetric(task())
+    where = own.orientations[0]
+    shown, axis = where.set_to(np.array([angle]))
+    images = own.images(columns_of(axis, shown))
+    assert len(images) == 6
+    assert np.ptp(images.angle[:, 1]) == 0.0
+    for k in range(6):
+        turned = Motion.turn(own.symmetry.place, own.symmetry.direction, np.pi / 3 * k).directions(axis)[0]
+        assert np.linalg.norm(images.axis[k] - turned) < 1e-9
+    assert where.conditions.allows(images.axis).all()
+
+
+def test_costs_are_those_of_the_best_image():
+    from plan_cutters.operations.plans import costs_with
+
+    own = symmetric(task())
+    shown, axis = own.orientations[0].set_to(np.array([(10.0, 90.0), (40.0, 45.0)]))
+    columns = columns_of(axis, shown)
+    _, cost = costs_with(own, columns)
+    _, every = costs_with(task(), own.images(columns))
+    assert np.array_equal(cost, every.reshape(len(cost), 2, 6).min(axis=2))
+    assert np.isfinite(cost).any()
+
+
+def test_a_plan_of_repeated_steps_has_ordinary_operations():
+    own = symmetric(task())
+    columns = repeated(own, planning._first(task()), partial(planning._stored, task()), lambda done, total: None)
+    made = plan_with(own, "fastest", columns)
+    fixed = [each for each in made.operations if each.mode == "fixed"]
+    assert made.orientations == len({each.orbit if each.orbit >= 0 else each.name for each in fixed})
+    assert made.orientations <= len(columns) < len(fixed)
+    for each in fixed:
+        one = columns_of(each.axis[None], each.angle[None], own.cutters.index(each.cutter), each.setup)
+        # As it is tested without any symmetry.
+        assert task().probes.table(each.rows, one).all()
+    reached = task().rows
+    assert (made.label[reached] >= 0).all()
+
+
+@cache
+def found() -> Result:
+    part = read_part(impeller(8, fillet=1.5))
+    return plan(part, **{**WORDS, "area_budget": 0, "index_time": 2.0})
+
+
+def test_the_process_has_each_step_once():
+    process = found().plan.process
+    step = next(each for each in process.steps if each.repeat > 1)
+    assert (step.repeat, step.repeat_deg) == (8, {"C": 45.0})
+    entry = found().plan.operations.plans[0]
+    same = [each for each in entry.operations if each.orbit is not None]
+    assert len(same) == 8
+    assert step.area_mm2 == pytest.approx(sum(each.area_mm2 for each in same))
+    assert step.seconds == pytest.approx(sum(each.seconds for each in same))
+    assert step.clearance_mm == min(each.clearance_mm for each in same)
+    assert sum(each.area_mm2 for each in process.steps) == pytest.approx(process.finished_mm2)
+    assert entry.orientations == sum(each.mode == "fixed" for each in entry.operations)
+    assert any(line.lstrip()[1:].lstrip().startswith("8 x, C") and "+ 45" in line for line in found().plan.text.lines)
+
+
+def test_it_takes_no_more_time_than_without_them():
+    plain = plan(read_part(impeller(8, fillet=1.5)), **{**WORDS, "area_budget": 0, "index_time": 2.0, "patterns": False})
+    seconds, before = (each.plan.operations.plans[0].seconds for each in (found(), plain))
+    assert seconds <= 1.02 * before
+    assert len(found().plan.process.steps) < len(plain.plan.process.steps)
+    assert not any(each.repeat > 1 for each in plain.plan.process.steps)
+
+
+def test_operations_are_checked_as_any_others(tmp_path):
+    found().write(tmp_path, ["json", "npz"])
+    document = json.loads((tmp_path / "plan.json").read_text())
+    arrays = {}
+    for name in ("operations.npz", "samples.npz"):
+        with np.load(tmp_path / name) as archive:
+            arrays[name] = {each: archive[each] for each in archive.files}
+    options = Options.of({word: value for word, value in WORDS.items() if word not in ("operations", "feed", "jobs")})
+    checked = check(question_of(read_part(impeller(8, fillet=1.5)), options, document, arrays))
+    assert checked.holds, checked.lines
+    # An image that is not in its place is found.
+    forged = next(each for each in document["operations"]["plans"][0]["operations"] if each["orbit"] is not None)
+    forged["angles_deg"]["C"] += 22.5
+    checked = check(question_of(read_part(impeller(8, fillet=1.5)), options, document, arrays))
+    assert not checked.holds

@@ -1,0 +1,232 @@
+"""Vises and chucks in their places: closed forms, rigid motion, what they hide, and where they find nothing to grip."""
+
+import math
+
+import cadquery as cq
+import numpy as np
+import pytest
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
+
+from cad_io import read_part
+from plan_cutters import Scene, plan, posture_map
+from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.verdicts import ANOTHER_SETUP
+from plan_cutters.errors import FixtureError, OptionError
+from tests.support.cad_parts import ball, box, moved, real, rod
+
+UP, DOWN = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
+HOW = {"faces": "all", "area_budget": 0, "machine": "tilt:110", "cutters": "D4L60", "spacing": 1.5}
+
+
+def hold_of(part, word, setup=UP, targets=()):
+    scene = Scene.of(part).for_targets(targets)
+    scene.surround()
+    return scene.hold(Fixture.parse(word), setup)
+
+
+def turned(shape, motion):
+    return BRepBuilderAPI_Transform(shape, motion, True).Shape()
+
+
+def direction(motion, axis):
+    rotation = np.array([[motion.Value(i, j) for j in (1, 2, 3)] for i in (1, 2, 3)])
+    return rotation @ axis
+
+
+def test_a_block_is_gripped_by_its_largest_opposite_faces_in_the_smallest_vise():
+    hold = hold_of(box(60, 40, 30), "vise")
+    assert hold.fixture.text == "vise:46x25x65:3:40@30,20,0,0,0,-90"
+    assert len(hold.grips) == 2
+    assert len(hold.rests_on) == 1
+    # The jaws are narrower than the faces: their width times the grip, on both.
+    assert hold.hidden == pytest.approx(2 * 46 * 3)
+
+
+@pytest.mark.parametrize(("length", "grip"), [(60.0, 3.0), (30.0, 3.0), (60.0, 5.0)])
+def test_what_jaws_cover_is_their_width_times_the_grip_on_two_faces(length, grip):
+    hold = hold_of(box(length, 20, 30), f"vise:46x25x65:{grip:g}")
+    assert hold.hidden == pytest.approx(2 * min(46.0, length) * grip)
+
+
+def test_of_what_is_no_target_jaws_hide_nothing_and_targets_are_spared():
+    part = read_part(box(60, 40, 30))
+    wide = hold_of(part, "vise")
+    narrow = hold_of(part, "vise", targets=wide.grips)
+    assert set(narrow.grips).isdisjoint(wide.grips)
+    assert narrow.hidden == 0.0
+    assert hold_of(part, "vise", targets=narrow.grips).grips == wide.grips
+
+
+def test_a_bar_in_a_chuck():
+    hold = hold_of(rod(25, 80, at=(3, 4, 5)), "chuck")
+    chuck = hold.fixture.clamping
+    assert hold.fixture.placement[:3] == pytest.approx((3, 4, 5))
+    assert chuck.diameter == pytest.approx(50.0, abs=1e-6)
+    assert (chuck.jaws, chuck.height) == (3, 20.0)
+    # Three jaws, each an arc of its width: radius times angle times grip.
+    assert hold.hidden == pytest.approx(3 * 25 * 2 * math.asin(0.16 * 80 / 50) * 3, rel=0.05)
+    assert hold_of(rod(25, 80), "chuck:4x30:5").fixture.clamping.numbers == pytest.approx((4, 30, 5, 50), abs=1e-6)
+
+
+def test_in_the_plan_just_what_the_jaws_cover_is_left_for_another_setup():
+    """The jaws are wider than the part: 40 x 3 on two faces, what it rests on, and beside the jaws strips as wide as a tool."""
+    found = plan(box(40, 30, 20), fixtures="vise", **HOW)
+    (entry,) = found.plan.fixtures
+    assert entry.hidden_mm2 == pytest.approx(2 * 40 * 3)
+    (name,) = found.reaches
+    verdicts, samples = found.reaches[name], found.samples
+    held = np.isin(samples.face, [int(each[1:]) for each in entry.grips])
+    low = samples.point[:, 2] < 3.0 - 1e-6
+    assert (verdicts.not_reached[held & low]).all()
+    assert not (verdicts.not_reached[held & (samples.point[:, 2] > 3.0 + 1e-6)]).any()
+    assert (verdicts.reason[verdicts.not_reached] == ANOTHER_SETUP).all()
+    (left,) = found.plan.process.left
+    assert left.cause == "another_setup"
+    assert set(left.faces) == {"F1", "F2", "F3", "F4", "F5"}
+    assert sum(samples.area[held & verdicts.not_reached]) == pytest.approx(entry.hidden_mm2, rel=0.25)
+    assert left.area_mm2 < 40 * 30 + entry.hidden_mm2 + 2 * 3 * 30
+    assert found.plan.selected is None
+    assert "grips F" in " ".join(found.plan.notes)
+
+
+@pytest.mark.parametrize("word", ["vise", "chuck"])
+def test_a_part_turned_with_its_setup_is_gripped_and_judged_alike(word):
+    shape = box(40, 30, 20) if word == "vise" else rod(12, 30)
+    motion = moved()
+    there = tuple(direction(motion, UP).tolist())
+    how = {**HOW, "grid": 13, "spacing": None}
+    here, away = plan(shape, fixtures=word, **how), plan(turned(shape, motion), fixtures=word, setup=there, **how)
+    one, other = here.plan.fixtures[0], away.plan.fixtures[0]
+    assert one.grips == other.grips
+    assert one.hidden_mm2 == pytest.approx(other.hidden_mm2, rel=1e-6)
+    assert one.clamping.partition("@")[0].split(":")[1] == other.clamping.partition("@")[0].split(":")[1]
+    (name,) = here.reaches
+    same = here.reaches[name].reached == away.reaches[name].reached
+    # Samples right at the edge of a jaw may go either way by rounding.
+    assert same.mean() > 0.995
+
+
+def test_numbers_of_a_plan_are_the_same_clamping_again(tmp_path):
+    found = plan(box(40, 30, 20), fixtures="vise", **HOW)
+    (entry,) = found.plan.fixtures
+    again = plan(box(40, 30, 20), fixtures=entry.clamping, **HOW)
+    assert again.plan.fixtures[0].clamping == entry.clamping
+    assert again.plan.fixtures[0].placement == entry.placement
+    one, other = (each.conditions.surroundings.fixtures[0].obstacles.triangles.vertex for each in (found, again))
+    assert np.array_equal(one, other)
+
+
+def test_what_hangs_below_the_gripped_faces_hangs_between_the_jaws():
+    """A boss under a plate: the plate is gripped from its own lower edge up, the boss is in the vise."""
+    shape = BRepAlgoAPI_Fuse(box(60, 40, 20), box(20, 10, 8, at=(20, 15, -8))).Shape()
+    hold = hold_of(shape, "vise")
+    assert hold.fixture.placement[2] == pytest.approx(0.0)
+    assert " apart, from 8 mm above its lowest point; the jaws reach 3 mm above where it rests" in hold.words
+    with pytest.raises(FixtureError, match="nothing to grip"):
+        hold_of(BRepAlgoAPI_Fuse(box(60, 40, 20), box(20, 10, 300, at=(20, 15, -300))).Shape(), "vise")
+
+
+@pytest.mark.parametrize("radius", [1.0, 2.0, 4.0])
+def test_above_a_fillet_jaws_reach_as_far_as_without_it(radius):
+    """The part stands on what the fillet leaves of its lower face: the jaws are higher, and the ledges longer."""
+    block = cq.Workplane().box(60, 40, 30, centered=(True, True, False)).faces("<Z").edges().fillet(radius)
+    bar = cq.Workplane().circle(20).extrude(60).faces("<Z").edges().chamfer(radius)
+    for body, word in ((block, "vise"), (bar, "chuck")):
+        hold = hold_of(body.val().wrapped, word)
+        assert hold.fixture.placement[2] == pytest.approx(0.0, abs=1e-9)
+        assert hold.fixture.clamping.grip == pytest.approx(3.0 if radius < 1.5 else radius + 3.0, abs=0.02)
+        assert len(hold.rests_on) == 1
+        again = Scene.of(body.val().wrapped, fixtures=hold.fixture.text)
+        assert again.surround().fixtures[0].fixture.clamping == hold.fixture.clamping
+
+
+def test_the_longer_faces_of_a_block_are_gripped_where_jaws_are_narrower_than_both():
+    assert hold_of(box(80, 50, 40), "vise").fixture.clamping.gap == pytest.approx(50.0)
+    assert hold_of(box(50, 80, 40), "vise").fixture.clamping.gap == pytest.approx(50.0)
+
+
+@pytest.mark.parametrize(
+    ("shape", "word", "why"),
+    [
+        (lambda: ball(), "vise", "no two opposite plane faces stand along it"),
+        (lambda: rod(), "vise", "no two opposite plane faces stand along it"),
+        (lambda: box(60, 40, 30), "vise:10x10x20", "the nearest parallel faces are 40 mm apart, and the vise opens to 20 mm"),
+        (lambda: box(600, 400, 300), "vise", "the nearest parallel faces are 400 mm apart, and the vise opens to 355 mm"),
+        (lambda: box(4, 4, 200), "vise", "the part stands 200 mm high, and jaws touch no more than 4 mm"),
+        (lambda: box(60, 40, 30), "chuck", "no outside cylinder along it reaches all round"),
+        (lambda: rod(300, 50), "chuck", "the cylinder is 600 mm wide"),
+    ],
+)
+def test_where_nothing_can_be_gripped_one_line_says_why_and_what_to_try(shape, word, why):
+    with pytest.raises(FixtureError) as error:
+        hold_of(shape(), word)
+    assert why in str(error.value)
+    assert "\n" not in str(error.value)
+    assert "try another setup" in str(error.value)
+
+
+def test_pockets_and_bores_are_not_gripped():
+    """Faces that look at each other, and an inside cylinder, are no outside."""
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+
+    frame = BRepAlgoAPI_Cut(rod(40, 20), box(30, 30, 40, at=(-15, -15, -10))).Shape()
+    with pytest.raises(FixtureError, match="nothing to grip"):
+        hold_of(frame, "vise")
+    bored = BRepAlgoAPI_Cut(box(60, 60, 20), rod(20, 40, at=(30, 30, -10))).Shape()
+    with pytest.raises(FixtureError, match="nothing to grip"):
+        hold_of(bored, "chuck")
+
+
+def test_jaws_never_stand_in_the_part():
+    """Where a flange is in the way of the jaws, another pair is gripped."""
+    flanged = BRepAlgoAPI_Fuse(box(60, 40, 30), box(10, 60, 10, at=(25, -10, 0))).Shape()
+    hold = hold_of(flanged, "vise:46x25x65")
+    scene = Scene.of(flanged, fixtures=hold.fixture)
+    assert scene.surround().fixtures[0].fixture == hold.fixture
+
+
+def test_each_setup_has_a_vise_of_its_own():
+    found = plan(box(40, 30, 20), fixtures="vise", other_setups=[DOWN], **HOW)
+    assert [each.setups for each in found.plan.fixtures] == [[0], [1]]
+    assert "setup_without_fixtures" not in found.plan.note_codes
+    (name,) = found.reaches
+    assert found.reaches[name].reached.all()
+    assert found.plan.process.finished_share == pytest.approx(1.0)
+
+
+def test_a_scene_and_a_posture_map_take_them_too():
+    part = box(40, 30, 20)
+    scene = Scene.of(part, fixtures="vise")
+    assert scene.surround().fixtures[0].hold is not None
+    # On a side face, just above a jaw and under it.
+    free = [
+        posture_map(scene, point=(20, 30, z), cutter="D4L60", rotations=np.linspace(0, 6, 13), tilt=(0, 1.5)).free
+        for z in (1.5, 12.0)
+    ]
+    assert not any(len(each) for each in free[0])
+    assert any(len(each) for each in free[1])
+
+
+def test_posture_maps_answer_no_other_setup_than_that_for_which_a_vise_was_placed():
+    how = {"cutters": "D4L60", "grid": 3, "area_budget": 0}
+    maps = plan(box(40, 30, 20), fixtures="vise", posture_maps=True, rotation_step=0.5, **how).maps
+    assert maps.asked(fixtures="vise", setup=UP).reached.any()
+    for words in ({"setup": DOWN}, {"setup": DOWN, "fixtures": "vise"}):
+        with pytest.raises(OptionError, match="a vise that was placed for the setup 0,0,1, not 0,0,-1: plan again"):
+            maps.asked(**words)
+    with pytest.raises(OptionError, match="other fixtures"):
+        maps.asked(fixtures="vise:46x25x65")
+
+
+@pytest.mark.parametrize("words", [["vise", "vise"], ["vise", "chuck"], ["vise", "vise:46x25x65:3:40@30,20,0,0,0,-90"]])
+def test_one_vise_or_chuck_is_placed_on_a_part(words):
+    with pytest.raises(OptionError, match="one vise or chuck is placed on a part") as error:
+        plan(box(), fixtures=words, **HOW)
+    assert "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize("file", real("hard/ampath_propeller.stp"), ids=lambda path: path.stem)
+def test_a_propeller_has_no_faces_for_a_vise(file):
+    with pytest.raises(FixtureError, match="nothing to grip"):
+        hold_of(read_part(file), "vise")
