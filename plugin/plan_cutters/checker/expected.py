@@ -53,6 +53,10 @@ class Reckoned:
         #: Steps of the planner's own process, as they were requested; None where all steps were planned.
         self.own = None if document["effective"].get("process") is None else document["effective"]["process"]["step"]
         forbidden = document["effective"]["process"]["forbid"] if self.own is not None else []
+        #: Whether the fewest orientations were not looked for: one copy was planned, and repeated, or the planner's own steps.
+        repeats = any(each["orbit"] is not None for plan in document["operations"]["plans"] for each in plan["operations"])
+        by_pattern = document["effective"]["operations"] == "fastest" and document["effective"]["patterns"] and repeats
+        self.without_fewest = self.own is not None or (document["operations"]["fewest"] is None and by_pattern)
         #: Whether each sample that is reached must go with an operation.
         self.all_planned = self.own is None or (document["effective"]["process"]["rest"] == "plan" and not forbidden)
         needed = list(dict.fromkeys([*needed, *(each["cutter"] for each in [*(self.own or []), *forbidden])]))
@@ -87,7 +91,7 @@ class Reckoned:
             "asked": effective["operations"],
             "rotary": list(question.machine.names),
             "plans": plans,
-            "fewest": None if self.own is not None else self._fewest(written["fewest"], count),
+            "fewest": None if self.without_fewest else self._fewest(written["fewest"], count),
             "fastest": self._fastest(written) if "fastest" in names else None,
             "cutters": self._cutters(written) if many and "fastest" in names and timed_ else [],
             "curve": self._curve(written["curve"], count),
@@ -192,7 +196,7 @@ class Reckoned:
             "bound_seconds": Loose(0.0, math.inf),
             "at_best_seconds": Loose(0.0, math.inf),
             "samples": Loose(0, len(self.area)),
-            "candidates": Loose(0, len(self.question.operations["candidate_cutter"])),
+            "candidates": Loose(0, math.inf if self.without_fewest else len(self.question.operations["candidate_cutter"])),
         }
         if seconds is None or not isinstance(bound, float | int):
             return fastest | {"gap": None}
