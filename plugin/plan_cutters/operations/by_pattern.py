@@ -15,6 +15,7 @@ from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.operations import Fastest, OperationPlan, Worth
 from plan_cutters.operations.at_once import few_enough, fewer
 from plan_cutters.operations.canonical import canonical
+from plan_cutters.operations.fastest import bounded, cheap
 from plan_cutters.operations.plans import expanded, plan_with, worth_their_turn
 from plan_cutters.operations.repeated import Copied, repeated, symmetric
 from plan_cutters.operations.rest_areas import allowed, by_size, largest_first, worths
@@ -25,10 +26,9 @@ from plan_cutters.scene.threads import Progress, part_of
 Rows = NDArray[np.int64]
 #: Times that differ by less are equal, as a share: of these the fewest steps are taken.
 _EQUAL = 0.02
-#: Share of the area that a plan of repeated steps may leave to simultaneous motion beyond what must go with it.
-_MOVING = 0.05
-#: A plan of repeated steps stands without a comparison if no choice could be faster by more than this share of the best.
-_FAR = 0.25
+#: Share of the area that a plan of repeated steps may leave to simultaneous motion beyond what another plan leaves, and beyond
+#: what must go with it.
+_MOVING, _MOST_MOVING = 0.05, 0.1
 
 PlansTimed = tuple[list[OperationPlan], Fastest | None, tuple[Worth, ...], tuple[str, ...]]
 
@@ -39,8 +39,8 @@ class Repeated:
 
     Attributes
     ----------
-    task : Task
-        With its symmetry.
+    task, one : Task
+        With their symmetry: of all samples, and of those of one copy.
     choices : tuple of (Columns, float)
         Fewer and fewer columns, each with its images, and about the seconds that they take.
     copied : Copied
@@ -48,6 +48,7 @@ class Repeated:
     """
 
     task: Task
+    one: Task
     choices: tuple[tuple[Columns, float], ...]
     copied: Copied
 
@@ -90,34 +91,35 @@ def repeated_orientations(
         return None
     columns = worth_their_turn(one, copied.chosen)
     columns = worth_their_turn(one, canonical(one, columns, progress=part_of(tell, 1, 2)))
-    return Repeated(own, tuple(fewer(one, columns)), copied)
+    return Repeated(own, one, tuple(fewer(one, columns)), copied)
 
 
 def planned_by_pattern(task: Task, offer: Repeated) -> PlansTimed | None:
     """The fastest plan of repeated steps, with what it is compared with; None where others have to be looked for.
 
-    They are where it has more steps than are recommended, leaves much to simultaneous motion, or is not known to be near to the
-    best of all.
+    They are where it has more steps than are recommended, leaves much to simultaneous motion, or takes longer than fixed
+    orientations of which nothing is repeated, by the same samples.
     """
-    possible = list(offer.recommended)
-    if not possible:
+    copied, possible = offer.copied, list(offer.recommended)
+    alone = cheap(copied.apart)
+    least = min((seconds for _, seconds in possible), default=np.inf)
+    if least > (1.0 + _EQUAL) * copied.apart.total(alone):
         return None
-    most = (1.0 + _EQUAL) * min(seconds for _, seconds in possible)
+    most = (1.0 + _EQUAL) * least
     plan = offer.plan(min((columns for columns, seconds in possible if seconds <= most), key=len))
-    best = offer.copied.at_best
-    if plan is None or moving_share(task, plan) > offer.copied.not_served + _MOVING or known(plan) > (1.0 + _FAR) * best:
+    if plan is None or moving_share(task, plan) > copied.not_served + _MOST_MOVING:
         return None
     plans = [plan]
     if len(task.cutters) > 1:
-        columns = offer.copied.base.of(largest_first(offer.copied.problem, by_size(task)))
+        columns = worth_their_turn(offer.one, copied.base.of(largest_first(copied.problem, by_size(task))))
         rule = partial(allowed, task, expanded(offer.task, columns)[0])
-        habit = plan_with(offer.task, "largest first", columns, rule)
-        if known(habit) < known(plan) and few_enough(task, habit):
-            plans = [replace(habit, name="fastest")]
-        plans.append(habit)
-    at_best = min(best, np.nan_to_num(plans[0].total, nan=np.inf))
-    copied = offer.copied
-    timed = Fastest(plans[0].total, at_best, at_best, copied.area, len(copied.problem.cost), len(copied.base) * offer.task.times)
+        by_size_first = plan_with(offer.task, "largest first", columns, rule)
+        if known(by_size_first) < known(plan) and few_enough(task, by_size_first):
+            plans = [replace(by_size_first, name="fastest")]
+        plans.append(by_size_first)
+    # What the plan takes that is printed bounds the best from above.
+    bound = min(bounded(copied.apart, alone).bound, np.nan_to_num(plans[0].total, nan=np.inf))
+    timed = Fastest(plans[0].total, bound, min(copied.at_best, bound), copied.area, *copied.apart.cost.shape)
     words = (
         "One copy of the part was planned, and repeated; --operations both looks for the fewest orientations as well, and for "
         "what repeats nothing."

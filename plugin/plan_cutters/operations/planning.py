@@ -101,7 +101,8 @@ def plan_operations(
         plans = _proved(task, plans, part_of(tell, 5, _PARTS))
     notes = (*instead, *_notes(task, least, plans, None if instead else fewest))
     return Operations(options.operations or "", task.cutters, tuple(plans), fewest, steps, task.orientations[0].names,
-                      task.probes.made, task.paths.feed, timed, worth=worth, notes=notes, index_from=task.indexing.source)  # fmt: skip
+                      task.probes.made, task.paths.feed, timed, worth=worth,
+                      notes=notes, index_from=task.indexing.source)  # fmt: skip
 
 
 def _fewest(task: Task, tell: Progress) -> tuple[Search, Fewest]:
@@ -114,7 +115,9 @@ def _fewest(task: Task, tell: Progress) -> tuple[Search, Fewest]:
 
 def _offer(task: Task, tell: Progress) -> Repeated | None:
     """The orientations that may be repeated; None where there are none."""
-    return repeated_orientations(task, _first, partial(_stored, task), tell)
+    result = repeated_orientations(task, _first, partial(_stored, task), tell)
+    tell(1, 1)
+    return result
 
 
 def _proved(task: Task, plans: Sequence[OperationPlan], tell: Progress) -> list[OperationPlan]:

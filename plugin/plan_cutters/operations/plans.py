@@ -117,7 +117,7 @@ def _other(task: Task, operations: Sequence[Operation], planes: Sequence[Workpla
 
 
 def expanded(task: Task, columns: Columns) -> tuple[Columns, Rows]:
-    """What columns stand for, each column once, and to which of these it belongs; -1: it is repeated nowhere."""
+    """All that some columns stand for, each once, and to which column it belongs; -1: it is repeated nowhere."""
     if task.symmetry is None or not len(columns):
         return columns, np.full(len(columns), -1, np.int64)
     every = task.images(columns)

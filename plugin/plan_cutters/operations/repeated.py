@@ -40,7 +40,7 @@ def symmetric(task: Task) -> Task | None:
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Copied:
-    """What was compared for one copy, and chosen.
+    """One copy: columns that were compared for it, and those that were chosen.
 
     Attributes
     ----------
@@ -50,6 +50,8 @@ class Copied:
         Of these; `Task.images` are what is set.
     problem : Problem
         What samples of one copy that are served cost, counted as often as there are copies.
+    apart : Problem
+        The same of all copies, each image a candidate of its own: what would be chosen if nothing were repeated.
     area : float
         That these stand for, mm2.
     not_served : float
@@ -59,6 +61,7 @@ class Copied:
     base: Columns
     chosen: Columns
     problem: Problem
+    apart: Problem
     area: float
     not_served: float
 
@@ -111,7 +114,8 @@ def repeated(task: Task, candidates: Columns, stored: Callable[[Rows], Columns],
             return None
         open_ = np.isfinite(own).any(axis=1)
         share = symmetry.order * shared_area(samples, np.union1d(copy, rows), rows)
-        problem = _problem(task, symmetry, base, own[open_] * (share / np.maximum(area[rows], 1e-300))[open_, None])
+        scale = (share / np.maximum(area[rows], 1e-300))[open_, None]
+        problem = _problem(task, symmetry, base, own[open_] * scale)
         chosen = base.of(cheap(problem))
         part(1, 2)
         served = task.probes.kept(wanted, symmetry.images(chosen)).any(axis=1)
@@ -124,7 +128,8 @@ def repeated(task: Task, candidates: Columns, stored: Callable[[Rows], Columns],
         cost = np.concatenate([cost, _costs(task, more, every)])
     if not len(chosen):
         return None
-    return Copied(base, chosen, problem, float(share[open_].sum()), float(share[~open_].sum() / max(1e-300, share.sum())))
+    apart = _apart(problem, cost[open_] * (scale / task.times), task.times)
+    return Copied(base, chosen, problem, apart, float(share[open_].sum()), float(share[~open_].sum() / max(1e-300, share.sum())))
 
 
 def _of_images(cost: NDArray[np.float64], times: int) -> NDArray[np.float64]:
@@ -144,6 +149,17 @@ def _costs(task: Task, rows: Rows, columns: Columns) -> NDArray[np.float64]:
     width = widths(columns, rows, samples, task.cutters, task.paths, table)
     width = np.fmax(width, task.walls.strips(columns, rows, table))
     return costs_of(columns, width, table, np.nan_to_num(samples.area[rows]), task.cutters, task.paths)
+
+
+def _apart(problem: Problem, cost: NDArray[np.float64], times: int) -> Problem:
+    """What samples (r,) of one copy and their images cost with columns and their images (r, k), each by itself.
+
+    A turn that carries a sample onto its image carries what serves it: no tool is put down for that.
+    """
+    own = cost.reshape(len(cost), -1, times)
+    turned = [np.roll(own, turn, axis=2).reshape(cost.shape) for turn in range(times)]
+    each = Costs(problem.costs.operation / times, problem.costs.cutter, problem.costs.setup)
+    return Problem(np.concatenate(turned), np.repeat(problem.cutter, times), np.repeat(problem.setup, times), each)
 
 
 def _problem(task: Task, symmetry: Symmetry, base: Columns, cost: NDArray[np.float64]) -> Problem:
