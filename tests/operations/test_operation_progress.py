@@ -9,8 +9,9 @@ from plan_cutters.operations.planning import _PARTS
 from tests.support.places import SAMPLES
 
 OPTIONS = {"cutters": ("R6L80", "R2L30"), "grid": 3, "operations": "both", "feed": 1000.0, "area_budget": 20}
-#: The first table, the curve, the plans and their proof: one orientation does here, so nothing is to be refined or bounded.
-TABLE, CURVE, PLANS, PROOF = 0, 3, 4, 5
+#: What may be repeated, the first table, the curve, the plans and their proof: one orientation does here, so nothing is to be
+#: refined or bounded.
+REPEATS, TABLE, CURVE, PLANS, PROOF = 0, 1, 3, 4, 5
 
 
 def test_every_part_of_the_operations_tells_its_own():
@@ -20,7 +21,7 @@ def test_every_part_of_the_operations_tells_its_own():
     inside = told[1:-1]
     assert (told[0], told[-1]) == (0.0, 1.0)
     assert all(one <= other for one, other in pairwise(inside))
-    for part in (TABLE, CURVE, PLANS, PROOF):
+    for part in (REPEATS, TABLE, CURVE, PLANS, PROOF):
         assert any(part / _PARTS < each <= (part + 1) / _PARTS for each in inside), part
     assert any(0 < done < total for stage, done, total in every if stage == "area")
 

@@ -1,6 +1,7 @@
 """Orientations are repeated about the axis of a part, and each image is an operation like any other."""
 
 import json
+from dataclasses import replace
 from functools import cache, partial
 
 import numpy as np
@@ -83,7 +84,7 @@ def test_costs_are_those_of_the_best_image():
 
 def test_a_plan_of_repeated_steps_has_ordinary_operations():
     own = symmetric(task())
-    columns = repeated(own, planning._first(task()), partial(planning._stored, task()), lambda done, total: None)
+    columns = repeated(own, planning._first(task()), partial(planning._stored, task()), lambda done, total: None).chosen
     made = plan_with(own, "fastest", columns)
     fixed = [each for each in made.operations if each.mode == "fixed"]
     assert made.orientations == len({each.orbit if each.orbit >= 0 else each.name for each in fixed})
@@ -94,6 +95,33 @@ def test_a_plan_of_repeated_steps_has_ordinary_operations():
         assert task().probes.table(each.rows, one).all()
     reached = task().rows
     assert (made.label[reached] >= 0).all()
+
+
+def test_what_samples_cost_apart_is_what_putting_tools_down_at_all_copies_says():
+    own = symmetric(task())
+    sector = own.rows[own.symmetry.sector(own.ready.samples.point[own.rows] - own.symmetry.place)]
+    one = replace(own, rows=sector, copies=own.symmetry.order)
+    copied = repeated(one, planning._first(task()), partial(planning._stored, task()), lambda done, total: None)
+    n, rows = own.symmetry.order, len(copied.problem.cost)
+    # The first rows are those of the copy itself, with all images as they were tested; the best of these is what a step costs.
+    apart = copied.apart.cost
+    assert apart.shape == (n * rows, n * len(copied.base))
+    assert np.allclose(n * apart[:rows].reshape(rows, -1, n).min(axis=2), copied.problem.cost, equal_nan=True)
+    # A turn of a sample is a turn of what serves it.
+    for turn in range(1, n):
+        mine = apart[turn * rows : (turn + 1) * rows].reshape(rows, -1, n)
+        assert np.array_equal(mine[:, :, turn], apart[:rows].reshape(rows, -1, n)[:, :, 0])
+    # A choice of all images costs what the steps do.
+    chosen = np.arange(len(copied.base))
+    every = np.arange(n * len(copied.base))
+    assert copied.apart.cutting(every) == pytest.approx(copied.problem.cutting(chosen))
+
+
+def test_one_copy_is_planned_and_the_fewest_are_not_looked_for():
+    entry = found().plan.operations
+    assert (entry.fewest, entry.curve) == (None, [])
+    assert entry.fastest.bound_seconds <= entry.fastest.seconds
+    assert any("One copy of the part was planned" in note for note in entry.notes)
 
 
 @cache

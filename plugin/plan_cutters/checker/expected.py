@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from plan_cutters.checker.leaves import Between, Loose
+from plan_cutters.checker.patterns import by_pattern
 from plan_cutters.checker.question import Question, axes_of, carried, frame_of, other_angles
 from plan_cutters.checker.reading import suffix
 
@@ -48,14 +49,14 @@ class Reckoned:
         self.verdict = {name: samples[f"verdict_{name}"] for name in self.ids}
         unjudged = np.logical_and.reduce([each == _UNJUDGED for each in self.verdict.values()])
         self.finished = ~unjudged & ~samples["inside_bodies"] & ~samples.get("exempt", np.zeros(len(unjudged), bool))
-        least = document.get("least_set") or {"runs": []}
-        needed = list(dict.fromkeys(run["cutter"] for run in least["runs"]))
-        #: Steps of the planner's own process, as they were requested; None where all steps were planned.
-        self.own = None if document["effective"].get("process") is None else document["effective"]["process"]["step"]
-        forbidden = document["effective"]["process"]["forbid"] if self.own is not None else []
+        process = document["effective"].get("process")
+        self.own = None if process is None else process["step"]
+        self.without_fewest = self.own is not None or by_pattern(document)
         #: Whether each sample that is reached must go with an operation.
-        self.all_planned = self.own is None or (document["effective"]["process"]["rest"] == "plan" and not forbidden)
-        needed = list(dict.fromkeys([*needed, *(each["cutter"] for each in [*(self.own or []), *forbidden])]))
+        self.all_planned = process is None or (process["rest"] == "plan" and not process["forbid"])
+        named = (document.get("least_set") or {"runs": []})["runs"]
+        named = named if process is None else [*named, *process["step"], *process["forbid"]]
+        needed = list(dict.fromkeys(each["cutter"] for each in named))
         wanted = [*needed, *(each for each in self.ids if each not in needed)][: max(_CUTTERS, len(needed))]
         self.considered = [each for each in self.ids if each in wanted]
         self.reached_by = {name: self.finished & np.isin(self.verdict[name], _REACHED) for name in self.considered}
@@ -87,7 +88,7 @@ class Reckoned:
             "asked": effective["operations"],
             "rotary": list(question.machine.names),
             "plans": plans,
-            "fewest": None if self.own is not None else self._fewest(written["fewest"], count),
+            "fewest": None if self.without_fewest else self._fewest(written["fewest"], count),
             "fastest": self._fastest(written) if "fastest" in names else None,
             "cutters": self._cutters(written) if many and "fastest" in names and timed_ else [],
             "curve": self._curve(written["curve"], count),
@@ -192,7 +193,7 @@ class Reckoned:
             "bound_seconds": Loose(0.0, math.inf),
             "at_best_seconds": Loose(0.0, math.inf),
             "samples": Loose(0, len(self.area)),
-            "candidates": Loose(0, len(self.question.operations["candidate_cutter"])),
+            "candidates": Loose(0, math.inf if self.without_fewest else len(self.question.operations["candidate_cutter"])),
         }
         if seconds is None or not isinstance(bound, float | int):
             return fastest | {"gap": None}
@@ -294,10 +295,9 @@ class Reckoned:
         number = each.get("step")
         if number is None:
             return None
-        steps = self.own or []
-        if not (type(number) is int and 1 <= number <= len(steps)):
+        if self.own is None or not (type(number) is int and 1 <= number <= len(self.own)):
             return "one of the steps that were requested"
-        step = steps[number - 1]
+        step = self.own[number - 1]
         mode = "simultaneous" if each["axis"] is None else "fixed"
         same = (step["cutter"], step["setup"] - 1, step["mode"]) == (each["cutter"], each["setup"], mode)
         same = same and (step["faces"] == "left" or {one["face"] for one in each["faces"]} <= {*step["faces"]})

@@ -94,7 +94,7 @@ class Paper:
         question, arrays = self.question, self.question.operations
         cutter, setup, angle = (arrays[f"candidate_{name}"] for name in ("cutter", "setup", "angle"))
         ids = self.reckoned.ids
-        if self.reckoned.own is not None:
+        if self.reckoned.without_fewest:
             return
         if not len(cutter) and self.reckoned.reached.any():
             yield Finding(None, "There are no candidates.")

@@ -5,7 +5,7 @@ on their outer side; what is left of a whole part must be carried onto itself.
 """
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import Any
 
@@ -25,6 +25,13 @@ _LINES, _BORDER, _SEEDS, _STEPS = 7, 24, 24, 12
 _MOST, _WRITTEN = 1500, 0.0021
 
 Motion = tuple[Floats, Floats]
+
+
+def by_pattern(document: Mapping[str, Any]) -> bool:
+    """Whether the fastest plan is of one copy, repeated, and no fewest orientations were looked for."""
+    entry, effective = document["operations"], document["effective"]
+    repeats = any(each["orbit"] is not None for plan in entry["plans"] for each in plan["operations"])
+    return bool(entry["fewest"] is None and effective["operations"] == "fastest" and effective["patterns"] and repeats)
 
 
 class Patterns:

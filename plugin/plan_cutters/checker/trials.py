@@ -72,7 +72,7 @@ class Trials:
             yield Finding(None, f"Whether a tool stands wholly within {', '.join(self.bench.hollow)} is not looked at.")
         yield from self.placed()
         yield from put_down(question, self.reckoned, self.bench, np.random.default_rng(0), self.clock("placed"))
-        if self.reckoned.own is None:
+        if not self.reckoned.without_fewest:
             yield self.weights()
             yield from self.covered(entry)
         yield from self.alone()

@@ -13,10 +13,11 @@ from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.lengths import reporting
-from plan_cutters.domain.operations import Fastest, OperationPlan, Operations, Worth
+from plan_cutters.domain.operations import Fastest, Fewest, OperationPlan, Operations, Step
 from plan_cutters.domain.own_process import OwnProcess, cutter_of
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.operations.at_once import few_enough, fewer, recommended
+from plan_cutters.operations.at_once import few_enough, recommended
+from plan_cutters.operations.by_pattern import PlansTimed, Repeated, as_quick, planned_by_pattern, repeated_orientations
 from plan_cutters.operations.candidates import STEP, apart, candidates
 from plan_cutters.operations.canonical import canonical
 from plan_cutters.operations.companions import accompanied
@@ -38,12 +39,11 @@ from plan_cutters.operations.plans import (
 from plan_cutters.operations.priced import comparable, feeds, without_feed
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.proof import proved
-from plan_cutters.operations.repeated import repeated, symmetric
 from plan_cutters.operations.rest_areas import allowed, by_size, largest_first, with_and_without, worths
 from plan_cutters.operations.task import Task
 from plan_cutters.operations.timing import Paths, Problems, shared_area
 from plan_cutters.operations.walls import Walls
-from plan_cutters.plan_file.numbers import count, duration, percent
+from plan_cutters.plan_file.numbers import duration, percent
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress, part_of
 
@@ -83,41 +83,75 @@ def plan_operations(
     task = _task(ready, everywhere, least)
     if options.process is not None:
         return _own(task, options.process, stage)
-    finest = FINEST if options.index_step is None else options.index_step
+    fewest, steps = None, tuple[Step, ...]()
     with stage("operations") as tell:
-        search = Search(task.probes, _first(task), task.rows, lambda bare: _stored(task, bare), part_of(tell, 0, _PARTS))
-        fewest = search_fewest(search, task.orientations, options.index_step or STEP, finest, part_of(tell, 1, _PARTS))
-        any_axes, cells = over_all_axes(task.probes, fewest, task.rows, progress=part_of(tell, 2, _PARTS))
-        fewest = replace(fewest, at_least_any=any_axes, cells=cells)
-        whole = float(np.nansum(ready.samples.area[ready.finished]))
-        steps = curve(task.probes, fewest, task.rows, ready.samples.area, whole, partial(_even, task, search),
-                      progress=part_of(tell, 3, _PARTS))  # fmt: skip
-        plans, timed, worth, instead = _plans(task, search, fewest.columns.of(fewest.chosen), part_of(tell, 4, _PARTS))
-        proving = part_of(tell, 5, _PARTS)
-        # What was found of a plan is neither sought nor said again of others that are the same.
-        different = list[OperationPlan]()
-        for k, each in enumerate(plans):
-            same = next((other for other in different if each.like(other)), None)
-            mine = part_of(proving, k, len(plans))
-            plans[k] = proved(ready, everywhere, each, progress=mine) if same is None else replace(same, name=each.name)
-            different += [plans[k]] if same is None else []
-    small = instead + tuple(note for each in different for note in small_pieces(each, ready.samples, options.overlap))
+        offer = _offer(task, part_of(tell, 0, _PARTS))
+        quick = None if offer is None or options.operations != "fastest" else planned_by_pattern(task, offer)
+        if quick is not None:
+            plans, timed, worth, instead = quick
+        else:
+            search, fewest = _fewest(task, part_of(tell, 1, _PARTS))
+            any_axes, cells = over_all_axes(task.probes, fewest, task.rows, progress=part_of(tell, 2, _PARTS))
+            fewest = replace(fewest, at_least_any=any_axes, cells=cells)
+            whole = float(np.nansum(ready.samples.area[ready.finished]))
+            steps = curve(task.probes, fewest, task.rows, ready.samples.area, whole, partial(_even, task, search),
+                          progress=part_of(tell, 3, _PARTS))  # fmt: skip
+            few = fewest.columns.of(fewest.chosen)
+            plans, timed, worth, instead = _plans(task, search, few, offer, part_of(tell, 4, _PARTS))
+        plans = _proved(task, plans, part_of(tell, 5, _PARTS))
+    notes = (*instead, *_notes(task, least, plans, None if instead else fewest))
+    return Operations(options.operations or "", task.cutters, tuple(plans), fewest, steps, task.orientations[0].names,
+                      task.probes.made, task.paths.feed, timed, worth=worth,
+                      notes=notes, index_from=task.indexing.source)  # fmt: skip
+
+
+def _fewest(task: Task, tell: Progress) -> tuple[Search, Fewest]:
+    """The fewest orientations among candidates, with the search that found them."""
+    options = task.ready.options
+    finest = FINEST if options.index_step is None else options.index_step
+    search = Search(task.probes, _first(task), task.rows, lambda bare: _stored(task, bare), part_of(tell, 0, 2))
+    return search, search_fewest(search, task.orientations, options.index_step or STEP, finest, part_of(tell, 1, 2))
+
+
+def _offer(task: Task, tell: Progress) -> Repeated | None:
+    """The orientations that may be repeated; None where there are none."""
+    result = repeated_orientations(task, _first, partial(_stored, task), tell)
+    tell(1, 1)
+    return result
+
+
+def _proved(task: Task, plans: Sequence[OperationPlan], tell: Progress) -> list[OperationPlan]:
+    """Plans with what is proved between the samples: what was found of a plan is not sought again of others that are the same."""
+    result = list[OperationPlan]()
+    for k, each in enumerate(plans):
+        same = next((other for other in result if each.like(other)), None)
+        mine = part_of(tell, k, len(plans))
+        result.append(proved(task.ready, task.everywhere, each, progress=mine) if same is None else replace(same, name=each.name))
+    return result
+
+
+def _notes(task: Task, least: LeastSet | None, plans: Sequence[OperationPlan], fewest: Fewest | None) -> list[str]:
+    """What must be said of plans: small pieces, and cutters and orientations that were left out."""
+    ready, options, notes = task.ready, task.ready.options, list[str]()
+    for k, each in enumerate(plans):
+        if not any(each.like(other) for other in plans[:k]):
+            notes += small_pieces(each, ready.samples, options.overlap)
     if unpriced := [each.id for each in without_feed(ready)]:
         has = "has no feed" if len(unpriced) == 1 else "have no feed"
-        small += (f"No operation is planned with what {has}: {', '.join(unpriced)}. Give --feed MM/MIN, or ask for the fewest.",)
+        notes.append(
+            f"No operation is planned with what {has}: {', '.join(unpriced)}. Give --feed MM/MIN, or ask for the fewest."
+        )
     compared = comparable(ready, least)
     if late := [each.id for each in ready.cutters if each.id not in (*unpriced, *(one.id for one in compared))]:
         kind = "whose kind comes" if len(late) == 1 else "whose kinds come"
-        small += (f"No operation is planned with {', '.join(late)}, {kind} last on these faces: the others reach all without.",)
+        notes.append(f"No operation is planned with {', '.join(late)}, {kind} last on these faces: the others reach all without.")
     moving = max(sum(len(each.rows) for each in plan.operations if each.mode == "simultaneous") for plan in plans)
-    if options.most_operations is None and moving > len(fewest.alone) and not instead:
-        small += (
+    if options.most_operations is None and fewest is not None and moving > len(fewest.alone):
+        notes.append(
             f"Orientations that add less than {percent(MINOR_AREA)} of the area each are left out of the plans; "
-            "--most-operations with a large number takes all.",
+            "--most-operations with a large number takes all."
         )
-    return Operations(options.operations or "", task.cutters, tuple(plans), fewest, steps, task.orientations[0].names,
-                      task.probes.made, task.paths.feed, timed, worth=worth,
-                      notes=small, index_from=task.indexing.source)  # fmt: skip
+    return notes
 
 
 def _own(task: Task, process: OwnProcess, stage: Callable[[str], AbstractContextManager[Progress]]) -> Operations:
@@ -128,10 +162,9 @@ def _own(task: Task, process: OwnProcess, stage: Callable[[str], AbstractContext
         """The fixed orientations of the best plan for what the steps leave."""
         if not len(rest.rows):
             return columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
-        search = Search(rest.probes, _first(rest), rest.rows, lambda bare: _stored(rest, bare), part_of(tell, 1, _PARTS))
-        finest = FINEST if options.index_step is None else options.index_step
-        fewest = search_fewest(search, rest.orientations, options.index_step or STEP, finest, part_of(tell, 2, _PARTS))
-        plans, *_ = _plans(rest, search, fewest.columns.of(fewest.chosen), part_of(tell, 3, _PARTS))
+        search, fewest = _fewest(rest, part_of(tell, 1, _PARTS))
+        few, offer = fewest.columns.of(fewest.chosen), _offer(rest, part_of(tell, 2, _PARTS))
+        plans, *_ = _plans(rest, search, few, offer, part_of(tell, 3, _PARTS))
         return _columns_of(rest, next((each for each in plans if each.name == "fastest"), plans[0]))
 
     with stage("operations") as tell:
@@ -141,13 +174,10 @@ def _own(task: Task, process: OwnProcess, stage: Callable[[str], AbstractContext
                       task.paths.feed, index_from=task.indexing.source, own=outcomes)  # fmt: skip
 
 
-_Plans = tuple[list[OperationPlan], Fastest | None, tuple[Worth, ...], tuple[str, ...]]
-
-
-def _plans(task: Task, search: Search, few: Columns, tell: Progress) -> _Plans:
+def _plans(task: Task, search: Search, few: Columns, offer: Repeated | None, tell: Progress) -> PlansTimed:
     """Make the plans that were requested: the fastest is the one of all plans found here that takes the least time."""
     which = task.ready.options.operations
-    parts = [part_of(tell, k, 5) for k in range(5)]
+    parts = [part_of(tell, k, 4) for k in range(4)]
     fewest = _capped(task, "fewest", _quicker(task, search, few), parts[0])
     if which == "fewest":
         return [fewest], None, (), ()
@@ -160,8 +190,8 @@ def _plans(task: Task, search: Search, few: Columns, tell: Progress) -> _Plans:
     # Of those that take the same time the fewest.
     plans = [fewest, *others, *largest_first]
     printed = [*([fewest] if which == "both" else []), *largest_first]
-    fastest, notes = _repeated(task, few, _recommended(task, plans), printed, parts[3])
-    parts[4](0, 1)
+    fastest, notes = as_quick(task, offer, _recommended(task, plans), printed)
+    parts[3](0, 1)
     plans.append(fastest)
     at_best = float(problem.cost.min(axis=1, initial=np.inf).sum())
     # Canonical orientations need not be candidates: what the plan that is printed takes bounds the best from above.
@@ -193,59 +223,6 @@ def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationP
         f"motion is recommended in place of {many}, for {why}."
     )
     return replace(chosen, name="fastest"), (words,) if any(each.mode == "simultaneous" for each in chosen.operations) else ()
-
-
-def _repeated(
-    task: Task, few: Columns, plain: tuple[OperationPlan, tuple[str, ...]], printed: Sequence[OperationPlan], tell: Progress
-) -> tuple[OperationPlan, tuple[str, ...]]:
-    """The plan that is recommended, and what must be said of it: one of repeated steps, where that takes no more time.
-
-    Of those that take the same time as the plan that was found, and no more than those that are printed beside it, that which
-    leaves least to simultaneous motion is taken, if that is hardly more than it has there; else the plan that was found. Where a
-    time is not known, it must be that of no more area.
-    """
-    own, (other, _) = symmetric(task), plain
-    columns = None if own is None else repeated(own, _first(task).and_(few), partial(_stored, task), part_of(tell, 0, 2))
-    if own is None or columns is None:
-        return plain
-    columns = _worth(own, "fastest", canonical(own, _worth(own, "fastest", columns), progress=part_of(tell, 1, 2)))
-    most = min((1.0 + _EQUAL) * _known(other), *map(_known, printed), np.inf)
-    for choice, seconds in fewer(own, columns):
-        # What the choice is reckoned to take is not quite what its plan does.
-        if len(choice) > task.ready.options.max_orientations or seconds > (1.0 + _EQUAL) * most:
-            continue
-        plan = plan_with(own, "fastest", choice)
-        as_quick = _known(plan) <= most and _untimed(task, plan) <= _untimed(task, other)
-        if (
-            not as_quick
-            or all(each.orbit < 0 for each in plan.operations)
-            or _moving(task, plan) > _moving(task, other) + _MOVING
-        ):
-            continue
-        if _known(plan) <= _known(other) or not np.isfinite(other.total):
-            return plan, ()
-        words = f"Without repeated steps {count(other.orientations, 'orientation')}"
-        if any(each.mode == "simultaneous" for each in other.operations):
-            words += " and simultaneous motion"
-        return plan, (f"{words} would take {duration(other.total)}.",)
-    return plain
-
-
-def _known(plan: OperationPlan) -> float:
-    """Seconds of a plan without those of the samples at which they are not known."""
-    return float(np.nansum(plan.seconds[plan.label >= 0])) + plan.other
-
-
-def _untimed(task: Task, plan: OperationPlan) -> float:
-    """The area of the samples of a plan whose seconds are not known, mm2."""
-    return float(np.nansum(task.ready.samples.area[(plan.label >= 0) & ~np.isfinite(plan.seconds)]))
-
-
-def _moving(task: Task, plan: OperationPlan) -> float:
-    """The share of the area that a plan leaves to simultaneous motion."""
-    area = np.nan_to_num(task.ready.samples.area)
-    rows = [each.rows for each in plan.operations if each.mode == "simultaneous"]
-    return sum(float(area[mine].sum()) for mine in rows) / max(1e-300, float(area[task.rows].sum()))
 
 
 def _seconds(plan: OperationPlan) -> float:

@@ -62,7 +62,7 @@ def plan_with(
     A `rule` says which of those that serve (n, k) a sample may go with; where some columns are a person's `own`, crumbs keep to
     it, too.
     """
-    columns, orbit = _expanded(task, columns)
+    columns, orbit = expanded(task, columns)
     samples, rows = task.ready.samples, task.rows
     n, overlap = len(samples), task.ready.options.overlap
     area, edge = np.nan_to_num(samples.area), samples.neighbours
@@ -116,8 +116,8 @@ def _other(task: Task, operations: Sequence[Operation], planes: Sequence[Workpla
     return turns + options.change_time * max(0, cutters - 1) + options.setup_time * max(0, setups - 1)
 
 
-def _expanded(task: Task, columns: Columns) -> tuple[Columns, Rows]:
-    """What columns stand for, each column once, and to which of these it belongs; -1: it is repeated nowhere."""
+def expanded(task: Task, columns: Columns) -> tuple[Columns, Rows]:
+    """All that some columns stand for, each once, and to which column it belongs; -1: it is repeated nowhere."""
     if task.symmetry is None or not len(columns):
         return columns, np.full(len(columns), -1, np.int64)
     every = task.images(columns)
@@ -309,7 +309,7 @@ def best_area(task: Task, columns: Columns, most: int | None) -> Columns:
 def costs_with(task: Task, columns: Columns) -> tuple[Floats, Floats]:
     """The area (r,) of the samples of a task, and what each costs with columns (r, k), infinite where one does not serve it."""
     rows, every = task.rows, task.images(columns)
-    area, serves = np.nan_to_num(task.ready.samples.area[rows]), task.probes.kept(rows, every)
+    area, serves = task.copies * np.nan_to_num(task.ready.samples.area[rows]), task.probes.kept(rows, every)
     cost = costs_of(every, _widths(task, every, serves), serves, area, task.cutters, task.paths)
     # Of images the best one cuts a sample.
     return area, cost.reshape(len(rows), len(columns), task.times).min(axis=2)

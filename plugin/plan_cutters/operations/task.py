@@ -42,6 +42,8 @@ class Task:
     walls : Walls
     symmetry : Symmetry, optional
         Under which each column stands for itself and its images; None: for itself alone.
+    copies : int
+        How many equal copies the samples stand for: their areas and times count so often.
     """
 
     ready: Prepared
@@ -55,6 +57,7 @@ class Task:
     problems: Problems
     walls: Walls
     symmetry: Symmetry | None = None
+    copies: int = 1
 
     def images(self, columns: Columns) -> Columns:
         """The columns that some stand for: each and its images, as many of each."""

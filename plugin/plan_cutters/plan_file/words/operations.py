@@ -65,7 +65,9 @@ def _rest(operations: OperationsEntry) -> Iterator[str]:
 def _fewest(operations: OperationsEntry) -> Iterator[str]:
     few = operations.fewest
     if few is None:
-        yield f"The planner's own process has {_count(operations.plans[0].orientations)}."
+        plan = operations.plans[0]
+        whose = "The planner's own process" if plan.name == "process" else "The plan, of one copy and its repeats,"
+        yield f"{whose} has {_count(plan.orientations)}."
         return
     if not few.found:
         yield "There is nothing that a fixed orientation reaches."
@@ -149,7 +151,7 @@ def _little(each: OperationEntry) -> str:
 def _fastest(operations: OperationsEntry) -> Iterator[str]:
     """How the times of fixed orientations compare with simultaneous motion and with the best choice."""
     timed = operations.fastest
-    if timed is None or operations.fewest is None:
+    if timed is None:
         return
     for plan in operations.plans:
         again = plan is not operations.plans[0] and _choice(plan) == _choice(operations.plans[0])
@@ -157,7 +159,8 @@ def _fastest(operations: OperationsEntry) -> Iterator[str]:
             cutting = sum(each.seconds or 0.0 for each in plan.operations if each.mode == "fixed")
             times = f"at most {_factor(plan.ratio_at_most)} times as long as five axes at once"
             yield f"3+2 ({plan.name}) takes {duration(cutting)} of cutting, {times}."
-    some_of = f" of {operations.fewest.samples}" if timed.samples < operations.fewest.samples - operations.fewest.alone else ""
+    few = operations.fewest
+    some_of = f" of {few.samples}" if few is not None and timed.samples < few.samples - few.alone else ""
     near = f"the best of {timed.candidates} candidates, by {timed.samples}{some_of} samples"
     if timed.gap is None:
         yield "How far the fastest plan is above the best is not known: a width of a pass is not known."

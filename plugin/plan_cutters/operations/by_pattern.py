@@ -1,0 +1,171 @@
+"""Plans of a part that is a pattern, or nearly one: one copy is planned, and repeated.
+
+Samples of one sector alone are compared, each counted as often as there are copies. The plan that comes of it is tested at all
+samples, like any other.
+"""
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+from numpy.typing import NDArray
+
+from plan_cutters.domain.columns import Columns
+from plan_cutters.domain.operations import Fastest, OperationPlan, Worth
+from plan_cutters.operations.at_once import few_enough, fewer
+from plan_cutters.operations.canonical import canonical
+from plan_cutters.operations.fastest import bounded, cheap
+from plan_cutters.operations.plans import expanded, plan_with, worth_their_turn
+from plan_cutters.operations.repeated import Copied, repeated, symmetric
+from plan_cutters.operations.rest_areas import allowed, by_size, largest_first, worths
+from plan_cutters.operations.task import Task
+from plan_cutters.plan_file.numbers import count, duration
+from plan_cutters.scene.threads import Progress, part_of
+
+Rows = NDArray[np.int64]
+#: Times that differ by less are equal, as a share: of these the fewest steps are taken.
+_EQUAL = 0.02
+#: Share of the area that a plan of repeated steps may leave to simultaneous motion beyond what another plan leaves, and beyond
+#: what must go with it.
+_MOVING, _MOST_MOVING = 0.05, 0.1
+
+PlansTimed = tuple[list[OperationPlan], Fastest | None, tuple[Worth, ...], tuple[str, ...]]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Repeated:
+    """Orientations that may be repeated.
+
+    Attributes
+    ----------
+    task, one : Task
+        With their symmetry: of all samples, and of those of one copy.
+    choices : tuple of (Columns, float)
+        Fewer and fewer columns, each with its images, and about the seconds that they take.
+    copied : Copied
+        What they were chosen from.
+    """
+
+    task: Task
+    one: Task
+    choices: tuple[tuple[Columns, float], ...]
+    copied: Copied
+
+    def plan(self, columns: Columns) -> OperationPlan | None:
+        """The plan of some columns and their images; None where nothing of it is repeated."""
+        plan = plan_with(self.task, "fastest", columns)
+        return plan if any(each.orbit >= 0 for each in plan.operations) else None
+
+    @property
+    def recommended(self) -> Iterator[tuple[Columns, float]]:
+        """The choices of no more steps than are recommended."""
+        most = self.task.ready.options.max_orientations
+        return ((columns, seconds) for columns, seconds in self.choices if len(columns) <= most)
+
+
+def repeated_orientations(
+    task: Task, candidates: Callable[[Task], Columns], stored: Callable[[Rows], Columns], tell: Progress
+) -> Repeated | None:
+    """Choose orientations for one copy of a part; None where it is no pattern, or one copy is not served.
+
+    Parameters
+    ----------
+    task : Task
+    candidates : callable
+        Gives the columns that are compared.
+    stored : callable
+        Gives columns for samples that none of these serves: their own postures.
+    tell : callable
+        Told the progress.
+    """
+    own = symmetric(task)
+    if own is None or own.symmetry is None:
+        return None
+    symmetry, samples = own.symmetry, task.ready.samples
+    sector = task.rows[symmetry.sector(samples.point[task.rows] - symmetry.place)]
+    one = replace(own, rows=sector, copies=symmetry.order) if len(sector) else own
+    # What is no exact pattern is looked at everywhere.
+    copied = repeated(one if symmetry.exact else own, candidates(task), stored, part_of(tell, 0, 2))
+    if copied is None:
+        return None
+    columns = worth_their_turn(one, copied.chosen)
+    columns = worth_their_turn(one, canonical(one, columns, progress=part_of(tell, 1, 2)))
+    return Repeated(own, one, tuple(fewer(one, columns)), copied)
+
+
+def planned_by_pattern(task: Task, offer: Repeated) -> PlansTimed | None:
+    """The fastest plan of repeated steps, with what it is compared with; None where others have to be looked for.
+
+    They are where it has more steps than are recommended, leaves much to simultaneous motion, or takes longer than fixed
+    orientations of which nothing is repeated, by the same samples.
+    """
+    copied, possible = offer.copied, list(offer.recommended)
+    alone = cheap(copied.apart)
+    least = min((seconds for _, seconds in possible), default=np.inf)
+    if least > (1.0 + _EQUAL) * copied.apart.total(alone):
+        return None
+    most = (1.0 + _EQUAL) * least
+    plan = offer.plan(min((columns for columns, seconds in possible if seconds <= most), key=len))
+    if plan is None or moving_share(task, plan) > copied.not_served + _MOST_MOVING:
+        return None
+    plans = [plan]
+    if len(task.cutters) > 1:
+        columns = worth_their_turn(offer.one, copied.base.of(largest_first(copied.problem, by_size(task))))
+        rule = partial(allowed, task, expanded(offer.task, columns)[0])
+        by_size_first = plan_with(offer.task, "largest first", columns, rule)
+        if known(by_size_first) < known(plan) and few_enough(task, by_size_first):
+            plans = [replace(by_size_first, name="fastest")]
+        plans.append(by_size_first)
+    # What the plan takes that is printed bounds the best from above.
+    bound = min(bounded(copied.apart, alone).bound, np.nan_to_num(plans[0].total, nan=np.inf))
+    timed = Fastest(plans[0].total, bound, min(copied.at_best, bound), copied.area, *copied.apart.cost.shape)
+    words = (
+        "One copy of the part was planned, and repeated; --operations both looks for the fewest orientations as well, and for "
+        "what repeats nothing."
+    )
+    return plans, timed, worths(task, plans), (words,)
+
+
+def as_quick(
+    task: Task, offer: Repeated | None, plain: tuple[OperationPlan, tuple[str, ...]], printed: list[OperationPlan]
+) -> tuple[OperationPlan, tuple[str, ...]]:
+    """The plan that is recommended, and what must be said of it: one of repeated steps, where that takes no more time.
+
+    Of those that take the same time as the plan that was found, and no more than those that are printed beside it, that which
+    leaves least to simultaneous motion is taken, if that is hardly more than it has there; else the plan that was found. Where a
+    time is not known, it must be that of no more area.
+    """
+    other, _ = plain
+    most = min((1.0 + _EQUAL) * known(other), *map(known, printed), np.inf)
+    for columns, seconds in () if offer is None else offer.recommended:
+        # What the choice is reckoned to take is not quite what its plan does.
+        plan = offer.plan(columns) if offer is not None and seconds <= (1.0 + _EQUAL) * most else None
+        if plan is None or known(plan) > most or _untimed(task, plan) > _untimed(task, other):
+            continue
+        if moving_share(task, plan) > moving_share(task, other) + _MOVING:
+            continue
+        if known(plan) <= known(other) or not np.isfinite(other.total):
+            return plan, ()
+        words = f"Without repeated steps {count(other.orientations, 'orientation')}"
+        if any(each.mode == "simultaneous" for each in other.operations):
+            words += " and simultaneous motion"
+        return plan, (f"{words} would take {duration(other.total)}.",)
+    return plain
+
+
+def known(plan: OperationPlan) -> float:
+    """Seconds of a plan without those of the samples at which they are not known."""
+    return float(np.nansum(plan.seconds[plan.label >= 0])) + plan.other
+
+
+def _untimed(task: Task, plan: OperationPlan) -> float:
+    """The area of the samples of a plan whose seconds are not known, mm2."""
+    return float(np.nansum(task.ready.samples.area[(plan.label >= 0) & ~np.isfinite(plan.seconds)]))
+
+
+def moving_share(task: Task, plan: OperationPlan) -> float:
+    """The share of the area that a plan leaves to simultaneous motion."""
+    area = np.nan_to_num(task.ready.samples.area)
+    rows = [each.rows for each in plan.operations if each.mode == "simultaneous"]
+    return sum(float(area[mine].sum()) for mine in rows) / max(1e-300, float(area[task.rows].sum()))
