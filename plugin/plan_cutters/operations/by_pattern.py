@@ -136,11 +136,13 @@ def as_quick(
     leaves least to simultaneous motion is taken, if that is hardly more than it has there; else the plan that was found. Where a
     time is not known, it must be that of no more area.
     """
+    if offer is None:
+        return plain
     other, _ = plain
     most = min((1.0 + _EQUAL) * known(other), *map(known, printed), np.inf)
-    for columns, seconds in () if offer is None else offer.recommended:
+    for columns, seconds in offer.recommended:
         # What the choice is reckoned to take is not quite what its plan does.
-        plan = offer.plan(columns) if offer is not None and seconds <= (1.0 + _EQUAL) * most else None
+        plan = offer.plan(columns) if seconds <= (1.0 + _EQUAL) * most else None
         if plan is None or known(plan) > most or _untimed(task, plan) > _untimed(task, other):
             continue
         if moving_share(task, plan) > moving_share(task, other) + _MOVING:

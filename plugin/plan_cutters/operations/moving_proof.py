@@ -63,10 +63,19 @@ def proved_moving(
         covered_samples=ready.not_required, axes=fields(samples, axis), own=own, progress=progress,
     )  # fmt: skip
     whole = float(result.surrounding_area[operation.rows].sum())
-    proved = float(result.cells.area.sum())
-    share = math.floor(1e6 * min(1.0, proved / whole + 1e-9)) / 1e6 if whole > 0.0 else 0.0
     turning = _turning(samples, axis, result, kinematics)
+    share = proved_share(float(result.cells.area.sum()), whole)
     return replace(operation, proved=share, approaches=len(turning.area), turning=turning)
+
+
+def proved_share(proved: float, whole: float) -> float:
+    """The share of an area, mm2, that is proved, rounded down: a share of 1 means all of it."""
+    return math.floor(1e6 * min(1.0, proved / whole + 1e-9)) / 1e6 if whole > 0.0 else 0.0
+
+
+def counted_pieces(size: Floats) -> int:
+    """How many pieces of some areas (k,), the largest first, hold nearly all of them together."""
+    return int((np.cumsum(size) < _MOST_OF * size.sum()).sum()) + 1 if len(size) else 0
 
 
 def _turning(samples: SurfaceSamples, axis: Floats, result: Between, kinematics: Kinematics | None) -> Turning:
@@ -79,7 +88,7 @@ def _turning(samples: SurfaceSamples, axis: Floats, result: Between, kinematics:
     rank[order] = np.arange(len(order))
     piece = _pieces(cells.sample, rank[which], cells.area, n)
     sizes = size[order]
-    counted = int((np.cumsum(sizes) < _MOST_OF * sizes.sum()).sum()) + 1 if len(sizes) else 0
+    counted = counted_pieces(sizes)
     edge = samples.neighbours.astype(np.int64)
     edge = edge[(piece[edge[:, 0]] == piece[edge[:, 1]]) & (piece[edge[:, 0]] >= 0)]
     turn = np.degrees(angle_between(axis[edge[:, 0]], axis[edge[:, 1]]))

@@ -52,12 +52,11 @@ Rows = NDArray[np.int64]
 _CUTTERS = 4
 #: Samples all over the part by which plans are compared, and more by which the fastest is found; rounds until it serves all.
 _EVEN, _TIMED, _ROUNDS = 250, 600, 12
-#: Parts of the work whose progress is told as one: the first table, the fewest, their bound and curve, the plans, their proof.
+#: Parts of the work whose progress is told as one: what may be repeated, the fewest, their bound, the curve, the plans, their
+#: proof.
 _PARTS = 6
-#: Tries to exchange the fewest for as many that cut faster; times that differ by less are equal, as a share.
-_TRIES, _EQUAL = 4, 0.02
-#: Share of the area that a plan of repeated steps may leave to simultaneous motion beyond what the plan without them does.
-_MOVING = 0.05
+#: Tries to exchange the fewest for as many that cut faster.
+_TRIES = 4
 
 
 @reporting(lambda ready: ready.options.reported_unit)

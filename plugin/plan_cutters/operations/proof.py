@@ -10,7 +10,7 @@ from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import Operation, OperationPlan
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.operations.moving_proof import proved_moving
+from plan_cutters.operations.moving_proof import counted_pieces, proved_moving, proved_share
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import held_at
 from plan_cutters.scene.preparation import Prepared
@@ -24,8 +24,6 @@ from plan_cutters.stages.nodes import tensors
 _WORK_LEAST, _WORK_SAMPLE = 2e7, 2500.0
 #: Contacts for each sample, where that is more than a plan may add between samples.
 _CONTACTS = 4
-#: Pieces are counted, the largest first, until they hold so much of what an operation has proved.
-_MOST_OF = 0.99
 
 
 def proved(
@@ -101,15 +99,9 @@ def _proved(ready: Prepared, plan: OperationPlan, group: list[int], budget: int,
         surrounding_area = float(proved.surrounding_area[mine].sum())
         own = (cells.axis == axes[i]).all(axis=1)
         piece = np.unique(cells.piece[own], return_inverse=True)[1]
-        size = np.sort(np.bincount(piece, cells.area[own]))[::-1]
-        # Rounded down: a share of 1 means all of it.
-        share = (
-            np.floor(1e6 * min(1.0, float(by_sample[mine].sum()) / surrounding_area + 1e-9)) / 1e6
-            if surrounding_area > 0.0
-            else 0.0
-        )
-        count = int((np.cumsum(size) < _MOST_OF * size.sum()).sum()) + 1 if len(size) else 0
-        result.append(replace(each, proved=float(share), approaches=count))
+        size = np.sort(np.asarray(np.bincount(piece, cells.area[own]), float))[::-1]
+        share = proved_share(float(by_sample[mine].sum()), surrounding_area)
+        result.append(replace(each, proved=share, approaches=counted_pieces(size)))
     return result
 
 

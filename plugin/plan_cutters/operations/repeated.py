@@ -1,6 +1,6 @@
-"""A plan of repeated steps: a few orientations and their images about an axis, symmetry by what samples cost with the best image.
+"""A plan of repeated steps: a few orientations and their images about an axis, chosen by what samples cost with the best image.
 
-Every image is tested at the samples, and the plan that comes of it has ordinary operations: it is symmetry for one sector, and
+Every image is tested at the samples, and the plan that comes of it has ordinary operations: it is chosen for one sector, and
 proved for all.
 """
 

@@ -56,7 +56,7 @@ def _copies(ready: Prepared, motions: tuple[Motion, ...], patterns: tuple[Patter
     master[second], number[second] = np.flatnonzero(second), -1
     if (number >= 0).sum() < max(_LEAST, _WORTH * len(judged)):
         return None
-    unchanged = tuple(tuple(_keeps(ready, each, motion, patterns) for motion in motions) for each in ready.setups)
+    unchanged = tuple(tuple(keeps(ready, each, motion, patterns) for motion in motions) for each in ready.setups)
     frames = _same_frames(samples, master, number, motions, ready.options.postures)
     group = np.where(number >= 0, number * (int(samples.face.max()) + 1) + samples.face, -1).astype(np.int64)
     return Copies(master, number, motions, unchanged, frames, _verified(group, frames), group)
@@ -89,7 +89,7 @@ def _same_frames(
     return frames
 
 
-def _keeps(ready: Prepared, conditions: Conditions, motion: Motion, patterns: tuple[Pattern, ...]) -> bool:
+def keeps(ready: Prepared, conditions: Conditions, motion: Motion, patterns: tuple[Pattern, ...]) -> bool:
     """Whether a motion of the part leaves all that verdicts in a setup depend on as it is."""
     surroundings = conditions.surroundings
     if surroundings.missing or surroundings.lost or surroundings.loose or surroundings.doubtful:
