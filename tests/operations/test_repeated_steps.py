@@ -14,6 +14,7 @@ from plan_cutters.checker.check import check
 from plan_cutters.command.check_operations import question_of
 from plan_cutters.domain.columns import columns_of
 from plan_cutters.operations import planning
+from plan_cutters.operations.by_pattern import planned_by_pattern
 from plan_cutters.operations.plans import plan_with
 from plan_cutters.operations.repeated import repeated, symmetric
 from plan_cutters.operations.task import Task
@@ -117,6 +118,13 @@ def test_what_samples_cost_apart_is_what_putting_tools_down_at_all_copies_says()
     assert copied.apart.cutting(every) == pytest.approx(copied.problem.cutting(chosen))
 
 
+@pytest.mark.parametrize("changes", [{}, {"off": 0.02}, {"fixtures": "box:5,5,5@60,0,0"}])
+def test_one_copy_stands_for_all_where_the_part_and_what_is_about_it_are_a_pattern(changes):
+    offer = planning._offer(task(**changes), lambda done, total: None)
+    assert offer.exact == (not changes)
+    assert (planned_by_pattern(task(**changes), offer) is not None) <= offer.exact
+
+
 def test_one_copy_is_planned_and_the_fewest_are_not_looked_for():
     entry = found().plan.operations
     assert (entry.fewest, entry.curve) == (None, [])
@@ -126,7 +134,7 @@ def test_one_copy_is_planned_and_the_fewest_are_not_looked_for():
 
 @cache
 def found() -> Result:
-    part = read_part(impeller(8, fillet=1.5))
+    part = read_part(impeller(8))
     return plan(part, **{**WORDS, "area_budget": 0, "index_time": 2.0})
 
 
@@ -146,7 +154,7 @@ def test_the_process_has_each_step_once():
 
 
 def test_it_takes_no_more_time_than_without_them():
-    plain = plan(read_part(impeller(8, fillet=1.5)), **{**WORDS, "area_budget": 0, "index_time": 2.0, "patterns": False})
+    plain = plan(read_part(impeller(8)), **{**WORDS, "area_budget": 0, "index_time": 2.0, "patterns": False})
     seconds, before = (each.plan.operations.plans[0].seconds for each in (found(), plain))
     assert seconds <= 1.02 * before
     assert len(found().plan.process.steps) < len(plain.plan.process.steps)
@@ -161,10 +169,10 @@ def test_operations_are_checked_as_any_others(tmp_path):
         with np.load(tmp_path / name) as archive:
             arrays[name] = {each: archive[each] for each in archive.files}
     options = Options.of({word: value for word, value in WORDS.items() if word not in ("operations", "feed", "jobs")})
-    checked = check(question_of(read_part(impeller(8, fillet=1.5)), options, document, arrays))
+    checked = check(question_of(read_part(impeller(8)), options, document, arrays))
     assert checked.holds, checked.lines
     # An image that is not in its place is found.
     forged = next(each for each in document["operations"]["plans"][0]["operations"] if each["orbit"] is not None)
     forged["angles_deg"]["C"] += 22.5
-    checked = check(question_of(read_part(impeller(8, fillet=1.5)), options, document, arrays))
+    checked = check(question_of(read_part(impeller(8)), options, document, arrays))
     assert not checked.holds

@@ -4,6 +4,7 @@ Samples of one sector alone are compared, each counted as often as there are cop
 samples, like any other.
 """
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 from functools import partial
@@ -11,6 +12,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from cad_io.part.motion import Motion
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.operations import Fastest, OperationPlan, Worth
 from plan_cutters.operations.at_once import few_enough, fewer
@@ -19,8 +21,10 @@ from plan_cutters.operations.fastest import bounded, cheap
 from plan_cutters.operations.plans import expanded, plan_with, worth_their_turn
 from plan_cutters.operations.repeated import Copied, repeated, symmetric
 from plan_cutters.operations.rest_areas import allowed, by_size, largest_first, worths
+from plan_cutters.operations.symmetry import Symmetry
 from plan_cutters.operations.task import Task
 from plan_cutters.plan_file.numbers import count, duration
+from plan_cutters.scene.copied import keeps
 from plan_cutters.scene.threads import Progress, part_of
 
 Rows = NDArray[np.int64]
@@ -45,12 +49,15 @@ class Repeated:
         Fewer and fewer columns, each with its images, and about the seconds that they take.
     copied : Copied
         What they were chosen from.
+    exact : bool
+        Whether what is known of one copy holds for all: the part is a pattern, and nothing about it breaks that.
     """
 
     task: Task
     one: Task
     choices: tuple[tuple[Columns, float], ...]
     copied: Copied
+    exact: bool
 
     def plan(self, columns: Columns) -> OperationPlan | None:
         """The plan of some columns and their images; None where nothing of it is repeated."""
@@ -85,21 +92,33 @@ def repeated_orientations(
     symmetry, samples = own.symmetry, task.ready.samples
     sector = task.rows[symmetry.sector(samples.point[task.rows] - symmetry.place)]
     one = replace(own, rows=sector, copies=symmetry.order) if len(sector) else own
+    exact = symmetry.exact and _unbroken(task, symmetry)
     # What is no exact pattern is looked at everywhere.
-    copied = repeated(one if symmetry.exact else own, candidates(task), stored, part_of(tell, 0, 2))
+    copied = repeated(one if exact else own, candidates(task), stored, part_of(tell, 0, 2))
     if copied is None:
         return None
     columns = worth_their_turn(one, copied.chosen)
     columns = worth_their_turn(one, canonical(one, columns, progress=part_of(tell, 1, 2)))
-    return Repeated(own, one, tuple(fewer(one, columns)), copied)
+    return Repeated(own, one, tuple(fewer(one, columns)), copied, exact)
+
+
+def _unbroken(task: Task, symmetry: Symmetry) -> bool:
+    """Whether machine, fixtures, and all else that verdicts depend on are the same for each copy, and no face is clamped."""
+    ready = task.ready
+    turn = Motion.turn(symmetry.place, symmetry.direction, 2.0 * math.pi / symmetry.order)
+    if any(ready.there(s).clamped.any() for s in range(len(ready.setups))):
+        return False
+    return all(keeps(ready, each, turn, ready.patterns) for each in ready.setups)
 
 
 def planned_by_pattern(task: Task, offer: Repeated) -> PlansTimed | None:
     """The fastest plan of repeated steps, with what it is compared with; None where others have to be looked for.
 
-    They are where it has more steps than are recommended, leaves much to simultaneous motion, or takes longer than fixed
-    orientations of which nothing is repeated, by the same samples.
+    They are where one copy does not stand for all, it has more steps than are recommended, leaves much to simultaneous
+    motion, or takes longer than fixed orientations of which nothing is repeated, by the same samples.
     """
+    if not offer.exact:
+        return None
     copied, possible = offer.copied, list(offer.recommended)
     alone = cheap(copied.apart)
     least = min((seconds for _, seconds in possible), default=np.inf)
