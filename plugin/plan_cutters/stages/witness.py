@@ -183,7 +183,7 @@ def _least_depth(
             if not np.isnan(high):
                 depth = float(np.sqrt(low * high))
             tool = tool_of(assembly(cutter, depth, depth))
-            if posture(contact, ranges, tool, narrowest, start, turns, solids, verdict_arrays_of(best)):
+            if posture(contact, ranges, tool, narrowest, start, turns, solids, verdict_arrays_of(best), brief=True):
                 start, high = (int(best.rotation[0]), float(best.tilt[0])), depth
             elif not np.isnan(high):
                 low = depth

@@ -178,7 +178,7 @@ def until_not_reached(rows, at, contacts, ranges, tool, solids, patient, results
     return search_rows(rows, contacts, ranges, (tool, tool), (solids, solids), mode, results)[0]
 
 
-def posture(contacts, ranges, tool, narrowest, start, turns, solids, results):
+def posture(contacts, ranges, tool, narrowest, start, turns, solids, results, *, brief=False):
     """Look for a posture of the first contact at which a tool is in nothing's way; whether there is one.
 
     Parameters
@@ -196,8 +196,10 @@ def posture(contacts, ranges, tool, narrowest, start, turns, solids, results):
         All that may be in the way.
     results : VerdictArrays, written
         The posture.
+    brief : bool
+        Give up what takes long: there is none then.
     """
-    mode = Mode(0, start, turns, narrowest, WITHOUT_END, False, False)
+    mode = Mode(0, start, turns, narrowest, _BRIEF if brief else WITHOUT_END, False, False)
     search_rows(_FIRST, contacts, ranges, (tool, tool), (solids, solids), mode, results)
     return bool(results.verdict[0] == ACCESSIBLE)
 
