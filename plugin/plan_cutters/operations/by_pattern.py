@@ -105,9 +105,9 @@ def repeated_orientations(
 def _unbroken(task: Task, symmetry: Symmetry) -> bool:
     """Whether machine, fixtures, and all else that verdicts depend on are the same for each copy, and no face is clamped."""
     ready = task.ready
-    turn = Motion.turn(symmetry.place, symmetry.direction, 2.0 * math.pi / symmetry.order)
     if any(ready.there(s).clamped.any() for s in range(len(ready.setups))):
         return False
+    turn = Motion.turn(symmetry.place, symmetry.direction, 2.0 * math.pi / symmetry.order)
     return all(keeps(ready, each, turn, ready.patterns) for each in ready.setups)
 
 

@@ -165,7 +165,10 @@ def _witness(samples: SurfaceSamples, row: int, verdicts: Verdicts, context: Con
 def _least_depth(
     samples: SurfaceSamples, row: int, cutter: Cutter, conditions: Conditions
 ) -> tuple[Verdicts, float, float] | None:
-    """The posture of least depth, and depths, mm, between which that lies; None if no posture is left at any."""
+    """The posture of least depth, and depths, mm, between which that lies; None if none is left at any depth.
+
+    What takes long is taken for none: deep in other bodies there is none, and only a search through all tilts would prove it.
+    """
     from plan_cutters.kernels.search.search import posture
 
     one = slice(row, row + 1)
