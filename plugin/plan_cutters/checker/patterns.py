@@ -28,10 +28,10 @@ Motion = tuple[Floats, Floats]
 
 
 def by_pattern(document: Mapping[str, Any]) -> bool:
-    """Whether the fastest plan is of one copy, repeated, and no fewest orientations were looked for."""
+    """Whether the fastest plan may follow from one copy of the part, so that no fewest orientations were looked for."""
     entry, effective = document["operations"], document["effective"]
-    repeats = any(each["orbit"] is not None for plan in entry["plans"] for each in plan["operations"])
-    return bool(entry["fewest"] is None and effective["operations"] == "fastest" and effective["patterns"] and repeats)
+    whole = any(each["whole"] and each["kind"] == "rotation" for each in document.get("patterns", []))
+    return bool(entry["fewest"] is None and effective["operations"] == "fastest" and effective["patterns"] and whole)
 
 
 class Patterns:

@@ -51,7 +51,9 @@ class _Times:
         motion = moving_over(task, task.rows)
         with np.errstate(divide="ignore", invalid="ignore"):
             moving = area / (motion.width * speed_of(task.paths, task.cutters, motion.cutter))
-        return cls(task, columns, cost, np.where(np.isfinite(moving), moving, 0.0), motion.cutter, motion.setup)
+        # Where its time is not known, motion is taken to be as slow as the slowest column: it must not look quick.
+        slowest = np.where(np.isfinite(cost), cost, 0.0).max(axis=1, initial=0.0)
+        return cls(task, columns, cost, np.where(np.isfinite(moving), moving, slowest), motion.cutter, motion.setup)
 
     def total(self, some: Sequence[int]) -> tuple[float, float]:
         """The time of some columns, numbers, with simultaneous motion for what they leave; and that of cutting alone."""

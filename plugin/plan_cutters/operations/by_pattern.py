@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from cad_io.part.motion import Motion
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.operations import Fastest, OperationPlan, Worth
-from plan_cutters.operations.at_once import few_enough, fewer
+from plan_cutters.operations.at_once import few_enough, fewer, recommended
 from plan_cutters.operations.canonical import canonical
 from plan_cutters.operations.fastest import bounded, cheap
 from plan_cutters.operations.plans import expanded, plan_with, worth_their_turn
@@ -112,21 +112,20 @@ def _unbroken(task: Task, symmetry: Symmetry) -> bool:
 
 
 def planned_by_pattern(task: Task, offer: Repeated) -> PlansTimed | None:
-    """The fastest plan of repeated steps, with what it is compared with; None where others have to be looked for.
+    """The fastest plan that follows from one copy, with what it is compared with; None where others have to be looked for.
 
-    They are where one copy does not stand for all, it has more steps than are recommended, leaves much to simultaneous
-    motion, or takes longer than fixed orientations of which nothing is repeated, by the same samples.
+    Orientations are repeated, or each is set once, whichever takes less time, or leaves much less to simultaneous motion. Others
+    are looked for where one copy does not stand for all, or the plan leaves much to simultaneous motion.
     """
     if not offer.exact:
         return None
     copied, possible = offer.copied, list(offer.recommended)
     alone = cheap(copied.apart)
-    least = min((seconds for _, seconds in possible), default=np.inf)
-    if least > (1.0 + _EQUAL) * copied.apart.total(alone):
-        return None
-    most = (1.0 + _EQUAL) * least
-    plan = offer.plan(min((columns for columns, seconds in possible if seconds <= most), key=len))
-    if plan is None or moving_share(task, plan) > copied.not_served + _MOST_MOVING:
+    single = plan_with(task, "fastest", worth_their_turn(task, canonical(task, _single(task, offer, alone))))
+    # The first choice leaves least to simultaneous motion.
+    again = offer.plan(possible[0][0]) if possible else None
+    plan = single if again is None or _better(task, single, again) else again
+    if moving_share(task, plan) > copied.not_served + _MOST_MOVING:
         return None
     plans = [plan]
     if len(task.cutters) > 1:
@@ -140,10 +139,23 @@ def planned_by_pattern(task: Task, offer: Repeated) -> PlansTimed | None:
     bound = min(bounded(copied.apart, alone).bound, np.nan_to_num(plans[0].total, nan=np.inf))
     timed = Fastest(plans[0].total, bound, min(copied.at_best, bound), copied.area, *copied.apart.cost.shape)
     words = (
-        "One copy of the part was planned, and repeated; --operations both looks for the fewest orientations as well, and for "
-        "what repeats nothing."
+        "Orientations were chosen by the samples of one copy of the part; --operations both looks for the fewest orientations as "
+        "well, by all samples."
     )
     return plans, timed, worths(task, plans), (words,)
+
+
+def _single(task: Task, offer: Repeated, alone: Rows) -> Columns:
+    """Orientations of which each is set once, no more than are recommended."""
+    images = offer.task.images(offer.copied.base).of(alone)
+    single = worth_their_turn(task, images.of(np.sort(np.unique(images.key, return_index=True)[1])))
+    return recommended(task, single)
+
+
+def _better(task: Task, plan: OperationPlan, repeated_plan: OperationPlan) -> bool:
+    """Whether a plan takes less time than one of repeated steps, and leaves hardly more to simultaneous motion, or much less."""
+    more = moving_share(task, plan) - moving_share(task, repeated_plan)
+    return (abs(more) <= _MOVING and (1.0 + _EQUAL) * known(plan) < known(repeated_plan)) or more < -_MOVING
 
 
 def as_quick(
@@ -177,7 +189,8 @@ def as_quick(
 
 def known(plan: OperationPlan) -> float:
     """Seconds of a plan without those of the samples at which they are not known."""
-    return float(np.nansum(plan.seconds[plan.label >= 0])) + plan.other
+    seconds = plan.seconds[plan.label >= 0]
+    return float(seconds[np.isfinite(seconds)].sum()) + plan.other
 
 
 def _untimed(task: Task, plan: OperationPlan) -> float:

@@ -64,8 +64,9 @@ class Task:
         return columns if self.symmetry is None else self.symmetry.images(columns)
 
     def together(self, columns: Columns) -> float:
-        """Seconds that the rotary axes take to come to all that columns stand for."""
-        return self.indexing.together(self.images(columns))
+        """Seconds that the rotary axes take to come to all that columns stand for, to each once."""
+        every = self.images(columns)
+        return self.indexing.together(every.of(np.sort(np.unique(every.key, return_index=True)[1])))
 
     def table(self, rows: Rows, columns: Columns) -> NDArray[np.bool_]:
         """Where what each column stands for serves: (rows, columns)."""
