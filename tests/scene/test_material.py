@@ -13,6 +13,7 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeTorus
 from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS_Shell, TopoDS_Solid
+from scipy.ndimage import binary_erosion
 
 from cad_io import read_part
 from cad_io.arrays import Triangles
@@ -21,7 +22,7 @@ from cad_io.kernel import faces as faces_of
 from cad_io.part.bodies import bodies
 from plan_cutters import Cutter, plan, posture_map
 from plan_cutters.domain.verdicts import REASONS
-from plan_cutters.kernels.material import far_inside, windings
+from plan_cutters.kernels.material import far_inside, in_known_ball, keep_ball, outside, way_out, windings
 from plan_cutters.scene.inside_material import SortedPoints
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import surroundings
@@ -356,6 +357,51 @@ def test_winding_numbers_are_those_of_the_sum():
     windings(points, cells_off, without)
     assert np.abs(without - known).max() < 0.1
     assert (found == 0).sum() > (without == 0).sum()
+
+
+def test_a_way_out_leads_from_no_body():
+    """Beside, in and between bodies: only from where the exact sum is 0, and where cells do not tell, too."""
+    around = solids_of(
+        compound(ball(10), box(8, 8, 30, at=(3, -4, -5)), cut(box(60, 60, 20, at=(-30, -30, -30)), ball(5, at=(0, 0, -10))))
+    )
+    solids, rng = around.certain.solids, np.random.default_rng(7)
+    # As about a part of some metres: what is near a skin is in no cell that is outside.
+    solids = solids._replace(cell=binary_erosion(solids.cell, iterations=5, border_value=1).astype(np.uint8))
+    points = np.concatenate([rng.uniform(-35, 35, (600, 3)), rng.normal((0, 0, -12), 1.5, (200, 3))])
+    way = rng.normal(size=(800, 3))
+    way /= np.linalg.norm(way, axis=1)[:, None]
+    stack, exact = np.empty(64, np.int64), exact_winding(points, around.certain.triangles.vertex, around.certain.weight)
+    leads = np.array([way_out(*p, *d, solids, stack) for p, d in zip(points, way, strict=True)])
+    told = np.array([outside(*p, solids) for p in points])
+    assert (np.abs(exact[leads]) < 0.05).all()
+    assert (leads & ~told).sum() > 20
+    assert (~leads & (np.abs(exact) < 0.05)).any()
+    # Skins that are not closed let nothing out, and neither do those that may be off by more than there is room.
+    for other in (np.nan, 20.0):
+        assert not any(way_out(*p, *d, solids._replace(grow=other), stack) for p, d in zip(points[600:], way[600:], strict=True))
+
+
+@pytest.mark.parametrize("lacking", [None, 0, 3, 5])
+def test_points_near_one_that_lies_in_a_body_do(lacking):
+    """In a closed box, and in one that lacks a face, up to its opening and beyond it."""
+    kept = [face for i, face in enumerate(faces_of(box(20, 20, 30))) if i != lacking]
+    around = solids_of(box(20, 20, 30) if lacking is None else solid_of(kept))
+    obstacles, rng = around.possible, np.random.default_rng(3)
+    solids = obstacles.solids
+    assert np.isfinite(solids.grow) == (lacking is None)
+    points = rng.uniform((-8, -8, -8), (28, 28, 38), (400, 3))
+    exact = np.abs(exact_winding(points, obstacles.triangles.vertex, obstacles.weight))
+    stack, told = np.empty(64, np.int64), 0
+    for least in (0.25, 0.75):
+        for i in np.flatnonzero(exact >= least)[:60].tolist():
+            balls, stored = np.empty((4, 5)), np.zeros(2, np.int64)
+            keep_ball(*points[i], exact[i], solids, balls, stored, stack)
+            near = points[i] + rng.normal(size=(60, 3)) * rng.uniform(0.0, 2.0, (60, 1))
+            flagged = np.array([in_known_ball(*p, solids, least, balls, stored) for p in near])
+            told += flagged.sum()
+            assert (np.abs(exact_winding(near[flagged], obstacles.triangles.vertex, obstacles.weight)) >= least).all()
+            assert not any(in_known_ball(*p, solids._replace(key=-1), least, balls, stored) for p in near)
+    assert told > 100
 
 
 def test_void_and_material_count_alike():

@@ -2,8 +2,9 @@
 
 Two looks: a grid of cells, some of which are surely outside because a way leads from them past every triangle to where
 there is nothing (whatever is open, turned or doubled); and for points elsewhere the winding number of the bodies' skins,
-summed over the tree. Bodies may touch, overlap, repeat each other or hold voids: each skin counts as enclosing all that
-is within it, so a void is as little to be got into as material. Lemmas F1 and F5 of `docs/material_proof.md`.
+summed over the tree. A straight way out, or a point near by that is known to be inside, saves the sum. Bodies may touch,
+overlap, repeat each other or hold voids: each skin counts as enclosing all that is within it, so a void is as little to
+be got into as material. Lemmas F1, F5 and F6 of `docs/material_proof.md`.
 
 Source of the hierarchical sum: Barill, Dickson, Schmidt, Levin, Jacobson, *Fast winding numbers for soups and clouds* (2018).
 """
@@ -19,6 +20,10 @@ from plan_cutters.kernels.rows import Tree
 #: Winding numbers from which a point is not called outside, and from which it is called inside. For closed skins they are
 #: whole numbers, but for what is left out in the sum: in between lies only what is not quite closed.
 MAYBE_INSIDE, SURELY_INSIDE = 0.25, 0.75
+#: Cells that a way out is long at most, and the shortest step on it, as a share.
+_STEPS, _SHORT = 8, 1e-3
+#: In this part of a ball that touches nothing the winding number keeps this share at least, with what sums leave out.
+_PART, _REMAINS = 0.2, 0.5
 #: A node so many of its radii away counts by its area vector: a hundredth of a turn is what this has been seen to cost.
 _FAR = 3.0
 #: Columns of a node's moments: centroid, radius about it, area vector, area.
@@ -31,7 +36,9 @@ class Solids(NamedTuple):
     tree. weight (n,) int8: how often a triangle
     counts in the winding number, negative where its corners run the other way round. moment (nodes, 8): of the triangles
     below a node. cell (i, j, k) uint8, 1 where a cell is surely outside, with its origin (3,) and size, mm; none where
-    nothing encloses anything. whole: the cells hold all that encloses; end (2, 3): corners of a box that does.
+    nothing encloses anything. whole: the cells hold all that encloses; end (2, 3): corners of a box that does. grow: what
+    keeps so far off every triangle, mm, goes past every skin; nan where skins are not closed, or nothing encloses anything. key:
+    of no others, in one process.
     """
 
     tree: Tree
@@ -42,14 +49,17 @@ class Solids(NamedTuple):
     size: float
     whole: bool
     end: Any
+    grow: float
+    key: int
 
 
 def sheet(tree: Tree) -> Solids:
     """Triangles that enclose nothing."""
     none = np.zeros((0, 0, 0), np.uint8)
     return Solids(
-        tree, np.zeros(len(tree.vertex), np.int8), np.zeros((0, MOMENTS)), none, np.zeros(3), 1.0, True, np.zeros((2, 3))
-    )
+        tree, np.zeros(len(tree.vertex), np.int8), np.zeros((0, MOMENTS)), none, np.zeros(3), 1.0, True, np.zeros((2, 3)),
+        np.nan, 0,
+    )  # fmt: skip
 
 
 @entry
@@ -203,11 +213,15 @@ def _square_to_triangle(v, x, y, z):
 
 
 @kernel
-def _touches(x, y, z, clear, solids, stack):
-    """Whether a skin that encloses something comes within `clear` of a point; so does what is no number."""
+def _nearest(x, y, z, most, enough, solids, stack):
+    """The distance of a point from the nearest skin that encloses something, mm; more than `most` if all are farther.
+
+    What is not more than `enough` need not be the least. Of what is no point it is nan.
+    """
     vertex, box, depth = solids.tree
     weight, moment = solids.weight, solids.moment
-    n, first, top = len(vertex), (1 << depth) - 1, 1
+    n, first, top, best = len(vertex), (1 << depth) - 1, 1, most * most
+    enough, met = enough * enough, False
     stack[0] = 0
     while top > 0:
         top -= 1
@@ -221,7 +235,7 @@ def _touches(x, y, z, clear, solids, stack):
             side = SIDES + 3 * k
             along = dx * box[node, side] + dy * box[node, side + 1] + dz * box[node, side + 2]
             square += max(0.0, abs(along) - box[node, HALVES + k]) ** 2
-        if square > clear * clear:
+        if square > best:
             continue
         if node < first:
             stack[top] = 2 * node + 2
@@ -230,9 +244,74 @@ def _touches(x, y, z, clear, solids, stack):
             continue
         leaf = node - first
         for t in range((n * leaf) >> depth, (n * (leaf + 1)) >> depth):
-            if weight[t] != 0 and not _square_to_triangle(vertex[t], x, y, z) > clear * clear:
-                return True
+            if weight[t] != 0:
+                square = _square_to_triangle(vertex[t], x, y, z)
+                if not square > best:
+                    best, met = square, True
+                    if not best > enough:
+                        return np.sqrt(best)
+    return np.sqrt(best) if met else np.inf
+
+
+@kernel
+def touches(x, y, z, clear, solids, stack):
+    """Whether a skin that encloses something comes within `clear` of a point; so does what is no number."""
+    return not _nearest(x, y, z, clear, clear, solids, stack) > clear
+
+
+@kernel
+def way_out(x, y, z, dx, dy, dz, solids, stack):
+    """Whether a straight way leads from a point along a unit vector past every skin to where it is surely outside.
+
+    Lemma F5 of `docs/material_proof.md`, along a line in place of cells: from place to place it goes as far as no triangle is
+    near, but for what skins may be off and open.
+    """
+    length = 0.0
+    for step in range(1, _STEPS + 1):
+        far = step * solids.size
+        if outside(x + far * dx, y + far * dy, z + far * dz, solids):
+            length = far
+            break
+    # Not closed: no way tells.
+    if length == 0.0 or not solids.grow >= 0.0:
+        return False
+    along = 0.0
+    while True:
+        most = length - along + solids.grow
+        near = _nearest(x + along * dx, y + along * dy, z + along * dz, most, 0.0, solids, stack)
+        if near > most:
+            return True
+        if not near - solids.grow > _SHORT * length:
+            return False
+        along += near - solids.grow
+
+
+@kernel
+def in_known_ball(x, y, z, solids, within, balls, stored):
+    """Whether a point is so near to another one that lies in a body (`keep_ball`) that it surely does, too, with no sum."""
+    if stored[0] != solids.key:
+        return False
+    for i in range(min(stored[1], len(balls))):
+        dx, dy, dz = x - balls[i, 0], y - balls[i, 1], z - balls[i, 2]
+        if balls[i, 4] >= within and dx * dx + dy * dy + dz * dz <= balls[i, 3] * balls[i, 3]:
+            return True
     return False
+
+
+@kernel
+def keep_ball(x, y, z, number, solids, balls, stored, stack):
+    """Keep a point that lies in a body, with the radius of a ball about it and the least winding number there.
+
+    Lemma F6 of `docs/material_proof.md`: past no skin the winding number of closed ones stays; that of others, harmonic and not
+    below 0, keeps half of itself in a ball of a fifth of the radius of one that touches nothing.
+    """
+    if stored[0] != solids.key:
+        stored[0], stored[1] = solids.key, 0
+    radius, row = _nearest(x, y, z, solids.size, 0.0, solids, stack), balls[stored[1] % len(balls)]
+    radius, closed = min(radius, solids.size), solids.grow >= 0.0
+    row[0], row[1], row[2] = x, y, z
+    row[3], row[4] = (max(0.0, radius - solids.grow), number) if closed else (radius * _PART, number * _REMAINS)
+    stored[1] += 1
 
 
 @entry
@@ -240,7 +319,7 @@ def near_shell(points, clear, solids, near):
     """Write for points (n, 3) whether a skin that encloses something comes within `clear`, mm."""
     stack = np.empty(64, np.int64)
     for row in range(len(points)):
-        near[row] = _touches(points[row, 0], points[row, 1], points[row, 2], clear, solids, stack)
+        near[row] = touches(points[row, 0], points[row, 1], points[row, 2], clear, solids, stack)
 
 
 @entry
@@ -253,7 +332,7 @@ def far_inside(points, clear, solids, inside):
     for row in range(len(points)):
         x, y, z = points[row, 0], points[row, 1], points[row, 2]
         # The quicker answers first.
-        inside[row] = not outside(x, y, z, solids) and not _touches(x, y, z, clear, solids, stack)
+        inside[row] = not outside(x, y, z, solids) and not touches(x, y, z, clear, solids, stack)
         inside[row] = inside[row] and winding(x, y, z, solids, stack) >= SURELY_INSIDE
 
 

@@ -86,7 +86,8 @@ class Frame(NamedTuple):
 
 class Scratch(NamedTuple):
     """This is a workspace: stack and masks (64,) int64, corner (3, 3), drawn (4, 3), polygon and spare (8, 3), pieces (k, 3, 3).
-    looked (1,) int64: boxes looked at since it was made, and what else takes as long."""
+    looked (1,) int64: boxes looked at since it was made, and what else takes as long. balls (k, 5), stored (2,) int64: balls in
+    bodies, see `material.keep_ball`; of which solids, and how many were stored."""
 
     stack: Any
     masks: Any
@@ -96,6 +97,8 @@ class Scratch(NamedTuple):
     spare: Any
     pieces: Any
     looked: Any
+    balls: Any
+    stored: Any
 
 
 class VerdictArrays(NamedTuple):

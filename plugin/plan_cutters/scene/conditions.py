@@ -243,8 +243,10 @@ def search_postures(
     ranges, buffer = conditions.ranges._replace(strict=strict), verdict_arrays_of(verdicts)
     possible, certain = conditions.obstacles.solids, conditions.surroundings.certain.solids
 
+    deep = conditions.obstacles.depths(conditions.tolerance)[1]
+
     def searched(piece: NDArray[np.int64]) -> int:
-        return int(search(piece, contacts, ranges, *tools, possible, certain, buffer, brief=brief))
+        return int(search(piece, contacts, ranges, *tools, possible, certain, buffer, deep=deep, brief=brief))
 
     looked = in_chunks(searched, rows, conditions.jobs, progress, fixed=fixed)
     if work is not None:

@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, fields, replace
 from functools import cached_property
+from itertools import count
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 #: Cells along the longest side of the grid that tells what is surely outside.
 _CELLS = 64
+#: Numbers of what encloses something, each once in a process; 0 is that of nothing.
+_KEYS = count(1)
 #: Among fixtures, the grid goes this much of the part's longest side beyond it.
 _MARGIN = 0.5
 
@@ -97,7 +100,8 @@ class Obstacles(Record):
         from plan_cutters.kernels.material import Solids, moments
 
         weight = np.ascontiguousarray(self.weight[self._built[0]])
-        return Solids(self.tree, weight, moments(self.tree.vertex, weight, self.tree.depth), *cells, end)
+        grow = np.nan if len(self.open_boxes) else self._extent[2]
+        return Solids(self.tree, weight, moments(self.tree.vertex, weight, self.tree.depth), *cells, end, grow, next(_KEYS))
 
     @property
     def _extent(self) -> tuple[Floats, Floats, float]:

@@ -86,7 +86,7 @@ def _is_free(body, mode, tool, solids, workspace, hint):
     triangle, _, _, _, _ = tree_hit(solids.tree, body, tool.piece[mode], 0.0, hint, workspace)
     if triangle >= 0:
         return False, triangle
-    return inside(body, tool, mode, solids, workspace.stack) < MAYBE_INSIDE, hint
+    return not inside(body, tool, mode, solids, MAYBE_INSIDE, workspace), hint
 
 
 @entry

@@ -26,7 +26,7 @@ from plan_cutters.kernels.intervals import remove
 from plan_cutters.kernels.jit import kernel, maker
 from plan_cutters.kernels.limits import held_tilts, turn_of
 from plan_cutters.kernels.linear.vectors import dot, tilt_frame
-from plan_cutters.kernels.material import outside, winding
+from plan_cutters.kernels.material import in_known_ball, keep_ball, outside, way_out, winding
 from plan_cutters.kernels.rows import Scratch
 from plan_cutters.kernels.tool.arcs import local_gouge
 from plan_cutters.kernels.tool.hit import BODY, OFFSET, A, P, X, scratch, stand, tree_hit
@@ -72,17 +72,29 @@ def _attribute(x, y, z, tool, mode, k):
 
 
 @kernel
-def inside(body, tool, mode, solids, stack):
-    """Winding number of the bodies about a point of the tool's axis that is as deep in it as any.
+def lies_within(x, y, z, solids, within, scratch):
+    """Whether the winding number of the bodies about a point is `within` or more; where one is, others near it need no sum."""
+    if in_known_ball(x, y, z, solids, within, scratch.balls, scratch.stored):
+        return True
+    number = winding(x, y, z, solids, scratch.stack)
+    if number < within:
+        return False
+    keep_ball(x, y, z, number, solids, scratch.balls, scratch.stored, scratch.stack)
+    return True
 
-    The end of the axis is asked first: where that is surely outside, all of it is, for the tool touches no skin.
+
+@kernel
+def inside(body, tool, mode, solids, within, scratch):
+    """Whether a tool that touches no skin lies in bodies: their winding number about a point of its axis is `within` or more.
+
+    The end of the axis is asked first: where that is surely outside, or a way leads out from there, all of it is.
     """
     high = tool.end - tool.mode[mode, OVER_TIP]
     x = body[P] + high * body[A] - body[OFFSET] * body[X]
     y = body[P + 1] + high * body[A + 1] - body[OFFSET] * body[X + 1]
     z = body[P + 2] + high * body[A + 2] - body[OFFSET] * body[X + 2]
     if outside(x, y, z, solids):
-        return 0.0
+        return False
     if not solids.whole:
         # Above the cells: a point that is low enough to be among them.
         height = min(tool.inner, _LOW * solids.size) - tool.mode[mode, OVER_TIP]
@@ -90,12 +102,14 @@ def inside(body, tool, mode, solids, stack):
         y = body[P + 1] + height * body[A + 1] - body[OFFSET] * body[X + 1]
         z = body[P + 2] + height * body[A + 2] - body[OFFSET] * body[X + 2]
         if outside(x, y, z, solids):
-            return 0.0
+            return False
+    if way_out(x, y, z, body[A], body[A + 1], body[A + 2], solids, scratch.stack):
+        return False
     height = tool.inner - tool.mode[mode, OVER_TIP]
     x = body[P] + height * body[A] - body[OFFSET] * body[X]
     y = body[P + 1] + height * body[A + 1] - body[OFFSET] * body[X + 1]
     z = body[P + 2] + height * body[A + 2] - body[OFFSET] * body[X + 2]
-    return winding(x, y, z, solids, stack)
+    return lies_within(x, y, z, solids, within, scratch)
 
 
 @kernel

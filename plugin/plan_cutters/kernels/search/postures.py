@@ -52,5 +52,5 @@ def free(rows, point, normal, axis, tilt_direction, tool, solids, stands):
         if triangle >= 0:
             hint = triangle
             continue
-        stands[row] = inside(body, tool, mode, solids, workspace.stack) < MAYBE_INSIDE
+        stands[row] = not inside(body, tool, mode, solids, MAYBE_INSIDE, workspace)
     return workspace.looked[0]

@@ -32,9 +32,18 @@ from plan_cutters.kernels.codes import (
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.limits import turn_of
 from plan_cutters.kernels.linear.vectors import cross, dot, perpendicular, tilt_frame
-from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
+from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, outside, touches
 from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.search.place import clip_straight, inside, mode_at, permitted, search_workspace, straight, straightened
+from plan_cutters.kernels.search.place import (
+    clip_straight,
+    inside,
+    lies_within,
+    mode_at,
+    permitted,
+    search_workspace,
+    straight,
+    straightened,
+)
 from plan_cutters.kernels.search.sweep import NONE, UNFINISHED, WITHOUT_END, Side, both, memory, sweep, sweep_both
 from plan_cutters.kernels.tool.hit import BODY, scratch, stand, tree_hit
 
@@ -44,6 +53,8 @@ _NO_INTERVAL = 1.7e-4
 _FINEST = 1e-5
 #: Boxes after which a brief search gives up: several times what most samples take.
 _BRIEF = 20_000
+#: A ball so thick about a point so far off a contact tells whether it lies in a body, in depths that are blocked (lemma F3).
+_OFF, _BALL = 2.0, 1.5
 #: Where searches begin, among the tilts that curvature allows and among the others: rotation, and the tilt tried first.
 _ANYWHERE = (0, -1.0)
 START = (_ANYWHERE, _ANYWHERE)
@@ -71,6 +82,20 @@ def _reason(tally, bent):
 
 
 @kernel
+def shut_in(contacts, row, deep, solids, scratch):
+    """Whether a contact may lie in a body so that every posture is blocked; `deep` as for `Mode`.
+
+    Lemma F3 of `docs/material_proof.md`, for what perhaps encloses something.
+    """
+    p, n = contacts.point[row], contacts.normal[row]
+    x, y, z = p[0] + _OFF * deep * n[0], p[1] + _OFF * deep * n[1], p[2] + _OFF * deep * n[2]
+    # A posture that a body blocks, beside it or within, is none: with no depth nothing is known.
+    if not deep > 0.0 or outside(x, y, z, solids) or touches(x, y, z, _BALL * deep, solids, scratch.stack):
+        return False
+    return lies_within(x, y, z, solids, MAYBE_INSIDE, scratch)
+
+
+@kernel
 def _write(results, row, contacts, ranges, rotation, tilt):
     """Write a posture."""
     n, e1 = contacts.normal[row], contacts.direction_max[row]
@@ -88,7 +113,8 @@ class Mode(NamedTuple):
 
     at: the place of the first one. start: rotation and tilt tried first; turns: how many rotations. narrowest: intervals of tilt
     narrower than this are passed over, rad. most: boxes after which a sweep is given up. decides: whether the inner tool says
-    what is inaccessible, and why. stops: whether the first sample without a posture is the last one.
+    what is inaccessible, and why. stops: whether the first sample without a posture is the last one. deep: a body so deep in the
+    tool forbids a posture, mm; 0: whether a contact lies in a body is told by postures alone.
     """
 
     at: int
@@ -98,6 +124,7 @@ class Mode(NamedTuple):
     most: int
     decides: bool
     stops: bool
+    deep: float
 
 
 @entry
@@ -143,6 +170,10 @@ def search_rows(rows, contacts, ranges, tools, solids, mode, results):
             if of_inner:
                 rotation, _, freed = sweep_both(contacts, row, ranges, inner, freed, mode.turns, workspaces)
                 sure = rotation == NONE
+            elif missed and shut_in(contacts, row, mode.deep, possible, workspaces[0].scratch):
+                # As its neighbour was: a search would put the tool down in the body again and again.
+                results.reason[row] = INSIDE
+                continue
             else:
                 rotation, tilt, last = sweep_both(contacts, row, ranges, outer, last, mode.turns, workspaces)
                 missed = rotation < 0
@@ -158,13 +189,13 @@ def search_rows(rows, contacts, ranges, tools, solids, mode, results):
     return at, workspaces[0].scratch.looked[0] + workspaces[1].scratch.looked[0]
 
 
-def search(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, results, *, brief=False):
+def search(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, results, *, deep=0.0, brief=False):
     """Decide the samples `rows`, one after the other; how many boxes were looked at.
 
     The possible obstacles are there to call a posture safe, the certain ones to call a sample inaccessible; the rest is as for
-    `search_rows`. A `brief` search gives up what takes long, and leaves it undecided.
+    `search_rows`. A `brief` search gives up what takes long, and leaves it undecided. `deep` as for `Mode`.
     """
-    mode = Mode(0, _ANYWHERE, len(ranges.rotation_cos), _FINEST, _BRIEF if brief else WITHOUT_END, True, False)
+    mode = Mode(0, _ANYWHERE, len(ranges.rotation_cos), _FINEST, _BRIEF if brief else WITHOUT_END, True, False, deep)
     return search_rows(rows, contacts, ranges, (outer_tool, inner_tool), (possible, certain), mode, results)[1]
 
 
@@ -174,7 +205,7 @@ def until_not_reached(rows, at, contacts, ranges, tool, solids, patient, results
     Unless it is `patient`, behind the first sample that has none; such samples are written as UNDECIDED, for nothing was asked
     about why. Intervals that `search` takes for none are passed over, so that it finds a posture where this does.
     """
-    mode = Mode(at, _ANYWHERE, len(ranges.rotation_cos), _NO_INTERVAL, WITHOUT_END, False, not patient)
+    mode = Mode(at, _ANYWHERE, len(ranges.rotation_cos), _NO_INTERVAL, WITHOUT_END, False, not patient, 0.0)
     return search_rows(rows, contacts, ranges, (tool, tool), (solids, solids), mode, results)[0]
 
 
@@ -199,7 +230,7 @@ def posture(contacts, ranges, tool, narrowest, start, turns, solids, results, *,
     brief : bool
         Give up what takes long: there is none then.
     """
-    mode = Mode(0, start, turns, narrowest, _BRIEF if brief else WITHOUT_END, False, False)
+    mode = Mode(0, start, turns, narrowest, _BRIEF if brief else WITHOUT_END, False, False, 0.0)
     search_rows(_FIRST, contacts, ranges, (tool, tool), (solids, solids), mode, results)
     return bool(results.verdict[0] == ACCESSIBLE)
 
@@ -283,7 +314,7 @@ def dummy_clear(rows, contacts, dummy, tool, solids, clear):
         cross(n, f, t)
         stand(body, Frame(contacts.point[row], n, f, t), 1.0, 0.0, 0.0, tool.mode[0, RISE])
         triangle, _, _, _, _ = tree_hit(solids.tree, body, dummy, 0.0, hint, workspace)
-        clear[row] = triangle < 0 and inside(body, tool, 0, solids, workspace.stack) < MAYBE_INSIDE
+        clear[row] = triangle < 0 and not inside(body, tool, 0, solids, MAYBE_INSIDE, workspace)
         if triangle >= 0:
             hint = triangle
     return workspace.looked[0]

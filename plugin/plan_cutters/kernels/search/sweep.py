@@ -175,7 +175,7 @@ def _rotation(
             put(body, frame, tilt, tool, mode)
             triangle, which, height, px, py = deep_hit(solids.tree, body, tool.piece[mode], workspace.scratch)
             if triangle < 0:
-                if inside(body, tool, mode, solids, workspace.scratch.stack) < within:
+                if not inside(body, tool, mode, solids, within, workspace.scratch):
                     obstacle_cache.count[place] = written
                     return tilt, pooled
                 half = max(turned(frame, tilt, tool, mode, solids.tree, body, workspace.scratch), 0.5 * narrowest)

@@ -326,7 +326,7 @@ def find_place(p, axis, x, tool, mode, most, solids, within, apart, hint, flat, 
         body[OFFSET], body[HALF] = 0.0, 0.0
         triangle, which, height, px, py = tree_hit(solids.tree, body, tool.piece[mode], 0.0, hint, flat.scratch)
         if triangle < 0:
-            if inside(body, tool, mode, solids, flat.scratch.stack) < within:
+            if not inside(body, tool, mode, solids, within, flat.scratch):
                 place[0], place[1] = u, v
                 return PLACED, hint
             return NONE, hint

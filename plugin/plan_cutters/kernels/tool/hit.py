@@ -44,7 +44,7 @@ def scratch():
     """Make a workspace for walks of a tree."""
     return Scratch(
         np.empty(64, np.int64), np.empty(64, np.int64), np.empty((3, 3)), np.empty((4, 3)), np.empty((8, 3)), np.empty((8, 3)),
-        np.empty((64, 3, 3)), np.zeros(1, np.int64),
+        np.empty((64, 3, 3)), np.zeros(1, np.int64), np.empty((64, 5)), np.zeros(2, np.int64),
     )  # fmt: skip
 
 
