@@ -13,7 +13,7 @@ from plan_cutters.plan_file.operations import CurveStepEntry
 from plan_cutters.plan_file.palette import operation_colour
 from plan_cutters.plan_file.words.operations import in_short, of_the_whole, share_text
 from plan_cutters.plan_file.words.story import story_of
-from plan_cutters.plan_file.words.text import sentences
+from plan_cutters.report.notebook import text_of
 from plan_cutters.report.page import operations, write
 from tests.support.browser import opened, place_of, seen
 from tests.support.places import ROOT
@@ -75,10 +75,10 @@ def test_each_step_says_what_is_gone_without_it_and_which_operation_it_is(planne
         assert (one.area_mm2, one.exclusive_mm2) == pytest.approx((step.area_mm2, step.alone_mm2))
 
 
-def test_what_is_said_of_a_plan_is_said_once(planned):
-    told = list(sentences(story_of(planned.plan)))
+def test_the_text_of_the_plan_says_each_thing_once(planned):
+    text = " ".join(text_of(planned.plan).split())
     assert in_short(planned.plan)
-    assert all(told.count(each) == 1 for each in in_short(planned.plan))
+    assert all(text.count(each) == 1 for each in in_short(planned.plan))
 
 
 def test_each_operation_is_listed(planned, read):

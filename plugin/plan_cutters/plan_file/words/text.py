@@ -1,7 +1,5 @@
 """The text that stands in a plan file: made once, when the plan is made, and shown by every reader."""
 
-from collections.abc import Iterator
-
 from plan_cutters.domain.lengths import reporting
 from plan_cutters.plan_file.model import CutterEntry, Plan, TextEntry, VerdictText
 from plan_cutters.plan_file.numbers import count
@@ -105,15 +103,6 @@ def _remaining(plan: Plan, story: Story) -> list[str]:
     return [f"{count(number, 'note')}: -v, or the review page."] if number else []
 
 
-def sentences(story: Story) -> Iterator[str]:
-    """All that people read of a plan where there is room, below the headline; what makes it unsure comes first."""
-    yield from story.inside
-    yield from (story.headline.about, story.headline.why)
-    yield from of_the_plan(story)
-    yield from (each.sentence for each in story.cutters)
-    yield from further(story)
-
-
 def of_the_plan(story: Story) -> list[str]:
     """Sentences on the plan as a whole: its setups and orientations, its scope, and all doubts."""
     doubts = [f"{line.mark} {line.text}" for lines in story.doubts.values() for line in lines]
@@ -121,8 +110,12 @@ def of_the_plan(story: Story) -> list[str]:
 
 
 def further(story: Story) -> list[str]:
-    """Lines that follow those on the cutters: setups, operations, answers and notes, but for the minor ones."""
-    lines = (*story.setups, *story.operations, *story.answers, *story.notes)
+    """Lines that follow those on the cutters: setups, operations, answers and notes, but for the minor ones.
+
+    What `of_the_plan` has in short is not said again.
+    """
+    operations = (line for line in story.operations if line.text not in story.in_short)
+    lines = (*story.setups, *operations, *story.answers, *story.notes)
     return [f"{line.mark} {line.text}{line.typed}".lstrip() for line in lines if not line.minor]
 
 
