@@ -151,7 +151,8 @@ def test_from_memory_to_memory(client):
         job = Job("a", "memory:///shelf/a.step", settings())
         assert ran([job], client, out)["a"].status == "planned"
         assert ran([job], client, out)["a"].status == "kept"
-        assert sorted(fs.ls("/plans/a-plan", detail=False)) == ["/plans/a-plan/done.json", "/plans/a-plan/plan.json"]
+        written = [f"/plans/a-plan/{name}" for name in ("done.json", "plan.json", "process.toml")]
+        assert sorted(fs.ls("/plans/a-plan", detail=False)) == written
     finally:
         fs.rm("/", recursive=True)
 
@@ -243,6 +244,8 @@ def test_a_worker_that_can_plan_nothing_is_left_out_and_fails_no_part(client):
         def say(self, text):
             self.lines.append(text)
 
+    # A worker that a test before this one has cost is started again.
+    client.wait_for_workers(2, timeout=60)
     first, second = client.nthreads()
     found = [each for _, each in handed_out(client, iter([((first,), k) for k in range(40)]), _picky, board=Board())]
     assert {each.row.name for each in found} == {f"{k}" for k in range(40)}

@@ -37,6 +37,11 @@ class Columns(Record):
         rows = zip(self.cutter.tolist(), self.setup.tolist(), self.angle.tolist(), strict=True)
         return np.array([f"{c} {s} {a:.3f} {b:.3f}" for c, s, (a, b) in rows], np.str_)
 
+    @property
+    def first(self) -> NDArray[np.int64]:
+        """Where (k,) each of them that differs from all before it stands."""
+        return np.sort(np.unique(self.key, return_index=True)[1])
+
     def of(self, which: NDArray[np.int64]) -> "Columns":
         """Take some of them."""
         return Columns(self.cutter[which], self.setup[which], self.axis[which], self.angle[which])

@@ -35,6 +35,10 @@ OFFSET_OF, RISE, TILT_FROM, TILT_TO, OVER_TIP = 0, 1, 2, 3, 4
 
 #: Directions this close to each other, rad, are one; axes that are as near to being parallel turn a tool like one alone.
 PARALLEL = 1e-6
+#: Distance of a point from the contact and radius of a ball about it that tell whether the contact lies in a body, in depths
+#: beyond which a posture is surely blocked: the ball is to be free of the skin that the contact lies on, and its radius more than
+#: sqrt(2).
+AWAY, BALL = 2.0, 1.5
 #: Angles this close to a limit are on it, rad.
 ON_LIMIT = 1e-9
 

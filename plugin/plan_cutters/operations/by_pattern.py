@@ -119,11 +119,10 @@ def planned_by_pattern(task: Task, offer: Repeated) -> PlansTimed | None:
     """
     if not offer.exact:
         return None
-    copied, possible = offer.copied, list(offer.recommended)
-    alone = cheap(copied.apart)
+    copied, alone = offer.copied, cheap(offer.copied.apart)
     single = plan_with(task, "fastest", worth_their_turn(task, canonical(task, _single(task, offer, alone))))
     # The first choice leaves least to simultaneous motion.
-    again = offer.plan(possible[0][0]) if possible else None
+    again = next((offer.plan(columns) for columns, _ in offer.recommended), None)
     plan = single if again is None or _better(task, single, again) else again
     if moving_share(task, plan) > copied.not_served + _MOST_MOVING:
         return None
@@ -148,7 +147,7 @@ def planned_by_pattern(task: Task, offer: Repeated) -> PlansTimed | None:
 def _single(task: Task, offer: Repeated, alone: Rows) -> Columns:
     """Orientations of which each is set once, no more than are recommended."""
     images = offer.task.images(offer.copied.base).of(alone)
-    single = worth_their_turn(task, images.of(np.sort(np.unique(images.key, return_index=True)[1])))
+    single = worth_their_turn(task, images.of(images.first))
     return recommended(task, single)
 
 

@@ -121,7 +121,7 @@ def expanded(task: Task, columns: Columns) -> tuple[Columns, Rows]:
     if task.symmetry is None or not len(columns):
         return columns, np.full(len(columns), -1, np.int64)
     every = task.images(columns)
-    first = np.sort(np.unique(every.key, return_index=True)[1])
+    first = every.first
     step = first // task.times
     return every.of(first), np.where(np.bincount(step)[step] > 1, step, -1)
 

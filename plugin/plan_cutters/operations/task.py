@@ -66,7 +66,7 @@ class Task:
     def together(self, columns: Columns) -> float:
         """Seconds that the rotary axes take to come to all that columns stand for, to each once."""
         every = self.images(columns)
-        return self.indexing.together(every.of(np.sort(np.unique(every.key, return_index=True)[1])))
+        return self.indexing.together(every.of(every.first))
 
     def table(self, rows: Rows, columns: Columns) -> NDArray[np.bool_]:
         """Where what each column stands for serves: (rows, columns)."""

@@ -15,12 +15,9 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, Ints, Orientation, Record, SurfaceSamples
 from cad_io.part.bodies import Body
+from plan_cutters.kernels.codes import AWAY, BALL
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.threads import in_chunks
-
-#: Distance of the point from the contact and radius of the ball, in depths beyond which a posture is surely blocked: the
-#: ball is to be free of the skin that the contact lies on, and its radius more than sqrt(2).
-_AWAY, _BALL = 2.0, 1.5
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -63,7 +60,7 @@ def inside_material(
         that void (`voids`).
     """
     _, deep = certain.depths(tolerance)
-    point = samples.point + _AWAY * deep * samples.normal
+    point = samples.point + AWAY * deep * samples.normal
     open_rows = (samples.unjudged < 0) & np.isfinite(point).all(axis=1)
     result, hollow = np.full(len(samples), -1, np.int32), voids(bodies, orientation)
     # Every void lies in one more body than there is material.
@@ -82,7 +79,7 @@ def inside_material(
         if not hollow.any():
             rows = rows[result[rows] < 0]
         if len(rows):
-            inside = balls_inside(point[rows], _BALL * deep, certain.skin_of(body), jobs)
+            inside = balls_inside(point[rows], BALL * deep, certain.skin_of(body), jobs)
             if hollow[index]:
                 # In a corner of a void a ball is not all within it, but what lies on its wall looks into it.
                 inside |= np.isin(samples.face[rows], body.faces)

@@ -16,7 +16,9 @@ import numpy as np
 
 from plan_cutters.kernels.codes import (
     ACCESSIBLE,
+    AWAY,
     AXIS_LIMIT,
+    BALL,
     BY_HOLDER,
     BY_NECK,
     BY_SHANK,
@@ -53,8 +55,6 @@ _NO_INTERVAL = 1.7e-4
 _FINEST = 1e-5
 #: Boxes after which a brief search gives up: several times what most samples take.
 _BRIEF = 20_000
-#: A ball so thick about a point so far off a contact tells whether it lies in a body, in depths that are blocked (lemma F3).
-_OFF, _BALL = 2.0, 1.5
 #: Where searches begin, among the tilts that curvature allows and among the others: rotation, and the tilt tried first.
 _ANYWHERE = (0, -1.0)
 START = (_ANYWHERE, _ANYWHERE)
@@ -88,9 +88,9 @@ def shut_in(contacts, row, deep, solids, scratch):
     Lemma F3 of `docs/material_proof.md`, for what perhaps encloses something.
     """
     p, n = contacts.point[row], contacts.normal[row]
-    x, y, z = p[0] + _OFF * deep * n[0], p[1] + _OFF * deep * n[1], p[2] + _OFF * deep * n[2]
+    x, y, z = p[0] + AWAY * deep * n[0], p[1] + AWAY * deep * n[1], p[2] + AWAY * deep * n[2]
     # A posture that a body blocks, beside it or within, is none: with no depth nothing is known.
-    if not deep > 0.0 or outside(x, y, z, solids) or touches(x, y, z, _BALL * deep, solids, scratch.stack):
+    if not deep > 0.0 or outside(x, y, z, solids) or touches(x, y, z, BALL * deep, solids, scratch.stack):
         return False
     return lies_within(x, y, z, solids, MAYBE_INSIDE, scratch)
 
