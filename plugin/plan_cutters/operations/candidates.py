@@ -175,7 +175,7 @@ def neighbours(axis: Floats, spacing: float) -> Floats:
     return np.asarray(out.reshape(-1, 3))
 
 
-def candidates(where: Orientations, samples: SurfaceSamples, step: float | None) -> tuple[Floats, Floats]:
+def candidates(where: Orientations, samples: SurfaceSamples, step: float | None, spacing: float = STEP) -> tuple[Floats, Floats]:
     """The first candidates of one setup.
 
     Parameters
@@ -183,8 +183,10 @@ def candidates(where: Orientations, samples: SurfaceSamples, step: float | None)
     where : Orientations
     samples : SurfaceSamples
     step : float, optional
-        Angles are whole multiples of it, rad, where the machine's rotary axes lock at these alone. None: a grid of `STEP`, and
-        the directions of the part.
+        Angles are whole multiples of it, rad, where the machine's rotary axes lock at these alone. None: a grid, and the
+        directions of the part.
+    spacing : float
+        Of that grid, rad.
 
     Returns
     -------
@@ -192,7 +194,7 @@ def candidates(where: Orientations, samples: SurfaceSamples, step: float | None)
         deg.
     axis : (m, 3) float
     """
-    angle, axis = where.grid(math.degrees(STEP if step is None else step))
+    angle, axis = where.grid(math.degrees(spacing if step is None else step))
     if step is None:
         own_angle, own_axis = where.near(directions(samples, where.conditions.setup))
         angle, axis = np.concatenate([own_angle, angle]), np.concatenate([own_axis, axis])

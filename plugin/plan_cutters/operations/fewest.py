@@ -118,10 +118,22 @@ class Search:
         """Lay candidates at a spacing, rad, about those that the weights load most, and about those chosen."""
         active = np.flatnonzero(self._active)
         load = cover.weight @ self._table[:, active]
-        top = np.union1d(active[np.argsort(-load, kind="stable")[:_LOADED]], cover.chosen)
-        for c, s in sorted({*zip(self.columns.cutter[top].tolist(), self.columns.setup[top].tolist(), strict=True)}):
+        self._lay(np.union1d(active[np.argsort(-load, kind="stable")[:_LOADED]], cover.chosen), spacing, orientations)
+
+    def surround(self, chosen: Columns, spacing: float, orientations: Sequence[Orientations]) -> None:
+        """Lay candidates at a spacing, rad, about some, and take them into the table whole."""
+        before = len(self.columns)
+        self._lay(np.flatnonzero(np.isin(self.columns.key, chosen.key)), spacing, orientations)
+        new = np.arange(before, len(self.columns))
+        if len(new):
+            self._table[:, new] = self._probes.table(self.rows, self.columns.of(new))
+            self._active[new] = True
+
+    def _lay(self, near: Rows, spacing: float, orientations: Sequence[Orientations]) -> None:
+        """Lay candidates at a spacing, rad, about some of them."""
+        for c, s in sorted({*zip(self.columns.cutter[near].tolist(), self.columns.setup[near].tolist(), strict=True)}):
             same = (self.columns.cutter == c) & (self.columns.setup == s)
-            angle, axis = orientations[s].near(neighbours(self.columns.axis[top[same[top]]], spacing))
+            angle, axis = orientations[s].near(neighbours(self.columns.axis[near[same[near]]], spacing))
             new = apart(axis, 0.6 * spacing, self.columns.axis[same])
             self._add_columns(columns_of(axis[new], angle[new], c, s))
 

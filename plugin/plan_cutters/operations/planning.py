@@ -8,7 +8,6 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats
 from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.least_set import LeastSet
@@ -20,9 +19,10 @@ from plan_cutters.operations.at_once import few_enough, recommended
 from plan_cutters.operations.by_pattern import PlansTimed, Repeated, as_quick, planned_by_pattern, repeated_orientations
 from plan_cutters.operations.candidates import STEP, apart, candidates
 from plan_cutters.operations.canonical import canonical
+from plan_cutters.operations.choices import COARSE, even, fastest_choice, largest_first_choice, quicker
 from plan_cutters.operations.companions import accompanied
 from plan_cutters.operations.curve import curve
-from plan_cutters.operations.fastest import Costs, Problem, bounded, cheap, exchanged
+from plan_cutters.operations.fastest import bounded
 from plan_cutters.operations.fewest import FINEST, Search, search_fewest
 from plan_cutters.operations.indexing import Indexing
 from plan_cutters.operations.over_all_axes import over_all_axes
@@ -39,9 +39,10 @@ from plan_cutters.operations.plans import (
 from plan_cutters.operations.priced import comparable, feeds, without_feed
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.proof import proved
-from plan_cutters.operations.rest_areas import allowed, by_size, largest_first, with_and_without, worths
+from plan_cutters.operations.rest_areas import allowed, with_and_without, worths
 from plan_cutters.operations.task import Task
-from plan_cutters.operations.timing import Paths, Problems, shared_area
+from plan_cutters.operations.thinned import thinned
+from plan_cutters.operations.timing import Paths, Problems
 from plan_cutters.operations.walls import Walls
 from plan_cutters.plan_file.numbers import duration, percent
 from plan_cutters.scene.preparation import Prepared
@@ -50,13 +51,9 @@ from plan_cutters.scene.threads import Progress, part_of
 Rows = NDArray[np.int64]
 #: Cutters whose operations are compared, at most: the fewest that reach all, and then by rank.
 _CUTTERS = 4
-#: Samples all over the part by which plans are compared, and more by which the fastest is found; rounds until it serves all.
-_EVEN, _TIMED, _ROUNDS = 250, 600, 12
 #: Parts of the work whose progress is told as one: what may be repeated, the fewest, their bound, the curve, the plans, their
 #: proof.
 _PARTS = 6
-#: Tries to exchange the fewest for as many that cut faster.
-_TRIES = 4
 
 
 @reporting(lambda ready: ready.options.reported_unit)
@@ -88,15 +85,21 @@ def plan_operations(
         quick = None if offer is None or options.operations != "fastest" else planned_by_pattern(task, offer)
         if quick is not None:
             plans, timed, worth, instead = quick
+        elif options.operations == "fastest":
+            some = thinned(task)
+            plans, timed, worth, instead = _plans(
+                task, some, *_served(some, part_of(tell, 1, _PARTS)), offer, part_of(tell, 4, _PARTS)
+            )
+            task.probes.made += some.probes.made if some is not task else 0
         else:
             search, fewest = _fewest(task, part_of(tell, 1, _PARTS))
             any_axes, cells = over_all_axes(task.probes, fewest, task.rows, progress=part_of(tell, 2, _PARTS))
             fewest = replace(fewest, at_least_any=any_axes, cells=cells)
             whole = float(np.nansum(ready.samples.area[ready.finished]))
-            steps = curve(task.probes, fewest, task.rows, ready.samples.area, whole, partial(_even, task, search),
+            steps = curve(task.probes, fewest, task.rows, ready.samples.area, whole, partial(even, task, search),
                           progress=part_of(tell, 3, _PARTS))  # fmt: skip
             few = fewest.columns.of(fewest.chosen)
-            plans, timed, worth, instead = _plans(task, search, few, offer, part_of(tell, 4, _PARTS))
+            plans, timed, worth, instead = _plans(task, thinned(task), search, few, offer, part_of(tell, 4, _PARTS))
         plans = _proved(task, plans, part_of(tell, 5, _PARTS))
     notes = (*instead, *_notes(task, least, plans, None if instead else fewest))
     return Operations(options.operations or "", task.cutters, tuple(plans), fewest, steps, task.orientations[0].names,
@@ -108,8 +111,20 @@ def _fewest(task: Task, tell: Progress) -> tuple[Search, Fewest]:
     """The fewest orientations among candidates, with the search that found them."""
     options = task.ready.options
     finest = FINEST if options.index_step is None else options.index_step
-    search = Search(task.probes, _first(task), task.rows, lambda bare: _stored(task, bare), part_of(tell, 0, 2))
+    search = _search(task, STEP, part_of(tell, 0, 2))
     return search, search_fewest(search, task.orientations, options.index_step or STEP, finest, part_of(tell, 1, 2))
+
+
+def _served(task: Task, tell: Progress) -> tuple[Search, Columns]:
+    """Few orientations among coarse candidates that serve all samples of a task, with the search that found them."""
+    search = _search(task, COARSE, tell)
+    few = search.solve(prove=False)
+    return search, search.columns.of(few.chosen)
+
+
+def _search(task: Task, spacing: float, tell: Progress) -> Search:
+    """A search among the first candidates, with a grid of a spacing, rad."""
+    return Search(task.probes, _first(task, spacing), task.rows, lambda bare: _stored(task, bare), tell)
 
 
 def _offer(task: Task, tell: Progress) -> Repeated | None:
@@ -120,12 +135,17 @@ def _offer(task: Task, tell: Progress) -> Repeated | None:
 
 
 def _proved(task: Task, plans: Sequence[OperationPlan], tell: Progress) -> list[OperationPlan]:
-    """Plans with what is proved between the samples: what was found of a plan is not sought again of others that are the same."""
+    """Plans with what is proved between the samples: what was found of a plan is not sought again of others that are the same.
+
+    The habit of letting the largest cutter go first is there to be compared with: it is not proved.
+    """
     result = list[OperationPlan]()
     for k, each in enumerate(plans):
         same = next((other for other in result if each.like(other)), None)
         mine = part_of(tell, k, len(plans))
-        result.append(proved(task.ready, task.everywhere, each, progress=mine) if same is None else replace(same, name=each.name))
+        if same is None and each.name != "largest first":
+            each = proved(task.ready, task.everywhere, each, progress=mine)
+        result.append(each if same is None else replace(same, name=each.name))
     return result
 
 
@@ -161,9 +181,9 @@ def _own(task: Task, process: OwnProcess, stage: Callable[[str], AbstractContext
         """The fixed orientations of the best plan for what the steps leave."""
         if not len(rest.rows):
             return columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
-        search, fewest = _fewest(rest, part_of(tell, 1, _PARTS))
-        few, offer = fewest.columns.of(fewest.chosen), _offer(rest, part_of(tell, 2, _PARTS))
-        plans, *_ = _plans(rest, search, few, offer, part_of(tell, 3, _PARTS))
+        some = thinned(rest)
+        search, few = _served(some, part_of(tell, 1, _PARTS))
+        plans, *_ = _plans(rest, some, search, few, _offer(rest, part_of(tell, 2, _PARTS)), part_of(tell, 3, _PARTS))
         return _columns_of(rest, next((each for each in plans if each.name == "fastest"), plans[0]))
 
     with stage("operations") as tell:
@@ -173,30 +193,34 @@ def _own(task: Task, process: OwnProcess, stage: Callable[[str], AbstractContext
                       task.paths.feed, index_from=task.indexing.source, own=outcomes)  # fmt: skip
 
 
-def _plans(task: Task, search: Search, few: Columns, offer: Repeated | None, tell: Progress) -> PlansTimed:
-    """Make the plans that were requested: the fastest is the one of all plans found here that takes the least time."""
-    which = task.ready.options.operations
-    parts = [part_of(tell, k, 4) for k in range(4)]
-    fewest = _capped(task, "fewest", _quicker(task, search, few), parts[0])
+def _plans(task: Task, some: Task, search: Search, few: Columns, offer: Repeated | None, tell: Progress) -> PlansTimed:
+    """Make the plans that were requested: the fastest is the one of all plans found here that takes the least time.
+
+    Choices are compared by some of the samples; the plan of the one that is taken is made of all.
+    """
+    which, parts = task.ready.options.operations, [part_of(tell, k, 4) for k in range(4)]
+    printed = [] if which == "fastest" else [_capped(task, "fewest", quicker(task, search, few), parts[0])]
     if which == "fewest":
-        return [fewest], None, (), ()
-    columns, problem, area, chosen = _fastest(task, search, few)
-    choices = [chosen, *with_and_without(problem, chosen)]
-    others = [_capped(task, "fastest", columns.of(each), part_of(parts[1], k, len(choices))) for k, each in enumerate(choices)]
-    largest_first = list[OperationPlan]()
+        return printed, None, (), ()
+    found = fastest_choice(task, some, search, few)
+    compared = [found.columns.of(each) for each in (found.safe, *with_and_without(found.problem, found.safe))]
     if len(task.cutters) > 1:
-        largest_first = [_capped(task, "largest first", _largest_first(task, search, few), parts[2])]
-    # Of those that take the same time the fewest.
-    plans = [fewest, *others, *largest_first]
-    printed = [*([fewest] if which == "both" else []), *largest_first]
-    fastest, notes = as_quick(task, offer, _recommended(task, plans), printed)
+        by_size = recommended(some, _worth(some, "largest first", largest_first_choice(task, some, search, few)))
+        printed.append(_capped(task, "largest first", by_size, parts[2]))
+        compared.append(by_size)
+    compared += [_columns_of(task, each) for each in printed]
+    plans = [plan_with(some, "fastest", _worth(some, "fastest", each)) for each in compared]
+    best, words = _recommended(some, plans)
+    plan = _capped(task, "fastest", _columns_of(task, best), parts[1])
+    quickest = min([plan, *(each for each in printed if few_enough(task, each))], key=_seconds)
+    fastest, notes = as_quick(task, offer, (replace(quickest, name="fastest"), words), printed)
     parts[3](0, 1)
-    plans.append(fastest)
-    at_best = float(problem.cost.min(axis=1, initial=np.inf).sum())
+    at_best = float(found.problem.cost.min(axis=1, initial=np.inf).sum())
     # Canonical orientations need not be candidates: what the plan that is printed takes bounds the best from above.
-    bound = min(bounded(problem, chosen).bound, np.nan_to_num(fastest.total, nan=np.inf))
-    timed = Fastest(fastest.total, bound, min(at_best, bound), area, len(problem.cost), len(columns))
-    return [*([fewest] if which == "both" else []), fastest, *largest_first], timed, worths(task, plans), notes
+    bound = min(bounded(found.problem, found.safe).bound, np.nan_to_num(fastest.total, nan=np.inf))
+    timed = Fastest(fastest.total, bound, min(at_best, bound), found.area, len(found.problem.cost), len(found.columns))
+    of_all = [each for each in printed if each.name == "fewest"]
+    return [*of_all, fastest, *(each for each in printed if each not in of_all)], timed, worths(some, plans), notes
 
 
 def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationPlan, tuple[str, ...]]:
@@ -263,11 +287,11 @@ def _task(ready: Prepared, everywhere: Sequence[Mapping[Cutter, Verdicts]], leas
                 Problems(ready.samples, cutters, paths, indexing, walls), walls)  # fmt: skip
 
 
-def _first(task: Task) -> Columns:
-    """The first candidates of all cutters and setups."""
+def _first(task: Task, spacing: float = STEP) -> Columns:
+    """The first candidates of all cutters and setups, with a grid of a spacing, rad."""
     columns = columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
     for s, where in enumerate(task.orientations):
-        angle, axis = candidates(where, task.ready.samples, task.ready.options.index_step)
+        angle, axis = candidates(where, task.ready.samples, task.ready.options.index_step, spacing)
         for c in range(len(task.cutters)):
             columns = columns.and_(columns_of(axis, angle, c, s))
     return columns
@@ -300,76 +324,3 @@ def _worth(task: Task, name: str, columns: Columns) -> Columns:
     timed = most is None and name != "fewest"
     selected = worth_their_turn(task, columns) if timed else best_area(task, columns, most)
     return selected if len(selected) < len(columns) else columns
-
-
-def _even(task: Task, search: Search, tell: Progress | None = None) -> tuple[Columns, Rows, NDArray[np.bool_], Floats]:
-    """Return the candidates that are known whole, their numbers, where they serve samples all over the part, and these' area."""
-    wanted = np.setdiff1d(task.rows, search.alone)
-    most = _EVEN if task.ready.options.operations == "fewest" else _TIMED
-    search.require(wanted[:: max(1, len(wanted) // most)], tell)
-    active, table = search.whole
-    return search.columns.of(active), active, table, shared_area(task.ready.samples, wanted, search.rows)
-
-
-def _timed(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Problem, float]:
-    """The candidates that are known whole, what samples all over the part cost with each, and the area that these stand for.
-
-    Where the rotary axes have rates, an orientation counts in the choice what it takes in the mean of the fewest.
-    """
-    options, indexing = task.ready.options, task.indexing
-    columns, active, table, area = _even(task, search)
-    mean = indexing.constant if indexing.rate is None else indexing.together(fewest) / max(1, len(fewest))
-    costs = Costs(mean, options.change_time, options.setup_time)
-    problem = task.problems.of(columns, active, table, search.rows, area, costs)
-    return columns, problem, float(area.sum())
-
-
-def _checked(
-    task: Task, search: Search, fewest: Columns, choose: Callable[[Problem, Rows], Rows], rounds: int
-) -> tuple[Columns, Problem, float, Rows, Rows, bool]:
-    """Choose columns by some samples and check them at all; what they leave joins these samples, and it is chosen again.
-
-    Returns
-    -------
-    columns, problem, area
-        As of `_timed`.
-    chosen, known : (k,) int64
-        The last choice, and the fewest: of the columns.
-    bool
-        Whether the choice serves all samples.
-    """
-    while True:
-        columns, problem, area = _timed(task, search, fewest)
-        known = np.flatnonzero(np.isin(columns.key, fewest.key))
-        chosen, rounds = choose(problem, known), rounds - 1
-        served = task.probes.kept(task.rows, columns.of(chosen)).any(axis=1)
-        not_served = np.setdiff1d(task.rows[~served], search.alone)
-        if not len(not_served):
-            return columns, problem, area, chosen, known, True
-        search.require(not_served[:: max(1, len(not_served) // 120)])
-        if not rounds:
-            return columns, problem, area, chosen, known, False
-
-
-def _quicker(task: Task, search: Search, fewest: Columns) -> Columns:
-    """As many columns that cut faster, if they serve all samples as well; else the same."""
-
-    def choose(problem: Problem, known: Rows) -> Rows:
-        priced = np.isfinite(problem.cost[:, known]).any(axis=1).all()
-        return exchanged(problem, known) if priced else known
-
-    columns, _, _, chosen, _, whole = _checked(task, search, fewest, choose, _TRIES)
-    return columns.of(chosen) if whole else fewest
-
-
-def _fastest(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Problem, float, Rows]:
-    """A choice of columns of least time, with the columns, the problem and the area of `_timed`."""
-    columns, problem, area, chosen, known, whole = _checked(task, search, fewest, cheap, _ROUNDS)
-    return columns, problem, area, chosen if whole else np.union1d(chosen, known)
-
-
-def _largest_first(task: Task, search: Search, fewest: Columns) -> Columns:
-    """Columns of the habit to let the largest cutter go first; what they leave goes with the fewest."""
-    order = by_size(task)
-    columns, _, _, chosen, known, whole = _checked(task, search, fewest, lambda p, _: largest_first(p, order), _TRIES)
-    return columns.of(chosen if whole else np.union1d(chosen, known))

@@ -31,6 +31,8 @@ class Probes:
 
     Attributes
     ----------
+    barred : mapping
+        As above.
     contexts : list of list of Context
         Of each cutter in each setup.
     made : int
@@ -45,7 +47,7 @@ class Probes:
         outside: Sequence[NDArray[np.bool_]],
         barred: Mapping[int, NDArray[np.bool_]] | None = None,
     ) -> None:
-        self._barred = barred or {}
+        self.barred = barred or {}
         self.samples, self.cutters, self.setups, self.outside, self.made = samples, cutters, setups, outside, 0
         self.contexts = [[Context.of(cutter, setup) for setup in setups] for cutter in cutters]
         self._kept: dict[str, NDArray[np.bool_]] = {}
@@ -59,7 +61,7 @@ class Probes:
             mine_of = None if progress is None else part_of(progress, k, len(kinds))
             mine = np.flatnonzero((columns.cutter == c) & (columns.setup == s))
             may = self.outside[s][rows]
-            open_ = np.flatnonzero(may & ~self._barred[c][rows] if c in self._barred else may)
+            open_ = np.flatnonzero(may & ~self.barred[c][rows] if c in self.barred else may)
             if len(open_):
                 free, made = served_by(rows[open_], columns.axis[mine], self.samples, self.contexts[c][s], mine_of)
                 table[np.ix_(mine, open_)] = free

@@ -58,6 +58,23 @@ def _clipped(ends, band, limit):
     return True
 
 
+@kernel
+def _balls(vertex, centre, reach):
+    """Write balls about triangles (t, 3, 3), mm: centres (t, 3), and radii (t,) with what rounding may do."""
+    for t in range(len(vertex)):
+        size = 0.0
+        for k in range(3):
+            centre[t, k] = (vertex[t, 0, k] + vertex[t, 1, k] + vertex[t, 2, k]) / 3.0
+            size += abs(centre[t, k])
+        square = 0.0
+        for i in range(3):
+            far = 0.0
+            for k in range(3):
+                far += (vertex[t, i, k] - centre[t, k]) ** 2
+            square = max(square, far)
+        reach[t] = np.sqrt(square) * (1.0 + 1e-9) + 2.0 * _IN_PLANE + 1e-12 * size
+
+
 @entry
 def extents(point, ruling, normal, vertex, band, low, high):
     """Find how far a face goes along lines that lie on it.
@@ -78,11 +95,17 @@ def extents(point, ruling, normal, vertex, band, low, high):
         Ends of the face from the point along the line, mm: 0 or less and 0 or more; nan where no triangle is near the line.
     """
     side, ends, limit = np.empty(3), np.empty((2, 2)), np.empty(2)
+    centre, reach = np.empty((len(vertex), 3)), np.empty(len(vertex))
+    _balls(vertex, centre, reach)
     for i in range(len(point)):
         cross(ruling[i], normal[i], side)
         limit[0], limit[1] = -np.inf, np.inf
         first, last = np.inf, -np.inf
+        through = dot(side, point[i])
         for t in range(len(vertex)):
+            # Most triangles lie on one side of the plane as a whole.
+            if abs(dot(side, centre[t]) - through) > reach[t]:
+                continue
             if _piece(vertex[t], point[i], ruling[i], normal[i], side, ends) and _clipped(ends, band, limit):
                 first, last = min(first, ends[0, 0]), max(last, ends[1, 0])
         low[i] = high[i] = np.nan

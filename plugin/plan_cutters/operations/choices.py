@@ -1,0 +1,138 @@
+"""Choices of columns: made by some samples, tested at more of them, and made again by what they leave."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
+from plan_cutters.domain.columns import Columns
+from plan_cutters.operations.candidates import STEP
+from plan_cutters.operations.fastest import Costs, Problem, cheap, exchanged
+from plan_cutters.operations.fewest import Search
+from plan_cutters.operations.plans import MINOR_AREA
+from plan_cutters.operations.rest_areas import by_size, largest_first
+from plan_cutters.operations.task import Task
+from plan_cutters.operations.timing import shared_area
+from plan_cutters.scene.threads import Progress
+
+Rows = NDArray[np.int64]
+#: Samples all over the part by which plans are compared, and more by which the fastest is found; rounds until it serves all.
+_EVEN, _TIMED, _ROUNDS = 250, 600, 12
+#: Samples that a choice leaves that are taken into the next one, at most.
+_MORE = 120
+#: Spacing of the first candidates for the fastest, and spacings of those that are laid about a choice then, rad.
+COARSE, _FINER = 2.0 * STEP, (STEP, 0.5 * STEP)
+#: Tries to exchange the fewest for as many that cut faster.
+_TRIES = 4
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Choice:
+    """Columns that were chosen among others.
+
+    Attributes
+    ----------
+    columns : Columns
+        All that were compared.
+    problem : Problem
+        What samples cost with them.
+    area : float
+        That these samples stand for, mm2.
+    chosen, known : (k,) int64
+        The choice, and a choice that was known before: of the columns.
+    whole : bool
+        Whether the choice serves all samples that it was tested at.
+    """
+
+    columns: Columns
+    problem: Problem
+    area: float
+    chosen: Rows
+    known: Rows
+    whole: bool
+
+    @property
+    def safe(self) -> Rows:
+        """The choice, with what was known before where it leaves samples."""
+        return self.chosen if self.whole else np.union1d(self.chosen, self.known)
+
+
+def even(task: Task, search: Search, tell: Progress | None = None) -> tuple[Columns, Rows, NDArray[np.bool_], Floats]:
+    """Return the candidates that are known whole, their numbers, where they serve samples all over the part, and these' area."""
+    wanted = np.setdiff1d(task.rows, search.alone)
+    most = _EVEN if task.ready.options.operations == "fewest" else _TIMED
+    search.require(wanted[:: max(1, len(wanted) // most)], tell)
+    active, table = search.whole
+    return search.columns.of(active), active, table, shared_area(task.ready.samples, wanted, search.rows)
+
+
+def quicker(task: Task, search: Search, fewest: Columns) -> Columns:
+    """As many columns that cut faster, if they serve all samples as well; else the same."""
+
+    def choose(problem: Problem, known: Rows) -> Rows:
+        priced = np.isfinite(problem.cost[:, known]).any(axis=1).all()
+        return exchanged(problem, known) if priced else known
+
+    found = _tested(task, task, search, fewest, choose, _TRIES)
+    return found.columns.of(found.chosen) if found.whole else fewest
+
+
+def fastest_choice(task: Task, some: Task, search: Search, fewest: Columns) -> Choice:
+    """A choice of columns of least time, tested at some samples of a task first; candidates are laid about what is chosen."""
+    choice = _tested(task, some, search, fewest, cheap, _ROUNDS)
+    for spacing in _FINER if task.ready.options.index_step is None else ():
+        search.surround(choice.columns.of(choice.safe), spacing, task.orientations)
+        choice = _tested(task, some, search, choice.columns.of(choice.safe), cheap, _ROUNDS)
+    return choice
+
+
+def largest_first_choice(task: Task, some: Task, search: Search, fewest: Columns) -> Columns:
+    """Columns of the habit to let the largest cutter go first; what they leave goes with the fewest."""
+    order = by_size(task)
+    found = _tested(task, some, search, fewest, lambda p, _: largest_first(p, order), _TRIES)
+    return found.columns.of(found.safe)
+
+
+def _timed(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Problem, float]:
+    """The candidates that are known whole, what samples all over the part cost with each, and the area that these stand for.
+
+    Where the rotary axes have rates, an orientation counts in the choice what it takes in the mean of the fewest.
+    """
+    options, indexing = task.ready.options, task.indexing
+    columns, active, table, area = even(task, search)
+    mean = indexing.constant if indexing.rate is None else indexing.together(fewest) / max(1, len(fewest))
+    costs = Costs(mean, options.change_time, options.setup_time)
+    problem = task.problems.of(columns, active, table, search.rows, area, costs)
+    return columns, problem, float(area.sum())
+
+
+def _tested(
+    task: Task, some: Task, search: Search, fewest: Columns, choose: Callable[[Problem, Rows], Rows], rounds: int
+) -> Choice:
+    """Choose columns by some samples and test them at more: what they leave joins these samples, and it is chosen again.
+
+    All samples of the task are looked at where some of them are served; what is left of all may be a minor area.
+    """
+    while True:
+        columns, problem, area = _timed(some, search, fewest)
+        known = np.flatnonzero(np.isin(columns.key, fewest.key))
+        chosen, rounds = choose(problem, known), rounds - 1
+        not_served = some.rows[~some.probes.kept(some.rows, columns.of(chosen)).any(axis=1)]
+        not_served = np.setdiff1d(not_served, search.alone)
+        if not len(not_served) and some is not task:
+            not_served = _more_than_minor(task, columns.of(chosen), search)
+        if not len(not_served) or not rounds:
+            return Choice(columns, problem, area, chosen, known, not len(not_served))
+        search.require(not_served[:: max(1, len(not_served) // _MORE)])
+
+
+def _more_than_minor(task: Task, columns: Columns, search: Search) -> Rows:
+    """Samples of a task that columns leave; none where they are a minor part of the area."""
+    left = task.rows
+    for k in range(len(columns)):
+        left = left[~task.probes.one(left, columns, k)]
+    left = np.setdiff1d(left, search.alone)
+    area = np.nan_to_num(task.ready.samples.area)
+    return left if area[left].sum() > MINOR_AREA * area[task.rows].sum() else left[:0]

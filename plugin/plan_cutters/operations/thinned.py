@@ -1,0 +1,42 @@
+"""Fewer samples that stand for all: choices are compared at these, and the choice that is made is tested at all."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from plan_cutters.operations.probes import Probes
+from plan_cutters.operations.task import Task
+from plan_cutters.operations.timing import Problems, shared_area
+from plan_cutters.operations.walls import Walls
+
+#: Samples at which choices are compared, at most about.
+SOME = 2500
+
+
+def thinned(task: Task, most: int = SOME) -> Task:
+    """The same task for some of its samples, evenly taken, each with the area of those that it stands for.
+
+    Parameters
+    ----------
+    task : Task
+    most : int
+        About how many samples; where the task has no more, it is the task itself.
+
+    Returns
+    -------
+    Task
+        Its plans reckon what the plans of all samples take; where it is served, others need not be.
+    """
+    every = len(task.rows) // most
+    if every < 2:
+        return task
+    ready, rows = task.ready, task.rows[::every]
+    area = np.zeros(len(ready.samples))
+    area[rows] = shared_area(ready.samples, task.rows, rows)
+    samples = replace(ready.samples, area=area)
+    probes = Probes(samples, task.cutters, ready.setups, task.probes.outside, task.probes.barred)
+    walls = Walls.of(probes, task.paths.scallop, task.paths.accuracy)
+    return replace(
+        task, ready=replace(ready, samples=samples), rows=rows, probes=probes, walls=walls,
+        problems=Problems(samples, task.cutters, task.paths, task.indexing, walls),
+    )  # fmt: skip
