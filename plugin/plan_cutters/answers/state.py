@@ -98,8 +98,9 @@ def on_table(ready: Prepared, axis: Axis) -> Prepared:
         # A vise or chuck has nothing to grip there: nothing can be machined.
         return replace(ready, conditions=conditions, held=np.ones(len(ready.samples), bool), others=())
     inside = inside_material(
-        ready.samples, scene.orientation, surroundings.enclosing, surroundings.certain, conditions.tolerance, conditions.jobs
-    )
+        ready.samples, scene.orientation, surroundings.enclosing, surroundings.certain, conditions.tolerance, conditions.jobs,
+        ready.inside,
+    )  # fmt: skip
     held = np.isin(ready.samples.face, planes_below(ready, np.array([axis]))[0][0])
     return replace(ready, conditions=replace(conditions, surroundings=surroundings), inside=inside, held=held, others=())
 
@@ -148,7 +149,7 @@ class Judgements:
             missed = self.missed.setdefault(name, np.zeros(len(looked), bool))
             new = rows[~looked[rows]]
             if len(new):
-                missed[case.judged(new)] = True
+                missed[case.misses(new)] = True
                 looked[new] = True
                 self.tell()
             rows = rows[missed[rows]]

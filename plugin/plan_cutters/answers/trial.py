@@ -16,7 +16,7 @@ from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.verdicts import ACCESSIBLE, CONVEX, FIXTURE, INACCESSIBLE, INSIDE, TOLERANCE, UNDECIDED, Verdicts, blank
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.plan_file.words.change_text import reasons, samples
-from plan_cutters.scene.conditions import Context, contacts_of, search_postures
+from plan_cutters.scene.conditions import Context, contacts_of, on_the_flat, search_postures
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.stages.judge import judge
 
@@ -93,6 +93,7 @@ def _look(ready: Prepared, cutter: Cutter, rows: Rows) -> Verdicts:
     # Of the finished surface these lie within a fixture, or are held.
     within, held = ready.shut[rows] >= 0, ready.clamped[rows]
     search_postures(contacts, np.flatnonzero(~free & ~within), context, verdicts)
+    on_the_flat(contacts, np.flatnonzero(verdicts.not_reached & ~within), context, verdicts)
     verdicts.verdict[within], verdicts.reason[within] = INACCESSIBLE, np.where(held[within], FIXTURE, INSIDE)
     return verdicts.freeze()
 

@@ -75,23 +75,37 @@ def quicker(task: Task, search: Search, fewest: Columns) -> Columns:
         priced = np.isfinite(problem.cost[:, known]).any(axis=1).all()
         return exchanged(problem, known) if priced else known
 
-    found = _tested(task, task, search, fewest, choose, _TRIES)
+    found = _tested(task, search, fewest, choose, _TRIES)
     return found.columns.of(found.chosen) if found.whole else fewest
 
 
-def fastest_choice(task: Task, some: Task, search: Search, fewest: Columns) -> Choice:
-    """A choice of columns of least time, tested at some samples of a task first; candidates are laid about what is chosen."""
-    choice = _tested(task, some, search, fewest, cheap, _ROUNDS)
-    for spacing in _FINER if task.ready.options.index_step is None else ():
+def fastest_choice(task: Task, some: Task, search: Search, fewest: Columns, tell: Progress) -> Choice:
+    """A choice of columns of least time; candidates are laid about what is chosen.
+
+    It is tested at some samples of a task, and in the end at all of them if it is one of few columns. The progress is told.
+    """
+    minor, levels = some is not task, _FINER if task.ready.options.index_step is None else ()
+    choice = _tested(some, search, fewest, cheap, _ROUNDS, minor=minor)
+    for done, spacing in enumerate(levels, 1):
+        tell(done, len(levels) + 2)
         search.surround(choice.columns.of(choice.safe), spacing, task.orientations)
-        choice = _tested(task, some, search, choice.columns.of(choice.safe), cheap, _ROUNDS)
+        choice = _tested(some, search, choice.columns.of(choice.safe), cheap, _ROUNDS, minor=minor)
+    tell(len(levels) + 1, len(levels) + 2)
+    # Of more orientations than are recommended some go, and what they serve: what they leave beside that does not matter.
+    few = len(choice.safe) <= task.ready.options.max_orientations
+    if minor and few and len(rest := _left(task, choice.columns.of(choice.safe), search, minor=True)):
+        search.require(_few(rest))
+        choice = _tested(some, search, choice.columns.of(choice.safe), cheap, _ROUNDS, minor=True)
     return choice
 
 
-def largest_first_choice(task: Task, some: Task, search: Search, fewest: Columns) -> Columns:
-    """Columns of the habit to let the largest cutter go first; what they leave goes with the fewest."""
+def largest_first_choice(task: Task, search: Search, fewest: Columns, *, minor: bool) -> Columns:
+    """Columns of the habit to let the largest cutter go first; what they leave goes with the fewest.
+
+    `minor`: what they leave may be a minor part of the area.
+    """
     order = by_size(task)
-    found = _tested(task, some, search, fewest, lambda p, _: largest_first(p, order), _TRIES)
+    found = _tested(task, search, fewest, lambda p, _: largest_first(p, order), _TRIES, minor=minor)
     return found.columns.of(found.safe)
 
 
@@ -109,30 +123,29 @@ def _timed(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Proble
 
 
 def _tested(
-    task: Task, some: Task, search: Search, fewest: Columns, choose: Callable[[Problem, Rows], Rows], rounds: int
+    task: Task, search: Search, fewest: Columns, choose: Callable[[Problem, Rows], Rows], rounds: int, *, minor: bool = False
 ) -> Choice:
-    """Choose columns by some samples and test them at more: what they leave joins these samples, and it is chosen again.
+    """Choose columns by samples that candidates are known at, and test them at those of a task.
 
-    All samples of the task are looked at where some of them are served; what is left of all may be a minor area.
+    What they leave joins these samples, and it is chosen again; with `minor`, they may leave a minor part of the area.
     """
     while True:
-        columns, problem, area = _timed(some, search, fewest)
+        columns, problem, area = _timed(task, search, fewest)
         known = np.flatnonzero(np.isin(columns.key, fewest.key))
         chosen, rounds = choose(problem, known), rounds - 1
-        not_served = some.rows[~some.probes.kept(some.rows, columns.of(chosen)).any(axis=1)]
-        not_served = np.setdiff1d(not_served, search.alone)
-        if not len(not_served) and some is not task:
-            not_served = _more_than_minor(task, columns.of(chosen), search)
-        if not len(not_served) or not rounds:
-            return Choice(columns, problem, area, chosen, known, not len(not_served))
-        search.require(not_served[:: max(1, len(not_served) // _MORE)])
+        rest = _left(task, columns.of(chosen), search, minor=minor)
+        if not len(rest) or not rounds:
+            return Choice(columns, problem, area, chosen, known, not len(rest))
+        search.require(_few(rest))
 
 
-def _more_than_minor(task: Task, columns: Columns, search: Search) -> Rows:
-    """Samples of a task that columns leave; none where they are a minor part of the area."""
-    left = task.rows
-    for k in range(len(columns)):
-        left = left[~task.probes.one(left, columns, k)]
-    left = np.setdiff1d(left, search.alone)
+def _left(task: Task, columns: Columns, search: Search, *, minor: bool) -> Rows:
+    """Samples of a task that columns leave and other candidates do not; none where they are a `minor` part of the area."""
+    rest = np.setdiff1d(task.rows[~task.probes.kept(task.rows, columns).any(axis=1)], search.alone)
     area = np.nan_to_num(task.ready.samples.area)
-    return left if area[left].sum() > MINOR_AREA * area[task.rows].sum() else left[:0]
+    return rest[:0] if minor and area[rest].sum() <= MINOR_AREA * area[task.rows].sum() else rest
+
+
+def _few(rows: Rows) -> Rows:
+    """Some of the samples, evenly taken."""
+    return rows[:: max(1, len(rows) // _MORE)]

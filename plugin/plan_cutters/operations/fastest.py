@@ -103,7 +103,13 @@ class Problem:
         """Sum up the costs of a choice; infinite where it leaves a sample."""
         if not len(chosen):
             return 0.0 if not len(self.cost) else np.inf
-        return self.cutting(chosen) + self.costs.operation * len(chosen) + self._changes(chosen)
+        return self.priced(chosen, self.cost[:, chosen].min(axis=1, initial=np.inf))
+
+    def priced(self, chosen: Which, samples: Floats) -> float:
+        """As `total`, for a choice with which the samples (n,) are known to cost so much."""
+        if not len(chosen):
+            return self.total(chosen)
+        return float(samples.sum()) + self.costs.operation * len(chosen) + self._changes(chosen)
 
     def turned(self, chosen: Which) -> float:
         """As `total`, but with what the rotary axes take in truth."""
@@ -193,22 +199,56 @@ def _grown(problem: Problem, chosen: Which) -> Which:
 def _improved(problem: Problem, chosen: Which) -> Which:
     """A choice of which leaving out or exchanging one candidate saves nothing more."""
     cost, now = problem.total(chosen), _now(problem, chosen)
-    gains = problem.gains(now)
+    gains, without = problem.gains(now), _Without.of(problem, chosen)
     for _ in range(_ROUNDS):
         before = cost
         for candidate in chosen.tolist():
             rest = chosen[chosen != candidate]
-            other = rest
-            if not problem.total(rest) < cost - _NOTHING:
-                best, _gain = problem.added(rest, problem.regained(gains, now, _now(problem, rest)))
-                other = np.append(rest, best)
-            if problem.total(other) < cost - _NOTHING:
-                chosen, cost = other, problem.total(other)
-                last, now = now, _now(problem, chosen)
+            samples = without.cost(candidate)
+            total, other, samples_then = problem.priced(rest, samples), rest, samples
+            if not total < cost - _NOTHING:
+                best, _gain = problem.added(rest, problem.regained(gains, now, np.minimum(problem.dear, samples)))
+                other, samples_then = np.append(rest, best), np.minimum(samples, problem.cost[:, best])
+                total = problem.priced(other, samples_then)
+            if total < cost - _NOTHING:
+                chosen, cost, without = other, total, _Without.of(problem, other)
+                last, now = now, np.minimum(problem.dear, samples_then)
                 gains = problem.regained(gains, last, now)
         if cost >= before - _NOTHING:
             break
     return chosen
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Without:
+    """What samples (n,) cost without one of a choice.
+
+    Attributes
+    ----------
+    best : (n,) int64
+        The candidate of the choice that is the best for each.
+    first, second : (n,) float
+        What it costs, and the next best one; infinite where there is none.
+    """
+
+    best: Which
+    first: Floats
+    second: Floats
+
+    @classmethod
+    def of(cls, problem: Problem, chosen: Which) -> "_Without":
+        own = problem.cost[:, chosen]
+        if not len(chosen):
+            nothing = np.full(len(own), np.inf)
+            return cls(np.full(len(own), -1, np.int64), nothing, nothing)
+        best = own.argmin(axis=1)
+        first = own[np.arange(len(own)), best]
+        own[np.arange(len(own)), best] = np.inf
+        return cls(chosen[best], first, own.min(axis=1))
+
+    def cost(self, candidate: int) -> Floats:
+        """That of all samples without a candidate."""
+        return np.where(self.best == candidate, self.second, self.first)
 
 
 def exchanged(problem: Problem, chosen: Which) -> Which:

@@ -5,6 +5,8 @@ costs with each operation. The sum is made small by alpha expansion: for one ope
 samples change to it (Boykov, Veksler, Zabih 2001). An operation that does not serve a sample costs too much to be ever taken.
 """
 
+from heapq import heapify, heappop, heappush
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import coo_array
@@ -135,23 +137,37 @@ def joined(label: Ints, serves: NDArray[np.bool_], edge: Ints, area: Floats, lea
 
     The smallest goes first. Pieces that no neighbour serves stay: they are listed as they are.
     """
-    label = label.copy()
-    while True:
-        number = pieces(label, edge)
-        size = np.bincount(number[number >= 0], area[number >= 0])
-        moved = False
-        for piece in np.argsort(size, kind="stable").tolist():
-            if size[piece] >= least:
-                break
-            rows = np.flatnonzero(number == piece)
-            touching = edge[(number[edge] == piece).sum(axis=1) == 1]
-            adjacent = label[touching[number[touching] != piece]]
-            adjacent = np.unique(adjacent[adjacent >= 0])
-            able = adjacent[serves[np.ix_(rows, adjacent)].all(axis=0)]
-            if len(able):
-                most = [int((label[touching[number[touching] != piece]] == each).sum()) for each in able]
-                label[rows] = able[int(np.argmax(most))]
-                moved = True
-                break
-        if not moved:
-            return label
+    label, number = label.copy(), pieces(label, edge)
+    mine = number >= 0
+    size = np.bincount(number[mine], area[mine]).tolist()
+    rows_of = np.split(np.flatnonzero(mine)[np.argsort(number[mine], kind="stable")], np.cumsum(np.bincount(number[mine]))[:-1])
+    both = np.concatenate([edge, edge[:, ::-1]])
+    beside = coo_array((np.ones(len(both), np.int8), both.T), shape=(len(label), len(label))).tocsr()
+    waiting = [(each, piece) for piece, each in enumerate(size) if each < least]
+    heapify(waiting)
+    while waiting:
+        known, piece = heappop(waiting)
+        # What another piece has joined has another size, or none.
+        if known != size[piece]:
+            continue
+        rows = rows_of[piece]
+        others = beside[rows].indices
+        others = others[(number[others] != piece) & (label[others] >= 0)]
+        adjacent, touching = np.unique(label[others], return_counts=True)
+        able = serves[np.ix_(rows, adjacent)].all(axis=0)
+        if not able.any():
+            continue
+        to = adjacent[able][touching[able].argmax()]
+        around = np.unique(number[others])
+        into = np.unique(number[others[label[others] == to]]).tolist()
+        whole = max(into, key=lambda each: len(rows_of[each]))
+        for each in [piece, *into]:
+            if each != whole:
+                number[rows_of[each]] = whole
+                rows_of[whole], size[whole], size[each] = np.append(rows_of[whole], rows_of[each]), size[whole] + size[each], -1.0
+        label[rows] = to
+        # Those beside it may have somewhere to go now.
+        for each in {whole, *around.tolist()}:
+            if 0.0 <= size[each] < least:
+                heappush(waiting, (size[each], each))
+    return label

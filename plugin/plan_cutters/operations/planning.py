@@ -202,19 +202,20 @@ def _plans(task: Task, some: Task, search: Search, few: Columns, offer: Repeated
     printed = [] if which == "fastest" else [_capped(task, "fewest", quicker(task, search, few), parts[0])]
     if which == "fewest":
         return printed, None, (), ()
-    found = fastest_choice(task, some, search, few)
+    found = fastest_choice(task, some, search, few, parts[1])
     compared = [found.columns.of(each) for each in (found.safe, *with_and_without(found.problem, found.safe))]
     if len(task.cutters) > 1:
-        by_size = recommended(some, _worth(some, "largest first", largest_first_choice(task, some, search, few)))
+        by_size = largest_first_choice(some, search, few, minor=some is not task)
+        by_size = recommended(some, _worth(some, "largest first", by_size))
         printed.append(_capped(task, "largest first", by_size, parts[2]))
         compared.append(by_size)
     compared += [_columns_of(task, each) for each in printed]
     plans = [plan_with(some, "fastest", _worth(some, "fastest", each)) for each in compared]
     best, words = _recommended(some, plans)
-    plan = _capped(task, "fastest", _columns_of(task, best), parts[1])
+    plan = _capped(task, "fastest", _columns_of(task, best), parts[3])
     quickest = min([plan, *(each for each in printed if few_enough(task, each))], key=_seconds)
     fastest, notes = as_quick(task, offer, (replace(quickest, name="fastest"), words), printed)
-    parts[3](0, 1)
+    parts[3](1, 1)
     at_best = float(found.problem.cost.min(axis=1, initial=np.inf).sum())
     # Canonical orientations need not be candidates: what the plan that is printed takes bounds the best from above.
     bound = min(bounded(found.problem, found.safe).bound, np.nan_to_num(fastest.total, nan=np.inf))

@@ -156,6 +156,9 @@ class Problems:
         width[new] = result[new]
         self._rows, self._active, self._width, self._known = rows, active, width, known | new
         cost = costs_of(columns, width, table, area, self._cutters, self._paths)
+        # What is served and nowhere timed is served by whatever serves it, in no time that is known.
+        untimed = ~np.isfinite(cost).any(axis=1)
+        cost[untimed] = np.where(table[untimed], 0.0, np.inf)
         turning = None
         if self._indexing.rate is not None:
             turning = Turning(lambda chosen: self._indexing.together(columns.of(chosen)), self._indexing.from_zero(columns))

@@ -37,8 +37,9 @@ class Cover(Record):
 
 
 def inside_material(
-    samples: SurfaceSamples, orientation: Orientation, bodies: Sequence[Body], certain: Obstacles, tolerance: float, jobs: int = 1
-) -> Ints:
+    samples: SurfaceSamples, orientation: Orientation, bodies: Sequence[Body], certain: Obstacles, tolerance: float,
+    jobs: int = 1, known: Ints | None = None,
+) -> Ints:  # fmt: skip
     """In which body contacts lie so deep that every posture is blocked.
 
     Parameters
@@ -52,6 +53,8 @@ def inside_material(
         Gouge tolerance that is kept, mm.
     jobs : int, optional
         Threads.
+    known : (n,) int32, optional
+        The same of another setup: the part has the same bodies there, the first of all, and fixtures alone are looked at again.
 
     Returns
     -------
@@ -67,7 +70,12 @@ def inside_material(
     layers, void = np.zeros(len(samples), np.int32), np.full(len(samples), -1, np.int32)
     loose = dict(certain.triangles.loose).keys()
     boxed = SortedPoints.of(point, np.flatnonzero(open_rows))
-    for index, body in enumerate(bodies):
+    of_part = sum(min(body.faces) > 0 for body in bodies)
+    # What lies in a void is known of all bodies together.
+    again = of_part if known is not None and not hollow.any() else 0
+    if known is not None and again:
+        result = np.where(known < again, known, -1).astype(np.int32)
+    for index, body in list(enumerate(bodies))[again:]:
         sure = body.closed and loose.isdisjoint(body.faces)
         vertex = certain.triangles.vertex[certain.rows_of(body.faces)] if sure else np.zeros((0, 3, 3))
         if not len(vertex):

@@ -70,13 +70,9 @@ def with_setups(ready: Prepared, conditions: list[Conditions]) -> Prepared:
         inside = ready.inside
         if each.surroundings is not ready.conditions.surroundings:
             inside = inside_material(
-                ready.samples,
-                ready.scene.orientation,
-                each.surroundings.enclosing,
-                each.surroundings.certain,
-                each.tolerance,
-                each.jobs,
-            )
+                ready.samples, ready.scene.orientation, each.surroundings.enclosing, each.surroundings.certain, each.tolerance,
+                each.jobs, inside,
+            )  # fmt: skip
         others.append(OtherSetup(each, inside, clamped))
     return replace(ready, held=held[0], others=tuple(others))
 
