@@ -305,7 +305,8 @@ def _reached(ready: Prepared, rows: Rows, conditions: Conditions, *, usual: bool
     for cutter in sorted(_usual(ready.cutters) if usual else ready.cutters, key=lambda each: each.radius):
         if len(open_rows) and conditions.judges(cutter):
             verdicts = blank(len(reached))
-            search_postures(contacts_of(ready.samples), open_rows, Context.of(cutter, conditions), verdicts, fixed=True)
+            context = Context.of(cutter, conditions)
+            search_postures(contacts_of(ready.samples), open_rows, context, verdicts, fixed=True, brief=True)
             reached |= verdicts.reached
             open_rows = open_rows[~verdicts.reached[open_rows]]
     return reached

@@ -165,6 +165,6 @@ class Judgements:
             not_reached = np.zeros(len(rows), bool)
             not_reached[known] = self.missed[name][rows[known]] if known.any() else False
             new = np.flatnonzero(~known)
-            not_reached[new] = np.isin(rows[new], case.misses(rows[new])) if len(new) else False
+            not_reached[new] = np.isin(rows[new], case.misses(rows[new], brief=True)) if len(new) else False
             rows = rows[not_reached]
         return rows

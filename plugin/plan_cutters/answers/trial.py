@@ -48,23 +48,24 @@ class Case:
         """The part in each of its setups, the first one first."""
         return (self.ready.alone(k) for k in range(len(self.ready.setups)))
 
-    def look(self, rows: Rows) -> Verdicts:
+    def look(self, rows: Rows, *, brief: bool = False) -> Verdicts:
         """Judge some of the judged samples again, for this part and cutter, in one setup after the other.
 
-        The verdicts are those of `judge`, except that a search from another start may differ by its angular resolution.
+        The verdicts are those of `judge`, except that a search from another start may differ by its angular resolution; and, if
+        it is `brief`, that what takes long is left undecided.
         """
         each, open_rows = list[Verdicts](), np.arange(len(rows))
         for one in self.setups:
-            part = _look(one, self.cutter, rows[open_rows])
+            part = _look(one, self.cutter, rows[open_rows], brief=brief)
             whole = blank(len(rows))
             whole.take(open_rows, part, at=slice(None))
             each.append(whole.freeze())
             open_rows = open_rows[~part.reached]
         return over_setups(each)[0]
 
-    def misses(self, rows: Rows) -> Rows:
-        """Those of some samples that it does not reach."""
-        return rows[~self.look(rows).reached]
+    def misses(self, rows: Rows, *, brief: bool = False) -> Rows:
+        """Those of some samples that it does not reach, or, if the search is `brief`, may not reach."""
+        return rows[~self.look(rows, brief=brief).reached]
 
     def judged(self, rows: Rows | None = None) -> Rows:
         """Samples of the finished surface that it does not reach, as a plan finds them: of all, or of some, ascending."""
@@ -75,7 +76,7 @@ class Case:
         return wanted
 
 
-def _look(ready: Prepared, cutter: Cutter, rows: Rows) -> Verdicts:
+def _look(ready: Prepared, cutter: Cutter, rows: Rows, *, brief: bool) -> Verdicts:
     """Judge some samples again in one setup."""
     from plan_cutters.kernels.search.search import dummy_clear
 
@@ -92,7 +93,7 @@ def _look(ready: Prepared, cutter: Cutter, rows: Rows) -> Verdicts:
     verdicts.verdict[free] = ACCESSIBLE
     # Of the finished surface these lie within a fixture, or are held.
     within, held = ready.shut[rows] >= 0, ready.clamped[rows]
-    search_postures(contacts, np.flatnonzero(~free & ~within), context, verdicts)
+    search_postures(contacts, np.flatnonzero(~free & ~within), context, verdicts, brief=brief)
     on_the_flat(contacts, np.flatnonzero(verdicts.not_reached & ~within), context, verdicts)
     verdicts.verdict[within], verdicts.reason[within] = INACCESSIBLE, np.where(held[within], FIXTURE, INSIDE)
     return verdicts.freeze()

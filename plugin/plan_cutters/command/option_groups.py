@@ -210,7 +210,8 @@ _OPTIONS = (
     _output(
         "--formats",
         type=Words("LIST", lambda: FORMATS, listed=True),
-        help=f"Of {', '.join(FORMATS)}; merged is a GLB of one mesh, for parts of thousands of faces.  "
+        help=f"Of {', '.join(FORMATS)}; merged is a GLB of one mesh, for parts of thousands of faces; "
+        "plans adds STEP and GLB of each plan of operations.  "
         f"[default: {','.join(DEFAULT_FORMATS)}]",
     ),
     _output(

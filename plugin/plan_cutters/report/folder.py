@@ -38,7 +38,8 @@ _SIDE_FILES = {
     "largest_first_step",
     "largest_first_glb",
 }
-FORMATS = ("json", *(f for f in WRITERS if f not in _SIDE_FILES))
+#: With `plans`, STEP and GLB are written for every plan of operations.
+FORMATS = ("json", *(f for f in WRITERS if f not in _SIDE_FILES), "plans")
 #: What is written unless asked otherwise (`docs/decisions/0017-formats-on-request.md`).
 DEFAULT_FORMATS = ("json", "html", "step", "glb", "npz")
 
@@ -243,7 +244,7 @@ def write_unfinished(result: Judged, formats: Sequence[str], staging: Staging, c
 
     if "json" not in formats:
         return False
-    others = dict.fromkeys((name for name in formats if name != "json"), PENDING)
+    others = dict.fromkeys((name for name in formats if name in WRITERS), PENDING)
     written = _Written(result.plan, staging, clock, staging.out, others, as_json=True)
     making = Making(result, staging.folder, "", clock, lambda what: None)
     written.files |= {name: making.file(name) for name in _setup_files(result)}

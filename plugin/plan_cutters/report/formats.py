@@ -154,8 +154,12 @@ class Making:
 
 
 def with_operations(formats: Sequence[str], plans: Sequence[str]) -> list[str]:
-    """Formats, and what they stand for with plans of operations of these names: the first one's models have no name of a plan."""
-    about = ["operations", *plans[1:]] if plans else []
+    """Formats, and what they stand for with plans of operations of these names: the first one's models have no name of a plan.
+
+    The habit of letting the largest cutter go first is there to be compared with: it has models where `plans` asks for them.
+    """
+    others = [each for each in plans[1:] if "plans" in formats or each != "largest first"]
+    about = ["operations", *others] if plans else []
     return [*formats, *(name for each in about for name in _MODELS[each] if name.rpartition("_")[2] in formats)]
 
 
