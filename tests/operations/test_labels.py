@@ -59,3 +59,36 @@ def test_a_dear_border_makes_one_piece_and_a_free_one_the_best_of_each():
     cost = np.column_stack([np.ones(10), np.where(np.arange(10) % 2, 0.9, 1.1)])
     assert len(np.unique(labelled(cost, edge, np.full(9, 10.0)))) == 1
     assert (labelled(cost, edge, np.zeros(9)) == cost.argmin(axis=1)).all()
+
+
+def joined_slowly(label, serves, edge, area, least):
+    """As `joined`, with all pieces counted anew after each that went over."""
+    label = label.copy()
+    while True:
+        number = pieces(label, edge)
+        size = np.bincount(number[number >= 0], area[number >= 0])
+        for piece in np.argsort(size, kind="stable").tolist():
+            if size[piece] >= least:
+                return label
+            rows = np.flatnonzero(number == piece)
+            touching = edge[(number[edge] == piece).sum(axis=1) == 1]
+            adjacent = label[touching[number[touching] != piece]]
+            able, times = np.unique(adjacent[adjacent >= 0], return_counts=True)
+            good = serves[np.ix_(rows, able)].all(axis=0)
+            if good.any():
+                label[rows] = able[good][times[good].argmax()]
+                break
+        else:
+            return label
+
+
+@given(st.integers(0, 2**31), st.integers(1, 9), st.integers(1, 9), st.integers(1, 4), st.floats(0.0, 9.0))
+@settings(max_examples=150)
+def test_pieces_go_over_as_if_all_were_counted_anew_each_time(seed, nx, ny, k, least):
+    """Areas differ, so that one piece is the smallest."""
+    rng = np.random.default_rng(seed)
+    serves = rng.random((nx * ny, k)) < 0.7
+    label = np.where(serves.any(axis=1), np.where(serves, rng.random(serves.shape), -1.0).argmax(axis=1), -1).astype(np.int32)
+    area = rng.uniform(0.5, 2.0, nx * ny)
+    after = joined(label, serves, grid(nx, ny), area, least)
+    assert (after == joined_slowly(label, serves, grid(nx, ny), area, least)).all()

@@ -5,6 +5,9 @@ import math
 import cadquery as cq
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
 
 from plan_cutters import plan
 from plan_cutters.domain.cutter import Cutter
@@ -97,6 +100,26 @@ def test_a_face_ends_along_a_line_where_its_triangles_do_and_where_it_leaves_the
     extents(start, np.array([[1.0, 0, 0]]), np.array([[0.0, 0, 1]]), flat[:0], 0.01, low, high)
     assert np.isnan(low[0])
     assert np.isnan(high[0])
+
+
+@given(st.integers(0, 2**31), st.floats(-500.0, 500.0))
+@settings(max_examples=60, deadline=None)
+def test_a_face_goes_as_far_wherever_it_stands_and_whatever_lies_beside_the_line(seed, far):
+    """Triangles that lie on one side of the plane through the line are not looked at: that changes nothing."""
+    rng = np.random.default_rng(seed)
+    x = np.sort(rng.uniform(-5.0, 5.0, 9))
+    heights = rng.normal(0.0, 0.01, 9)
+    sheet = [[[x[k], side, heights[k]], [x[k + 1], side, heights[k + 1]], [x[k + 1], 0.0, heights[k + 1]]]
+             for k in range(8) for side in (-3.0, 3.0)]  # fmt: skip
+    beside = rng.uniform([-9.0, 1e-6, -1.0], [9.0, 4.0, 1.0], (20, 3, 3))
+    turn = Rotation.random(random_state=seed).as_matrix()
+    low, high = np.empty((2, 3, 1))
+    for k, (some, moved) in enumerate([(sheet, False), ([*sheet, *beside], False), ([*sheet, *beside], True)]):
+        frame, place = (turn, far * np.ones(3)) if moved else (np.eye(3), np.zeros(3))
+        start = np.array([[0.0, 0.0, 0.0]]) @ frame.T + place
+        extents(start, frame[:, [0]].T.copy(), frame[:, [2]].T.copy(), np.array(some) @ frame.T + place, 0.05, low[k], high[k])
+    assert low[:, 0] == pytest.approx(low[0, 0], abs=1e-6, nan_ok=True)
+    assert high[:, 0] == pytest.approx(high[0, 0], abs=1e-6, nan_ok=True)
 
 
 def test_strategies_stand_in_the_operations_and_in_the_process():

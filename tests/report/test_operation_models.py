@@ -190,6 +190,11 @@ def test_files_are_whole_or_named_and_written_with_the_formats_asked_for(written
     assert all((out / entry.name).is_file() for entry in document.files.values())
     few = result.write(tmp_path / "few", ["json", "glb"])
     assert names & few.files.keys() == {"operations_glb", "fastest_glb"}
+    # The habit is there to be compared with: its models are made where all plans are asked for.
+    assert "largest_first_glb" not in document.files
+    every = result.write(tmp_path / "every", ["json", "glb", "plans"])
+    habit = any(each.name == "largest first" for each in document.operations.plans)
+    assert ("largest_first_glb" in every.files) == habit
 
     def fails(*_):
         raise RuntimeError("no halves")
