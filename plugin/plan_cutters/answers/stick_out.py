@@ -169,20 +169,33 @@ class _Search:
         return [not_reached[k] for k in sorted(not_reached)]
 
     def lowered(self, rows: NDArray[np.int64], least: float, limiting: int) -> tuple[float, int]:
-        """The same, or less as long as a judgement `BEYOND` below it still finds postures everywhere, as it starts elsewhere."""
-        while limiting >= 0 and least > self.floor:
-            shorter = held(self.cutter, max(self.floor, least - BEYOND))
-            if not judge(self.ready, shorter, np.array([limiting])).reached[0]:
-                break
-            verdicts = judge(self.ready, shorter)
-            not_reached = rows[~verdicts.reached[rows]]
-            if len(not_reached):
-                limiting = int(not_reached[0])
-                self.found.take_posture(limiting, judge(self.ready, held(self.cutter, least)))
-                break
-            least = shorter.length
-            self.found.take_posture(limiting, verdicts)
-        return least, -1 if least <= self.floor else limiting
+        """The same, or less where a judgement some steps of `BEYOND` below it still finds postures everywhere, as it starts
+        elsewhere: so many steps, by doubling and halving, that one more is too many.
+        """
+        good, bad, before = 0, 0, limiting
+        while limiting >= 0 and least - good * BEYOND > self.floor and bad - good != 1:
+            tried = (good + bad) // 2 if bad else 2 * good + 1
+            not_reached = self._not_reached(rows, max(self.floor, least - tried * BEYOND), limiting)
+            if not_reached is None:
+                good = tried
+            else:
+                bad, limiting = tried, not_reached
+        least = max(self.floor, least - good * BEYOND)
+        if least <= self.floor:
+            return least, -1
+        if good or limiting != before:
+            posture = judge(self.ready, held(self.cutter, least), np.array([limiting]))
+            if posture.reached[0]:
+                self.found.take_posture(limiting, posture, 0)
+        return least, limiting
+
+    def _not_reached(self, rows: NDArray[np.int64], stick_out: float, first: int) -> int | None:
+        """One of some samples that a judgement does not reach with a stick-out, looked for first at one of them; None: none."""
+        cutter = held(self.cutter, stick_out)
+        if not judge(self.ready, cutter, np.array([first])).reached[0]:
+            return first
+        missed = rows[~judge(self.ready, cutter, rows).reached]
+        return int(missed[0]) if len(missed) else None
 
     def one(self, row: int, not_reached: float) -> tuple[float, int]:
         """The least stick-out of one sample, and the sample; the one given and -1 where that is enough.
