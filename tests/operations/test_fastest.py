@@ -7,7 +7,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters.operations.fastest import Costs, Problem, Turning, bounded, exchanged, fastest, lagrange
+from plan_cutters.operations.fastest import bounded, exchanged, fastest, lagrange
+from plan_cutters.operations.problem import Costs, Problem, Turning
 
 
 def problem_of(seed, n, m):

@@ -8,7 +8,8 @@ import pytest
 
 from plan_cutters import Cutter, plan
 from plan_cutters.domain.columns import Columns
-from plan_cutters.operations.fastest import Costs, Problem, fastest
+from plan_cutters.operations.fastest import fastest
+from plan_cutters.operations.problem import Costs, Problem
 from plan_cutters.operations.rest_areas import allowed, largest_first, with_and_without, worths
 from tests.support.shapes import trough
 

@@ -9,9 +9,10 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from plan_cutters.domain.columns import Columns
 from plan_cutters.operations.candidates import STEP
-from plan_cutters.operations.fastest import Costs, Problem, cheap, exchanged
+from plan_cutters.operations.fastest import cheap, exchanged
 from plan_cutters.operations.fewest import Search
 from plan_cutters.operations.plans import MINOR_AREA
+from plan_cutters.operations.problem import Costs, Problem
 from plan_cutters.operations.rest_areas import by_size, largest_first
 from plan_cutters.operations.task import Task
 from plan_cutters.operations.timing import shared_area
@@ -75,8 +76,8 @@ def quicker(task: Task, search: Search, fewest: Columns) -> Columns:
         priced = np.isfinite(problem.cost[:, known]).any(axis=1).all()
         return exchanged(problem, known) if priced else known
 
-    found = _tested(task, search, fewest, choose, _TRIES)
-    return found.columns.of(found.chosen) if found.whole else fewest
+    tested = _tested(task, search, fewest, choose, _TRIES)
+    return tested.columns.of(tested.chosen) if tested.whole else fewest
 
 
 def fastest_choice(task: Task, some: Task, search: Search, fewest: Columns, tell: Progress) -> Choice:
@@ -93,7 +94,7 @@ def fastest_choice(task: Task, some: Task, search: Search, fewest: Columns, tell
     tell(len(levels) + 1, len(levels) + 2)
     # Of more orientations than are recommended some go, and what they serve: what they leave beside that does not matter.
     few = len(choice.safe) <= task.ready.options.max_orientations
-    if minor and few and len(rest := _left(task, choice.columns.of(choice.safe), search, minor=True)):
+    if minor and few and len(rest := _remaining(task, choice.columns.of(choice.safe), search, minor=True)):
         search.require(_few(rest))
         choice = _tested(some, search, choice.columns.of(choice.safe), cheap, _ROUNDS, minor=True)
     return choice
@@ -105,8 +106,8 @@ def largest_first_choice(task: Task, search: Search, fewest: Columns, *, minor: 
     `minor`: what they leave may be a minor part of the area.
     """
     order = by_size(task)
-    found = _tested(task, search, fewest, lambda p, _: largest_first(p, order), _TRIES, minor=minor)
-    return found.columns.of(found.safe)
+    tested = _tested(task, search, fewest, lambda p, _: largest_first(p, order), _TRIES, minor=minor)
+    return tested.columns.of(tested.safe)
 
 
 def _timed(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Problem, float]:
@@ -133,13 +134,13 @@ def _tested(
         columns, problem, area = _timed(task, search, fewest)
         known = np.flatnonzero(np.isin(columns.key, fewest.key))
         chosen, rounds = choose(problem, known), rounds - 1
-        rest = _left(task, columns.of(chosen), search, minor=minor)
+        rest = _remaining(task, columns.of(chosen), search, minor=minor)
         if not len(rest) or not rounds:
             return Choice(columns, problem, area, chosen, known, not len(rest))
         search.require(_few(rest))
 
 
-def _left(task: Task, columns: Columns, search: Search, *, minor: bool) -> Rows:
+def _remaining(task: Task, columns: Columns, search: Search, *, minor: bool) -> Rows:
     """Samples of a task that columns leave and other candidates do not; none where they are a `minor` part of the area."""
     rest = np.setdiff1d(task.rows[~task.probes.kept(task.rows, columns).any(axis=1)], search.alone)
     area = np.nan_to_num(task.ready.samples.area)

@@ -142,7 +142,7 @@ def joined(label: Ints, serves: NDArray[np.bool_], edge: Ints, area: Floats, lea
     size = np.bincount(number[mine], area[mine]).tolist()
     rows_of = np.split(np.flatnonzero(mine)[np.argsort(number[mine], kind="stable")], np.cumsum(np.bincount(number[mine]))[:-1])
     both = np.concatenate([edge, edge[:, ::-1]])
-    beside = coo_array((np.ones(len(both), np.int8), both.T), shape=(len(label), len(label))).tocsr()
+    adjacency = coo_array((np.ones(len(both), np.int8), both.T), shape=(len(label), len(label))).tocsr()
     waiting = [(each, piece) for piece, each in enumerate(size) if each < least]
     heapify(waiting)
     while waiting:
@@ -151,14 +151,14 @@ def joined(label: Ints, serves: NDArray[np.bool_], edge: Ints, area: Floats, lea
         if known != size[piece]:
             continue
         rows = rows_of[piece]
-        others = beside[rows].indices
+        others = adjacency[rows].indices
         others = others[(number[others] != piece) & (label[others] >= 0)]
         adjacent, touching = np.unique(label[others], return_counts=True)
         able = serves[np.ix_(rows, adjacent)].all(axis=0)
         if not able.any():
             continue
         to = adjacent[able][touching[able].argmax()]
-        around = np.unique(number[others])
+        neighbours = np.unique(number[others])
         into = np.unique(number[others[label[others] == to]]).tolist()
         whole = max(into, key=lambda each: len(rows_of[each]))
         for each in [piece, *into]:
@@ -167,7 +167,7 @@ def joined(label: Ints, serves: NDArray[np.bool_], edge: Ints, area: Floats, lea
                 rows_of[whole], size[whole], size[each] = np.append(rows_of[whole], rows_of[each]), size[whole] + size[each], -1.0
         label[rows] = to
         # Those beside it may have somewhere to go now.
-        for each in {whole, *around.tolist()}:
+        for each in {whole, *neighbours.tolist()}:
             if 0.0 <= size[each] < least:
                 heappush(waiting, (size[each], each))
     return label

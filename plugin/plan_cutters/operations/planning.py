@@ -79,7 +79,7 @@ def plan_operations(
     task = _task(ready, everywhere, least)
     if options.process is not None:
         return _own(task, options.process, stage)
-    fewest, steps = None, tuple[Step, ...]()
+    fewest, alone, steps = None, 0, tuple[Step, ...]()
     with stage("operations") as tell:
         offer = _offer(task, part_of(tell, 0, _PARTS))
         quick = None if offer is None or options.operations != "fastest" else planned_by_pattern(task, offer)
@@ -87,9 +87,9 @@ def plan_operations(
             plans, timed, worth, instead = quick
         elif options.operations == "fastest":
             some = thinned(task)
-            plans, timed, worth, instead = _plans(
-                task, some, *_served(some, part_of(tell, 1, _PARTS)), offer, part_of(tell, 4, _PARTS)
-            )
+            search, few = _served(some, part_of(tell, 1, _PARTS))
+            plans, timed, worth, instead = _plans(task, some, search, few, offer, part_of(tell, 4, _PARTS))
+            alone = len(search.alone) * (len(task.rows) // max(1, len(some.rows)))
             task.probes.made += some.probes.made if some is not task else 0
         else:
             search, fewest = _fewest(task, part_of(tell, 1, _PARTS))
@@ -98,10 +98,10 @@ def plan_operations(
             whole = float(np.nansum(ready.samples.area[ready.finished]))
             steps = curve(task.probes, fewest, task.rows, ready.samples.area, whole, partial(even, task, search),
                           progress=part_of(tell, 3, _PARTS))  # fmt: skip
-            few = fewest.columns.of(fewest.chosen)
+            few, alone = fewest.columns.of(fewest.chosen), len(fewest.alone)
             plans, timed, worth, instead = _plans(task, thinned(task), search, few, offer, part_of(tell, 4, _PARTS))
         plans = _proved(task, plans, part_of(tell, 5, _PARTS))
-    notes = (*instead, *_notes(task, least, plans, None if instead else fewest))
+    notes = (*instead, *_notes(task, least, plans, None if instead else alone))
     return Operations(options.operations or "", task.cutters, tuple(plans), fewest, steps, task.orientations[0].names,
                       task.probes.made, task.paths.feed, timed, worth=worth,
                       notes=notes, index_from=task.indexing.source)  # fmt: skip
@@ -149,8 +149,11 @@ def _proved(task: Task, plans: Sequence[OperationPlan], tell: Progress) -> list[
     return result
 
 
-def _notes(task: Task, least: LeastSet | None, plans: Sequence[OperationPlan], fewest: Fewest | None) -> list[str]:
-    """What must be said of plans: small pieces, and cutters and orientations that were left out."""
+def _notes(task: Task, least: LeastSet | None, plans: Sequence[OperationPlan], alone: int | None) -> list[str]:
+    """What must be said of plans: small pieces, and cutters and orientations that were left out.
+
+    `alone`: about how many samples no candidate serves; None where nothing is to be said of simultaneous motion.
+    """
     ready, options, notes = task.ready, task.ready.options, list[str]()
     for k, each in enumerate(plans):
         if not any(each.like(other) for other in plans[:k]):
@@ -165,7 +168,7 @@ def _notes(task: Task, least: LeastSet | None, plans: Sequence[OperationPlan], f
         kind = "whose kind comes" if len(late) == 1 else "whose kinds come"
         notes.append(f"No operation is planned with {', '.join(late)}, {kind} last on these faces: the others reach all without.")
     moving = max(sum(len(each.rows) for each in plan.operations if each.mode == "simultaneous") for plan in plans)
-    if options.most_operations is None and fewest is not None and moving > len(fewest.alone):
+    if options.most_operations is None and alone is not None and moving > alone:
         notes.append(
             f"Orientations that add less than {percent(MINOR_AREA)} of the area each are left out of the plans; "
             "--most-operations with a large number takes all."
@@ -202,8 +205,8 @@ def _plans(task: Task, some: Task, search: Search, few: Columns, offer: Repeated
     printed = [] if which == "fastest" else [_capped(task, "fewest", quicker(task, search, few), parts[0])]
     if which == "fewest":
         return printed, None, (), ()
-    found = fastest_choice(task, some, search, few, parts[1])
-    compared = [found.columns.of(each) for each in (found.safe, *with_and_without(found.problem, found.safe))]
+    choice = fastest_choice(task, some, search, few, parts[1])
+    compared = [choice.columns.of(each) for each in (choice.safe, *with_and_without(choice.problem, choice.safe))]
     if len(task.cutters) > 1:
         by_size = largest_first_choice(some, search, few, minor=some is not task)
         by_size = recommended(some, _worth(some, "largest first", by_size))
@@ -216,10 +219,10 @@ def _plans(task: Task, some: Task, search: Search, few: Columns, offer: Repeated
     quickest = min([plan, *(each for each in printed if few_enough(task, each))], key=_seconds)
     fastest, notes = as_quick(task, offer, (replace(quickest, name="fastest"), words), printed)
     parts[3](1, 1)
-    at_best = float(found.problem.cost.min(axis=1, initial=np.inf).sum())
+    at_best = float(choice.problem.cost.min(axis=1, initial=np.inf).sum())
     # Canonical orientations need not be candidates: what the plan that is printed takes bounds the best from above.
-    bound = min(bounded(found.problem, found.safe).bound, np.nan_to_num(fastest.total, nan=np.inf))
-    timed = Fastest(fastest.total, bound, min(at_best, bound), found.area, len(found.problem.cost), len(found.columns))
+    bound = min(bounded(choice.problem, choice.safe).bound, np.nan_to_num(fastest.total, nan=np.inf))
+    timed = Fastest(fastest.total, bound, min(at_best, bound), choice.area, len(choice.problem.cost), len(choice.columns))
     of_all = [each for each in printed if each.name == "fewest"]
     return [*of_all, fastest, *(each for each in printed if each not in of_all)], timed, worths(some, plans), notes
 

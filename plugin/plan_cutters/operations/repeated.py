@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters.domain.columns import Columns
-from plan_cutters.operations.fastest import Costs, Problem, cheap
+from plan_cutters.operations.fastest import cheap
 from plan_cutters.operations.fewest import spread
+from plan_cutters.operations.problem import Costs, Problem
 from plan_cutters.operations.symmetry import Symmetry, symmetry_of
 from plan_cutters.operations.task import Task
 from plan_cutters.operations.timing import costs_of, shared_area, widths

@@ -9,7 +9,8 @@ from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import OperationPlan, Worth
 from plan_cutters.domain.preference import by_radius
-from plan_cutters.operations.fastest import Problem, cheap
+from plan_cutters.operations.fastest import cheap
+from plan_cutters.operations.problem import Problem
 from plan_cutters.operations.task import Task
 
 Rows = NDArray[np.int64]

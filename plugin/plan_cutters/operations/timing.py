@@ -11,8 +11,8 @@ from scipy.spatial import cKDTree
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.operations.fastest import Costs, Problem, Turning
 from plan_cutters.operations.indexing import Indexing
+from plan_cutters.operations.problem import Costs, Problem, Turning
 from plan_cutters.operations.strips import strips_at
 from plan_cutters.operations.walls import Walls, flat_of, on_floor
 

@@ -38,7 +38,6 @@ _SIDE_FILES = {
     "largest_first_step",
     "largest_first_glb",
 }
-#: With `plans`, STEP and GLB are written for every plan of operations.
 FORMATS = ("json", *(f for f in WRITERS if f not in _SIDE_FILES), "plans")
 #: What is written unless asked otherwise (`docs/decisions/0017-formats-on-request.md`).
 DEFAULT_FORMATS = ("json", "html", "step", "glb", "npz")
