@@ -397,7 +397,9 @@ def test_each_change_holds_on_the_samples(name, cutter, machine):
 
 def test_it_asks_for_no_more_searches_than_a_few_plans(monkeypatch):
     count, real = [], trial.search_postures
-    monkeypatch.setattr(trial, "search_postures", lambda c, rows, *more: count.append(len(rows)) or real(c, rows, *more))
+    monkeypatch.setattr(
+        trial, "search_postures", lambda c, rows, *more, **words: count.append(len(rows)) or real(c, rows, *more, **words)
+    )
     part = shapes.shell(shapes.Patch.random(np.random.default_rng(2), height=10.0).face())
     cutter = Cutter.flat(radius=2.5, length=9, flutes=6.0, shank_radius=2.5, holder="R14L60")
     found, _, _ = asked(part, cutter, grid=61, machine="tilt:35", tolerance=0.05, rotation_step=0.35)

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from plan_cutters.checker.leaves import Between, Loose
-from plan_cutters.checker.patterns import by_pattern
 from plan_cutters.checker.question import Question, axes_of, carried, frame_of, other_angles
 from plan_cutters.checker.reading import suffix
 
@@ -51,7 +50,8 @@ class Reckoned:
         self.finished = ~unjudged & ~samples["inside_bodies"] & ~samples.get("exempt", np.zeros(len(unjudged), bool))
         process = document["effective"].get("process")
         self.own = None if process is None else process["step"]
-        self.without_fewest = self.own is not None or by_pattern(document)
+        fastest_alone = document["effective"]["operations"] == "fastest" and document["operations"]["fewest"] is None
+        self.without_fewest = self.own is not None or fastest_alone
         #: Whether each sample that is reached must go with an operation.
         self.all_planned = process is None or (process["rest"] == "plan" and not process["forbid"])
         named = (document.get("least_set") or {"runs": []})["runs"]

@@ -5,7 +5,7 @@ on their outer side; what is left of a whole part must be carried onto itself.
 """
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from functools import cache
 from typing import Any
 
@@ -25,13 +25,6 @@ _LINES, _BORDER, _SEEDS, _STEPS = 7, 24, 24, 12
 _MOST, _WRITTEN = 1500, 0.0021
 
 Motion = tuple[Floats, Floats]
-
-
-def by_pattern(document: Mapping[str, Any]) -> bool:
-    """Whether the fastest plan may follow from one copy of the part, so that no fewest orientations were looked for."""
-    entry, effective = document["operations"], document["effective"]
-    whole = any(each["whole"] and each["kind"] == "rotation" for each in document.get("patterns", []))
-    return bool(entry["fewest"] is None and effective["operations"] == "fastest" and effective["patterns"] and whole)
 
 
 class Patterns:
