@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
+from plan_cutters.checker.compared import compared
 from plan_cutters.checker.leaves import Between, Loose
 from plan_cutters.checker.question import Question, axes_of, carried, frame_of, other_angles
 from plan_cutters.checker.reading import suffix
@@ -16,8 +17,6 @@ from plan_cutters.checker.reading import suffix
 Rows = NDArray[np.int64]
 #: Verdicts of samples.npz that say that a sample is reached, that it was not judged, and a reason that is none.
 _REACHED, _UNJUDGED, _NO_REASON = (1, 2), 255, 255
-#: Cutters whose operations are compared, at most, unless more are needed to reach all.
-_CUTTERS = 4
 #: How a sample is cut, in operations.npz, and the words for it; one that takes so much of an operation is that of all of it.
 FLOOR, WALL, _STRATEGIES, _NEARLY_ALL = 1, 2, ("point", "floor", "wall"), 0.95
 #: Areas that differ by less, as a share, are the same.
@@ -54,12 +53,9 @@ class Reckoned:
         self.without_fewest = self.own is not None or fastest_alone
         #: Whether each sample that is reached must go with an operation.
         self.all_planned = process is None or (process["rest"] == "plan" and not process["forbid"])
-        named = (document.get("least_set") or {"runs": []})["runs"]
-        named = named if process is None else [*named, *process["step"], *process["forbid"]]
-        needed = list(dict.fromkeys(each["cutter"] for each in named))
-        wanted = [*needed, *(each for each in self.ids if each not in needed)][: max(_CUTTERS, len(needed))]
-        self.considered = [each for each in self.ids if each in wanted]
-        self.reached_by = {name: self.finished & np.isin(self.verdict[name], _REACHED) for name in self.considered}
+        reached = {name: self.finished & np.isin(self.verdict[name], _REACHED) for name in self.ids}
+        self.considered = compared(document, self.ids, reached)
+        self.reached_by = {name: reached[name] for name in self.considered}
         self.reached = np.logical_or.reduce([*self.reached_by.values()])
         self.area: Floats = np.where(self.finished, np.nan_to_num(samples["area"]), 0.0)
         self.whole = float(self.area.sum())

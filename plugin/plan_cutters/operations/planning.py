@@ -224,7 +224,7 @@ def _plans(task: Task, some: Task, search: Search, few: Columns, offer: Repeated
     bound = min(bounded(choice.problem, choice.safe).bound, np.nan_to_num(fastest.total, nan=np.inf))
     timed = Fastest(fastest.total, bound, min(at_best, bound), choice.area, len(choice.problem.cost), len(choice.columns))
     of_all = [each for each in printed if each.name == "fewest"]
-    return [*of_all, fastest, *(each for each in printed if each not in of_all)], timed, worths(some, plans), notes
+    return [*of_all, fastest, *(each for each in printed if each not in of_all)], timed, worths(task, plans), notes
 
 
 def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationPlan, tuple[str, ...]]:
