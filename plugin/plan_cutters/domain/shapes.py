@@ -147,6 +147,19 @@ def modes(cutter: Dimensions) -> tuple[Mode, ...]:
     return (Mode(r - corner, corner, corner, 0.0, _RIGHT - cutter.taper),)
 
 
+def depth_along_normal(cutter: Dimensions) -> float:
+    """How far a cutter holds the line along the normal of its contact, mm, whatever the tilt from 0 to 90 deg; 0 if that is not
+    known.
+
+    A corner is a ring of balls about the contact's own one; of a flat end the line leads into it, past its bottom and its wall
+    (lemma F3 of `docs/material_proof.md`).
+    """
+    if cutter.shape != "end" or cutter.taper or cutter.allowance:
+        return 0.0
+    thick = cutter.corner_radius or cutter.radius
+    return thick if flute_length(cutter) >= 2.0 * thick else 0.0
+
+
 def _corners(outline: tuple[tuple[float, float], ...]) -> tuple[Mode, ...]:
     """The corners at which an outline can touch a plane: those of its convex hull."""
     hull: list[tuple[float, float]] = []

@@ -14,6 +14,7 @@ from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.posture import PostureRange
+from plan_cutters.domain.shapes import depth_along_normal
 from plan_cutters.domain.tolerance import depths
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INSIDE, NO_REASON, UNDECIDED, VerdictBuffer, blank
 from plan_cutters.kernels.rows import Contacts, Ranges, Rotary, Tool, VerdictArrays
@@ -25,6 +26,9 @@ from plan_cutters.scene.work import Work
 #: Ranges of rotations that are less than a whole turn by no more are one, rad. Places of the axis that are nearer than this to
 #: what is certainly in the way are none, mm: no machine holds them.
 _WHOLE, _NO_PLACE = 1e-9, 1e-3
+#: Where material over a contact proves that it is blocked: shares of the length that the tool holds of the normal, and no nearer
+#: than so many blocked depths, for there is the contact's own surface.
+_PROVED_AT, _CLEAR = np.array([1.0, 0.3, 0.1, 0.03]), 4.0
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -111,6 +115,8 @@ class Context(Record):
         The same two in the form that kernels take.
     dummy : (k, COLUMNS) float
         Of the outer tool the pieces that hold it at tilt 0 in every rotation, as `Assembly.dummy`.
+    proved_at : (k,) float
+        Distances along the normal, mm, at which material proves that every posture is blocked, those that are tried.
     judges : bool
         Whether the tolerance that is kept is fine enough to say anything about the cutter.
     """
@@ -122,18 +128,26 @@ class Context(Record):
     outer: Tool = field(init=False, compare=False)
     inner: Tool = field(init=False, compare=False)
     dummy: Floats = field(init=False, compare=False)
+    proved_at: Floats = field(init=False, compare=False)
     judges: bool = field(init=False, compare=False)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "outer", tool_of(self.outer_tool))
         object.__setattr__(self, "inner", tool_of(self.inner_tool))
         object.__setattr__(self, "dummy", self.outer_tool.dummy)
+        object.__setattr__(self, "proved_at", self._proved_at())
         object.__setattr__(self, "judges", self.conditions.judges(self.cutter))
 
     @classmethod
     def of(cls, cutter: Cutter, conditions: Conditions) -> "Context":
         """Make both tools of a cutter, for the tolerance that is kept and the chord error of the obstacles."""
         return cls(cutter, conditions, *tools(cutter, conditions.tolerance, conditions.obstacles.triangles.chord_error))
+
+    def _proved_at(self) -> Floats:
+        """Distances that lemma F3 of `docs/material_proof.md` allows, farther than what is clear of the contact's own surface."""
+        deep = self.conditions.obstacles.depths(self.conditions.tolerance)[1]
+        distance = _PROVED_AT * depth_along_normal(self.cutter)
+        return np.ascontiguousarray(distance[distance > _CLEAR * deep])
 
     def under(self, conditions: Conditions) -> "Context":
         """The same cutter under other conditions."""
@@ -243,10 +257,10 @@ def search_postures(
     ranges, buffer = conditions.ranges._replace(strict=strict), verdict_arrays_of(verdicts)
     possible, certain = conditions.obstacles.solids, conditions.surroundings.certain.solids
 
-    deep = conditions.obstacles.depths(conditions.tolerance)[1]
+    deep, distance = conditions.obstacles.depths(conditions.tolerance)[1], context.proved_at
 
     def searched(piece: NDArray[np.int64]) -> int:
-        return int(search(piece, contacts, ranges, *tools, possible, certain, buffer, deep=deep, brief=brief))
+        return int(search(piece, contacts, ranges, *tools, possible, certain, buffer, deep=deep, brief=brief, distance=distance))
 
     looked = in_chunks(searched, rows, conditions.jobs, progress, fixed=fixed)
     if work is not None:

@@ -6,12 +6,14 @@ import numpy as np
 
 from plan_cutters.kernels.codes import (
     AXIS_LIMIT,
+    BALL,
     BY_HOLDER,
     BY_NECK,
     BY_SHANK,
     COLLISION,
     FIXTURE,
     FLUTES,
+    INSIDE,
     LOCAL_GOUGE,
     NECK,
     OFFSET_OF,
@@ -26,7 +28,7 @@ from plan_cutters.kernels.intervals import remove
 from plan_cutters.kernels.jit import kernel, maker
 from plan_cutters.kernels.limits import held_tilts, turn_of
 from plan_cutters.kernels.linear.vectors import dot, tilt_frame
-from plan_cutters.kernels.material import in_known_ball, keep_ball, outside, way_out, winding
+from plan_cutters.kernels.material import SURELY_INSIDE, in_known_ball, keep_ball, outside, touches, way_out, winding
 from plan_cutters.kernels.rows import Scratch
 from plan_cutters.kernels.tool.arcs import local_gouge
 from plan_cutters.kernels.tool.hit import BODY, OFFSET, A, P, X, scratch, stand, tree_hit
@@ -155,9 +157,38 @@ def turned(frame, tilt, tool, mode, tree, body, scratch):
     return 0.5 * NARROWEST
 
 
+class Proof(NamedTuple):
+    """This record holds how one look proves that all postures of a contact are blocked (lemma F3 of `docs/material_proof.md`).
+
+    At every tilt the tool holds a part of a ball about a point over the contact, deeper than what blocks. distance (k,): of
+    such points along the normal, mm, those that are tried; radius: of the balls, mm; solids: what certainly encloses.
+    """
+
+    distance: Any
+    radius: float
+    solids: Any
+
+
+@kernel
+def enclosed(contacts, row, proof, scratch):
+    """Whether a ball over a contact lies in a body, so that every posture is blocked. Only closed bodies tell."""
+    p, n, solids = contacts.point[row], contacts.normal[row], proof.solids
+    if not solids.grow >= 0.0:
+        return False
+    # What keeps so far off every triangle goes past every skin: the ball does, and what the tool holds of it.
+    wider = (1.0 + BALL) * solids.grow
+    for d in proof.distance:
+        x, y, z = p[0] + d * n[0], p[1] + d * n[1], p[2] + d * n[2]
+        if outside(x, y, z, solids) or touches(x, y, z, proof.radius + wider, solids, scratch.stack):
+            continue
+        if lies_within(x, y, z, solids, SURELY_INSIDE, scratch):
+            return True
+    return False
+
+
 class Workspace(NamedTuple):
     """This is a workspace: intervals (k, 2), arcs (ARCS, 2), tilt direction f and t = n x f, e2 = n x direction_max, a body, a
-    tally by attribute."""
+    tally by attribute; `proved` (1,) int64, whether the sample was looked at as `enclosed` does, and is."""
 
     intervals: Any
     arcs: Any
@@ -167,6 +198,7 @@ class Workspace(NamedTuple):
     body: Any
     tally: Any
     scratch: Scratch
+    proved: Any
 
 
 @maker
@@ -174,7 +206,7 @@ def search_workspace():
     """Make a workspace for searches."""
     return Workspace(
         np.empty((_INTERVALS, 2)), np.empty((ARCS, 2)), np.empty(3), np.empty(3), np.empty(3), np.empty(BODY), np.empty(FIXTURE),
-        scratch(),
+        scratch(), np.zeros(1, np.int64),
     )  # fmt: skip
 
 
@@ -238,6 +270,13 @@ def allowed(contacts, row, ranges, rotation, tool, mode, bent, workspace):
     for i in range(count):
         tally[LOCAL_GOUGE] += intervals[i, 1] - intervals[i, 0] + NARROWEST
     return count
+
+
+@kernel
+def book_inside(tally):
+    """Book on bodies that a contact lies within all tilts that limits and curvature leave."""
+    tally[:] = 0.0
+    tally[AXIS_LIMIT], tally[LOCAL_GOUGE], tally[INSIDE] = 1.0, 1.0, 1.0
 
 
 @kernel

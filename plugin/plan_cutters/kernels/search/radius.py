@@ -8,10 +8,13 @@ search without success, not two. Lemma N4 of `docs/nested_cutters_proof.md`.
 
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from plan_cutters.kernels.codes import INACCESSIBLE, UNDECIDED
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, Solids
 from plan_cutters.kernels.rows import Tool
+from plan_cutters.kernels.search.place import Proof
 from plan_cutters.kernels.search.search import _FINEST, _NO_INTERVAL, START, _reason, _write
 from plan_cutters.kernels.search.sweep import WITHOUT_END, Side, both, sweep_both
 
@@ -37,6 +40,7 @@ class _Sides(NamedTuple):
     within: float
     narrowest: float
     pasts: Any
+    proof: Any
 
 
 @kernel
@@ -50,7 +54,7 @@ def _look(contacts, row, ranges, side, level, starts, turns, workspaces):
             for column in range(piece.shape[2]):
                 piece[m, k, column] = tools.piece[level, m, k, column]
     tool = Tool(piece, mode, tools.reach[level], tools.inner[level], tools.end[level])
-    one = Side(tool, side.solids, side.within, side.narrowest, WITHOUT_END, side.pasts)
+    one = Side(tool, side.solids, side.within, side.narrowest, WITHOUT_END, side.pasts, side.proof)
     return sweep_both(contacts, row, ranges, one, starts, turns, workspaces)
 
 
@@ -115,8 +119,9 @@ def largest(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, r
     rotations = len(ranges.rotation_cos)
     pasts, workspaces = both(rotations, outer_tool.mode.shape[1])
     met, _ = both(rotations, inner_tool.mode.shape[1])
-    outer = _Sides(outer_tool, outer_tool.piece[0].copy(), outer_tool.mode[0].copy(), possible, MAYBE_INSIDE, _FINEST, pasts)
-    inner = _Sides(inner_tool, inner_tool.piece[0].copy(), inner_tool.mode[0].copy(), certain, SURELY_INSIDE, _NO_INTERVAL, met)
+    proof, (piece, mode), (held, ways) = Proof(np.zeros(0), 0.0, certain), outer_tool[:2], inner_tool[:2]
+    outer = _Sides(outer_tool, piece[0].copy(), mode[0].copy(), possible, MAYBE_INSIDE, _FINEST, pasts, proof)
+    inner = _Sides(inner_tool, held[0].copy(), ways[0].copy(), certain, SURELY_INSIDE, _NO_INTERVAL, met, proof)
     guess, last, freed = len(outer_tool.reach) // 2, START, START
     for row in rows:
         low, verdict, last, freed = _largest(contacts, row, ranges, outer, inner, guess, last, freed, workspaces, results)

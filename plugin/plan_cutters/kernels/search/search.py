@@ -37,6 +37,7 @@ from plan_cutters.kernels.linear.vectors import cross, dot, perpendicular, tilt_
 from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE, outside, touches
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search.place import (
+    Proof,
     clip_straight,
     inside,
     lies_within,
@@ -59,6 +60,8 @@ _BRIEF = 20_000
 _ANYWHERE = (0, -1.0)
 START = (_ANYWHERE, _ANYWHERE)
 _FIRST = np.zeros(1, np.int64)
+#: Distances of a `Proof` that tries none.
+_NOWHERE = np.zeros(0)
 
 
 @kernel
@@ -128,7 +131,7 @@ class Mode(NamedTuple):
 
 
 @entry
-def search_rows(rows, contacts, ranges, tools, solids, mode, results):
+def search_rows(rows, contacts, ranges, tools, solids, mode, proof, results):
     """Look for postures of the samples `rows`, one after the other, each starting from the posture of the one before.
 
     All searches are this one: compiled for each of its uses, they took three times as long on the first run.
@@ -145,6 +148,7 @@ def search_rows(rows, contacts, ranges, tools, solids, mode, results):
         The possible and the certain obstacles.
     mode : Mode
         Unless it decides, nothing is asked of the inner tool and the certain obstacles.
+    proof : Proof
     results : VerdictArrays, written
 
     Returns
@@ -155,9 +159,9 @@ def search_rows(rows, contacts, ranges, tools, solids, mode, results):
     rotations, (outer_tool, inner_tool), (possible, certain) = len(ranges.rotation_cos), tools, solids
     # What is only perhaps in the way must not count as surely in it: each side has obstacle caches of its own.
     pasts, workspaces = both(rotations, len(outer_tool.mode))
-    outer = Side(outer_tool, possible, MAYBE_INSIDE, mode.narrowest, mode.most, pasts)
+    outer = Side(outer_tool, possible, MAYBE_INSIDE, mode.narrowest, mode.most, pasts, proof)
     pasts, _ = both(rotations if mode.decides else 0, len(inner_tool.mode))
-    inner = Side(inner_tool, certain, SURELY_INSIDE, _NO_INTERVAL, mode.most, pasts)
+    inner = Side(inner_tool, certain, SURELY_INSIDE, _NO_INTERVAL, mode.most, pasts, proof)
     start, at = (mode.start, mode.start), mode.at
     last, freed, missed, tilt = start, start, False, 0.0
     while at < len(rows) and not (mode.stops and missed):
@@ -189,14 +193,18 @@ def search_rows(rows, contacts, ranges, tools, solids, mode, results):
     return at, workspaces[0].scratch.looked[0] + workspaces[1].scratch.looked[0]
 
 
-def search(rows, contacts, ranges, outer_tool, inner_tool, possible, certain, results, *, deep=0.0, brief=False):
+def search(
+    rows, contacts, ranges, outer_tool, inner_tool, possible, certain, results, *, deep=0.0, brief=False, distance=_NOWHERE
+):  # fmt: skip
     """Decide the samples `rows`, one after the other; how many boxes were looked at.
 
     The possible obstacles are there to call a posture safe, the certain ones to call a sample inaccessible; the rest is as for
-    `search_rows`. A `brief` search gives up what takes long, and leaves it undecided. `deep` as for `Mode`.
+    `search_rows`. A `brief` search gives up what takes long, and leaves it undecided. `deep` as for `Mode`, `distance`
+    as for `Proof`: at none, no look proves that a contact lies in a body.
     """
     mode = Mode(0, _ANYWHERE, len(ranges.rotation_cos), _FINEST, _BRIEF if brief else WITHOUT_END, True, False, deep)
-    return search_rows(rows, contacts, ranges, (outer_tool, inner_tool), (possible, certain), mode, results)[1]
+    proof = Proof(distance, BALL * deep, certain)
+    return search_rows(rows, contacts, ranges, (outer_tool, inner_tool), (possible, certain), mode, proof, results)[1]
 
 
 def until_not_reached(rows, at, contacts, ranges, tool, solids, patient, results):
@@ -206,7 +214,8 @@ def until_not_reached(rows, at, contacts, ranges, tool, solids, patient, results
     about why. Intervals that `search` takes for none are passed over, so that it finds a posture where this does.
     """
     mode = Mode(at, _ANYWHERE, len(ranges.rotation_cos), _NO_INTERVAL, WITHOUT_END, False, not patient, 0.0)
-    return search_rows(rows, contacts, ranges, (tool, tool), (solids, solids), mode, results)[0]
+    proof = Proof(_NOWHERE, 0.0, solids)
+    return search_rows(rows, contacts, ranges, (tool, tool), (solids, solids), mode, proof, results)[0]
 
 
 def posture(contacts, ranges, tool, narrowest, start, turns, solids, results, *, brief=False):
@@ -231,7 +240,8 @@ def posture(contacts, ranges, tool, narrowest, start, turns, solids, results, *,
         Give up what takes long: there is none then.
     """
     mode = Mode(0, start, turns, narrowest, _BRIEF if brief else WITHOUT_END, False, False, 0.0)
-    search_rows(_FIRST, contacts, ranges, (tool, tool), (solids, solids), mode, results)
+    proof = Proof(_NOWHERE, 0.0, solids)
+    search_rows(_FIRST, contacts, ranges, (tool, tool), (solids, solids), mode, proof, results)
     return bool(results.verdict[0] == ACCESSIBLE)
 
 
@@ -277,6 +287,7 @@ def first_reason(rows, contacts, ranges, inner_tool, certain, reason):
                 start,
                 rotations,
                 obstacle_cache,
+                Proof(_NOWHERE, 0.0, certain),
                 workspace,
             )
             other.tally[:] = 0.0

@@ -18,7 +18,9 @@ from plan_cutters.kernels.linear.vectors import cross
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search.place import (
     allowed,
+    book_inside,
     booked,
+    enclosed,
     forbid,
     forbid_point,
     forbid_probed,
@@ -36,6 +38,8 @@ _CACHED, _POOL = 64, 128
 ROTATION = 16
 #: What a sweep says in place of a rotation: there is no posture; it was given up before it knew.
 NONE, UNFINISHED = -1, -2
+#: Whether a sample was looked at as `enclosed` does: not yet, in vain, and with the proof.
+_NEVER, _TRIED, _PROVED = 0, 1, 2
 #: Boxes that are never reached: a sweep with it is never given up.
 WITHOUT_END = 1 << 60
 
@@ -63,8 +67,8 @@ class Side(NamedTuple):
     """This record is one side of a search: the outer tool with the possible obstacles, or the inner with the certain ones.
 
     It holds the tool; the obstacles; the winding number from which a posture lies within a body; the angular resolution, rad:
-    narrower intervals of tilts are passed over; the boxes looked at after which a sweep is given up; and the obstacle caches,
-    one for each kind of sweep.
+    narrower intervals of tilts are passed over; the boxes looked at after which a sweep is given up; the obstacle caches,
+    one for each kind of sweep; and how one look proves that there is no posture.
     """
 
     tool: Any
@@ -73,6 +77,7 @@ class Side(NamedTuple):
     narrowest: float
     most: int
     pasts: Any
+    proof: Any
 
 
 @maker
@@ -138,11 +143,13 @@ def _deepest(obstacle_cache, count, turn, tilt, tool, mode):
 
 @kernel
 def _rotation(
-    contacts, row, ranges, rotation, tool, mode, solids, within, narrowest, last, wish, frame, obstacle_cache, pooled, workspace
-):
+    contacts, row, ranges, rotation, tool, mode, solids, within, narrowest, last, wish, frame, obstacle_cache, pooled, proof,
+    workspace,
+):  # fmt: skip
     """`sweep` at one rotation and mode: (a tilt, -1 for none; how many points of the pool are seen from this contact).
 
-    Tilts that are left when the boxes looked at, in all, are more than `last` are not looked at.
+    Tilts that are left when the boxes looked at, in all, are more than `last` are not looked at. The first posture that lies
+    within a body has the sample looked at as `enclosed` does, once: where that proves it, no tilt is left at all.
     """
     p, n, e1, e2, f, t = frame.p, frame.n, contacts.direction_max[row], workspace.e2, workspace.f, workspace.t
     intervals, body, tally = workspace.intervals, workspace.body, workspace.tally
@@ -178,6 +185,10 @@ def _rotation(
                 if not inside(body, tool, mode, solids, within, workspace.scratch):
                     obstacle_cache.count[place] = written
                     return tilt, pooled
+                if workspace.proved[0] == _NEVER:
+                    workspace.proved[0] = _PROVED if enclosed(contacts, row, proof, workspace.scratch) else _TRIED
+                if workspace.proved[0] == _PROVED:
+                    return -1.0, pooled
                 half = max(turned(frame, tilt, tool, mode, solids.tree, body, workspace.scratch), 0.5 * narrowest)
                 count = forbid(intervals, count, tilt - half, tilt + half, narrowest, INSIDE, tally)
                 continue
@@ -202,7 +213,7 @@ def _rotation(
 
 
 @kernel
-def sweep(contacts, row, ranges, tool, solids, within, narrowest, most, start, turns, obstacle_cache, workspace):
+def sweep(contacts, row, ranges, tool, solids, within, narrowest, most, start, turns, obstacle_cache, proof, workspace):
     """Look for a posture of one sample at all rotations, those next to the first looked at first.
 
     It looks among the tilts that `obstacle_cache` is about.
@@ -228,6 +239,7 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, most, start, t
     turns : int
         How many rotations to look at.
     obstacle_cache : Memory, read and written
+    proof : Proof
     workspace : Workspace
         Forbidden tilts are booked in its tally, by reason.
 
@@ -242,7 +254,7 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, most, start, t
     f, t, tally = workspace.f, workspace.t, workspace.tally
     cross(n, e1, e2)
     frame, rotations, modes = Frame(p, n, f, t), len(ranges.rotation_cos), len(tool.mode)
-    tally[:] = 0.0
+    tally[:], workspace.proved[0] = 0.0, _NEVER
     pooled, last = -1, workspace.scratch.looked[0] + most
     for step in range(turns):
         side = (step + 1) // 2 if step % 2 else -(step // 2)
@@ -264,10 +276,14 @@ def sweep(contacts, row, ranges, tool, solids, within, narrowest, most, start, t
                 frame,
                 obstacle_cache,
                 pooled,
+                proof,
                 workspace,
             )
             if tilt >= 0.0:
                 return rotation, tilt
+            if workspace.proved[0] == _PROVED:
+                book_inside(tally)
+                return NONE, 0.0
             if workspace.scratch.looked[0] > last:
                 return UNFINISHED, 0.0
     return NONE, 0.0
@@ -287,18 +303,20 @@ def sweep_both(contacts, row, ranges, side, starts, turns, workspaces):
     of each other, so that a sample that needs the others moves no posture of the samples after it. Returns rotation and tilt, and
     the starts for the next sample.
     """
-    tool, solids, within, narrowest, most, pasts = side
+    tool, solids, within, narrowest, most, pasts, proof = side
     rotation, tilt = sweep(
-        contacts, row, ranges, tool, solids, within, narrowest, most, starts[0], turns, pasts[0], workspaces[0]
+        contacts, row, ranges, tool, solids, within, narrowest, most, starts[0], turns, pasts[0], proof, workspaces[0]
     )
     if rotation >= 0:
         return rotation, tilt, ((rotation, tilt), starts[1])
-    if ranges.strict or rotation == UNFINISHED:
+    if ranges.strict or rotation == UNFINISHED or workspaces[0].proved[0] == _PROVED:
         workspaces[1].tally[:] = 0.0
         return rotation, 0.0, starts
     rotation, tilt = sweep(
-        contacts, row, ranges, tool, solids, within, narrowest, most, starts[1], turns, pasts[1], workspaces[1]
+        contacts, row, ranges, tool, solids, within, narrowest, most, starts[1], turns, pasts[1], proof, workspaces[1]
     )
     if rotation >= 0:
         return rotation, tilt, (starts[0], (rotation, tilt))
+    if workspaces[1].proved[0] == _PROVED:
+        book_inside(workspaces[0].tally)
     return rotation, 0.0, starts
