@@ -40,8 +40,9 @@ from plan_cutters.stages.sharp_edges import exempt, may_be_at_edge, strips, with
 from plan_cutters.stages.travel import travels
 from plan_cutters.stages.witness import witnesses
 
-#: The work between samples, as a share of that of the searches, and so much of it in any case and for each sample: boxes.
-_WORK_SHARE, _WORK_LEAST, _WORK_SAMPLE = 0.5, 2e7, 2000.0
+#: The work between samples: this share of what came before, and so many boxes in any case. What came before: boxes of searches, and
+#: what a triangle and a sample take in theirs until they are judged.
+_WORK_SHARE, _WORK_LEAST, _TRIANGLE, _SAMPLE = 1 / 3, 5e6, 15.0, 90.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,7 +172,8 @@ class JudgedPart:
             compiling("cover.cover")
             most = np.inf
             if ready.options.area_budget is None:
-                most = _WORK_LEAST + _WORK_SHARE * self.searched.looked + _WORK_SAMPLE * len(ready.samples)
+                made = _TRIANGLE * len(ready.conditions.obstacles.tree.vertex) + _SAMPLE * len(ready.samples)
+                most = _WORK_LEAST + _WORK_SHARE * (self.searched.looked + made)
             budget = ready.options.contacts_between(len(ready.samples))
             return {cutter.id: _area(ready, cutter, self.cutters[cutter], budget, most, tell)}
 
