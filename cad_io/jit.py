@@ -36,6 +36,7 @@ from numba.core.types import unliteral  # type: ignore[attr-defined]
 
 from cad_io.errors import CacheWarning
 from cad_io.fingerprint import fingerprint
+from cad_io.user_cache import roots, writable
 
 VERSION: str = numba.__version__
 
@@ -55,28 +56,6 @@ _CHECKSUM = 32
 _NOTES = ("_ZN08NumbaEnv", "numba.dynamic.globals")
 
 Decorator = Callable[[Callable[..., Any]], Callable[..., Any]]
-
-
-def _roots() -> Iterator[Path]:
-    """Folders that may hold ours: as the environment says, or in the user's cache; in the folder for temporary files."""
-    configured = os.environ.get("NUMBA_CACHE_DIR") or os.environ.get("XDG_CACHE_HOME")
-    with contextlib.suppress(RuntimeError):  # this user has no home
-        yield Path(configured or Path.home() / ".cache", "plan-cutters")
-    # Windows has a folder for temporary files for each user. Elsewhere all share one: what another user put there is not run.
-    user = os.getuid() if hasattr(os, "getuid") else None
-    with contextlib.suppress(OSError):
-        shared = Path(tempfile.gettempdir(), f"plan-cutters-{'user' if user is None else user}")
-        shared.mkdir(mode=0o700, exist_ok=True)
-        if user is None or shared.stat().st_uid == user:
-            yield shared
-
-
-def _writable(folder: Path) -> bool:
-    """Make a folder if need be; whether files can be written there."""
-    with contextlib.suppress(OSError):
-        folder.mkdir(parents=True, exist_ok=True)
-        return os.access(folder, os.W_OK)
-    return False
 
 
 @functools.cache
@@ -103,12 +82,12 @@ def cache_folder(name: str, package: str, file: str, ours: frozenset[str] = froz
         Top-level packages that count where they are imported, beside that of the module and the compiler's.
     """
     ours |= {each.partition(".")[0] for each in (name, __name__)}
-    roots = [each for each in _roots() if _writable(each)]
-    made_of = fingerprint(name, package, file, ours, roots[0] / "sources" if roots else None)
+    folders = [each for each in roots() if writable(each)]
+    made_of = fingerprint(name, package, file, ours, folders[0] / "sources" if folders else None)
     if made_of is not None:
         last = hashlib.sha256(f"{_BENEATH} {made_of}".encode()).hexdigest()[:16]
-        for root in roots:
-            if _writable(folder := root / name / last):
+        for root in folders:
+            if writable(folder := root / name / last):
                 return str(folder), True
     return _of_this_process() or os.path.join(os.devnull, "plan-cutters"), False
 

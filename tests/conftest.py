@@ -7,6 +7,7 @@ What has been imported stays to the end: the collector of garbage passes over it
 """
 
 import gc
+import os
 import signal
 from pathlib import Path
 
@@ -19,6 +20,9 @@ from tests.support.skips import strict
 # A machine that is busy with something else is no fault; what else holds here, as in CI, stays.
 settings.register_profile("suite", settings(), deadline=None)
 settings.load_profile("suite")
+
+# No test finds what another one left, and what a test puts in place of a stage is called.
+os.environ["PLAN_CUTTERS_CACHE"] = ""
 
 #: What begins: a file of tests that has all kernels compiled, and beside it folders that need none. Then the longest files.
 COMPILING, BESIDE = "ahead", ("domain", "house", "library", "machines")

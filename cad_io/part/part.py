@@ -188,6 +188,13 @@ class Part:
     def faces(self) -> tuple[FaceInfo, ...]:
         return self.measured()
 
+    @property
+    def key(self) -> tuple[Any, ...] | None:
+        """Return all that makes this part what it is, beside the program that read it; None where it is of no file."""
+        if self.sha256 is None:
+            return None
+        return self.fingerprint, self.unit, self.picked, dict(self.aside), self.lost, self._said
+
     def measured(self, at: Callable[[int], None] = lambda face: None) -> tuple[FaceInfo, ...]:
         """`faces`; where they are yet to be measured, `at` is told which one is."""
         if not self._infos:
@@ -203,6 +210,14 @@ class Part:
         part = Part.of(self._found())
         part.aside = {**self.aside, **excluded}
         return part
+
+    def facts(self, at: Callable[[int], None] = lambda face: None) -> dict[str, Any]:
+        """Return what measuring tells, for `recall` in another process that reads the same part; `at` as of `measured`."""
+        return {"_infos": self.measured(at), "_measures": self._measures, "_box": self._box}
+
+    def recall(self, **facts: Any) -> None:
+        """Take what another process knows of the same part."""
+        self.__dict__.update(facts)
 
     @cached_property
     def size(self) -> tuple[float, float, float]:

@@ -3,6 +3,7 @@
 import datetime
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,12 +23,14 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import CONVEX, Verdicts
+from plan_cutters.files.stage_cache import NO_CACHE
 from plan_cutters.plan_file.model import AreaEntry, CutterEntry
 from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.sharp_edges import SharpEdgeEntry
 from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.result import Result
 from plan_cutters.scene.conditions import Context
+from plan_cutters.scene.ground import GroundDigests
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.setups import for_another_setup
 from plan_cutters.scene.threads import Progress, part_of
@@ -40,8 +43,8 @@ from plan_cutters.stages.sharp_edges import exempt, may_be_at_edge, strips, with
 from plan_cutters.stages.travel import travels
 from plan_cutters.stages.witness import witnesses
 
-#: The work between samples: this share of what came before, and so many boxes in any case. What came before: boxes of searches, and
-#: what a triangle and a sample take in theirs until they are judged.
+#: The work between samples: this share of what came before, and so many boxes in any case. What came before: boxes of searches,
+#: and what a triangle and a sample take in theirs until they are judged.
 _WORK_SHARE, _WORK_LEAST, _TRIANGLE, _SAMPLE = 1 / 3, 5e6, 15.0, 90.0
 
 
@@ -118,12 +121,16 @@ class JudgedPart:
         at_edges = {cutter: strips(samples, explained.verdicts, cutter, edges) for cutter, (explained, _) in by_cutter.items()}
         reaches = {c: for_another_setup(ready, with_sharp_edges(by_cutter[c][0].verdicts, each)) for c, each in at_edges.items()}
         ready = replace(ready, exempt=exempt(reaches, ready.inside_bodies) if ready.options.sharp_edges == "left" else None)
-        judged = {}
+        judged, grounds = {}, GroundDigests()
         for (cutter, mine), (explained, which) in zip(here.items(), by_cutter.values(), strict=True):
             at_edge, verdicts = at_edges[cutter], reaches[cutter]
             with clock.stage(cutter.id, shown=False):
                 context, part = Context.of(cutter, ready.conditions), ready.scene.part
-                witness_list = witnesses(samples, verdicts, context, inside=ready.shut, part=part)
+                witness_list = ready.cache.cached(
+                    "witnesses",
+                    (grounds.of(ready) if ready.cache is not NO_CACHE else b"", part.key, replace(cutter, name=""), verdicts),
+                    partial(witnesses, samples, verdicts, context, inside=ready.shut, part=part),
+                )
                 marched = march_differs(samples, convex, ready.region, mine.interference_free)
                 entry = cutter_entry(
                     cutter, samples, verdicts, witness_list, marched, seconds[cutter], part=part, surroundings=surroundings,
@@ -175,7 +182,12 @@ class JudgedPart:
                 made = _TRIANGLE * len(ready.conditions.obstacles.tree.vertex) + _SAMPLE * len(ready.samples)
                 most = _WORK_LEAST + _WORK_SHARE * (self.searched.looked + made)
             budget = ready.options.contacts_between(len(ready.samples))
-            return {cutter.id: _area(ready, cutter, self.cutters[cutter], budget, most, tell)}
+            judged = self.cutters[cutter]
+            return {cutter.id: ready.cache.cached(
+                "area",
+                (_grounds(ready), ready.scene.part.key, replace(cutter, name=""), judged.verdicts, judged.which, budget, most),
+                partial(_area, ready, cutter, judged, budget, most, tell),
+            )}  # fmt: skip
 
 
 def assembled(part: JudgedPart, clock: Clock, answers: Answers, between: Mapping[str, AreaEntry]) -> Result:
@@ -207,6 +219,14 @@ def assembled(part: JudgedPart, clock: Clock, answers: Answers, between: Mapping
         equal = pattern_entries(ready.patterns, part.carried)
         document = plan_of(ready, entries, selected, chosen, part.started, answers, over, table, its.strips, radii, equal)
     return Result(clock.stamp(with_text(document)), ready, over, part.travels, answers)
+
+
+def _grounds(ready: Prepared) -> list[bytes]:
+    """Checksums of the grounds of all setups, and of what no cutter has to reach; none where nothing is kept."""
+    if ready.cache is NO_CACHE:
+        return []
+    each = [GroundDigests().of(ready.there(k)) for k in range(len(ready.setups))]
+    return [*each, ready.not_required.tobytes(), ready.samples.area.tobytes()]
 
 
 def _area(ready: Prepared, cutter: Cutter, judged: JudgedCutter, budget: int, most: float, tell: Progress) -> AreaEntry:

@@ -27,6 +27,7 @@ from plan_cutters.domain.preference import wanted
 from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.errors import OptionError, UnjudgeableError
+from plan_cutters.files.stage_cache import NO_CACHE, StageCache
 from plan_cutters.judged_part import JudgedPart, assembled
 from plan_cutters.option_types import PlanOptions
 from plan_cutters.options import Options
@@ -43,8 +44,9 @@ from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.question import question
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.setups import conditions_of, fixtures_of, places, with_setups
-from plan_cutters.scene.spacing import affordable, sampled
+from plan_cutters.scene.spacing import affordable, sampled, spacing_key
 from plan_cutters.scene.work import Work
+from plan_cutters.stages.cached_judge import CachedJudge
 from plan_cutters.stages.classify import classify, regions
 from plan_cutters.stages.judge import Judge, judge
 from plan_cutters.stages.judge_once import JudgeOnce
@@ -56,7 +58,9 @@ _MANY_FACES, _SAMPLING = 12, 60.0
 
 
 @spelled_out(PlanOptions, Options)
-def plan(part: Any, *, progress: Progress | None = None, judged: Judge = judge, **options: Unpack[PlanOptions]) -> Result:
+def plan(
+    part: Any, *, progress: Progress | None = None, judged: Judge = judge, cache: bool = True, **options: Unpack[PlanOptions]
+) -> Result:
     """Judge each cutter on the target faces of a part.
 
     Parameters
@@ -68,6 +72,8 @@ def plan(part: Any, *, progress: Progress | None = None, judged: Judge = judge, 
         Called with the stage, the number of pieces done, and the number of all pieces.
     judged : callable, optional
         Gives the verdicts of each cutter as `stages.judge.judge` does: `plan_cutters.plan` has `client` and `verdicts` for it.
+    cache : bool
+        Keep what stages make of a part that was read from a file, for the next question about it (`files.stage_cache`).
     **options
         Every attribute of `Options`, by its name: `cutters="R6L80"`, `grid=201`, `machine="tilt:60"`; angles in degrees, too:
         `tilt_deg=(0, 60)`.
@@ -97,13 +103,13 @@ def plan(part: Any, *, progress: Progress | None = None, judged: Judge = judge, 
     if progress is not None and not callable(progress):
         raise OptionError(f"progress must be a function of (stage, done, total), not {shown(progress)}")
     settings = {**part.options, **options} if isinstance(part, Scene) else options
-    return run(part, Options.of(settings), Clock(progress), judged=judged)
+    return run(part, Options.of(settings), Clock(progress), judged=judged, cache=StageCache.of_user() if cache else None)
 
 
 def run(
     part: Any, options: Options, clock: Clock, *, read_timeout: float = TIMEOUT, at: At = lambda whose, face: None,
     compiling: Callable[[str], None] = lambda entry: None, excluded: Mapping[int, str] | None = None, judged: Judge = judge,
-    stands: Callable[[Result], None] | None = None, folder: str = "",
+    stands: Callable[[Result], None] | None = None, folder: str = "", cache: StageCache | None = None,
 ) -> Result:  # fmt: skip
     """`plan` with its options gathered.
 
@@ -111,9 +117,12 @@ def run(
     `compiling` waits for the machine code of an entry that is made meanwhile; `excluded` says by number why faces are not
     to be worked on at all; `judged` gives the verdicts of each cutter in each setup, as `judge` does; `stands` is given a
     result as soon as the verdicts stand, and again after each stage that another one follows: its plan is whole, and says what it
-    is without. `folder` is where files of setups that are proposed will be, as a command in it is to name them.
+    is without. `folder` is where files of setups that are proposed will be, as a command in it is to name them. `cache` keeps
+    what stages make of a part of a file.
     """
-    begun = partial(prepare, read_timeout=read_timeout, at=at, compiling=compiling)
+    begun = partial(prepare, read_timeout=read_timeout, at=at, compiling=compiling, cache=cache)
+    if cache is not None and judged is judge:
+        judged = CachedJudge(judged)
     describe: Callable[[Plan], Plan] = _as_it_is
     if options.propose:
         judged_part, describe = judged_proposed(
@@ -231,6 +240,7 @@ def prepare(
     at: At = lambda whose, face: None,
     compiling: Callable[[str], None] = lambda entry: None,
     excluded: Mapping[int, str] | None = None,
+    cache: StageCache | None = None,
 ) -> Prepared:
     """Read, sample, classify and surround with obstacles; arguments as for `run`."""
     if options.propose:
@@ -241,10 +251,12 @@ def prepare(
         if excluded and isinstance(stands, Part):
             stands = stands.without(excluded)
     whole = stands.part if isinstance(stands, Scene) else stands
+    stages = NO_CACHE if cache is None or whole.key is None else cache
     with clock.stage("measure"):
-        whole.measured(partial(at, "kernel"))
+        whole.recall(**stages.cached("faces", whole.key, lambda: whole.facts(partial(at, "kernel"))))
     with clock.stage("sew"):
         _ = whole.sewn
+        whole.recall(blends=stages.cached("blends", whole.key, lambda: whole.blends))
     with clock.stage("orient"):
         scene = Scene.of(
             stands,
@@ -267,12 +279,16 @@ def prepare(
             options.process.check_faces(chosen.targets)
         affordable(whole, chosen.targets, options)
         job = partial(sampled, whole, scene.orientation, options, chosen.targets, cutters)
+        of_samples = (whole.key, scene.orientation.sign, spacing_key(options, cutters), chosen.targets)
+        many = options.jobs > 1 and len(chosen.targets) >= _MANY_FACES and not stages.holds("samples", of_samples)
     # Sampling and meshing need nothing of each other.
-    with SideProcess(job, _SAMPLING, worth=options.jobs > 1 and len(chosen.targets) >= _MANY_FACES) as side:
+    with SideProcess(job, _SAMPLING, worth=many) as side:
         with clock.stage("tessellate"):
-            surroundings = scene.surround(at, jobs=options.jobs)
+            surroundings = scene.surround(at, jobs=options.jobs, cache=stages)
         with clock.stage("sample"):
-            samples, spacing, coarser = side.result(partial(job, at=partial(at, "kernel")))
+            samples, spacing, coarser = stages.cached(
+                "samples", of_samples, lambda: side.result(partial(job, at=partial(at, "kernel")))
+            )
     with clock.stage("classify"):
         surface_class = classify(samples, float(np.linalg.norm(whole.size)))
         region = regions(samples, surface_class)
@@ -282,24 +298,47 @@ def prepare(
     with clock.stage("tree"):
         conditions, *_ = each = conditions_of(scene, options)
         for one in each:
-            one.surroundings.build(options.jobs)
+            one.surroundings.build(options.jobs, stages)
     with clock.stage("compile"):
         compiling("search.search.search_rows")
         warm(contacts_of(samples), Context.of(cutters[0], conditions))
     with clock.stage("bodies"):
-        within = inside_material(
-            samples, scene.orientation, surroundings.enclosing, surroundings.certain, conditions.tolerance, options.jobs
+        within = stages.cached(
+            "bodies",
+            (
+                whole.key,
+                samples.point,
+                samples.normal,
+                scene.orientation.sign,
+                surroundings.certain.triangles.vertex,
+                conditions.tolerance,
+            ),
+            lambda: inside_material(
+                samples, scene.orientation, surroundings.enclosing, surroundings.certain, conditions.tolerance, options.jobs
+            ),
         )
         inside = inside_bodies(within, surroundings.bodies, scene.orientation)
         ready = with_setups(
             Prepared(
-                scene, options, chosen, spacing, samples, surface_class, region, within, inside, conditions, cutters, coarser
+                scene,
+                options,
+                chosen,
+                spacing,
+                samples,
+                surface_class,
+                region,
+                within,
+                inside,
+                conditions,
+                cutters,
+                coarser,
+                cache=stages,
             ),
             each,
         )
     if options.patterns:
         with clock.stage("patterns"):
-            ready = with_copies(ready, patterns(whole, partial(at, "kernel")))
+            ready = with_copies(ready, stages.cached("patterns", whole.key, lambda: patterns(whole, partial(at, "kernel"))))
     if not ready.finished.any():
         raise UnjudgeableError(
             "every target sample lies inside another body of the part, so there is no surface to finish: leave a body out with "

@@ -34,6 +34,8 @@ class Settings:
         Seconds that reading may take.
     read : tuple of str
         SHA-256 of each file that the options were read from: libraries, machine and setup files, and what these name.
+    cache : bool
+        Keep what stages make of a part in the cache folder of each worker's user.
     """
 
     options: Options
@@ -41,6 +43,7 @@ class Settings:
     step_schema: str = "ap242"
     read_timeout: float = 120.0
     read: tuple[str, ...] = ()
+    cache: bool = True
 
 
 @dataclass(frozen=True)

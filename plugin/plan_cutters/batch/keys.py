@@ -7,8 +7,8 @@ from importlib import metadata
 from pathlib import Path
 
 from cad_io.files import checksum
-from plan_cutters.batch.digest import digest, sources
 from plan_cutters.batch.job import Handed, Settings
+from plan_cutters.files.digest import digest, sources
 
 #: Packages whose results may differ from version to version: they count in a key, and must be the same on all machines.
 COMPARED = {"plan-cutters": "plan_cutters", "python": "python", "numba": "numba", "dask": "dask"}

@@ -22,6 +22,7 @@ def plan(
     client: Any = None,
     verdicts: str | None = None,
     verdicts_key: str | os.PathLike[str] | None = None,
+    cache: bool = True,
     **options: Unpack[PlanOptions],
 ) -> Result:
     """Judge each cutter on the target faces of a part, as `pipeline.plan` does, which says more of parts and options.
@@ -37,6 +38,8 @@ def plan(
         Folder or URL in which the verdicts of each cutter are kept (`batch.verdicts.Kept`).
     verdicts_key : path, optional
         File with a key (`files.seal`): what nobody with this key wrote there is not taken.
+    cache : bool
+        Keep what stages make of a part that was read from a file, in the user's cache folder, for the next question about it.
     **options
         Every attribute of `Options`, by its name; angles in degrees, too: `tilt_deg=(0, 60)`.
 
@@ -60,7 +63,7 @@ def plan(
     if verdicts_key is not None and verdicts is None:
         raise OptionError("verdicts_key seals the verdicts of a folder: give it as verdicts, or leave the key out")
     key = None if verdicts_key is None else key_of(os.fspath(verdicts_key))
-    return pipeline.plan(part, progress=progress, judged=judging(client, verdicts, key=key), **options)
+    return pipeline.plan(part, progress=progress, judged=judging(client, verdicts, key=key), cache=cache, **options)
 
 
 def judging(client: Any = None, verdicts: str | None = None, otherwise: Judge | None = None, key: bytes | None = None) -> Judge:

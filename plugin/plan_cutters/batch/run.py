@@ -307,6 +307,7 @@ def _failed(job: Job | Task, why: str, code: int) -> PartRow:
 def _words(settings: Settings, terms: Terms) -> tuple[str, ...]:
     words = ["--formats", ",".join(settings.formats), "--step-schema", settings.step_schema, "--read-timeout",
              repr(settings.read_timeout)]  # fmt: skip
+    words += [] if settings.cache else ["--no-cache"]
     return (*words, *(() if terms.memory is None else ("--memory", repr(terms.memory / 1e9))))
 
 

@@ -15,14 +15,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.batch.digest import digest, sources
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import NO_REASON, REASONS, UNJUDGED, WORDS, Verdicts
 from plan_cutters.errors import PlanError
+from plan_cutters.files.digest import digest, sources
 from plan_cutters.files.folder import Folder
 from plan_cutters.files.seal import stamp
-from plan_cutters.scene.ground import Ground
+from plan_cutters.scene.ground import GroundDigests
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.question import METHOD
 from plan_cutters.scene.work import Work
@@ -82,8 +82,7 @@ class VerdictCache:
         except PlanError as error:
             raise PlanError(f"--verdicts {error}") from None
         self._where, self._otherwise, self._key = where, otherwise, key
-        self._of: tuple[Any, ...] = ()
-        self._ground = b""
+        self._grounds = GroundDigests()
         self.found = self.judged = 0
         self.faults: list[str] = []
 
@@ -125,14 +124,7 @@ class VerdictCache:
 
     def _digest(self, ready: Prepared) -> bytes:
         """The checksum of a ground and of this program; taken once for the cutters of a setup."""
-        of = Ground.made_of(ready)
-        if not Ground.same(of, self._of):
-            ground = Ground.of(ready)
-            # Names change nothing.
-            machine = replace(ground.conditions.machine, name="", notes=())
-            ground = replace(ground, conditions=replace(ground.conditions, machine=machine))
-            self._of, self._ground = of, digest((ground, made_by()))
-        return self._ground
+        return digest((self._grounds.of(ready), made_by()))
 
     def _entries(self, own: str, name: str) -> Iterator[str]:
         """Names of the entries of a cutter: the one that was found among the same cutters first."""

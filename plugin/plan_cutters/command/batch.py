@@ -84,7 +84,7 @@ _many = heading("Many parts")
 )
 @_many("--force", is_flag=True, help="Plan again what is done already.")
 @_many("--dry-run", is_flag=True, help="Say what would be planned, and do nothing.")
-@options("verdicts_key", "read_timeout", "debug", jobs={"help": "Threads of each part.  [default: 1]"})
+@options("no_cache", "verdicts_key", "read_timeout", "debug", jobs={"help": "Threads of each part.  [default: 1]"})
 @takes(BatchRequest)
 def command(request: BatchRequest) -> int:
     """Plan many parts: files, folders, globs, lists, and manifests (TOML, CSV) with options of each part; here or at URLs.
@@ -252,4 +252,5 @@ def _settings(request: BatchRequest) -> "Settings":
         request.step_schema,
         request.read_timeout,
         tuple(filter(None, files.values())),
+        request.cache,
     )

@@ -106,6 +106,7 @@ class PartRequest:
         formats = with_pictures(("json", "html"), lambda line: error(f"{_SELF}: {line}"))
         settings = Settings(options, formats, requested.step_schema, read=tuple(filter(None, files.values())))
         handed_on = ["--formats", ",".join(formats), *(["--debug"] if requested.debug else [])]
+        handed_on += [] if requested.cache else ["--no-cache"]
         for name in ("step_schema", "read_timeout", "timeout", "memory", "cluster", "verdicts", "verdicts_key"):
             if (value := getattr(requested, name)) is not None:
                 here = name in ("cluster", "verdicts", "verdicts_key") and "://" not in value

@@ -57,6 +57,7 @@ def one_part(
         compiling = _compiling(options, request.quiet)
         import plan_cutters.report.models  # noqa: F401  all that takes time to load is loaded in the stage `start`
         from plan_cutters.document.clock import Clock
+        from plan_cutters.files.stage_cache import StageCache, settle
         from plan_cutters.pipeline import run
 
         gc.freeze()
@@ -67,7 +68,7 @@ def one_part(
         with _judging(request) as judged:
             result = run(source, options, clock, read_timeout=request.read_timeout, at=report_work, compiling=compiling,
                          excluded=omitted, judged=judged, stands=stands if staging else None,
-                         folder=_folder(out))  # fmt: skip
+                         folder=_folder(out), cache=StageCache.of_user() if request.cache else None)  # fmt: skip
         document = result.plan
         if out is None:
             watch.summarise(document)
@@ -90,6 +91,8 @@ def one_part(
         watch.end()
         if staging:
             staging.discard()
+    # This process ends without waiting for its threads.
+    settle()
     if request.json_out == "-":
         terminal.hand_out(dumps(document))
     if not request.quiet:

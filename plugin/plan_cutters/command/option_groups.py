@@ -312,6 +312,14 @@ _OPTIONS = (
     ),
     _run("--jobs", type=int, metavar="N", help="Threads.  [default: all cores]"),
     _run(
+        "--no-cache",
+        "cache",
+        is_flag=True,
+        default=True,
+        flag_value=False,
+        help="Neither use nor keep what stages made of a part: mesh, trees, samples, verdicts, in the user's cache folder.",
+    ),
+    _run(
         "--cluster",
         metavar="ADDRESS",
         help="A running Dask scheduler, as tcp://HOST:8786, whose workers judge the samples of a large part, too.",

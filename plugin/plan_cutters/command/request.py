@@ -107,6 +107,7 @@ class PlanningRequest(JudgingRequest):
     patterns: bool
     formats: str | None
     step_schema: str
+    cache: bool
     cluster: str | None
     verdicts_key: str | None
     read_timeout: float

@@ -40,10 +40,17 @@ def inside_entry(ready: Prepared, faces: Mapping[str, FaceVerdicts]) -> InsideEn
             largest=each.largest,
             option=f"--ignore {shlex.quote(each.selection)}",
         )
-        for each in coverings(ready)
+        for each in ready.cache.cached("coverings", _follows_from(ready), lambda: coverings(ready))
     ]
     names = ready.conditions.surroundings.on_bodies
     on_bodies = None
     if len(lying):
         on_bodies = SheetsEntry(faces=on(lying), samples=len(lying), area_mm2=of(lying), option=f"--ignore {numbers(names)}")
     return InsideEntry(samples=int(inside.sum()), area_mm2=area, share=share, bodies=bodies, sheets=on_bodies)
+
+
+def _follows_from(ready: Prepared) -> tuple[object, ...]:
+    """All that bodies over samples follow from."""
+    scene, samples, certain = ready.scene, ready.samples, ready.conditions.surroundings.certain.triangles
+    inside = ready.inside, ready.inside_bodies, samples.point, samples.face, samples.area
+    return scene.part.key, scene.ignored, certain.vertex, certain.chord_error, ready.conditions.tolerance, inside

@@ -1,15 +1,19 @@
 """The ground on which a cutter is judged: arrays alone, without shapes of the CAD kernel, and whole pieces of it."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cad_io import SurfaceSamples
 from cad_io.arrays import Ints, Record
+from plan_cutters.files.digest import digest
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.surroundings import Surroundings
+
+#: Grounds whose checksums are remembered.
+_GROUNDS = 8
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -61,6 +65,26 @@ class Ground(Record):
         arrays = ("point", "normal", "direction_max", "curvature", "face", "unjudged")
         samples = replace(self.samples, **{name: getattr(self.samples, name)[rows] for name in arrays})
         return Ground(samples, self.surface_class[rows], self.inside[rows], self.shut[rows], self.clamped[rows], self.conditions)
+
+
+@dataclass(slots=True)
+class GroundDigests:
+    """Checksums of grounds, each taken once while the part that it is of is at hand."""
+
+    _known: list[tuple[tuple[object, ...], bytes]] = field(default_factory=list)
+
+    def of(self, ready: Prepared) -> bytes:
+        """The checksum of the ground of a part; names change nothing."""
+        made = Ground.made_of(ready)
+        for other, known in self._known:
+            if Ground.same(made, other):
+                return known
+        ground = Ground.of(ready)
+        machine = replace(ground.conditions.machine, name="", notes=())
+        result = digest(replace(ground, conditions=replace(ground.conditions, machine=machine)))
+        # One part of many setups and of patterns is asked for in turn.
+        self._known = [(made, result), *self._known[: _GROUNDS - 1]]
+        return result
 
 
 def _bare(surroundings: Surroundings) -> Surroundings:

@@ -15,6 +15,7 @@ from cad_io.part.bodies import Body
 from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.tolerance import depths
 from plan_cutters.errors import UnjudgeableError
+from plan_cutters.files.stage_cache import NO_CACHE, NoStageCache, StageCache
 from plan_cutters.kernels.rows import Tree
 
 if TYPE_CHECKING:
@@ -25,6 +26,8 @@ if TYPE_CHECKING:
 _CELLS = 64
 #: Numbers of what encloses something, each once in a process; 0 is that of nothing.
 _KEYS = count(1)
+#: In place of a tree that is made anew.
+_NO_TREE = Tree(np.zeros((0, 3, 3)), np.zeros((0, 0)), 0)
 #: Among fixtures, the grid goes this much of the part's longest side beyond it.
 _MARGIN = 0.5
 
@@ -95,6 +98,22 @@ class Obstacles(Record):
         from plan_cutters.kernels.material import sheet
 
         return self._filled(self._cells(), self._end) if self.weight.any() else sheet(self.tree)
+
+    def build(self, cache: StageCache | NoStageCache = NO_CACHE) -> None:
+        """Make the tree and `solids`, or take them from a cache: those of the same triangles are the same."""
+        if "solids" in self.__dict__:
+            return
+        triangles = self.triangles
+        own = None if self.near is None else triangles.face >= 0
+        built, solids = cache.cached(
+            "tree",
+            (triangles.vertex, triangles.chord_error, self.weight, self.open_boxes, self.gap, self.near, own),
+            # The triangles are known, and numbers hold in one process.
+            lambda: (self._built, self.solids._replace(tree=_NO_TREE, key=0)),
+        )
+        if "solids" not in self.__dict__:
+            self.__dict__["_built"] = built
+            self.__dict__["solids"] = solids._replace(tree=self.tree, key=next(_KEYS) if self.weight.any() else 0)
 
     def _filled(self, cells: tuple[NDArray[np.uint8], Floats, float, bool], end: Floats) -> "Solids":
         from plan_cutters.kernels.material import Solids, moments

@@ -1,6 +1,6 @@
 """A part that is ready to be judged, cutter by cutter."""
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -10,6 +10,7 @@ from cad_io import SurfaceSamples
 from cad_io.arrays import Ints, Record
 from cad_io.part.patterns import Pattern
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.files.stage_cache import NO_CACHE, NoStageCache, StageCache
 from plan_cutters.options import Options
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.copies import Copies
@@ -75,6 +76,8 @@ class Prepared(Record):
         Equal faces of the part, and motions that carry it onto itself.
     copies : Copies, optional
         Samples that these motions carry onto others; None where there are few, or patterns are not to be used.
+    cache : StageCache or NoStageCache
+        What stages make of this part is kept there.
     """
 
     scene: Scene
@@ -94,6 +97,7 @@ class Prepared(Record):
     exempt: NDArray[np.bool_] | None = None
     patterns: tuple[Pattern, ...] = ()
     copies: Copies | None = None
+    cache: StageCache | NoStageCache = field(default=NO_CACHE, compare=False)
 
     @property
     def axes(self) -> tuple[tuple[Axis, Axis | None], ...]:

@@ -19,6 +19,7 @@ from plan_cutters.domain.posture import unit
 from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.domain.tolerance import CHORD_REQUESTED
 from plan_cutters.errors import OptionError
+from plan_cutters.files.stage_cache import NO_CACHE, NoStageCache, StageCache
 from plan_cutters.option_types import SceneOptions
 from plan_cutters.options import MOST_TOLERANCE, Options
 from plan_cutters.scene.clamping import Workpiece, held
@@ -191,10 +192,13 @@ class Scene(Record):
         for each in self.fixtures:
             read(each, self._memory.sources, timeout=timeout)
 
-    def surround(self, at: At = lambda whose, face: None, *, jobs: int = 1) -> Surroundings:
+    def surround(
+        self, at: At = lambda whose, face: None, *, jobs: int = 1, cache: StageCache | NoStageCache = NO_CACHE
+    ) -> Surroundings:
         """Gather the possible and the certain obstacles, unless that was done before.
 
-        While it works, `at` is called with the owner of the work and the face; `jobs` faces are worked on at a time.
+        While it works, `at` is called with the owner of the work and the face; `jobs` faces are worked on at a time. `cache`
+        keeps the triangles of the part.
 
         Raises
         ------
@@ -204,7 +208,13 @@ class Scene(Record):
         memory, chord = self._memory, CHORD_REQUESTED * self.asked
         if memory.around is None:
             if memory.alone is None:
-                memory.alone = surroundings(self.part, chord, ignored=self.ignored, jobs=jobs, at=at)
+                memory.alone = cache.cached(
+                    "triangles",
+                    (self.part.key, chord, self.ignored),
+                    lambda: surroundings(self.part, chord, ignored=self.ignored, jobs=jobs, at=at),
+                    # What is missing may be so for a limit of time.
+                    lambda made: not made.missing,
+                )
             obstacles = joined(memory.alone, self.fixtures, chord, memory.sources, self.setup, hold=self.hold)
             refuse_overlaps(obstacles, obstacles.tolerance(self.asked))
             memory.around = obstacles

@@ -74,6 +74,12 @@ def sampled(
     return Sampled(sample(part, orientation, grid=options.grid, spacing=spacing, faces=faces, at=at), spacing, coarser)
 
 
+def spacing_key(options: Options, cutters: Sequence[Cutter]) -> tuple[float | None, ...]:
+    """All that samples follow from, beside the part, its faces and their sides."""
+    least = min(cutter.radius for cutter in cutters) if options.grid is None and options.spacing is None else None
+    return options.grid, options.spacing, least
+
+
 def _most() -> int:
     """Samples that may be taken here."""
     stated = os.environ.get(MOST, "") or str(MOST_SAMPLES)

@@ -17,6 +17,7 @@ from cad_io.tessellate.triangles import At
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.tolerance import effective_tolerance
 from plan_cutters.errors import UnjudgeableError
+from plan_cutters.files.stage_cache import NO_CACHE, NoStageCache, StageCache
 from plan_cutters.scene.holds import Hold
 from plan_cutters.scene.obstacles import Obstacles, weights
 from plan_cutters.scene.thickened import boxed, thickened
@@ -141,10 +142,10 @@ class Surroundings(Record):
         """Obstacles that are surely in the way and enclose nothing."""
         return cls(obstacles, obstacles, (), ())
 
-    def build(self, jobs: int) -> None:
+    def build(self, jobs: int, cache: StageCache | NoStageCache = NO_CACHE) -> None:
         """Build the trees of what may be and of what surely is in the way, where they are not one, side by side."""
         with ThreadPoolExecutor(min(jobs, 2)) as pool:
-            for _ in pool.map(lambda each: each.solids, {id(o): o for o in (self.possible, self.certain)}.values()):
+            for _ in pool.map(lambda each: each.build(cache), {id(o): o for o in (self.possible, self.certain)}.values()):
                 pass
 
     @property

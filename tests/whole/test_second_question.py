@@ -1,0 +1,110 @@
+"""The second question about a part: stages that it shares with the first are read, and the answer has the same bytes."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from plan_cutters import plan
+from plan_cutters.document.clock import Clock
+from plan_cutters.files import stage_cache
+from plan_cutters.options import Options
+from plan_cutters.pipeline import run
+from tests.support.places import real_file
+
+PARTS = {"impeller": "cad/hard/turbo3d_impeller.step", "pump": "cad/hard/gmsh_pump_carter_sup.stp"}
+OWN = Path(__file__).parents[2] / "samples" / "blade.step"
+COARSE = {"faces": "sculptured", "spacing": 4.0, "tolerance": 0.05}
+
+
+@pytest.fixture(autouse=True)
+def _kept(tmp_path, monkeypatch):
+    monkeypatch.setenv(stage_cache.FOLDER, str(tmp_path / "stages"))
+    monkeypatch.setattr(stage_cache, "_WORTH", 0.0)
+
+
+def answered(part, folder, cache=True, **words):
+    """The files of an answer, but for times; and the stages that were made in it."""
+    made, kept = [], stage_cache.StageCache.kept
+
+    def watched(self, stage, follows_from, make, keep=None):
+        return kept(self, stage, follows_from, lambda: (made.append(stage), make())[1], keep)
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(stage_cache.StageCache, "kept", watched)
+        result = plan(real_file(PARTS[part]) if part in PARTS else OWN, cache=cache, **{**COARSE, **words})
+    stage_cache.settle()
+    result.write(folder, ["json", "npz"])
+    document = json.loads((folder / "plan.json").read_text())
+    for entry in document["cutters"]:
+        entry.pop("seconds", None)
+    document.pop("run")
+    return document, dict(np.load(folder / "samples.npz", allow_pickle=True)), made
+
+
+def same(one, other):
+    assert one[0] == other[0]
+    assert one[1].keys() == other[1].keys()
+    assert all(np.array_equal(one[1][name], other[1][name], equal_nan=one[1][name].dtype.kind == "f") for name in one[1])
+
+
+@pytest.mark.parametrize(("part", "words"), [
+    ("impeller", {"cutters": ["R3L40"]}),
+    ("pump", {"cutters": ["R3L40", "R3L40rc1"], "fixtures": "table", "machine": "trunnion-ac", "faces": "all"}),
+])  # fmt: skip
+def test_the_same_question_is_read_and_has_the_same_bytes(tmp_path, part, words):
+    without = answered(part, tmp_path / "without", cache=False, **words)
+    first = answered(part, tmp_path / "first", **words)
+    second = answered(part, tmp_path / "second", **words)
+    assert without[2] == []
+    assert {"faces", "triangles", "samples", "tree", "bodies", "verdicts", "witnesses"} <= set(first[2])
+    assert second[2] == []
+    same(without, first)
+    same(first, second)
+
+
+@pytest.mark.parametrize(("words", "made"), [
+    ({"cutters": ["R3L40", "R3L40rc1"]}, {"verdicts", "witnesses", "area"}),
+    ({"machine": "tilt:60"}, {"verdicts", "witnesses", "area"}),
+    ({"answers": ["stick-out"]}, set()),
+    ({"spacing": 5.0}, {"samples", "bodies", "coverings", "verdicts", "witnesses", "area"}),
+    ({"ignore": ["F1"]}, {"triangles", "tree", "bodies", "coverings", "samples", "verdicts", "witnesses", "area"}),
+    ({"tolerance": 0.1}, {"triangles", "tree", "bodies", "coverings", "verdicts", "witnesses", "area"}),
+])  # fmt: skip
+def test_another_question_makes_what_it_does_not_share_and_answers_as_without(tmp_path, words, made):
+    answered("blade", tmp_path / "first", cutters=["R3L40"])
+    words = {"cutters": ["R3L40"], **words}
+    second = answered("blade", tmp_path / "second", **words)
+    assert set(second[2]) <= made
+    same(answered("blade", tmp_path / "without", cache=False, **words), second)
+
+
+def test_another_file_shares_nothing(tmp_path):
+    source = OWN
+    copy = tmp_path / "copy.step"
+    text = source.read_bytes()
+    copy.write_bytes(text)
+    words = {**COARSE, "cutters": ["R3L40"]}
+    plan(source, **words)
+    stage_cache.settle()
+    before = {each.name for each in (tmp_path / "stages").iterdir()}
+    plan(copy, **words)
+    stage_cache.settle()
+    assert {each.name for each in (tmp_path / "stages").iterdir()} == before
+    copy.write_bytes(text + b"\n")
+    plan(copy, **words)
+    stage_cache.settle()
+    assert len(list((tmp_path / "stages").iterdir())) > len(before)
+
+
+def test_a_part_with_faces_set_aside_is_another_one(tmp_path):
+    cache, options = stage_cache.StageCache.of_user(), Options.of({**COARSE, "cutters": "R3L40", "faces": "all"})
+    source = real_file(PARTS["pump"])
+    whole = run(source, options, Clock(), cache=cache)
+    stage_cache.settle()
+    less = run(source, options, Clock(), cache=cache, excluded={1: "it was left out"})
+    plain = run(source, options, Clock(), excluded={1: "it was left out"})
+    assert (less.samples.face != 1).all()
+    assert (whole.samples.face == 1).any()
+    assert np.array_equal(less.reaches["R3L40"].verdict, plain.reaches["R3L40"].verdict)
