@@ -20,6 +20,7 @@ from plan_cutters.scene.conditions import Context, contacts_of, rotations_of, ve
 from plan_cutters.scene.deepest import deepest_on
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import CHUNK, in_chunks
+from plan_cutters.scene.work import METER
 from plan_cutters.stages.judge import judge
 
 #: Stick-outs are found to this, mm; and one this much below the least is too short.
@@ -222,7 +223,10 @@ class _Search:
         contact = Contacts(samples.point[one], samples.normal[one], samples.direction_max[one], samples.curvature[one])
         best, start = blank(1), (max(0, int(self.found.rotation[row])), float(self.found.tilt[row]))
         turns, solids = len(ranges.rotation_cos), self.conditions.obstacles.solids
-        if not posture(contact, ranges, self.tool(stick_out), _NARROWEST, start, turns, solids, verdict_arrays_of(best)):
+        tool = self.tool(stick_out)
+        free, looked = posture(contact, ranges, tool, _NARROWEST, start, turns, solids, verdict_arrays_of(best))
+        METER.add(looked)
+        if not free:
             return False
         self.found.take_posture(row, best, 0)
         return True

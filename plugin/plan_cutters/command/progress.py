@@ -40,8 +40,10 @@ _WORDS = {
     "write": "writing the models",
     "check": "checking the operations",
 }
-#: Where there is no terminal, seconds between two lines about the same work: in the first minute, and later.
-_SOON, _LATER = 5.0, 30.0
+#: Where there is no terminal, seconds between two lines about the same work.
+_AGAIN = 5.0
+#: Seconds of a stage, and the share of it that is done, from which on the rest is estimated.
+_KNOWN, _SHARE = 2.0, 0.02
 #: Seconds between two words of how much of a stage is done.
 _OFTEN = 0.1
 
@@ -72,6 +74,7 @@ class Display:
         self.judged: dict[str, None] = {}
         self.name = "start"
         self.share: float | None = None
+        self.since = began
         self.bar: Any = None
         self.task: Any = None
 
@@ -84,6 +87,7 @@ class Display:
             self.judged.setdefault(name)
             self.share = (len(self.judged) - 1) / max(self.cutters, len(self.judged))
         words, before = _WORDS.get(name, "judging the cutters"), self.words
+        self.since = self.since if words == before else time.monotonic()
         self.words = words
         self._show(words != before)
 
@@ -126,6 +130,14 @@ class Display:
         many = max(self.cutters, len(self.judged))
         return f"judging {name} ({len(self.judged)} of {many})" if many > 1 else f"judging {name}"
 
+    @property
+    def rest(self) -> str:
+        """How long this stage will take, about, from the share of its counted work that is done."""
+        passed = time.monotonic() - self.since
+        if self.share is None or self.share < _SHARE or passed < _KNOWN:
+            return ""
+        return f", about {max(1, round(passed * (1.0 - self.share) / self.share))} s left"
+
     def _show(self, news: bool) -> None:
         if self.quiet or not self.words:
             return
@@ -134,9 +146,8 @@ class Display:
                 self._draw()
             return
         now = time.monotonic()
-        wait = _SOON if now - self.began < 60.0 else _LATER
-        if news or (now - self.spoke > wait):
-            share = "" if self.share is None or news else f", {part_done(self.share)}"
+        if news or (now - self.spoke > _AGAIN):
+            share = "" if self.share is None or news else f", {part_done(self.share)}{self.rest}"
             terminal.emit(f"{now - self.began:7.1f} s  {self.words if news else self.line}{share}\n")
             self.spoke = now
 
@@ -159,7 +170,7 @@ class Display:
                                 transient=True, auto_refresh=self.itself)  # fmt: skip
             self.bar.start()
             self.task = self.bar.add_task(self.line, total=None, percent="")
-        percent = "" if self.share is None else part_done(self.share).rjust(5)
+        percent = "" if self.share is None else part_done(self.share).rjust(5) + self.rest
         total = None if self.share is None else 1.0
         self.bar.update(self.task, description=self.line, total=total, completed=self.share or 0.0, percent=percent)
         self.bar.refresh()

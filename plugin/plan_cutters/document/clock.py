@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
 from plan_cutters.plan_file.model import Plan, Run
+from plan_cutters.scene.work import METER
 
 #: Told the stage, how much of it is done, of how much.
 Progress = Callable[[str, int, int], None]
@@ -22,13 +23,14 @@ class Clock:
 
     Attributes
     ----------
-    seconds : dict
-        Stage -> seconds.
+    seconds, boxes : dict
+        Stage -> seconds, and boxes of the trees that were looked at.
     """
 
     def __init__(self, progress: Progress | None = None, *, began: float | None = None) -> None:
         self.progress = progress
         self.seconds: dict[str, float] = {}
+        self.boxes: dict[str, int] = {}
         self._began = time.monotonic()
         if began is not None:
             self.seconds["start"], self._began = self._began - began, began
@@ -38,6 +40,7 @@ class Clock:
         """One that goes on after what has been written into a plan."""
         clock = cls()
         clock.seconds |= run.seconds
+        clock.boxes |= run.boxes
         clock._began -= run.total
         return clock
 
@@ -48,7 +51,7 @@ class Clock:
 
     def stamp(self, plan: Plan) -> Plan:
         """The plan with the seconds so far."""
-        run = plan.run.model_copy(update={"seconds": dict(self.seconds), "total": self.total})
+        run = plan.run.model_copy(update={"seconds": dict(self.seconds), "boxes": dict(self.boxes), "total": self.total})
         return plan.model_copy(update={"run": run})
 
     @contextmanager
@@ -60,9 +63,11 @@ class Clock:
                 self.progress(name, done, total)
 
         tell(0, 1)
-        began = time.monotonic()
+        began, boxes = time.monotonic(), METER.boxes
         try:
             yield tell
         finally:
             self.seconds[name] = self.seconds.get(name, 0.0) + time.monotonic() - began
+            if METER.boxes > boxes:
+                self.boxes[name] = self.boxes.get(name, 0) + METER.boxes - boxes
         tell(1, 1)

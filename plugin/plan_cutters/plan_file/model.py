@@ -320,6 +320,9 @@ class Run(Frozen):
 
     time: str
     seconds: dict[str, float] = Field(description="by stage; those of a cutter, by its id, are its judging")
+    boxes: dict[str, int] = Field(
+        default={}, description="boxes of obstacle trees that were looked at, by stage; empty in older files"
+    )
     total: float = Field(
         default=0.0,
         description="seconds from the start of the command (from Python: of the planning, without what lies between it and the "

@@ -79,23 +79,26 @@ def _tested(
     def tested(piece: NDArray[np.int64]) -> int:
         """Test a piece of a table of axes by blocks of rows."""
         which, block = np.divmod(piece, blocks)
-        count = 0
+        boxes = 0
         for k, part in zip(held[which].tolist(), block.tolist(), strict=True):
             ends = slice(part * _BLOCK, (part + 1) * _BLOCK)
-            count += served(
+            count, looked = served(
                 rows[ends], axes[k], contacts, low - _END, high + _END, about, tool, solids, way[k, ends], tilt_direction[k, ends]
             )
-        return count
+            made.append(count)
+            boxes += int(looked)
+        return boxes
 
     blocks = -(-len(rows) // _BLOCK)
     most = max(1, _AT_ONCE // min(_BLOCK, len(rows)))
-    made = in_chunks(tested, np.arange(len(held) * blocks), conditions.jobs, progress, chunk=most)
+    made: list[int] = []
+    in_chunks(tested, np.arange(len(held) * blocks), conditions.jobs, progress, chunk=most)
     if not full_turn:
         for k in held.tolist():
             touched = np.flatnonzero(way[k] >= 0)
             turned = _turned(rows[touched], axes[k], samples, conditions)
             way[k, touched[~turned]] = -1
-    return way, made, tilt_direction
+    return way, sum(made), tilt_direction
 
 
 def _turned(rows: NDArray[np.int64], axis: Floats, samples: SurfaceSamples, conditions: Conditions) -> NDArray[np.bool_]:

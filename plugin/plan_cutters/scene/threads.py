@@ -6,6 +6,8 @@ from concurrent.futures import ThreadPoolExecutor, as_completed
 import numpy as np
 from numpy.typing import NDArray
 
+from plan_cutters.scene.work import METER
+
 #: Rows a call; fixed, so that results do not depend on the number of threads.
 CHUNK = 512
 
@@ -38,7 +40,7 @@ def in_chunks(
     *,
     fixed: bool = False,
 ) -> int:
-    """Call `work` on consecutive pieces of `rows`, `chunk` rows each, `jobs` at a time; the sum of what it returns.
+    """Call `work` on consecutive pieces of `rows`, `chunk` rows each, `jobs` at a time; the sum of what it returns, boxes.
 
     `fixed`: where pieces end follows from the rows' own numbers, so that a row is in the company of the same ones whatever
     others are requested (`with_company`).
@@ -58,6 +60,7 @@ def in_chunks(
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
+    METER.add(total)
     return total
 
 

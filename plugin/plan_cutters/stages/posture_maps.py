@@ -342,15 +342,17 @@ def posture_maps(
             _leave_bodies(samples, rows, outer_tool, rotations, obstacles, part, mine, certain=obstacles is not possible)
         return part, mine, unsure, looked
 
-    def work(rows: NDArray[np.int64]) -> None:
+    def work(rows: NDArray[np.int64]) -> int:
         # Room for the most intervals only while a piece is worked on: memory grows with what is found.
-        part, mine, unsure, _ = mapped(rows, possible)
+        part, mine, unsure, looked = mapped(rows, possible)
         if certain is not possible:
             # What is only perhaps in the way forbids nothing for sure.
-            perhaps, few, more, _ = mapped(rows, certain)
+            perhaps, few, more, again = mapped(rows, certain)
+            looked += again
             unsure = np.maximum(unsure, _width(perhaps, few) + more - _width(part, mine))
         count[rows], undecided[rows] = mine, unsure
         free[int(rows[0])] = part[np.arange(_MOST_INTERVALS) < mine[..., None]]
+        return int(looked)
 
     judged = np.flatnonzero(samples.unjudged < 0 if shut is None else (samples.unjudged < 0) & ~shut)
     require_finite(contacts, judged)

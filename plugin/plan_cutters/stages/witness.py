@@ -21,6 +21,7 @@ from plan_cutters.scene.conditions import Conditions, Context, rotations_of, too
 from plan_cutters.scene.deepest import deepest, deepest_of
 from plan_cutters.scene.inside_material import cover
 from plan_cutters.scene.threads import in_chunks
+from plan_cutters.scene.work import METER
 
 #: Witnesses kept for each group, samples tried in each to find them, and in all.
 _MOST, _TRIED, _TRIED_IN_ALL = 2, 6, 60
@@ -186,7 +187,10 @@ def _least_depth(
             if not np.isnan(high):
                 depth = float(np.sqrt(low * high))
             tool = tool_of(assembly(cutter, depth, depth))
-            if posture(contact, ranges, tool, narrowest, start, turns, solids, verdict_arrays_of(best), brief=True):
+            arrays = verdict_arrays_of(best)
+            free, looked = posture(contact, ranges, tool, narrowest, start, turns, solids, arrays, brief=True)
+            METER.add(looked)
+            if free:
                 start, high = (int(best.rotation[0]), float(best.tilt[0])), depth
             elif not np.isnan(high):
                 low = depth

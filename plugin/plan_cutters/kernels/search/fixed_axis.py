@@ -119,8 +119,8 @@ def served(rows, axis, contacts, low, high, about, tool, solids, way, tilt_direc
 
     Returns
     -------
-    int
-        How many times the tool was put down: where the surface faces the axis.
+    int, int
+        How many times the tool was put down: where the surface faces the axis. And how many boxes were looked at.
     """
     body, sides, direction = np.empty(BODY), np.empty((4, 3)), np.empty(3)
     workspace, flat = scratch(), flat_workspace()
@@ -135,4 +135,4 @@ def served(rows, axis, contacts, low, high, about, tool, solids, way, tilt_direc
             if way[i] != BLOCKED and len(tilt_direction):
                 for k in range(3):
                     tilt_direction[i, k] = direction[k]
-    return count
+    return count, workspace.looked[0]

@@ -219,7 +219,7 @@ def until_not_reached(rows, at, contacts, ranges, tool, solids, patient, results
 
 
 def posture(contacts, ranges, tool, narrowest, start, turns, solids, results, *, brief=False):
-    """Look for a posture of the first contact at which a tool is in nothing's way; whether there is one.
+    """Look for a posture of the first contact at which a tool is in nothing's way; whether there is one, and boxes looked at.
 
     Parameters
     ----------
@@ -241,8 +241,8 @@ def posture(contacts, ranges, tool, narrowest, start, turns, solids, results, *,
     """
     mode = Mode(0, start, turns, narrowest, _BRIEF if brief else WITHOUT_END, False, False, 0.0)
     proof = Proof(_NOWHERE, 0.0, solids)
-    search_rows(_FIRST, contacts, ranges, (tool, tool), (solids, solids), mode, proof, results)
-    return bool(results.verdict[0] == ACCESSIBLE)
+    looked = search_rows(_FIRST, contacts, ranges, (tool, tool), (solids, solids), mode, proof, results)[1]
+    return bool(results.verdict[0] == ACCESSIBLE), int(looked)
 
 
 @entry
