@@ -25,7 +25,7 @@ ENTRIES = {
     "search, probe, dummy_clear": (
         f"{FLAT}"
         "from plan_cutters.kernels.search import search as s; from plan_cutters.kernels.linear.tree import build\n"
-        "from plan_cutters.kernels.rows import Contacts, Found, Ranges, Tree\n"
+        "from plan_cutters.kernels.rows import Contacts, Ranges, Tree, VerdictArrays\n"
         "_, box, depth = build(one); p, c, n = np.zeros((1, 3)), np.zeros((1, 2)), np.zeros(1)\n"
         "i, b = np.zeros(1, np.int32), np.zeros(1, np.uint8)\n"
         "t, a = Tree(one, box, depth), Contacts(p, p, p, c)\n"
@@ -33,7 +33,7 @@ ENTRIES = {
         "from plan_cutters.scene.conditions import rotary_of\n"
         "s.dummy_clear(none, a, tool.piece[0], tool, w, np.zeros(1, bool))\n"
         "s.probe(none, p, p, p, p, tool, t, i, i)\n"
-        "s.search(none, a, Ranges(n, n, 0.0, 1.5, np.zeros(3), -2.0, rotary_of(None)), tool, tool, w, w, Found(b, p, p, n, i, b))"
+        "s.search(none, a, Ranges(n, n, 0.0, 1.5, np.zeros(3), -2.0, rotary_of(None)), tool, tool, w, w, VerdictArrays(b, p, p, n, i, b))"
     ),
     "free_tilts": (
         f"{FLAT}"
