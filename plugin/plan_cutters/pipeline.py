@@ -22,7 +22,9 @@ from plan_cutters.document.operations_entry import with_motion
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.nesting import handed, order
+from plan_cutters.domain.operations import Operations
 from plan_cutters.domain.preference import wanted
 from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
@@ -55,6 +57,8 @@ from plan_cutters.stages.posture_maps import posture_maps
 
 #: Faces from which on they are sampled in a copy of the process, and the processor time that it may take, s.
 _MANY_FACES, _SAMPLING = 12, 60.0
+#: Processor time after which a copy that answers what is asked besides is given up, s.
+_ANSWERING = 7200.0
 
 
 @spelled_out(PlanOptions, Options)
@@ -179,12 +183,19 @@ def _completed(
     done(0)
     between = part.between(clock, compiling)
     done(1)
-    answers = ask(part.ready, part.here, clock.stage, part.other_setups, least=answers.least_set)
-    done(2)
-    if options.operations is not None:
-        from plan_cutters.operations.planning import plan_operations
-
-        operations = plan_operations(part.ready, part.everywhere(), answers.least_set, clock.stage)
+    asked = partial(_answered, part, answers.least_set)
+    # Answers and operations need nothing of each other, and neither keeps all threads at work.
+    both = options.jobs > 1 and options.operations is not None and bool(options.answers)
+    with SideProcess(partial(asked, Clock()), _ANSWERING, worth=both) as side:
+        if not side.works:
+            answers, _ = asked(clock)
+            done(2)
+        operations = _operations(part, answers.least_set, clock)
+        if side.works:
+            with clock.stage(options.answers[-1]):
+                answers, aside = side.result(partial(asked, Clock()))
+            clock.seconds |= aside.seconds
+            clock.boxes |= aside.boxes
         answers = replace(answers, operations=operations)
     done(3)
     result = assembled(part, clock, answers, between)
@@ -193,6 +204,20 @@ def _completed(
     if describe is not _as_it_is:
         result = replace(result, plan=clock.stamp(with_text(describe(result.plan))))
     return result
+
+
+def _answered(part: JudgedPart, least: LeastSet | None, clock: Clock) -> tuple[Answers, Clock]:
+    """What is asked besides, with the clock that it was timed by."""
+    return ask(part.ready, part.here, clock.stage, part.other_setups, least=least), clock
+
+
+def _operations(part: JudgedPart, least: LeastSet | None, clock: Clock) -> Operations | None:
+    """Plan the operations, if that was requested."""
+    if part.ready.options.operations is None:
+        return None
+    from plan_cutters.operations.planning import plan_operations
+
+    return plan_operations(part.ready, part.everywhere(), least, clock.stage)
 
 
 def _mapped(result: Result, part: JudgedPart, clock: Clock, compiling: Callable[[str], None]) -> Result:

@@ -362,9 +362,12 @@ def test_plain_progress_is_a_line_now_and_then(capsys, monkeypatch):
         "judging the cutters",
     ]
     assert all(re.fullmatch(r" +\d+\.\d s  .+", line) for line in said)
-    # 121 s of judging: every 5 s in the first minute, then every 30 s.
-    assert 12 <= len(said) - 4 <= 15
-    shares = [int(line.rsplit(" ", 2)[1]) for line in said[4:]]
+    # 121 s of judging, a line every 5 s, with what is left of it.
+    assert 21 <= len(said) - 4 <= 25
+    shares = [int(re.search(r", (\d+) %", line)[1]) for line in said[4:]]
+    left = [int(re.search(r"about (\d+) s left", line)[1]) for line in said[4:]]
+    assert left == sorted(left, reverse=True)
+    assert all(abs(share / 100 * 121 + rest - 121) < 5 for share, rest in zip(shares, left, strict=True))
     assert shares == sorted(shares)
     assert shares[-1] > 60
     assert "(39 of 40)" in said[-1] or "(3" in said[-1]

@@ -2,7 +2,6 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from types import MappingProxyType
 from typing import Any, Literal
 
 from plan_cutters.domain.area import Patch
@@ -69,7 +68,7 @@ class Change:
     beyond: Value
     cutter: Cutter | None
     why: str
-    options: Mapping[str, Any] = field(default_factory=lambda: MappingProxyType({}))
+    options: Mapping[str, Any] = field(default_factory=dict)
     before: float | None = None
     after: float | None = None
     option: str | None = None

@@ -157,6 +157,11 @@ def _writer() -> ThreadPoolExecutor:
     return ThreadPoolExecutor(1, "stage-cache")
 
 
+# A copy of the process has no threads: it gets a writer of its own.
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_writer.cache_clear)
+
+
 def settle() -> None:
     """Wait until all that is to be kept is written."""
     _writer().submit(lambda: None).result()

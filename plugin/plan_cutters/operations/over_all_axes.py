@@ -42,7 +42,6 @@ from plan_cutters.operations.probes import Probes
 from plan_cutters.scene.conditions import Context, contacts_of
 from plan_cutters.scene.fixed_axis import FLAT
 from plan_cutters.scene.threads import Progress
-from plan_cutters.scene.work import METER
 
 Rows = NDArray[np.int64]
 #: Halvings of the icosahedron's sides that make the first cells: 320 of them, about 10 deg in radius.
@@ -185,9 +184,7 @@ class OpenCells:
                 for tool in self._bodies(c, s, number, psi, along) if len(open_rows) else ():
                     decided = np.full(len(open_rows), -1, np.int8)
                     at = self.rows[mine[open_rows]]
-                    made, looked = served(at, axis, contacts, -1.0, math.pi + 1.0, _TILTED_ALONE, tool, solids, decided, none)
-                    self.made += made
-                    METER.add(looked)
+                    self.made += served(at, axis, contacts, -1.0, math.pi + 1.0, _TILTED_ALONE, tool, solids, decided, none)[0]
                     open_rows = open_rows[decided >= 0]
                 free[open_rows] = True
         return free
