@@ -8,7 +8,7 @@ The former release is a revision of this repository, checked out into a temporar
 one file at a time, each file by the one and then by the other, with all files written. A run in which machine code was
 compiled does not count: the same is run again. Where a file is planned several times (`--times`), the quickest run counts.
 Seconds of the clock are those of a machine that may have other work; processor seconds, of all processes of a command, are
-beside them. Memory is the largest of the command's processes.
+beside them. Memory is the largest of the command's processes. Nothing is kept from run to run, but with `--second`.
 """
 
 import json
@@ -38,8 +38,25 @@ STAGES = {
     "tessellate": ("tessellate",),
     "tree, code": ("tree", "compile", "bodies"),
     "search": (),
+    "setups, reasons": ("proposal", "setups", "reasons"),
     "area": ("area",),
-    "write": ("write", "plan", "npz", "json", "show", "split", "glb", "step"),
+    "answers": ("stick-out", "stick-out-map", "radius", "mend"),
+    "operations": ("operations",),
+    "write": (
+        "write",
+        "plan",
+        "npz",
+        "json",
+        "show",
+        "html",
+        "png",
+        "split",
+        "glb",
+        "step",
+        "split_operations",
+        "operations_step",
+        "operations_glb",
+    ),
 }
 _KNOWN = {key for keys in STAGES.values() for key in keys}
 
@@ -62,14 +79,16 @@ class Ran:
 
 
 class Tree:
-    """A source tree to run the command of."""
+    """A source tree to run the command of; `second`: what a first run has kept of a part is there."""
 
-    def __init__(self, root: Path, cache: Path) -> None:
-        self.root, self.cache = root, cache
+    def __init__(self, root: Path, cache: Path, *, second: bool = False) -> None:
+        self.root, self.cache, self.second = root, cache, second
 
     def run(self, file: Path, words: Sequence[str], limit: float, times: int) -> Ran:
         """The quickest of several runs, machine code compiled beforehand."""
         kept: list[Ran] = []
+        if self.second:
+            self._once(file, words, limit)
         while len(kept) < times:
             before = self._compiled()
             ran = self._once(file, words, limit)
@@ -82,7 +101,8 @@ class Tree:
 
     def _once(self, file: Path, words: Sequence[str], limit: float) -> Ran:
         paths = os.pathsep.join([str(self.root / "plugin"), str(self.root)])
-        environment = {**os.environ, "PYTHONPATH": paths, "NUMBA_CACHE_DIR": str(self.cache)}
+        environment = {**os.environ, "PYTHONPATH": paths, "NUMBA_CACHE_DIR": str(self.cache),
+                       "PLAN_CUTTERS_CACHE": f"{self.cache}-stages" if self.second else ""}  # fmt: skip
         with tempfile.TemporaryDirectory() as folder:
             out = Path(folder) / "out"
             command = [sys.executable, "-m", "plan_cutters", str(file), "-o", str(out), "--quiet", *words]
@@ -196,15 +216,18 @@ HEAD = ["file", "faces", "samples", "triangles", "whole command s", "processor s
 @click.option("--only", multiple=True, help="Files whose name holds this. Repeatable.")
 @click.option("--words", default="--cutter R3L40", show_default=True, help="What else the command is told.")
 @click.option("--times", default=1, show_default=True, help="Runs of each; the quickest counts.")
+@click.option("--second", is_flag=True, help="Time the second question: what a first run keeps of a part is there.")
 @click.option("--limit", default=400.0, show_default=True, help="Seconds after which a run is ended.")
 @click.option("--markdown", type=Path, help="Where to write the tables, too.")
-def main(folder: Path, before: str, only: tuple[str, ...], words: str, times: int, limit: float, markdown: Path | None) -> None:
+def main(
+    folder: Path, before: str, only: tuple[str, ...], words: str, times: int, second: bool, limit: float, markdown: Path | None
+) -> None:  # fmt: skip
     """Plan the CAD files of FOLDER with a former release and with this tree."""
     files = sorted(f for f in folder.resolve().iterdir() if f.suffix.lower() in SUFFIXES)
     files = [f for f in files if not only or any(word in f.name for word in only)]
     rows: list[tuple[Ran, Ran]] = []
     with former(before) as root, tempfile.TemporaryDirectory() as cache:
-        trees = (Tree(root, Path(cache) / "before"), Tree(ROOT, Path(cache) / "after"))
+        trees = (Tree(root, Path(cache) / "before", second=second), Tree(ROOT, Path(cache) / "after", second=second))
         for file in files:
             was, now = (tree.run(file, words.split(), limit, times) for tree in trees)
             rows.append((was, now))

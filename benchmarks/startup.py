@@ -33,7 +33,8 @@ ENTRIES = {
         "from plan_cutters.scene.conditions import rotary_of\n"
         "s.dummy_clear(none, a, tool.piece[0], tool, w, np.zeros(1, bool))\n"
         "s.probe(none, p, p, p, p, tool, t, i, i)\n"
-        "s.search(none, a, Ranges(n, n, 0.0, 1.5, np.zeros(3), -2.0, rotary_of(None)), tool, tool, w, w, VerdictArrays(b, p, p, n, i, b))"
+        "ranges, found = Ranges(n, n, 0.0, 1.5, np.zeros(3), -2.0, rotary_of(None)), VerdictArrays(b, p, p, n, i, b)\n"
+        "s.search(none, a, ranges, tool, tool, w, w, found)"
     ),
     "free_tilts": (
         f"{FLAT}"

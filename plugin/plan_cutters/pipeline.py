@@ -57,8 +57,8 @@ from plan_cutters.stages.posture_maps import posture_maps
 
 #: Faces from which on they are sampled in a copy of the process, and the processor time that it may take, s.
 _MANY_FACES, _SAMPLING = 12, 60.0
-#: Processor time after which a copy that answers what is asked besides is given up, s.
-_ANSWERING = 7200.0
+#: Processor time after which a copy that plans the operations is given up, s.
+_PLANNING = 7200.0
 
 
 @spelled_out(PlanOptions, Options)
@@ -183,19 +183,19 @@ def _completed(
     done(0)
     between = part.between(clock, compiling)
     done(1)
-    asked = partial(_answered, part, answers.least_set)
+    job = partial(_operations, part, answers.least_set)
     # Answers and operations need nothing of each other, and neither keeps all threads at work.
     both = options.jobs > 1 and options.operations is not None and bool(options.answers)
-    with SideProcess(partial(asked, Clock()), _ANSWERING, worth=both) as side:
-        if not side.works:
-            answers, _ = asked(clock)
-            done(2)
-        operations = _operations(part, answers.least_set, clock)
+    with SideProcess(partial(job, Clock()), _PLANNING, worth=both) as side:
+        answers = ask(part.ready, part.here, clock.stage, part.other_setups, least=answers.least_set)
+        done(2)
         if side.works:
-            with clock.stage(options.answers[-1]):
-                answers, aside = side.result(partial(asked, Clock()))
-            clock.seconds |= aside.seconds
-            clock.boxes |= aside.boxes
+            with clock.stage("operations"):
+                operations, watch = side.result(partial(job, Clock()))
+            clock.seconds |= watch.seconds
+            clock.boxes |= watch.boxes
+        else:
+            operations, _ = job(clock)
         answers = replace(answers, operations=operations)
     done(3)
     result = assembled(part, clock, answers, between)
@@ -206,18 +206,13 @@ def _completed(
     return result
 
 
-def _answered(part: JudgedPart, least: LeastSet | None, clock: Clock) -> tuple[Answers, Clock]:
-    """What is asked besides, with the clock that it was timed by."""
-    return ask(part.ready, part.here, clock.stage, part.other_setups, least=least), clock
-
-
-def _operations(part: JudgedPart, least: LeastSet | None, clock: Clock) -> Operations | None:
-    """Plan the operations, if that was requested."""
+def _operations(part: JudgedPart, least: LeastSet | None, clock: Clock) -> tuple[Operations | None, Clock]:
+    """Plan the operations, if that was requested; with the clock that it was timed by."""
     if part.ready.options.operations is None:
-        return None
+        return None, clock
     from plan_cutters.operations.planning import plan_operations
 
-    return plan_operations(part.ready, part.everywhere(), least, clock.stage)
+    return plan_operations(part.ready, part.everywhere(), least, clock.stage), clock
 
 
 def _mapped(result: Result, part: JudgedPart, clock: Clock, compiling: Callable[[str], None]) -> Result:

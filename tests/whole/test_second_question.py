@@ -26,13 +26,13 @@ def _kept(tmp_path, monkeypatch):
 
 def answered(part, folder, cache=True, **words):
     """The files of an answer, but for times; and the stages that were made in it."""
-    made, kept = [], stage_cache.StageCache.kept
+    made, cached = [], stage_cache.StageCache.cached
 
     def watched(self, stage, follows_from, make, keep=None):
-        return kept(self, stage, follows_from, lambda: (made.append(stage), make())[1], keep)
+        return cached(self, stage, follows_from, lambda: (made.append(stage), make())[1], keep)
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(stage_cache.StageCache, "kept", watched)
+        patch.setattr(stage_cache.StageCache, "cached", watched)
         result = plan(real_file(PARTS[part]) if part in PARTS else OWN, cache=cache, **{**COARSE, **words})
     stage_cache.settle()
     result.write(folder, ["json", "npz"])

@@ -1,0 +1,47 @@
+"""Answers and operations that were asked for together are made side by side, and are those that are made one after the other."""
+
+import json
+
+import pytest
+
+from cad_io import copies
+from plan_cutters import plan
+from tests.support.places import SAMPLES
+
+WORDS = {"cutters": ["R4L30", "R2L30"], "machine": "trunnion-ac", "fixtures": "table", "holder": "er16", "feed": 1000.0,
+         "spacing": 6.0, "answers": ("stick-out", "mend"), "operations": "fastest", "area_budget": 0}  # fmt: skip
+
+
+def document(folder, **words):
+    result = plan(SAMPLES / "blade.step", **{**WORDS, **words})
+    result.write(folder, ["json"])
+    text = json.loads((folder / "plan.json").read_text())
+    for entry in text["cutters"]:
+        entry.pop("seconds", None)
+    return text.pop("run")["seconds"], text
+
+
+@pytest.fixture(scope="module")
+def in_turn(tmp_path_factory):
+    return document(tmp_path_factory.mktemp("turn"), jobs=1)
+
+
+def test_they_are_those_that_are_made_one_after_the_other(tmp_path, in_turn):
+    seconds, beside = document(tmp_path, jobs=2)
+    assert beside == in_turn[1]
+    assert {"stick-out", "mend", "operations"} <= set(seconds) & set(in_turn[0])
+
+
+def test_a_copy_that_dies_is_made_up_for(tmp_path, in_turn, monkeypatch):
+    monkeypatch.setattr(copies.SideProcess, "result", lambda self, here=None: (self.__exit__(), (here or self._call)())[1])
+    assert document(tmp_path, jobs=2)[1] == in_turn[1]
+
+
+@pytest.mark.parametrize("stage", ["plan_cutters.pipeline.ask", "plan_cutters.operations.planning.plan_operations"])
+def test_what_either_raises_is_raised(stage, monkeypatch):
+    def fails(*words, **more):
+        raise ZeroDivisionError("one of them")
+
+    monkeypatch.setattr(stage, fails)
+    with pytest.raises(ZeroDivisionError, match="one of them"):
+        plan(SAMPLES / "blade.step", **{**WORDS, "jobs": 2})
