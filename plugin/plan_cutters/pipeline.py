@@ -327,6 +327,7 @@ def prepare(
             "bodies",
             (
                 whole.key,
+                scene.ignored,
                 samples.point,
                 samples.normal,
                 scene.orientation.sign,
