@@ -49,8 +49,7 @@ def _stands(row, axis, contacts, low, high, about, tool, solids, body, sides, wo
         most = tool.mode[mode, OFFSET_OF] if mode >= 0 else 0.0
         if most > 0.0:
             _across(e1, axis, x)
-            # Without the hint: wherever it is asked for, the same place is found.
-            result, hint = find_place(p, axis, x, tool, mode, most, solids, MAYBE_INSIDE, 0.0, -1, flat, place)
+            result, hint = find_place(p, axis, x, tool, mode, most, solids, MAYBE_INSIDE, 0.0, flat, place)
             if result == PLACED:
                 place_to_direction(place, x, flat.y, most, direction)
                 return UPRIGHT, hint

@@ -16,7 +16,7 @@ from plan_cutters.kernels.jit import entry, kernel, maker
 from plan_cutters.kernels.linear.vectors import cross
 from plan_cutters.kernels.rows import Scratch
 from plan_cutters.kernels.search.place import inside, mode_at
-from plan_cutters.kernels.tool.hit import BODY, HALF, OFFSET, A, P, X, Y, into_frame, scratch, tree_hit
+from plan_cutters.kernels.tool.hit import BODY, HALF, OFFSET, A, P, X, Y, deep_hit, into_frame, scratch
 from plan_cutters.kernels.tool.pieces import clipped, shadow_area
 
 #: What a place is: none, none that could be (proved), or one where the tool was put down.
@@ -271,7 +271,7 @@ def _best(flat):
 
 
 @kernel
-def find_place(p, axis, x, tool, mode, most, solids, within, apart, hint, flat, place):
+def find_place(p, axis, x, tool, mode, most, solids, within, apart, flat, place):
     """Look for a place at which a tool stands free, its bottom across the axis and a contact under the flat of its tip.
 
     Parameters
@@ -290,8 +290,6 @@ def find_place(p, axis, x, tool, mode, most, solids, within, apart, hint, flat, 
         Winding number from which a place lies within a body.
     apart : float
         Places are held apart from what is forbidden by this, mm; what is left between is not found.
-    hint : int
-        Triangle to try first, or -1.
     flat : Flat
     place : (2,) float64, written
         u and v of the axis, mm.
@@ -300,14 +298,14 @@ def find_place(p, axis, x, tool, mode, most, solids, within, apart, hint, flat, 
     -------
     result : int
         PLACED; FORBIDDEN if what was met forbids all places, with `apart` more; or NONE.
-    hint : int
-        The triangle that was in the way last.
+    triangle : int
+        The one that was in the way last, -1 for none.
     """
     counts, body, y = flat.counts, flat.body, flat.y
     counts[:] = 0
     cross(axis, x, y)
     apart = max(apart, _APART, _SHARE * most)
-    proved = _add_border(1.0, 0.0, 0.0, most, 0.0, flat)
+    proved, last = _add_border(1.0, 0.0, 0.0, most, 0.0, flat), -1
     for i in range(_RIM):
         turn = 2.0 * np.pi * i / _RIM
         _add_place(-most * np.cos(turn), -most * np.sin(turn), most, flat)
@@ -318,21 +316,22 @@ def find_place(p, axis, x, tool, mode, most, solids, within, apart, hint, flat, 
     while True:
         best = _best(flat)
         if best < 0:
-            return FORBIDDEN if proved else NONE, hint
+            return FORBIDDEN if proved else NONE, last
         u, v = flat.place[best, 0], flat.place[best, 1]
         for k in range(3):
             body[P + k] = p[k] + tool.mode[mode, RISE] * axis[k] + u * x[k] + v * y[k]
             body[A + k], body[X + k], body[Y + k] = axis[k], x[k], y[k]
         body[OFFSET], body[HALF] = 0.0, 0.0
-        triangle, which, height, px, py = tree_hit(solids.tree, body, tool.piece[mode], 0.0, hint, flat.scratch)
+        # Of what is in the way that which lies deep in the tool: it forbids most of the places about.
+        triangle, which, height, px, py = deep_hit(solids.tree, body, tool.piece[mode], flat.scratch)
         if triangle < 0:
             if not inside(body, tool, mode, solids, within, flat.scratch):
                 place[0], place[1] = u, v
-                return PLACED, hint
-            return NONE, hint
-        hint = triangle
+                return PLACED, last
+            return NONE, last
+        last = triangle
         if counts[0] == len(flat.corner):
-            return NONE, hint
+            return NONE, last
         many, radius = _met(solids.tree.vertex, triangle, tool.piece[mode], which, (height, px, py), u, v, flat)
         proved = _forbid(flat, many, radius, apart, most) and proved
         if flat.open_[best]:
@@ -375,6 +374,6 @@ def upright(rows, contacts, tool, solids, within, apart, result, tilt_direction)
         if most <= 0.0:
             continue
         n, e1 = contacts.normal[row], contacts.direction_max[row]
-        result[row], _ = find_place(contacts.point[row], n, e1, tool, mode, most, solids, within, apart, -1, flat, place)
+        result[row], _ = find_place(contacts.point[row], n, e1, tool, mode, most, solids, within, apart, flat, place)
         if result[row] == PLACED:
             place_to_direction(place, e1, flat.y, most, tilt_direction[row])
