@@ -43,9 +43,9 @@ from plan_cutters.stages.sharp_edges import exempt, may_be_at_edge, strips, with
 from plan_cutters.stages.travel import travels
 from plan_cutters.stages.witness import witnesses
 
-#: The work between samples: this share of what came before, and so many boxes in any case. What came before: boxes of searches,
-#: and what a triangle and a sample take in theirs until they are judged.
-_WORK_SHARE, _WORK_LEAST, _TRIANGLE, _SAMPLE = 1 / 3, 5e6, 15.0, 90.0
+#: The work between samples: this share of what came before, and so many boxes in any case, fewer among more than so many triangles,
+#: where each takes longer. What came before: boxes of searches, and what a triangle and a sample take until they are judged.
+_WORK_SHARE, _WORK_LEAST, _FEW, _TRIANGLE, _SAMPLE = 1 / 3, 2.5e7, 2e5, 15.0, 90.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -179,8 +179,9 @@ class JudgedPart:
             compiling("cover.cover")
             most = np.inf
             if ready.options.area_budget is None:
-                made = _TRIANGLE * len(ready.conditions.obstacles.tree.vertex) + _SAMPLE * len(ready.samples)
-                most = _WORK_LEAST + _WORK_SHARE * (self.searched.looked + made)
+                triangles = len(ready.conditions.obstacles.tree.vertex)
+                made = _TRIANGLE * triangles + _SAMPLE * len(ready.samples)
+                most = _WORK_LEAST / max(1.0, triangles / _FEW) + _WORK_SHARE * (self.searched.looked + made)
             budget = ready.options.contacts_between(len(ready.samples))
             judged = self.cutters[cutter]
             return {cutter.id: ready.cache.cached(
