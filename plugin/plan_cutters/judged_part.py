@@ -43,8 +43,8 @@ from plan_cutters.stages.sharp_edges import exempt, may_be_at_edge, strips, with
 from plan_cutters.stages.travel import travels
 from plan_cutters.stages.witness import witnesses
 
-#: The work between samples: this share of what came before, and so many boxes in any case, fewer among more than so many triangles,
-#: where each takes longer. What came before: boxes of searches, and what a triangle and a sample take until they are judged.
+#: The work between samples: this share of what came before, and so many boxes in any case, fewer among more than so many
+#: triangles, where each takes longer. What came before: boxes of searches, and what a triangle and a sample take until judged.
 _WORK_SHARE, _WORK_LEAST, _FEW, _TRIANGLE, _SAMPLE = 1 / 3, 2.5e7, 2e5, 15.0, 90.0
 
 
