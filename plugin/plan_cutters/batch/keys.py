@@ -3,16 +3,15 @@
 import functools
 import platform
 from dataclasses import fields
-from importlib import metadata
 from pathlib import Path
 
 from cad_io.files import checksum
 from plan_cutters.batch.job import Handed, Settings
 from plan_cutters.files.digest import digest, sources
+from plan_cutters.files.stage_cache import PACKAGES, installed
 
 #: Packages whose results may differ from version to version: they count in a key, and must be the same on all machines.
 COMPARED = {"plan-cutters": "plan_cutters", "python": "python", "numba": "numba", "dask": "dask"}
-_COUNTED = ("cadquery-ocp-proxy", "numba", "numpy", "scipy", "shapely")
 
 
 @functools.cache
@@ -30,15 +29,8 @@ def versions() -> dict[str, str]:
     return {
         "plan-cutters": version(),
         "python": platform.python_version(),
-        **{name: _installed(name) for name in ("numba", "dask", "distributed", "cadquery-ocp-proxy")},
+        **{name: installed(name) for name in ("numba", "dask", "distributed", "cadquery-ocp-proxy")},
     }
-
-
-def _installed(name: str) -> str:
-    try:
-        return metadata.version(name)
-    except metadata.PackageNotFoundError:
-        return "none"
 
 
 def settings_key(settings: Settings, there: Handed) -> str:
@@ -55,7 +47,7 @@ def settings_key(settings: Settings, there: Handed) -> str:
         sorted(settings.read),
         settings.step_schema,
         version(),
-        [_installed(name) for name in _COUNTED],
+        [installed(name) for name in PACKAGES],
     ]
     return digest([parts, there.outside, *there.files]).hex()
 

@@ -36,7 +36,7 @@ _CHECKSUM, _SUFFIX = 32, ".stage"
 #: What was begun so long ago, s, and is not done, never will be.
 _ABANDONED = 3600.0
 #: Packages whose results may differ from version to version.
-_PACKAGES = ("cadquery-ocp-proxy", "numba", "numpy", "scipy", "shapely")
+PACKAGES = ("cadquery-ocp-proxy", "numba", "numpy", "scipy", "shapely")
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,10 +208,11 @@ def made_by() -> bytes:
     ours = frozenset({"plan_cutters", "cad_io"})
     sources = fingerprint("plan_cutters.pipeline", "plan_cutters", str(home / "pipeline.py"), ours, notes)
     # Without sources there is nothing to tell one program from another: then nothing is found again.
-    return digest([sources or os.urandom(16), [_version(name) for name in _PACKAGES]])
+    return digest([sources or os.urandom(16), [installed(name) for name in PACKAGES]])
 
 
-def _version(name: str) -> str:
+def installed(name: str) -> str:
+    """The version of a package that is here, or `none`."""
     try:
         return metadata.version(name)
     except metadata.PackageNotFoundError:
