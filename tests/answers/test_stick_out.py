@@ -34,7 +34,8 @@ def certain(found, ready, cutter):
     rows = np.flatnonzero(judge(ready, cutter).reached)
     assert judge(ready, held(cutter, found.least), rows).reached.all()
     assert found.served == len(rows)
-    shorter = judge(ready, held(cutter, found.least - BEYOND), np.array([found.sample]))
+    assert found.beyond == pytest.approx(found.least - BEYOND, abs=1e-9)
+    shorter = judge(ready, held(cutter, found.beyond), np.array([found.sample]))
     assert shorter.verdict[0] == found.verdict
     assert shorter.verdict[0] not in (ACCESSIBLE, INTERFERENCE_FREE)
 

@@ -65,17 +65,18 @@ def least_stick_out(
         # A holder that is not convex, or an interval of tilts as fine as the search: what is not reached there needs more.
         longer, row = max((search.one(row, least)[0], row) for row in not_reached.tolist())
         least, limiting = min(longest, max(longer, least + EXACT)), row
-    least, limiting = search.lowered(rows, least, limiting)
+    least, beyond, limiting = search.lowered(rows, least, limiting)
     each = None if step is None else search.each(rows, step)
     stick_out = StickOut(
         least, search.floor, longest, "floor" if limiting < 0 else "obstacle", served=len(rows), each=each, step=step or np.nan
     )
-    return stick_out if limiting < 0 else _limited(ready, cutter, search, stick_out, limiting)
+    return stick_out if limiting < 0 else _limited(ready, cutter, search, stick_out, beyond, limiting)
 
 
-def _limited(ready: Prepared, cutter: Cutter, search: "_Search", stick_out: StickOut, row: int) -> StickOut:
-    """With the posture and the obstacle of the sample that limits it, and what a shorter one finds there."""
-    beyond = max(search.floor, stick_out.least - BEYOND)
+def _limited(
+    ready: Prepared, cutter: Cutter, search: "_Search", stick_out: StickOut, beyond: float, row: int
+) -> StickOut:
+    """With the posture and the obstacle of the sample that limits it, and the verdict there with a shorter one."""
     shorter = judge(ready, held(cutter, beyond), np.array([row]))
     posture, one = search.found, slice(row, row + 1)
     triangle = int(search.needed(np.array([row]), posture)[1][row])
@@ -169,26 +170,33 @@ class _Search:
         in_chunks(work, open_rows, self.conditions.jobs, chunk=1)
         return [not_reached[k] for k in sorted(not_reached)]
 
-    def lowered(self, rows: NDArray[np.int64], least: float, limiting: int) -> tuple[float, int]:
+    def lowered(self, rows: NDArray[np.int64], least: float, limiting: int) -> tuple[float, float, int]:
         """The same, or less where a judgement some steps of `BEYOND` below it still finds postures everywhere, as it starts
         elsewhere: so many steps, by doubling and halving, that one more is too many.
+
+        Returns it, the stick-out a step shorter that was too short, and the sample that was not reached with that; the floor
+        twice and -1 where nothing is too short.
         """
         good, bad, before = 0, 0, limiting
-        while limiting >= 0 and least - good * BEYOND > self.floor and bad - good != 1:
+
+        def after(steps: int) -> float:
+            return max(self.floor, least - steps * BEYOND)
+
+        while limiting >= 0 and after(good) > self.floor and bad - good != 1:
             tried = (good + bad) // 2 if bad else 2 * good + 1
-            not_reached = self._not_reached(rows, max(self.floor, least - tried * BEYOND), limiting)
+            not_reached = self._not_reached(rows, after(tried), limiting)
             if not_reached is None:
                 good = tried
             else:
                 bad, limiting = tried, not_reached
-        least = max(self.floor, least - good * BEYOND)
-        if least <= self.floor:
-            return least, -1
+        lowest = after(good)
+        if limiting < 0 or lowest <= self.floor:
+            return lowest, lowest, -1
         if good or limiting != before:
-            posture = judge(self.ready, held(self.cutter, least), np.array([limiting]))
+            posture = judge(self.ready, held(self.cutter, lowest), np.array([limiting]))
             if posture.reached[0]:
                 self.found.take_posture(limiting, posture, 0)
-        return least, limiting
+        return lowest, after(bad), limiting
 
     def _not_reached(self, rows: NDArray[np.int64], stick_out: float, first: int) -> int | None:
         """One of some samples that a judgement does not reach with a stick-out, looked for first at one of them; None: none."""

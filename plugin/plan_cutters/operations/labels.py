@@ -6,6 +6,7 @@ samples change to it (Boykov, Veksler, Zabih 2001). An operation that does not s
 """
 
 from heapq import heapify, heappop, heappush
+from itertools import cycle, islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -54,15 +55,15 @@ def labelled(cost: Floats, edge: Ints, border: Floats) -> Ints:
         np.where(np.isfinite(price), np.rint(price * scale), _MOST).astype(np.int64),
         np.rint(weight * scale).astype(np.int64),
     )
-    least = _energy(units, pair, sides, cheapest)
-    for _ in range(_ROUNDS):
-        before = least
-        for operation in range(price.shape[1]):
-            tried = _expanded(units, pair, sides, cheapest, operation)
-            energy = _energy(units, pair, sides, tried)
-            if energy < least:
-                cheapest, least = tried, energy
-        if least == before:
+    least, since = _energy(units, pair, sides, cheapest), 0
+    # An operation is tried again only where another has changed something since.
+    for operation in islice(cycle(range(price.shape[1])), _ROUNDS * price.shape[1]):
+        tried = _expanded(units, pair, sides, cheapest, operation)
+        energy = _energy(units, pair, sides, tried)
+        since += 1
+        if energy < least:
+            cheapest, least, since = tried, energy, 1
+        if since == price.shape[1]:
             break
     label[rows] = cheapest
     assert np.isfinite(cost[rows, cheapest]).all(), "an operation that does not serve a sample was chosen"
@@ -78,35 +79,40 @@ def _expanded(
     units: NDArray[np.int64], pair: NDArray[np.int64], sides: NDArray[np.int64], label: NDArray[np.int64], operation: int
 ) -> NDArray[np.int64]:
     """The best labels of which each is kept or becomes one operation."""
-    n = len(label)
+    # Only what may change is in the cut: beside what stays, a pair is a cost of the one sample alone.
+    may = (label != operation) & (units[:, operation] < _MOST)
+    open_, at = np.flatnonzero(may), np.cumsum(may) - 1
+    if not len(open_):
+        return label
     i, j = pair.T
-    apart, first, second = (
-        np.where(label[i] != label[j], sides, 0),
-        np.where(label[i] != operation, sides, 0),
-        np.where(label[j] != operation, sides, 0),
-    )
-    # With x = 1 where a sample changes, the cost of a pair is apart + x_i (second - apart) - x_j second + (1 - x_i) x_j c.
-    change = units[:, operation] - units[np.arange(n), label]
-    forbidden = units[:, operation] >= _MOST
-    np.add.at(change, i, second - apart)
-    np.add.at(change, j, -second)
-    change = np.where(forbidden, _MOST, np.clip(change, -_MOST, _MOST))
-    both = first + second - apart
-    source, sink = n, n + 1
+    change = units[open_, operation] - units[open_, label[open_]]
+    apart = np.where(label[i] != label[j], sides, 0)
+    for mine, other in ((i, j), (j, i)):
+        alone = may[mine] & ~may[other]
+        then = np.where(label[other[alone]] != operation, sides[alone], 0)
+        np.add.at(change, at[mine[alone]], then - apart[alone])
+    both = may[i] & may[j]
+    # With x = 1 where a sample changes, such a pair costs apart + x_i (side - apart) - x_j side + (1 - x_i) x_j (2 side - apart).
+    i, j, side, apart = at[i[both]], at[j[both]], sides[both], apart[both]
+    np.add.at(change, i, side - apart)
+    np.add.at(change, j, -side)
+    change = np.clip(change, -_MOST, _MOST)
+    source = len(open_)
+    sink = source + 1
     up, down = np.flatnonzero(change > 0), np.flatnonzero(change < 0)
     tail = np.concatenate([np.full(len(up), source), down, i])
     head = np.concatenate([up, np.full(len(down), sink), j])
-    size = np.concatenate([change[up], -change[down], np.minimum(both, _MOST)]).astype(np.int32)
-    graph = coo_array((size, (tail, head)), shape=(n + 2, n + 2)).tocsr()
+    size = np.concatenate([change[up], -change[down], np.minimum(2 * side - apart, _MOST)]).astype(np.int32)
+    graph = coo_array((size, (tail, head)), shape=(sink + 1, sink + 1)).tocsr()
     flow = maximum_flow(graph, source, sink).flow
     residual = (graph - flow).tocsr()
     residual.data[residual.data < 0] = 0
     residual.eliminate_zeros()
-    connected_nodes = breadth_first_order(residual, source, return_predecessors=False)
-    changed = np.ones(n + 2, bool)
-    changed[connected_nodes] = False
-    changed = changed[:n] & ~forbidden
-    return np.where(changed, operation, label)
+    result = label.copy()
+    changed = np.ones(sink + 1, bool)
+    changed[breadth_first_order(residual, source, return_predecessors=False)] = False
+    result[open_[changed[:source]]] = operation
+    return result
 
 
 def pieces(label: Ints, edge: Ints) -> Ints:
