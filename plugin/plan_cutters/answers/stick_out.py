@@ -61,7 +61,7 @@ def least_stick_out(
         return StickOut(np.nan, np.nan, longest, why)
     search = _Search(ready, cutter, verdicts, progress or (lambda done, total: None))
     least, limiting = search.all(rows)
-    while len(not_reached := rows[~judge(ready, held(cutter, least), rows).reached]) and least < longest:
+    while len(not_reached := search.missed(rows, least)) and least < longest:
         # A holder that is not convex, or an interval of tilts as fine as the search: what is not reached there needs more.
         longer, row = max((search.one(row, least)[0], row) for row in not_reached.tolist())
         least, limiting = min(longest, max(longer, least + EXACT)), row
@@ -100,7 +100,16 @@ def _limited(
 
 
 class _Search:
-    """Searches of one cutter at any stick-out; `found` holds the shortest posture known of each sample."""
+    """Searches of one cutter at any stick-out.
+
+    Attributes
+    ----------
+    found : VerdictBuffer
+        The shortest posture known of each sample.
+    sure : (n,) float
+        From this stick-out on that posture stays free, with what a cover piece may hold too much and `BEYOND` to spare, mm: so
+        that a judgement finds it, or another one. No search is made with more. Infinite where none is known.
+    """
 
     def __init__(self, ready: Prepared, cutter: Cutter, verdicts: Verdicts, progress: Progress) -> None:
         conditions = ready.conditions
@@ -111,12 +120,32 @@ class _Search:
         self.outline, self.whole = outline(context.outer_tool, cutter.length), context.outer
         self.found = blank(len(ready.samples))
         self.found.take(slice(None), verdicts)
+        self._spare = BEYOND + context.outer_tool.slack
+        self.sure = np.full(len(ready.samples), np.inf)
+        self._take(np.flatnonzero(verdicts.reached), self.found)
+
+    def _take(self, rows: NDArray[np.int64], posture: VerdictBuffer) -> None:
+        """Take postures of some samples where they stay free from a shorter stick-out on than those that are known."""
+        needed = self.needed(rows, posture, self.floor - self._spare)[0][rows] + self._spare
+        shorter = rows[needed < np.minimum(self.sure[rows], self.cutter.length)]
+        self.found.take_posture(shorter, posture)
+        self.sure[rows] = np.minimum(self.sure[rows], np.where(needed < self.cutter.length, needed, np.inf))
+
+    def missed(self, rows: NDArray[np.int64], stick_out: float) -> NDArray[np.int64]:
+        """Those of some samples that a judgement does not reach with a stick-out; it is asked where nothing is sure."""
+        open_rows = rows[self.sure[rows] > stick_out]
+        if not len(open_rows):
+            return open_rows
+        return np.asarray(open_rows[~judge(self.ready, held(self.cutter, stick_out), open_rows).reached])
 
     def tool(self, stick_out: float) -> Tool:
         return Context.of(held(self.cutter, stick_out), self.conditions).outer
 
-    def needed(self, rows: NDArray[np.int64], posture: VerdictBuffer) -> tuple[Floats, NDArray[np.int32]]:
-        """The stick-outs (n,) that known postures of some samples ask for, and the triangles that are in the way."""
+    def needed(
+        self, rows: NDArray[np.int64], posture: VerdictBuffer, floor: float | None = None
+    ) -> tuple[Floats, NDArray[np.int32]]:
+        """The stick-outs (n,) that known postures of some samples ask for, no less than a floor, and the triangles that are in
+        the way."""
         from plan_cutters.kernels.search.stick_out import least_stick_outs
 
         stick_out = np.full(len(posture.tilt), np.nan)
@@ -124,7 +153,7 @@ class _Search:
         samples, tree = self.ready.samples, self.conditions.obstacles.tree
         in_chunks(
             lambda piece: least_stick_outs(piece, samples.point, samples.normal, posture.tilt_direction, posture.tilt, self.whole,
-                                           self.outline, self.floor, tree, stick_out, triangle),
+                                           self.outline, self.floor if floor is None else floor, tree, stick_out, triangle),
             rows, self.conditions.jobs,
         )  # fmt: skip
         return np.minimum(stick_out, self.cutter.length), triangle
@@ -134,6 +163,7 @@ class _Search:
         least, limiting, done = self.floor, -1, 0
         few = rows[np.unique(np.linspace(0, len(rows) - 1, min(_FIRST, len(rows))).astype(int))]
         for company in (few, rows):
+            company = company[self.sure[company] > least]
             pieces = [company[i : i + CHUNK] for i in range(0, len(company), CHUNK)]
             at = np.zeros(len(pieces), np.int64)
             while len(open_rows := np.flatnonzero(at < [len(piece) for piece in pieces])):
@@ -168,6 +198,7 @@ class _Search:
                     not_reached[k] = row
 
         in_chunks(work, open_rows, self.conditions.jobs, chunk=1)
+        self._take(np.flatnonzero(verdicts.verdict == ACCESSIBLE), verdicts)
         return [not_reached[k] for k in sorted(not_reached)]
 
     def lowered(self, rows: NDArray[np.int64], least: float, limiting: int) -> tuple[float, float, int]:
@@ -203,7 +234,7 @@ class _Search:
         cutter = held(self.cutter, stick_out)
         if not judge(self.ready, cutter, np.array([first])).reached[0]:
             return first
-        missed = rows[~judge(self.ready, cutter, rows).reached]
+        missed = self.missed(rows, stick_out)
         return int(missed[0]) if len(missed) else None
 
     def one(self, row: int, not_reached: float) -> tuple[float, int]:
