@@ -48,9 +48,11 @@ def near(rng, made, mode, tilt, size):
     return np.array([c * x + s * w, y, c * w - s * x + rise])
 
 
+@pytest.mark.parametrize("long", [False, True])
 @pytest.mark.parametrize("kind", KINDS)
-def test_no_piece_is_dropped_into_which_a_point_of_a_box_reaches(kind):
-    rng = np.random.default_rng(KINDS.index(kind))
+def test_no_piece_is_dropped_into_which_a_point_of_a_box_reaches(kind, long):
+    """Boxes next to the tool; `long`, those of which some point is next to it, and the centre far away."""
+    rng = np.random.default_rng([KINDS.index(kind), long])
     kept, dropped = 0, 0
     for _ in range(600):
         made = assembly(random_cutter(rng, kind), 0.02, -0.01)
@@ -61,9 +63,18 @@ def test_no_piece_is_dropped_into_which_a_point_of_a_box_reaches(kind):
         half[2] = half.min()
         box = np.zeros((1, 16))
         box[0, :3] = near(rng, made, mode, tilt, size)
+        if long:
+            side = rng.integers(2)
+            half[:2] *= 0.1
+            half[side] = 10.0 ** rng.uniform(0.0, 2.0)
+            box[0, :3] += rng.uniform(-1.0, 1.0) * half[side] * sides[side]
         box[0, 3:12], box[0, 12:15], box[0, 15] = sides.ravel(), half, np.linalg.norm(half)
         shares = np.concatenate([rng.uniform(-1, 1, (300, 3)), np.sign(rng.standard_normal((60, 3)))])
         shares[-120:, rng.integers(3)] = rng.choice([-1, 1])
+        if long:
+            # The part that is next to the tool counts.
+            at = -((box[0, :3] - body[:3]) @ sides[side]) / half[side]
+            shares[:150, side] = np.clip(at + 20.0 / half[side] * rng.uniform(-1, 1, 150), -1, 1)
         points = box[0, :3] + (shares * half) @ sides
         rate = rng.choice([0.0, 10.0 ** rng.uniform(-3, -0.5)])
         mask = hit.alive(box, 0, body, made.piece[mode], (1 << made.piece.shape[1]) - 1, rate)

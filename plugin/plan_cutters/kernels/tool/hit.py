@@ -47,6 +47,9 @@ def scratch():
         np.empty((64, 3, 3)), np.zeros(1, np.int64), np.empty((64, 5)), np.zeros(2, np.int64),
     )  # fmt: skip
 
+#: A box is long where it is longer than the tool is wide, and its sides differ so many times.
+_LONG = 3.0
+
 
 @kernel
 def stand(body, frame, tilt_cos, tilt_sin, offset, rise):
@@ -156,6 +159,59 @@ def alive(box, i, body, piece, mask, rate):
             continue
         if _thin_apart(box, i, body, piece, k, grow, dx, dy, dz):
             mask ^= gone
+    if mask == 0 or diagonal < piece[0, RADIUS] + piece[0, ROUND] or rate > 0.0 or body[HALF] > 0.0:
+        return mask
+    return _passed(box, i, body, piece, mask, height, across, sideways)
+
+
+@kernel
+def _passed(box, i, body, piece, mask, height, across, sideways):
+    """Those of the pieces of a mask that no plane parts from a box i if that is long; with its centre in the tool's frame.
+
+    The box of long thin triangles may pass by a tool though its centre is far away: seen from there nothing parts them. So the
+    plane is taken where the middle line along the box comes nearest to the piece.
+    """
+    long = 0 if box[i, HALVES] >= box[i, HALVES + 1] else 1
+    half, at = box[i, HALVES + long], SIDES + 3 * long
+    if half < _LONG * box[i, HALVES + 1 - long]:
+        return mask
+    sx, sy, sz = box[i, at], box[i, at + 1], box[i, at + 2]
+    up = sx * body[A] + sy * body[A + 1] + sz * body[A + 2]
+    side = sx * body[X] + sy * body[X + 1] + sz * body[X + 2]
+    out = sx * body[Y] + sy * body[Y + 1] + sz * body[Y + 2]
+    for k in range(len(piece)):
+        if not (mask >> k) & 1:
+            continue
+        along, square = across * side + sideways * out, side * side + out * out
+        if piece[k, KIND] == ARC:
+            along, square = along + (height - piece[k, SLOPE]) * up, 1.0
+        t = min(half, max(-half, -along / square)) if square > 1e-12 else 0.0
+        x, y, z = across + t * side, sideways + t * out, height + t * up
+        q = np.sqrt(x * x + y * y)
+        if not q > 0.0:
+            continue
+        ux, uy, uz, over = x / q, y / q, 0.0, q - piece[k, RADIUS]
+        if piece[k, KIND] == ARC:
+            r, away = max(0.0, over), z - piece[k, SLOPE]
+            value = np.sqrt(r * r + away * away)
+            over = value - piece[k, ROUND]
+            if not over > 0.0:
+                continue
+            ux, uy, uz = ux * r / value, uy * r / value, away / value
+        elif piece[k, KIND] != CYLINDER:
+            scale = piece[k, SCALE]
+            over = (over - piece[k, SLOPE] * (z - piece[k, LOW])) * scale
+            ux, uy, uz = scale * ux, scale * uy, -piece[k, SLOPE] * scale
+        # How far a point is out of a convex piece is no less than its tangent says: at the centre, and about it.
+        over -= t * (ux * side + uy * out + uz * up)
+        if over > 0.0 and over > half_width(
+            box,
+            i,
+            uz * body[A] + ux * body[X] + uy * body[Y],
+            uz * body[A + 1] + ux * body[X + 1] + uy * body[Y + 1],
+            uz * body[A + 2] + ux * body[X + 2] + uy * body[Y + 2],
+        ):
+            mask ^= 1 << k
     return mask
 
 
