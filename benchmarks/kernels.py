@@ -27,7 +27,7 @@ from plan_cutters.kernels.linear import lanes, tree
 from plan_cutters.kernels.maps import free_map, free_tilts, passes
 from plan_cutters.kernels.rows import Contacts, Frame, VerdictArrays
 from plan_cutters.kernels.search import place, search
-from plan_cutters.kernels.tool import arcs, hit
+from plan_cutters.kernels.tool import apart, arcs, hit
 
 sys.path.append(str(Path(__file__).parent.parent))
 from tests.support import waves
@@ -86,7 +86,7 @@ def many_removals(n, at, intervals):
 def many_boxes(n, box, bodies, piece):
     total = 0
     for i in range(n):
-        total += hit.alive(box, i % len(box), bodies[i % len(bodies)], piece, 1, 0.0)
+        total += apart.alive(box, i % len(box), bodies[i % len(bodies)], piece, 1, 0.0)
     return total
 
 
@@ -155,7 +155,7 @@ def drivers() -> dict[str, tuple[str, int, Driver]]:
     at = np.stack([*rng.normal(0, 6, (2, 997)), rng.uniform(0, 40, 997), rng.uniform(0, RIGHT, 997), np.cos(angle),
                    np.sin(angle)], 1)  # fmt: skip
     # Postures at random at every sample, and for each a triangle near its contact.
-    bodies, tilt_direction, axis = np.empty((n, hit.BODY)), np.empty((n, 3)), np.empty((n, 3))
+    bodies, tilt_direction, axis = np.empty((n, apart.BODY)), np.empty((n, 3)), np.empty((n, 3))
     centre, near = vertex.mean(1), np.empty(n, np.int64)
     for i in range(n):
         turn, tilt = rng.uniform(0, 2 * np.pi), rng.uniform(0, RIGHT)

@@ -16,7 +16,7 @@ from plan_cutters.kernels.maps.points import axis_intervals, local_gouge_range
 from plan_cutters.kernels.material import sheet
 from plan_cutters.kernels.rows import Contacts, Frame, Tree
 from plan_cutters.kernels.search import place, search
-from plan_cutters.kernels.tool import hit
+from plan_cutters.kernels.tool import apart, hit
 from plan_cutters.kernels.tool.arcs import point_arc
 from plan_cutters.scene.conditions import ranges_of, verdict_arrays_of
 from tests.support import waves
@@ -27,7 +27,7 @@ SCRATCH = hit.scratch()
 
 def body_of(contact, normal, direction, tilt, rotation, radius, length, s):
     axis, tilt_direction = posture(normal, direction, tilt, rotation)
-    body = np.empty(hit.BODY)
+    body = np.empty(apart.BODY)
     frame = Frame(contact, normal, tilt_direction, np.cross(normal, tilt_direction))
     hit.stand(body, frame, math.cos(tilt), math.sin(tilt), radius, 0.0)
     return body, waves.flat(radius, length, s).piece[0], axis, tilt_direction

@@ -20,7 +20,7 @@ from plan_cutters.domain.verdicts import INACCESSIBLE
 from plan_cutters.kernels.maps.points import axis_intervals, local_gouge_range
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search import search
-from plan_cutters.kernels.tool import hit
+from plan_cutters.kernels.tool import apart, hit
 from plan_cutters.kernels.tool.arcs import point_arc
 from plan_cutters.scene.conditions import ranges_of
 from plan_cutters.scene.obstacles import Obstacles
@@ -228,7 +228,7 @@ def stood(rng, tilt, radius, length, s):
     normal, direction = random_frame(rng)
     contact = rng.normal(0, 5, 3)
     axis, tilt_direction = posture(normal, direction, tilt, 0.3)
-    body, left = np.empty(hit.BODY), np.cross(normal, tilt_direction)
+    body, left = np.empty(apart.BODY), np.cross(normal, tilt_direction)
     hit.stand(body, Frame(contact, normal, tilt_direction, left), math.cos(tilt), math.sin(tilt), radius, 0.0)
     return (
         body,
@@ -264,7 +264,7 @@ def test_a_triangle_at_a_bound_hits_from_the_first_hair(deeper):
     """Flat on the bottom, on the top, and upright along the wall."""
     radius, length, s = 3.0, 9.0, 0.01
     body, piece, _, frame = stood(np.random.default_rng(0), 0.4, radius, length, s)
-    body[hit.P : hit.P + 3] = 0.0
+    body[apart.P : apart.P + 3] = 0.0
     disk = np.array([[0.0, 1, 0], [1, -1, 0], [-1, -1, 0]])
     wall = np.array([[0.0, -1, 2], [0, 1, 2], [0, 0, 5]])
     up, out = np.array([0, 0, 1]), np.array([1, 0, 0])
@@ -324,7 +324,7 @@ def test_contact_on_a_sharp_edge():
         for rotation in (0.0, 0.5, RIGHT, 3.0, math.pi):
             for tilt in (0.0, 0.3, RIGHT):
                 axis, tilt_direction = posture(np.array([0.0, 0, 1]), np.array([1.0, 0, 0]), tilt, rotation)
-                body = np.empty(hit.BODY)
+                body = np.empty(apart.BODY)
                 left = np.cross([0.0, 0, 1], tilt_direction)
                 hit.stand(body, Frame(np.zeros(3), np.array([0.0, 0, 1]), tilt_direction, left), math.cos(tilt), math.sin(tilt),
                           6.0, 0.0)  # fmt: skip
@@ -387,7 +387,7 @@ def test_where_a_posture_does_not_serve_another_cutter():
     assert (free & ~probed(obstacles, postures, 2.9, 60.0, 0.01)).sum() >= 3, "longer"
     hits, one = [], np.full((1, 3, 3), [2.5, 0.0, 40.0])
     for radius in (6.0, 4.0):
-        body, up, across, left = np.empty(hit.BODY), np.eye(3)[2], np.eye(3)[0], np.eye(3)[1]
+        body, up, across, left = np.empty(apart.BODY), np.eye(3)[2], np.eye(3)[0], np.eye(3)[1]
         hit.stand(body, Frame(np.zeros(3), up, across, left), 1.0, 0.0, radius, 0.0)
         held = assembly(Cutter.flat(radius=radius, length=30.0, holder="R8L30"), 0.0, 0.0).piece[0]
         hits.append(hit.triangle_hit(one, 0, body, held, 3, 0.0, SCRATCH)[0])

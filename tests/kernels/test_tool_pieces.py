@@ -10,7 +10,7 @@ from plan_cutters.domain import pieces as domain
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.kernels.jit import kernel
 from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.tool import hit
+from plan_cutters.kernels.tool import apart, hit
 from plan_cutters.scene.conditions import tool_of
 from tests.support.reference import random_frame
 from tests.support.tool_reference import KINDS, Reference, in_row, random_cutter
@@ -31,16 +31,16 @@ def stood(rng, tool, reference, n):
     """n postures of a tool in one mode: bodies (n, 14), tips (n, 3) and frames (n, 3, 3), and the mode."""
     mode = rng.integers(len(tool.mode))
     low, high = tool.mode[mode, 2:4]
-    bodies, tips, frames = np.empty((n, hit.BODY)), np.empty((n, 3)), np.empty((n, 3, 3))
+    bodies, tips, frames = np.empty((n, apart.BODY)), np.empty((n, 3)), np.empty((n, 3, 3))
     # A few postures serve many triangles.
     for i in range(0, n, 50):
         normal, direction = random_frame(rng)
         tilt = float(rng.choice([rng.uniform(low, high), low, high], p=[0.8, 0.1, 0.1]))
         contact, some = rng.normal(0, 5, 3), slice(i, i + 50)
-        body, left = np.empty(hit.BODY), np.cross(normal, direction)
+        body, left = np.empty(apart.BODY), np.cross(normal, direction)
         # At an end of the range another mode touches the same place.
         hit.stand(body, Frame(contact, normal, direction, left), math.cos(tilt), math.sin(tilt), *tool.mode[mode, :2])
-        body[hit.P : hit.P + 3] = contact + tool.mode[mode, 1] * normal
+        body[apart.P : apart.P + 3] = contact + tool.mode[mode, 1] * normal
         bodies[some] = body
         tips[some], frames[some] = reference.frame(contact, normal, direction, tilt, 0.5 * (low + high))
     return bodies, tips, frames, mode

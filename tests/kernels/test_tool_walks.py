@@ -10,7 +10,7 @@ from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.holder import Stage
 from plan_cutters.domain.nesting import inside
 from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.tool import extrusion, hit
+from plan_cutters.kernels.tool import apart, extrusion, hit
 from plan_cutters.scene.conditions import tool_of
 from tests.support import waves
 from tests.support.tool_reference import KINDS, Reference, in_row, random_cutter
@@ -23,7 +23,7 @@ def stood(rng, made):
     """A body of a tool in a mode, at the origin of a frame: body, mode, tilt."""
     mode = rng.integers(len(made.mode))
     tilt = rng.uniform(*made.mode[mode, 2:4])
-    body = np.empty(hit.BODY)
+    body = np.empty(apart.BODY)
     hit.stand(body, Frame(np.zeros(3), UP, ALONG, LEFT), math.cos(tilt), math.sin(tilt), *made.mode[mode, :2])
     return body, mode, tilt
 
@@ -77,7 +77,7 @@ def test_no_piece_is_dropped_into_which_a_point_of_a_box_reaches(kind, long):
             shares[:150, side] = np.clip(at + 20.0 / half[side] * rng.uniform(-1, 1, 150), -1, 1)
         points = box[0, :3] + (shares * half) @ sides
         rate = rng.choice([0.0, 10.0 ** rng.uniform(-3, -0.5)])
-        mask = hit.alive(box, 0, body, made.piece[mode], (1 << made.piece.shape[1]) - 1, rate)
+        mask = apart.alive(box, 0, body, made.piece[mode], (1 << made.piece.shape[1]) - 1, rate)
         # Turned within the rate, too.
         for turn in {0.0, -rate, 0.4 * rate, rate}:
             q, w = seen(points, made, mode, tilt + turn)
@@ -118,7 +118,7 @@ def test_a_tool_drawn_out_meets_every_triangle_that_reaches_into_it(kind):
         made = assembly(random_cutter(rng, kind), 0.02, -0.01)
         body, mode, tilt = stood(rng, made)
         half = rng.choice([0.0, 10.0 ** rng.uniform(-2, 1)])
-        body[hit.HALF] = half
+        body[apart.HALF] = half
         size = 10.0 ** rng.uniform(-2, 1)
         corner = near(rng, made, mode, tilt, size) + size * rng.standard_normal((3, 3)) * 10.0 ** rng.uniform(-2, 0, 3)
         corner[:, 1] += rng.uniform(-1.2, 1.2) * half

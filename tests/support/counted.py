@@ -10,10 +10,10 @@ from plan_cutters.kernels import material
 from plan_cutters.kernels.linear import lanes, vectors
 from plan_cutters.kernels.maps import cuts, free_map, intervals, passes
 from plan_cutters.kernels.search import place, search, sweep
-from plan_cutters.kernels.tool import arcs, hit, pieces, tool_arcs
+from plan_cutters.kernels.tool import apart, arcs, hit, pieces, tool_arcs
 
 MODULES = (
-    arcs, cuts, free_map, intervals, hit, lanes, material, passes, pieces, place, search, sweep, tool_arcs, vectors,
+    apart, arcs, cuts, free_map, intervals, hit, lanes, material, passes, pieces, place, search, sweep, tool_arcs, vectors,
 )  # fmt: skip
 
 

@@ -73,9 +73,7 @@ def least_stick_out(
     return stick_out if limiting < 0 else _limited(ready, cutter, search, stick_out, beyond, limiting)
 
 
-def _limited(
-    ready: Prepared, cutter: Cutter, search: "_Search", stick_out: StickOut, beyond: float, row: int
-) -> StickOut:
+def _limited(ready: Prepared, cutter: Cutter, search: "_Search", stick_out: StickOut, beyond: float, row: int) -> StickOut:
     """With the posture and the obstacle of the sample that limits it, and the verdict there with a shorter one."""
     shorter = judge(ready, held(cutter, beyond), np.array([row]))
     posture, one = search.found, slice(row, row + 1)

@@ -265,7 +265,7 @@ def _slack(cutter: Cutter, inset: float, bands: list[Band], kind: Kind) -> float
     elif bands:
         # Sides that lean end at their seam's height though their normals there do not lie along it.
         most = max(most, inset * (1.0 - math.cos(top)))
-        if bands[0].stage.radius - bands[0].inset < top_radius(cutter) - inset:
+        if bands[0].stage.radius < top_radius(cutter):
             # What runs down into the flutes holds what is neither near enough to it nor deep enough about its edge.
             most = max(most, 0.5 * (inset + min(0.0, bands[0].inset)))
         if cutter.shape == "lollipop":

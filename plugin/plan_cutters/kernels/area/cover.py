@@ -20,7 +20,7 @@ from plan_cutters.kernels.linear.vectors import cross, dot, perpendicular
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search.place import mode_at
 from plan_cutters.kernels.tool import hit
-from plan_cutters.kernels.tool.hit import BODY, HALF, OFFSET, A, P, X, Y
+from plan_cutters.kernels.tool.apart import BODY, HALF, OFFSET, A, P, X, Y
 
 #: The smallest patch that is thought of, as a share of the one at hand.
 _SMALLEST = 1.0 / 4.0

@@ -12,8 +12,8 @@ from plan_cutters.kernels.codes import ARC, BOTTOM, COLUMNS, CONE, HIGH, KIND, L
 from plan_cutters.kernels.jit import kernel
 from plan_cutters.kernels.rows import Scratch
 from plan_cutters.kernels.tool import hit
+from plan_cutters.kernels.tool.apart import BODY, HALF, P, alive
 from plan_cutters.kernels.tool.extrusion import extruded_hit
-from plan_cutters.kernels.tool.hit import BODY, HALF, P
 
 #: Bodies of a patch: the whole, and pieces of it along the tilt direction, 2, 6 and 18.
 BODIES = 27
@@ -174,7 +174,7 @@ def first_in_the_way(hint, nose, flutes, whole, frame, face, tree, triangle_face
         top -= 1
         node = stack[top]
         workspace.scratch.looked[0] += 1
-        mask = hit.alive(box, node, workspace.bodies[0], workspace.pieces[0], masks[top], 0.0)
+        mask = alive(box, node, workspace.bodies[0], workspace.pieces[0], masks[top], 0.0)
         if mask == 0:
             continue
         if node < first:

@@ -12,8 +12,9 @@ from plan_cutters.kernels.maps.intervals import CF, CL, FIRST, INTERVALS, LAST, 
 from plan_cutters.kernels.maps.passes import _passes
 from plan_cutters.kernels.maps.planes import BOXES, ENDS, all_ends, distances, put_ends, triangles_clear
 from plan_cutters.kernels.rows import Scratch
+from plan_cutters.kernels.tool.apart import BODY
 from plan_cutters.kernels.tool.arcs import point_arc
-from plan_cutters.kernels.tool.hit import BODY, _swept_hit, scratch, stand, triangle_hit
+from plan_cutters.kernels.tool.hit import _swept_hit, scratch, stand, triangle_hit
 from plan_cutters.kernels.tool.pieces import inset
 from plan_cutters.kernels.tool.tool_arcs import ARCS, arc_about, closed, forbidden
 

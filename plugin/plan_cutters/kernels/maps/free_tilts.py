@@ -14,7 +14,8 @@ from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.linear.vectors import cross
 from plan_cutters.kernels.rows import Frame, Scratch
 from plan_cutters.kernels.search.place import arc_of, put
-from plan_cutters.kernels.tool.hit import BODY, scratch, tree_hit
+from plan_cutters.kernels.tool.apart import BODY
+from plan_cutters.kernels.tool.hit import scratch, tree_hit
 from plan_cutters.kernels.tool.tool_arcs import ARCS
 
 OPEN, FORBIDDEN, UNSURE = 0, 1, 2

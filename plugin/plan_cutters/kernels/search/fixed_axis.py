@@ -14,7 +14,8 @@ from plan_cutters.kernels.material import MAYBE_INSIDE
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search.place import inside, mode_at
 from plan_cutters.kernels.search.upright import PLACED, find_place, flat_workspace, place_to_direction
-from plan_cutters.kernels.tool.hit import BODY, scratch, stand, tree_hit
+from plan_cutters.kernels.tool.apart import BODY
+from plan_cutters.kernels.tool.hit import scratch, stand, tree_hit
 
 #: Sines of a tilt below which the axis is the normal, and leans nowhere.
 _UPRIGHT = 1e-12

@@ -30,8 +30,9 @@ from plan_cutters.kernels.limits import held_tilts, turn_of
 from plan_cutters.kernels.linear.vectors import dot, tilt_frame
 from plan_cutters.kernels.material import SURELY_INSIDE, in_known_ball, keep_ball, outside, touches, way_out, winding
 from plan_cutters.kernels.rows import Scratch
+from plan_cutters.kernels.tool.apart import BODY, OFFSET, A, P, X
 from plan_cutters.kernels.tool.arcs import local_gouge
-from plan_cutters.kernels.tool.hit import BODY, OFFSET, A, P, X, scratch, stand, tree_hit
+from plan_cutters.kernels.tool.hit import scratch, stand, tree_hit
 from plan_cutters.kernels.tool.tool_arcs import ARCS, arc_about, closed, forbidden
 
 #: A posture stands for the tilts that are so near, rad: no machine holds a tilt to 0.01 deg.

@@ -11,7 +11,8 @@ from plan_cutters.kernels.linear.vectors import cross, dot
 from plan_cutters.kernels.material import MAYBE_INSIDE
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search.place import inside, mode_at, straightened
-from plan_cutters.kernels.tool.hit import BODY, scratch, stand, tree_hit
+from plan_cutters.kernels.tool.apart import BODY
+from plan_cutters.kernels.tool.hit import scratch, stand, tree_hit
 
 
 @entry

@@ -48,7 +48,8 @@ from plan_cutters.kernels.search.place import (
     straightened,
 )
 from plan_cutters.kernels.search.sweep import NONE, UNFINISHED, WITHOUT_END, Side, both, memory, sweep, sweep_both
-from plan_cutters.kernels.tool.hit import BODY, scratch, stand, tree_hit
+from plan_cutters.kernels.tool.apart import BODY
+from plan_cutters.kernels.tool.hit import scratch, stand, tree_hit
 
 #: Between arcs of what is certainly in the way, intervals narrower than this are none: no machine holds a tilt to 0.01 deg. rad.
 _NO_INTERVAL = 1.7e-4

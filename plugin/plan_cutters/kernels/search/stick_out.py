@@ -13,7 +13,8 @@ from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.linear.vectors import cross
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search.place import mode_at, straightened
-from plan_cutters.kernels.tool.hit import BODY, OFFSET, A, P, X, Y, half_width, into_frame, scratch, stand
+from plan_cutters.kernels.tool.apart import BODY, OFFSET, A, P, X, Y, half_width
+from plan_cutters.kernels.tool.hit import into_frame, scratch, stand
 
 V0, V1, Q0, Q1 = 0, 1, 2, 3
 

@@ -16,7 +16,8 @@ from plan_cutters.kernels.jit import entry, kernel, maker
 from plan_cutters.kernels.linear.vectors import cross
 from plan_cutters.kernels.rows import Scratch
 from plan_cutters.kernels.search.place import inside, mode_at
-from plan_cutters.kernels.tool.hit import BODY, HALF, OFFSET, A, P, X, Y, deep_hit, into_frame, scratch
+from plan_cutters.kernels.tool.apart import BODY, HALF, OFFSET, A, P, X, Y
+from plan_cutters.kernels.tool.hit import deep_hit, into_frame, scratch
 from plan_cutters.kernels.tool.pieces import clipped, shadow_area
 
 #: What a place is: none, none that could be (proved), or one where the tool was put down.

@@ -8,7 +8,8 @@ import numpy as np
 
 from plan_cutters.kernels.codes import BOTTOM, CYLINDER, HIGH, KIND, LOW, RADIUS, TOP, WIDE
 from plan_cutters.kernels.jit import kernel
-from plan_cutters.kernels.tool.hit import HALF, into_frame
+from plan_cutters.kernels.tool.apart import HALF
+from plan_cutters.kernels.tool.hit import into_frame
 from plan_cutters.kernels.tool.pieces import clipped, polygon_hit, shadow_area
 
 

@@ -15,28 +15,11 @@ turns the tool about that line, and turning by at most `rate` moves Q by no more
 
 import numpy as np
 
-from plan_cutters.kernels.codes import (
-    ARC,
-    BOTTOM,
-    CENTRE,
-    CYLINDER,
-    DIAGONAL,
-    HALVES,
-    HIGH,
-    KIND,
-    LOW,
-    RADIUS,
-    ROUND,
-    SCALE,
-    SIDES,
-    SLOPE,
-    TOP,
-)
+from plan_cutters.kernels.codes import BOTTOM, CENTRE, HIGH, LOW, TOP
 from plan_cutters.kernels.jit import kernel, maker
 from plan_cutters.kernels.rows import Scratch
-from plan_cutters.kernels.tool.pieces import clipped, inset, polygon_hit, support
-
-P, A, X, Y, OFFSET, HALF, BODY = 0, 3, 6, 9, 12, 13, 14
+from plan_cutters.kernels.tool.apart import HALF, OFFSET, A, P, X, Y, alive, stays
+from plan_cutters.kernels.tool.pieces import clipped, inset, polygon_hit
 
 
 @maker
@@ -46,9 +29,6 @@ def scratch():
         np.empty(64, np.int64), np.empty(64, np.int64), np.empty((3, 3)), np.empty((4, 3)), np.empty((8, 3)), np.empty((8, 3)),
         np.empty((64, 3, 3)), np.zeros(1, np.int64), np.empty((64, 5)), np.zeros(2, np.int64),
     )  # fmt: skip
-
-#: A box is long where it is longer than the tool is wide, and its sides differ so many times.
-_LONG = 3.0
 
 
 @kernel
@@ -64,189 +44,6 @@ def stand(body, frame, tilt_cos, tilt_sin, offset, rise):
         body[X + k] = tilt_cos * f[k] - tilt_sin * n[k]
         body[Y + k] = t[k]
     body[OFFSET], body[HALF] = offset, 0.0
-
-
-@kernel
-def half_width(box, i, x, y, z):
-    """Half the extent of box i along a unit direction."""
-    return (
-        box[i, HALVES] * abs(x * box[i, SIDES] + y * box[i, SIDES + 1] + z * box[i, SIDES + 2])
-        + box[i, HALVES + 1] * abs(x * box[i, SIDES + 3] + y * box[i, SIDES + 4] + z * box[i, SIDES + 5])
-        + box[i, HALVES + 2] * abs(x * box[i, SIDES + 6] + y * box[i, SIDES + 7] + z * box[i, SIDES + 8])
-    )
-
-
-@kernel
-def _thin_apart(box, i, body, piece, k, grow, dx, dy, dz):
-    """Whether a plane across the box's third side, the thin one, parts it from piece k."""
-    mx, my, mz = box[i, SIDES + 6], box[i, SIDES + 7], box[i, SIDES + 8]
-    along = mx * body[A] + my * body[A + 1] + mz * body[A + 2]
-    side = mx * body[X] + my * body[X + 1] + mz * body[X + 2]
-    sideways = mx * body[Y] + my * body[Y + 1] + mz * body[Y + 2]
-    apart = mx * dx + my * dy + mz * dz + body[OFFSET] * side
-    across = np.sqrt(max(0.0, 1.0 - along * along))
-    if piece[k, KIND] == CYLINDER:
-        low, high = piece[k, LOW] - grow, piece[k, HIGH] + grow
-        apart = abs(apart - 0.5 * (low + high) * along)
-        extent = 0.5 * (high - low) * abs(along) + (piece[k, RADIUS] + grow) * across + body[HALF] * abs(sideways)
-        return apart > extent + box[i, HALVES + 2] + 1e-9
-    if apart < 0.5 * (piece[k, BOTTOM] + piece[k, TOP]) * along:
-        apart, along = -apart, -along
-    # Widened, a piece with square edges goes as far as in any direction along the axis and across it together.
-    extent = support(piece, k, along, across) + grow * (abs(along) + across) + body[HALF] * abs(sideways)
-    return apart > extent + box[i, HALVES + 2] + 1e-9
-
-
-@kernel
-def _stays(body, piece, k):
-    """Whether turning leaves piece k where it is: a whole ball about the line of turning."""
-    return (
-        piece[k, KIND] == ARC
-        and piece[k, RADIUS] == 0.0
-        and body[OFFSET] == 0.0
-        and piece[k, SLOPE] == 0.0
-        and piece[k, BOTTOM] == -piece[k, ROUND]
-        and piece[k, TOP] == piece[k, ROUND]
-    )
-
-
-@kernel
-def alive(box, i, body, piece, mask, rate):
-    """Those of the pieces of a mask into which a point of box i may reach: the others are parted from it by a slab or a plane."""
-    dx, dy, dz = box[i, CENTRE] - body[P], box[i, CENTRE + 1] - body[P + 1], box[i, CENTRE + 2] - body[P + 2]
-    diagonal = box[i, DIAGONAL]
-    widening = 0.0
-    height = dx * body[A] + dy * body[A + 1] + dz * body[A + 2]
-    across = dx * body[X] + dy * body[X + 1] + dz * body[X + 2]
-    if rate > 0.0:
-        widening = rate * (np.sqrt(height * height + across * across) + diagonal)
-    across += body[OFFSET]
-    sideways = dx * body[Y] + dy * body[Y + 1] + dz * body[Y + 2]
-    sideways -= min(body[HALF], max(-body[HALF], sideways))
-    square = across * across + sideways * sideways
-    extent = -1.0
-    for k in range(len(piece)):
-        if not (mask >> k) & 1:
-            continue
-        gone = 1 << k
-        grow = 0.0 if widening > 0.0 and _stays(body, piece, k) else widening
-        low, high = piece[k, BOTTOM] - grow, piece[k, TOP] + grow
-        if height + diagonal < low or height - diagonal > high:
-            mask ^= gone
-            continue
-        if height < low or height > high:
-            if extent < 0.0:
-                extent = half_width(box, i, body[A], body[A + 1], body[A + 2])
-            if height + extent < low or height - extent > high:
-                mask ^= gone
-                continue
-        if piece[k, KIND] == CYLINDER:
-            radius = piece[k, RADIUS] + grow
-            if square > radius * radius:
-                if square > (radius + diagonal) * (radius + diagonal):
-                    mask ^= gone
-                    continue
-                distance = np.sqrt(square)
-                ux, uy = across / distance, sideways / distance
-                wide = half_width(
-                    box, i, ux * body[X] + uy * body[Y], ux * body[X + 1] + uy * body[Y + 1], ux * body[X + 2] + uy * body[Y + 2]
-                )
-                if distance - wide > radius:
-                    mask ^= gone
-                    continue
-        elif _beyond(box, i, body, piece, k, grow, height, across, sideways, square):
-            mask ^= gone
-            continue
-        if _thin_apart(box, i, body, piece, k, grow, dx, dy, dz):
-            mask ^= gone
-    if mask == 0 or diagonal < piece[0, RADIUS] + piece[0, ROUND] or rate > 0.0 or body[HALF] > 0.0:
-        return mask
-    return _passed(box, i, body, piece, mask, height, across, sideways)
-
-
-@kernel
-def _passed(box, i, body, piece, mask, height, across, sideways):
-    """Those of the pieces of a mask that no plane parts from a box i if that is long; with its centre in the tool's frame.
-
-    The box of long thin triangles may pass by a tool though its centre is far away: seen from there nothing parts them. So the
-    plane is taken where the middle line along the box comes nearest to the piece.
-    """
-    long = 0 if box[i, HALVES] >= box[i, HALVES + 1] else 1
-    half, at = box[i, HALVES + long], SIDES + 3 * long
-    if half < _LONG * box[i, HALVES + 1 - long]:
-        return mask
-    sx, sy, sz = box[i, at], box[i, at + 1], box[i, at + 2]
-    up = sx * body[A] + sy * body[A + 1] + sz * body[A + 2]
-    side = sx * body[X] + sy * body[X + 1] + sz * body[X + 2]
-    out = sx * body[Y] + sy * body[Y + 1] + sz * body[Y + 2]
-    for k in range(len(piece)):
-        if not (mask >> k) & 1:
-            continue
-        along, square = across * side + sideways * out, side * side + out * out
-        if piece[k, KIND] == ARC:
-            along, square = along + (height - piece[k, SLOPE]) * up, 1.0
-        t = min(half, max(-half, -along / square)) if square > 1e-12 else 0.0
-        x, y, z = across + t * side, sideways + t * out, height + t * up
-        q = np.sqrt(x * x + y * y)
-        if not q > 0.0:
-            continue
-        ux, uy, uz, over = x / q, y / q, 0.0, q - piece[k, RADIUS]
-        if piece[k, KIND] == ARC:
-            r, away = max(0.0, over), z - piece[k, SLOPE]
-            value = np.sqrt(r * r + away * away)
-            over = value - piece[k, ROUND]
-            if not over > 0.0:
-                continue
-            ux, uy, uz = ux * r / value, uy * r / value, away / value
-        elif piece[k, KIND] != CYLINDER:
-            scale = piece[k, SCALE]
-            over = (over - piece[k, SLOPE] * (z - piece[k, LOW])) * scale
-            ux, uy, uz = scale * ux, scale * uy, -piece[k, SLOPE] * scale
-        # How far a point is out of a convex piece is no less than its tangent says: at the centre, and about it.
-        over -= t * (ux * side + uy * out + uz * up)
-        if over > 0.0 and over > half_width(
-            box,
-            i,
-            uz * body[A] + ux * body[X] + uy * body[Y],
-            uz * body[A + 1] + ux * body[X + 1] + uy * body[Y + 1],
-            uz * body[A + 2] + ux * body[X + 2] + uy * body[Y + 2],
-        ):
-            mask ^= 1 << k
-    return mask
-
-
-@kernel
-def _beyond(box, i, body, piece, k, grow, height, across, sideways, square):
-    """Whether box i lies beyond a cone or an arc: a convex function is no less than its tangent at the box's centre."""
-    q = np.sqrt(square)
-    if piece[k, KIND] == ARC:
-        r, away = max(0.0, q - piece[k, RADIUS]), height - piece[k, SLOPE]
-        value = np.sqrt(r * r + away * away)
-        over = value - piece[k, ROUND] - grow
-        if over <= 0.0:
-            return False
-        out, up = r / value, away / value
-    else:
-        over = (q - piece[k, RADIUS] - piece[k, SLOPE] * (height - piece[k, LOW])) * piece[k, SCALE] - grow
-        if over <= 0.0:
-            return False
-        out, up = piece[k, SCALE], -piece[k, SLOPE] * piece[k, SCALE]
-    if over > box[i, DIAGONAL]:
-        return True
-    ux, uy = 1.0, 0.0
-    if q > 0.0:
-        ux, uy = out * across / q, out * sideways / q
-    elif out > 0.0:
-        # On the axis a cone has no tangent but its own height's.
-        return False
-    wide = half_width(
-        box,
-        i,
-        up * body[A] + ux * body[X] + uy * body[Y],
-        up * body[A + 1] + ux * body[X + 1] + uy * body[Y + 1],
-        up * body[A + 2] + ux * body[X + 2] + uy * body[Y + 2],
-    )
-    return over > wide
 
 
 @kernel
@@ -299,7 +96,7 @@ def triangle_hit(vertex, i, body, piece, mask, rate, scratch):
     if total - total != 0.0:
         return 0, 0.0, 0.0, 0.0
     for k in range(len(piece)):
-        grow = 0.0 if widening > 0.0 and _stays(body, piece, k) else widening
+        grow = 0.0 if widening > 0.0 and stays(body, piece, k) else widening
         if not (mask >> k) & 1 or most <= piece[k, BOTTOM] - grow or least >= piece[k, TOP] + grow:
             continue
         low, high = piece[k, LOW] - grow, piece[k, HIGH] + grow
