@@ -150,7 +150,7 @@ def test_with_a_proposed_setup_the_option_names_it(tmp_path):
     files = [tmp_path / f"setup-{number}.toml" for number in (1, 2)]
     assert brackets(slotted(), *SLOT, most=1, has=[f"--setup {file}" for file in files], folder=tmp_path) == 1
     assert all('fixtures = ["vise:' in file.read_text() for file in files)
-    assert {"plan.json", "setup-1.toml", "setup-2.toml"} <= {file.name for file in tmp_path.iterdir()}
+    assert sorted(file.name for file in tmp_path.iterdir()) == ["plan.json", "process.toml", "setup-1.toml", "setup-2.toml"]
 
 
 def test_with_several_proposed_setups_in_no_file_no_option_is_said_that_would_not_keep_its_word():

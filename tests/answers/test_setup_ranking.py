@@ -113,7 +113,13 @@ def test_a_proposal_stands_on_faces_and_holds_what_it_promised():
     assert first.stands_on != second.stands_on
     assert tuple(found.plan.effective.setup) == tuple(first.axis)
     assert found.plan.effective.placement.clamped == first.stands_on
+    assert [each.name for each in found.plan.fixtures] == ["fixture:table", "fixture:table"]
     assert "setup_proposed" in found.plan.note_codes
+    told = story_of(found.plan).proposal[0]
+    assert told.startswith(f"Proposed setups: 1 on {first.stands_on[0]}, with ")
+    assert f" 2 on {second.stands_on[0]}, with " in told
+    assert found.plan.process.left == []
+    assert said.found == pytest.approx(1.0)
     # By hand in the same two setups, each on a table of its own, the same is reached.
     places = [Placement(z=each.axis, clamped=tuple(each.stands_on), fixtures=(Fixture.parse("table"),)) for each in said.setups]
     again = plan(box(), setup=places[0], other_setups=places[1:], machine="trunnion-ac", **HOW)

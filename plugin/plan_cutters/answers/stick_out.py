@@ -103,10 +103,10 @@ class _Search:
     Attributes
     ----------
     found : VerdictBuffer
-        The shortest posture known of each sample.
+        A posture of each sample, the shortest one that was looked for.
     sure : (n,) float
-        From this stick-out on that posture stays free, with what a cover piece may hold too much and `BEYOND` to spare, mm: so
-        that a judgement finds it, or another one. No search is made with more. Infinite where none is known.
+        From this stick-out on a posture that was found stays free, with what a cover piece may hold too much and `BEYOND` to
+        spare, mm: so that a judgement finds it, or another one. No search is made with that or more. Infinite where none is known.
     """
 
     def __init__(self, ready: Prepared, cutter: Cutter, verdicts: Verdicts, progress: Progress) -> None:
@@ -125,9 +125,9 @@ class _Search:
     def _take(self, rows: NDArray[np.int64], posture: VerdictBuffer) -> None:
         """Take postures of some samples where they stay free from a shorter stick-out on than those that are known."""
         needed = self.needed(rows, posture, self.floor - self._spare)[0][rows] + self._spare
-        shorter = rows[needed < np.minimum(self.sure[rows], self.cutter.length)]
-        self.found.take_posture(shorter, posture)
-        self.sure[rows] = np.minimum(self.sure[rows], np.where(needed < self.cutter.length, needed, np.inf))
+        sooner = needed < np.minimum(self.sure[rows], self.cutter.length)
+        self.found.take_posture(rows[sooner], posture)
+        self.sure[rows[sooner]] = needed[sooner]
 
     def missed(self, rows: NDArray[np.int64], stick_out: float) -> NDArray[np.int64]:
         """Those of some samples that a judgement does not reach with a stick-out; it is asked where nothing is sure."""

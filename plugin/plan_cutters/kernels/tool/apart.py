@@ -155,47 +155,53 @@ def _passed(box, i, body, piece, mask, height, across, sideways):
         q = np.sqrt(x * x + y * y)
         if not q > 0.0:
             continue
-        ux, uy, uz, over = x / q, y / q, 0.0, q - piece[k, RADIUS]
-        if piece[k, KIND] == ARC:
-            r, away = max(0.0, over), z - piece[k, SLOPE]
-            value = np.sqrt(r * r + away * away)
-            over = value - piece[k, ROUND]
-            if not over > 0.0:
-                continue
-            ux, uy, uz = ux * r / value, uy * r / value, away / value
-        elif piece[k, KIND] != CYLINDER:
-            scale = piece[k, SCALE]
-            over = (over - piece[k, SLOPE] * (z - piece[k, LOW])) * scale
-            ux, uy, uz = scale * ux, scale * uy, -piece[k, SLOPE] * scale
-        # How far a point is out of a convex piece is no less than its tangent says: at the centre, and about it.
-        over -= t * (ux * side + uy * out + uz * up)
-        if over > 0.0 and over > half_width(
-            box,
-            i,
-            uz * body[A] + ux * body[X] + uy * body[Y],
-            uz * body[A + 1] + ux * body[X + 1] + uy * body[Y + 1],
-            uz * body[A + 2] + ux * body[X + 2] + uy * body[Y + 2],
-        ):
+        over, out_of, up_of = _tangent(piece, k, z, q)
+        ux, uy = out_of * x / q, out_of * y / q
+        # At the centre, and about it.
+        over -= t * (ux * side + uy * out + up_of * up)
+        if over > 0.0 and over > _half_width_there(box, i, body, up_of, ux, uy):
             mask ^= 1 << k
     return mask
 
 
 @kernel
-def _beyond(box, i, body, piece, k, grow, height, across, sideways, square):
-    """Whether box i lies beyond a cone or an arc: a convex function is no less than its tangent at the box's centre."""
-    q = np.sqrt(square)
+def _tangent(piece, k, height, q):
+    """How far a point is out of piece k beside its ends, and how that grows across the axis and along it.
+
+    It is convex: anywhere no less than this tangent. Within an arc no growth is told.
+    """
+    if piece[k, KIND] == CYLINDER:
+        return q - piece[k, RADIUS], 1.0, 0.0
     if piece[k, KIND] == ARC:
         r, away = max(0.0, q - piece[k, RADIUS]), height - piece[k, SLOPE]
         value = np.sqrt(r * r + away * away)
-        over = value - piece[k, ROUND] - grow
-        if over <= 0.0:
-            return False
-        out, up = r / value, away / value
-    else:
-        over = (q - piece[k, RADIUS] - piece[k, SLOPE] * (height - piece[k, LOW])) * piece[k, SCALE] - grow
-        if over <= 0.0:
-            return False
-        out, up = piece[k, SCALE], -piece[k, SLOPE] * piece[k, SCALE]
+        if value <= piece[k, ROUND]:
+            return value - piece[k, ROUND], 0.0, 0.0
+        return value - piece[k, ROUND], r / value, away / value
+    over = (q - piece[k, RADIUS] - piece[k, SLOPE] * (height - piece[k, LOW])) * piece[k, SCALE]
+    return over, piece[k, SCALE], -piece[k, SLOPE] * piece[k, SCALE]
+
+
+@kernel
+def _half_width_there(box, i, body, up, x, y):
+    """`half_width` along a direction in the frame of a tool."""
+    return half_width(
+        box,
+        i,
+        up * body[A] + x * body[X] + y * body[Y],
+        up * body[A + 1] + x * body[X + 1] + y * body[Y + 1],
+        up * body[A + 2] + x * body[X + 2] + y * body[Y + 2],
+    )
+
+
+@kernel
+def _beyond(box, i, body, piece, k, grow, height, across, sideways, square):
+    """Whether box i lies beyond a cone or an arc, by the tangent at the box's centre."""
+    q = np.sqrt(square)
+    over, out, up = _tangent(piece, k, height, q)
+    over -= grow
+    if over <= 0.0:
+        return False
     if over > box[i, DIAGONAL]:
         return True
     ux, uy = 1.0, 0.0
@@ -204,11 +210,4 @@ def _beyond(box, i, body, piece, k, grow, height, across, sideways, square):
     elif out > 0.0:
         # On the axis a cone has no tangent but its own height's.
         return False
-    wide = half_width(
-        box,
-        i,
-        up * body[A] + ux * body[X] + uy * body[Y],
-        up * body[A + 1] + ux * body[X + 1] + uy * body[Y + 1],
-        up * body[A + 2] + ux * body[X + 2] + uy * body[Y + 2],
-    )
-    return over > wide
+    return over > _half_width_there(box, i, body, up, ux, uy)
