@@ -106,7 +106,7 @@ class _Search:
         A posture of each sample, the shortest one that was looked for.
     sure : (n,) float
         From this stick-out on a posture that was found stays free, with what a cover piece may hold too much and `BEYOND` to
-        spare, mm: so that a judgement finds it, or another one. No search is made with that or more. Infinite where none is known.
+        spare, mm: so that a judgement finds it, or another one. With that or more no search is made. Infinite: none is known.
     """
 
     def __init__(self, ready: Prepared, cutter: Cutter, verdicts: Verdicts, progress: Progress) -> None:
