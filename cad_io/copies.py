@@ -179,15 +179,15 @@ class SideProcess(Generic[Done]):
         """Whether there is a copy: then this process should do something else before it asks for the result."""
         return self._copy is not None
 
-    def result(self, here: Callable[[], Done] | None = None) -> Done:
+    def result(self, here: Callable[[], Done] | None = None, waiting: Callable[[], None] | None = None) -> Done:
         """Return the result of the call.
 
         Where the copy gives none, this process makes the call itself: `here` in its place, if that is given, which may
-        report its progress.
+        report its progress. `waiting` is called about once a second for as long as the copy is waited for.
         """
         if self._copy is not None:
             try:
-                for answer in self._copy.answers():
+                for answer in self._copy.answers(waiting):
                     return cast(Done, answer)
             except TimeoutError:
                 pass

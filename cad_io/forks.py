@@ -8,6 +8,7 @@ import contextlib
 import ctypes
 import faulthandler
 import math
+import mmap
 import os
 import pickle
 import select
@@ -26,6 +27,7 @@ _PARENT_LOOK = 0.1
 _LOOK, _ASLEEP = 1.0, 60
 #: Answers begin with their length in bytes.
 _LENGTH = struct.Struct("<q")
+_COUNTS = struct.Struct("<qq")
 
 
 class Copy:
@@ -114,16 +116,27 @@ class Copy:
                 yield part
         raise TimeoutError
 
-    def answers(self) -> Iterator[Any]:
+    def answers(self, waiting: Callable[[], None] | None = None) -> Iterator[Any]:
         """Yield what it tells by `tell`, as it comes, until it ends: half an answer is none.
+
+        Parameters
+        ----------
+        waiting : callable, optional
+            Called about once a second for as long as the copy works.
 
         Raises
         ------
         TimeoutError
             It sleeps and does nothing.
         """
-        data = bytearray()
-        for part in self.parts():
+        data, late = bytearray(), _stuck(self._child)
+
+        def looked() -> float:
+            if waiting is not None:
+                waiting()
+            return late()
+
+        for part in self.parts(looked):
             data += part
             while len(data) >= _LENGTH.size:
                 whole = _LENGTH.size + _LENGTH.unpack_from(data)[0]
@@ -131,6 +144,23 @@ class Copy:
                     break
                 yield pickle.loads(bytes(data[_LENGTH.size : whole]))
                 del data[:whole]
+
+
+class Gauge:
+    """How far the work is, in memory that a process and its copies share: who tells it never waits for who reads it."""
+
+    def __init__(self) -> None:
+        self._memory = mmap.mmap(-1, _COUNTS.size)
+
+    def tell(self, done: int, total: int) -> None:
+        """Say how many pieces are done, of how many."""
+        _COUNTS.pack_into(self._memory, 0, done, total)
+
+    @property
+    def counts(self) -> tuple[int, int]:
+        """Pieces that are done, and all of them; (0, 0) before anything was told."""
+        done, total = _COUNTS.unpack_from(self._memory)
+        return min(done, total), total  # it may be told just now
 
 
 def end_within(seconds: float) -> None:

@@ -11,6 +11,7 @@ import numpy as np
 
 from cad_io import Part, read_part
 from cad_io.copies import SideProcess
+from cad_io.forks import Gauge
 from cad_io.part.patterns import patterns
 from cad_io.read.read import TIMEOUT
 from cad_io.tessellate.triangles import At
@@ -19,6 +20,7 @@ from plan_cutters.answers.least_set import least_set
 from plan_cutters.document.clock import Clock, Progress
 from plan_cutters.document.notes import noted
 from plan_cutters.document.operations_entry import with_motion
+from plan_cutters.document.over_setups import OtherSetup
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
@@ -47,6 +49,7 @@ from plan_cutters.scene.question import question
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.setups import conditions_of, fixtures_of, places, with_setups
 from plan_cutters.scene.spacing import affordable, sampled, spacing_key
+from plan_cutters.scene.threads import part_of
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.cached_judge import CachedJudge
 from plan_cutters.stages.classify import classify, regions
@@ -155,7 +158,7 @@ def _judge(begun: Callable[..., Prepared], part: Any, options: Options, clock: C
             began = time.perf_counter()
             here[cutter] = judged(ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell, work=searched)
             seconds[cutter] = time.perf_counter() - began
-    others = [(axis, _in_other_setup(ready, here, k, clock, judged)) for k, axis in enumerate(options.other_setups, 1)]
+    others = _in_other_setups(ready, here, clock, judged) if options.other_setups else []
     return JudgedPart.of(ready, here, others, seconds, clock, searched, started, once.carried)
 
 
@@ -186,16 +189,19 @@ def _completed(
     job = partial(_operations, part, answers.least_set)
     # Answers and operations need nothing of each other, and neither keeps all threads at work.
     both = options.jobs > 1 and options.operations is not None and bool(options.answers)
-    with SideProcess(partial(job, Clock()), _PLANNING, worth=both) as side:
+    planned = Gauge()
+    with SideProcess(partial(job, Clock(lambda _, *counts: planned.tell(*counts))), _PLANNING, worth=both) as side:
         answers = ask(part.ready, part.here, clock.stage, part.other_setups, least=answers.least_set)
         done(2)
         if side.works:
-            with clock.stage("operations"):
-                operations, watch = side.result(partial(job, Clock()))
-            clock.seconds |= watch.seconds
-            clock.boxes |= watch.boxes
+            with clock.stage("operations") as tell:
+                operations, seconds, boxes = side.result(
+                    partial(job, Clock(clock.progress)), waiting=lambda: tell(*planned.counts)
+                )
+            clock.seconds |= seconds
+            clock.boxes |= boxes
         else:
-            operations, _ = job(clock)
+            operations, *_ = job(clock)
         answers = replace(answers, operations=operations)
     done(3)
     result = assembled(part, clock, answers, between)
@@ -206,13 +212,15 @@ def _completed(
     return result
 
 
-def _operations(part: JudgedPart, least: LeastSet | None, clock: Clock) -> tuple[Operations | None, Clock]:
-    """Plan the operations, if that was requested; with the clock that it was timed by."""
+def _operations(
+    part: JudgedPart, least: LeastSet | None, clock: Clock
+) -> tuple[Operations | None, Mapping[str, float], Mapping[str, int]]:
+    """Plan the operations, if that was requested; with the seconds and the boxes of each stage so far."""
     if part.ready.options.operations is None:
-        return None, clock
+        return None, {}, {}
     from plan_cutters.operations.planning import plan_operations
 
-    return plan_operations(part.ready, part.everywhere(), least, clock.stage), clock
+    return plan_operations(part.ready, part.everywhere(), least, clock.stage), clock.seconds, clock.boxes
 
 
 def _mapped(result: Result, part: JudgedPart, clock: Clock, compiling: Callable[[str], None]) -> Result:
@@ -240,15 +248,18 @@ def _mapped(result: Result, part: JudgedPart, clock: Clock, compiling: Callable[
     return replace(result, plan=clock.stamp(with_text(document)), maps=maps)
 
 
-def _in_other_setup(
-    ready: Prepared, here: Mapping[Cutter, Verdicts], setup: int, clock: Clock, judged: Judge
-) -> dict[str, Verdicts]:
-    """Find the verdicts of each cutter in another setup."""
-    by_cutter = {}
-    for cutter, verdicts in here.items():
-        with clock.stage("setups") as tell:
-            by_cutter[cutter.id] = in_setup(ready, cutter, setup, verdicts, progress=tell, judged=judged)
-    return by_cutter
+def _in_other_setups(ready: Prepared, here: Mapping[Cutter, Verdicts], clock: Clock, judged: Judge) -> list[OtherSetup]:
+    """Find the verdicts of each cutter in each other setup."""
+    axes, found = ready.options.other_setups, list[OtherSetup]()
+    with clock.stage("setups") as tell:
+        for k, axis in enumerate(axes):
+            done = partial(part_of, tell, parts=len(axes) * len(here))
+            by_cutter = {
+                cutter.id: in_setup(ready, cutter, k + 1, verdicts, progress=done(k * len(here) + n), judged=judged)
+                for n, (cutter, verdicts) in enumerate(here.items())
+            }
+            found.append((axis, by_cutter))
+    return found
 
 
 def prepare(

@@ -1,11 +1,14 @@
 """Answers and operations that were asked for together are made side by side, and are those that are made one after the other."""
 
 import json
+import os
+import time
 
 import pytest
 
 from cad_io import copies
-from plan_cutters import plan
+from plan_cutters import pipeline, plan
+from plan_cutters.domain.answers import Answers
 from tests.support.places import SAMPLES
 
 WORDS = {"cutters": ["R4L30", "R2L30"], "machine": "trunnion-ac", "fixtures": "table", "holder": "er16", "feed": 1000.0,
@@ -26,15 +29,43 @@ def in_turn(tmp_path_factory):
     return document(tmp_path_factory.mktemp("turn"), jobs=1)
 
 
-def test_they_are_those_that_are_made_one_after_the_other(tmp_path, in_turn):
+def test_they_are_those_that_are_made_one_after_the_other(tmp_path, in_turn, monkeypatch):
+    copied = pipeline._operations
+    here = os.getpid()
+
+    def planned(part, least, clock):
+        assert os.getpid() != here, "the copy gave no answer: all was planned twice"
+        return copied(part, least, clock)
+
+    monkeypatch.setattr(pipeline, "_operations", planned)
     seconds, beside = document(tmp_path, jobs=2)
     assert beside == in_turn[1]
     assert {"stick-out", "mend", "operations"} <= set(seconds) & set(in_turn[0])
 
 
 def test_a_copy_that_dies_is_made_up_for(tmp_path, in_turn, monkeypatch):
-    monkeypatch.setattr(copies.SideProcess, "result", lambda self, here=None: (self.__exit__(), (here or self._call)())[1])
+    monkeypatch.setattr(
+        copies.SideProcess, "result", lambda self, here=None, waiting=None: (self.__exit__(), (here or self._call)())[1]
+    )
     assert document(tmp_path, jobs=2)[1] == in_turn[1]
+
+
+def test_the_progress_of_the_copy_is_told_while_it_is_waited_for(monkeypatch):
+    told = []
+
+    def slow(ready, everywhere, least, stage):
+        with stage("operations") as tell:
+            for done in range(4):
+                time.sleep(1.5)
+                tell(done + 1, 5)
+
+    monkeypatch.setattr("plan_cutters.pipeline.ask", lambda *words, least, **more: Answers(least_set=least))
+    monkeypatch.setattr("plan_cutters.operations.planning.plan_operations", slow)
+    options = {**WORDS, "jobs": 2, "progress": lambda stage, done, total: told.append((stage, done, total))}
+    plan(SAMPLES / "blade.step", **options)
+    shares = [done / total for stage, done, total in told if stage == "operations" and 0 < done < total]
+    assert {0.2, 0.6} <= set(shares)
+    assert shares == sorted(shares)
 
 
 @pytest.mark.parametrize("stage", ["plan_cutters.pipeline.ask", "plan_cutters.operations.planning.plan_operations"])
