@@ -291,7 +291,8 @@ class FaceLabels(Record):
 
 
 class Style(NamedTuple):
-    """Name and sRGB colour (0 to 1) that a piece of a face gets in a written file."""
+    """Name and sRGB colour (0 to 1) that a piece of a face gets in a written file, and the name that all of its kind share."""
 
     name: str
     rgb: tuple[float, float, float]
+    kind: str = ""

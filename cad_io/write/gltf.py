@@ -1,7 +1,8 @@
 """A split part as GLB: metres, Y up, one node a face of the part and below it one a piece, facts in their `extras`.
 
-Colours are linear vertex colours, so that the merged variant (one mesh for all, for parts of thousands of faces, with
-the face number at each vertex as `_FACE`) looks the same.
+Each colour is a material, which every program shows; vertex colours are shown by few. Only the merged variant (one mesh for
+all, for parts of thousands of faces, with the face number at each vertex as `_FACE`) has vertex colours under a white material:
+viewers multiply the two, so that no mesh may have both.
 
 An own writer, because trimesh (5.2) rounds linear colours to 8 bits, which shows in dark ones, and ties the bytes of a
 file to its version. The format asked for here is small: see the glTF 2.0 specification, sections 3.6 and 4.4.
@@ -69,7 +70,8 @@ def write_gltf(
     path : path-like
         Appears whole or not at all.
     style : callable
-        Name and sRGB colour of a piece; the file has the linear colour that glTF asks for, and looks the same.
+        Name, sRGB colour and kind of a piece; the file has the linear colour that glTF asks for, and looks the same. Pieces of
+        one kind and colour share a material, which has the name of the kind.
     extras : callable
         Facts (JSON values) about a face, by number: `extras` of the node `F<number>`.
     piece_extras : callable
@@ -98,7 +100,7 @@ def write_gltf(
         if not any(mesh for _, mesh in meshes):
             raise WriteError("the CAD kernel made no triangle of the part", file=str(path))
         pieces = [piece for piece, _ in meshes]
-        drawings = [_draw(mesh, style(piece).rgb) if mesh else None for piece, mesh in meshes]
+        drawings = [_draw(mesh, style(piece).rgb if merged else None) if mesh else None for piece, mesh in meshes]
         glb = _Glb()
         if merged:
             _fill_merged(glb, pieces, drawings, extras)
@@ -137,13 +139,11 @@ def meshes_of(split: Split, deflection: float | None = None) -> Iterator[tuple[P
             yield piece, None
 
 
-def _draw(mesh: Mesh, rgb: tuple[float, float, float]) -> _Mesh:
-    light = np.round(np.array([*linear(rgb), 1.0]) * 65535).astype(np.uint16)
-    attributes: dict[str, NDArray[Any]] = {
-        "POSITION": _y_up(mesh.point * _METRE),
-        "NORMAL": _y_up(mesh.normal),
-        "COLOR_0": np.tile(light, (len(mesh.point), 1)),
-    }
+def _draw(mesh: Mesh, vertex_rgb: tuple[float, float, float] | None = None) -> _Mesh:
+    attributes: dict[str, NDArray[Any]] = {"POSITION": _y_up(mesh.point * _METRE), "NORMAL": _y_up(mesh.normal)}
+    if vertex_rgb is not None:
+        light = np.round(np.array([*linear(vertex_rgb), 1.0]) * 65535).astype(np.uint16)
+        attributes["COLOR_0"] = np.tile(light, (len(mesh.point), 1))
     return _Mesh(attributes, mesh.triangle)
 
 
@@ -160,8 +160,9 @@ def _fill(
     for piece, mesh in zip(pieces, meshes, strict=True):
         if piece.face not in node_of:
             node_of[piece.face] = glb.node({"name": f"F{piece.face}", "extras": extras(piece.face)}, root)
-        name = style(piece).name
-        glb.node({"name": name, "extras": piece_extras(piece), **glb.mesh(name, mesh)}, node_of[piece.face])
+        name, rgb, kind = style(piece)
+        shown = glb.mesh(name, mesh, glb.material(kind or name, rgb))
+        glb.node({"name": name, "extras": piece_extras(piece), **shown}, node_of[piece.face])
 
 
 def _fill_merged(
@@ -174,7 +175,8 @@ def _fill_merged(
     attributes["_FACE"] = np.repeat(np.array([piece.face for piece, _ in shown], np.float32), sizes)
     triangle = np.concatenate([mesh.triangle + np.uint32(a) for a, (_, mesh) in zip(starts, shown, strict=True)])
     facts = [extras(number) for number in dict.fromkeys(piece.face for piece in pieces)]
-    glb.node({"name": "part", "extras": {"faces": facts}, **glb.mesh("part", _Mesh(attributes, triangle))})
+    white = glb.material("verdicts")
+    glb.node({"name": "part", "extras": {"faces": facts}, **glb.mesh("part", _Mesh(attributes, triangle), white)})
 
 
 def _fill_others(glb: "_Glb", others: Sequence[Other]) -> None:
@@ -190,7 +192,7 @@ def _fill_others(glb: "_Glb", others: Sequence[Other]) -> None:
         points = other.vertex[valid].reshape(-1, 3)
         unit = np.repeat(normal[valid] / length[valid, None], 3, axis=0)
         mesh = Mesh(points, unit, np.arange(len(points), dtype=np.uint32).reshape(-1, 3), np.zeros((len(points), 2)))
-        other_mesh = glb.mesh(other.name, _draw(mesh, other.rgb) if valid.any() else None)
+        other_mesh = glb.mesh(other.name, _draw(mesh) if valid.any() else None, glb.material("others", other.rgb))
         glb.node({"name": other.name, "extras": other.extras, **other_mesh}, root[other.below])
 
 
@@ -204,6 +206,17 @@ class _Glb:
         self.nodes: list[dict[str, Any]] = []
         self.roots: list[int] = []
         self.meshes: list[dict[str, Any]] = []
+        self.materials: list[dict[str, Any]] = []
+
+    def material(self, name: str, rgb: tuple[float, float, float] | None = None) -> int:
+        """The number of the material of a name and a colour, white without one; open shells are looked at from both sides."""
+        surface: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.8}
+        if rgb is not None:
+            surface["baseColorFactor"] = [*linear(rgb), 1.0]
+        material = {"name": name, "doubleSided": True, "pbrMetallicRoughness": surface}
+        if material not in self.materials:
+            self.materials.append(material)
+        return self.materials.index(material)
 
     def node(self, node: dict[str, Any], parent: int | None = None) -> int:
         if parent is None:
@@ -213,13 +226,13 @@ class _Glb:
         self.nodes.append(node)
         return len(self.nodes) - 1
 
-    def mesh(self, name: str, mesh: _Mesh | None) -> dict[str, int]:
+    def mesh(self, name: str, mesh: _Mesh | None, material: int) -> dict[str, int]:
         """The `mesh` of a node; nothing where nothing could be drawn."""
         if mesh is None:
             return {}
         attributes = {key: self._accessor(array, key) for key, array in mesh.attributes.items()}
         indices = self._accessor(mesh.triangle.reshape(-1))
-        self.meshes.append({"name": name, "primitives": [{"attributes": attributes, "indices": indices, "material": 0}]})
+        self.meshes.append({"name": name, "primitives": [{"attributes": attributes, "indices": indices, "material": material}]})
         return {"mesh": len(self.meshes) - 1}
 
     def _accessor(self, array: NDArray[Any], attribute: str = "") -> int:
@@ -246,10 +259,7 @@ class _Glb:
             "scenes": [{"nodes": self.roots}],
             "nodes": self.nodes,
             "meshes": self.meshes,
-            # White: vertex colours are multiplied by it. Open shells are looked at from both sides.
-            "materials": [
-                {"name": "verdicts", "doubleSided": True, "pbrMetallicRoughness": {"metallicFactor": 0.0, "roughnessFactor": 0.8}}
-            ],
+            "materials": self.materials,
             "accessors": self.accessors,
             "bufferViews": self.views,
             "buffers": [{"byteLength": len(self.data)}],

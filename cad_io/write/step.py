@@ -265,7 +265,7 @@ class _Document:
                 dress(shell.shape, shell.title, shell.rgb, shell.face)
         for piece in _pieces(bodies):
             self.faces += _exact(piece.shape)
-            sub = dress(piece.shape, *self.style(piece), piece.face)
+            sub = dress(piece.shape, *self.style(piece)[:2], piece.face)
             for layer in self.layers.get(piece.face, ()):
                 self.layer_tool.SetLayer(sub, TCollection_ExtendedString(_ascii(layer)))
         return label
@@ -306,7 +306,7 @@ def _parted(bodies: Sequence[_Body], style: Callable[[Piece], Style]) -> tuple[l
             loose.setdefault(body.pieces[0].face, []).extend(body.pieces)
     if len(whole) + len(loose) > 1 and not any(body.solid for body in bodies):
         sheets = [p for b in whole for p in b.pieces] + [p for pieces in loose.values() for p in pieces]
-        return others, [_Shell(_shell([p]), p.face, *style(p)) for p in sheets]
+        return others, [_Shell(_shell([p]), p.face, *style(p)[:2]) for p in sheets]
     shells = [_Shell(b.shape, b.pieces[0].face) for b in whole if b.pieces]
     shells += [_Shell(_shell(pieces), n) for n, pieces in loose.items()]
     return others, shells

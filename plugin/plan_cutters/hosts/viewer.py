@@ -67,7 +67,7 @@ def shown(
     tool = result.judged(cutter)
     split, style = split_result(result, tool.id), styles(result)
     for piece in split.pieces:
-        title, colour = style(piece)
+        title, colour, _ = style(piece)
         group = {"check": "check faces", "ignored": "ignored faces"}.get(verdict_of(piece), "targets")
         groups[group].append(Shown(piece.shape, names.of(title), colour))
     groups["fixtures"] += [

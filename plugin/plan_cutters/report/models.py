@@ -146,7 +146,7 @@ def styles(result: Judged) -> Callable[[Any], Style]:
     def style(piece: Any) -> Style:
         info, verdict = faces[piece.face - 1], verdict_of(piece)
         own = info.colour if verdict in ("check", "ignored") else None
-        return Style(f"F{piece.face}_{verdict} {info.name}".strip(), own or rgb(verdict))
+        return Style(f"F{piece.face}_{verdict} {info.name}".strip(), own or rgb(verdict), verdict)
 
     return style
 

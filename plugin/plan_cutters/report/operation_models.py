@@ -133,9 +133,9 @@ def _styles(result: Judged, plan: OperationPlanEntry) -> Callable[[Any], Style]:
     def style(piece: Any) -> Style:
         info, operation = faces[piece.face - 1], _operation(piece, plan)
         if operation is not None:
-            return Style(f"F{piece.face}_{operation.id} {info.name}".strip(), parts(operation.colour))
+            return Style(f"F{piece.face}_{operation.id} {info.name}".strip(), parts(operation.colour), operation.id)
         word = _word(piece, plan)
         own = info.colour if word in ("check", "ignored") else None
-        return Style(f"F{piece.face}_{word} {info.name}".strip(), own or rgb(word))
+        return Style(f"F{piece.face}_{word} {info.name}".strip(), own or rgb(word), word)
 
     return style

@@ -21,7 +21,7 @@ def write(found, path, **more):
     return write_gltf(
         found,
         path,
-        lambda p: Style(f"F{p.face}_{p.label}", COLOURS[p.label]),
+        lambda p: Style(f"F{p.face}_{p.label}", COLOURS[p.label], str(p.label)),
         extras=lambda n: {"number": n, "list": [1, None, "é"]},
         piece_extras=lambda p: {"verdict": p.label},
         **more,
@@ -47,23 +47,49 @@ def test_one_node_a_face_and_below_it_one_a_piece(halves, tmp_path):
     assert below == [(f"F{p.face}", f"F{p.face}_{p.label}", p.label) for p in found.pieces]
 
 
-def test_colours_are_linear_light(halves, tmp_path):
+def sRGB(light):
+    return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
+
+
+def test_each_colour_is_a_material_in_linear_light(halves, tmp_path):
     _, found = halves
     write(found, tmp_path / "p.glb")
-    document, arrays = read(tmp_path / "p.glb")
-    (material,) = document["materials"]
-    pbr = material["pbrMetallicRoughness"]
-    assert (pbr["metallicFactor"], pbr["roughnessFactor"], pbr.get("baseColorFactor")) == (0.0, 0.8, None)
-    shown = set()
+    document, _ = read(tmp_path / "p.glb")
+    assert [material["name"] for material in document["materials"]] == [
+        str(k) for k in dict.fromkeys(p.label for p in found.pieces)
+    ]
+    for material in document["materials"]:
+        surface = material["pbrMetallicRoughness"]
+        assert (surface["metallicFactor"], surface["roughnessFactor"], material["doubleSided"]) == (0.0, 0.8, True)
+        *light, opaque = surface["baseColorFactor"]
+        assert opaque == 1.0
+        assert sRGB(np.array(light)) == pytest.approx(COLOURS[int(material["name"])], abs=1e-4)
     for mesh in document["meshes"]:
-        linear_rgb = arrays[mesh["primitives"][0]["attributes"]["COLOR_0"]] / 65535
-        assert (linear_rgb == linear_rgb[0]).all()
-        seen = np.where(linear_rgb[0] <= 0.0031308, 12.92 * linear_rgb[0], 1.055 * linear_rgb[0] ** (1 / 2.4) - 0.055)[:3]
-        (label,) = (k for k, c in COLOURS.items() if np.allclose(seen, c, atol=1e-4))
-        assert mesh["name"].endswith(f"_{label}")
-        shown.add(label)
-    assert shown == set(COLOURS)
+        (primitive,) = mesh["primitives"]
+        # A viewer multiplies material and vertex colour.
+        assert "COLOR_0" not in primitive["attributes"]
+        assert mesh["name"].endswith("_" + document["materials"][primitive["material"]]["name"])
     assert linear((0.0, 0.5, 1.0)) == pytest.approx([0, 0.214041, 1], abs=1e-6)
+
+
+def test_the_merged_mesh_has_vertex_colours_under_white(halves, tmp_path):
+    _, found = halves
+    write(found, tmp_path / "p.glb", merged=True)
+    document, arrays = read(tmp_path / "p.glb")
+    (material,), (mesh,) = document["materials"], document["meshes"]
+    assert "baseColorFactor" not in material["pbrMetallicRoughness"]
+    attributes = mesh["primitives"][0]["attributes"]
+    seen = np.unique(np.round(sRGB(arrays[attributes["COLOR_0"]][:, :3] / 65535), 3), axis=0)
+    assert seen == pytest.approx(np.unique(np.round([COLOURS[p.label] for p in found.pieces], 3), axis=0), abs=2e-3)
+
+
+def test_trimesh_shows_the_colours(halves, tmp_path):
+    _, found = halves
+    write(found, tmp_path / "p.glb")
+    for name, mesh in trimesh.load(tmp_path / "p.glb").geometry.items():
+        colour = np.ravel(mesh.visual.to_color().vertex_colors)[:3]
+        (label,) = (k for k in COLOURS if name.endswith(f"_{k}"))
+        assert colour == pytest.approx(np.array(linear(COLOURS[label])) * 255, abs=1)
 
 
 def test_metres_and_y_up_in_trimesh(halves, tmp_path):
