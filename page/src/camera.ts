@@ -149,9 +149,25 @@ export class Turntable {
     this.set({ target: plus(plus(this.aim.target, right, -x * size), up, y * size) });
   }
 
+  /** What points up: the setup axis. */
+  get axis(): Vec {
+    return this.z;
+  }
+
+  /** The least and the largest half of the height that may be seen, mm. */
+  get halves(): [number, number] {
+    return [1e-4 * this.radius, 20 * this.radius + this.beyond];
+  }
+
+  /** Half of the height that is seen after a zoom, mm. */
+  zoomed(by: number): number {
+    const [least, most] = this.halves;
+    return Math.min(most, Math.max(least, this.aim.half / by));
+  }
+
   /** Zoom about a place in the picture, -1 to 1 each way. */
   zoom(by: number, x = 0, y = 0): void {
-    const half = Math.min(20 * this.radius + this.beyond, Math.max(1e-4 * this.radius, this.aim.half / by));
+    const half = this.zoomed(by);
     const { up, right } = this.frame();
     const moved = this.aim.half - half;
     this.set({ half, target: plus(plus(this.aim.target, right, x * moved * this.aspect), up, y * moved) });

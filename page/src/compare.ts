@@ -2,7 +2,8 @@
 
 import { VIEWS } from "./camera.ts";
 import type { Look } from "./colours.ts";
-import { listenKeys, OneCamera, steer } from "./compare_camera.ts";
+import { listenKeys, OneCamera } from "./compare_camera.ts";
+import { steer, zoomButtons } from "./controls.ts";
 import { facesLook, verdictLook } from "./compare_looks.ts";
 import { readTold, type Told, type Word, WORDS } from "./compare_meta.ts";
 import { Side } from "./compare_side.ts";
@@ -82,7 +83,8 @@ class Compared {
   }
 
   private listen(side: Side): void {
-    steer(side, {
+    side.stage.canvas.parentElement!.append(zoomButtons(() => this.camera.table));
+    steer(side.stage, {
       hover: (x, y) => {
         const id = side.faceAt(x, y);
         side.under.textContent = id === null ? "" : this.say(side.word, id);

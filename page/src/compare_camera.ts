@@ -1,10 +1,7 @@
-// One camera for several pictures: whichever is turned leads, and the others are drawn with it. Mouse, fingers and keys.
+// One camera for several pictures: whichever is turned leads, and the others are drawn with it.
 
 import { VIEWS } from "./camera.ts";
 import type { Side } from "./compare_side.ts";
-
-/** A press that moves less than this, pixels, is a click. */
-const STILL = 4;
 
 export class OneCamera {
   private leader: Side;
@@ -47,59 +44,6 @@ export class OneCamera {
       stage.draw();
     }
   }
-}
-
-/** What mouse and fingers do in a picture: turn, shift, zoom; and what they point at and choose. */
-export function steer(side: Side, told: { hover: (x: number, y: number) => void; leave: () => void; choose: (x: number, y: number) => void }): void {
-  const { stage } = side;
-  const { canvas, table } = stage;
-  const down = new Map<number, { x: number; y: number }>();
-  let [pan, moved, asked] = [false, false, 0];
-  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-  canvas.addEventListener("pointerdown", (event) => {
-    canvas.setPointerCapture(event.pointerId);
-    pan = event.button !== 0 || event.shiftKey;
-    moved = down.size > 0;
-    down.set(event.pointerId, { x: event.clientX, y: event.clientY });
-  });
-  canvas.addEventListener("pointermove", (event) => {
-    const from = down.get(event.pointerId);
-    if (!from) {
-      cancelAnimationFrame(asked);
-      asked = requestAnimationFrame(() => told.hover(...stage.place(event)));
-      return;
-    }
-    const [dx, dy] = [event.clientX - from.x, event.clientY - from.y];
-    if (!moved && Math.hypot(dx, dy) < STILL) return;
-    moved = true;
-    const other = [...down].find(([id]) => id !== event.pointerId)?.[1];
-    if (other) {
-      // Two fingers: what lies between them grows with their distance and goes with their middle.
-      const [was, now] = [Math.hypot(from.x - other.x, from.y - other.y), Math.hypot(event.clientX - other.x, event.clientY - other.y)];
-      if (was > 1 && now > 1) table.zoom(now / was);
-      table.pan(dx / 2 / canvas.clientHeight, dy / 2 / canvas.clientHeight);
-    } else if (pan) table.pan(dx / canvas.clientHeight, dy / canvas.clientHeight);
-    else table.orbit(-0.45 * dx, 0.45 * dy);
-    down.set(event.pointerId, { x: event.clientX, y: event.clientY });
-  });
-  const up = (event: PointerEvent): void => {
-    const click = down.delete(event.pointerId) && !moved && !pan && event.type === "pointerup";
-    if (click) told.choose(...stage.place(event));
-  };
-  canvas.addEventListener("pointerup", up);
-  canvas.addEventListener("pointercancel", up);
-  canvas.addEventListener("pointerleave", () => {
-    cancelAnimationFrame(asked);
-    told.leave();
-  });
-  canvas.addEventListener(
-    "wheel",
-    (event) => {
-      event.preventDefault();
-      table.zoom(Math.exp(-0.0015 * (event.deltaMode === 1 ? 16 : 1) * event.deltaY), ...stage.place(event));
-    },
-    { passive: false },
-  );
 }
 
 /** What keys do anywhere but in a field; arrows in a picture alone, for elsewhere they scroll. */

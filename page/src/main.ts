@@ -3,6 +3,7 @@
 import { App } from "./app.ts";
 import { VIEWS } from "./camera.ts";
 import { Clip } from "./clip.ts";
+import { zoomButtons } from "./controls.ts";
 import { colourOf, modesOf } from "./colours.ts";
 import { readArrays, readMeta } from "./decode.ts";
 import { button, el } from "./dom.ts";
@@ -120,7 +121,7 @@ async function start(): Promise<void> {
     button("?", () => help.showModal(), { title: "Mouse and keys (?)", "aria-label": "Help: mouse and keys" }),
     clip.root,
   );
-  frame.append(marks.root as unknown as Node, legend(app), scale.root as unknown as Node, inset.root, measure.output, under);
+  frame.append(marks.root as unknown as Node, legend(app), scale.root as unknown as Node, inset.root, measure.output, under, zoomButtons(() => stage.table));
   viewer.append(selection.root);
   viewer.prepend(toolbar);
   viewer.append(panel.root);

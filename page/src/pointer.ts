@@ -1,63 +1,15 @@
-// The mouse in the picture: turn, shift, zoom, hover, click.
+// What a pointer means in the picture: what lies under it is named, and a click chooses.
 
 import type { App } from "./app.ts";
 import { spoken } from "./colours.ts";
+import { steer } from "./controls.ts";
 import type { Measure } from "./measure.ts";
 import type { Selection } from "./selection.ts";
 
-/** A press that moves less than this, pixels, is a click. */
-const STILL = 4;
-
 export function listen(app: App, measure: Measure, selection: Selection, told: (text: string) => void): void {
-  const { stage } = app;
-  const { canvas, table } = stage;
-  let down: { x: number; y: number; pan: boolean; moved: boolean } | null = null;
-  let asked = 0;
-  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
-  canvas.addEventListener("pointerdown", (event) => {
-    canvas.setPointerCapture(event.pointerId);
-    down = { x: event.clientX, y: event.clientY, pan: event.button !== 0 || event.shiftKey, moved: false };
-  });
-  canvas.addEventListener("pointermove", (event) => {
-    if (!down) {
-      // Once a frame is enough for what lies under the pointer.
-      cancelAnimationFrame(asked);
-      asked = requestAnimationFrame(() => hover(event));
-      return;
-    }
-    const [dx, dy] = [event.clientX - down.x, event.clientY - down.y];
-    if (!down.moved && Math.hypot(dx, dy) < STILL) return;
-    down = { ...down, x: event.clientX, y: event.clientY, moved: true };
-    if (down.pan) table.pan(dx / canvas.clientHeight, dy / canvas.clientHeight);
-    else table.orbit(-0.45 * dx, 0.45 * dy);
-  });
-  const up = (event: PointerEvent): void => {
-    const click = down && !down.moved && !down.pan && event.type === "pointerup";
-    down = null;
-    if (!click) return;
-    const place = stage.place(event);
-    if (event.ctrlKey || event.metaKey) selection.toggle(app.picker.at(...place)?.owner ?? null);
-    else choose(...place);
-  };
-  canvas.addEventListener("pointerup", up);
-  canvas.addEventListener("pointercancel", up);
-  canvas.addEventListener("pointerleave", () => {
-    cancelAnimationFrame(asked);
-    app.hover(null);
-    told("");
-  });
-  canvas.addEventListener(
-    "wheel",
-    (event) => {
-      event.preventDefault();
-      const lines = event.deltaMode === 1 ? 16 : 1;
-      table.zoom(Math.exp(-0.0015 * lines * event.deltaY), ...stage.place(event));
-    },
-    { passive: false },
-  );
-
-  const hover = (event: PointerEvent): void => {
-    const found = app.picker.at(...stage.place(event));
+  const { canvas } = app.stage;
+  const hover = (x: number, y: number): void => {
+    const found = app.picker.at(x, y);
     app.hover(found ? found.owner : null);
     if (!found) return told("");
     const face = app.meta.faces[found.owner];
@@ -80,6 +32,17 @@ export function listen(app: App, measure: Measure, selection: Selection, told: (
     }
     show(app, found.sample);
   };
+  steer(app.stage, {
+    hover,
+    leave: () => {
+      app.hover(null);
+      told("");
+    },
+    choose: (x, y, event) => {
+      if (event.ctrlKey || event.metaKey) selection.toggle(app.picker.at(x, y)?.owner ?? null);
+      else choose(x, y);
+    },
+  });
   canvas.addEventListener("keydown", (event) => {
     if (event.key !== "Enter") return;
     const middle = app.picker.at(0, 0);

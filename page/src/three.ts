@@ -13,7 +13,9 @@ export {
   InvertStencilOp,
   LatheGeometry,
   LineSegments,
+  MathUtils,
   Matrix4,
+  MOUSE,
   Mesh,
   NearestFilter,
   NotEqualStencilFunc,
@@ -24,6 +26,7 @@ export {
   Raycaster,
   Scene,
   ShaderMaterial,
+  TOUCH,
   Triangle,
   UnsignedByteType,
   Vector2,
@@ -34,4 +37,5 @@ export {
   ZeroStencilOp,
 } from "three";
 export type { Box3, Material, Object3D, ShaderMaterialParameters } from "three";
+export { OrbitControls } from "three/examples/jsm/controls/OrbitControls.js";
 export { MeshBVH } from "three-mesh-bvh";
