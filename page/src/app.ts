@@ -5,6 +5,7 @@ import { lookOf } from "./colours.ts";
 import { place, type Placed } from "./contact.ts";
 import type { Arrays } from "./decode.ts";
 import { LiveTool, type Met, Probe, type State } from "./live_map.ts";
+import type { Eyes } from "./eyes.ts";
 import type { Drawn, Owner } from "./mesh.ts";
 import { Machine } from "./machine.ts";
 import type { Cutter, Meta, Operation, OperationPlan, Spot, Vec } from "./meta.ts";
@@ -22,7 +23,7 @@ export interface Judged {
   certified: boolean;
 }
 
-type Event = "cutter" | "look" | "sample" | "posture" | "hot" | "spot" | "operation";
+type Event = "cutter" | "look" | "sample" | "posture" | "hot" | "spot" | "operation" | "setup";
 
 export class App {
   cutter: Cutter;
@@ -40,6 +41,7 @@ export class App {
   hot: Owner | null = null;
   toolShown = true;
   clip: Clip | null = null;
+  eyes: Eyes | null = null;
   outline: Outline | null = null;
   /** What is to be added to what is said next. */
   note = "";
@@ -150,6 +152,8 @@ export class App {
 
   /** Show a sample with the posture found there, or with its witness. */
   select(row: number | null, spot: Spot | null = null): void {
+    // A cut that was made for a hidden place ends with it.
+    this.clip?.release();
     this.sample = row === null ? null : this.samples.at(row);
     this.spot = row === null ? null : (spot ?? this.spotOf(row));
     this.posture = null;
@@ -168,6 +172,7 @@ export class App {
     this.drawn.setup = setup;
     this.part.stand();
     this.clip?.stand();
+    this.emit("setup");
     this.stage.request();
   }
 

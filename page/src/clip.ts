@@ -117,7 +117,7 @@ export class Clip {
   /** Cap what is there in the setup that is shown. */
   stand(): void {
     for (const meshes of [this.caps, this.counters]) {
-      meshes.forEach((mesh, i) => (mesh.visible = this.on && this.app.drawn.there(this.owners[i])));
+      meshes.forEach((mesh, i) => (mesh.visible = this.on && this.app.drawn.solid(this.owners[i])));
     }
   }
 

@@ -7,7 +7,7 @@ import type { Shown } from "./compare_looks.ts";
 import type { Word } from "./compare_meta.ts";
 import type { Arrays } from "./decode.ts";
 import { el } from "./dom.ts";
-import { borders } from "./edges.ts";
+import { Borders } from "./edges.ts";
 import { Drawn, type Owner } from "./mesh.ts";
 import type { Meta, Vec } from "./meta.ts";
 import { PartView } from "./part.ts";
@@ -93,7 +93,7 @@ export class Side implements Shown {
   }
 
   outline(): void {
-    this.stage.add(borders(this.drawn));
+    this.stage.add(new Borders(this.drawn).lines);
     this.stage.request();
   }
 

@@ -1,43 +1,167 @@
-// The first view shows what is lost: the side from which most of the area that is not reached is seen.
+// The first view shows what is lost: from the side from which most of the faces that are not reached are seen, and of these most
+// of the area. What holds the part does not decide: where it hides what is lost, it is faded.
 
 import type { App } from "./app.ts";
+import type { Owner } from "./mesh.ts";
 import type { Vec } from "./meta.ts";
 import { dot } from "./vectors.ts";
 
-/** Samples that are looked at: enough to tell one side from another. */
-const LOOKED = 300;
-/** Another side is shown only where it shows so many times more than the usual one. */
+/** Samples that are looked at, about, and of each face at least: enough to tell one side from another. */
+const [LOOKED, OF_FACE] = [160, 3];
+/** Another side is shown only where it shows more faces, or so many times more of the area than the usual one. */
 const WORTH = 1.3;
+/** Less is hardly seen: the cosine between the normal and the way to the eye. */
+const FACING = 0.17;
+/** A fixture is faded where it hides more than this share of what is seen of what is lost, or all of a face. */
+const MUCH = 0.1;
+/** Directions that are looked along, the usual one aside. */
+const MOST = 10;
 
-export function firstView(app: App): void {
-  const { samples, cutter, picker } = app;
-  const { table } = app.stage;
-  const lost: number[] = [];
+export interface View {
+  turn: number;
+  rise: number;
+}
+
+interface Looked {
+  face: Owner;
+  area: number;
+  point: Vec;
+  normal: Vec;
+}
+
+/** What is seen from a side. */
+interface Seen extends View {
+  faces: Set<Owner>;
+  area: number;
+  /** By fixture, what it hides of that. */
+  behind: Map<Owner, number>;
+  /** Faces of which nothing is seen without a fixture before it. */
+  covered: Map<Owner, Set<Owner>>;
+}
+
+/** The sides that show what the cutter shown loses, the best one first, and so many that no lost face is left that one can see. */
+export class LostViews {
+  readonly views: Seen[] = [];
+  readonly lost: Set<Owner>;
+  private at = 0;
+
+  constructor(private readonly app: App) {
+    const looked = lostSamples(app);
+    this.lost = new Set(looked.map(({ face }) => face));
+    if (!looked.length) return;
+    const usual = app.stage.table.aim;
+    const { table } = app.stage;
+    const back = (view: View): Vec => table.frame({ ...table.aim, ...view }).back;
+    const sides = [32, -32, 72, -72].flatMap((rise) => Array.from({ length: 8 }, (_, k) => ({ turn: usual.turn + 45 * k, rise })));
+    // Rays cost: the sides that most of it faces are looked at first, and none that cannot be better.
+    const facing = sides.map((view) => {
+      const way = back(view);
+      const front = looked.filter(({ normal }) => dot(way, normal) > FACING);
+      const area = front.reduce((sum, each) => sum + each.area * dot(way, each.normal), 0);
+      return { view, way, faces: new Set(front.map(({ face }) => face)), area };
+    });
+    facing.sort((a, b) => b.faces.size - a.faces.size || b.area - a.area);
+    const first = seenFrom(app, looked, usual, back(usual));
+    let best = first;
+    for (const { view, way, faces, area } of facing.slice(0, MOST)) {
+      if (faces.size < best.faces.size || (faces.size === best.faces.size && area <= best.area)) continue;
+      const found = seenFrom(app, looked, view, way);
+      if (found.faces.size > best.faces.size || (found.faces.size === best.faces.size && found.area > best.area)) best = found;
+    }
+    if (best.faces.size === first.faces.size && best.area < WORTH * first.area) best = first;
+    this.views.push(best);
+    // The other sides, each for the most of what is left.
+    const left = new Set([...this.lost].filter((face) => !best.faces.has(face)));
+    const remaining = [...facing];
+    while (left.size && remaining.length) {
+      const gain = ({ faces }: { faces: Set<Owner> }): number => [...faces].filter((face) => left.has(face)).length;
+      remaining.sort((a, b) => gain(b) - gain(a));
+      const next = remaining.shift()!;
+      if (!gain(next)) break;
+      const found = seenFrom(app, looked.filter(({ face }) => left.has(face)), next.view, next.way);
+      if (!found.faces.size) continue;
+      this.views.push(found);
+      for (const face of found.faces) left.delete(face);
+    }
+  }
+
+  /** Look from the best side at once. */
+  first(): void {
+    const [best] = this.views;
+    if (!best) return;
+    this.app.stage.table.show(best.turn, best.rise);
+    this.said(best);
+  }
+
+  /** Fly to the next side. */
+  next(): void {
+    const { app, views } = this;
+    if (!views.length) return app.say("Nothing is lost");
+    this.at = (this.at + 1) % views.length;
+    const view = views[this.at];
+    app.stage.table.fly(app.stage.table.fitted(view.turn, view.rise));
+    this.said(view);
+  }
+
+  private said(view: Seen): void {
+    const { app, lost, views } = this;
+    const names = app.eyes?.fade(hiding(view)) ?? [];
+    const told = names.length ? ` Faded, for it hides some: ${names.join(", ")}.` : "";
+    const elsewhere = [...lost].filter((face) => !view.faces.has(face));
+    const other = [...new Set(views.flatMap(({ faces }) => [...faces]))].filter((face) => elsewhere.includes(face));
+    const many = other.length > 4 ? `${other.length} faces` : other.map((face) => app.drawn.called(face)).join(", ");
+    if (other.length) app.say(`On other sides more is lost: ${many} (l shows them).${told}`);
+    else if (told) app.say(told.trim());
+  }
+}
+
+/** Fixtures that hide much of what would be seen. */
+function hiding({ area, behind, covered }: Seen): Set<Owner> {
+  const found = new Set([...behind].filter(([, hidden]) => hidden > MUCH * area).map(([owner]) => owner));
+  for (const owners of covered.values()) for (const owner of owners) found.add(owner);
+  return found;
+}
+
+/** Samples of what is lost: some of each face. */
+function lostSamples({ meta, samples, cutter }: App): Looked[] {
+  const rows = new Map<number, number[]>();
+  let count = 0;
   for (let row = 0; row < samples.count; row++) {
     const verdict = samples.verdict(cutter.id, row);
-    if (verdict === "inaccessible" || verdict === "undecided") lost.push(row);
+    if (verdict !== "inaccessible" && verdict !== "undecided") continue;
+    const face = samples.face.values[row];
+    const mine = rows.get(face);
+    if (mine) mine.push(row);
+    else rows.set(face, [row]);
+    count++;
   }
-  if (!lost.length) return;
-  const step = Math.max(1, Math.floor(lost.length / LOOKED));
-  const looked = lost.filter((_, i) => i % step === 0).map((row) => ({ area: samples.area(row), point: samples.point(row), normal: samples.normal(row) }));
-  const back = (turn: number, rise: number): Vec => table.frame({ ...table.aim, turn, rise }).back;
-  // Facing counts, for what is seen from the side is hardly seen.
-  const facing = (way: Vec): number => looked.reduce((sum, { area, normal }) => sum + area * Math.max(0, dot(way, normal)), 0);
-  const seen = (way: Vec): number =>
-    looked.reduce((sum, { area, point, normal }) => {
-      const front = dot(way, normal);
-      return front > 0.1 && !picker.hidden(point, way) ? sum + area * front : sum;
-    }, 0);
-  const usual = table.aim;
-  const views = [32, -32, 75].flatMap((rise) => Array.from({ length: 8 }, (_, k) => ({ turn: usual.turn + 45 * k, rise })));
-  // Rays cost: only the sides that face most of it are looked at.
-  const near = views.map((view) => ({ view, front: facing(back(view.turn, view.rise)) })).sort((a, b) => b.front - a.front);
-  let best = WORTH * seen(back(usual.turn, usual.rise));
-  let found: { turn: number; rise: number } | null = null;
-  for (const { view, front } of near.slice(0, 6)) {
-    if (front <= best) continue;
-    const much = seen(back(view.turn, view.rise));
-    if (much > best) [best, found] = [much, view];
+  const owners = new Map(meta.faces.map(({ number }, i) => [number, i]));
+  return [...rows].flatMap(([number, mine]) => {
+    const wanted = Math.min(mine.length, Math.max(OF_FACE, Math.round((LOOKED * mine.length) / count)));
+    const whole = mine.reduce((sum, row) => sum + samples.area(row), 0);
+    return Array.from({ length: wanted }, (_, i) => {
+      const row = mine[Math.floor(((i + 0.5) * mine.length) / wanted)];
+      return { face: owners.get(number) ?? -1, area: whole / wanted, point: samples.point(row), normal: samples.normal(row) };
+    });
+  });
+}
+
+function seenFrom({ picker, drawn }: App, looked: Looked[], view: View, way: Vec): Seen {
+  const seen: Seen = { ...view, faces: new Set(), area: 0, behind: new Map(), covered: new Map() };
+  const free = new Set<Owner>();
+  for (const { face, area, point, normal } of looked) {
+    // Facing counts, for what is seen from the side is hardly seen.
+    const front = dot(way, normal);
+    if (front <= FACING) continue;
+    const before = picker.between(point, way);
+    if (before.some((owner) => owner >= 0)) continue;
+    seen.faces.add(face);
+    seen.area += area * front;
+    const fixtures = new Set(before.filter((owner) => drawn.seen(owner)));
+    for (const owner of fixtures) seen.behind.set(owner, (seen.behind.get(owner) ?? 0) + area * front);
+    if (fixtures.size) seen.covered.set(face, new Set([...(seen.covered.get(face) ?? []), ...fixtures]));
+    else free.add(face);
   }
-  if (found) table.show(found.turn, found.rise);
+  for (const face of free) seen.covered.delete(face);
+  return seen;
 }

@@ -1,5 +1,6 @@
 // The keyboard does all that the mouse does; the help says how.
 
+import type { Alone } from "./alone.ts";
 import type { App } from "./app.ts";
 import { VIEWS } from "./camera.ts";
 import type { Clip } from "./clip.ts";
@@ -18,6 +19,9 @@ const HELP: [string, string][] = [
   ["Shift and drag, Ctrl and arrows", "shift the picture"],
   ["Wheel, + and -", "zoom"],
   ["f", "fit the part into the picture"],
+  ["w", "the picture in the whole window, and back"],
+  ["l", "look at what is lost, at its next side"],
+  ["b", "hide or show fixtures and check faces"],
   ["1 to 7", "front, back, left, right, top, bottom, corner"],
   ["Shift and arrows, j and k", "step to a neighbouring sample"],
   ["n and p", "next and previous worst spot"],
@@ -27,14 +31,14 @@ const HELP: [string, string][] = [
   ["g", "see through the tool, or not"],
   ["c", "clip: off, across X, Y, Z"],
   ["m", "measure: between two points, or from the selected sample to the next one"],
-  ["Escape", "leave the sample, end measuring"],
+  ["Escape", "leave the whole window, end measuring, leave the sample"],
   ["?", "this help"],
 ];
 
 const OPERATIONS: [string, string] = ["o", "show verdicts, or the operations of a plan"];
 
 export function helpDialog(meta: Meta): HTMLDialogElement {
-  const rows = [...HELP.slice(0, 10), ...(plansOf(meta).length ? [OPERATIONS] : []), ...HELP.slice(10)].map(([keys, work]) => el("tr", {}, el("th", { scope: "row" }, keys), el("td", {}, work)));
+  const rows = [...HELP.slice(0, 13), ...(plansOf(meta).length ? [OPERATIONS] : []), ...HELP.slice(13)].map(([keys, work]) => el("tr", {}, el("th", { scope: "row" }, keys), el("td", {}, work)));
   const dialog = el("dialog", { id: "help", "aria-labelledby": "help-title" });
   dialog.append(
     el("h2", { id: "help-title" }, "Mouse and keys"),
@@ -50,6 +54,8 @@ interface Parts {
   measure: Measure;
   help: HTMLDialogElement;
   selection: Selection;
+  alone: Alone;
+  lost: () => void;
   glass: () => void;
   tool: () => void;
 }
@@ -89,8 +95,11 @@ export function listenKeys(app: App, parts: Parts): void {
       z: () => lookClosely(app),
       t: parts.tool,
       g: parts.glass,
+      w: () => parts.alone.toggle(),
+      l: parts.lost,
+      b: () => app.eyes?.toggle(),
       "?": () => parts.help.showModal(),
-      Escape: () => (parts.measure.on ? parts.measure.toggle() : app.select(null)),
+      Escape: () => (parts.alone.on ? parts.alone.toggle() : parts.measure.on ? parts.measure.toggle() : app.select(null)),
     };
     works[event.key]?.();
   });

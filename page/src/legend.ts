@@ -8,12 +8,17 @@ import { swatch } from "./patterns.ts";
 /** As in the style sheet: the picture stands above what is to be read. */
 export const NARROW = matchMedia("(max-width: 999.98px)");
 
+/** The picture has little room. */
+const LOW = matchMedia("(max-height: 699.98px)");
+
+/** It stands below the picture, never over it, and is folded where that has little room. */
 export function legend(app: App): HTMLElement {
   const body = el("div", {});
   const title = el("summary", {}, "Legend");
-  const folded = el("details", { open: !NARROW.matches }, title, body);
-  // In a narrow window the picture is more than what explains it.
-  NARROW.addEventListener("change", () => (folded.open = !NARROW.matches));
+  const folded = el("details", {}, title, body);
+  const fold = (): void => void (folded.open = !NARROW.matches && !LOW.matches);
+  for (const each of [NARROW, LOW]) each.addEventListener("change", fold);
+  fold();
   app.on("look", () => {
     title.textContent = app.look?.title ?? "Legend";
     body.replaceChildren(...legendOf(app, false));
@@ -32,10 +37,10 @@ export function legendOf({ look, meta }: App, titled = true): HTMLElement[] {
   if (meta.fixtures.length) also("fixture");
   const found: HTMLElement[] = titled ? [el("h2", {}, look.title)] : [];
   if (look.ramp) found.push(scale(look.ramp));
-  found.push(el("ul", { class: "legend" }, ...rows));
   const inside = look.entries.some((entry) => entry.label === spoken(meta, "inside_bodies"));
   const hint = `share of the sampled area${inside ? " that lies inside no other body" : ""}`;
-  if (look.entries.length) found.push(el("p", { class: "hint" }, hint));
+  if (look.entries.length) rows.push(el("li", { class: "hint" }, hint));
+  found.push(el("ul", { class: "legend" }, ...rows));
   return found;
 }
 

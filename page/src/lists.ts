@@ -132,7 +132,6 @@ export class SpotList {
     this.app.select(spot.sample, spot);
     item.scrollIntoView({ block: "nearest" });
     this.app.note = "";
-    this.app.clip?.release();
     showSpot(this.app);
     this.app.say(`Spot ${this.at + 1} of ${this.mine.length}: ${spot.face}, ${spoken(this.app.meta, spot.reason)}. ${this.app.note}`);
   }

@@ -1,5 +1,6 @@
 // The review page: the data are read, the picture is made, the tables come alive.
 
+import { Alone } from "./alone.ts";
 import { App } from "./app.ts";
 import { VIEWS } from "./camera.ts";
 import { Clip } from "./clip.ts";
@@ -7,11 +8,12 @@ import { zoomButtons } from "./controls.ts";
 import { colourOf, modesOf } from "./colours.ts";
 import { readArrays, readMeta } from "./decode.ts";
 import { button, el } from "./dom.ts";
-import { borders } from "./edges.ts";
-import { firstView } from "./first_view.ts";
+import { Borders } from "./edges.ts";
+import { Eyes } from "./eyes.ts";
+import { LostViews } from "./first_view.ts";
 import { helpDialog, listenKeys } from "./keys.ts";
 import { Inset } from "./inset.ts";
-import { legend, NARROW } from "./legend.ts";
+import { legend } from "./legend.ts";
 import { enhanceCutters, FaceTable, SpotList } from "./lists.ts";
 import { Marks } from "./marks.ts";
 import { Measure } from "./measure.ts";
@@ -84,6 +86,14 @@ async function start(): Promise<void> {
   stage.add(part.group, tool.group);
   const app = new App(meta, arrays, samples, drawn, stage, part, tool, new Picker(stage, drawn, part), say);
 
+  let lines: Borders | null = null;
+  app.eyes = new Eyes(app, () => {
+    part.stand();
+    lines?.look();
+    app.clip?.stand();
+    stage.request();
+  });
+  app.on("setup", () => lines?.look());
   app.outline = new Outline(stage, drawn);
   const inset = new Inset(app);
   const scale = new Scale(app);
@@ -97,16 +107,23 @@ async function start(): Promise<void> {
   const notes = new Notes(app, pristine);
   panel.tools.append(button("Select face", () => selection.toggle(app.faceShown()), { title: "Select the face of this sample (s)" }), notes.here);
   document.querySelector("#summary .first")?.append(
-    el("div", { class: "tools", id: "page-tools" }, schemeSwitch(() => panel.draw()), notes.saveButton),
+    el("div", { class: "tools", id: "page-tools" }, whyButton(), schemeSwitch(() => panel.draw()), notes.saveButton),
   );
-  foldSummary();
-  const glass = button("See through", () => setGlass(), { "aria-pressed": "true", title: "See through the tool (g)" });
+  const alone = new Alone(say);
+  const sides = new Map<string, LostViews>();
+  /** Sides that show what the cutter shown loses. */
+  const lost = (): LostViews => {
+    const found = sides.get(app.cutter.id) ?? new LostViews(app);
+    sides.set(app.cutter.id, found);
+    return found;
+  };
+  const glass = button("See through", () => setGlass(), { "aria-pressed": "true", class: "of-tool", title: "See through the tool (g)" });
   const setGlass = (): void => {
     tool.seeThrough(!tool.transparent);
     glass.setAttribute("aria-pressed", String(tool.transparent));
     stage.request();
   };
-  const shown = button("Tool", () => setTool(), { "aria-pressed": "true", title: "Show or hide the tool (t)" });
+  const shown = button("Tool", () => setTool(), { "aria-pressed": "true", class: "of-tool", title: "Show or hide the tool (t)" });
   const setTool = (): void => {
     app.showTool(!app.toolShown);
     shown.setAttribute("aria-pressed", String(app.toolShown));
@@ -116,18 +133,20 @@ async function start(): Promise<void> {
     { id: "toolbar", role: "toolbar", "aria-label": "Picture" },
     operationSwitch(app),
     el("label", {}, "Colour by ", colouring(app)),
-    el("label", {}, "View ", views(app)),
+    el("label", {}, "View ", views(app, () => lost().next())),
     el("span", { class: "group" }, shown, glass, measure.root),
+    app.eyes.root,
+    alone.button,
     button("?", () => help.showModal(), { title: "Mouse and keys (?)", "aria-label": "Help: mouse and keys" }),
     clip.root,
   );
-  frame.append(marks.root as unknown as Node, legend(app), scale.root as unknown as Node, inset.root, measure.output, under, zoomButtons(() => stage.table));
-  viewer.append(selection.root);
+  frame.append(marks.root as unknown as Node, scale.root as unknown as Node, inset.root, measure.output, under, zoomButtons(() => stage.table));
+  viewer.append(legend(app), selection.root);
   viewer.prepend(toolbar);
   viewer.append(panel.root);
   viewer.append(stills.root, help);
   app.repaint();
-  stage.begin(() => firstView(app));
+  stage.begin(() => lost().first());
   performance.mark("drawn");
 
   listen(app, measure, selection, (text) => {
@@ -138,12 +157,13 @@ async function start(): Promise<void> {
   new FaceTable(app);
   selection.tabled();
   new OperationTables(app);
-  listenKeys(app, { spots, clip, measure, help, selection, glass: setGlass, tool: setTool });
+  listenKeys(app, { spots, clip, measure, help, selection, alone, lost: () => lost().next(), glass: setGlass, tool: setTool });
   // The tree over the triangles is what a click needs: once it is there the page answers.
   void app.drawn.tree;
   performance.mark("interactive");
   setTimeout(() => {
-    stage.add(borders(app.drawn));
+    lines = new Borders(app.drawn);
+    stage.add(lines.lines);
     performance.mark("borders");
     stage.request();
   }, 0);
@@ -152,14 +172,21 @@ async function start(): Promise<void> {
   Object.assign(window, { review: app });
 }
 
-/** In a narrow window the reasons are folded, so that the picture comes first. */
-function foldSummary(): void {
+/** The reasons are folded, so that the picture comes first; the button that opens them says what is to be heeded. */
+function whyButton(): HTMLButtonElement | string {
   const why = document.querySelector<HTMLDetailsElement>("#why");
-  const fold = (): void => {
-    if (why) why.open = !NARROW.matches;
+  if (!why) return "";
+  const heed = why.querySelectorAll(":scope > p > strong").length;
+  const made = button(heed ? `\u26a0 Why (${heed} to heed)` : "Why", () => show(!why.open), {
+    id: "show-why", "aria-controls": "why", title: "Why, for what part and machine, and what to heed",
+  });
+  const show = (open: boolean): void => {
+    why.open = open;
+    made.setAttribute("aria-expanded", String(open));
   };
-  NARROW.addEventListener("change", fold);
-  fold();
+  why.addEventListener("toggle", () => made.setAttribute("aria-expanded", String(why.open)));
+  show(false);
+  return made;
 }
 
 function colouring(app: App): HTMLSelectElement {
@@ -178,14 +205,17 @@ function colouring(app: App): HTMLSelectElement {
   return select;
 }
 
-function views(app: App): HTMLSelectElement {
-  const select = el("select", { id: "views" }, el("option", { value: "" }, "choose"), el("option", { value: "f" }, "fit"));
+function views(app: App, lost: () => void): HTMLSelectElement {
+  const options = [["", "choose"], ["f", "fit"], ["l", "what is lost"]].map(([value, name]) => el("option", { value }, name));
+  const select = el("select", { id: "views" }, ...options);
   for (const [key, [name]] of Object.entries(VIEWS)) select.append(el("option", { value: key }, name));
   select.addEventListener("change", () => {
     const { table } = app.stage;
-    const [, turn, rise] = VIEWS[select.value] ?? ["", table.aim.turn, table.aim.rise];
-    table.fly(table.fitted(turn, rise));
+    const { value } = select;
     select.value = "";
+    if (value === "l") return lost();
+    const [, turn, rise] = VIEWS[value] ?? ["", table.aim.turn, table.aim.rise];
+    table.fly(table.fitted(turn, rise));
   });
   return select;
 }

@@ -75,6 +75,20 @@ export class Drawn {
     return owner >= 0 || this.meta.fixtures[-1 - owner].setups.includes(this.setup);
   }
 
+  /** What the reviewer hides, and what is faded so that what lies behind is seen; both still stand in the way of tools. */
+  readonly hiding = new Set<Owner>();
+  readonly fading = new Set<Owner>();
+
+  /** Whether an owner is in the picture, if only faded. */
+  seen(owner: Owner): boolean {
+    return this.there(owner) && !this.hiding.has(owner);
+  }
+
+  /** Whether an owner hides what lies behind it. */
+  solid(owner: Owner): boolean {
+    return this.seen(owner) && !this.fading.has(owner);
+  }
+
   /** Vertices of the part and of the fixtures that are there, three numbers each: what a picture is to show. Of a fixture no
    * more than what is about as near to the part as the part is large. */
   get shownVertices(): Float32Array {
@@ -104,6 +118,12 @@ export class Drawn {
       this.shown.set(this.setup, found);
     }
     return found;
+  }
+
+  /** Corners of the part's own triangles. */
+  *partPoints(): Generator<Vec> {
+    const { position } = this;
+    for (let i = 0; i < position.length && this.owner[i / 3] >= 0; i += 3) yield [position[i], position[i + 1], position[i + 2]];
   }
 
   /** By setup. */

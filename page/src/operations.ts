@@ -114,7 +114,6 @@ export class OperationTables {
     if (app.mode !== modeOf(plan)) app.setMode(modeOf(plan));
     if (app.cutter.id !== found.cutter) app.setCutter(found.cutter);
     app.select(found.sample);
-    app.clip?.release();
     this.face();
     // In a narrow window the picture stands above the tables.
     document.getElementById("frame")?.scrollIntoView({ block: "nearest" });

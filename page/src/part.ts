@@ -1,10 +1,11 @@
 // The part and its fixtures in 3D, coloured sample by sample through the atlas.
 
-import { type DataTexture, Group, Mesh, type ShaderMaterial } from "./three";
-import type { Look } from "./colours.ts";
+import { type DataTexture, DoubleSide, Group, Mesh, type ShaderMaterial } from "./three";
+import { colourOf, type Look, rgb } from "./colours.ts";
 import type { Arrays } from "./decode.ts";
 import type { Drawn, Owner } from "./mesh.ts";
-import { atlasTexture, NOBODY } from "./shading.ts";
+import { showRuns } from "./edges.ts";
+import { atlasTexture, NOBODY, plainMaterial } from "./shading.ts";
 
 /** Added to the pattern of a sample that is faded, so that others stand out. */
 const FADED = 64;
@@ -18,7 +19,10 @@ export class PartView {
   private readonly width: number;
   private readonly height: number;
 
+  private readonly faces: Mesh | null = null;
   private readonly fixtures: [Owner, Mesh][] = [];
+  /** Of a fixture that is seen through. */
+  private readonly faded: ShaderMaterial;
 
   constructor(
     private readonly drawn: Drawn,
@@ -29,7 +33,9 @@ export class PartView {
     this.index = drawn.meta.atlas ? arrays.get("atlas.index").values : [-1];
     this.texture = atlasTexture(this.width, this.height);
     this.material.uniforms.colours.value = this.texture;
-    if (drawn.ofFaces) this.group.add(new Mesh(drawn.geometry(0, drawn.ofFaces), this.material));
+    const tint = rgb(colourOf(drawn.meta, "fixture")).map((x) => (x / 255).toFixed(3));
+    this.faded = plainMaterial(`${tint.join(", ")}, 0.13`, { transparent: true, depthWrite: false, side: DoubleSide });
+    if (drawn.ofFaces) this.group.add((this.faces = new Mesh(drawn.geometry(0, drawn.ofFaces), [this.material])));
     drawn.meta.fixtures.forEach(({ start, count }, i) => {
       const mesh = new Mesh(drawn.geometry(start, count), this.material);
       this.fixtures.push([-1 - i, mesh]);
@@ -38,9 +44,18 @@ export class PartView {
     this.stand();
   }
 
-  /** Show the fixtures of the setup that is shown, and no others. */
+  /** Show the fixtures of the setup that is shown, and no others; nothing that is hidden. */
   stand(): void {
-    for (const [owner, mesh] of this.fixtures) mesh.visible = this.drawn.there(owner);
+    const { drawn } = this;
+    for (const [owner, mesh] of this.fixtures) {
+      mesh.visible = drawn.seen(owner);
+      mesh.material = drawn.fading.has(owner) ? this.faded : this.material;
+      // After all that is solid.
+      mesh.renderOrder = drawn.fading.has(owner) ? 3 : 0;
+    }
+    if (!this.faces) return;
+    const runs = drawn.meta.faces.map(({ start, count }, i): [Owner, number, number] => [i, 3 * start, 3 * count]);
+    showRuns(this.faces.geometry, runs.sort((a, b) => a[1] - b[1]), (owner) => drawn.seen(owner));
   }
 
   /** Colour every sample; where some are to stand out, fade the others. */

@@ -29,7 +29,7 @@ export class Picker {
     const plane = shared.plane.value;
     const found = this.drawn.tree
       .raycast(this.caster.ray, DoubleSide)
-      .filter(({ face, point }) => face && this.drawn.there(this.drawn.owner[face.a]) && plane.x * point.x + plane.y * point.y + plane.z * point.z <= plane.w)
+      .filter(({ face, point }) => face && this.drawn.solid(this.drawn.owner[face.a]) && plane.x * point.x + plane.y * point.y + plane.z * point.z <= plane.w)
       .sort((a, b) => a.distance - b.distance)[0];
     if (!found?.face) return null;
     const { a, b, c } = found.face;
@@ -41,11 +41,16 @@ export class Picker {
     return { point: found.point.toArray(), owner: this.drawn.owner[a], sample: texel[2 * a] < 0 ? null : this.part.sampleAt(at(0), at(1)) };
   }
 
-  /** Whether something lies between a point of the surface and an eye far away. */
+  /** Whether something that is not seen through lies between a point of the surface and an eye far away. */
   hidden(point: Vec, towards: Vec): boolean {
+    return this.between(point, towards).some((owner) => this.drawn.solid(owner));
+  }
+
+  /** What lies there, be it seen through or hidden. */
+  between(point: Vec, towards: Vec): Owner[] {
     const step = 1e-4 * this.stage.table.radius;
     const ray = new Ray(new Vector3(...plus(point, towards, step)), new Vector3(...towards));
     const { owner, tree } = this.drawn;
-    return tree.raycast(ray, DoubleSide).some(({ face }) => face && this.drawn.there(owner[face.a]));
+    return tree.raycast(ray, DoubleSide).flatMap(({ face }) => (face && this.drawn.there(owner[face.a]) ? [owner[face.a]] : []));
   }
 }

@@ -36,7 +36,6 @@ export class PosturePanel {
   /** What can be done at the sample; others add to it. */
   readonly tools = el("p", { class: "tools" }, this.start);
   private readonly body = el("div", { class: "posture-body" });
-  private readonly empty = el("p", { class: "hint" });
   private readonly stored: StoredMaps;
   private map: SampleMap | null = null;
   private width = 320;
@@ -58,10 +57,10 @@ export class PosturePanel {
         this.rows,
       ),
     );
-    this.empty.append("Click the surface, or press Enter in the picture, to see the postures of the cutter at a sample.");
     this.body.append(this.about, this.kind, this.canvas, this.line, this.angles.root, this.witness, this.tools, this.legend, this.intervals);
-    this.root.append(this.title, this.empty, this.body);
-    this.body.hidden = true;
+    const leave = button("\u00d7", () => app.select(null), { class: "leave", title: "Leave the sample (Escape)", "aria-label": "Leave the sample" });
+    this.root.append(leave, this.title, this.body);
+    this.root.hidden = true;
     this.canvas.addEventListener("pointermove", (event) => this.point(event));
     this.canvas.addEventListener("pointerdown", (event) => this.point(event));
     this.canvas.addEventListener("keydown", (event) => this.key(event));
@@ -81,8 +80,10 @@ export class PosturePanel {
   private begin(): void {
     window.clearTimeout(this.timer);
     const { sample, cutter, samples } = this.app;
-    this.body.hidden = !sample;
-    this.empty.hidden = !!sample;
+    // Without a sample the picture has all of the room.
+    this.root.hidden = !sample;
+    this.root.parentElement?.classList.toggle("chosen", !!sample);
+    this.app.stage.refit();
     this.title.textContent = "Posture map";
     this.map = sample && new SampleMap(this.app, this.stored, sample);
     if (!sample || !this.map) return;

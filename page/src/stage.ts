@@ -91,6 +91,13 @@ export class Stage {
     return this.canvas.toDataURL("image/png");
   }
 
+  /** Take the room of the frame now, not only at the next frame: views are chosen for it. */
+  refit(): void {
+    const { clientWidth, clientHeight, parentElement } = this.canvas;
+    const box = parentElement!.getBoundingClientRect();
+    if (Math.floor(box.width) !== clientWidth || Math.floor(box.height) !== clientHeight) this.resize();
+  }
+
   resize(): void {
     if (!this.begun) return;
     const box = this.canvas.parentElement!.getBoundingClientRect();

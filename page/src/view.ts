@@ -1,7 +1,7 @@
 // Where to look from, so that a place of the surface is seen, and the tool that stands there.
 
 import type { App } from "./app.ts";
-import type { Ring } from "./camera.ts";
+import type { Aim, Ring } from "./camera.ts";
 import type { Vec } from "./meta.ts";
 import { dot, plus } from "./vectors.ts";
 
@@ -11,6 +11,8 @@ type View = { turn: number; rise: number };
 const SIDE = 0.5;
 /** Of so many views, the best ones first, it is asked whether something hides the place. */
 const LOOKED_AT = 80;
+/** At a worst spot the part has at least so much of the picture's width or height. */
+const PART = 0.5;
 
 /** Look at a place of the surface from its outer side, near enough to see what is there. */
 export function flyTo(app: App, point: Vec, normal: Vec, size = near(app)): void {
@@ -39,7 +41,35 @@ export function showSpot(app: App, close = false): void {
   const ball = (centre: Vec, radius: number): Ring => ({ centre, radius, axis: null });
   const rings = [ball(sample.point, least), ...(there ? [ball(there, 0.3 * least)] : [])];
   if (placed && !close) rings.push(...rounds(app, placed.tip, placed.axis));
-  table.fly(table.holding(view.turn, view.rise, placed || close ? rings : [ball(sample.point, least)]));
+  const aim = table.holding(view.turn, view.rise, placed || close ? rings : [ball(sample.point, least)]);
+  table.fly(close ? aim : withPart(app, aim, [sample.point, ...(there ? [there] : [])]));
+}
+
+/** Where all of a long tool would leave the part small: nearer, so that the part takes half of the picture, places within it. */
+function withPart({ drawn, stage: { table } }: App, aim: Aim, places: Vec[]): Aim {
+  const { right, up } = table.frame(aim);
+  const ways = [right, up];
+  const aspects = [table.aspect, 1];
+  const ends = (points: Iterable<Vec>, way: Vec): [number, number] => {
+    let [low, high] = [Infinity, -Infinity];
+    for (const point of points) [low, high] = [Math.min(low, dot(point, way)), Math.max(high, dot(point, way))];
+    return [low, high];
+  };
+  const part = ways.map((way) => ends(drawn.partPoints(), way));
+  // As seen, half of the picture's width or of its height.
+  const most = Math.max(...part.map(([low, high], k) => (high - low) / (2 * PART * aspects[k])));
+  if (aim.half <= most) return aim;
+  // As much of the tool as there is room for beside the part.
+  let { target } = aim;
+  ways.forEach((way, k) => {
+    const room = most * aspects[k];
+    const [low, high] = ends(places, way);
+    const [first, last] = [Math.min(part[k][0], low), Math.max(part[k][1], high)];
+    const wanted = dot(aim.target, way);
+    const held = last - first > 2 * room ? (low + high) / 2 : Math.min(first + 0.94 * room, Math.max(last - 0.94 * room, wanted));
+    target = plus(target, way, held - wanted);
+  });
+  return { ...aim, target, half: most };
 }
 
 /** The corners of the outline of the tool shown, turned about its axis. */

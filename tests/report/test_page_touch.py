@@ -127,7 +127,8 @@ def test_buttons_zoom_and_fit(phone):
 
 def test_targets_are_large_enough_for_fingers(phone):
     small = phone.evaluate(
-        """() => [...document.querySelectorAll("button, select, summary, input")].filter(each => each.checkVisibility()).map(each => {
+        """() => [...document.querySelectorAll("button, select, summary, input")]
+             .filter(each => each.checkVisibility()).map(each => {
              const { width, height } = each.getBoundingClientRect();
              return [each.id || each.textContent.slice(0, 30) || each.type, Math.round(width), Math.round(height)]; })
              .filter(([, width, height]) => height < 44 || width < 24)"""

@@ -1,6 +1,7 @@
 """Make the tables and lists that the page shows without JavaScript, in the form that the template takes."""
 
 import math
+import re
 from typing import Any, NamedTuple
 
 from plan_cutters.plan_file import numbers
@@ -20,6 +21,8 @@ from plan_cutters.report.protocol import Judged
 
 #: Faces that are listed, the worst first; cutters whose worst faces and spots are.
 _FACES, _CUTTERS = 1000, 40
+#: Where a sentence ends and another begins, and an option of the command.
+_SENTENCE, _OPTION = re.compile(r"(?<=[.!?])\s+(?=[A-Z]|--)"), re.compile(r"(?<!\S)\(?--[a-z]")
 
 
 class Drawing(NamedTuple):
@@ -47,11 +50,13 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
     first = sorted(story.cutters, key=lambda c: c.id != story.shown)
     faces = _faces(plan, shown)
     reasons = {word for c in plan.cutters for word in c.area_share.lost_by}
+    said, commands = _apart(_header(plan, story, shown))
     return {
         "w": numbers,
         "plan": plan,
         "story": story,
-        "why": _why(plan, story, shown),
+        "said": said,
+        "commands": commands,
         "names": story.names,
         "named": lambda text: named(plan, text),
         "step_told": step_text,
@@ -85,6 +90,26 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
         "empty": headline.not_sampled(plan),
         "operations": operations.tables(plan, story),
     }
+
+
+def _header(plan: Plan, story: Story, shown: CutterEntry) -> list[str]:
+    """The texts below the title."""
+    p = story.process
+    process = [p.more, *p.own, *p.remaining, *p.next, p.clearance] if p else []
+    return [*process, _why(plan, story, shown), " ".join((*story.proposal, *story.in_short))]
+
+
+def _apart(texts: list[str]) -> tuple[list[str], list[str]]:
+    """Texts without their sentences that name options of the command, and those sentences.
+
+    Reviewers do not have the command at hand.
+
+    >>> _apart(["All is reached. --spacing 3 looks more closely.", "Take it."])
+    (['All is reached.', 'Take it.'], ['--spacing 3 looks more closely.'])
+    """
+    found = [_SENTENCE.split(text) for text in texts if text]
+    said = [" ".join(each for each in sentences if not _OPTION.search(each)) for sentences in found]
+    return [text for text in said if text], [each for sentences in found for each in sentences if _OPTION.search(each)]
 
 
 def _why(plan: Plan, story: Story, shown: CutterEntry) -> str:
