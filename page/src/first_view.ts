@@ -96,7 +96,7 @@ export class LostViews {
   /** Fly to the next side. */
   next(): void {
     const { app, views } = this;
-    if (!views.length) return app.say("Nothing is lost");
+    if (!views.length) return app.say("All is reached");
     this.at = (this.at + 1) % views.length;
     const view = views[this.at];
     app.stage.table.fly(app.stage.table.fitted(view.turn, view.rise));
@@ -110,7 +110,7 @@ export class LostViews {
     const elsewhere = [...lost].filter((face) => !view.faces.has(face));
     const other = [...new Set(views.flatMap(({ faces }) => [...faces]))].filter((face) => elsewhere.includes(face));
     const many = other.length > 4 ? `${other.length} faces` : other.map((face) => app.drawn.called(face)).join(", ");
-    if (other.length) app.say(`On other sides more is lost: ${many} (l shows them).${told}`);
+    if (other.length) app.say(`On other sides more is not reached: ${many} (l shows them).${told}`);
     else if (told) app.say(told.trim());
   }
 }

@@ -20,7 +20,7 @@ const HELP: [string, string][] = [
   ["Wheel, + and -", "zoom"],
   ["f", "fit the part into the picture"],
   ["w", "the picture in the whole window, and back"],
-  ["l", "look at what is lost, at its next side"],
+  ["l", "look at what is not reached, at its next side"],
   ["b", "hide or show fixtures and check faces"],
   ["1 to 7", "front, back, left, right, top, bottom, corner"],
   ["Shift and arrows, j and k", "step to a neighbouring sample"],

@@ -206,7 +206,7 @@ function colouring(app: App): HTMLSelectElement {
 }
 
 function views(app: App, lost: () => void): HTMLSelectElement {
-  const options = [["", "choose"], ["f", "fit"], ["l", "what is lost"]].map(([value, name]) => el("option", { value }, name));
+  const options = [["", "choose"], ["f", "fit"], ["l", "what is not reached"]].map(([value, name]) => el("option", { value }, name));
   const select = el("select", { id: "views" }, ...options);
   for (const [key, [name]] of Object.entries(VIEWS)) select.append(el("option", { value: key }, name));
   select.addEventListener("change", () => {

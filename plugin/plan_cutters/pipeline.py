@@ -250,7 +250,7 @@ def _mapped(result: Result, part: JudgedPart, clock: Clock, compiling: Callable[
 
 def _in_other_setups(ready: Prepared, here: Mapping[Cutter, Verdicts], clock: Clock, judged: Judge) -> list[OtherSetup]:
     """Find the verdicts of each cutter in each other setup."""
-    axes, found = ready.options.other_setups, list[OtherSetup]()
+    axes, others = ready.options.other_setups, list[OtherSetup]()
     with clock.stage("setups") as tell:
         for k, axis in enumerate(axes):
             done = partial(part_of, tell, parts=len(axes) * len(here))
@@ -258,8 +258,8 @@ def _in_other_setups(ready: Prepared, here: Mapping[Cutter, Verdicts], clock: Cl
                 cutter.id: in_setup(ready, cutter, k + 1, verdicts, progress=done(k * len(here) + n), judged=judged)
                 for n, (cutter, verdicts) in enumerate(here.items())
             }
-            found.append((axis, by_cutter))
-    return found
+            others.append((axis, by_cutter))
+    return others
 
 
 def prepare(

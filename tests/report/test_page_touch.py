@@ -42,12 +42,12 @@ def aim(page):
 def settled(page):
     """Where one looks once nothing moves any more."""
     looks = []
-    for _ in range(100):
+    for _ in range(300):
         looks.append(aim(page))
-        # A browser that draws in software may take a while for a frame.
-        if len(looks) > 4 and all(each == looks[-1] for each in looks[-4:]):
+        if len(looks) > 3 and all(each == looks[-1] for each in looks[-3:]):
             return looks[-1]
-        page.wait_for_timeout(60)
+        # Frames, not seconds: a browser that draws in software may take a while for one.
+        page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
     raise AssertionError("the picture moves without end")
 
 

@@ -50,12 +50,12 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
     first = sorted(story.cutters, key=lambda c: c.id != story.shown)
     faces = _faces(plan, shown)
     reasons = {word for c in plan.cutters for word in c.area_share.lost_by}
-    said, commands = _apart(_header(plan, story, shown))
+    header, commands = _apart(_header(plan, story, shown))
     return {
         "w": numbers,
         "plan": plan,
         "story": story,
-        "said": said,
+        "header": header,
         "commands": commands,
         "names": story.names,
         "named": lambda text: named(plan, text),
@@ -107,9 +107,9 @@ def _apart(texts: list[str]) -> tuple[list[str], list[str]]:
     >>> _apart(["All is reached. --spacing 3 looks more closely.", "Take it."])
     (['All is reached.', 'Take it.'], ['--spacing 3 looks more closely.'])
     """
-    found = [_SENTENCE.split(text) for text in texts if text]
-    said = [" ".join(each for each in sentences if not _OPTION.search(each)) for sentences in found]
-    return [text for text in said if text], [each for sentences in found for each in sentences if _OPTION.search(each)]
+    split = [_SENTENCE.split(text) for text in texts if text]
+    plain = [" ".join(each for each in sentences if not _OPTION.search(each)) for sentences in split]
+    return [text for text in plain if text], [each for sentences in split for each in sentences if _OPTION.search(each)]
 
 
 def _why(plan: Plan, story: Story, shown: CutterEntry) -> str:
