@@ -194,6 +194,8 @@ export class Turntable {
     const to = { ...from, ...part };
     const turn = ((to.turn - from.turn + 540) % 360) - 180;
     if (matchMedia("(prefers-reduced-motion: reduce)").matches) return this.set(part);
+    // Whoever moves the picture by hand sees at once that it is not theirs any more.
+    this.aim = { ...from };
     const start = performance.now();
     const step = (now: number): void => {
       const share = Math.min(1, (now - start) / FLIGHT_MS);

@@ -32,6 +32,7 @@ const HELP: [string, string][] = [
   ["c", "clip: off, across X, Y, Z"],
   ["m", "measure: between two points, or from the selected sample to the next one"],
   ["Escape", "leave the whole window, end measuring, leave the sample"],
+  ["One finger, two, pinch", "turn the part, shift the picture, zoom"],
   ["?", "this help"],
 ];
 
