@@ -60,7 +60,7 @@ export class Eyes {
       const word = body.key === "check" || body.key.startsWith("fixture:") ? body.key.split(":")[0] : null;
       return el("li", {}, el("label", {}, box, word ? swatch(colourOf(this.app.meta, word), "plain") : null, el("span", {}, body.name), said));
     });
-    const menu = el("details", { id: "eyes" }, el("summary", { title: "Show or hide fixtures and bodies (b: all but the part)" }, "Bodies"), el("ul", {}, ...rows));
+    const menu = el("details", { id: "eyes" }, el("summary", { title: "Show or hide fixtures and bodies (b)" }, "Bodies"), el("ul", {}, ...rows));
     menu.addEventListener("keydown", (event) => {
       if (event.key !== "Escape" || !menu.open) return;
       event.preventDefault();
