@@ -151,6 +151,7 @@ class Gauge:
 
     def __init__(self) -> None:
         self._memory = mmap.mmap(-1, _COUNTS.size)
+        self.tell(0, 1)
 
     def tell(self, done: int, total: int) -> None:
         """Say how many pieces are done, of how many."""
@@ -158,7 +159,7 @@ class Gauge:
 
     @property
     def counts(self) -> tuple[int, int]:
-        """Pieces that are done, and all of them; (0, 0) before anything was told."""
+        """Pieces that are done, and all of them; (0, 1) before anything was told."""
         done, total = _COUNTS.unpack_from(self._memory)
         return min(done, total), total  # it may be told just now
 

@@ -161,7 +161,7 @@ def _fill(
         if piece.face not in node_of:
             node_of[piece.face] = glb.node({"name": f"F{piece.face}", "extras": extras(piece.face)}, root)
         name, rgb, kind = style(piece)
-        shown = glb.mesh(name, mesh, glb.material(kind or name, rgb))
+        shown = glb.mesh(name, mesh, kind or name, rgb)
         glb.node({"name": name, "extras": piece_extras(piece), **shown}, node_of[piece.face])
 
 
@@ -175,8 +175,7 @@ def _fill_merged(
     attributes["_FACE"] = np.repeat(np.array([piece.face for piece, _ in shown], np.float32), sizes)
     triangle = np.concatenate([mesh.triangle + np.uint32(a) for a, (_, mesh) in zip(starts, shown, strict=True)])
     facts = [extras(number) for number in dict.fromkeys(piece.face for piece in pieces)]
-    white = glb.material("verdicts")
-    glb.node({"name": "part", "extras": {"faces": facts}, **glb.mesh("part", _Mesh(attributes, triangle), white)})
+    glb.node({"name": "part", "extras": {"faces": facts}, **glb.mesh("part", _Mesh(attributes, triangle), "verdicts")})
 
 
 def _fill_others(glb: "_Glb", others: Sequence[Other]) -> None:
@@ -192,7 +191,7 @@ def _fill_others(glb: "_Glb", others: Sequence[Other]) -> None:
         points = other.vertex[valid].reshape(-1, 3)
         unit = np.repeat(normal[valid] / length[valid, None], 3, axis=0)
         mesh = Mesh(points, unit, np.arange(len(points), dtype=np.uint32).reshape(-1, 3), np.zeros((len(points), 2)))
-        other_mesh = glb.mesh(other.name, _draw(mesh) if valid.any() else None, glb.material("others", other.rgb))
+        other_mesh = glb.mesh(other.name, _draw(mesh) if valid.any() else None, "others", other.rgb)
         glb.node({"name": other.name, "extras": other.extras, **other_mesh}, root[other.below])
 
 
@@ -208,7 +207,7 @@ class _Glb:
         self.meshes: list[dict[str, Any]] = []
         self.materials: list[dict[str, Any]] = []
 
-    def material(self, name: str, rgb: tuple[float, float, float] | None = None) -> int:
+    def _material(self, name: str, rgb: tuple[float, float, float] | None) -> int:
         """The number of the material of a name and a colour, white without one; open shells are looked at from both sides."""
         surface: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 0.8}
         if rgb is not None:
@@ -226,13 +225,14 @@ class _Glb:
         self.nodes.append(node)
         return len(self.nodes) - 1
 
-    def mesh(self, name: str, mesh: _Mesh | None, material: int) -> dict[str, int]:
-        """The `mesh` of a node; nothing where nothing could be drawn."""
+    def mesh(self, name: str, mesh: _Mesh | None, material: str, rgb: tuple[float, float, float] | None = None) -> dict[str, int]:
+        """The `mesh` of a node, with a material by name and colour; nothing of either where nothing could be drawn."""
         if mesh is None:
             return {}
         attributes = {key: self._accessor(array, key) for key, array in mesh.attributes.items()}
         indices = self._accessor(mesh.triangle.reshape(-1))
-        self.meshes.append({"name": name, "primitives": [{"attributes": attributes, "indices": indices, "material": material}]})
+        primitive = {"attributes": attributes, "indices": indices, "material": self._material(material, rgb)}
+        self.meshes.append({"name": name, "primitives": [primitive]})
         return {"mesh": len(self.meshes) - 1}
 
     def _accessor(self, array: NDArray[Any], attribute: str = "") -> int:

@@ -11,11 +11,14 @@ export interface Ring {
   axis: Vec | null;
 }
 
-export interface Aim {
-  target: Vec;
-  /** Turn about the setup axis and height over its plane, degrees. */
+/** A direction to look from: the turn about the setup axis and the height over its plane, degrees. */
+export interface View {
   turn: number;
   rise: number;
+}
+
+export interface Aim extends View {
+  target: Vec;
   /** Half of the height that is seen, mm. */
   half: number;
 }
@@ -33,6 +36,9 @@ export const VIEWS: Record<string, [string, number, number]> = {
 
 const FLIGHT_MS = 320;
 
+/** Whether the system asks for no motion. */
+export const quiet = (): boolean => matchMedia("(prefers-reduced-motion: reduce)").matches;
+
 export class Turntable {
   readonly camera = new OrthographicCamera();
   aim: Aim;
@@ -44,7 +50,8 @@ export class Turntable {
   private readonly y: Vec;
 
   constructor(
-    private readonly z: Vec,
+    /** What points up: the setup axis. */
+    readonly z: Vec,
     x: Vec | null,
     private readonly centre: Vec,
     /** Radius of all that is drawn, mm. */
@@ -149,11 +156,6 @@ export class Turntable {
     this.set({ target: plus(plus(this.aim.target, right, -x * size), up, y * size) });
   }
 
-  /** What points up: the setup axis. */
-  get axis(): Vec {
-    return this.z;
-  }
-
   /** The least and the largest half of the height that may be seen, mm. */
   get halves(): [number, number] {
     return [1e-4 * this.radius, 20 * this.radius + this.beyond];
@@ -193,7 +195,7 @@ export class Turntable {
     const from = this.aim;
     const to = { ...from, ...part };
     const turn = ((to.turn - from.turn + 540) % 360) - 180;
-    if (matchMedia("(prefers-reduced-motion: reduce)").matches) return this.set(part);
+    if (quiet()) return this.set(part);
     // Whoever moves the picture by hand sees at once that it is not theirs any more.
     this.aim = { ...from };
     const start = performance.now();
@@ -210,6 +212,11 @@ export class Turntable {
       if (share < 1) this.flight = requestAnimationFrame(step);
     };
     this.flight = requestAnimationFrame(step);
+  }
+
+  /** Fly to where all that is drawn is just within the picture. */
+  fit(turn = this.aim.turn, rise = this.aim.rise): void {
+    this.fly(this.fitted(turn, rise));
   }
 
   /** Turn and rise from which a direction points at the eye. */

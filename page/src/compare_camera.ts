@@ -29,8 +29,8 @@ export class OneCamera {
     this.leader = side;
   }
 
-  fit(turn = this.table.aim.turn, rise = this.table.aim.rise): void {
-    this.table.fly(this.table.fitted(turn, rise));
+  fit(turn?: number, rise?: number): void {
+    this.table.fit(turn, rise);
   }
 
   /** In the same frame, so that no eye sees two views. */

@@ -1,7 +1,7 @@
 // Mouse, fingers and wheel turn, shift and zoom a picture: three's own controls move a camera of theirs, and the turntable follows it.
 
 import { MathUtils, OrbitControls, OrthographicCamera, TOUCH, MOUSE, Vector3 } from "./three";
-import type { Aim, Turntable } from "./camera.ts";
+import { type Aim, quiet, type Turntable } from "./camera.ts";
 import { button, el } from "./dom.ts";
 import type { Stage } from "./stage.ts";
 import type { Vec } from "./meta.ts";
@@ -15,7 +15,6 @@ const [TURN, WHEEL] = [0.45, 2.9];
 const INERTIA = 0.25;
 /** Below this angle from a pole the view is along it; there the controls need a direction still, degrees. */
 const POLE = 0.01;
-const QUIET = matchMedia("(prefers-reduced-motion: reduce)");
 
 /** What becomes of a pointer that does not turn the picture: places are -1 to 1 each way. */
 export interface Told {
@@ -26,9 +25,9 @@ export interface Told {
 
 export function steer(stage: Stage, told: Told): void {
   const { canvas } = stage;
-  const hand = new Hand(canvas, stage.table);
   const down = new Map<number, { x: number; y: number }>();
   let [still, asked] = [false, 0];
+  new Hand(canvas, stage.table, down, () => still);
   canvas.addEventListener("pointerdown", (event) => {
     still = down.size === 0 && event.button === 0 && !event.shiftKey;
     down.set(event.pointerId, { x: event.clientX, y: event.clientY });
@@ -52,7 +51,6 @@ export function steer(stage: Stage, told: Told): void {
     cancelAnimationFrame(asked);
     told.leave();
   });
-  hand.waits = () => still;
 }
 
 /** Buttons that zoom and fit, for who has no wheel. */
@@ -64,29 +62,30 @@ export function zoomButtons(table: () => Turntable): HTMLElement {
     { class: "zoom", role: "group", "aria-label": "Zoom" },
     zoom("+", "Zoom in (+)", () => table().fly({ half: table().zoomed(1.5) })),
     zoom("\u2212", "Zoom out (-)", () => table().fly({ half: table().zoomed(1 / 1.5) })),
-    zoom("\u2922", "Fit the part (f)", () => table().fly(table().fitted(table().aim.turn, table().aim.rise))),
+    zoom("\u2922", "Fit the part (f)", () => table().fit()),
   );
 }
 
 /** A camera that three's controls move, and a turntable that goes with it. */
 class Hand {
-  /** Whether a press may be a click still: then nothing moves. */
-  waits: () => boolean = () => false;
   private readonly camera = new OrthographicCamera();
   private readonly controls: OrbitControls;
   private from: Aim;
   private azimuth = 0;
   private last: Aim | null = null;
   private frame = 0;
-  private readonly down = new Set<number>();
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
     private readonly table: Turntable,
+    /** What is pressed. */
+    private readonly down: ReadonlyMap<number, unknown>,
+    /** Whether a press may be a click still: then nothing moves. */
+    private readonly waits: () => boolean,
   ) {
     this.from = table.aim;
     // The controls turn about what is up when they are made.
-    this.camera.up.set(...table.axis);
+    this.camera.up.set(...table.z);
     // In capture, to be there before the controls.
     canvas.addEventListener("pointerdown", (event) => this.begins(event), { capture: true });
     canvas.addEventListener("wheel", () => this.wheels(), { capture: true, passive: true });
@@ -98,19 +97,16 @@ class Hand {
     canvas.addEventListener("wheel", () => this.follow(), { passive: true });
     // The controls listen at the document: the window hears of it later.
     window.addEventListener("pointermove", (event) => this.down.has(event.pointerId) && !this.waits() && this.follow());
-    for (const event of ["pointerup", "pointercancel"] as const) window.addEventListener(event, ({ pointerId }) => this.down.delete(pointerId));
   }
 
   private begins(event: PointerEvent): void {
-    if (this.down.size === 0) {
-      this.stop();
-      // Only fingers have inertia: a mouse points more exactly.
-      this.controls.enableDamping = event.pointerType === "touch" && !QUIET.matches;
-      this.controls.zoomSpeed = 1;
-      this.put();
-      if (this.controls.enableDamping) this.glide();
-    }
-    this.down.add(event.pointerId);
+    if (this.down.size > 0) return;
+    this.stop();
+    // Only fingers have inertia: a mouse points more exactly.
+    this.controls.enableDamping = event.pointerType === "touch" && !quiet();
+    this.controls.zoomSpeed = 1;
+    this.put();
+    if (this.controls.enableDamping) this.glide();
   }
 
   private wheels(): void {

@@ -2,6 +2,7 @@
 // of the area. What holds the part does not decide: where it hides what is lost, it is faded.
 
 import type { App } from "./app.ts";
+import type { View } from "./camera.ts";
 import type { Owner } from "./mesh.ts";
 import type { Vec } from "./meta.ts";
 import { dot } from "./vectors.ts";
@@ -16,11 +17,6 @@ const FACING = 0.17;
 const MUCH = 0.1;
 /** Directions that are looked along, the usual one aside. */
 const MOST = 10;
-
-export interface View {
-  turn: number;
-  rise: number;
-}
 
 interface Looked {
   face: Owner;
@@ -99,7 +95,7 @@ export class LostViews {
     if (!views.length) return app.say("All is reached");
     this.at = (this.at + 1) % views.length;
     const view = views[this.at];
-    app.stage.table.fly(app.stage.table.fitted(view.turn, view.rise));
+    app.stage.table.fit(view.turn, view.rise);
     this.said(view);
   }
 

@@ -25,7 +25,7 @@ export class Inset {
     this.root.append(this.marks as unknown as Node);
     this.root.addEventListener("click", () => {
       const { table } = app.stage;
-      table.fly(table.fitted(table.aim.turn, table.aim.rise));
+      table.fit();
     });
     app.stage.afterDraw(() => this.draw());
   }

@@ -74,7 +74,7 @@ export function listenKeys(app: App, parts: Parts): void {
     if (event.ctrlKey) return;
     const view = VIEWS[event.key];
     if (view) {
-      table.fly(table.fitted(view[1], view[2]));
+      table.fit(view[1], view[2]);
       app.say(`View: ${view[0]}`);
       return;
     }
@@ -82,7 +82,7 @@ export function listenKeys(app: App, parts: Parts): void {
       "+": () => table.zoom(1.25),
       "=": () => table.zoom(1.25),
       "-": () => table.zoom(0.8),
-      f: () => table.fly(table.fitted(table.aim.turn, table.aim.rise)),
+      f: () => table.fit(),
       n: () => parts.spots.step(1),
       p: () => parts.spots.step(-1),
       j: () => neighbour(app, 1),

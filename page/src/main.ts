@@ -214,8 +214,8 @@ function views(app: App, lost: () => void): HTMLSelectElement {
     const { value } = select;
     select.value = "";
     if (value === "l") return lost();
-    const [, turn, rise] = VIEWS[value] ?? ["", table.aim.turn, table.aim.rise];
-    table.fly(table.fitted(turn, rise));
+    const [, turn, rise] = VIEWS[value] ?? [];
+    table.fit(turn, rise);
   });
   return select;
 }

@@ -18,6 +18,10 @@ export class Stills {
     this.root.append(...this.pictures, el("figcaption", {}, "As seen on the screen, and from the opposite corner."), this.key);
     // Canvases, for a picture that is loaded anew may come too late for the printer.
     window.addEventListener("beforeprint", () => this.take());
+    const why = document.querySelector<HTMLDetailsElement>("#why");
+    let open = false;
+    window.addEventListener("beforeprint", () => why && ([open, why.open] = [why.open, true]));
+    window.addEventListener("afterprint", () => why && (why.open = open));
   }
 
   take(): void {

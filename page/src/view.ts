@@ -1,11 +1,9 @@
 // Where to look from, so that a place of the surface is seen, and the tool that stands there.
 
 import type { App } from "./app.ts";
-import type { Aim, Ring } from "./camera.ts";
+import type { Aim, Ring, View } from "./camera.ts";
 import type { Vec } from "./meta.ts";
 import { dot, plus } from "./vectors.ts";
-
-type View = { turn: number; rise: number };
 
 /** A tool is seen well from its side: up to this cosine between its axis and the way to the eye nothing is lost. */
 const SIDE = 0.5;

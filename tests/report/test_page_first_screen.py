@@ -359,3 +359,18 @@ def thousand(tmp_path_factory):
     path = tmp_path_factory.mktemp("thousand") / "review.html"
     write_html(found, None, path)
     return path
+
+
+def test_a_doubt_is_seen_without_a_click_and_paper_has_the_reasons(at, tmp_path):
+    """Which side of an open shell is material is a guess: that is not folded away below a green word."""
+    found = plan(ROOT / "samples" / "peaks_and_valleys.step", cutters=["R6L80"], grid=9, area_budget=0)
+    write_html(found, None, tmp_path / "review.html")
+    page = at(where=tmp_path / "review.html")
+    assert page.get_by_text("Doubt:").is_visible()
+    facts = page.locator("#why dl.facts")
+    assert facts.is_hidden()
+    page.emulate_media(media="print")
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert facts.is_visible()
+    page.evaluate("dispatchEvent(new Event('afterprint'))")
+    assert facts.is_hidden()

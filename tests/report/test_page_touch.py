@@ -125,24 +125,22 @@ def test_buttons_zoom_and_fit(phone):
     assert settled(phone)["half"] == pytest.approx(before["half"], rel=0.02)
 
 
-def test_targets_are_large_enough_for_fingers(phone):
-    small = phone.evaluate(
-        """() => [...document.querySelectorAll("button, select, summary, input")]
+def smaller(page, least):
+    """Targets that are seen and less high than so many pixels, or less wide than 24."""
+    return page.evaluate(
+        """least => [...document.querySelectorAll("button, select, summary, input")]
              .filter(each => each.checkVisibility()).map(each => {
              const { width, height } = each.getBoundingClientRect();
              return [each.id || each.textContent.slice(0, 30) || each.type, Math.round(width), Math.round(height)]; })
-             .filter(([, width, height]) => height < 44 || width < 24)"""
+             .filter(([, width, height]) => height < least || width < 24)""",
+        least,
     )
-    assert small == []
+
+
+def test_targets_are_large_enough_for_fingers(phone):
+    assert smaller(phone, 44) == []
 
 
 def test_zoom_buttons_and_large_targets_are_for_fingers_alone(page):
     assert page.locator(".zoom").is_hidden()
-    small = page.evaluate(
-        """() => [...document.querySelectorAll("button, select, summary, input:not([type=range])")]
-             .filter(each => each.checkVisibility()).map(each => {
-             const { width, height } = each.getBoundingClientRect();
-             return [each.id || each.textContent.slice(0, 30) || each.type, Math.round(width), Math.round(height)]; })
-             .filter(([, width, height]) => height < 24 || width < 24)"""
-    )
-    assert small == []
+    assert smaller(page, 24) == []

@@ -149,6 +149,9 @@ def test_what_cannot_be_written(halves, tmp_path, monkeypatch):
     assert write(found, tmp_path / "p.glb") == (found.pieces[0].face,)
     document, _ = read(tmp_path / "p.glb")
     assert len(document["meshes"]) == len(found.pieces) - 1
+    # The material of what could not be drawn is left out: a validator tells of each that nothing uses.
+    used = {mesh["primitives"][0]["material"] for mesh in document["meshes"]}
+    assert used == set(range(len(document["materials"])))
     monkeypatch.setattr(module, "face_mesh", lambda *a: None)
     with pytest.raises(WriteError, match="no triangle"):
         write(found, tmp_path / "q.glb")
