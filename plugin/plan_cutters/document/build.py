@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io import Part, SurfaceSamples
+from cad_io import FaceInfo, Orientation, Part, SurfaceSamples
 from cad_io.kernel.assembly import component_of
 from plan_cutters import __version__
 from plan_cutters.document.fixtures import references
@@ -17,6 +17,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.preference import group_of
 from plan_cutters.domain.shapes import flute_length, modes
 from plan_cutters.domain.verdicts import ANOTHER_SETUP, INACCESSIBLE, REASONS, UNDECIDED, Verdicts, Witness
+from plan_cutters.plan_file.carrier import CarrierEntry
 from plan_cutters.plan_file.frozen import filled, posture, vector
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, MissingEntry, SegmentEntry, WitnessEntry
 from plan_cutters.plan_file.numbers import listed
@@ -175,7 +176,9 @@ def _sewing(part: Part) -> SewingInfo | None:
     )
 
 
-def face_entries(part: Part, samples: SurfaceSamples, choice: Chosen, errors: Mapping[int, float]) -> list[FaceEntry]:
+def face_entries(
+    part: Part, samples: SurfaceSamples, choice: Chosen, errors: Mapping[int, float], orientation: Orientation
+) -> list[FaceEntry]:
     """Every face of the part, judged or not; `errors`: how far triangles may be from each, mm."""
     empty, gaps = dict(samples.empty), dict(samples.face_gaps)
     chosen, ignored = set(choice.targets), set(choice.ignored)
@@ -197,6 +200,8 @@ def face_entries(part: Part, samples: SurfaceSamples, choice: Chosen, errors: Ma
                 ignored=face.number in ignored,
                 area_mm2=face.area,
                 centre_mm=part.centre(face.number),
+                carrier=carrier_entry(face, orientation),
+                neighbours=[f"F{number}" for number in part.neighbours[face.number - 1]],
                 component=component[face.number],
                 samples=len(mine),
                 gap_mm=gaps.get(face.number),
@@ -205,6 +210,22 @@ def face_entries(part: Part, samples: SurfaceSamples, choice: Chosen, errors: Ma
             )
         )
     return result
+
+
+def carrier_entry(face: FaceInfo, orientation: Orientation) -> CarrierEntry | None:
+    """What a face is a part of; the side of the material only where it is sure."""
+    carrier = face.carrier
+    if carrier is None:
+        return None
+    side = carrier.side * orientation.sign[face.number - 1] if orientation.confident else 0
+    return CarrierEntry(
+        point_mm=carrier.point,
+        direction=carrier.direction,
+        radius_mm=carrier.radius,
+        minor_radius_mm=carrier.minor_radius,
+        half_angle_deg=None if carrier.half_angle is None else math.degrees(carrier.half_angle),
+        outward=bool(side > 0) if side else None,
+    )
 
 
 def versions() -> dict[str, str]:
