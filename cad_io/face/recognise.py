@@ -176,4 +176,6 @@ def _torus(point: Floats, normal: Floats, kappa: float) -> Fit:
         outward = np.linalg.norm((p - centre) @ axes[:2].T - middle, axis=1) - radius
         return np.asarray(np.abs(np.hypot(outward, (p - centre) @ axes[2] - spine_height) - 1 / abs(kappa)))
 
-    return Fit("torus", distance, carrier.torus(centre + middle @ axes[:2] + spine_height * axes[2], axes[2], radius, 1 / abs(kappa)))
+    return Fit(
+        "torus", distance, carrier.torus(centre + middle @ axes[:2] + spine_height * axes[2], axes[2], radius, 1 / abs(kappa))
+    )

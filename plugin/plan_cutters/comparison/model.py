@@ -53,7 +53,7 @@ class FaceDifference(Frozen):
     was: FaceState | None = None
     now: FaceState | None = None
     lost: bool = Field(description="less of it is reached, or it is new and not reached")
-    won: bool = Field(description="more of it is reached, or it is gone and was not reached")
+    won: bool = Field(description="more of it is reached; a face that is gone is neither lost nor won")
 
 
 class CutterState(Frozen):
@@ -88,8 +88,13 @@ class PlanDifference(Frozen):
     changes: list[Change]
     selected: tuple[str | None, str | None] = Field(description="ids of the cutters to take, old and new")
     matched: dict[str, int] = Field(description="how many faces were known again, by how")
-    faces: list[FaceDifference]
-    cutters: list[CutterDifference]
+    motion: str = Field(
+        default="", description="a sentence where the part was mirrored, moved or turned as a whole; empty where not"
+    )
+    faces: list[FaceDifference] = Field(
+        description="lost ones first, by the area that is lost; then new ones that are not reached, changed, won, new, gone ones"
+    )
+    cutters: list[CutterDifference] = Field(description="lost ones first, by the share that is lost; then changed and won ones")
     unreachable: list[str] = Field(description="ids of the target faces of the new plan that no cutter reaches whole")
     lost: bool
     won: bool
@@ -97,7 +102,8 @@ class PlanDifference(Frozen):
     @property
     def same(self) -> bool:
         """Nothing differs but what the run itself says."""
-        return not (self.why_not or self.changes or self.faces or self.cutters or self.selected[0] != self.selected[1])
+        other = self.selected[0] != self.selected[1]
+        return not (self.why_not or self.changes or self.motion or self.faces or self.cutters or other)
 
 
 class Comparison(Frozen):
