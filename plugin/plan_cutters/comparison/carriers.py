@@ -5,6 +5,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from plan_cutters.plan_file.model import FaceEntry
@@ -47,16 +48,26 @@ def opposed(a: FaceEntry, b: FaceEntry) -> bool:
 
     What one of them does not state opposes nothing.
     """
-    one, other = a.carrier, b.carrier
-    if one is None or other is None:
-        return False
-    known = one.outward is not None and other.outward is not None
-    inner = 1.0
-    if one.direction is not None and other.direction is not None:
-        inner = sum(x * y for x, y in zip(one.direction, other.direction, strict=True))
-    if a.shape != "plane":
-        return (known and one.outward != other.outward) or abs(inner) < _AGREE
-    return (inner if one.outward == other.outward else -inner) < _AGREE if known else abs(inner) < _AGREE
+    return bool(opposing([a], [b])[0, 0])
+
+
+def opposing(old: Sequence[FaceEntry], new: Sequence[FaceEntry]) -> NDArray[np.bool_]:
+    """`opposed` of each of some faces (n) and each of others (m) of one form, as (n, m)."""
+    (way, side), (other_way, other_side) = _ways(old), _ways(new)
+    stated = (way != 0.0).any(axis=1)[:, None] & (other_way != 0.0).any(axis=1)
+    inner = np.where(stated, way @ other_way.T, 1.0)
+    sides = side[:, None] * other_side
+    if old[0].shape == "plane":
+        return np.asarray(np.where((sides == 0) | ~stated, np.abs(inner), inner * sides) < _AGREE)
+    return np.asarray((sides < 0) | (np.abs(inner) < _AGREE))
+
+
+def _ways(faces: Sequence[FaceEntry]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Directions (n, 3), zero where there is none, and sides (n,): 1 outward, -1 inward, 0 not known."""
+    carriers = [face.carrier for face in faces]
+    way = np.array([(0.0, 0.0, 0.0) if each is None else each.direction or (0.0, 0.0, 0.0) for each in carriers])
+    known = [0 if each is None or each.outward is None else 1 if each.outward else -1 for each in carriers]
+    return way, np.array(known)
 
 
 def same_radii(a: FaceEntry, b: FaceEntry, within: float) -> bool:

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from plan_cutters.comparison.carriers import on_one_carrier, opposed
+from plan_cutters.comparison.carriers import on_one_carrier, opposed, opposing
 from plan_cutters.comparison.model import CutterMatch, FaceMatch
 from plan_cutters.comparison.motion import PlanMotion, motion_of
 from plan_cutters.comparison.neighbours import Surroundings, alone, near
@@ -212,16 +212,20 @@ def _alike(old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: float) -> l
             continue
         one, other = _placed(mine, size), _placed(theirs, size)
         unlike = np.linalg.norm(one[:, None, :3] - other[None, :, :3], axis=2) + np.abs(one[:, None, 3] - other[None, :, 3])
-        for i, j in zip(*np.nonzero(unlike <= CLEARLY * FARTHEST), strict=True):
-            if opposed(mine[i], theirs[j]):
-                unlike[i, j] = np.inf
-        for i, j in enumerate(unlike.argmin(axis=1).tolist()):
-            best = unlike[i, j]
-            others = np.append(np.delete(unlike[i], j), np.delete(unlike[:, j], i))
+        unlike[opposing(mine, theirs)] = np.inf
+        ends = [_two_least(unlike), _two_least(unlike.T)]
+        column = unlike.argmin(axis=1)
+        for i, j in enumerate(column.tolist()):
+            best, others = unlike[i, j], min(ends[0][i, 1], ends[1][j, 1])
             # `best` is 0 where a place agrees, but other faces stand there, too.
-            if best <= FARTHEST and (not len(others) or others.min() >= CLEARLY * max(best, SAME)):
+            if best == ends[1][j, 0] and best <= FARTHEST and others >= CLEARLY * max(best, SAME):
                 pairs.append((mine[i], theirs[j]))
     return pairs
+
+
+def _two_least(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The two least values of each row (n, m), as (n, 2); infinite where there is no second one."""
+    return np.partition(np.column_stack([values, np.full(len(values), np.inf)]), 1, axis=1)[:, :2]
 
 
 def _of_one_form(old: Sequence[FaceEntry], new: Sequence[FaceEntry]) -> Iterator[tuple[list[FaceEntry], list[FaceEntry]]]:

@@ -16,7 +16,8 @@ from plan_cutters.plan_file.words.names import called
 
 #: Shares of an area that differ by no more are the same: samples of a changed part lie in other places.
 SLACK = 0.001
-#: Plans of which fewer faces are known again, as a share of those of the plan with fewer of them, are of two parts.
+#: Plans of which fewer faces are known again, as a share of those of the plan with fewer of them, are of two parts, unless so
+#: large a share of the area is the same.
 UNRELATED = 0.25
 #: Entries of a cutter that say how it is made.
 _FORM = (
@@ -53,7 +54,7 @@ def compare(old: Plan, new: Plan, *, name: str = "", slack: float = SLACK, despi
     pairs = known.pairs
     tools = match_cutters(old, new)
     why_not = [f"{each.what} differs: {each.old} -> {each.new}" for each in changes if each.hinders]
-    if len(pairs) < UNRELATED * min(len(old.faces), len(new.faces)) or not pairs:
+    if not _related(old, new, known):
         why_not.append(
             f"of {count(len(old.faces), 'face')} of the old plan and {len(new.faces)} of the new one {len(pairs) or 'none'} "
             f"{'are' if len(pairs) > 1 else 'is'} known again: they seem to be of two parts"
@@ -77,6 +78,21 @@ def compare(old: Plan, new: Plan, *, name: str = "", slack: float = SLACK, despi
         lost=any(each.lost for each in differences),
         won=any(each.won for each in differences),
     )
+
+
+def _related(old: Plan, new: Plan, known: KnownFaces) -> bool:
+    """Whether two plans are of one part: enough of their faces are known again, or enough area is the same at the same place."""
+    if len(known.pairs) >= UNRELATED * min(len(old.faces), len(new.faces)):
+        return bool(known.pairs)
+    same = [(a.id, b.id) for a, b, how in known.pairs if how == "place"]
+    shares = (_share_of(plan.faces, names) for plan, names in zip((old, new), zip(*same, strict=True), strict=False))
+    return bool(same) and min(shares) >= UNRELATED
+
+
+def _share_of(faces: Sequence[FaceEntry], names: Collection[str]) -> float:
+    """Share of the area of all faces that some of them have."""
+    area = {face.id: face.area_mm2 for face in faces if math.isfinite(face.area_mm2)}
+    return sum(area.get(name, 0.0) for name in names) / max(sum(area.values()), 1e-300)
 
 
 def _motion(old: Plan, known: KnownFaces) -> str:
