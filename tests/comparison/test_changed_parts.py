@@ -109,7 +109,7 @@ def test_a_mirrored_part_is_told_and_each_face_is_its_image(chiral):
     ("moved", "text"),
     [
         (lambda body: body.translate((10, 0, 5)), "moved by (10, 0, 5) mm"),
-        (lambda body: body.rotate((0, 0, 0), (0, 0, 1), 90), "turned by 90 deg about a line along z"),
+        (lambda body: body.rotate((0, 0, 0), (0, 0, 1), 90), "turned by 90° about a line along z"),
     ],
 )
 def test_a_part_that_moved_as_a_whole_is_told(chiral, moved, text):

@@ -53,7 +53,7 @@ class FaceDifference(Frozen):
     was: FaceState | None = None
     now: FaceState | None = None
     lost: bool = Field(description="less of it is reached, or it is new and not reached")
-    won: bool = Field(description="more of it is reached; a face that is gone is neither lost nor won")
+    won: bool = Field(description="more of it is reached; false of a face that is gone")
 
 
 class CutterState(Frozen):
@@ -92,9 +92,11 @@ class PlanDifference(Frozen):
         default="", description="a sentence where the part was mirrored, moved or turned as a whole; empty where not"
     )
     faces: list[FaceDifference] = Field(
-        description="lost ones first, by the area that is lost; then new ones that are not reached, changed, won, new, gone ones"
+        description="first those of which less is reached, by the area; then new ones that are not reached, changed, won, new, gone ones"
     )
-    cutters: list[CutterDifference] = Field(description="lost ones first, by the share that is lost; then changed and won ones")
+    cutters: list[CutterDifference] = Field(
+        description="first those that reach less, by the share; then changed ones and those that reach more"
+    )
     unreachable: list[str] = Field(description="ids of the target faces of the new plan that no cutter reaches whole")
     lost: bool
     won: bool

@@ -17,6 +17,7 @@ from scipy.spatial import cKDTree
 from plan_cutters.comparison.carriers import opposed
 from plan_cutters.plan_file.frozen import Vector, vector
 from plan_cutters.plan_file.model import FaceEntry
+from plan_cutters.plan_file.numbers import angle, direction, mm, place, unit
 
 #: Places and logarithms of areas agree within this, as of faces that did not move.
 _SAME = 1e-5
@@ -51,15 +52,15 @@ class PlanMotion:
         """A face of the old part where it comes to lie."""
         carrier = face.carrier
         if carrier is not None:
-            point, direction = np.asarray(self._point(carrier.point_mm)), carrier.direction
-            if direction is not None:
-                direction = vector(self.linear @ direction)
-            along = 0.0 if direction is None else float(point @ direction)
+            point, way = np.asarray(self._point(carrier.point_mm)), carrier.direction
+            if way is not None:
+                way = vector(self.linear @ way)
+            along = np.zeros(3) if way is None else (point @ way) * np.asarray(way)
             if face.shape == "plane":
-                point = along * np.asarray(direction)
+                point = along
             elif face.shape == "cylinder":
-                point = point - along * np.asarray(direction)
-            carrier = carrier.model_copy(update={"point_mm": vector(point), "direction": direction})
+                point = point - along
+            carrier = carrier.model_copy(update={"point_mm": vector(point), "direction": way})
         centre = None if face.centre_mm is None else self._point(face.centre_mm)
         return face.model_copy(update={"centre_mm": centre, "carrier": carrier})
 
@@ -68,37 +69,37 @@ class PlanMotion:
 
     @property
     def text(self) -> str:
-        """What was done to the part, in words.
+        """Say what was done to the part.
 
         >>> PlanMotion(np.eye(3), np.array([0.0, 2.5, 0.0])).text
         'moved by (0, 2.5, 0) mm'
         >>> PlanMotion(np.diag([-1.0, 1.0, 1.0]), np.array([10.0, 0.0, 0.0])).text
         'mirrored at the plane x = 5 mm'
         >>> PlanMotion(np.diag([-1.0, -1.0, 1.0]), np.array([4.0, 0.0, 3.0])).text
-        'turned by 180 deg about a line along z, and moved by (0, 0, 3) mm'
+        'turned by 180° about a line along z, and moved by (0, 0, 3) mm'
         """
         trace = float(np.trace(self.linear))
         if np.linalg.det(self.linear) < 0.0:
             axis = int(np.argmin(np.diag(self.linear)))
             rest = np.where(np.arange(3) == axis, 0.0, self.shift)
-            return f"mirrored at the plane {_AXES[axis]} = {_number(0.5 * self.shift[axis])} mm{self._and(rest)}"
+            return f"mirrored at the plane {_AXES[axis]} = {mm(0.5 * self.shift[axis], 4)}{self._and(rest)}"
         if trace > 2.5:
-            return f"moved by {_vector(self.shift)} mm"
-        angle = round(math.degrees(math.acos(max(-1.0, min(1.0, 0.5 * (trace - 1.0))))))
+            return _moved_by(self.shift)
+        turn = round(math.degrees(math.acos(max(-1.0, min(1.0, 0.5 * (trace - 1.0))))))
         skew = self.linear - self.linear.T
         axis_of = np.array([skew[2, 1], skew[0, 2], skew[1, 0]])
-        if angle == 180:
+        if turn == 180:
             values, vectors = np.linalg.eigh(self.linear)
             axis_of = vectors[:, int(values.argmax())]
         axis_of = axis_of / np.abs(axis_of).max()
         along = (self.shift @ axis_of) * axis_of / (axis_of @ axis_of)
         one = np.count_nonzero(np.abs(axis_of) > 0.5) == 1
-        sign = "" if angle == 180 or not one or axis_of.sum() > 0.0 else "-"
-        line = f"{sign}{_AXES[int(np.abs(axis_of).argmax())]}" if one else _vector(axis_of)
-        return f"turned by {angle} deg about a line along {line}{self._and(along)}"
+        sign = "" if turn == 180 or not one or axis_of.sum() > 0.0 else "-"
+        line = f"{sign}{_AXES[int(np.abs(axis_of).argmax())]}" if one else f"({direction(axis_of)})"
+        return f"turned by {angle(turn)} about a line along {line}{self._and(along)}"
 
     def _and(self, shift: NDArray[np.float64]) -> str:
-        return f", and moved by {_vector(shift)} mm" if np.abs(shift).max() > 1e-6 * (1.0 + np.abs(self.shift).max()) else ""
+        return f", and {_moved_by(shift)}" if np.abs(shift).max() > 1e-6 * (1.0 + np.abs(self.shift).max()) else ""
 
 
 def motion_of(old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: float) -> PlanMotion | None:
@@ -127,11 +128,11 @@ def motion_of(old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: float) -
                 if _agreeing(tree, here[some], linear, shift, size)[0].mean() < _ENOUGH:
                     continue
                 near, rows = _agreeing(tree, here, linear, shift, size)
-                found = PlanMotion(linear, np.where(np.abs(shift) <= _SAME * size, 0.0, shift))
-                pairs = {(i, int(rows[i])) for i in np.flatnonzero(near) if not opposed(found.face(mine[i]), theirs[rows[i]])}
+                motion = PlanMotion(linear, np.where(np.abs(shift) <= _SAME * size, 0.0, shift))
+                pairs = {(i, int(rows[i])) for i in np.flatnonzero(near) if not opposed(motion.face(mine[i]), theirs[rows[i]])}
                 carried = min(len(pairs), len({j for _, j in pairs}))
                 if carried >= least and (best is None or carried > best.carried):
-                    best = PlanMotion(found.linear, found.shift, carried)
+                    best = PlanMotion(motion.linear, motion.shift, carried)
     return best
 
 
@@ -176,9 +177,5 @@ def _linears() -> Iterator[NDArray[np.float64]]:
     yield from (np.diag(row) for row in ([-1.0, 1.0, 1.0], [1.0, -1.0, 1.0], [1.0, 1.0, -1.0]))
 
 
-def _number(value: float) -> str:
-    return f"{round(value, 4) + 0.0:.6g}"
-
-
-def _vector(value: NDArray[np.float64]) -> str:
-    return f"({', '.join(_number(x) for x in value.tolist())})"
+def _moved_by(shift: NDArray[np.float64]) -> str:
+    return f"moved by ({place(shift.tolist())}) {unit()}"

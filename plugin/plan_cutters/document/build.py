@@ -213,7 +213,7 @@ def face_entries(
 
 
 def carrier_entry(face: FaceInfo, orientation: Orientation) -> CarrierEntry | None:
-    """What a face is a part of; the side of the material only where it is sure."""
+    """Describe what a face is a part of; the side of the material only where it is sure."""
     carrier = face.carrier
     if carrier is None:
         return None
