@@ -92,7 +92,8 @@ class PlanDifference(Frozen):
         default="", description="a sentence where the part was mirrored, moved or turned as a whole; empty where not"
     )
     faces: list[FaceDifference] = Field(
-        description="first those of which less is reached, by the area; then new ones that are not reached, changed, won, new, gone ones"
+        description="first those of which less is reached, by the area; then new ones that are not reached, changed, won, new "
+        "and gone ones"
     )
     cutters: list[CutterDifference] = Field(
         description="first those that reach less, by the share; then changed ones and those that reach more"
