@@ -90,6 +90,17 @@ def test_of_a_slot_the_walls_and_the_floor_are_new(before):
             assert face.carrier.outward == pairs[face.id].carrier.outward
 
 
+def test_a_rib_in_place_of_a_slot_is_another_feature():
+    """Both have walls that join the same faces and look the same ways, on the other side of the top."""
+    body = cq.Workplane().box(80, 60, 30)
+    slot = planned(body.cut(cq.Workplane().box(6, 60, 8).translate((-5, 0, 11))))
+    rib = planned(body.union(cq.Workplane().box(6, 60, 8).translate((5, 0, 19))))
+    for old, new in ((slot, rib), (rib, slot)):
+        for a, b, _ in match_faces(old, new):
+            # Walls, floor and top of either have no more than 480 mm2.
+            assert min(a.area_mm2, b.area_mm2) > 1000.0
+
+
 def test_a_mirrored_part_is_told_and_each_face_is_its_image(chiral):
     after = planned(bracket().mirror("YZ"))
     known = known_faces(chiral, after)

@@ -83,22 +83,23 @@ def _pairs(old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: float) -> M
     """Pairs of faces that stand at their places, in the order of the old numbers."""
     pairs: Matched = []
     open_faces = list(old), list(new)
-    paired: dict[str, str] = {}
 
     def take(matched: Iterable[Pair], how: FaceMatch) -> bool:
         nonlocal open_faces
         more = list(matched)
         pairs.extend((a, b, how) for a, b in more)
-        paired.update((a.id, b.id) for a, b in more)
-        theirs = set(paired.values())
-        open_faces = [f for f in open_faces[0] if f.id not in paired], [f for f in open_faces[1] if f.id not in theirs]
+        mine, theirs = {a.id for a, _ in more}, {b.id for _, b in more}
+        open_faces = [f for f in open_faces[0] if f.id not in mine], [f for f in open_faces[1] if f.id not in theirs]
         return bool(more)
+
+    def surroundings() -> Surroundings:
+        return Surroundings({f.id: f for f in old}, {f.id: f for f in new}, ((a, b) for a, b, _ in pairs), size)
 
     def spread() -> None:
         """Go on from what is paired: what is surest first, and again from the first as soon as one is paired."""
         again = True
         while again and all(open_faces):
-            by = Surroundings(paired, size)
+            by = surroundings()
             again = (
                 any(take(_on_carriers(*open_faces, size, by, radius=radius), "carrier") for radius in (True, False))
                 or take(by.pairs(*open_faces, lambda _, every: every), "neighbours")
@@ -111,7 +112,8 @@ def _pairs(old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: float) -> M
         take(_alone(*open_faces, _numbered), "number")
     spread()
     take(_alone(*open_faces, _named), "name")
-    take(_alike(*open_faces, size), "likeness")
+    by = surroundings()
+    take((pair for pair in _alike(*open_faces, size) if by.consistent(*pair)), "likeness")
     spread()
     return sorted(pairs, key=lambda pair: int(pair[0].id[1:]))
 
