@@ -12,6 +12,7 @@ from plan_cutters.comparison.pictures import Picture
 from plan_cutters.comparison.plans import compare
 from plan_cutters.comparison.review import Side, page
 from plan_cutters.comparison.wording import face_rows, headline, remarks
+from tests.support.places import ROOT
 
 
 def block(radius=5.0, hole=15.0, slot=False):
@@ -127,6 +128,21 @@ def test_a_part_that_moved_as_a_whole_is_told(chiral, moved, text):
     found = compare(chiral, planned(moved(bracket())))
     assert text in found.motion
     assert not [f for f in found.faces if f.lost or f.won or f.old is None or f.new is None]
+
+
+def test_a_free_form_face_leaves_open_which_motion_it_was():
+    """A mirror and a turn carry all middles and areas to the same places: both are named, and no doubtful pair is made."""
+    part = read_part(ROOT / "samples" / "pocket_top.step")
+    old, new = (planned(shape) for shape in (cq.Workplane(cq.Shape.cast(part.shape)).mirror(plane) for plane in ("XY", "XZ")))
+    known = known_faces(old, new)
+    assert known.moved
+    assert len(known.motions) > 1
+    found = compare(old, new)
+    assert all(each.text in found.motion for each in known.motions[:3])
+    size = np.linalg.norm(old.part.size_mm)
+    for a, b, _ in known.pairs:
+        for motion in known.motions:
+            assert np.allclose(motion.face(a).centre_mm, b.centre_mm, atol=1e-4 * size)
 
 
 def igs(shape, path):

@@ -15,7 +15,7 @@ from scipy.spatial import cKDTree
 
 from plan_cutters.comparison.carriers import on_one_carrier, opposed, opposing
 from plan_cutters.comparison.model import CutterMatch, FaceMatch
-from plan_cutters.comparison.motion import PlanMotion, motion_of
+from plan_cutters.comparison.motion import PlanMotion, motions_of
 from plan_cutters.comparison.neighbours import Surroundings, alone, near
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
 
@@ -34,10 +34,13 @@ Matched = list[tuple[FaceEntry, FaceEntry, FaceMatch]]
 
 
 class KnownFaces(NamedTuple):
-    """Pairs of faces, and how the new part lies to the old one where it was mirrored, moved or turned as a whole."""
+    """Pairs of faces, and how the new part lies to the old one where it was mirrored, moved or turned as a whole.
+
+    Of several motions nobody knows which it was.
+    """
 
     pairs: Matched
-    motion: PlanMotion | None = None
+    motions: tuple[PlanMotion, ...] = ()
     #: Whether the pairs are those that the motion makes.
     moved: bool = False
 
@@ -65,18 +68,28 @@ def known_faces(old: Plan, new: Plan) -> KnownFaces:
     placed = sum(how == "place" for _, _, how in still)
     if placed == len(old.faces) == len(new.faces):
         return KnownFaces(still)
-    motion = motion_of(old.faces, new.faces, size)
-    if motion is None or motion.carried <= placed:
+    motions = motions_of(old.faces, new.faces, size)
+    if not any(face.shape == "sculptured" for face in old.faces):
+        # A part of simple shapes that several motions carry onto the new one is its own image: each of them is right.
+        motions = motions[:1]
+    if not motions or motions[0].carried <= placed:
         return KnownFaces(still)
+    carried = motions[0].carried
     if len(still) == len(old.faces) == len(new.faces) and 2 * placed > len(still):
         # A hole that moved to the other side: most of the part is where it was.
-        return KnownFaces(still, motion)
-    whole = motion.carried == len(old.faces) == len(new.faces)
-    if not whole and 2 * len(still) > motion.carried:
+        return KnownFaces(still, tuple(motions))
+    whole = carried == len(old.faces) == len(new.faces)
+    if not whole and 2 * len(still) > carried:
         return KnownFaces(still)
     own = {face.id: face for face in old.faces}
-    moved = _pairs([motion.face(face) for face in old.faces], new.faces, size)
-    return KnownFaces([(own[a.id], b, how) for a, b, how in moved], motion, moved=True)
+    every = [_pairs([motion.face(face) for face in old.faces], new.faces, size) for motion in motions]
+    agreed = set.intersection(*({(a.id, b.id) for a, b, _ in pairs} for pairs in every))
+    # Half of the pairs at least, or else the first motion is as good as any: of a flat part whose both sides are alike, all pairs
+    # differ between a turn and a mirror.
+    if 2 * len(agreed) < carried:
+        agreed = {(a.id, b.id) for a, b, _ in every[0]}
+    moved = [(own[a.id], b, how) for a, b, how in every[0] if (a.id, b.id) in agreed]
+    return KnownFaces(moved, tuple(motions), moved=True)
 
 
 def _pairs(old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: float) -> Matched:

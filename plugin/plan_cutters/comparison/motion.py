@@ -102,20 +102,21 @@ class PlanMotion:
         return f", and {_moved_by(shift)}" if np.abs(shift).max() > 1e-6 * (1.0 + np.abs(self.shift).max()) else ""
 
 
-def motion_of(old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: float) -> PlanMotion | None:
-    """The motion that carries most faces of an old part onto those of the new one; None where none carries enough of them.
+def motions_of(old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: float) -> list[PlanMotion]:
+    """The motions that carry most faces of an old part onto those of the new one; none where none carries enough of them.
 
-    Of those that carry as many a shift comes first, then a turn, then a mirror.
+    Several carry as many where the part is its own image: a shift comes first, then turns, then mirrors. Of faces that are no
+    simple shape, middles and areas alone are compared, so that one of several may be the wrong one.
     """
     mine, theirs = ([f for f in faces if f.centre_mm is not None and 0.0 < f.area_mm2 < math.inf] for faces in (old, new))
     least = max(_LEAST, _MOST_OF_ALL * max(len(old), len(new)))
     if min(len(mine), len(theirs)) < least or not any(f.carrier for f in mine) or not any(f.carrier for f in theirs):
-        return None
+        return []
     forms = {shape: k for k, shape in enumerate(sorted({f.shape for f in (*mine, *theirs)}))}
     here, there = (_rows(faces, forms) for faces in (mine, theirs))
     tree = cKDTree(there / [size, size, size, 1.0, 1.0])
     starts = list(_starts(here, there))
-    best: PlanMotion | None = None
+    best = list[PlanMotion]()
     some = np.unique(np.linspace(0, len(mine) - 1, _SOME).astype(int))
     for linear in _linears():
         tried = set[tuple[float, ...]]()
@@ -131,8 +132,9 @@ def motion_of(old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: float) -
                 motion = PlanMotion(linear, np.where(np.abs(shift) <= _SAME * size, 0.0, shift))
                 pairs = {(i, int(rows[i])) for i in np.flatnonzero(near) if not opposed(motion.face(mine[i]), theirs[rows[i]])}
                 carried = min(len(pairs), len({j for _, j in pairs}))
-                if carried >= least and (best is None or carried > best.carried):
-                    best = PlanMotion(motion.linear, motion.shift, carried)
+                if carried >= max(least, best[0].carried if best else 0):
+                    best = [each for each in best if each.carried == carried]
+                    best.append(PlanMotion(motion.linear, motion.shift, carried))
     return best
 
 

@@ -19,6 +19,8 @@ SLACK = 0.001
 #: Plans of which fewer faces are known again, as a share of those of the plan with fewer of them, are of two parts, unless so
 #: large a share of the area is the same.
 UNRELATED = 0.25
+#: Motions that are named where several explain a part.
+_MOST_MOTIONS = 3
 #: Entries of a cutter that say how it is made.
 _FORM = (
     "radius",
@@ -97,12 +99,13 @@ def _share_of(faces: Sequence[FaceEntry], names: Collection[str]) -> float:
 
 def _motion(old: Plan, known: KnownFaces) -> str:
     """How the part was moved as a whole, and what is compared for it; empty where it was not."""
-    if known.motion is None:
+    if not known.motions:
         return ""
-    carried, every = known.motion.carried, len(old.faces)
+    carried, every = known.motions[0].carried, len(old.faces)
     number = f"All {every}" if carried == every else f"{carried} of {every}"
+    texts = " or ".join(list(dict.fromkeys(each.text for each in known.motions))[:_MOST_MOTIONS])
     where = "each face is compared with its image" if known.moved else "faces are compared where they stand"
-    return f"{number} faces of the old part are {known.motion.text} in the new one: {where}."
+    return f"{number} faces of the old part are {texts} in the new one: {where}."
 
 
 def taken(plan: Plan) -> str | None:
