@@ -2,6 +2,7 @@
 
 import type { App } from "./app.ts";
 import type { Aim, Ring, View } from "./camera.ts";
+import type { Owner } from "./mesh.ts";
 import type { Vec } from "./meta.ts";
 import { dot, plus } from "./vectors.ts";
 
@@ -15,6 +16,18 @@ const PART = 0.5;
 /** Look at a place of the surface from its outer side, near enough to see what is there. */
 export function flyTo(app: App, point: Vec, normal: Vec, size = near(app)): void {
   app.stage.table.fly({ target: point, half: size, ...openView(app, [point], normal, null) });
+}
+
+/** Look at a face along the normal of its middle triangle. */
+export function showFace(app: App, owner: Owner): void {
+  const { drawn, meta } = app;
+  const place = drawn.middle(owner);
+  const face = meta.faces[owner];
+  if (!place) return app.say(`${face.id} is not drawn`);
+  const first = drawn.triangle[3 * (face.start + (face.count >> 1))];
+  const normal = [0, 1, 2].map((k) => drawn.normal[4 * first + k]) as Vec;
+  flyTo(app, place.centre, normal, 1.4 * place.radius);
+  app.say(`${face.id}${face.name ? `, ${face.name}` : ""}`);
 }
 
 /** Half of the height of a view that is near a place, mm. */
