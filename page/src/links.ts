@@ -20,7 +20,7 @@ export class Links {
   private mine = "";
 
   constructor(private readonly app: App) {
-    this.button = copyButton("Copy link", () => this.keep(), app.say, "Copy a link to what is shown: cutter, sample and view (y)");
+    this.button = copyButton("Copy link", () => this.keep(), app.say, "Copy link to what is shown: cutter, sample and view (y)");
     window.addEventListener("hashchange", () => {
       if (location.hash !== this.mine) this.follow();
     });

@@ -172,18 +172,10 @@ export class PosturePanel {
     this.draw();
   }
 
-  /** What the plan says of its witness goes before what the drawn triangles say. */
+  /** The plan's sentence on its witness stands below; what the drawn triangles say there would be a second word for it. */
   private witnessed(): string {
-    const { reason, depth_mm, obstacle_face } = this.app.spot!;
-    const owner = this.app.drawn.ownerOf(obstacle_face);
-    const met = owner === null ? (obstacle_face ?? "the part") : this.app.drawn.called(owner);
-    const named = spoken(this.app.meta, reason);
-    if (this.app.samples.verdict(this.app.cutter.id, this.app.sample!.row) === "undecided") {
-      const may = depth_mm === null ? "" : `; ${met} may reach ${figure(depth_mm)} mm into the tool`;
-      return `the best posture found${may}. Undecided: ${named}`;
-    }
-    const deep = depth_mm === null ? "" : `, still ${figure(depth_mm)} mm too deep in ${met}`;
-    return `the best posture found${deep}. The plan's reason: ${named}`;
+    const undecided = this.app.samples.verdict(this.app.cutter.id, this.app.sample!.row) === "undecided";
+    return undecided ? "the best posture found, undecided" : "the best posture found, not free";
   }
 
   // Places in the drawing.

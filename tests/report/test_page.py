@@ -238,7 +238,8 @@ def test_a_worst_spot_shows_its_witness(page, planned):
     here = planned.samples.point[row]
     assert min(np.linalg.norm(here - np.array(each.point)) for each in spots) < 1e-3
     obstacle = page.evaluate("review.spot.obstacle_face").rpartition(":")[2]
-    assert obstacle in page.inner_text("#posture-line")
+    assert "not free" in page.inner_text("#posture-line")
+    assert obstacle in page.inner_text("#posture")
     assert page.locator(".marks path.obstacle").count() == 1
     before = page.evaluate("[review.stage.table.aim.target, review.sample.row]")
     page.keyboard.press("n")

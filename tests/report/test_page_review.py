@@ -70,7 +70,7 @@ def aim(page):
 
 def link(page):
     """The link that the page copies, read from its clipboard."""
-    page.get_by_role("button", name=re.compile("Copy a link")).click()
+    page.get_by_role("button", name=re.compile("Copy link")).click()
     status(page, "Copied")
     return page.evaluate("navigator.clipboard.readText()")
 
