@@ -4,7 +4,7 @@ import { Mesh, NotEqualStencilFunc, PlaneGeometry, Vector3, ZeroStencilOp } from
 import type { App } from "./app.ts";
 import { closed } from "./closed.ts";
 import { colourOf } from "./colours.ts";
-import { button, el, figure } from "./dom.ts";
+import { button, coordinate, el } from "./dom.ts";
 import type { Owner } from "./mesh.ts";
 import type { Vec } from "./meta.ts";
 import { capMaterial, countingMaterial, shared } from "./shading.ts";
@@ -102,7 +102,7 @@ export class Clip {
       const at = low[k] + ((high[k] - low[k]) * Number(this.slider.value)) / 1000;
       const normal = axis(k, this.sign);
       plane.set(...normal, this.sign * at);
-      this.text.value = `${"XYZ"[k]} ${figure(at, 4)} mm`;
+      this.text.value = `${"XYZ"[k]} ${coordinate(at)} mm`;
       const middle = mixed(low, 0.5, high, 0.5);
       middle[k] = at;
       for (const cap of this.caps) {

@@ -47,6 +47,11 @@ export function figure(value: number, digits = 3): string {
   return rounded.toLocaleString("en", { useGrouping: false, maximumFractionDigits: 12 });
 }
 
+/** A coordinate: to a thousandth of a millimetre, for what is less is the rounding of what is drawn. */
+export function coordinate(value: number, digits = 4): string {
+  return figure(Number(value.toFixed(3)), digits);
+}
+
 /** An angle to a tenth of a degree, 0 up to 360: what rounds to a whole turn is none. */
 export function degrees(value: number): string {
   const tenths = Number(value.toFixed(1));

@@ -15,6 +15,8 @@ const WORTH = 1.3;
 const FACING = 0.17;
 /** A fixture is faded where it hides more than this share of what is seen of what is lost, or all of a face. */
 const MUCH = 0.1;
+/** Who has no keys finds the other sides in the list of views. */
+const COARSE = matchMedia("(pointer: coarse)");
 /** Directions that are looked along, the usual one aside. */
 const MOST = 10;
 
@@ -106,7 +108,7 @@ export class LostViews {
     const elsewhere = [...lost].filter((face) => !view.faces.has(face));
     const other = [...new Set(views.flatMap(({ faces }) => [...faces]))].filter((face) => elsewhere.includes(face));
     const many = other.length > 4 ? `${other.length} faces` : other.map((face) => app.drawn.called(face)).join(", ");
-    if (other.length) app.say(`On other sides more is not reached: ${many} (l shows them).${told}`);
+    if (other.length) app.say(`On other sides more is not reached: ${many} (${COARSE.matches ? "View" : "l"} shows them).${told}`);
     else if (told) app.say(told.trim());
   }
 }

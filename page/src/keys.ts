@@ -31,6 +31,7 @@ const HELP: [string, string][] = [
   ["g", "see through the tool, or not"],
   ["c", "clip: off, across X, Y, Z"],
   ["m", "measure: between two points, or from the selected sample to the next one"],
+  ["y", "copy a link to what is shown"],
   ["Escape", "leave the whole window, end measuring, leave the sample"],
   ["One finger, two, pinch", "turn the part, shift the picture, zoom"],
   ["?", "this help"],
@@ -57,6 +58,7 @@ interface Parts {
   selection: Selection;
   alone: Alone;
   lost: () => void;
+  link: () => void;
   glass: () => void;
   tool: () => void;
 }
@@ -98,6 +100,7 @@ export function listenKeys(app: App, parts: Parts): void {
       g: parts.glass,
       w: () => parts.alone.toggle(),
       l: parts.lost,
+      y: parts.link,
       b: () => app.eyes?.toggle(),
       "?": () => parts.help.showModal(),
       Escape: () => (parts.alone.on ? parts.alone.toggle() : parts.measure.on ? parts.measure.toggle() : app.select(null)),

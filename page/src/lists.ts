@@ -3,12 +3,13 @@
 import type { App } from "./app.ts";
 import { spoken } from "./colours.ts";
 import { button, el } from "./dom.ts";
-import type { Vec } from "./meta.ts";
-import { moreOf, press, sortable } from "./tables.ts";
-import { flyTo, showSpot } from "./view.ts";
+import { filterTools, holds, moreOf, press, sortable } from "./tables.ts";
+import { showFace, showSpot } from "./view.ts";
 
 /** Names of so many letters are never broken. */
 const SHORT = 24;
+/** From so many rows on a table has a box that filters them. */
+const MANY = 6;
 
 /** One line a cutter, the one that is shown on top; more of it on opening. */
 export function enhanceCutters(app: App): void {
@@ -67,6 +68,24 @@ export function enhanceCutters(app: App): void {
   app.on("cutter", mark);
   mark();
   if (table && rows.length > 1) sortable(table, is);
+  if (!table || rows.length < MANY) return;
+  const feasible = new Set(app.meta.cutters.filter((each) => each.feasible).map(({ id }) => id));
+  const box = el("input", { type: "checkbox" });
+  const filtered = (wanted: string): number => {
+    let count = 0;
+    for (const row of rows) {
+      const fits = holds(row, wanted) && (!box.checked || feasible.has(row.dataset.cutter!));
+      count += fits ? 1 : 0;
+      // The picture is of the cutter that is shown: its row stays.
+      row.hidden = !fits && !is(row);
+      if (row.hidden) open(row, false);
+    }
+    return count;
+  };
+  const tools = filterTools("cutters", "Filter cutters, such as D6", rows.length, filtered, box);
+  if (feasible.size < rows.length) tools.append(el("label", { class: "check" }, box, "only feasible"));
+  table.before(tools);
+  app.on("cutter", () => tools.dispatchEvent(new Event("input")));
 }
 
 /** The worst spots of the cutter shown, stepped through with n and p. */
@@ -143,7 +162,7 @@ export class FaceTable {
   private readonly others = new Map<HTMLElement, number>();
   private readonly table = document.querySelector<HTMLTableElement>("#faces table");
 
-  constructor(private readonly app: App) {
+  constructor(app: App) {
     const { faces } = app.meta;
     for (const row of document.querySelectorAll<HTMLElement>("tr[data-face]")) {
       const owner = faces.findIndex((face) => face.number === Number(row.dataset.face));
@@ -151,7 +170,7 @@ export class FaceTable {
       if (row.closest("#faces")) this.rows.set(owner, row);
       else this.others.set(row, owner);
       const cell = row.querySelector<HTMLElement>("th, td") ?? row;
-      const made = press(cell, () => this.show(owner));
+      const made = press(cell, () => showFace(app, owner));
       row.addEventListener("pointerenter", () => app.hover(owner, true));
       row.addEventListener("pointerleave", () => app.hover(null));
       made.addEventListener("focus", () => app.hover(owner, true));
@@ -165,32 +184,12 @@ export class FaceTable {
     if (this.table) sortable(this.table);
   }
 
-  private show(owner: number): void {
-    const { app } = this;
-    const place = app.drawn.middle(owner);
-    const face = app.meta.faces[owner];
-    if (!place) return app.say(`${face.id} is not drawn`);
-    // Seen along the normal of its middle triangle.
-    const first = app.drawn.triangle[3 * (face.start + (face.count >> 1))];
-    const normal = [0, 1, 2].map((k) => app.drawn.normal[4 * first + k]) as Vec;
-    flyTo(app, place.centre, normal, 1.4 * place.radius);
-    app.say(`${face.id}${face.name ? `, ${face.name}` : ""}`);
-  }
-
   private tools(): void {
-    if (!this.table || this.rows.size < 6) return;
-    const words = { "aria-label": "Show faces that contain", placeholder: "Filter faces, such as F12" };
-    const box = el("input", { type: "search", ...words });
-    const count = el("span", { class: "hint", "aria-live": "polite" });
-    box.addEventListener("input", () => {
-      const wanted = box.value.trim().toLowerCase();
-      let shown = 0;
-      for (const row of this.rows.values()) {
-        row.hidden = !row.textContent!.toLowerCase().includes(wanted);
-        shown += row.hidden ? 0 : 1;
-      }
-      count.textContent = wanted ? `${shown} of ${this.rows.size}` : "";
-    });
-    this.table.before(el("p", { class: "tools" }, box, count));
+    if (!this.table || this.rows.size < MANY) return;
+    const shown = (wanted: string): number => {
+      for (const row of this.rows.values()) row.hidden = !holds(row, wanted);
+      return [...this.rows.values()].filter((row) => !row.hidden).length;
+    };
+    this.table.before(filterTools("faces", "Filter faces, such as F12", this.rows.size, shown));
   }
 }

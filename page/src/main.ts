@@ -14,6 +14,7 @@ import { LostViews } from "./first_view.ts";
 import { helpDialog, listenKeys } from "./keys.ts";
 import { Inset } from "./inset.ts";
 import { legend } from "./legend.ts";
+import { Links } from "./links.ts";
 import { enhanceCutters, FaceTable, SpotList } from "./lists.ts";
 import { Marks } from "./marks.ts";
 import { Measure } from "./measure.ts";
@@ -105,6 +106,7 @@ async function start(): Promise<void> {
   const stills = new Stills(app);
   const selection = new Selection(app);
   const notes = new Notes(app, pristine);
+  const links = new Links(app);
   panel.tools.append(button("Select face", () => selection.toggle(app.faceShown()), { title: "Select the face of this sample (s)" }), notes.here);
   document.querySelector("#summary .first")?.append(
     el("div", { class: "tools", id: "page-tools" }, whyButton(), schemeSwitch(() => panel.draw()), notes.saveButton),
@@ -137,6 +139,7 @@ async function start(): Promise<void> {
     el("span", { class: "group" }, shown, glass, measure.root),
     app.eyes.root,
     alone.button,
+    links.button,
     button("?", () => help.showModal(), { title: "Mouse and keys (?)", "aria-label": "Help: mouse and keys" }),
     clip.root,
   );
@@ -157,9 +160,10 @@ async function start(): Promise<void> {
   new FaceTable(app);
   selection.tabled();
   new OperationTables(app);
-  listenKeys(app, { spots, clip, measure, help, selection, alone, lost: () => lost().next(), glass: setGlass, tool: setTool });
+  listenKeys(app, { spots, clip, measure, help, selection, alone, lost: () => lost().next(), link: () => links.button.click(), glass: setGlass, tool: setTool });
   // The tree over the triangles is what a click needs: once it is there the page answers.
   void app.drawn.tree;
+  links.follow();
   performance.mark("interactive");
   setTimeout(() => {
     lines = new Borders(app.drawn);

@@ -1,7 +1,7 @@
 // Measuring between two points of the surface, or between the selected sample and the next one selected.
 
 import type { App } from "./app.ts";
-import { button, el, figure } from "./dom.ts";
+import { button, coordinate, el, figure } from "./dom.ts";
 import type { Mark, Marks } from "./marks.ts";
 import type { Vec } from "./meta.ts";
 import { distance, minus } from "./vectors.ts";
@@ -56,7 +56,7 @@ export class Measure {
 
   private words(): string {
     const [a, b] = this.points;
-    const [dx, dy, dz] = minus(b, a).map((x) => figure(x, 5));
+    const [dx, dy, dz] = minus(b, a).map((x) => coordinate(x, 5));
     return `distance ${figure(distance(a, b), 5)} mm, dx ${dx}, dy ${dy}, dz ${dz} mm`;
   }
 

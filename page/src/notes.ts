@@ -1,28 +1,26 @@
-// What a reviewer writes: notes, each at a sample or of the whole, kept in the copy of the page that is saved.
+// What a reviewer writes: notes, each at a sample or of the whole, open or done, and whether the plan is approved; all of it is
+// kept in the copy of the page that is saved.
 
 import type { App } from "./app.ts";
 import { button, el } from "./dom.ts";
 import type { Vec } from "./meta.ts";
+import { copyName, type Decision, moment, type Note, read, type Review, signed, STATES, written } from "./review_data.ts";
 import { flyTo } from "./view.ts";
-
-interface Note {
-  text: string;
-  face: string | null;
-  sample: number | null;
-  cutter: string | null;
-}
 
 const SECTION = "review-notes";
 const DATA = "notes-data";
-/** Scripts of a page must not end where a note says so. */
-const ESCAPED: Record<string, string> = { "<": "\\u003c", ">": "\\u003e", "&": "\\u0026", "\u2028": "\\u2028", "\u2029": "\\u2029" };
+/** Where the first line of the page says what was decided. */
+const DECISION = "decision";
 
 export class Notes {
-  private notes: Note[] = read();
+  private readonly review: Review = read(document.getElementById(DATA)?.textContent ?? "");
   private saved = true;
   private readonly list = el("ol", { class: "notes" });
   private readonly box = el("textarea", { id: "note", rows: 2, "aria-describedby": "note-place" });
   private readonly place = el("span", { id: "note-place", class: "hint" });
+  private readonly name = el("input", { id: "reviewer", type: "text", autocomplete: "name", placeholder: "Your name" });
+  private readonly made = el("p", { id: "made-decision" });
+  private readonly withdraw = button("Withdraw", () => this.decide(null), { id: "withdraw" });
 
   /** `pristine` is the page as it was loaded, before anything in it came alive. */
   constructor(
@@ -31,8 +29,18 @@ export class Notes {
   ) {
     const section = document.getElementById(SECTION);
     section?.replaceChildren(
-      el("h2", {}, "Review notes"),
-      el("p", { class: "hint" }, "Notes are kept in the copy that ", el("strong", {}, "Save copy"), " writes, and nowhere else."),
+      el("h2", {}, "Review"),
+      el("p", { class: "hint" }, "Notes and the decision are kept in the copy that ", el("strong", {}, "Save copy"), " writes, and nowhere else."),
+      this.made,
+      el(
+        "p",
+        { class: "tools", id: "decide" },
+        el("label", { for: "reviewer" }, "Reviewer"),
+        this.name,
+        button("Approve", () => this.decide("approved"), { id: "approve" }),
+        button("Reject", () => this.decide("rejected"), { id: "reject" }),
+        this.withdraw,
+      ),
       this.list,
       el("label", { for: "note" }, "New note"),
       this.box,
@@ -49,7 +57,7 @@ export class Notes {
     });
   }
 
-  readonly saveButton = button("Save copy", () => this.save(), { id: "save-copy", title: "Save this page with the notes in it" });
+  readonly saveButton = button("Save copy", () => this.save(), { id: "save-copy", title: "Save this page with the notes and the decision in it" });
   readonly here = button("Note here", () => this.box.focus(), { id: "note-here", title: "Write a note on this sample" });
 
   private where(): void {
@@ -61,6 +69,23 @@ export class Notes {
     return this.app.meta.faces.find((each) => each.number === number)?.id ?? `F${number}`;
   }
 
+  private stamp(): { name: string; date: string } {
+    return { name: this.name.value.trim(), date: moment(new Date()) };
+  }
+
+  private decide(state: Decision["state"] | null): void {
+    const stamp = this.stamp();
+    if (state && !stamp.name) {
+      this.app.say("Write your name first: a decision needs one");
+      this.name.focus();
+      return;
+    }
+    this.review.decision = state && { state, ...stamp };
+    const open = this.review.notes.filter(({ done }) => !done).length;
+    const still = state === "approved" && open ? ` ${open === 1 ? "1 note is" : `${open} notes are`} still open.` : "";
+    this.changed(state ? `${STATES[state]} by ${signed(stamp)}: Save copy keeps it.${still}` : "The decision is withdrawn");
+  }
+
   private add(): void {
     const text = this.box.value.trim();
     if (!text) {
@@ -69,35 +94,50 @@ export class Notes {
       return;
     }
     const { sample, cutter } = this.app;
-    this.notes.push({ text, face: sample && this.face(sample.face), sample: sample && sample.row, cutter: sample && cutter.id });
+    const where = { face: sample && this.face(sample.face), sample: sample && sample.row, cutter: sample && cutter.id };
+    this.review.notes.push({ text, ...where, ...this.stamp(), done: false });
     this.box.value = "";
-    this.changed(`Note ${this.notes.length} added: Save copy keeps it`);
+    this.changed(`Note ${this.review.notes.length} added: Save copy keeps it`);
   }
 
   private remove(at: number): void {
-    this.notes.splice(at, 1);
+    this.review.notes.splice(at, 1);
     this.changed(`Note ${at + 1} removed`);
     this.box.focus();
   }
 
-  private changed(said: string): void {
+  private finish(note: Note, at: number): void {
+    note.done = !note.done;
+    this.changed(`Note ${at + 1} is ${note.done ? "done" : "open"}`);
+    this.list.children[at].querySelector("input")?.focus();
+  }
+
+  private changed(words: string): void {
     this.saved = false;
     this.show();
-    this.app.say(said);
+    this.app.say(words);
   }
 
   private show(): void {
+    const { notes, decision } = this.review;
     this.list.replaceChildren(
-      ...this.notes.map((note, k) =>
-        el(
+      ...notes.map((note, k) => {
+        const box = el("input", { type: "checkbox", checked: note.done, "aria-label": `Note ${k + 1} is done` });
+        box.addEventListener("change", () => this.finish(note, k));
+        return el(
           "li",
-          {},
+          { class: note.done ? "done" : "open" },
           note.sample === null ? null : button(this.about(note), () => this.go(note), { class: "text place" }),
           el("span", { class: "said" }, note.text),
+          el("span", { class: "signed" }, [signed(note), note.done ? "done" : "open"].filter(Boolean).join("; ")),
+          el("label", { class: "check" }, box, "done"),
           button("Remove", () => this.remove(k), { class: "copy", "aria-label": `Remove note ${k + 1}` }),
-        ),
-      ),
+        );
+      }),
     );
+    tell(document.documentElement, decision);
+    this.made.textContent = decision ? sentence(decision) : "Nobody has decided on this plan yet.";
+    this.withdraw.hidden = !decision;
     this.saveButton.classList.toggle("unsaved", !this.saved);
   }
 
@@ -111,18 +151,25 @@ export class Notes {
   }
 
   private about({ face, sample, cutter }: Note): string {
-    const found = this.app.meta.cutters.find((each) => each.id === cutter);
-    return `${face ?? "?"}, sample ${sample}${found ? `, ${found.name || found.id}` : ""}`;
+    const shown = this.app.meta.cutters.find((each) => each.id === cutter);
+    return `${face ?? "?"}, sample ${sample}${shown ? `, ${shown.name || shown.id}` : ""}`;
   }
 
-  /** The page as it was loaded, with the notes in it as data and as a list that is read without scripts, too. */
+  /** The page as it was loaded, with the review in it as data and as a list that is read without scripts, too. */
   copy(): string {
     const page = this.pristine.cloneNode(true) as HTMLElement;
     const data = page.querySelector(`#${DATA}`);
     if (!data) throw new Error("the page has no place for notes");
-    data.textContent = JSON.stringify(this.notes).replace(/[<>&\u2028\u2029]/g, (sign) => ESCAPED[sign]);
-    const items = this.notes.map((note) => el("li", {}, note.sample === null ? "" : `${this.about(note)}: `, note.text));
-    page.querySelector(`#${SECTION}`)?.replaceChildren(...(items.length ? [el("h2", {}, "Review notes"), el("ol", {}, ...items)] : []));
+    const { notes, decision } = this.review;
+    data.textContent = written(this.review);
+    tell(page, decision);
+    const items = notes.map((note) => {
+      const state = [signed(note), note.done ? "done" : "open"].filter(Boolean).join("; ");
+      return el("li", {}, note.sample === null ? "" : `${this.about(note)}: `, note.text, ` (${state})`);
+    });
+    const made = decision ? [el("p", {}, sentence(decision))] : [];
+    const list = items.length ? [el("ol", {}, ...items)] : [];
+    page.querySelector(`#${SECTION}`)?.replaceChildren(...(made.length + list.length ? [el("h2", {}, "Review"), ...made, ...list] : []));
     return `<!doctype html>\n${page.outerHTML}\n`;
   }
 
@@ -139,25 +186,13 @@ export class Notes {
   }
 }
 
-/** A name that does not take the place of the page itself: the next plan writes over that. */
-export function copyName(path: string): string {
-  let name = path.split("/").pop() ?? "";
-  try {
-    name = decodeURIComponent(name);
-  } catch {
-    // A name with a stray percent sign stays as it is.
-  }
-  return `${name.replace(/\.html?$/i, "").replace(/-notes$/, "") || "review"}-notes.html`;
-}
+const sentence = (decision: Decision): string => `${STATES[decision.state]} by ${signed(decision)}.`;
 
-/** Notes of a saved copy; what is no note is left out. */
-function read(): Note[] {
-  const found: unknown = JSON.parse(document.getElementById(DATA)?.textContent || "[]");
-  const texts = (Array.isArray(found) ? found : []).filter((each) => typeof each?.text === "string");
-  return texts.map(({ text, face, sample, cutter }) => ({
-    text,
-    face: typeof face === "string" ? face : null,
-    sample: Number.isInteger(sample) ? sample : null,
-    cutter: typeof cutter === "string" ? cutter : null,
-  }));
+/** Say in the first line of a page what was decided. */
+function tell(page: HTMLElement, decision: Decision | null): void {
+  const place = page.querySelector<HTMLElement>(`#${DECISION}`);
+  if (!place) return;
+  place.hidden = !decision;
+  place.className = `chip ${decision?.state === "approved" ? "good" : "bad"}`;
+  place.textContent = decision ? `${STATES[decision.state]} by ${signed(decision)}` : "";
 }

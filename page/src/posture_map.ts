@@ -2,9 +2,9 @@
 
 import { Angles } from "./angles.ts";
 import type { App } from "./app.ts";
-import { STATES } from "./codes.ts";
+import { OUTERMOST, STATES } from "./codes.ts";
 import { causeOf, OPEN, spoken } from "./colours.ts";
-import { button, degrees, el, figure, percent } from "./dom.ts";
+import { button, coordinate, degrees, el, figure, percent } from "./dom.ts";
 import type { State } from "./live_map.ts";
 import { swatch, tile } from "./patterns.ts";
 import { SampleMap, wording } from "./posture_states.ts";
@@ -17,6 +17,10 @@ const LEFT = 30;
 const BOTTOM = 30;
 const TOP = 10;
 const RIGHT = 10;
+/** What a posture meets, in place of what cannot be held or decided. */
+const COLLISIONS: readonly State[] = OUTERMOST;
+/** A larger radius of curvature, mm, is flat to whoever finishes it. */
+const FLAT = 1000;
 const HEIGHT = 226;
 
 export class PosturePanel {
@@ -28,6 +32,8 @@ export class PosturePanel {
   private readonly line = el("p", { id: "posture-line", "aria-live": "polite" });
   private readonly start = button("Posture found", () => this.back(), { id: "found-posture" });
   private readonly witness = el("p", { class: "hint" });
+  /** Why the map and the plan name two causes. */
+  private readonly differs = el("p", { class: "hint", id: "two-causes" });
   private readonly legend = el("ul", { class: "legend", "aria-label": "Legend of the posture map" });
   private readonly rows = el("tbody");
   private readonly caption = el("caption", {});
@@ -57,7 +63,7 @@ export class PosturePanel {
         this.rows,
       ),
     );
-    this.body.append(this.about, this.kind, this.canvas, this.line, this.angles.root, this.witness, this.tools, this.legend, this.intervals);
+    this.body.append(this.about, this.kind, this.canvas, this.line, this.angles.root, this.witness, this.tools, this.legend, this.differs, this.intervals);
     const leave = button("\u00d7", () => app.select(null), { class: "leave", title: "Leave the sample (Escape)", "aria-label": "Leave the sample" });
     this.root.append(leave, this.title, this.body);
     this.root.hidden = true;
@@ -99,7 +105,7 @@ export class PosturePanel {
     this.canvas.setAttribute("aria-label", named);
     this.about.replaceChildren(
       el("strong", {}, `${face?.id ?? "?"}, sample ${sample.row}`),
-      ` at ${samples.told(sample.row).map((x) => figure(x, 4)).join(", ")} mm. `,
+      ` at ${samples.told(sample.row).map((x) => coordinate(x)).join(", ")} mm. `,
       el("strong", {}, cutter.name || cutter.id),
       `: ${spoken(this.app.meta, verdict)}${reason ? ` (${spoken(this.app.meta, reason)})` : ""}${setup}. Curvature ${sample.curvature.map(bend).join(" and ")}.`,
     );
@@ -111,6 +117,7 @@ export class PosturePanel {
       this.kind.textContent += " This machine turns too few axes for a map: only the posture found is shown.";
     }
     this.kind.classList.toggle("approximate", !this.map.certified);
+    this.differs.textContent = "";
     this.draw();
     this.timer = window.setTimeout(() => this.advance(this.map!), 0);
   }
@@ -165,17 +172,10 @@ export class PosturePanel {
     this.draw();
   }
 
-  /** What the plan says of its witness goes before what the drawn triangles say. */
+  /** The plan's sentence on its witness stands below; what the drawn triangles say there would be a second word for it. */
   private witnessed(): string {
-    const { reason, depth_mm, obstacle_face } = this.app.spot!;
-    const owner = this.app.drawn.ownerOf(obstacle_face);
-    const met = owner === null ? (obstacle_face ?? "the part") : this.app.drawn.called(owner);
-    const best = "(the best posture found)";
-    if (this.app.samples.verdict(this.app.cutter.id, this.app.sample!.row) === "undecided") {
-      const may = depth_mm === null ? "" : `, ${met} may reach ${figure(depth_mm)} mm into the tool`;
-      return `undecided (${spoken(this.app.meta, reason)})${may} ${best}`;
-    }
-    return `${spoken(this.app.meta, reason)}${depth_mm === null ? "" : `; it is ${figure(depth_mm)} mm too deep in ${met}`} ${best}`;
+    const undecided = this.app.samples.verdict(this.app.cutter.id, this.app.sample!.row) === "undecided";
+    return undecided ? "the best posture found, undecided" : "the best posture found, not free";
   }
 
   // Places in the drawing.
@@ -355,13 +355,29 @@ export class PosturePanel {
     let open = 0;
     map.grid.rotations.forEach((_, k) => map.grid.tilts.forEach((__, i) => (open += map.cell(k, i) === "free" ? 1 : 0)));
     this.title.textContent = `Posture map: ${percent(open / cells)} ${map.certified ? "free" : "open"}`;
+    this.compare(map);
     this.caption.textContent = map.certified ? "Free tilts by rotation" : "Tilts at which nothing is met, not certified";
+  }
+
+  /** The map names what each posture meets first, the plan what would have to change: where these differ one must know it. */
+  private compare(map: SampleMap): void {
+    const reason = this.app.samples.reason(this.app.cutter.id, map.sample.row);
+    const cells = new Map<State, number>();
+    map.grid.rotations.forEach((_, column) => {
+      for (const [state, count] of map.causes(column)) cells.set(state, (cells.get(state) ?? 0) + count);
+    });
+    const [most] = [...cells].filter(([state]) => COLLISIONS.includes(state)).sort((a, b) => b[1] - a[1])[0] ?? [];
+    this.differs.textContent =
+      reason && most && most !== reason
+        ? `The colours name what each posture meets first, mostly ${spoken(this.app.meta, most)}. The plan's reason, ` +
+          `${spoken(this.app.meta, reason)}, names what to change first so that the sample can be reached.`
+        : "";
   }
 }
 
 /** A curvature as planners think of it: a radius. */
 function bend(curvature: number): string {
   if (!Number.isFinite(curvature)) return "unknown";
-  if (Math.abs(curvature) < 1e-5) return "flat";
+  if (Math.abs(curvature) * FLAT <= 1) return "flat";
   return `${curvature > 0 ? "concave" : "convex"} R ${figure(1 / Math.abs(curvature))}`;
 }

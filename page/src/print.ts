@@ -3,7 +3,10 @@
 import type { App } from "./app.ts";
 import { el } from "./dom.ts";
 import { legendOf } from "./legend.ts";
+import { moment } from "./review_data.ts";
 
+/** The file's date is told in whole seconds, and a page may be loaded slowly. */
+const UNSURE_MS = 5000;
 const SIZE = { width: 900, height: 620 };
 
 export class Stills {
@@ -11,6 +14,7 @@ export class Stills {
   private readonly pictures = [el("canvas", SIZE), el("canvas", SIZE)];
 
   private readonly key = el("div", { class: "key" });
+  private readonly dated = el("p", { id: "printed" });
 
   constructor(private readonly app: App) {
     this.pictures.forEach((picture, i) => picture.setAttribute("aria-label", `Still ${i + 1} of the part`));
@@ -18,10 +22,17 @@ export class Stills {
     this.root.append(...this.pictures, el("figcaption", {}, "As seen on the screen, and from the opposite corner."), this.key);
     // Canvases, for a picture that is loaded anew may come too late for the printer.
     window.addEventListener("beforeprint", () => this.take());
-    const why = document.querySelector<HTMLDetailsElement>("#why");
-    let open = false;
-    window.addEventListener("beforeprint", () => why && ([open, why.open] = [why.open, true]));
-    window.addEventListener("afterprint", () => why && (why.open = open));
+    // Nothing is folded on paper; afterwards the page is as it was.
+    let folded: HTMLDetailsElement[] = [];
+    window.addEventListener("beforeprint", () => {
+      folded = [...document.querySelectorAll<HTMLDetailsElement>("details:not([open])")].filter((each) => !each.closest("#viewer"));
+      for (const each of folded) each.open = true;
+      this.dated.textContent = dates();
+    });
+    window.addEventListener("afterprint", () => {
+      for (const each of folded) each.open = false;
+    });
+    document.querySelector("#summary .first")?.after(this.dated);
   }
 
   take(): void {
@@ -42,4 +53,12 @@ export class Stills {
     });
     table.set(before);
   }
+}
+
+/** When this paper was printed, and of when the file of the page is, where that is known. */
+function dates(): string {
+  const file = new Date(document.lastModified);
+  // Where nobody knows, browsers give the moment at which the page was loaded.
+  const known = performance.timeOrigin - file.getTime() > UNSURE_MS;
+  return `Printed ${moment(new Date())}${known ? `; the file of this page is of ${moment(file)}` : ""}.`;
 }

@@ -1,5 +1,7 @@
 // Tables that are sorted by their heads: rows that say more of the one above stay with it, and what is shown stays on top.
 
+import { el } from "./dom.ts";
+
 /** Turn what an element says into a button in it. */
 export function press(host: HTMLElement, work: () => void): HTMLButtonElement {
   const made = document.createElement("button");
@@ -42,4 +44,22 @@ function compared(a: HTMLElement | undefined, b: HTMLElement | undefined): numbe
   const [u, v] = [x, y].map((text) => Number.parseFloat(text.replace(/^[F<>\s]+|,/g, "")));
   if (Number.isFinite(u) && Number.isFinite(v)) return u - v;
   return x.localeCompare(y, "en", { numeric: true });
+}
+
+/** Whether a row, or the one below that says more of it, has a text; letters of both cases are one. */
+export function holds(row: HTMLElement, wanted: string): boolean {
+  return `${row.textContent} ${moreOf(row)?.textContent ?? ""}`.toLowerCase().includes(wanted);
+}
+
+/** A box above a table that filters its rows; `show` hides those that lack a text and counts the others. */
+export function filterTools(what: string, placeholder: string, all: number, show: (wanted: string) => number, ...more: HTMLInputElement[]): HTMLElement {
+  const box = el("input", { type: "search", "aria-label": `Show ${what} that contain`, placeholder });
+  const count = el("span", { class: "hint", "aria-live": "polite" });
+  const tools = el("p", { class: "tools" }, box, count);
+  tools.addEventListener("input", () => {
+    const wanted = box.value.trim().toLowerCase();
+    const shown = show(wanted);
+    count.textContent = wanted || more.some(({ checked }) => checked) ? `${shown} of ${all}` : "";
+  });
+  return tools;
 }

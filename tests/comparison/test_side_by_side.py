@@ -20,7 +20,7 @@ from plan_cutters.plan_file.model import FileEntry
 from plan_cutters.plan_file.shares import FaceVerdicts
 from plan_cutters.report.page.write import write_html
 from plan_cutters.report.to_json import dumps
-from tests.support.browser import opened
+from tests.support.browser import opened, touch
 from tests.support.forked import run
 from tests.support.places import ROOT
 from tests.support.review_page import decoded
@@ -194,9 +194,9 @@ def shown(browser):
     """Open a page without a network; in the end it must have said nothing on the console."""
     opened_ = []
 
-    def show(path, width=1366, scheme="light"):
+    def show(path, width=1366, scheme="light", **more):
         context = browser.new_context(
-            viewport={"width": width, "height": 800}, reduced_motion="reduce", color_scheme=scheme, offline=True
+            viewport={"width": width, "height": 800}, reduced_motion="reduce", color_scheme=scheme, offline=True, **more
         )
         opened_.append((context, opened(context, path)))
         return opened_[-1][1]
@@ -256,6 +256,22 @@ def test_there_is_one_camera(shown, path):
     assert before[0] == before[1]
     found.set_viewport_size({"width": 1000, "height": 700})
     assert aims(found) == before
+
+
+def test_fingers_move_both_pictures(shown, path):
+    """A pinch on one picture zooms both and turns none, as a finger turns both and zooms none."""
+    found = shown(path, width=390, has_touch=True, is_mobile=True)
+    before = aims(found)[0]
+    touch(found, [(-20, 0), (-60, 0)], [(20, 0), (60, 0)], picture="#new canvas")
+    near, other = aims(found)
+    assert near == other
+    assert near["half"] == pytest.approx(before["half"] / 3, rel=0.1)
+    assert (near["turn"], near["rise"]) == pytest.approx((before["turn"], before["rise"]), abs=1e-6)
+    touch(found, [(-40, 0), (40, 0)], picture="#old canvas")
+    turned, other = aims(found)
+    assert turned == other
+    assert turned["half"] == near["half"]
+    assert abs(turned["turn"] - near["turn"]) > 10
 
 
 def hue(page, word, face):

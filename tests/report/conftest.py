@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.support.browser import opened
+from tests.support.browser import SCREENS, opened
 
 
 @pytest.fixture(scope="module")
@@ -24,3 +24,24 @@ def page(browser, path):
     said = page.said
     context.close()
     assert said == []
+
+
+@pytest.fixture
+def at(browser, path):
+    """Open the page at a screen in a scheme; in the end no page has said anything on its console."""
+    contexts, pages = [], []
+
+    def open_(screen="desk", scheme="light", where=path, **more):
+        width, height = SCREENS[screen]
+        touch = {"has_touch": True, "is_mobile": True} if screen == "phone" else {}
+        context = browser.new_context(
+            viewport={"width": width, "height": height}, reduced_motion="reduce", color_scheme=scheme, **touch, **more
+        )
+        contexts.append(context)
+        pages.append(opened(context, where))
+        return pages[-1]
+
+    yield open_
+    for context in contexts:
+        context.close()
+    assert [page.said for page in pages] == [[]] * len(pages)

@@ -5,7 +5,7 @@ import math
 import pytest
 
 from plan_cutters import plan
-from tests.support.browser import chromium, opened, place_of, seen, wait_for_map
+from tests.support.browser import chromium, opened, place_of, seen, touch, wait_for_map
 from tests.support.places import SAMPLES
 
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed: setup.sh dev")
@@ -49,26 +49,6 @@ def settled(page):
         # Frames, not seconds: a browser that draws in software may take a while for one.
         page.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
     raise AssertionError("the picture moves without end")
-
-
-def touch(page, *ways, steps=12):
-    """Draw fingers along straight ways [(x0, y0), (x1, y1)], pixels from the middle of the picture."""
-    box = page.locator("#picture").bounding_box()
-    middle = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-    session = page.context.new_cdp_session(page)
-
-    def at(share):
-        return [
-            {"x": middle[0] + a[0] + share * (b[0] - a[0]), "y": middle[1] + a[1] + share * (b[1] - a[1]), "id": k}
-            for k, (a, b) in enumerate(ways)
-        ]
-
-    session.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": at(0.0)})
-    for k in range(1, steps + 1):
-        session.send("Input.dispatchTouchEvent", {"type": "touchMove", "touchPoints": at(k / steps)})
-        page.wait_for_timeout(16)
-    session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
-    session.detach()
 
 
 def test_a_pinch_zooms_about_what_lies_between_the_fingers_and_turns_nothing(phone):

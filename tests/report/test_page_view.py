@@ -2,10 +2,14 @@
 
 import re
 
+import cadquery as cq
 import numpy as np
 import pytest
+from scipy.spatial import Delaunay
 
+from cad_io.read import read_part
 from plan_cutters import plan
+from plan_cutters.report.page.write import write_html
 from tests.support.browser import chromium, seen
 from tests.support.places import ROOT
 from tests.support.review_page import picture
@@ -67,6 +71,38 @@ def test_a_worst_spot_shows_all_of_the_tool_and_outlines_what_is_in_the_way(page
     assert obstacle in page.inner_html(".marks")
     page.keyboard.press("Escape")
     assert outlined(page) == 0
+
+
+@pytest.fixture(scope="module")
+def slim(tmp_path_factory):
+    """A thin part with a pocket in its end that a short cutter in a wide holder cannot finish, and its page."""
+    chromium()
+    block = cq.Workplane().box(120, 20, 8).cut(cq.Workplane().box(8, 4, 1.5).translate((60, 0, 0)))
+    found = plan(read_part(block), cutters=["R1L12"], holder="R16L40", faces="all", grid=5, area_budget=0)
+    path = tmp_path_factory.mktemp("slim") / "review.html"
+    write_html(found, None, path)
+    return path
+
+
+def test_a_tool_does_not_fill_the_picture_of_a_worst_spot(at, slim):
+    """Of what is seen there, the part has a third of the width or height, the tool less than half of the picture."""
+    page = at(where=slim)
+    for _ in range(3):
+        page.keyboard.press("n")
+        corners = page.evaluate("[...review.drawn.partPoints()]")
+        where, size = seen_at(page, corners)
+        inside = np.clip(where, 0, size)
+        part = (inside.max(axis=0) - inside.min(axis=0)) / size
+        elements = np.array(page.evaluate("Array.from(review.tool.group.matrix.elements)")).reshape(4, 4)
+        x, axis, z, tip = elements[:, :3]
+        turns = np.radians(np.arange(0, 360, 15))[:, None]
+        outline = page.evaluate("review.cutter.outline.flatMap(each => each.points)")
+        rings = [tip + h * axis + r * (np.cos(turns) * x + np.sin(turns) * z) for r, h in outline]
+        drawn, _ = seen_at(page, np.concatenate(rings))
+        places = np.stack(np.meshgrid(*(np.linspace(0, 1, 60) * s for s in size)), axis=-1).reshape(-1, 2)
+        tool = (Delaunay(drawn).find_simplex(places) >= 0).mean()
+        assert part.max() > 1 / 3
+        assert tool < 0.5
 
 
 def test_a_close_look_and_back(page):

@@ -7,6 +7,8 @@ from pathlib import Path
 import pytest
 
 ARGUMENTS = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking")
+#: Windows by name: width and height, pixels.
+SCREENS = {"desk": (1366, 768), "wide": (1920, 1080), "phone": (390, 844)}
 _NAMES = ("chromium", "chromium-browser", "google-chrome")
 
 
@@ -76,3 +78,23 @@ def intervals(page):
         parts = [] if text == "none" else [tuple(map(float, part.split(" to "))) for part in text.split("; ")]
         found[rotation] = parts
     return found, {certified for _, _, certified in rows}
+
+
+def touch(page, *ways, steps=12, picture="#picture"):
+    """Draw fingers along straight ways [(x0, y0), (x1, y1)], pixels from the middle of the picture."""
+    box = page.locator(picture).bounding_box()
+    middle = (box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+    session = page.context.new_cdp_session(page)
+
+    def at(share):
+        return [
+            {"x": middle[0] + a[0] + share * (b[0] - a[0]), "y": middle[1] + a[1] + share * (b[1] - a[1]), "id": k}
+            for k, (a, b) in enumerate(ways)
+        ]
+
+    session.send("Input.dispatchTouchEvent", {"type": "touchStart", "touchPoints": at(0.0)})
+    for k in range(1, steps + 1):
+        session.send("Input.dispatchTouchEvent", {"type": "touchMove", "touchPoints": at(k / steps)})
+        page.wait_for_timeout(16)
+    session.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+    session.detach()

@@ -180,6 +180,8 @@ def spot(witness: WitnessEntry) -> str:
             what = obstacle or "the part"
             return f"{text}. At the best posture found ({there}) {what} may reach {mm(witness.depth_mm)} into the tool."
         where = f" in {obstacle}" if obstacle else ""
+        if witness.reason != "fixture" and (witness.obstacle_face or "").startswith("fixture:"):
+            text += ", without the fixtures too"
         return f"{text}. The best posture found ({there}) is still {mm(witness.depth_mm)} too deep{where}."
     if obstacle:
         return f"{text}. {capital(obstacle)} {'may be' if unsure else 'is'} in the way."

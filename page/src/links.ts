@@ -1,0 +1,124 @@
+// Links by `#`: a place, a cutter and a view, so that "look at F61" in a mail leads there.
+
+import type { App } from "./app.ts";
+import type { Aim } from "./camera.ts";
+import { modesOf } from "./colours.ts";
+import { copyButton } from "./copy.ts";
+import type { Vec } from "./meta.ts";
+import { alike, type Posture } from "./samples.ts";
+import { distance, mixed, turned } from "./vectors.ts";
+import { flyTo, showFace } from "./view.ts";
+
+/** What is written of a face alone, as people type it. */
+const FACE = /^F\d+$/i;
+/** Digits of an angle, and of a length as a share of the part's radius: finer than a pixel. */
+const [ANGLE, FINE] = [2, 1e-5];
+
+export class Links {
+  readonly button: HTMLButtonElement;
+  /** What this page wrote into the address itself: that needs no jump. */
+  private mine = "";
+
+  constructor(private readonly app: App) {
+    this.button = copyButton("Copy link", () => this.keep(), app.say, "Copy link to what is shown: cutter, sample and view (y)");
+    window.addEventListener("hashchange", () => {
+      if (location.hash !== this.mine) this.follow();
+    });
+  }
+
+  /** The address of what is shown, which the browser's address line has from now on, too. */
+  private keep(): string {
+    this.mine = this.text();
+    const address = `${location.href.split("#")[0]}${this.mine}`;
+    try {
+      history.replaceState(null, "", this.mine);
+    } catch {
+      // Within another page the address may not be changed: the text is all that is needed.
+    }
+    return address;
+  }
+
+  /** What is shown, as the part of an address from `#` on. */
+  text(): string {
+    const { cutter, sample, posture, mode, stage, meta } = this.app;
+    const { target, half, turn, rise } = stage.table.aim;
+    const fine = FINE * stage.table.radius;
+    const short = (length: number): number => Number((Math.round(length / fine) * fine).toPrecision(8));
+    const words: [string, string][] = [["cutter", cutter.id]];
+    if (sample) words.push(["face", meta.faces[this.app.faceShown()!]?.id ?? ""], ["sample", String(sample.row)]);
+    if (sample && posture && !same(posture, this.app.startPosture(sample.row))) words.push(["posture", [posture.tilt, posture.rotation].map((angle) => Number(angle.toFixed(ANGLE))).join()]);
+    if (mode !== "verdict") words.push(["colours", mode]);
+    words.push(["view", [Number(turn.toFixed(ANGLE)), Number(rise.toFixed(ANGLE)), ...[half, ...target].map(short)].join()]);
+    return `#${words.map(([key, value]) => `${key}=${encodeURIComponent(value).replaceAll("%2C", ",")}`).join("&")}`;
+  }
+
+  /** Show what the address asks for; what is not in this plan is reported and left out. Whether it asked for something. */
+  follow(): boolean {
+    const { app } = this;
+    const { faces, cutters } = app.meta;
+    let text = location.hash.slice(1);
+    try {
+      text = decodeURIComponent(text);
+    } catch {
+      // A stray percent sign: the words are read as they stand.
+    }
+    if (FACE.test(text)) {
+      const owner = faces.findIndex((each) => each.id.toLowerCase() === text.toLowerCase());
+      if (owner < 0) app.say(`The link names ${text}, which is not in this plan`);
+      else showFace(app, owner);
+      return owner >= 0;
+    }
+    if (!text.includes("=")) return false;
+    const words = new URLSearchParams(location.hash.slice(1));
+    const missing: string[] = [];
+    const cutter = words.get("cutter");
+    if (cutter !== null) {
+      if (!cutters.some(({ id }) => id === cutter)) missing.push(`cutter ${cutter}`);
+      else if (cutter !== app.cutter.id) app.setCutter(cutter);
+    }
+    const mode = words.get("colours");
+    if (mode !== null) {
+      if (modesOf(app.meta, app.cutter.id).some(({ key }) => key === mode)) app.setMode(mode);
+      else missing.push("its colours");
+    }
+    const row = words.has("sample") ? Number(words.get("sample")) : null;
+    if (row !== null) {
+      const there = Number.isInteger(row) && row >= 0 && row < app.samples.count;
+      const face = there ? faces.find(({ number }) => number === app.samples.face.values[row]) : undefined;
+      // Samples of another plan have other numbers: the face tells.
+      if (!face || (words.has("face") && words.get("face") !== face.id)) missing.push(`sample ${words.get("sample")} of ${words.get("face") ?? "a face"}`);
+      else {
+        app.select(row);
+        flyTo(app, app.samples.point(row) as Vec, app.samples.normal(row));
+        const [low, high] = app.meta.tilt_deg;
+        const [tilt, rotation] = numbersOf(words.get("posture"), 2) ?? [];
+        if (tilt >= low && tilt <= high) app.setPosture({ tilt, rotation: turned(rotation) });
+        else if (words.has("posture")) missing.push("its posture");
+      }
+    }
+    const view = this.viewOf(words.get("view"));
+    if (view) app.stage.table.fly(view);
+    else if (words.has("view")) missing.push("its view");
+    app.say(missing.length ? `Not in this plan: ${missing.join(", ")}. The link may be of another plan of this part.` : "The link's place is shown");
+    return true;
+  }
+
+  private viewOf(text: string | null): Aim | null {
+    const found = numbersOf(text, 6);
+    if (!found) return null;
+    const [turn, rise, half, ...target] = found;
+    const [least, most] = this.app.stage.table.halves;
+    const { low, high } = this.app.meta.part;
+    const far = distance(target as Vec, mixed(low, 0.5, high, 0.5));
+    if (Math.abs(rise) > 90 || half < least || half > most || far > 2 * most) return null;
+    return { turn, rise, half, target: target as Vec };
+  }
+}
+
+const same = (a: Posture, b: Posture | null): boolean => b !== null && alike(a, b);
+
+/** So many finite numbers in a text; null where there are not so many. */
+function numbersOf(text: string | null, count: number): number[] | null {
+  const found = (text ?? "").split(",").map((each) => (each.trim() ? Number(each) : Number.NaN));
+  return found.length === count && found.every(Number.isFinite) ? found : null;
+}
