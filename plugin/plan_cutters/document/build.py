@@ -26,6 +26,9 @@ from plan_cutters.scene.faces import Chosen
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.surroundings import Surroundings
 
+#: Decimals of carriers: behind them there is noise alone.
+_DIGITS = 9
+
 
 def missing_entries(part: Part, surroundings: Surroundings) -> list[MissingEntry]:
     """Faces that are in the way only as a guess, or of which nothing is known but that the file has them."""
@@ -219,11 +222,11 @@ def carrier_entry(face: FaceInfo, orientation: Orientation) -> CarrierEntry | No
         return None
     side = carrier.side * orientation.sign[face.number - 1] if orientation.confident else 0
     return CarrierEntry(
-        point_mm=carrier.point,
-        direction=carrier.direction,
-        radius_mm=carrier.radius,
-        minor_radius_mm=carrier.minor_radius,
-        half_angle_deg=None if carrier.half_angle is None else math.degrees(carrier.half_angle),
+        point_mm=vector(np.round(carrier.point, _DIGITS) + 0.0),
+        direction=None if carrier.direction is None else vector(np.round(carrier.direction, _DIGITS) + 0.0),
+        radius_mm=None if carrier.radius is None else round(carrier.radius, _DIGITS),
+        minor_radius_mm=None if carrier.minor_radius is None else round(carrier.minor_radius, _DIGITS),
+        half_angle_deg=None if carrier.half_angle is None else round(math.degrees(carrier.half_angle), _DIGITS),
         outward=bool(side > 0) if side else None,
     )
 
