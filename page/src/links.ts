@@ -11,6 +11,9 @@ import { flyTo, showFace } from "./view.ts";
 
 /** What is written of a face alone, as people type it. */
 const FACE = /^F\d+$/i;
+const KEYS = ["cutter", "face", "sample", "posture", "colours", "view"];
+/** A turn of more degrees is none that this page wrote: rounding leaves nothing of a further one. */
+const MOST_TURN = 1e6;
 /** Digits of an angle, and of a length as a share of the part's radius: finer than a pixel. */
 const [ANGLE, FINE] = [2, 1e-5];
 
@@ -68,8 +71,12 @@ export class Links {
       else showFace(app, owner);
       return owner >= 0;
     }
-    if (!text.includes("=")) return false;
     const words = new URLSearchParams(location.hash.slice(1));
+    if (!KEYS.some((key) => words.has(key))) {
+      // An id of the page is a link of its browser.
+      if (text && !document.getElementById(text)) app.say(`The link is not understood: #${text.slice(0, 40)}`);
+      return false;
+    }
     const missing: string[] = [];
     const cutter = words.get("cutter");
     if (cutter !== null) {
@@ -81,12 +88,14 @@ export class Links {
       if (modesOf(app.meta, app.cutter.id).some(({ key }) => key === mode)) app.setMode(mode);
       else missing.push("its colours");
     }
-    const row = words.has("sample") ? Number(words.get("sample")) : null;
-    if (row !== null) {
-      const there = Number.isInteger(row) && row >= 0 && row < app.samples.count;
-      const face = there ? faces.find(({ number }) => number === app.samples.face.values[row]) : undefined;
+    const named = words.get("face")?.toUpperCase() ?? null;
+    const owner = faces.findIndex(({ id }) => id.toUpperCase() === named);
+    const digits = words.get("sample");
+    if (digits !== null) {
+      const row = /^\d+$/.test(digits) ? Number(digits) : Number.NaN;
+      const face = row < app.samples.count ? faces.find(({ number }) => number === app.samples.face.values[row]) : undefined;
       // Samples of another plan have other numbers: the face tells.
-      if (!face || (words.has("face") && words.get("face") !== face.id)) missing.push(`sample ${words.get("sample")} of ${words.get("face") ?? "a face"}`);
+      if (!face || (named !== null && named !== face.id.toUpperCase())) missing.push(`sample ${words.get("sample")} of ${words.get("face") ?? "a face"}`);
       else {
         app.select(row);
         flyTo(app, app.samples.point(row) as Vec, app.samples.normal(row));
@@ -95,6 +104,9 @@ export class Links {
         if (tilt >= low && tilt <= high) app.setPosture({ tilt, rotation: turned(rotation) });
         else if (words.has("posture")) missing.push("its posture");
       }
+    } else if (named !== null) {
+      if (owner < 0) missing.push(named);
+      else showFace(app, owner);
     }
     const view = this.viewOf(words.get("view"));
     if (view) app.stage.table.fly(view);
@@ -110,7 +122,7 @@ export class Links {
     const [least, most] = this.app.stage.table.halves;
     const { low, high } = this.app.meta.part;
     const far = distance(target as Vec, mixed(low, 0.5, high, 0.5));
-    if (Math.abs(rise) > 90 || half < least || half > most || far > 2 * most) return null;
+    if (Math.abs(turn) > MOST_TURN || Math.abs(rise) > 90 || half < least || half > most || far > 2 * most) return null;
     return { turn, rise, half, target: target as Vec };
   }
 }

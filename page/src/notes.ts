@@ -7,13 +7,18 @@ import type { Vec } from "./meta.ts";
 import { copyName, type Decision, moment, type Note, read, type Review, signed, STATES, written } from "./review_data.ts";
 import { flyTo } from "./view.ts";
 
+type Place = Pick<Note, "face" | "sample" | "cutter">;
+
 const SECTION = "review-notes";
 const DATA = "notes-data";
 /** Where the first line of the page says what was decided. */
 const DECISION = "decision";
 
 export class Notes {
-  private readonly review: Review = read(document.getElementById(DATA)?.textContent ?? "");
+  private readonly stored = read(document.getElementById(DATA)?.textContent ?? "");
+  private readonly review: Review = this.stored ?? { notes: [], decision: null };
+  /** Where the note that is being written was begun: it stays there, whatever is selected meanwhile. */
+  private begun: Place | null = null;
   private saved = true;
   private readonly list = el("ol", { class: "notes" });
   private readonly box = el("textarea", { id: "note", rows: 2, "aria-describedby": "note-place" });
@@ -28,9 +33,10 @@ export class Notes {
     private readonly pristine: HTMLElement,
   ) {
     const section = document.getElementById(SECTION);
-    section?.replaceChildren(
+    const parts = [
       el("h2", {}, "Review"),
       el("p", { class: "hint" }, "Notes and the decision are kept in the copy that ", el("strong", {}, "Save copy"), " writes, and nowhere else."),
+      this.stored ? null : el("p", { class: "wrong" }, "The notes in this file cannot be read, and a copy of it would not have them."),
       this.made,
       el(
         "p",
@@ -45,9 +51,14 @@ export class Notes {
       el("label", { for: "note" }, "New note"),
       this.box,
       el("p", { class: "tools" }, button("Add note", () => this.add(), { id: "add-note" }), this.place),
-    );
+    ];
+    section?.replaceChildren(...parts.filter((part) => part !== null));
     this.box.addEventListener("keydown", (event) => {
       if (event.key === "Enter" && (event.ctrlKey || event.metaKey)) this.add();
+    });
+    this.box.addEventListener("input", () => {
+      this.begun = this.box.value.trim() ? (this.begun ?? this.current()) : null;
+      this.where();
     });
     app.on("sample", () => this.where());
     this.where();
@@ -58,11 +69,23 @@ export class Notes {
   }
 
   readonly saveButton = button("Save copy", () => this.save(), { id: "save-copy", title: "Save this page with the notes and the decision in it" });
-  readonly here = button("Note here", () => this.box.focus(), { id: "note-here", title: "Write a note on this sample" });
+  readonly here = button("Note here", () => this.moveHere(), { id: "note-here", title: "Write a note on this sample" });
+
+  private current(): Place {
+    const { sample, cutter } = this.app;
+    return { face: sample && this.face(sample.face), sample: sample && sample.row, cutter: sample && cutter.id };
+  }
+
+  /** Who asks for it writes on the sample that is shown now. */
+  private moveHere(): void {
+    if (this.begun) this.begun = this.current();
+    this.where();
+    this.box.focus();
+  }
 
   private where(): void {
-    const { sample } = this.app;
-    this.place.textContent = sample ? `at ${this.face(sample.face)}, sample ${sample.row}` : "on the whole: no sample is selected";
+    const { face, sample } = this.begun ?? this.current();
+    this.place.textContent = sample === null ? "on the whole: no sample is selected" : `at ${face}, sample ${sample}`;
   }
 
   private face(number: number): string {
@@ -93,10 +116,10 @@ export class Notes {
       this.box.focus();
       return;
     }
-    const { sample, cutter } = this.app;
-    const where = { face: sample && this.face(sample.face), sample: sample && sample.row, cutter: sample && cutter.id };
-    this.review.notes.push({ text, ...where, ...this.stamp(), done: false });
+    this.review.notes.push({ text, ...(this.begun ?? this.current()), ...this.stamp(), done: false });
     this.box.value = "";
+    this.begun = null;
+    this.where();
     this.changed(`Note ${this.review.notes.length} added: Save copy keeps it`);
   }
 

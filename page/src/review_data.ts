@@ -32,9 +32,14 @@ export function written(review: Review): string {
   return JSON.stringify(review).replace(/[<>&\u2028\u2029]/g, (sign) => ESCAPED[sign]);
 }
 
-/** The review in a saved copy; older copies have notes alone. What is no note, or no decision, is left out. */
-export function read(text: string): Review {
-  const found: unknown = JSON.parse(text || "[]");
+/** The review in a saved copy; older copies have notes alone. What is no note, or no decision, is left out; null: it is no JSON. */
+export function read(text: string): Review | null {
+  let found: unknown;
+  try {
+    found = JSON.parse(text || "[]");
+  } catch {
+    return null;
+  }
   const { notes, decision } = (Array.isArray(found) ? { notes: found } : (found ?? {})) as { notes?: unknown; decision?: Partial<Decision> };
   const kept = (Array.isArray(notes) ? notes : []).filter((each) => typeof each?.text === "string");
   return {
@@ -48,7 +53,7 @@ export function read(text: string): Review {
       done: done === true,
     })),
     // A decision that nobody made is none.
-    decision: decision?.state && Object.hasOwn(STATES, decision.state) && worded(decision.name)
+    decision: typeof decision?.state === "string" && Object.hasOwn(STATES, decision.state) && worded(decision.name)
       ? { state: decision.state, name: worded(decision.name), date: worded(decision.date) }
       : null,
   };

@@ -182,3 +182,45 @@ def test_of_two_parts_the_reasons_are_all_that_is_told(before):
     assert "they seem to be of two parts" in text
     assert "Faces that changed" not in text
     assert "Faces that changed" in page(compare(before, before), *[Side("a", before, nothing)] * 2).decode()
+
+
+def rack(radii, at=(0.0, 0.0, 0.0), mirrored=False):
+    """A block with a pocket, a corner cut out and a row of bores of these radii, moved or mirrored as a whole."""
+    body = cq.Workplane().box(120, 60, 20).cut(cq.Workplane().box(24, 20, 9).translate((-30, 14, 5.5)))
+    body = body.cut(cq.Workplane().box(12, 8, 30).translate((-54, -26, 0)))
+    for k, radius in enumerate(radii):
+        body = body.cut(cq.Workplane().circle(radius).extrude(60).translate((-30 + 20 * k, -12, -30)))
+    return (body.mirror("YZ") if mirrored else body).translate(at)
+
+
+def of_bores(plan_):
+    """Ids of the four bores, in the order of the row."""
+    bores = [f for f in plan_.faces if f.shape == "cylinder"]
+    assert len(bores) == 4
+    return [f.id for f in sorted(bores, key=lambda f: f.centre_mm[0])]
+
+
+@pytest.mark.parametrize(("at", "mirrored"), [((17, 3, 0), False), ((20, 0, 0), False), ((0, 0, 0), True), ((0, 0, 0), False)])
+def test_a_part_that_moved_and_changed_hides_no_loss(at, mirrored):
+    """A bore narrowed and another one opened: where the row is moved, neither takes the place of the other."""
+    old, new = planned(rack([4, 1.5, 4, 4])), planned(rack([1.5, 4, 4, 4], at, mirrored))
+    mine, theirs = of_bores(old), of_bores(new)
+    if mirrored:
+        theirs.reverse()
+    paired = {a.id: b.id for a, b, _ in match_faces(old, new)}
+    assert [paired.get(name) for name in mine] == theirs
+    found = compare(old, new)
+    assert found.lost
+    assert found.won
+    assert {(f.old, f.new) for f in found.faces if f.lost} == {(mine[0], theirs[0])}
+
+
+def test_a_name_pairs_no_bore_with_a_pin():
+    """Both are called `seat`, and material is on other sides of them."""
+    bore = cq.Workplane().box(60, 40, 20).cut(cq.Workplane().circle(4).extrude(8).translate((-15, 0, 2)))
+    pin = cq.Workplane().box(60, 40, 20).union(cq.Workplane().circle(7).extrude(12).translate((20, 8, 10)))
+    old, new = (
+        p.model_copy(update={"faces": [f.model_copy(update={"name": "seat" if f.shape == "cylinder" else ""}) for f in p.faces]})
+        for p in (planned(bore), planned(pin))
+    )
+    assert not any(a.shape == "cylinder" for a, _, _ in match_faces(old, new))

@@ -326,3 +326,15 @@ def test_names_cannot_break_the_markdown():
     assert escaped("x*y") in text
     assert "g\\|h" in text
     json.loads(found.model_dump_json())
+
+
+@pytest.mark.parametrize(("left", "lost"), [(500, False), (600, True)])
+def test_less_to_reach_is_no_loss_of_a_cutter(left, lost):
+    """A reached face was taken away: of what is left a smaller share is reached. It is a loss where more is left than before."""
+    whole, part = verdicts(), verdicts(inaccessible=500)
+    faces = [face(1), face(2), face(3)]
+    old = made(faces, [cutter("R6L80", {"F1": whole, "F2": whole, "F3": part})], sha="a")
+    new = made(faces[1:], [cutter("R6L80", {"F2": whole, "F3": verdicts(inaccessible=left)})], sha="b")
+    there, back = compare(old, new), compare(new, old)
+    assert (there.lost, back.won) == (lost, lost)
+    assert not there.won

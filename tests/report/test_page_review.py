@@ -109,7 +109,11 @@ def test_a_face_is_a_link_by_its_number(at):
     before = aim(page)
     page.evaluate("location.hash = 'F3'")
     status(page, "F3")
-    assert aim(page) != before
+    third = aim(page)
+    assert third != before
+    page.evaluate("location.hash = 'face=f5'")
+    status(page, "is shown")
+    assert aim(page) != third
 
 
 @pytest.mark.parametrize(
@@ -125,6 +129,13 @@ def test_a_face_is_a_link_by_its_number(at):
         ("view=0,0,NaN,0,0,0", "its view"),
         ("view=0,0,1e99,0,0,0", "its view"),
         ("view=0,0,10,1e30,0,0", "its view"),
+        ("view=1e300,0,30,0,0,0", "its view"),
+        ("face=F1&sample=", "sample "),
+        ("sample=0x3", "sample 0x3"),
+        ("sample=1e0", "sample 1e0"),
+        ("face=F88", "F88"),
+        ("=", "not understood"),
+        ("F3%", "not understood"),
         ("colours=<b>", "its colours"),
         ("F77", "F77"),
     ],
@@ -241,6 +252,7 @@ def test_a_decision_needs_a_name_and_is_kept_with_the_state_of_notes(at, path, t
         ('{"notes": [{"text": "x", "done": "yes"}], "decision": {"state": "approved"}}', ["x"]),
         ('{"notes": 7, "decision": {"state": "toString", "name": "A"}}', []),
         ("null", []),
+        ('{"notes": [], "decision": {"state": ["approved"], "name": "A"}}', []),
     ],
 )
 def test_older_copies_and_broken_ones_are_read(at, path, tmp_path, data, notes):
@@ -253,6 +265,31 @@ def test_older_copies_and_broken_ones_are_read(at, path, tmp_path, data, notes):
     assert page.eval_on_selector_all("ol.notes .said", "all => all.map(each => each.textContent)") == notes
     assert page.locator("#decision").is_hidden()
     assert page.locator("ol.notes .done").count() == 0
+
+
+def test_notes_that_cannot_be_read_are_reported_and_the_picture_stays(at, path, tmp_path):
+    text = path.read_text(encoding="utf-8")
+    (tmp_path / "broken.html").write_text(text.replace('id="notes-data">[]<', 'id="notes-data">[{"text": <'), encoding="utf-8")
+    page = at(where=tmp_path / "broken.html")
+    assert page.evaluate("document.documentElement.dataset.ready") == "yes"
+    assert "cannot be read" in page.inner_text("#review-notes")
+
+
+def test_a_note_stays_where_it_was_begun(at):
+    page = at()
+    page.evaluate("review.select(6)")
+    page.fill("#note", "of sample six")
+    page.evaluate("review.select(8)")
+    assert page.inner_text("#note-place") == "at F1, sample 6"
+    page.click("#add-note")
+    assert page.inner_text("ol.notes .place").startswith("F1, sample 6")
+    assert page.inner_text("#note-place") == "at F1, sample 8"
+    # Who asks for it moves the note.
+    page.fill("#note", "of the next")
+    page.evaluate("review.select(7)")
+    page.click("#note-here")
+    page.click("#add-note")
+    assert page.locator("ol.notes .place").nth(1).inner_text().startswith("F1, sample 7")
 
 
 def test_paper_has_all_that_a_reviewer_signs(at, planned):

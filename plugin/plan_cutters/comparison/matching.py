@@ -79,7 +79,8 @@ def known_faces(old: Plan, new: Plan) -> KnownFaces:
         # A hole that moved to the other side: most of the part is where it was.
         return KnownFaces(still, tuple(motions))
     whole = carried == len(old.faces) == len(new.faces)
-    if not whole and 2 * len(still) > carried:
+    # Pairs by carrier or likeness count for nothing here: in a part that moved they are of two features.
+    if not whole and 2 * placed > carried:
         return KnownFaces(still)
     own = {face.id: face for face in old.faces}
     every = [_pairs([motion.face(face) for face in old.faces], new.faces, size) for motion in motions]
@@ -124,7 +125,8 @@ def _pairs(old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: float) -> M
     if any(all(face.centre_mm is None for face in faces) for faces in (old, new)):
         take(_alone(*open_faces, _numbered), "number")
     spread()
-    take(_alone(*open_faces, _named), "name")
+    by = surroundings()
+    take((pair for pair in _alone(*open_faces, _named) if not opposed(*pair) and by.consistent(*pair)), "name")
     by = surroundings()
     take((pair for pair in _alike(*open_faces, size) if by.consistent(*pair)), "likeness")
     spread()

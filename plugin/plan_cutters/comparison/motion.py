@@ -22,11 +22,11 @@ from plan_cutters.plan_file.numbers import angle, direction, mm, place, unit
 #: Places and logarithms of areas agree within this, as of faces that did not move.
 _SAME = 1e-5
 #: Fewer faces than this do not tell a motion from a chance; so many of all must agree.
-_LEAST, _MOST_OF_ALL = 6, 0.8
+_LEAST, _MOST_OF_ALL = 6, 0.6
 #: Faces from which a motion is looked for, and images of each that are tried.
 _ANCHORS, _IMAGES = 3, 24
 #: Faces that are looked at first, and the share of them that must agree before all are looked at.
-_SOME, _ENOUGH = 40, 0.6
+_SOME, _ENOUGH = 40, 0.45
 _AXES = "xyz"
 
 

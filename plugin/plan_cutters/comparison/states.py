@@ -64,11 +64,20 @@ def falls(was: FaceState, now: FaceState, slack: float) -> bool:
     return after < before or (after == before and was.share - now.share > slack)
 
 
-def cutter_falls(was: CutterState, now: CutterState, slack: float) -> bool:
-    """Whether a cutter finishes less: no more, no more for sure, or by more than `slack` of the area."""
+def cutter_falls(was: CutterState, now: CutterState, slack: float, *, leaves_more: bool = True) -> bool:
+    """Whether a cutter finishes less: no more, no more for sure, or by more than `slack` of the area.
+
+    `leaves_more`: whether the area that it leaves grew. Of a part from which reached faces were taken away a smaller share is
+    reached, and nothing was lost.
+    """
     rank = {True: 2, None: 1, False: 0}
     before, after = rank[was.finishes], rank[now.finishes]
-    return after < before or was.share - now.share > slack
+    return after < before or (leaves_more and was.share - now.share > slack)
+
+
+def remaining_area(plan: Plan, state: CutterState) -> float:
+    """The area that a cutter leaves of the target faces, mm2; nan where areas are not known."""
+    return (1.0 - state.share) * sum(face.area_mm2 for face in _targets(plan))
 
 
 def unreachable(plan: Plan) -> list[str]:
