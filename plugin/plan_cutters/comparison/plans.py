@@ -9,12 +9,12 @@ from cad_io.files import fingerprint
 from plan_cutters.comparison.matching import KnownFaces, known_faces, match_cutters
 from plan_cutters.comparison.model import REQUESTED, Change, CutterDifference, FaceDifference, FaceState, PlanDifference
 from plan_cutters.comparison.states import (
-    remaining_area,
     cutter_falls,
     cutter_state,
     face_state,
     falls,
     reached_whole,
+    remaining_area,
     unreachable,
 )
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
@@ -250,10 +250,10 @@ def _cutter(
                 (gone if before else won).append((mine.id, theirs.id))
     forms = [(name, _form(a, name), _form(b, name)) for name in _FORM]
     changes = [Change(what=name, old=before, new=after) for name, before, after in forms if before != after]
-    before, after = remaining_area(old, was), remaining_area(new, now)
+    then, today = remaining_area(old, was), remaining_area(new, now)
     # An area that is not known may have grown.
-    loses = cutter_falls(was, now, slack, leaves_more=not after - before <= slack * before) or bool(gone)
-    wins = cutter_falls(now, was, slack, leaves_more=not before - after <= slack * after) or bool(won)
+    loses = cutter_falls(was, now, slack, leaves_more=not today - then <= slack * then) or bool(gone)
+    wins = cutter_falls(now, was, slack, leaves_more=not then - today <= slack * today) or bool(won)
     if not (loses or wins or changes):
         return None
     return CutterDifference(
