@@ -73,6 +73,37 @@ def _brief(value: Any) -> str:
 
 
 @dataclass(frozen=True, slots=True)
+class Carrier:
+    """The whole plane, cylinder, cone, sphere or torus that a face is a part of.
+
+    Attributes
+    ----------
+    point : tuple of float
+        mm; the point of a plane or of a cylinder's axis that is nearest the origin, the apex of a cone, the centre of a
+        sphere or torus.
+    direction : tuple of float, optional
+        Unit normal of a plane, or unit direction of an axis. The first of its longest components is positive; of a cone it
+        points from the apex to the face. None of a sphere.
+    radius : float, optional
+        mm; of a cylinder or sphere, and of the circle about which a torus lies.
+    minor_radius : float, optional
+        mm; of the tube of a torus.
+    half_angle : float, optional
+        rad; between the axis and the surface of a cone.
+    side : int
+        +1 where `dS/du x dS/dv` points along a plane's direction, or away from an axis, from a centre or from the middle of
+        a tube; -1 where it does not; 0 where that is not known.
+    """
+
+    point: tuple[float, float, float]
+    direction: tuple[float, float, float] | None = None
+    radius: float | None = None
+    minor_radius: float | None = None
+    half_angle: float | None = None
+    side: int = 0
+
+
+@dataclass(frozen=True, slots=True)
 class FaceInfo:
     """One face of a part.
 
@@ -93,6 +124,8 @@ class FaceInfo:
         sRGB, 0 to 1, as found in the file.
     unjudged : str, optional
         Why no surface can be judged here; None for a face that can.
+    carrier : Carrier, optional
+        None of a sculptured face, and of one without a border.
     """
 
     number: int
@@ -102,6 +135,7 @@ class FaceInfo:
     area: float
     colour: tuple[float, float, float] | None = None
     unjudged: str | None = None
+    carrier: Carrier | None = None
 
     @property
     def id(self) -> str:

@@ -8,11 +8,13 @@ Chebyshev nodes is small between them (Ehlich and Zeller, 1964).
 
 from collections.abc import Callable, Iterator
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from OCP.GeomAbs import GeomAbs_CN
 
-from cad_io.arrays import Floats
+from cad_io.arrays import Carrier, Floats
+from cad_io.face import carrier
 from cad_io.face.curvature import curvature
 from cad_io.kernel import interval_ends
 from cad_io.surface import Surface
@@ -33,27 +35,32 @@ _SMOOTH = 24
 #: Points looked at together.
 _AT_ONCE = 1 << 16
 
-#: A shape and the distances (n,) of points (n, 3) from it.
-Fit = tuple[str, Callable[[Floats], Floats]]
+
+class Fit(NamedTuple):
+    """A shape, the distances (n,) of points (n, 3) from it, and the shape itself."""
+
+    kind: str
+    distance: Callable[[Floats], Floats]
+    carrier: Carrier
 
 
-def recognise(surface: Surface, box: tuple[float, float, float, float]) -> str:
-    """One of SIMPLE_KINDS or `sculptured`, for the surface over a parameter box."""
+def recognise(surface: Surface, box: tuple[float, float, float, float]) -> tuple[str, Carrier | None]:
+    """One of SIMPLE_KINDS or `sculptured`, for the surface over a parameter box, and its carrier without a side."""
     share = (np.arange(_NODES) + 0.5) / _NODES
     u, v = (g.ravel() for g in np.meshgrid(box[0] + share * (box[1] - box[0]), box[2] + share * (box[3] - box[2])))
     derivatives = surface.second(u, v)
     geometry = curvature(derivatives)
     if geometry.bad.any():
-        return "sculptured"
+        return "sculptured", None
     point = derivatives[:, 0]
     size = float(np.linalg.norm(np.ptp(point, axis=0)))
     within = min(WITHIN, WITHIN_SHARE * size)
-    for kind, distance in _fits(point, geometry.normal, geometry.curvature, size):
+    for kind, distance, fitted in _fits(point, geometry.normal, geometry.curvature, size):
         if distance(point).max() <= within:
             # Only what the nodes agree with is looked at everywhere.
             whole = all(distance(each).max() <= _BETWEEN * within for each in _everywhere(surface, box))
-            return kind if whole else "sculptured"
-    return "sculptured"
+            return (kind, fitted) if whole else ("sculptured", None)
+    return "sculptured", None
 
 
 def _fits(point: Floats, normal: Floats, kappa: Floats, size: float) -> Iterator[Fit]:
@@ -101,14 +108,14 @@ def _everywhere(surface: Surface, box: tuple[float, float, float, float]) -> Ite
 def _plane(point: Floats) -> Fit:
     middle = point.mean(axis=0)
     normal = np.linalg.svd(point - middle, full_matrices=False)[2][2]
-    return "plane", lambda p: np.abs((p - middle) @ normal)
+    return Fit("plane", lambda p: np.abs((p - middle) @ normal), carrier.plane(middle, normal))
 
 
 def _sphere(point: Floats, normal: Floats, kappa: Floats) -> Fit:
     centre = (point + normal / kappa.mean(axis=1)[:, None]).mean(axis=0)
     far = np.linalg.norm(point - centre, axis=1)
     radius = 0.5 * float(far.min() + far.max())
-    return "sphere", lambda p: np.abs(np.linalg.norm(p - centre, axis=1) - radius)
+    return Fit("sphere", lambda p: np.abs(np.linalg.norm(p - centre, axis=1) - radius), carrier.sphere(centre, radius))
 
 
 def _circle(flat: Floats) -> tuple[Floats, float]:
@@ -128,7 +135,11 @@ def _ruled(point: Floats, normal: Floats) -> Iterator[Fit]:
         return
     if abs(float(tilt.mean())) < 1e-4:
         middle, radius = _circle(point @ axes[:2].T)
-        yield "cylinder", lambda p: np.abs(np.linalg.norm(p @ axes[:2].T - middle, axis=1) - radius)
+        yield Fit(
+            "cylinder",
+            lambda p: np.abs(np.linalg.norm(p @ axes[:2].T - middle, axis=1) - radius),
+            carrier.cylinder(middle @ axes[:2], axis, radius),
+        )
         return
     # A cone's points stand off its axis along the normals' part across it, by a distance that is linear in the height.
     flat, height = point @ axes[:2].T, point @ axis
@@ -147,7 +158,10 @@ def _ruled(point: Floats, normal: Floats) -> Iterator[Fit]:
         radius = np.linalg.norm(p @ axes[:2].T - centre, axis=1)
         return np.asarray(np.abs(radius - side * (r0 + k * (p @ axis))) / np.hypot(1.0, k))
 
-    yield "cone", distance
+    # Where the radius is zero; without a slope there is no apex, and no number of the carrier is finite.
+    with np.errstate(divide="ignore", invalid="ignore"):
+        apex = np.asarray(centre) @ axes[:2] - np.divide(r0, k) * axis
+    yield Fit("cone", distance, carrier.cone(apex, axis, float(np.arctan(abs(k)))))
 
 
 def _torus(point: Floats, normal: Floats, kappa: float) -> Fit:
@@ -162,4 +176,6 @@ def _torus(point: Floats, normal: Floats, kappa: float) -> Fit:
         outward = np.linalg.norm((p - centre) @ axes[:2].T - middle, axis=1) - radius
         return np.asarray(np.abs(np.hypot(outward, (p - centre) @ axes[2] - spine_height) - 1 / abs(kappa)))
 
-    return "torus", distance
+    return Fit(
+        "torus", distance, carrier.torus(centre + middle @ axes[:2] + spine_height * axes[2], axes[2], radius, 1 / abs(kappa))
+    )

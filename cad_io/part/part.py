@@ -17,6 +17,7 @@ from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 
 from cad_io.arrays import SIMPLE_KINDS, FaceInfo, Floats, LostFace
 from cad_io.errors import ReadError
+from cad_io.face.carrier import sided, stored_carrier
 from cad_io.face.measure import Measure, measure
 from cad_io.face.recognise import recognise
 from cad_io.face.trim import Trim, trim_of
@@ -26,7 +27,7 @@ from cad_io.kernel.assembly import Node
 from cad_io.part.blends import Bare, blends
 from cad_io.part.boxes import box_of, face_box
 from cad_io.part.packing import PartContent, packed, unpacked
-from cad_io.part.sew import Sewn, edge_uses, sew
+from cad_io.part.sew import Sewn, edge_uses, neighbours, sew
 from cad_io.surface import Surface
 
 #: Sizes that are rather a wrong unit than a part, mm.
@@ -309,6 +310,11 @@ class Part:
             ]
             return blends(faces, float(np.linalg.norm(self.size)))
 
+    @cached_property
+    def neighbours(self) -> tuple[tuple[int, ...], ...]:
+        """Numbers of the faces across each face's edges; entry i is of face number i + 1."""
+        return neighbours([self.sewn.faces.get(i + 1, face) for i, face in enumerate(self._faces)])
+
     def solid_shapes(self) -> Iterator[TopoDS_Shape]:
         """Every solid, as it stands in the shape."""
         return explore(self.shape, TopAbs_SOLID)
@@ -331,7 +337,7 @@ class Part:
         return number
 
     def _describe(self, number: int) -> FaceInfo:
-        surface, shape, area, reason = "other", "sculptured", 0.0, self.aside.get(number)
+        surface, shape, area, reason, carrier = "other", "sculptured", 0.0, self.aside.get(number), None
         name, colour = self._names.get(number, ""), self._colours.get(number)
         if reason is not None:
             return FaceInfo(number, name, surface, shape, area, colour, reason)
@@ -341,8 +347,10 @@ class Part:
             shape = surface if surface in SIMPLE_KINDS else "sculptured"
             reason, area = self._judgeable(number, surface)
             trim = self.trim(number)
+            carrier = stored_carrier(surface, self.adaptor(number))
             if reason is None and shape == "sculptured" and trim:
-                shape = recognise(self.surface(number), trim.box)
+                shape, carrier = recognise(self.surface(number), trim.box)
+            carrier = sided(carrier, self.surface(number), trim.box) if trim else None
         except Exception as thrown:
             if not (is_kernel_error(thrown) or is_kernel_error(thrown.__cause__ or thrown)):
                 raise
@@ -351,7 +359,7 @@ class Part:
         if altered is not None and reason is None:
             # What it encloses and how large it is would be those of another face.
             reason, area = f"is not as it was written in the file: {altered}", 0.0
-        return FaceInfo(number, name, surface, shape, area, colour, reason)
+        return FaceInfo(number, name, surface, shape, area, colour, reason, carrier)
 
     def _judgeable(self, number: int, surface: str) -> tuple[str | None, float]:
         """Why the face cannot be judged (None if it can), and its area."""

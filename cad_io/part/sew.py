@@ -135,6 +135,16 @@ def edge_uses(shapes: Sequence[TopoDS_Face]) -> list[tuple[TopoDS_Edge, list[tup
     return [(TopoDS.Edge_s(edges.FindKey(index)), users) for index, users in uses.items()]
 
 
+def neighbours(shapes: Sequence[TopoDS_Face]) -> tuple[tuple[int, ...], ...]:
+    """Numbers from 1 of the faces that share an edge with each face, ascending, without itself."""
+    across: list[set[int]] = [set() for _ in shapes]
+    for _, users in edge_uses(shapes):
+        on = {i for i, _ in users}
+        for i in on:
+            across[i] |= on
+    return tuple(tuple(sorted(j + 1 for j in each if j != i)) for i, each in enumerate(across))
+
+
 def _outside_solids(shape: TopoDS_Shape) -> list[int]:
     numbers = shape_map(shape, TopAbs_FACE)
     loose = {numbers.FindIndex(face) for face in explore(shape, TopAbs_FACE, TopAbs_SOLID)}

@@ -1,4 +1,5 @@
-"""Laws of comparing plans: nothing differs from itself, what is lost one way is won the other way, order does not matter."""
+"""Laws of comparing plans: nothing differs from itself, what is lost of a face one way is won the other way, order does not
+matter; a face that is gone is never won."""
 
 import json
 import math
@@ -12,6 +13,7 @@ from plan_cutters.comparison.markdown import escaped, markdown
 from plan_cutters.comparison.matching import match_faces
 from plan_cutters.comparison.model import REQUESTED, Comparison, schema_text
 from plan_cutters.comparison.plans import SLACK, compare
+from plan_cutters.comparison.wording import cutter_rows, face_rows, remarks
 from plan_cutters.plan_file.model import FaceEntry
 from tests.support.places import ROOT
 from tests.support.plan_files import cutter, face, made, verdicts
@@ -46,24 +48,31 @@ def plans(draw, sha="a"):
 
 
 def mirrored(found):
-    """What the comparison in reverse order must say of each face and cutter."""
+    """What the comparison in reverse order must say of each face and cutter.
+
+    Of faces that one plan has alone it says that they are there: a new one that is not reached is lost, a gone one is not won.
+    """
     return (
-        {(f.new, f.old, f.won, f.lost, f.now, f.was) for f in map(_Hashable, found.faces)},
+        {(f.new, f.old, *((f.won, f.lost) if f.old and f.new else ()), f.now, f.was) for f in map(_Hashable, found.faces)},
         {(_id(c.now), _id(c.was), c.won, c.lost) for c in found.cutters},
         {_id(c.now) or _id(c.was): ({p[::-1] for p in c.faces_won}, {p[::-1] for p in c.faces_lost}) for c in found.cutters},
-        (found.won, found.lost),
         found.selected[::-1],
     )  # fmt: skip
 
 
 def straight(found):
     return (
-        {(f.old, f.new, f.lost, f.won, f.was, f.now) for f in map(_Hashable, found.faces)},
+        {(f.old, f.new, *((f.lost, f.won) if f.old and f.new else ()), f.was, f.now) for f in map(_Hashable, found.faces)},
         {(_id(c.was), _id(c.now), c.lost, c.won) for c in found.cutters},
         {_id(c.was) or _id(c.now): (set(c.faces_lost), set(c.faces_won)) for c in found.cutters},
-        (found.lost, found.won),
         found.selected,
     )
+
+
+def both(found):
+    """Whether something of what both plans have was lost, and won."""
+    rows = [f for f in found.faces if f.old and f.new] + found.cutters
+    return any(each.lost for each in rows), any(each.won for each in rows)
 
 
 class _Hashable:
@@ -90,6 +99,10 @@ def test_a_plan_does_not_differ_from_itself(plan):
 def test_what_is_lost_one_way_is_won_the_other_way(old, new):
     there, back = compare(old, new), compare(new, old)
     assert straight(there) == mirrored(back)
+    assert both(there) == both(back)[::-1]
+    for found in (there, back):
+        assert not any(f.won for f in found.faces if f.old is None or f.new is None)
+        assert not any(f.lost for f in found.faces if f.new is None)
     assert there.comparable == back.comparable
     assert [(c.what, c.old, c.new) for c in there.changes] == [(c.what, c.new, c.old) for c in back.changes]
 
@@ -186,7 +199,9 @@ def test_a_new_face_that_no_cutter_reaches_is_lost_and_a_gone_one_is_told():
     assert [(f.old, f.new, f.lost) for f in found.faces] == [(None, "F40", True)]
     assert found.unreachable == ["F40"]
     gone = compare(faulty, plan(0, [1], "a"))
-    assert [(f.old, f.new, f.won) for f in gone.faces] == [("F40", None, True)]
+    assert [(f.old, f.new, f.lost, f.won) for f in gone.faces] == [("F40", None, False, False)]
+    assert [row[0] for row in face_rows(gone)] == ["gone"]
+    assert (gone.lost, gone.won) == (False, False)
 
 
 def test_likeness_needs_one_candidate():
@@ -246,6 +261,46 @@ def test_nothing_in_common_is_not_comparable():
     found = compare(old, other)
     assert not found.comparable
     assert len(found.why_not) == 2
+    # The reasons are all that is told; the data have the rest.
+    assert (list(face_rows(found)), list(cutter_rows(found)), remarks(found)) == ([], [], [])
+    assert len(found.faces) == 2
+    both_plans = Comparison(old="a", new="b", slack=0.0, plans=[found], unread=[], only_old=[], only_new=[], comparable=False,
+                            lost=found.lost, won=found.won)  # fmt: skip
+    text = markdown(both_plans)
+    assert text.count("**Not comparable:**") == 2
+    assert "|" not in text
+
+
+def test_plans_of_which_too_little_is_known_again_are_of_two_parts():
+    """One face of nine that happens to agree does not make them one part."""
+    tools = [cutter("R6L80", {})]
+    old = made([face(n, area=100.0 * n) for n in range(1, 10)], tools)
+    other = made([face(1), *(face(n, area=7000.0 * n, centre=(0.0, 90.0, 10.0 * n)) for n in range(2, 10))], tools, sha="b")
+    found = compare(old, other)
+    assert len(match_faces(old, other)) == 1
+    assert found.why_not == ["of 9 faces of the old plan and 9 of the new one 1 is known again: they seem to be of two parts"]
+    assert compare(made(old.faces[:3], tools), made(other.faces[:3], tools, sha="b")).comparable
+    # A plate whose holes were all set anew is the same plate.
+    old, other = (
+        made([face(1, area=9e5, shape="plane"), *plan.faces[1:]], tools, sha=sha) for plan, sha in ((old, "a"), (other, "b"))
+    )
+    assert len(match_faces(old, other)) == 1
+    assert compare(old, other).comparable
+
+
+def test_the_worst_rows_come_first():
+    """By the area that is lost, whatever the numbers: new faces that are not reached after it, and what is gone last."""
+
+    def plan(shares, sha, extra):
+        faces = [face(n, area=100.0 * n) for n in shares] + [extra]
+        return made(faces, [cutter("R6L80", {f"F{n}": verdicts(lost, reason=why) for n, (lost, why) in shares.items()})], sha=sha)
+
+    h, n = "holder", "neck"
+    old = plan({1: (0, h), 2: (0, h), 3: (900, h), 4: (500, h), 9: (800, h)}, "a", face(20, shape="plane"))
+    new = plan({1: (900, h), 2: (900, h), 3: (0, h), 4: (500, n), 9: (900, h)}, "b", face(30))
+    rows = [(row[0], row[1]) for row in face_rows(compare(old, new))]
+    lost = [("lost", "F2"), ("lost", "F1"), ("lost", "F9"), ("lost", "F30")]
+    assert rows == [*lost, ("changed", "F4"), ("won", "F3"), ("gone", "F20")]
 
 
 def test_a_cutter_in_another_holder_is_known_again():

@@ -351,6 +351,21 @@ def test_a_lost_face_without_samples_has_its_colour(shown, results, folders, tmp
     assert near(hue(found, "new", unseen.id), "lost")
 
 
+def test_of_plans_that_are_not_comparable_the_pictures_have_no_changes(shown, results, folders, tmp_path):
+    other = results["new"].plan.effective.model_copy(update={"tolerance_mm": 0.5})
+    new = written(tmp_path / "new", results["new"], effective=other)
+    done = run("diff", folders["old"], new, "-o", "out", cwd=tmp_path)
+    assert done.returncode == 2
+    assert done.stdout.splitlines()[-1] == "Not comparable. --despite tolerance compares nevertheless."
+    found = shown(tmp_path / "out/review.html")
+    assert found.evaluate("document.documentElement.dataset.ready") == "yes"
+    assert (found.locator("#faces").count(), found.locator("#cutters").count()) == (0, 0)
+    assert found.locator("canvas").count() == 2
+    legend = found.locator("#legend").inner_text()
+    assert "reached whole" in legend
+    assert not any(word in legend for word in ("lost", "won", "both", "neither"))
+
+
 def test_without_pictures_the_tables_say_it_all(shown, results, tmp_path):
     old, new = (written(tmp_path / word, result) for word, result in results.items())
     for each in (old, new):

@@ -8,11 +8,11 @@ from plan_cutters.plan_file.shares import AreaShare, FaceVerdicts
 SAMPLES = 1000
 
 
-def face(number, *, area=100.0, centre=None, name="", shape="sculptured", target=True):
+def face(number, *, area=100.0, centre=None, name="", shape="sculptured", target=True, carrier=None, neighbours=None):
     """A face that is at a place of its own, unless one is given."""
     return FaceEntry(id=f"F{number}", name=name, surface="bspline", shape=shape, kind=shape, target=target, area_mm2=area,
                      centre_mm=(float(number), 0.0, 0.0) if centre is None else centre, component="", samples=SAMPLES,
-                     unjudged=None)  # fmt: skip
+                     unjudged=None, carrier=carrier, neighbours=neighbours)  # fmt: skip
 
 
 def verdicts(inaccessible=0, undecided=0, reason="holder"):

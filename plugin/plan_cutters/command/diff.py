@@ -77,7 +77,7 @@ def command(request: DiffRequest) -> int:
     """Show which faces and cutters were lost or won from plan OLD to plan NEW.
 
     OLD and NEW are plan.json files, the folders of two plans, or two folders of many plans, which are paired by name.
-    A face whose number shifted is known again by its place, area and name; one that is not known again is told.
+    A face whose number shifted is known again by its place, its surface or its neighbours; one that is not known again is told.
     """
     from plan_cutters.comparison.folders import compare_folders
     from plan_cutters.errors import OptionError
@@ -147,7 +147,7 @@ def _show(difference: "PlanDifference", console: "Console") -> None:
     from rich.table import Table
     from rich.text import Text
 
-    from plan_cutters.comparison.wording import CUTTERS, FACES, change, choice, cutter_rows, face_rows, headline, known
+    from plan_cutters.comparison.wording import CUTTERS, FACES, cutter_rows, face_rows, headline, remarks
 
     def say(text: str, style: str = "") -> None:
         console.print(Text(clean(text), style), soft_wrap=True)
@@ -155,11 +155,8 @@ def _show(difference: "PlanDifference", console: "Console") -> None:
     say(headline(difference), "bold")
     for line in difference.why_not:
         say(f"  not comparable: {line}", "bold yellow")
-    for line in filter(None, (choice(difference), known(difference))):
+    for line in remarks(difference):
         say(f"  {line}")
-    for each in difference.changes:
-        if not each.hinders:
-            say(f"  {change(each)}")
     for names, rows in ((FACES, list(face_rows(difference))), (CUTTERS, list(cutter_rows(difference)))):
         if rows:
             table = Table(*names)

@@ -6,18 +6,7 @@ from types import MappingProxyType
 from urllib.parse import quote
 
 from plan_cutters.comparison.model import Comparison, PlanDifference
-from plan_cutters.comparison.wording import (
-    CUTTERS,
-    FACES,
-    apart,
-    change,
-    choice,
-    cutter_rows,
-    face_rows,
-    headline,
-    known,
-    verdict,
-)
+from plan_cutters.comparison.wording import CUTTERS, FACES, apart, cutter_rows, face_rows, headline, remarks, verdict
 
 #: Rows of a table; a summary of GitHub may have one MiB.
 MOST_ROWS = 100
@@ -52,11 +41,8 @@ def section(difference: PlanDifference) -> Iterator[str]:
     yield ""
     for line in difference.why_not:
         yield f"- **Not comparable:** {escaped(line)}"
-    for line in filter(None, (choice(difference), known(difference))):
+    for line in remarks(difference):
         yield f"- {escaped(line)}"
-    for each in difference.changes:
-        if not each.hinders:
-            yield f"- {escaped(change(each))}"
     yield from table(FACES, face_rows(difference))
     yield from table(CUTTERS, cutter_rows(difference))
 

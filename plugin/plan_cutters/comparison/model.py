@@ -13,7 +13,7 @@ FORMAT_VERSION = 1
 #: How much of a face is reached by the cutter that reaches most of it.
 Reach = Literal["reached", "undecided", "partly", "not reached", "not judged", "not asked", "inside other bodies"]
 #: How a face is known again.
-FaceMatch = Literal["same file", "place", "number", "name", "likeness"]
+FaceMatch = Literal["same file", "place", "number", "carrier", "neighbours", "name", "likeness"]
 CutterMatch = Literal["id", "name", "cutting part"]
 #: Changes of what was asked: as long as one is not named by `--despite`, verdicts are answers to two questions.
 REQUESTED = ("unit", "faces", "sampling", "postures", "tolerance", "clearance", "machine", "setup", "fixtures")
@@ -53,7 +53,7 @@ class FaceDifference(Frozen):
     was: FaceState | None = None
     now: FaceState | None = None
     lost: bool = Field(description="less of it is reached, or it is new and not reached")
-    won: bool = Field(description="more of it is reached, or it is gone and was not reached")
+    won: bool = Field(description="more of it is reached; false of a face that is gone")
 
 
 class CutterState(Frozen):
@@ -88,8 +88,16 @@ class PlanDifference(Frozen):
     changes: list[Change]
     selected: tuple[str | None, str | None] = Field(description="ids of the cutters to take, old and new")
     matched: dict[str, int] = Field(description="how many faces were known again, by how")
-    faces: list[FaceDifference]
-    cutters: list[CutterDifference]
+    motion: str = Field(
+        default="", description="a sentence where the part was mirrored, moved or turned as a whole; empty where not"
+    )
+    faces: list[FaceDifference] = Field(
+        description="first those of which less is reached, by the area; then new ones that are not reached, changed, won, new "
+        "and gone ones"
+    )
+    cutters: list[CutterDifference] = Field(
+        description="first those that reach less, by the share; then changed ones and those that reach more"
+    )
     unreachable: list[str] = Field(description="ids of the target faces of the new plan that no cutter reaches whole")
     lost: bool
     won: bool
@@ -97,7 +105,8 @@ class PlanDifference(Frozen):
     @property
     def same(self) -> bool:
         """Nothing differs but what the run itself says."""
-        return not (self.why_not or self.changes or self.faces or self.cutters or self.selected[0] != self.selected[1])
+        other = self.selected[0] != self.selected[1]
+        return not (self.why_not or self.changes or self.motion or self.faces or self.cutters or other)
 
 
 class Comparison(Frozen):

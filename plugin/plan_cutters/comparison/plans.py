@@ -6,15 +6,21 @@ from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import Any
 
 from cad_io.files import fingerprint
-from plan_cutters.comparison.matching import match_cutters, match_faces
+from plan_cutters.comparison.matching import KnownFaces, known_faces, match_cutters
 from plan_cutters.comparison.model import REQUESTED, Change, CutterDifference, FaceDifference, FaceState, PlanDifference
 from plan_cutters.comparison.states import cutter_falls, cutter_state, face_state, falls, reached_whole, unreachable
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
+from plan_cutters.plan_file.numbers import count
 from plan_cutters.plan_file.part_info import FixtureEntry, PartInfo
 from plan_cutters.plan_file.words.names import called
 
 #: Shares of an area that differ by no more are the same: samples of a changed part lie in other places.
 SLACK = 0.001
+#: Plans of which fewer faces are known again, as a share of those of the plan with fewer of them, are of two parts, unless so
+#: large a share of the area is the same.
+UNRELATED = 0.25
+#: Motions that are named where several explain a part.
+_MOST_MOTIONS = 3
 #: Entries of a cutter that say how it is made.
 _FORM = (
     "radius",
@@ -33,6 +39,8 @@ _FORM = (
 def compare(old: Plan, new: Plan, *, name: str = "", slack: float = SLACK, despite: Collection[str] = ()) -> PlanDifference:
     """Compare two plans; the same plan twice gives no difference, and in reverse order what was lost is won.
 
+    Faces that one plan has alone are no such matter: a new one that is not reached is lost, and one that is gone is not won.
+
     Parameters
     ----------
     old, new : Plan
@@ -44,15 +52,19 @@ def compare(old: Plan, new: Plan, *, name: str = "", slack: float = SLACK, despi
         Codes of `model.ASKED`: the plans are compared although these differ.
     """
     changes = list(_changes(old, new, despite))
-    pairs = match_faces(old, new)
+    known = known_faces(old, new)
+    pairs = known.pairs
     tools = match_cutters(old, new)
     why_not = [f"{each.what} differs: {each.old} -> {each.new}" for each in changes if each.hinders]
-    if not pairs:
-        why_not.append("no face of the old plan is known again in the new one: they seem to be of two parts")
+    if not _related(old, new, known):
+        why_not.append(
+            f"of {count(len(old.faces), 'face')} of the old plan and {len(new.faces)} of the new one {len(pairs) or 'none'} "
+            f"{'are' if len(pairs) > 1 else 'is'} known again: they seem to be of two parts"
+        )
     if not tools:
         why_not.append("no cutter of the old plan is known again in the new one")
-    face_rows = sorted(filter(None, _faces(old, new, pairs, slack)), key=_place)
-    cutter_rows = sorted(filter(None, _cutters(old, new, tools, pairs, slack)), key=_id)
+    face_rows = sorted(filter(None, _faces(old, new, pairs, slack)), key=_worst_face)
+    cutter_rows = sorted(filter(None, _cutters(old, new, tools, pairs, slack)), key=_worst_cutter)
     differences: list[FaceDifference | CutterDifference] = [*face_rows, *cutter_rows]
     return PlanDifference(
         name=name,
@@ -61,12 +73,39 @@ def compare(old: Plan, new: Plan, *, name: str = "", slack: float = SLACK, despi
         changes=changes,
         selected=(taken(old), taken(new)),
         matched=dict(sorted(Counter(str(how) for _, _, how in pairs).items())),
+        motion=_motion(old, known),
         faces=face_rows,
         cutters=cutter_rows,
         unreachable=unreachable(new),
         lost=any(each.lost for each in differences),
         won=any(each.won for each in differences),
     )
+
+
+def _related(old: Plan, new: Plan, known: KnownFaces) -> bool:
+    """Whether two plans are of one part: enough of their faces are known again, or enough area is the same at the same place."""
+    if len(known.pairs) >= UNRELATED * min(len(old.faces), len(new.faces)):
+        return bool(known.pairs)
+    same = [(a.id, b.id) for a, b, how in known.pairs if how == "place"]
+    shares = (_share_of(plan.faces, names) for plan, names in zip((old, new), zip(*same, strict=True), strict=False))
+    return bool(same) and min(shares) >= UNRELATED
+
+
+def _share_of(faces: Sequence[FaceEntry], names: Collection[str]) -> float:
+    """Share of the area of all faces that some of them have."""
+    area = {face.id: face.area_mm2 for face in faces if math.isfinite(face.area_mm2)}
+    return sum(area.get(name, 0.0) for name in names) / max(sum(area.values()), 1e-300)
+
+
+def _motion(old: Plan, known: KnownFaces) -> str:
+    """How the part was moved as a whole, and what is compared for it; empty where it was not."""
+    if not known.motions:
+        return ""
+    carried, every = known.motions[0].carried, len(old.faces)
+    number = f"All {every}" if carried == every else f"{carried} of {every}"
+    texts = " or ".join(list(dict.fromkeys(each.text for each in known.motions))[:_MOST_MOTIONS])
+    where = "each face is compared with its image" if known.moved else "faces are compared where they stand"
+    return f"{number} faces of the old part are {texts} in the new one: {where}."
 
 
 def taken(plan: Plan) -> str | None:
@@ -165,7 +204,7 @@ def _cutters(
 
 def _gone(plan: Plan, face: FaceEntry) -> FaceDifference:
     was = face_state(plan, face)
-    return _face_difference(face, old=face.id, was=was, lost=False, won=_open(was))
+    return _face_difference(face, old=face.id, was=was, lost=False, won=False)
 
 
 def _added(plan: Plan, face: FaceEntry) -> FaceDifference:
@@ -230,12 +269,21 @@ def _one_sided(plan: Plan, gone: CutterEntry | None, added: CutterEntry | None) 
                             lost=was is not None and bool(was.finishes), won=now is not None and bool(now.finishes))  # fmt: skip
 
 
-def _place(face: FaceDifference) -> tuple[int, int]:
+def _worst_face(face: FaceDifference) -> tuple[int, float, int, int]:
+    """Order of rows: what is lost, new faces that are not reached, changed, won, new, gone ones; the largest area first."""
+    place, share = 2, 1.0
+    if face.old is None or face.new is None:
+        place = 1 if face.lost else 4 if face.old is None else 5
+    elif face.was is not None and face.now is not None and (face.lost or face.won):
+        place = 0 if face.lost else 3
+        share = abs(face.was.share - face.now.share)
     number, other = (int(each[1:]) if each else 0 for each in (face.new or face.old, face.old))
-    return number, other
+    return place, -share * (face.area_mm2 or 0.0), number, other
 
 
-def _id(cutter: CutterDifference) -> str:
+def _worst_cutter(cutter: CutterDifference) -> tuple[int, float, str]:
+    """Order of rows: what is lost, then what changed, then what is won; the largest share first."""
     state = cutter.now or cutter.was
     assert state is not None
-    return state.id
+    share = abs((cutter.was.share if cutter.was else 0.0) - (cutter.now.share if cutter.now else 0.0))
+    return (0 if cutter.lost else 2 if cutter.won else 1), -share, state.id

@@ -33,6 +33,8 @@ MARKS = {
     "inside other bodies": ("inside another body", PALETTE["inside_bodies"], "plain"),
     "not asked": ("not to be machined", PALETTE["check"], "plain"),
 }
+#: The same of faces that are compared with none.
+_ALONE = {"reached": ("reached whole", *MARKS["reached"][1:]), "not reached": ("not reached whole", *MARKS["not reached"][1:])}
 _HERE = Path(__file__).parent
 
 
@@ -89,11 +91,11 @@ def page(difference: PlanDifference, old: Side, new: Side) -> bytes:
     old, new : Side
     """
     sides = {"old": old, "new": new}
+    # Of plans that are not comparable the pictures show what each one reaches, and nothing of what became of a face.
+    shown, marks = (difference.faces, MARKS) if difference.comparable else ([], {**MARKS, **_ALONE})
     data = {
-        "marks": {word: dict(zip(("label", "colour", "pattern"), row, strict=True)) for word, row in MARKS.items()},
-        "states": {
-            word: _states(side.plan, {getattr(f, word): mark(f) for f in difference.faces}) for word, side in sides.items()
-        },
+        "marks": {word: dict(zip(("label", "colour", "pattern"), row, strict=True)) for word, row in marks.items()},
+        "states": {word: _states(side.plan, {getattr(f, word): mark(f) for f in shown}) for word, side in sides.items()},
         "pairs": [(a.id, b.id) for a, b, _ in match_faces(old.plan, new.plan)],
         "cutters": list(_cutters(old.plan, new.plan)),
         **{word: side.picture.meta for word, side in sides.items()},
@@ -110,12 +112,9 @@ def page(difference: PlanDifference, old: Side, new: Side) -> bytes:
         found=difference,
         outcome=_outcome(difference),
         headline=headline(difference),
-        remarks=[line for line in (choice(difference), known(difference)) if line],
+        remarks=[line for line in (difference.motion, choice(difference), known(difference)) if line and difference.comparable],
         changes=[change(each) for each in difference.changes if not each.hinders],
-        # What is lost is seen first.
-        faces=sorted(
-            zip(difference.faces, face_rows(difference), strict=True), key=lambda row: (not row[0].lost, not row[0].won)
-        ),
+        faces=list(zip(shown, face_rows(difference), strict=True)),
         cutters=list(cutter_rows(difference)),
         facts=list(_facts(old.plan, new.plan)),
         w=numbers,

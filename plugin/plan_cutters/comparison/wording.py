@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 
 from plan_cutters.comparison.model import (
+    REQUESTED,
     Change,
     Comparison,
     CutterDifference,
@@ -25,16 +26,28 @@ def headline(difference: PlanDifference) -> str:
     """One sentence on two plans."""
     if difference.same:
         return f"{difference.name}: nothing changed."
+    if not difference.comparable:
+        return f"{difference.name}: not comparable."
     parts = [*_counted(difference, "lost"), *_counted(difference, "won")]
     text = "; ".join(parts) if parts else "nothing lost and nothing won"
-    doubt = "" if difference.comparable else "not comparable; "
-    return f"{difference.name}: {doubt}{text}."
+    return f"{difference.name}: {text}."
 
 
 def mark_of(difference: PlanDifference) -> str:
     """A few words for what became of a part."""
-    words = [word for word in ("lost", "won") if getattr(difference, word)] or ["nothing lost"]
-    return " and ".join(words) + ("" if difference.comparable else ", not comparable")
+    if not difference.comparable:
+        return "not comparable"
+    return " and ".join(word for word in ("lost", "won") if getattr(difference, word)) or "nothing lost"
+
+
+def remarks(difference: PlanDifference) -> list[str]:
+    """Lines before the tables: what lies otherwise as a whole, which cutter is to be taken, how faces were known again, and what
+    else changed. Of plans that are not comparable nothing but the reasons is told.
+    """
+    if not difference.comparable:
+        return []
+    lines = [difference.motion, choice(difference), known(difference)]
+    return [*filter(None, lines), *(change(each) for each in difference.changes if not each.hinders)]
 
 
 def choice(difference: PlanDifference) -> str:
@@ -62,7 +75,9 @@ def change(each: Change) -> str:
 
 
 def face_rows(difference: PlanDifference) -> Iterator[tuple[str, ...]]:
-    """A row of FACES for each face whose answer differs."""
+    """A row of FACES for each face whose answer differs; none of plans that are not comparable."""
+    if not difference.comparable:
+        return
     for f in difference.faces:
         name = f" {f.name}" if f.name else ""
         size = "not known" if f.area_mm2 is None else area(f.area_mm2)
@@ -70,7 +85,9 @@ def face_rows(difference: PlanDifference) -> Iterator[tuple[str, ...]]:
 
 
 def cutter_rows(difference: PlanDifference) -> Iterator[tuple[str, ...]]:
-    """A row of CUTTERS for each cutter whose answer or form differs."""
+    """A row of CUTTERS for each cutter whose answer or form differs; none of plans that are not comparable."""
+    if not difference.comparable:
+        return
     for c in difference.cutters:
         changed = ", ".join(change(each) for each in c.changes)
         yield mark(c), c.name, _state(c.was), _state(c.now), _faces(c.faces_lost), _faces(c.faces_won), changed
@@ -104,10 +121,17 @@ def apart(comparison: Comparison) -> Iterator[str]:
 def verdict(comparison: Comparison) -> str:
     """One sentence on the whole."""
     if not comparison.comparable:
-        return "Not comparable: the differences above may have other causes than the part."
+        return f"Not comparable.{_despite(comparison)}"
     if comparison.lost:
         return "Something was lost."
     return "Nothing was lost." if comparison.won else "Nothing was lost or won."
+
+
+def _despite(comparison: Comparison) -> str:
+    """The option that compares nevertheless, where there is one."""
+    different = {each.what for plan in comparison.plans for each in plan.changes if each.hinders}
+    words = ",".join(word for word in REQUESTED if word in different)
+    return f" --despite {words} compares nevertheless." if words else ""
 
 
 def _counted(difference: PlanDifference, word: str) -> Iterator[str]:

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io import Part, SurfaceSamples
+from cad_io import FaceInfo, Orientation, Part, SurfaceSamples
 from cad_io.kernel.assembly import component_of
 from plan_cutters import __version__
 from plan_cutters.document.fixtures import references
@@ -17,6 +17,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.preference import group_of
 from plan_cutters.domain.shapes import flute_length, modes
 from plan_cutters.domain.verdicts import ANOTHER_SETUP, INACCESSIBLE, REASONS, UNDECIDED, Verdicts, Witness
+from plan_cutters.plan_file.carrier import CarrierEntry
 from plan_cutters.plan_file.frozen import filled, posture, vector
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, MissingEntry, SegmentEntry, WitnessEntry
 from plan_cutters.plan_file.numbers import listed
@@ -24,6 +25,9 @@ from plan_cutters.plan_file.part_info import OrientationInfo, PartInfo, Scope, S
 from plan_cutters.scene.faces import Chosen
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.surroundings import Surroundings
+
+#: Decimals of carriers: behind them there is noise alone.
+_DIGITS = 9
 
 
 def missing_entries(part: Part, surroundings: Surroundings) -> list[MissingEntry]:
@@ -175,7 +179,9 @@ def _sewing(part: Part) -> SewingInfo | None:
     )
 
 
-def face_entries(part: Part, samples: SurfaceSamples, choice: Chosen, errors: Mapping[int, float]) -> list[FaceEntry]:
+def face_entries(
+    part: Part, samples: SurfaceSamples, choice: Chosen, errors: Mapping[int, float], orientation: Orientation
+) -> list[FaceEntry]:
     """Every face of the part, judged or not; `errors`: how far triangles may be from each, mm."""
     empty, gaps = dict(samples.empty), dict(samples.face_gaps)
     chosen, ignored = set(choice.targets), set(choice.ignored)
@@ -197,6 +203,8 @@ def face_entries(part: Part, samples: SurfaceSamples, choice: Chosen, errors: Ma
                 ignored=face.number in ignored,
                 area_mm2=face.area,
                 centre_mm=part.centre(face.number),
+                carrier=carrier_entry(face, orientation),
+                neighbours=[f"F{number}" for number in part.neighbours[face.number - 1]],
                 component=component[face.number],
                 samples=len(mine),
                 gap_mm=gaps.get(face.number),
@@ -205,6 +213,22 @@ def face_entries(part: Part, samples: SurfaceSamples, choice: Chosen, errors: Ma
             )
         )
     return result
+
+
+def carrier_entry(face: FaceInfo, orientation: Orientation) -> CarrierEntry | None:
+    """Describe what a face is a part of; the side of the material only where it is sure."""
+    carrier = face.carrier
+    if carrier is None:
+        return None
+    side = carrier.side * orientation.sign[face.number - 1] if orientation.confident else 0
+    return CarrierEntry(
+        point_mm=vector(np.round(carrier.point, _DIGITS) + 0.0),
+        direction=None if carrier.direction is None else vector(np.round(carrier.direction, _DIGITS) + 0.0),
+        radius_mm=None if carrier.radius is None else round(carrier.radius, _DIGITS),
+        minor_radius_mm=None if carrier.minor_radius is None else round(carrier.minor_radius, _DIGITS),
+        half_angle_deg=None if carrier.half_angle is None else round(math.degrees(carrier.half_angle), _DIGITS),
+        outward=bool(side > 0) if side else None,
+    )
 
 
 def versions() -> dict[str, str]:

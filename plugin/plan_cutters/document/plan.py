@@ -56,7 +56,8 @@ def plan_of(
     """The plan of a part from the entries of its cutters, and what was answered after them."""
     scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
     part, surroundings = scene.part, ready.conditions.surroundings
-    faces, remarks = (face_entries(part, samples, choice, dict(surroundings.certain.triangles.errors)), notes_of(ready, entries))
+    faces = face_entries(part, samples, choice, dict(surroundings.certain.triangles.errors), scene.orientation)
+    remarks = notes_of(ready, entries)
     absent = {*(() if _anything_held(ready) else ("fixture",)), *(() if ready.inside_bodies.any() else ("inside_bodies",))}
     operations = _operations(ready, answers, over)
     return Plan(

@@ -8,6 +8,7 @@ from typing import Literal
 from pydantic import Field
 
 from plan_cutters.plan_file.answers import LeastSetEntry, MendEntry, RadiusEntry, StickOutEntry
+from plan_cutters.plan_file.carrier import CarrierEntry
 from plan_cutters.plan_file.effective import Effective
 from plan_cutters.plan_file.frozen import Frozen, Posture, Vector
 from plan_cutters.plan_file.inside import InsideEntry
@@ -72,6 +73,8 @@ class FaceEntry(Frozen):
         description="middle of its bounding box, by which it is known again in another plan; null where it has no finite size, "
         "and in older files",
     )
+    carrier: CarrierEntry | None = Field(default=None, description="null of a sculptured face, and in older files")
+    neighbours: list[str] | None = Field(default=None, description="ids of the faces across its edges; null in older files")
     component: str = Field(description="names of the instances in the file down to the product that it belongs to")
     samples: int
     gap_mm: float | None = Field(
