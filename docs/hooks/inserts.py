@@ -1,4 +1,4 @@
-"""`<!-- help: plan-cutters -->` in a page becomes what that command prints with `--help`, so that the page cannot grow old.
+"""`<!-- help: plan-cutters -->` in a page becomes what that command prints with `--help-all`, so that the page cannot grow old.
 
 `<!-- file: pictures/summary.txt -->` becomes the text of that file, and `<!-- notebook: notebook.ipynb -->` the cells
 of that notebook.
@@ -33,7 +33,7 @@ def _cells(notebook: Path) -> str:
 
 def _help(name: str) -> str:
     command: Command = module_of(name).command
-    result = CliRunner(env={"COLUMNS": "100", "NO_COLOR": "1", "TERM": "dumb"}).invoke(command, ["--help"], prog_name=name)
+    result = CliRunner(env={"COLUMNS": "100", "NO_COLOR": "1", "TERM": "dumb"}).invoke(command, ["--help-all"], prog_name=name)
     if result.exit_code:
-        raise RuntimeError(f"{name} --help: {result.output or result.exception}")
+        raise RuntimeError(f"{name} --help-all: {result.output or result.exception}")
     return result.output

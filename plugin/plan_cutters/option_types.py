@@ -1,23 +1,34 @@
 """The options as callers may give them: what type checkers and editors know of each."""
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any, Literal, TypedDict
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.degrees import Angle
 from plan_cutters.domain.holder import Holder
-from plan_cutters.domain.host_axes import Heading, HostPlane
+from plan_cutters.domain.host_axes import HostAxis, HostPlane
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.own_process import OwnProcess
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import ROTATIONS, STEP, TILTS, Range
 from plan_cutters.library.records import Library
 
-Setup = Heading | HostPlane | Placement | os.PathLike[str]
+#: Axes of the part by name; `auto`: the setups that the plan proposes.
+SetupWord = Literal["x", "+x", "-x", "y", "+y", "-y", "z", "+z", "-z", "X", "+X", "-X", "Y", "+Y", "-Y", "Z", "+Z", "-Z", "auto"]
+#: A text is a word: type checkers find those that are none. A setup file is a path.
+Setup = SetupWord | HostAxis | Iterable[float] | HostPlane | Placement | os.PathLike[str]
 #: Options that are angles, and what each may be in degrees.
 ANGLES = {"tilt": TILTS, "rotation": ROTATIONS, "rotation_step": STEP, "index_step": Angle(0.5, 90.0),
           "axis_accuracy": Angle(0.0, 1.0)}  # fmt: skip
+
+
+#: What calls take beside options: it may be meant where a name is mistyped.
+OF_CALLS = ("part", "progress", "cache", "client", "verdicts", "verdicts_key")
+#: Words of options that take no other text.
+Operations = Literal["fewest", "fastest", "both"]
+Answer = Literal["stick-out", "stick-out-map", "radius", "mend", "mend-all", "all"]
+SharpEdges = Literal["asked", "left"]
 
 
 class PointOptions(TypedDict, total=False):
@@ -58,9 +69,9 @@ class PlanOptions(SceneOptions, total=False):
     area_budget: int | None
     posture_maps: bool
     map_budget: int | None
-    answers: str | Sequence[str]
+    answers: Answer | Sequence[Answer]
     length_over_radius: float
-    operations: str | None
+    operations: Operations | None
     feed: float | None
     scallop: float
     stepover: float
@@ -73,7 +84,7 @@ class PlanOptions(SceneOptions, total=False):
     setup_time: float
     overlap: float
     most_operations: int | None
-    sharp_edges: str
+    sharp_edges: SharpEdges
     max_orientations: int
     process: OwnProcess | Mapping[str, Any] | str | os.PathLike[str] | None
     patterns: bool

@@ -5,12 +5,11 @@ import math
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from difflib import get_close_matches
 from typing import TYPE_CHECKING, Any, Literal, Unpack
 
 from cad_io.units import UNITS
 from plan_cutters.domain.answers import answers_of
-from plan_cutters.domain.checks import choice, flag, number, shown, whole
+from plan_cutters.domain.checks import choice, did_you_mean, flag, not_empty, number, shown, whole
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.default_tools import builtin
 from plan_cutters.domain.degrees import degrees_too
@@ -27,7 +26,7 @@ from plan_cutters.library.presets import feed_of
 from plan_cutters.library.records import Entry, Library, libraries_of
 from plan_cutters.machines.requested_operations import operations_requested, process_requested
 from plan_cutters.machines.requested_setups import MOST_PROPOSED, setups_requested, without
-from plan_cutters.option_types import ANGLES, PlanOptions
+from plan_cutters.option_types import ANGLES, OF_CALLS, Answer, Operations, PlanOptions, SharpEdges
 
 #: Gouge tolerances that can be requested, mm.
 LEAST_TOLERANCE, MOST_TOLERANCE = 1e-4, 10.0
@@ -214,9 +213,9 @@ class Options:
     area_budget: int | None = None
     posture_maps: bool = False
     map_budget: int | None = None
-    answers: tuple[str, ...] = ()
+    answers: tuple[Answer, ...] = ()
     length_over_radius: float = 10.0
-    operations: str | None = None
+    operations: Operations | None = None
     feed: float | None = None
     scallop: float = 0.01
     stepover: float = 0.75
@@ -227,7 +226,7 @@ class Options:
     setup_time: float = 300.0
     overlap: float = 2.0
     most_operations: int | None = None
-    sharp_edges: str = "asked"
+    sharp_edges: SharpEdges = "asked"
     max_orientations: int = 8
     process: OwnProcess | None = None
     patterns: bool = True
@@ -344,12 +343,13 @@ class Options:
 
     @classmethod
     def of(cls, words: Mapping[str, Any]) -> "Options":
-        """Options from their names; OptionError for a name that is none."""
+        """Options from their names; OptionError for a name that is none, and for an empty list of cutters."""
         known = list(inspect.signature(cls).parameters)
         for word in words:
             if word not in known:
-                near = get_close_matches(word, known, 1)
-                raise OptionError(f"no option is called {word}; {f'{near[0]}?' if near else ', '.join(known)}")
+                meant = did_you_mean(word, (*known, *OF_CALLS)) or f"; {', '.join(known)}"
+                raise OptionError(f"no option is called {word}{meant}")
+        not_empty(None if words.get("libraries") else words.get("cutters"), "cutters", "leave it out for the built-in cutters")
         return cls(**words)
 
     def contacts_between(self, samples: int) -> int:

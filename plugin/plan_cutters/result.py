@@ -280,8 +280,10 @@ class Result:
 
         return text_of(self.plan)
 
-    def show(self, *, height: int = 640) -> Path | None:
+    def show(self, *, height: int = 640, card: Literal["full", "small"] = "full") -> Path | None:
         """Show the review page: in a notebook below the cell, `height` pixels high, else in a browser.
+
+        `card="small"` shows in a notebook headline, table and a small picture, at most 50 kB.
 
         Returns
         -------
@@ -297,13 +299,13 @@ class Result:
         """
         from plan_cutters.report.notebook import show
 
-        return show(self, height)
+        return show(self, height, card)
 
     def _repr_html_(self) -> str:
         """What a notebook shows of a result: headline, table, picture, and the review page to be opened."""
-        from plan_cutters.report.notebook import card
+        from plan_cutters.report.notebook import card, chosen_size
 
-        return card(self)
+        return card(self, size=chosen_size())
 
     def to_dataframe(self, of: Literal["samples", "faces", "cutters"] = "samples", cutter: str | None = None) -> "DataFrame":
         """A table of pandas, with units at the end of names; what is not known is nan or None.

@@ -124,7 +124,7 @@ def test_of_several_parts_those_that_cannot_be_read_are_named_at_once(tmp_path):
 
 
 def test_help_is_in_groups_with_examples_and_fits(tmp_path):
-    said = run("--help", cwd=tmp_path).stdout
+    said = run("--help-all", cwd=tmp_path).stdout
     heads = re.findall(r"^(\w.*):$", said, re.MULTILINE)
     assert heads == ["Commands", "Cutters", "Machine and setup", "Faces", "Sampling and tolerances", "Postures", "Output",
                      "Answers", "Plan of operations", "Run", "Examples", "Exit codes"]  # fmt: skip

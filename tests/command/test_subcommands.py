@@ -51,7 +51,7 @@ def test_a_first_word_that_is_no_subcommand_is_a_part(tmp_path):
     assert done.returncode == 2
     assert done.stderr.startswith("plan-cutters map: ")
     assert done.stderr.endswith("for the file, write ./map\n")
-    assert "the command machines?" in run("machine", cwd=tmp_path).stderr
+    assert "did you mean machines?" in run("machine", cwd=tmp_path).stderr
 
 
 def test_plan_is_the_main_job(tmp_path):
@@ -63,7 +63,7 @@ def test_plan_is_the_main_job(tmp_path):
 
 @pytest.mark.parametrize("name", entry.SUBCOMMANDS)
 def test_the_help_of_each_says_its_exit_codes_and_loads_no_kernel(tmp_path, name):
-    done = run(name, "--help", cwd=tmp_path, bare=True)
+    done = run(name, "--help-all", cwd=tmp_path, bare=True)
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout.startswith(f"Usage: plan-cutters {name} ")
     codes = done.stdout.partition("\nExit codes:\n")[2]

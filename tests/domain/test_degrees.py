@@ -99,7 +99,7 @@ def test_both_units_at_once_are_one_error(word):
     (lambda: Options(rotation_deg=(0, math.inf)), "rotation_deg inf must lie between -360 and 360 degrees"),
     (lambda: Options(rotation_step_deg=(5, 6)), "rotation_step_deg must be a number, not a value of type tuple"),
     (lambda: Options(index_step_deg=0.1), "index_step_deg 0.1 must lie between 0.5 and 90 degrees"),
-    (lambda: Options.of({"tilt_degrees": (0, 60)}), r"no option is called tilt_degrees; tilt_deg\?"),
+    (lambda: Options.of({"tilt_degrees": (0, 60)}), r"no option is called tilt_degrees; did you mean tilt_deg\?"),
 ])  # fmt: skip
 def test_what_has_no_meaning_is_told_in_the_unit_that_it_was_given_in(make, error):
     with pytest.raises((CutterError, MachineError, OptionError), match=error) as found:

@@ -195,3 +195,33 @@ def test_a_result_that_was_packed_shows_the_same(result, card):
     again = pickle.loads(pickle.dumps(result))
     assert again.summary() == result.summary()
     assert np.array_equal(again.reaches["R3L40"].verdict, result.reaches["R3L40"].verdict)
+
+
+@pytest.mark.parametrize("many", [False, True])
+def test_a_small_card_has_the_verdict_and_at_most_50_kb(result, monkeypatch, many):
+    """A notebook in git keeps it in each cell."""
+    shown = result
+    if many:
+        more = [c.model_copy(update={"id": f"{c.id}-{k}"}) for k in range(199) for c in result.plan.cutters]
+        cutters = [*result.plan.cutters, *more]
+        shown = replace(result, plan=result.plan.model_copy(update={"cutters": cutters}))
+    monkeypatch.setenv("PLAN_CUTTERS_CARD", "small")
+    small = shown._repr_html_()
+    assert len(small.encode()) <= 50_000
+    seen = Seen(small)
+    story = story_of(shown.plan)
+    assert any(story.headline.title in text for text in seen.texts)
+    assert seen.of("iframe") == []
+    (image,) = seen.of("img")
+    data = base64.b64decode(image["src"].partition(",")[2])
+    assert data[8:12] == b"WEBP"
+    rows = [a for a in seen.of("th") if a.get("scope") == "row"]
+    assert len(rows) == (12 if many else len(shown.plan.cutters))
+    assert any("388 more cutters" in text for text in seen.texts) == many
+    monkeypatch.delenv("PLAN_CUTTERS_CARD")
+    assert len(result._repr_html_().encode()) > 500_000
+
+
+def test_a_card_of_no_known_size_is_refused(result):
+    with pytest.raises(PlanError, match="neither full nor small"):
+        result.show(card="tiny")

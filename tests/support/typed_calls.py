@@ -108,6 +108,10 @@ def wrong(part: Scene, result: Result) -> None:
     plan(part, flip=None)  # type: ignore[arg-type]
     plan(part, setup=3)  # type: ignore[arg-type]
     plan(part, tilt_deg=60)  # type: ignore[arg-type]
+    plan(part, answers="stickout")  # type: ignore[arg-type]
+    plan(part, operations="all")  # type: ignore[arg-type]
+    plan(part, setup="W")  # type: ignore[arg-type]
+    plan(part, sharp_edges="none")  # type: ignore[arg-type]
     plan(part).no_such_thing  # type: ignore[attr-defined]  # noqa: B018
     plan_many(["part.step"], tolerence=0.1)  # type: ignore[call-arg]
     Scene.of(part, grid=9)  # type: ignore[call-arg]

@@ -120,7 +120,7 @@ def test_an_option_is_declared_once():
     assert given[: len(own) + len(words)] == [*own, *words]
     degrees = given[len(own) + len(words) :]
     assert all(name.endswith("_deg") and name.removesuffix("_deg") in words for name in degrees)
-    with pytest.raises(OptionError, match="no option is called tolerence; tolerance"):
+    with pytest.raises(OptionError, match="no option is called tolerence; did you mean tolerance"):
         plan(SAMPLES / "v_groove.step", tolerence=0.1)
     with pytest.raises(OptionError, match="no option is called x"):
         Options.of({"x": 1})

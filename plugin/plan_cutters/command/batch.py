@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from plan_cutters.command import terminal
-from plan_cutters.command.codes import FEASIBLE, run
+from plan_cutters.command.codes import CODES, FEASIBLE, run
 from plan_cutters.command.help_groups import Command, heading
-from plan_cutters.command.option_groups import CODES, options
+from plan_cutters.command.option_groups import options
 from plan_cutters.command.request import BatchRequest, takes
 from plan_cutters.command.values import File, Words
 from plan_cutters.files.terminal_text import clean
@@ -64,17 +64,19 @@ _many = heading("Many parts")
 )  # fmt: skip
 @_many(
     "--cluster",
+    brief="Scheduler of a running Dask cluster, or its scheduler file.",
     metavar="tcp://HOST:PORT|FILE",
     type=Words("ADDRESS", files=True),
     help="Scheduler of a running Dask cluster, or its scheduler file.  [default: workers of this machine]",
 )
 @_many(
     "--workers",
+    brief="Workers of this machine, each for one part at a time.",
     type=click.IntRange(min=1),
     metavar="N",
     help="Workers of this machine, each for one part at a time.  [default: by its cores and memory]",
 )
-@_many("--timeout-part", "--timeout", "timeout_part", type=float, metavar="S",
+@_many("--timeout-part", "--timeout", "timeout_part", brief="Seconds for the whole of a part.", type=float, metavar="S",
        help="Seconds for the whole of a part; one that takes longer has failed, with exit code 124.")  # fmt: skip
 @_many(
     "--limit-memory",
@@ -82,8 +84,8 @@ _many = heading("Many parts")
     metavar="GB",
     help="Most memory of a part.  [default: an equal share of 3/4 of this machine's, at least 4]",
 )
-@_many("--force", is_flag=True, help="Plan again what is done already.")
-@_many("--dry-run", is_flag=True, help="Say what would be planned, and do nothing.")
+@_many("--force", brief=True, is_flag=True, help="Plan again what is done already.")
+@_many("--dry-run", brief=True, is_flag=True, help="Say what would be planned, and do nothing.")
 @options("no_cache", "verdicts_key", "read_timeout", "debug", jobs={"help": "Threads of each part.  [default: 1]"})
 @takes(BatchRequest)
 def command(request: BatchRequest) -> int:
@@ -181,13 +183,14 @@ def _parts(request: BatchRequest) -> "list[Job | Fault]":
     from plan_cutters.batch.job import Fault, Job
     from plan_cutters.batch.manifest import manifest
     from plan_cutters.batch.sources import sources
+    from plan_cutters.command.piped import listed
     from plan_cutters.errors import PlanError
 
     own = {p.opts[0][2:]: p for p in command.params if getattr(p, "group", "") in _OF_A_PART and p.expose_value}
     settled = functools.cache(lambda key: _settings(replace(request, **dict(key))))
     settled(())
     jobs: list[Job | Fault] = []
-    for each in sources(request.sources, request.out, lambda file: manifest(file, sorted(own))):
+    for each in sources(listed(request.sources), request.out, lambda file: manifest(file, sorted(own))):
         if isinstance(each, Fault):
             jobs.append(each)
             continue

@@ -15,9 +15,9 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from cad_io.whole import whole
-from plan_cutters.command.codes import run
+from plan_cutters.command.codes import ENDED, run
 from plan_cutters.command.help_groups import Command, heading
-from plan_cutters.command.option_groups import ENDED, options
+from plan_cutters.command.option_groups import options
 from plan_cutters.command.repository import Changed, changed, content, publish
 from plan_cutters.command.request import ChangedRequest, PlanRequest, takes
 from plan_cutters.command.terminal import error, hand_out, say

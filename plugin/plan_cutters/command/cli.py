@@ -14,9 +14,10 @@ from typing import NoReturn
 import click
 
 from plan_cutters.command import help_groups, terminal
-from plan_cutters.command.codes import ended, guarded, interrupt, invoked, keep_interrupts
+from plan_cutters.command.codes import CODES, USAGE, ended, guarded, interrupt, invoked, keep_interrupts
 from plan_cutters.command.entry import SUBCOMMANDS
-from plan_cutters.command.option_groups import CODES, EXAMPLES, options
+from plan_cutters.command.option_groups import EXAMPLES, options
+from plan_cutters.command.piped import spooled
 from plan_cutters.command.request import PlanRequest, takes
 from plan_cutters.command.values import File
 from plan_cutters.files.terminal_text import clean
@@ -80,7 +81,7 @@ def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
     """Run the command: what has a part to read runs in a child process."""
     words = list(sys.argv[1:] if args is None else args)
     if not is_child():
-        ended(_SELF, words, lambda: _watched(words, name))
+        ended(_SELF, words, lambda: _piped(words, name))
     # Whoever started the command may ignore interrupts, as a shell does for what runs in the background: the parent does not.
     signal.signal(signal.SIGINT, interrupt)
     keep_interrupts()
@@ -111,6 +112,12 @@ def load() -> None:
     import_module("plan_cutters.pipeline")
 
 
+def _piped(words: list[str], name: str) -> int:
+    """Run the command with a file in place of what is piped to it."""
+    with spooled(words) as named:
+        return _watched(named, name)
+
+
 def _watched(words: list[str], name: str) -> int:
     """Look at the words here, so that help and mistakes cost nothing; leave the work to a child."""
     from plan_cutters.command.progress import Display
@@ -119,6 +126,11 @@ def _watched(words: list[str], name: str) -> int:
     from plan_cutters.errors import OptionError
     from plan_cutters.plan_file.words.names import called
 
+    if not words:
+        # Whoever types the name alone asks what it does.
+        with command.make_context(name, [], resilient_parsing=True) as context:
+            click.echo(command.get_help(context), err=True, color=context.color)
+        return USAGE
     try:
         with command.make_context(name, list(words)) as context:
             request = PlanRequest(**context.params)

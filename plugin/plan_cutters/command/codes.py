@@ -20,6 +20,21 @@ if TYPE_CHECKING:
     from plan_cutters.plan_file.model import Plan
 
 FEASIBLE, NONE_FEASIBLE, USAGE, UNREADABLE, NOT_ALL_JUDGED = 0, 1, 2, 3, 4
+#: The codes as help lists them.
+ENDED = ("130", "interrupted; nothing is half-written")
+CODES = (
+    ("0", "what was given (cutters, setups, operations) finishes every judged sample together, or what --fail-under asks"),
+    ("1", "it does not; the plan says where and why"),
+    ("2", "the command line, a library or a machine file is wrong"),
+    ("3", "the part or a fixture cannot be read, or holds nothing to judge"),
+    (
+        "4",
+        "it would finish all that could be judged, but something could not, obstacles are missing, or samples are farther "
+        "apart than its radius and nobody asked for that",
+    ),
+    ("124", "a part was not done within --timeout; nothing is half-written"),
+    ENDED,
+)
 #: Standard output was closed by its reader: as a shell counts the signal that ends other programs then.
 READER_GONE = 141
 

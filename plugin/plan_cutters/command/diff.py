@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING, NoReturn
 
 import click
 
-from plan_cutters.command.codes import USAGE, run
+from plan_cutters.command.codes import ENDED, USAGE, run
 from plan_cutters.command.help_groups import Command, heading
-from plan_cutters.command.option_groups import ENDED, options
+from plan_cutters.command.option_groups import options
 from plan_cutters.command.request import DiffRequest, takes
 from plan_cutters.command.terminal import error, hand_out, paper
 from plan_cutters.command.values import File, Folder, Words

@@ -1,4 +1,7 @@
-"""Help in groups: options that belong together under one heading, and examples at the end."""
+"""Help in groups: options that belong together under one heading, and examples at the end.
+
+Where all of it is long, `--help` has what most people need, a line for each, and `--help-all` has the rest.
+"""
 
 import os
 import shutil
@@ -15,14 +18,21 @@ from plan_cutters.command.values import Words
 _NAMES = 22
 #: Widest that help is set.
 WIDEST = 100
+#: Lines that `--help` has, at most, and its examples where it leaves something out.
+MOST_LINES, _EXAMPLES = 90, 3
+#: Where a context says that all of the help is wanted.
+_ALL = "plan_cutters.help_all"
 
 
 class Grouped(click.Option):
-    """An option under a heading of the help. Lists that are repeated add up; any other option has one value."""
+    """An option under a heading of the help. Lists that are repeated add up; any other option has one value.
 
-    def __init__(self, *words: Any, group: str = "", **more: Any) -> None:
+    `brief` is its line in a short help, which leaves out options that have none; True: the same as in the whole one.
+    """
+
+    def __init__(self, *words: Any, group: str = "", brief: str | bool = False, **more: Any) -> None:
         super().__init__(*words, **more)
-        self.group = group
+        self.group, self.brief = group, brief
 
     def add_to_parser(self, parser: Any, ctx: click.Context) -> None:
         if self.multiple or self.is_flag or self.count:
@@ -79,6 +89,8 @@ class Command(click.Command):
         more["context_settings"] = {"help_option_names": ["-h", "--help"]}
         super().__init__(*words, **more)
         click.version_option(__version__, prog_name="plan-cutters")(self)
+        click.option("--help-all", is_flag=True, is_eager=True, expose_value=False, callback=_help_all,
+                     help="Show all options, and exit.")(self)  # fmt: skip
         self.subcommands, self.examples, self.codes = subcommands, examples, codes
 
     def make_context(self, *words: Any, **more: Any) -> click.Context:
@@ -86,27 +98,50 @@ class Command(click.Command):
         settings = {"terminal_width": min(WIDEST, shutil.get_terminal_size().columns) - 1, "color": colour()}
         return super().make_context(*words, **{**settings, **more})
 
+    def get_help(self, ctx: click.Context) -> str:
+        wanted = ctx.meta.get(_ALL, False)
+        ctx.meta[_ALL] = True
+        whole = super().get_help(ctx)
+        if wanted or whole.count("\n") < MOST_LINES:
+            return whole
+        ctx.meta[_ALL] = False
+        return super().get_help(ctx)
+
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
         groups = {"Commands": [(name.ljust(_NAMES), what) for name, what in self.subcommands]} if self.subcommands else {}
         title = "Options"
         for param in self.get_params(ctx):
             record, title = param.get_help_record(ctx), getattr(param, "group", title)
-            if record is not None and not isinstance(param, click.Argument):
+            brief = True if ctx.meta.get(_ALL) else getattr(param, "brief", True)
+            if record is not None and brief and not isinstance(param, click.Argument):
                 # As wide as all others, so that the text begins in one column throughout.
-                groups.setdefault(title, []).append((record[0].ljust(_NAMES), record[1]))
+                groups.setdefault(title, []).append((record[0].ljust(_NAMES), record[1] if brief is True else brief))
         for title, records in groups.items():
             with formatter.section(_bold(title)):
                 formatter.write_dl(records, col_max=_NAMES)
 
     def format_epilog(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
+        whole = ctx.meta.get(_ALL)
         if self.examples:
             with formatter.section(_bold("Examples")):
-                for line, what in self.examples:
+                for line, what in self.examples[: None if whole else _EXAMPLES]:
                     formatter.write_text(what)
                     formatter.write(f"{'':{formatter.current_indent + 2}}{click.style(line, fg='cyan')}\n")
-        if self.codes:
+        if not whole:
+            formatter.write_paragraph()
+            formatter.write_text("--help-all has all options with their defaults, more examples and the exit codes.")
+        elif self.codes:
             with formatter.section(_bold("Exit codes")):
                 formatter.write_dl(self.codes)
+
+
+def _help_all(ctx: click.Context, param: click.Parameter, requested: bool) -> None:
+    """Print all of the help, and end."""
+    if not requested or ctx.resilient_parsing:
+        return
+    ctx.meta[_ALL] = True
+    click.echo(ctx.get_help(), color=ctx.color)
+    ctx.exit()
 
 
 def named() -> set[str]:

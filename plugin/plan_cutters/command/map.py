@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from cad_io.whole import whole
-from plan_cutters.command.codes import ended, interrupt, invoked
+from plan_cutters.command.codes import ENDED, ended, interrupt, invoked
 from plan_cutters.command.help_groups import Command, heading
-from plan_cutters.command.option_groups import ENDED, options
+from plan_cutters.command.option_groups import options
 from plan_cutters.command.progress import Display
 from plan_cutters.command.request import MapRequest, posture_options, read_tools, takes
 from plan_cutters.command.terminal import hand_out, paper
@@ -187,7 +187,8 @@ def _options(request: MapRequest) -> "Options":
         cutters = tools.cutters
     # A map may be requested with a smaller one, and with none.
     tolerance = max(request.tolerance, LEAST_TOLERANCE)
-    return Options(**options | {"cutters": cutters, "holder": tools.holder, "setup": setup, "tolerance": tolerance})
+    words: dict[str, Any] = {**options, "cutters": cutters, "holder": tools.holder, "setup": setup, "tolerance": tolerance}
+    return Options(**words)
 
 
 def _text(values: Iterable[float]) -> str:

@@ -8,9 +8,9 @@ from typing import NoReturn
 
 import click
 
-from plan_cutters.command.codes import run
+from plan_cutters.command.codes import ENDED, run
 from plan_cutters.command.help_groups import Command, heading
-from plan_cutters.command.option_groups import ENDED, options
+from plan_cutters.command.option_groups import options
 from plan_cutters.command.request import McpRequest, takes
 from plan_cutters.command.values import Folder
 from plan_cutters.workers.assignment import INTERRUPTED

@@ -21,20 +21,6 @@ EXAMPLES = (
     ("plan-cutters map blade.step --at 12,3,40 --cutter R6L80", "A picture of all postures of a cutter at one point:"),
     ("plan-cutters blade.step --cutter R6L80 --json - --quiet", "For a script, the plan on standard output:"),
 )
-ENDED = ("130", "interrupted; nothing is half-written")
-CODES = (
-    ("0", "what was given (cutters, setups, operations) finishes every judged sample together, or what --fail-under asks"),
-    ("1", "it does not; the plan says where and why"),
-    ("2", "the command line, a library or a machine file is wrong"),
-    ("3", "the part or a fixture cannot be read, or holds nothing to judge"),
-    (
-        "4",
-        "it would finish all that could be judged, but something could not, obstacles are missing, or samples are farther "
-        "apart than its radius and nobody asked for that",
-    ),
-    ("124", "a part was not done within --timeout; nothing is half-written"),
-    ENDED,
-)
 
 
 def _list_cutters(ctx: click.Context, param: click.Parameter, requested: bool) -> None:
@@ -69,6 +55,7 @@ _operations = _group("Plan of operations")
 _OPTIONS = (
     _cutters(
         "--cutter",
+        brief="D12L80, then rc1, T5, F20, N11x40, S12; repeatable.",
         type=Words("SPEC", values.cutter_ids),
         multiple=True,
         help="D12L80: diameter 12, 80 mm from tip to holder, or R6L80 by radius; then rc1 corner radius (rc6: ball), T5 taper "
@@ -77,6 +64,7 @@ _OPTIONS = (
     ),
     _cutters(
         "--cutters",
+        brief="Tool library: Fusion, FreeCAD, CSV, TOML; repeatable.",
         type=File("FILE"),
         multiple=True,
         help="Tool library: Fusion .json, .tools or CSV, HSMWorks .hsmlib, FreeCAD .fctl or .fctb, or TOML; "
@@ -84,12 +72,15 @@ _OPTIONS = (
     ),
     _cutters(
         "--holder",
+        brief="Holder of cutters without one: er32, D30L30.",
         type=Words("SPEC|FILE", values.holder_words, files=True),
         help="Holder of the cutters that have none: a collet chuck as er32, hsk63a-er32 or bt40-er16x100 (the command `tools` "
         "lists them with --list-holders); D30L30 or R15L30 (diameter or radius, length); stages from the nose up joined by +, "
         "cones as D24:30L20; a file with a holder (FILE#NAME if it has several); or `none`.",
     ),
-    _cutters("--assume-stickout", type=float, metavar="MM", help="Stick-out of the libraries' tools that state none."),
+    _cutters(
+        "--assume-stickout", brief=True, type=float, metavar="MM", help="Stick-out of the libraries' tools that state none."
+    ),
     _cutters("--skip-bad", is_flag=True, help="If some tools of a library are broken, use the others."),
     _cutters(
         "--list-cutters",
@@ -101,6 +92,7 @@ _OPTIONS = (
     ),
     _machine(
         "--machine",
+        brief="Built-in name, tilt:DEG, or a machine file.",
         default="unlimited",
         type=Words("NAME|FILE", values.machine_names, files=True),
         help="`unlimited`; `tilt:DEG`, a limit of the tool axis from the setup axis; a built-in machine "
@@ -109,6 +101,7 @@ _OPTIONS = (
     ),
     _machine(
         "--setup",
+        brief="Part axis along the spindle: +z, x,y,z; or `auto`.",
         type=Setup(),
         multiple=True,
         callback=named_setups,
@@ -121,6 +114,7 @@ _OPTIONS = (
     ),
     _machine(
         "--fixture",
+        brief="Body in the way: a file, table, vise, chuck.",
         type=File("FILE[@X,Y,Z[,RX,RY,RZ]][:UNIT]"),
         multiple=True,
         callback=fixtures_of_setups,
@@ -131,6 +125,7 @@ _OPTIONS = (
     ),
     _faces(
         "--faces",
+        brief="sculptured, blends, all, F3,7-12, name:REGEX.",
         default="sculptured,blends",
         type=Faces(),
         help="`sculptured` (faces that are no plane, cylinder, cone, sphere or torus in shape; all faces where none is), "
@@ -140,6 +135,7 @@ _OPTIONS = (
     ),
     _faces(
         "--ignore",
+        brief="Faces neither machined nor in the way.",
         type=Faces(),
         multiple=True,
         help="Faces that are neither machined nor obstacles, as construction geometry; the same words. Repeatable.",
@@ -159,6 +155,7 @@ _OPTIONS = (
     ),
     _samples(
         "--spacing",
+        brief="Largest distance of neighbouring samples.",
         type=float,
         metavar="MM",
         help="Largest distance of neighbouring samples.  [default: from curvature, the smallest cutter and a budget]",
@@ -170,10 +167,11 @@ _OPTIONS = (
         metavar="N",
         help="Contacts to look at between the samples, for the selected cutter; 0: none.  [default: 24 a sample, at most 100000]",
     ),
-    _samples("--tolerance", type=float, default=0.01, metavar="MM", help="Gouge tolerance.  [default: 0.01]"),
-    _samples("--allowance", type=float, default=0.0, metavar="MM", help="Stock left on the surface.  [default: 0]"),
+    _samples("--tolerance", brief=True, type=float, default=0.01, metavar="MM", help="Gouge tolerance.  [default: 0.01]"),
+    _samples("--allowance", brief=True, type=float, default=0.0, metavar="MM", help="Stock left on the surface.  [default: 0]"),
     _samples(
         "--holder-clearance",
+        brief="Clearance of neck, shank and holder.  [default: 0]",
         type=float,
         default=0.0,
         metavar="MM",
@@ -206,9 +204,10 @@ _OPTIONS = (
         help="Samples to map, at most, evenly spread; the others are undecided there.  [default: as many as some minutes allow]",
     ),
     _postures("--postures", type=File("FILE"), help="Answer from the part's postures.npz alone, as the command `stored` does."),
-    _output("-o", "--out", type=Folder("DIR"), help="Folder for the files.  [default: <part>-plan]"),
+    _output("-o", "--out", brief=True, type=Folder("DIR"), help="Folder for the files.  [default: <part>-plan]"),
     _output(
         "--formats",
+        brief="Of json, step, glb, html, npz, png, csv and more.",
         type=Words("LIST", lambda: FORMATS, listed=True),
         help=f"Of {', '.join(FORMATS)}; merged is a GLB of one mesh, for parts of thousands of faces; "
         "plans adds STEP and GLB of each plan of operations.  "
@@ -223,18 +222,21 @@ _OPTIONS = (
     _output(
         "--json",
         "json_out",
+        brief="The plan of one part on standard output.",
         type=Words("-", lambda: ("-",)),
         help="The plan of one part on standard output, nothing else there; files only where -o names a folder.",
     ),
     _output(
         "--units",
+        brief="Unit of lengths in the summary and on the page.",
         type=click.Choice(["mm", "in"]),
         help="Unit of lengths in the summary and on the page; files have mm.  [default: mm; in where all cutters are in inches]",
     ),
-    _output("-v", "--verbose", is_flag=True, help="Print all details, not only the summary."),
-    _output("--quiet", is_flag=True, help="Print no progress and no summary, only errors."),
+    _output("-v", "--verbose", brief=True, is_flag=True, help="Print all details, not only the summary."),
+    _output("--quiet", brief=True, is_flag=True, help="Print no progress and no summary, only errors."),
     _answers(
         "--answers",
+        brief="More questions to answer, or all.",
         default="",
         type=Words("LIST", values.answers, listed=True),
         help=f"More questions to answer: {', '.join(f'{kind.word} ({kind.meaning})' for kind in KINDS)}, or all (all but "
@@ -249,12 +251,14 @@ _OPTIONS = (
     ),
     _operations(
         "--operations",
+        brief="Plan fixed orientations (3+2) that finish it.",
         type=click.Choice(["fewest", "fastest", "both"]),
         help="Plan operations with fixed orientations (3+2) that finish together all that is reached: the fewest, with a proof "
         "that there are no fewer, the fastest, or both.",
     ),
     _operations(
         "--feed",
+        brief="Feed of all cutters.",
         type=float,
         metavar="MM/MIN",
         help="Feed of all cutters.  [default: the libraries' finishing presets; without them "
@@ -293,6 +297,7 @@ _OPTIONS = (
     ),
     _operations(
         "--process",
+        brief="Your own steps: an edited process.toml.",
         type=File("FILE"),
         help="Your own steps, a process.toml as it is written with a plan, edited: they are judged as they stand, in their "
         "order, and the rest is planned behind them.",
@@ -310,7 +315,7 @@ _OPTIONS = (
         flag_value=False,
         help="Judge and plan each face by itself, also where faces are equal.",
     ),
-    _run("--jobs", type=int, metavar="N", help="Threads.  [default: all cores]"),
+    _run("--jobs", brief=True, type=int, metavar="N", help="Threads.  [default: all cores]"),
     _run(
         "--no-cache",
         "cache",
@@ -345,12 +350,14 @@ _OPTIONS = (
     ),
     _run(
         "--fail-under",
+        brief="End with 0 where at least so much is finished.",
         type=float,
         metavar="PERCENT",
         help="End with 0 where at least so much of the area to machine is finished.  [default: all of it, and all judged]",
     ),
     _run(
         "--timeout",
+        brief="Seconds for the whole of a part.",
         type=float,
         metavar="S",
         help="Seconds for the whole of a part; one that is not done by then is left with a line and exit code 124, and the "

@@ -8,7 +8,7 @@ import functools
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar, cast
 
 if TYPE_CHECKING:
     from plan_cutters.domain.cutter import Cutter
@@ -234,7 +234,8 @@ class McpRequest:
 
 def planning_options(request: PlanningRequest) -> "PlanOptions":
     """The options of a plan that a command line requests, as `Options` takes them."""
-    return judging_options(request) | {
+    words: dict[str, Any] = {
+        **judging_options(request),
         "process": request.process if isinstance(request, PlanRequest) else None,
         "sharp_edges": request.sharp_edges,
         "units": request.units,
@@ -257,13 +258,16 @@ def planning_options(request: PlanningRequest) -> "PlanOptions":
         "max_orientations": request.max_orientations,
         "patterns": request.patterns,
     }
+    # The words of choices were looked at where the command line was read.
+    return cast("PlanOptions", words)
 
 
 def judging_options(request: JudgingRequest) -> "PlanOptions":
     """The options among them that judge the samples of a part."""
     options = posture_options(request)
     tools = read_tools(request.cutter, request.cutters, request.holder, request.assume_stickout, skip_bad=request.skip_bad)
-    return options | {
+    words: dict[str, Any] = {
+        **options,
         "cutters": tools.cutters,
         "libraries": tools.libraries,
         "holder": tools.holder,
@@ -274,6 +278,7 @@ def judging_options(request: JudgingRequest) -> "PlanOptions":
         "grid": request.grid,
         "jobs": request.jobs,
     }
+    return cast("PlanOptions", words)
 
 
 def posture_options(request: PostureRequest) -> "PlanOptions":

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from plan_cutters.command import terminal
-from plan_cutters.command.codes import FEASIBLE, NONE_FEASIBLE, NOT_ALL_JUDGED, run
+from plan_cutters.command.codes import ENDED, FEASIBLE, NONE_FEASIBLE, NOT_ALL_JUDGED, run
 from plan_cutters.command.help_groups import Command, named
-from plan_cutters.command.option_groups import ENDED, options
+from plan_cutters.command.option_groups import options
 from plan_cutters.command.request import StoredRequest, judging_options, takes
 from plan_cutters.command.validation import NAMED
 from plan_cutters.command.values import File

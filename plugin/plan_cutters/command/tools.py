@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from cad_io.whole import whole
-from plan_cutters.command.codes import USAGE, faults, run
+from plan_cutters.command.codes import ENDED, USAGE, faults, run
 from plan_cutters.command.help_groups import Command, heading
-from plan_cutters.command.option_groups import ENDED, options
+from plan_cutters.command.option_groups import options
 from plan_cutters.command.request import ToolsRequest, takes
 from plan_cutters.command.terminal import error, hand_out, paper
 from plan_cutters.command.values import File, Folder

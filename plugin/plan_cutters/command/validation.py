@@ -8,7 +8,6 @@ import os
 import sys
 from collections.abc import Sequence
 from dataclasses import fields
-from difflib import get_close_matches
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -38,6 +37,7 @@ def check(request: PlanRequest) -> "tuple[Options, list[CadIoError]]":
     PlanError
         An option has no meaning, or a library or machine file cannot be used.
     """
+    _first_word(request.parts[0])
     _words(request)
     faults = _faults(request.parts)
     if len(faults) == len(request.parts):
@@ -48,6 +48,16 @@ def check(request: PlanRequest) -> "tuple[Options, list[CadIoError]]":
     options = options_of(request)
     look_at(options)
     return options, faults
+
+
+def _first_word(word: str) -> None:
+    """Refuse a first word that is no file and nearly a command: the other words would be planned in its place."""
+    from plan_cutters.domain.checks import did_you_mean
+    from plan_cutters.errors import OptionError
+
+    meant = "" if os.path.exists(word) else did_you_mean(word, SUBCOMMANDS)
+    if meant:
+        raise OptionError(f"{word} is neither a command nor a file{meant}")
 
 
 def folders(request: PlanRequest) -> list[Path]:
@@ -164,8 +174,7 @@ def _faults(parts: Sequence[str]) -> list[CadIoError]:
         try:
             kind(part)
         except CadIoError as error:
-            near = [] if os.path.exists(part) else get_close_matches(part, SUBCOMMANDS, 1)
-            errors.append(ReadError(f"no such file; the command {near[0]}?", file=part) if near else error)
+            errors.append(error)
     return errors
 
 

@@ -7,6 +7,7 @@ import math
 import re
 import reprlib
 from collections.abc import Callable, Iterable, Mapping, Set
+from difflib import get_close_matches
 from numbers import Integral, Real
 from typing import Any
 
@@ -17,6 +18,16 @@ from plan_cutters.errors import OptionError
 _RADIANS = re.compile(r"\s*(\S+)\s*rad\s*")
 #: Added to limits of angles, for what is left when degrees were turned into single-precision radians.
 _ROUNDING = 1e-6
+
+
+def did_you_mean(word: str, words: Iterable[str]) -> str:
+    """Such as `; did you mean trunnion-ac?`, of the word that is most like another one; empty where none is.
+
+    >>> did_you_mean("trunion-ac", ["trunnion-ac", "3-axis"]), did_you_mean("x", ["3-axis"])
+    ('; did you mean trunnion-ac?', '')
+    """
+    near = get_close_matches(word.lower(), list(words), 1)
+    return f"; did you mean {near[0]}?" if near else ""
 
 
 def number(value: Any, what: str, *, error: Callable[[str], Exception] = OptionError) -> float:
@@ -45,6 +56,12 @@ def whole(value: Any, what: str) -> int:
     if not isinstance(value, Integral) or isinstance(value, bool) or abs(int(value)) >= 1 << 63:
         raise OptionError(f"{what} must be a whole number, not {shown(value)}")
     return int(value)
+
+
+def not_empty(value: Any, what: str, otherwise: str) -> None:
+    """Refuse a list with nothing in it: who has chosen some and is left with none has made a mistake."""
+    if isinstance(value, list | tuple | set | frozenset) and not value:
+        raise OptionError(f"{what}: the list is empty; {otherwise}")
 
 
 def flag(value: Any, what: str) -> bool:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from plan_cutters.domain.axis import Axis, direction_of
-from plan_cutters.domain.checks import items, number, radians, shown
+from plan_cutters.domain.checks import did_you_mean, items, number, radians, shown
 from plan_cutters.domain.degrees import Angle, degrees_too
 from plan_cutters.domain.kinematics import PARALLEL, Kinematics
 from plan_cutters.errors import MachineError
@@ -182,7 +182,9 @@ class Machine:
         known = builtin_machines()
         if text in known:
             return known[text]
-        raise MachineError(f"machine {text!r} is not known: give unlimited, tilt:DEG, {', '.join(known)}, or a machine file")
+        meant = did_you_mean(text, ["unlimited", *known])
+        give = f"{meant} Give" if meant else ": give"
+        raise MachineError(f"machine {text!r} is not known{give} unlimited, tilt:DEG, {', '.join(known)}, or a machine file")
 
     @classmethod
     def of(cls, given: Any) -> "Machine":

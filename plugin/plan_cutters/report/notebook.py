@@ -1,15 +1,19 @@
 """A result where people work: as text in a terminal of Python, as a card in a notebook, as a page in a browser."""
 
 import base64
+import io
+import os
 import sys
 import tempfile
 import webbrowser
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple, get_args
 
+from plan_cutters.domain.checks import shown
 from plan_cutters.domain.lengths import reporting
-from plan_cutters.errors import PlanError
+from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.shares import VERDICTS
 from plan_cutters.plan_file.words.cutters import FEASIBLE
@@ -22,6 +26,11 @@ from plan_cutters.report.protocol import Judged
 
 #: Height of the page in a notebook, pixels.
 HEIGHT = 640
+Size = Literal["full", "small"]
+#: Where the size of cards that end a cell is set; what a small one has at most: bytes, and cutters that are listed.
+VARIABLE, SMALL, _LISTED = "PLAN_CUTTERS_CARD", 50_000, 12
+#: Widths of the picture of a small card, pixels: the first that leaves it small enough is taken.
+_WIDTHS = (720, 560, 440, 320)
 #: Verdicts as a column calls them.
 _COLUMNS = {word: "free" if word == "interference_free" else word for word in VERDICTS}
 #: Narrowest column of the table of text: room for `>99.9 %`.
@@ -51,11 +60,17 @@ def text_of(plan: Plan) -> str:
     return "\n".join(plain(line).rstrip() for line in lines).strip() + "\n"
 
 
+def chosen_size() -> Size:
+    """The size of cards that end a cell: `PLAN_CUTTERS_CARD=small`, else full."""
+    return "small" if os.environ.get(VARIABLE) == "small" else "full"
+
+
 @reporting(lambda result: result.plan.effective.units)
-def card(result: Judged, *, height: int = HEIGHT) -> str:
+def card(result: Judged, *, height: int = HEIGHT, size: Size = "full") -> str:
     """The result as HTML for a notebook: headline, what makes it unsure, table, picture, and the review page to be opened.
 
-    The page stands in a frame of its own, whose script reaches nothing of the notebook. What cannot be made is named.
+    The page stands in a frame of its own, whose script reaches nothing of the notebook. What cannot be made is named. A small
+    card has no page, a smaller picture, and the first cutters alone: a notebook that is kept in git grows by at most `SMALL`.
     """
     story, missing = story_of(result.plan), list[str]()
 
@@ -67,12 +82,18 @@ def card(result: Judged, *, height: int = HEIGHT) -> str:
             return ""
 
     picture = made("picture", lambda: _picture(result))
+    if size == "small":
+        rest = partial(_rendered, result, story, height, page="", missing=missing, most=_LISTED)
+        small = made("small picture", lambda: _small(picture, SMALL - len(rest().encode()))) if picture else ""
+        return rest(picture=small, kind="webp")
     framed = made("review page", lambda: page(result, largest=LARGEST_WITHOUT).decode())
     return _rendered(result, story, height, picture=picture, page=framed, missing=missing)
 
 
-def show(result: Judged, height: int = HEIGHT) -> Path | None:
+def show(result: Judged, height: int = HEIGHT, size: Size = "full") -> Path | None:
     """Show the review page: in a notebook below the cell, else in a browser, from a file in the folder for temporary files.
+
+    A small card is for notebooks alone: it stands below the cell without the page.
 
     Returns
     -------
@@ -84,6 +105,13 @@ def show(result: Judged, height: int = HEIGHT) -> Path | None:
     PlanError
         No browser is found; the message names the file.
     """
+    if size not in get_args(Size):
+        raise OptionError(f"card: {shown(size)} is neither full nor small")
+    if size == "small" and _in_notebook():
+        from IPython.display import HTML, display
+
+        display(HTML(card(result, size=size)))
+        return None
     data = page(result, maps=result.maps)
     if _in_notebook():
         from IPython.display import HTML, display
@@ -133,9 +161,23 @@ def _picture(result: Judged) -> str:
         return base64.b64encode(path.read_bytes()).decode()
 
 
+def _small(picture: str, most: int) -> str:
+    """A picture, PNG in base64, as a smaller one, WebP in base64, of so many bytes; an error where it has no room."""
+    from PIL import Image
+
+    whole = Image.open(io.BytesIO(base64.b64decode(picture))).convert("RGB")
+    for wide in _WIDTHS:
+        stream = io.BytesIO()
+        whole.resize((wide, round(whole.height * wide / whole.width)), Image.Resampling.LANCZOS).save(stream, "webp", quality=60)
+        text = base64.b64encode(stream.getvalue()).decode()
+        if len(text) <= most:
+            return text
+    raise PlanError("it is too large for a small card; show(card='full') has it")
+
+
 def _rendered(
     result: Judged, story: Story, height: int, *, page: str, picture: str = "", missing: list[str] | None = None,
-    opened: bool = False,
+    opened: bool = False, kind: str = "png", most: int | None = None,
 ) -> str:  # fmt: skip
     cutters: list[dict[str, Any]] = [
         {
@@ -145,12 +187,13 @@ def _rendered(
             "shares": [each.shares[word] for word in _COLUMNS],
             "reason": each.reason,
         }
-        for each in story.cutters
+        for each in (sorted(story.cutters, key=lambda c: c.id != story.taken) if most else story.cutters)
     ]
     return _TEMPLATE.render(
         chip=_CHIPS[story.headline.good], headline=story.headline,
         text="\n".join((result.plan.text or made_of(result.plan)).lines),
         told=_lines(story), columns=list(_COLUMNS.values()),
-        cutters=cutters, taken=story.taken, shown=story.names[result.shown], picture=picture, page=page, open=opened,
+        cutters=cutters[:most], unlisted=max(0, len(cutters) - most) if most else 0, kind=kind,
+        taken=story.taken, shown=story.names[result.shown], picture=picture, page=page, open=opened,
         file=result.plan.part.file, height=int(height), missing=missing or [],
     )  # fmt: skip
