@@ -40,7 +40,8 @@ def _least(least: LeastTools) -> str:
         return f"{text}."
     if least.proven:
         return f"{text}. No fewer do (proved)."
-    return f"{text}. At least {least.at_least} are needed (proved); whether fewer than {len(least.tools)} do, the plans do not state."
+    doubt = f"whether fewer than {len(least.tools)} do, the plans do not state"
+    return f"{text}. At least {count(least.at_least, 'tool')} must be there (proved); {doubt}."
 
 
 def _listed(names: Sequence[str]) -> str:

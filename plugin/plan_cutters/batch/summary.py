@@ -111,7 +111,7 @@ class LeastTools(_Entry):
     tools: list[str] = Field(description="the one that finishes most parts alone first")
     parts: int = Field(description="that they finish: all that any tools finish beyond doubt")
     at_least: int = Field(
-        description="proved: fewer tools than this finish no longer all of these parts, however they share faces"
+        description="proved: no fewer tools than this finish all of these parts, however they share faces"
     )
     proven: bool = Field(description="no fewer tools do: there are as many as `at_least`")
 
