@@ -120,7 +120,7 @@ def _shown(row: PartRow) -> _Shown:
         reason=reason(row.reason) if row.reason else "",
         time=numbers.duration(row.seconds),
         seconds=row.seconds if math.isfinite(row.seconds) else -1.0,
-        page=_link(row.page),
+        page=_link(row.page or (f"{row.folder}/plan.json" if row.folder and result == "failed" else None)),
         picture=_link(row.picture),
     )
 

@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 from plan_cutters.batch.part_tools import PartTools
 from plan_cutters.batch.row import PartRow
 from plan_cutters.batch.shop import fewest
+from plan_cutters.workers.assignment import TIMED_OUT
 
 FORMAT_VERSION = 1
 #: Failures that the summary names; the table has all.
@@ -47,6 +48,26 @@ def code_of(row: PartRow) -> int:
     3
     """
     return row.code if outcome(row) != "failed" or row.code > 1 else 3
+
+
+#: What may end a batch with a code that is not zero, as `--fail-on` names it.
+FAIL_ON = ("refused", "unreadable", "late", "unfinished", "unsure")
+
+
+def fault(row: PartRow) -> str:
+    """What is wrong with a part, as `--fail-on` names it; empty where it is finished.
+
+    >>> fault(PartRow(name="a", file="a.step", status="failed", code=124))
+    'late'
+    >>> fault(PartRow(name="a", file="a.step", status="failed", code=139))
+    'unreadable'
+    >>> fault(PartRow(name="a", file="a.step", status="kept", code=0))
+    ''
+    """
+    result = outcome(row)
+    if result == "failed":
+        return {2: "refused", TIMED_OUT: "late"}.get(code_of(row), "unreadable")
+    return {"not_finished": "unfinished", "not_sure": "unsure", "finished": ""}[result]
 
 
 def cause(row: PartRow) -> str:
@@ -110,9 +131,7 @@ class LeastTools(_Entry):
 
     tools: list[str] = Field(description="the one that finishes most parts alone first")
     parts: int = Field(description="that they finish: all that any tools finish beyond doubt")
-    at_least: int = Field(
-        description="proved: no fewer tools than this finish all of these parts, however they share faces"
-    )
+    at_least: int = Field(description="proved: no fewer tools than this finish all of these parts, however they share faces")
     proven: bool = Field(description="no fewer tools do: there are as many as `at_least`")
 
 
