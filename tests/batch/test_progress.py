@@ -39,7 +39,12 @@ def test_plain_lines_name_each_part_and_the_cause_of_a_failure():
         "blade: finished: Take flat end D12 x 60; reused from an earlier run; not written: review.png",
         "parts done, 1 failed",
     ]
-    assert [line.partition(" ")[0] for line in found[1].getvalue().replace("\n    ", " ").splitlines()] == ["1/3", "2/3", "3/3", "3/3"]
+    assert [line.partition(" ")[0] for line in found[1].getvalue().replace("\n    ", " ").splitlines()] == [
+        "1/3",
+        "2/3",
+        "3/3",
+        "3/3",
+    ]
 
 
 @given(st.text(max_size=200), st.text(max_size=400))
