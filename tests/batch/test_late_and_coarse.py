@@ -72,10 +72,12 @@ def test_a_part_that_is_late_has_the_plan_so_far_and_is_tried_again(out, tmp_pat
     assert "Late: the plan so far is there" in row.error
     document = json.loads((tmp_path / "out/groove-plan/plan.json").read_text())
     assert document["not_written"] == {"html": "not done within 240 s"}
-    assert row.error.endswith(next(t for c, t in zip(document["note_codes"], document["notes"]) if c == "run_unfinished"))
+    notes = dict(zip(document["note_codes"], document["notes"], strict=True))
+    assert row.error.endswith(notes["run_unfinished"])
     # The page leads to it, and no tool is counted for it.
     page, summary = page_of([row])
     assert 'href="./groove-plan/plan.json"' in page
+    assert ">failed: late</strong>" in page
     assert (summary["code"], summary["parts"]["failed"], summary["shop"]["not_known"]) == (TIMED_OUT, 1, 1)
     assert summary["shop"]["tools"] == []
     # It is not done: neither a dry run nor a run takes it.

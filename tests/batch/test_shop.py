@@ -191,8 +191,10 @@ def test_the_summary_counts_tools_over_all_parts():
     assert result.summary["shop"]["never_used"] == ["flat end D9"]
     assert result.summary["shop"]["unfinished"] == [{"name": "d", "share": 0.5, "needs": ["a longer tool"]}]
     assert (result.summary["shop"]["unfinished_count"], result.summary["shop"]["not_known"]) == (1, 2)
-    assert "flat end D8 finishes 2 of 6 parts alone" in result.page
-    assert "2 tools finish all 3 parts that can be finished beyond doubt: flat end D8, ball end D6. No fewer do" in result.page
+    assert "Finishes most parts alone: flat end D8, 2 of 6." in result.page
+    assert (
+        "Fewest tools for all 3 parts that can be finished beyond doubt, 2: flat end D8, ball end D6. No fewer do" in result.page
+    )
     assert "In no plan: flat end D9." in result.page
     assert "a longer tool" in result.page
 

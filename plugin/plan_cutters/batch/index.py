@@ -14,7 +14,7 @@ from pydantic_core import to_jsonable_python
 from plan_cutters.batch.part_tools import PartTools
 from plan_cutters.batch.row import PartRow
 from plan_cutters.batch.shop_text import shop_lines
-from plan_cutters.batch.summary import OUTCOMES, BatchRun, Outcome, Summary, Table, cause, outcome, summary_of
+from plan_cutters.batch.summary import OUTCOMES, BatchRun, Outcome, Summary, Table, cause, fault, outcome, summary_of
 from plan_cutters.batch.table import csv_of, parquet_of
 from plan_cutters.document.build import versions
 from plan_cutters.plan_file import numbers
@@ -75,6 +75,7 @@ class _Shown(NamedTuple):
     says: str
     wrong: str
     coarser: str
+    late: bool
     made: str
     share: str
     reason: str
@@ -115,6 +116,7 @@ def _shown(row: PartRow) -> _Shown:
         says=cause(row) if result == "failed" else row.verdict,
         wrong="" if result == "failed" else row.error or "",
         coarser=row.coarser or "",
+        late=fault(row) == "late",
         made=_made(row),
         share="" if row.share is None else percent(row.share),
         reason=reason(row.reason) if row.reason else "",

@@ -123,6 +123,7 @@ def _needs(plan: Plan) -> list[str]:
     process = plan.process
     if process is None or not process.left:
         return []
-    tries = [each.words for each in process.next]
+    # To ask for more answers is nothing that the part needs.
+    tries = [each.words for each in process.next if "--answers" not in each.argv]
     areas = [each.needs for each in process.left]
     return [text for text in dict.fromkeys((*tries, *areas)) if text][:_NEEDS]

@@ -66,7 +66,9 @@ def fewest(parts: Sequence[PartTools]) -> Fewest:
     if not different:
         return Fewest((), 0)
     alone = Counter(name for part in parts for name in part.alone)
-    tools = sorted(alone.keys() | {name for part in different for name in _names(part)}, key=lambda name: (-alone[name], name))
+    used = Counter(name for part in parts for name in part.used)
+    names = alone.keys() | {name for part in different for name in _names(part)}
+    tools = sorted(names, key=lambda name: (-alone[name], -used[name], name))
     place = {name: k for k, name in enumerate(tools)}
     rows, columns = _stated(different, place)
     # Of sets of as many, the one of the tools that finish most parts alone.

@@ -10,34 +10,28 @@ _NAMED = 8
 
 
 def shop_lines(summary: Summary) -> list[str]:
-    """Say which tool finishes most parts, which are the fewest for all parts that are finished, and which are never used."""
+    """Say which tools finish most parts, which are the fewest for all parts that are finished, and which are never used."""
     shop, parts = summary.shop, summary.parts
     if not shop.tools:
         return []
-    best = shop.tools[0]
+    best = [each.tool for each in shop.tools if each.alone == shop.tools[0].alone]
     lines = [
-        f"{best.tool} finishes {best.alone:,} of {count(parts.count, 'part')} alone, more than any other tool does."
-        if best.alone and (len(shop.tools) < 2 or shop.tools[1].alone < best.alone)
-        else f"{best.tool} finishes {best.alone:,} of {count(parts.count, 'part')} alone; no tool finishes more."
-        if best.alone
+        f"Finishes most parts alone: {_listed(best)}, {shop.tools[0].alone:,} of {parts.count:,}{' each' * (len(best) > 1)}."
+        if shop.tools[0].alone
         else "No tool finishes a part alone."
     ]
-    if shop.least is None:
-        lines.append("No tools finish a part together beyond doubt.")
-    else:
-        lines.append(_least(shop.least))
+    lines.append("No tools finish a part together beyond doubt." if shop.least is None else _least(shop.least))
     if shop.never_used:
         lines.append(f"In no plan: {_listed(shop.never_used)}.")
     return lines
 
 
 def _least(least: LeastTools) -> str:
-    one = len(least.tools) == 1
     parts = "the one part" if least.parts == 1 else f"all {least.parts:,} parts"
-    who = "One tool finishes" if one else f"{len(least.tools)} tools finish"
-    text = f"{who} {parts} that can be finished beyond doubt: {_listed(least.tools)}"
-    if one:
-        return f"{text}."
+    names = _listed(least.tools)
+    if len(least.tools) == 1:
+        return f"One tool finishes {parts} that can be finished beyond doubt: {names}."
+    text = f"Fewest tools for {parts} that can be finished beyond doubt, {len(least.tools)}: {names}"
     if least.proven:
         return f"{text}. No fewer do (proved)."
     doubt = f"whether fewer than {len(least.tools)} do, the plans do not state"
