@@ -102,15 +102,15 @@ def part_tools(plan: Plan, code: int, names: dict[str, str]) -> PartTools:
 
 def _faces(faces: Iterable[FaceEntry], cutters: list[CutterEntry]) -> tuple[FaceTools, ...]:
     """Each way in which the tools reach a face that is to be machined, once."""
-    found: dict[FaceTools, None] = {}
+    ways: dict[FaceTools, None] = {}
     for face in faces:
         counts = {c.id: c.faces[face.id] for c in cutters if face.id in c.faces}
         if not face.target or not any(map(_required, counts.values())):
             continue
         whole = tuple(name for name, each in counts.items() if each.reached and not each.not_reached and not each.unjudged)
         partly = tuple(name for name, each in counts.items() if each.reached and name not in whole)
-        found[FaceTools(whole=whole, partly=partly)] = None
-    return tuple(found)
+        ways[FaceTools(whole=whole, partly=partly)] = None
+    return tuple(ways)
 
 
 def _required(counts: FaceVerdicts) -> int:

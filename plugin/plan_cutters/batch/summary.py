@@ -55,7 +55,7 @@ FAIL_ON = ("refused", "unreadable", "late", "unfinished", "unsure")
 
 
 def fault(row: PartRow) -> str:
-    """What is wrong with a part, as `--fail-on` names it; empty where it is finished.
+    """Name what is wrong with a part, as `--fail-on` does; empty where it is finished.
 
     >>> fault(PartRow(name="a", file="a.step", status="failed", code=124))
     'late'
