@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from plan_cutters import plan
 from plan_cutters.batch import shop
 from plan_cutters.batch.index import write_index
-from plan_cutters.batch.part_tools import FaceTools, PartTools
+from plan_cutters.batch.part_tools import FaceTools, PartTools, essential
 from plan_cutters.batch.row import PartRow
 from plan_cutters.batch.rows_of_plans import row_of
 from plan_cutters.batch.shop import fewest
@@ -99,6 +99,29 @@ def test_a_search_that_ends_early_leaves_a_set_that_finishes_all(parts, end):
     assert result.at_least == 1
 
 
+@given(shops())
+@settings(max_examples=100, deadline=None)
+def test_ways_that_follow_from_others_change_neither_condition(parts):
+    """For all sets of tools: what does the ways that stay does all of them, and the bound is as strong."""
+    for part in parts:
+        every = stated(*part).faces
+        few = essential(every)
+        assert set(few) <= set(every)
+        for size in range(len(TOOLS) + 1):
+            for each in map(set, itertools.combinations(TOOLS, size)):
+                whole, bound = ([rule(way, each) for way in every] for rule in (does, may_do))
+                assert all(does(way, each) for way in few) == all(whole)
+                assert all(may_do(way, each) for way in few) == all(bound)
+
+
+def does(way, tools):
+    return bool(tools & set(way.whole))
+
+
+def may_do(way, tools):
+    return 2 * len(tools & set(way.whole)) + len(tools & set(way.partly)) >= 2
+
+
 # Of plans
 
 
@@ -122,7 +145,7 @@ def test_a_plan_states_what_its_samples_say(judged):
         )
         for here in by_face
     }
-    assert set(tools.faces) == ways
+    assert set(tools.faces) == set(essential(tuple(ways)))
     assert set(tools.used) == {step.cutter for step in judged.plan.process.steps}
 
 

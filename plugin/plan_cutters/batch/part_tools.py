@@ -1,6 +1,6 @@
 """Which tools finish one part, alone or together, as far as its plan states it; and what the part needs where none do."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from pydantic import BaseModel, ConfigDict
 
@@ -34,8 +34,8 @@ class PartTools(BaseModel):
     together : tuple of tuples of str
         Sets that the plan states to finish the part: its process, its least set.
     faces : tuple of FaceTools
-        What reaches the faces, each way once. Empty where the part was judged in several setups: the plan counts the samples of
-        a face in the first one alone.
+        What reaches the faces: the ways that say more than others (`essential`). Empty where the part was judged in several
+        setups: the plan counts the samples of a face in the first one alone.
     used : tuple of str
         Tools of the steps of the plan, whatever it finishes.
     share : float, optional
@@ -101,7 +101,7 @@ def part_tools(plan: Plan, code: int, names: dict[str, str]) -> PartTools:
 
 
 def _faces(faces: Iterable[FaceEntry], cutters: list[CutterEntry]) -> tuple[FaceTools, ...]:
-    """Each way in which the tools reach a face that is to be machined, once."""
+    """The ways in which the tools reach the faces that are to be machined."""
     ways: dict[FaceTools, None] = {}
     for face in faces:
         counts = {c.id: c.faces[face.id] for c in cutters if face.id in c.faces}
@@ -110,7 +110,25 @@ def _faces(faces: Iterable[FaceEntry], cutters: list[CutterEntry]) -> tuple[Face
         whole = tuple(name for name, each in counts.items() if each.reached and not each.not_reached and not each.unjudged)
         partly = tuple(name for name, each in counts.items() if each.reached and name not in whole)
         ways[FaceTools(whole=whole, partly=partly)] = None
-    return tuple(ways)
+    return essential(tuple(ways))
+
+
+def essential(ways: Sequence[FaceTools]) -> tuple[FaceTools, ...]:
+    """Keep the ways that say more than others do, so that a part of many faces has a short row.
+
+    A way follows from another one if whatever tools do that face whole do this one, and those that do some of it as well.
+
+    >>> essential([FaceTools(whole=("D6",)), FaceTools(whole=("D6", "D8"))])
+    (FaceTools(whole=('D6',), partly=()),)
+    """
+    names = {name: 1 << k for k, name in enumerate(dict.fromkeys(name for way in ways for name in (*way.whole, *way.partly)))}
+    masks = {way: (sum(names[name] for name in way.whole), sum(names[name] for name in way.partly)) for way in ways}
+    stays: dict[FaceTools, tuple[int, int]] = {}
+    for way in sorted(masks, key=lambda each: (len(each.whole), len(each.partly))):
+        whole, partly = masks[way]
+        if not any(not (w & ~whole) and not (p & ~(whole | partly)) for w, p in stays.values()):
+            stays[way] = whole, partly
+    return tuple(stays)
 
 
 def _required(counts: FaceVerdicts) -> int:
