@@ -19,7 +19,13 @@ def on_page_markdown(markdown: str, **_: Any) -> str:
     markdown = re.sub(r"<!-- help: (.+?) -->", lambda found: f"```text\n{_help(found[1])}```", markdown)
     docs = Path(__file__).parent.parent
     markdown = re.sub(r"<!-- notebook: (\S+) -->", lambda found: _cells(docs / found[1]), markdown)
-    return re.sub(r"<!-- file: (\S+) -->", lambda found: f"```text\n{(docs / found[1]).read_text('utf-8')}```", markdown)
+    return re.sub(r"<!-- file: (\S+) -->", lambda found: _text(docs / found[1]), markdown)
+
+
+def _text(file: Path) -> str:
+    """A file as it stands, with the colours of its language."""
+    language = {".yaml": "yaml", ".sbatch": "bash"}.get(file.suffix, "text")
+    return f"```{language}\n{file.read_text('utf-8')}```"
 
 
 def _cells(notebook: Path) -> str:

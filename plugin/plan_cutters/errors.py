@@ -30,6 +30,10 @@ class OptionError(PlanError):
     """An option has no meaning."""
 
 
+class TooManySamplesError(OptionError):
+    """The requested density asks for more samples than a plan may take."""
+
+
 class CutterError(OptionError):
     """A cutter or a holder cannot exist."""
 

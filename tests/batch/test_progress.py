@@ -4,9 +4,13 @@ import io
 import threading
 
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from plan_cutters.batch.progress import EACH, Board, Screen
 from plan_cutters.batch.row import PartRow
+from plan_cutters.batch.summary import cause
+from plan_cutters.files.terminal_text import clean
 
 GOOD = PartRow(name="blade", file="blade.step", status="planned", code=0, verdict="Take flat end D12 x 60")
 BAD = PartRow(name="rim\n\x1b[2J", file="rim.step", status="failed", code=3, error="rim.step: not a STEP file")
@@ -20,7 +24,8 @@ def board(quiet=False, total=3, *, terminal=False, width=200):
 
 
 def lines(text):
-    return [line.partition(" s  ")[2] for line in text.getvalue().splitlines()]
+    """What is said of each part after the counts and times in front; lines that are wrapped are put together again."""
+    return [line.partition("  ")[2].partition("  ")[2] for line in text.getvalue().replace("\n    ", " ").splitlines()]
 
 
 def test_plain_lines_name_each_part_and_the_cause_of_a_failure():
@@ -32,14 +37,45 @@ def test_plain_lines_name_each_part_and_the_cause_of_a_failure():
         "blade: finished: Take flat end D12 x 60",
         "rim\\n\\x1b[2J: failed: rim.step: not a STEP file",
         "blade: finished: Take flat end D12 x 60; reused from an earlier run; not written: review.png",
-        "3 of 3 parts done, 1 failed",
+        "parts done, 1 failed",
+    ]
+    assert [line.partition(" ")[0] for line in found[1].getvalue().replace("\n    ", " ").splitlines()] == [
+        "1/3",
+        "2/3",
+        "3/3",
+        "3/3",
     ]
 
 
-def test_a_line_is_never_wrapped():
+@given(st.text(max_size=200), st.text(max_size=400))
+@settings(max_examples=60, deadline=None)
+def test_lines_have_at_most_80_columns_but_for_words_and_nothing_is_left_out(verdict, error):
     one, text = board(width=20)
-    one.row(BAD.model_copy(update={"error": "x" * 300}))
-    assert len(text.getvalue().splitlines()) == 1
+    one.row(GOOD.model_copy(update={"verdict": verdict}))
+    one.row(BAD.model_copy(update={"error": error}))
+    shown = text.getvalue().splitlines()
+    assert all(len(line) <= 80 or len(line.split()) == 1 for line in shown)
+    assert "".join("".join(shown).split()).endswith("".join(clean(cause(BAD.model_copy(update={"error": error}))).split()))
+
+
+def test_a_word_is_never_parted():
+    one, text = board(width=20)
+    one.say(f"dashboard: http://{'x' * 300}/status")
+    assert f"http://{'x' * 300}/status" in text.getvalue()
+
+
+def test_the_time_left_follows_from_the_parts_that_were_planned():
+    one, text = board(total=20)
+    one._began -= 60.0
+    one.row(GOOD.model_copy(update={"status": "kept", "seconds": 9.0}))
+    assert "left" not in text.getvalue()
+    for _ in range(3):
+        one.row(GOOD.model_copy(update={"seconds": 20.0}))
+    # 16 of 20 are left, at 20 s each.
+    assert text.getvalue().splitlines()[-1].startswith(" 4/20  60 s, about 5.3 min left  blade: finished")
+    for _ in range(16):
+        one.row(GOOD.model_copy(update={"seconds": 20.0}))
+    assert "left" not in text.getvalue().splitlines()[-1]
 
 
 def test_quiet_tells_failures_alone_even_after_it_is_closed():
@@ -59,7 +95,7 @@ def test_of_many_parts_failures_and_counts_are_told():
         one.row(GOOD)
     one.row(BAD)
     one.close()
-    assert lines(text) == ["rim\\n\\x1b[2J: failed: rim.step: not a STEP file", f"{EACH + 1} of {EACH + 1} parts done, 1 failed"]
+    assert lines(text) == ["rim\\n\\x1b[2J: failed: rim.step: not a STEP file", "parts done, 1 failed"]
 
 
 def test_where_the_number_is_not_known_lines_stop_at_the_same_number():
@@ -68,7 +104,7 @@ def test_where_the_number_is_not_known_lines_stop_at_the_same_number():
         one.row(GOOD)
     one.close()
     assert len(lines(text)) == EACH + 1
-    assert lines(text)[-1] == f"{EACH + 50} parts done"
+    assert text.getvalue().splitlines()[-1].startswith(f"{EACH + 50}  ")
 
 
 def test_the_address_is_said_once():
@@ -124,7 +160,7 @@ def test_a_part_that_is_told_of_twice_counts_once(before):
         for step in steps if before else steps[::-1]:
             step()
     one.close()
-    assert lines(text)[-1] == "3 of 3 parts done"
+    assert text.getvalue().splitlines()[-1].startswith("3/3  ")
 
 
 def test_threads_lose_no_part():
@@ -136,4 +172,5 @@ def test_threads_lose_no_part():
         each.join()
     one.close()
     assert len(lines(text)) == 401
-    assert lines(text)[-1] == "400 of 400 parts done, 400 failed"
+    assert text.getvalue().splitlines()[-1].startswith("400/400  ")
+    assert lines(text)[-1] == "parts done, 400 failed"

@@ -11,8 +11,10 @@ from urllib.parse import quote
 from markupsafe import Markup
 from pydantic_core import to_jsonable_python
 
+from plan_cutters.batch.part_tools import PartTools
 from plan_cutters.batch.row import PartRow
-from plan_cutters.batch.summary import OUTCOMES, BatchRun, Outcome, Summary, Table, cause, outcome, summary_of
+from plan_cutters.batch.shop_text import shop_lines
+from plan_cutters.batch.summary import OUTCOMES, BatchRun, Outcome, Summary, Table, cause, fault, outcome, summary_of
 from plan_cutters.batch.table import csv_of, parquet_of
 from plan_cutters.document.build import versions
 from plan_cutters.plan_file import numbers
@@ -68,10 +70,12 @@ class _Shown(NamedTuple):
 
     row: PartRow
     outcome: Outcome
-    #: Of a part that failed its cause, else the headline; what went wrong all the same, as a file that was not written; and how
-    #: the answer came about.
+    #: Of a part that failed its cause, else the headline; what went wrong all the same, as a file that was not written; what was
+    #: not done as requested; and how the answer came about.
     says: str
     wrong: str
+    coarser: str
+    late: bool
     made: str
     share: str
     reason: str
@@ -95,6 +99,9 @@ def page(rows: Sequence[PartRow], summary: Summary) -> bytes:
         worst={word: place for place, word in enumerate(worst)},
         outcomes=OUTCOMES,
         of=summary.parts.model_dump(),
+        shop=shop_lines(summary),
+        pages={each.row.name: each.page for each in shown},
+        percent=percent,
         reason=reason,
         time=numbers.duration,
         w=numbers,
@@ -108,12 +115,14 @@ def _shown(row: PartRow) -> _Shown:
         outcome=result,
         says=cause(row) if result == "failed" else row.verdict,
         wrong="" if result == "failed" else row.error or "",
+        coarser=row.coarser or "",
+        late=fault(row) == "late",
         made=_made(row),
         share="" if row.share is None else percent(row.share),
         reason=reason(row.reason) if row.reason else "",
         time=numbers.duration(row.seconds),
         seconds=row.seconds if math.isfinite(row.seconds) else -1.0,
-        page=_link(row.page),
+        page=_link(row.page or (f"{row.folder}/plan.json" if row.folder and result == "failed" else None)),
         picture=_link(row.picture),
     )
 
@@ -140,8 +149,18 @@ def _link(path: str | None) -> str:
 
 def _clean(row: PartRow) -> PartRow:
     """The row without what has no place in a text file; links keep their bytes."""
-    texts = {name: plain(value) for name, value in row if name not in ("page", "picture")}
-    return row.model_copy(update=texts)
+    texts = {name: plain(value) for name, value in row if name not in ("page", "picture", "tools")}
+    tools = None if row.tools is None else PartTools.model_validate(_plain(row.tools.model_dump()))
+    return row.model_copy(update={**texts, "tools": tools})
+
+
+def _plain(value: Any) -> Any:
+    """The same value with `plain` texts, and no number that is not finite."""
+    if isinstance(value, Mapping):
+        return {plain(name): _plain(each) for name, each in value.items()}
+    if isinstance(value, list | tuple):
+        return tuple(map(_plain, value))
+    return finite(plain(value))
 
 
 def _facts(cluster: Mapping[str, object]) -> dict[str, Any]:

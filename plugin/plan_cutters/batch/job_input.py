@@ -3,11 +3,16 @@
 Only the `Assignment` names it, for a pickle must come from nobody but ourselves.
 """
 
+import copy
 import functools
 import pickle
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from plan_cutters.workers.assignment import assignment
+
+if TYPE_CHECKING:
+    from plan_cutters.options import Options
 
 
 @dataclass(frozen=True)
@@ -53,6 +58,14 @@ def job_input() -> JobInput:
     """Return what was handed to this process: nothing where no batch has started it."""
     file = assignment().job
     return JobInput() if file is None else _read(file)
+
+
+def default_density(options: "Options") -> "Options":
+    """The same options with the default density of samples, in place of a spacing or a grid: a copy past the checks."""
+    made = copy.copy(options)
+    for word in ("spacing", "grid"):
+        object.__setattr__(made, word, None)
+    return made
 
 
 @functools.cache

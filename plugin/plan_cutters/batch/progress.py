@@ -1,6 +1,7 @@
 """How far all parts are: a bar on a terminal, plain lines elsewhere, always to standard error."""
 
 import contextlib
+import textwrap
 import threading
 import time
 from typing import Any, Self
@@ -12,11 +13,14 @@ from rich.text import Text
 from plan_cutters.batch.row import PartRow
 from plan_cutters.batch.summary import OUTCOMES, cause, outcome
 from plan_cutters.files.terminal_text import clean
+from plan_cutters.plan_file.numbers import duration
 
 #: Where there is no terminal, up to so many parts have a line each; of more, counts are told now and then.
 EACH = 200
 #: Seconds between two such lines: in the first minute, and later.
 _SOON, _LATER = 5.0, 30.0
+#: Of a line, at most.
+COLUMNS = 80
 
 
 class Screen(Console):
@@ -46,7 +50,7 @@ class Board:
         self.quiet, self.total = quiet, total
         self.console = console or Screen(stderr=True, highlight=False, markup=False, emoji=False)
         self.done = self.running = self.failed = 0
-        self._rows = 0
+        self._rows = self._planned = 0
         self._said: set[str] = set()
         self._began = self._spoke = time.monotonic()
         self._lock = threading.RLock()
@@ -69,12 +73,14 @@ class Board:
             result = outcome(row)
             failed = result == "failed"
             self.failed += failed
+            self._planned += row.status != "kept" and row.seconds > 0.0
             if failed:
-                self._print(f"{self._clock}{row.name}: failed: {cause(row)}")
+                self._print(f"{self._front}{row.name}: failed: {cause(row)}")
             elif not self.quiet and self._bar is None and self._each:
                 note = "; reused from an earlier run" if row.status == "kept" else ""
                 wrong = f"; {row.error}" if row.error else ""
-                self._print(f"{self._clock}{row.name}: {OUTCOMES[result]}: {row.verdict}{note}{wrong}")
+                rest = f": {OUTCOMES[result]}{'; coarser than requested' * bool(row.coarser)}: {row.verdict}{note}{wrong}"
+                self._print(f"{self._front}{row.name}{rest}")
             self._update()
 
     def progress(self, done: int, running: int, total: int | None) -> None:
@@ -102,11 +108,19 @@ class Board:
                 with contextlib.suppress(OSError, ValueError):
                     bar.stop()
             elif not quiet:
-                self._print(f"{self._clock}{self._counts}")
+                self._print(f"{self._front}{self._so_far}")
 
     @property
-    def _clock(self) -> str:
-        return "" if self._bar is not None else f"{time.monotonic() - self._began:7.1f} s  "
+    def _front(self) -> str:
+        """How many parts of all are done, for how long and for how long still; nothing where a bar shows it."""
+        if self._bar is not None:
+            return ""
+        since = time.monotonic() - self._began
+        done = f"{self.done}" if self.total is None else f"{self.done:>{len(str(self.total))}}/{self.total}"
+        remaining = (self.total or 0) - self.done
+        # By the parts that were planned: what is reused from an earlier run takes no time.
+        more = f", about {duration(remaining * since / self._planned)} left" if self._planned and remaining > 0 else ""
+        return f"{done}  {duration(since)}{more}  "
 
     @property
     def _each(self) -> bool:
@@ -116,8 +130,12 @@ class Board:
     @property
     def _counts(self) -> str:
         of = f" of {self.total:,}" if self.total is not None else ""
+        return f"{self.done:,}{of} {self._so_far}"
+
+    @property
+    def _so_far(self) -> str:
         rest = [f"{self.running:,} in work"] * bool(self.running) + [f"{self.failed:,} failed"] * bool(self.failed)
-        return ", ".join([f"{self.done:,}{of} parts done", *rest])
+        return ", ".join(["parts done", *rest])
 
     def _update(self) -> None:
         if self.quiet:
@@ -129,12 +147,14 @@ class Board:
         now = time.monotonic()
         if not self._each and now - self._spoke > (_SOON if now - self._began < 60.0 else _LATER):
             self._spoke = now
-            self._print(f"{self._clock}{self._counts}")
+            self._print(f"{self._front}{self._so_far}")
 
     def _print(self, line: str) -> None:
-        """One line, never wrapped: scripts look for it."""
+        """Print a text in lines of at most 80 columns; words, as addresses and paths, are never parted: scripts look for them."""
+        lines = textwrap.wrap(clean(line), COLUMNS, subsequent_indent="    ", break_long_words=False, break_on_hyphens=False)
         with contextlib.suppress(OSError, ValueError, AttributeError):
-            self.console.print(Text(clean(line)), soft_wrap=True)
+            for each in lines:
+                self.console.print(Text(each), soft_wrap=True)
 
     def _draw(self) -> None:
         words = TextColumn("{task.description}", markup=False)

@@ -4,6 +4,8 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict
 
+from plan_cutters.batch.part_tools import PartTools
+
 #: `planned` in this run, `kept` from an earlier one, or `failed`: then `error` says why.
 Status = Literal["planned", "kept", "failed"]
 
@@ -40,6 +42,10 @@ class PartRow(BaseModel):
         The review page and the picture, below the output, where they were written.
     error : str, optional
         One line: file, face, cause, what to try.
+    coarser : str, optional
+        The part was sampled more coarsely than requested: what was requested, and what was done in its place.
+    tools : PartTools, optional
+        Which tools finish the part, alone or together; in no table.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -61,3 +67,5 @@ class PartRow(BaseModel):
     page: str | None = None
     picture: str | None = None
     error: str | None = None
+    coarser: str | None = None
+    tools: PartTools | None = None

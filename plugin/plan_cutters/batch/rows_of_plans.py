@@ -1,5 +1,6 @@
 """The line of a part in the table of all, made of its plan."""
 
+from plan_cutters.batch.part_tools import part_tools
 from plan_cutters.batch.row import PartRow, Status
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.shares import reached_share
@@ -61,6 +62,7 @@ def row_of(
         folder=folder,
         page=written.get("html"),
         picture=written.get("png"),
+        tools=part_tools(plan, code, names),
     )
 
 

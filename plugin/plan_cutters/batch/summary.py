@@ -8,7 +8,10 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from plan_cutters.batch.part_tools import PartTools
 from plan_cutters.batch.row import PartRow
+from plan_cutters.batch.shop import fewest
+from plan_cutters.workers.assignment import TIMED_OUT
 
 FORMAT_VERSION = 1
 #: Failures that the summary names; the table has all.
@@ -45,6 +48,26 @@ def code_of(row: PartRow) -> int:
     3
     """
     return row.code if outcome(row) != "failed" or row.code > 1 else 3
+
+
+#: What may end a batch with a code that is not zero, as `--fail-on` names it.
+FAIL_ON = ("refused", "unreadable", "late", "unfinished", "unsure")
+
+
+def fault(row: PartRow) -> str:
+    """Name what is wrong with a part, as `--fail-on` does; empty where it is finished.
+
+    >>> fault(PartRow(name="a", file="a.step", status="failed", code=124))
+    'late'
+    >>> fault(PartRow(name="a", file="a.step", status="failed", code=139))
+    'unreadable'
+    >>> fault(PartRow(name="a", file="a.step", status="kept", code=0))
+    ''
+    """
+    result = outcome(row)
+    if result == "failed":
+        return {2: "refused", TIMED_OUT: "late"}.get(code_of(row), "unreadable")
+    return {"not_finished": "unfinished", "not_sure": "unsure", "finished": ""}[result]
 
 
 def cause(row: PartRow) -> str:
@@ -93,6 +116,46 @@ class Failure(_Entry):
     error: str = Field(description="one line: file, face, cause, what to try")
 
 
+class ToolParts(_Entry):
+    """A tool is judged on so many parts; so many it finishes alone, and in the plans of so many it has a step."""
+
+    tool: str
+    id: str = Field(description="as in the plans: the same dimensions, the same id")
+    judged: int
+    alone: int = Field(description="parts of which it reaches every judged sample, beyond doubt")
+    used: int = Field(description="parts whose plan has a step with it, whatever the plan finishes")
+
+
+class LeastTools(_Entry):
+    """The fewest tools for all parts that are finished, as far as the plans state which tools finish a part together."""
+
+    tools: list[str] = Field(description="the one that finishes most parts alone first")
+    parts: int = Field(description="that they finish: all that any tools finish beyond doubt")
+    at_least: int = Field(description="proved: no fewer tools than this finish all of these parts, however they share faces")
+    proven: bool = Field(description="no fewer tools do: there are as many as `at_least`")
+
+
+class UnfinishedPart(_Entry):
+    """A part that nothing finishes, and what it needs."""
+
+    name: str
+    share: float | None = Field(description="of what is requested, that all its tools finish together, 0 to 1; null: not known")
+    needs: list[str] = Field(description="what would finish more, the best first; empty where its plan does not say")
+
+
+class ShopTools(_Entry):
+    """The tools of all parts of a batch together."""
+
+    tools: list[ToolParts] = Field(default=[], description="the one that finishes most parts alone first")
+    least: LeastTools | None = Field(default=None, description="null where no part is finished")
+    never_used: list[str] = Field(default=[], description="judged, and in no step of any plan")
+    unfinished: list[UnfinishedPart] = Field(default=[], description=f"the first {NAMED}, by name")
+    unfinished_count: int = Field(
+        default=0, description="parts that nothing finishes; those in doubt and failed ones are not counted"
+    )
+    not_known: int = Field(default=0, description="parts, failed ones too, of which no plan states what its tools finish")
+
+
 class Table(_Entry):
     name: str
     sha256: str
@@ -117,6 +180,7 @@ class Summary(_Entry):
     parts: Parts
     by_cutter: list[CutterParts] = Field(description="most parts first; parts without a cutter are in none")
     by_reason: list[ReasonParts] = Field(description="most parts first; of the parts that are not finished")
+    shop: ShopTools = Field(default=ShopTools(), description="which tools finish which parts, alone and together")
     failures: list[Failure] = Field(description=f"the first {NAMED}, by name; the tables have all")
     files: dict[str, Table] = Field(description="the tables that were written before this file, by format")
     versions: dict[str, str]
@@ -146,11 +210,55 @@ def summary_of(
         by_reason=[
             ReasonParts(reason=code, parts=parts) for code, parts in sorted(reasons.items(), key=lambda each: (-each[1], each[0]))
         ],
+        shop=_shop(rows, outcomes),
         failures=[Failure(name=row.name, file=row.file, code=code_of(row), error=cause(row)) for row in failed[:NAMED]],
         files=dict(files),
         versions=dict(versions),
         run=run,
     )
+
+
+def _shop(rows: Sequence[PartRow], outcomes: Sequence[Outcome]) -> ShopTools:
+    """Sum up the tools of all parts."""
+    parts = [row.tools for row in rows if row.tools is not None and row.status != "failed"]
+    names = _names(parts)
+    judged = Counter(tool for part in parts for tool in part.names)
+    alone = Counter(tool for part in parts for tool in part.alone)
+    used = Counter(tool for part in parts for tool in part.used)
+    order = sorted(judged, key=lambda tool: (-alone[tool], -used[tool], names[tool], tool))
+    best = fewest(parts)
+    unfinished = [row for row, result in zip(rows, outcomes, strict=True) if result == "not_finished"]
+    return ShopTools(
+        tools=[ToolParts(tool=names[tool], id=tool, judged=judged[tool], alone=alone[tool], used=used[tool]) for tool in order],
+        least=None
+        if not best.tools
+        else LeastTools(
+            tools=[names[tool] for tool in best.tools],
+            parts=sum(part.finished_by(best.tools) for part in parts),
+            at_least=best.at_least,
+            proven=best.proven,
+        ),
+        never_used=[names[tool] for tool in order if not used[tool]],
+        unfinished=[
+            UnfinishedPart(
+                name=row.name, share=row.tools.share if row.tools else None, needs=list(row.tools.needs) if row.tools else []
+            )
+            for row in unfinished[:NAMED]
+        ],
+        unfinished_count=len(unfinished),
+        not_known=len(rows) - len(parts),
+    )
+
+
+def _names(parts: Sequence[PartTools]) -> dict[str, str]:
+    """How each tool is called, by its id: as most plans call it, each otherwise."""
+    ways: dict[str, Counter[str]] = {}
+    for part in parts:
+        for tool, name in part.names.items():
+            ways.setdefault(tool, Counter())[name] += 1
+    names = {tool: min(way, key=lambda name: (-way[name], name)) for tool, way in ways.items()}
+    taken = Counter(names.values())
+    return {tool: name if taken[name] == 1 else f"{name} ({tool})" for tool, name in names.items()}
 
 
 def _counts(counts: Mapping[str, int]) -> dict[str, int]:

@@ -16,18 +16,20 @@ from plan_cutters.batch.summary import cause, outcome
 _FORMULA = re.compile(r"[=+\-@＝＋－＠'\s\x00-\x1f\x7f]")
 #: Outcome first, as it sums up status and code; then the fields of a row in their order. New ones are appended.
 _FIRST = ("name", "file", "outcome")
+#: What no cell holds: the summary counts it.
+_NESTED = frozenset({"tools"})
 
 
 def columns() -> dict[str, type]:
     """The columns in their order: name -> str, int or float."""
-    fields = {name: _kind(field.annotation) for name, field in PartRow.model_fields.items()}
+    fields = {name: _kind(field.annotation) for name, field in PartRow.model_fields.items() if name not in _NESTED}
     return {**{name: fields.get(name, str) for name in _FIRST}, **fields}
 
 
 def values(row: PartRow) -> dict[str, Any]:
     """The cells of a row; None for what is not known. A part that failed always says why."""
     result = outcome(row)
-    cells = {**row.model_dump(), "outcome": result, "error": cause(row) if result == "failed" else row.error}
+    cells = {**row.model_dump(exclude=set(_NESTED)), "outcome": result, "error": cause(row) if result == "failed" else row.error}
     return {
         name: None if isinstance(cells[name], float) and not math.isfinite(cells[name]) else cells[name] for name in columns()
     }

@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from plan_cutters.batch import keys, store
 from plan_cutters.batch.content import Content, content
@@ -18,8 +18,13 @@ from plan_cutters.batch.job import UNREADABLE, USAGE, Handed
 from plan_cutters.batch.job_input import JobInput, Offer
 from plan_cutters.batch.row import PartRow
 from plan_cutters.errors import PlanError
+from plan_cutters.options import Options
+from plan_cutters.plan_file.numbers import count, mm
 from plan_cutters.workers.assignment import INTERRUPTED, TIMED_OUT, Assignment
 from plan_cutters.workers.child import Child, compiler
+
+if TYPE_CHECKING:
+    from plan_cutters.plan_file.model import Plan
 
 PLAN = "plan.json"
 #: Folder of the output with the verdicts of each cutter on each part.
@@ -140,10 +145,15 @@ def work(task: Task) -> Outcome:
         with tempfile.TemporaryDirectory(prefix="plan-", dir=_scratch(), ignore_cleanup_errors=True) as name:
             folder = Path(name)
             code, line = planned(task, content, folder)
+            late = code == TIMED_OUT and (folder / "out" / PLAN).is_file()
+            if late:
+                line = _late(task, folder / "out")
             made = files_of(folder / "out")
-            if code not in _PLANNED or PLAN not in made:
+            if PLAN not in made or not (late or code in _PLANNED) or (late and _is_done(output, task, key)):
                 return failed(line or f"ended with exit code {code} and no plan", code if code > 1 else UNREADABLE, key)
             row = _row(task, made[PLAN].read_bytes(), key, code, time.monotonic() - began)
+            if late:
+                row = row.model_copy(update={"status": "failed", "error": line})
             if output is None:
                 return Outcome(row, {name: path.read_bytes() for name, path in made.items()})
             output.publish(task.folder, made, row)
@@ -170,7 +180,7 @@ def content_of(task: Task) -> Content:
 def cached(output: store.Store, folder: str, key: str, name: str, file: str) -> PartRow | None:
     """The row of an earlier run with the same key; None where there is none, or its files have changed."""
     row = output.row(folder)
-    if row is None or row.key != key:
+    if row is None or row.key != key or row.status == "failed":
         return None
     return row.model_copy(update={"status": "kept", "name": name, "file": file})
 
@@ -295,10 +305,7 @@ def planned(task: Task, content: Content, folder: Path) -> tuple[int, str]:
         ends = time.monotonic() + (task.timeout or float("inf"))
         while (code := child.ended(_LOOK)) is None:
             if time.monotonic() > ends:
-                return TIMED_OUT, (
-                    f"{task.file}: not done within {task.timeout:g} s: sample more coarsely "
-                    "(--spacing), or give more time (--timeout-part)"
-                )
+                return TIMED_OUT, _out_of_time(task)
             if not wanted():
                 return INTERRUPTED, f"{task.file}: interrupted"
             if offer is not None and not shared and os.path.exists(offer.said):
@@ -312,6 +319,35 @@ def planned(task: Task, content: Content, folder: Path) -> tuple[int, str]:
         return UNREADABLE, f"{task.file}: the process was killed ({signal.Signals(-code).name}): out of memory, perhaps"
     line = line.removeprefix("plan-cutters: ")
     return code, line if task.file in line else line.replace(f"./{name}", task.file)
+
+
+def _out_of_time(task: Task) -> str:
+    advice = "sample more coarsely (--spacing), or give more time (--timeout-part)"
+    return f"{task.file}: not done within {task.timeout:g} s: {advice}"
+
+
+def _late(task: Task, out: Path) -> str:
+    """Say in a plan that was safe before its part ran out of time what it is without; the line about the part."""
+    from plan_cutters.report.folder import ended, file_name
+    from plan_cutters.report.to_json import unfinished
+
+    missing = ended(out, f"not done within {task.timeout:g} s")
+    text = unfinished(out / PLAN) or f"without {', '.join(map(file_name, missing)) or 'all files'}"
+    return f"{_out_of_time(task)}. Late: the plan so far is there. {text}"
+
+
+def _is_done(output: store.Store | None, task: Task, key: str) -> bool:
+    """Whether the whole plan of an earlier run with the same key stands in the output: a partial one does not take its place."""
+    return output is not None and cached(output, task.folder, key, task.name, task.file) is not None
+
+
+def coarser(options: Options, plan: "Plan") -> str | None:
+    """Say how a part was sampled more coarsely than requested, for that would have taken too many samples; else None."""
+    if plan.effective.sampled_by != "default" or (options.spacing is None and options.grid is None):
+        return None
+    wanted = f"--spacing {options.spacing:g}" if options.grid is None else f"--grid {options.grid}"
+    samples = f"{count(plan.samples.count, 'sample')}, up to {mm(plan.samples.max_gap_mm)} apart"
+    return f"coarser than requested: {wanted} would take too many samples here; judged at {samples}"
 
 
 def files_of(folder: Path) -> dict[str, Path]:
@@ -329,5 +365,6 @@ def _row(task: Task, content: bytes, key: str, code: int, seconds: float) -> Par
 
     plan = plan_of(content, PLAN)
     row = row_of(plan, name=task.name, file=task.file, code=code, key=key, folder=task.folder, seconds=seconds)
+    row = row.model_copy(update={"coarser": coarser(pickle.loads(task.handed.options), plan)})
     missing = "; ".join(f"{name}: {why}" for name, why in plan.not_written.items())
     return row.model_copy(update={"error": f"not written: {missing}"}) if missing else row

@@ -84,6 +84,13 @@ _many = heading("Many parts")
     metavar="GB",
     help="Most memory of a part.  [default: an equal share of 3/4 of this machine's, at least 4]",
 )
+@_many(
+    "--fail-on",
+    brief="Outcomes that give an exit code other than 0.",
+    metavar="WORD[,...]",
+    help="What gives an exit code other than 0: unreadable (or crashed), late (--timeout-part), refused (its options), "
+    "unfinished, unsure; none: nothing does.  [default: all of them]",
+)
 @_many("--force", brief=True, is_flag=True, help="Plan again what is done already.")
 @_many("--dry-run", brief=True, is_flag=True, help="Say what would be planned, and do nothing.")
 @options("no_cache", "verdicts_key", "read_timeout", "debug", jobs={"help": "Threads of each part.  [default: 1]"})
@@ -114,12 +121,13 @@ def command(request: BatchRequest) -> int:
         raise OptionError("--limit-memory must be at least 2 GB")
     if request.cluster is not None and request.workers is not None:
         raise OptionError("--workers is about this machine: leave it out with --cluster")
+    fail_on = _fail_on(request.fail_on)
     secret = None if request.verdicts_key is None else key_of(request.verdicts_key)
     out = Store(request.out, secret)
     terms = Terms(request.force, request.timeout_part, memory, secret)
     if request.dry_run:
         return _foreseen(parts, out, terms)
-    return _all(parts, out, terms, request)
+    return _all(parts, out, terms, request, fail_on)
 
 
 def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
@@ -127,13 +135,31 @@ def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
     run(command, name, args)
 
 
-def _all(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", request: BatchRequest) -> int:
-    """Plan them under the eyes of a board; the largest exit code."""
+def _fail_on(words: str | None) -> frozenset[str]:
+    """What gives an exit code other than 0."""
+    from plan_cutters.batch.summary import FAIL_ON
+    from plan_cutters.errors import OptionError
+
+    if words is None:
+        return frozenset(FAIL_ON)
+    chosen = [word.strip() for word in words.split(",")]
+    if chosen == ["none"]:
+        return frozenset()
+    for word in chosen:
+        if word not in FAIL_ON:
+            raise OptionError(f"--fail-on takes some of {','.join(FAIL_ON)}, or none, not {word!r}")
+    return frozenset(chosen)
+
+
+def _all(
+    parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", request: BatchRequest, fail_on: frozenset[str]
+) -> int:  # fmt: skip
+    """Plan them under the eyes of a board; the largest exit code of what the batch fails on."""
     from plan_cutters.batch import cluster
     from plan_cutters.batch.index import PAGE
     from plan_cutters.batch.progress import Board
     from plan_cutters.batch.run import run_batch
-    from plan_cutters.batch.summary import OUTCOMES, outcome
+    from plan_cutters.batch.summary import OUTCOMES, code_of, fault, outcome
     from plan_cutters.plan_file.numbers import count as counted
 
     out.begin()  # what is wrong with it is said before any worker is started
@@ -145,12 +171,10 @@ def _all(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", request: 
             terms.memory = share
         with cluster.opened(request.cluster, count) as client:
             facts = cluster.facts(client)
-            board.say(
-                f"{len(parts)} parts on {facts['workers']} workers of {facts['address']}"
-                + (f"; dashboard {facts['dashboard']}" if facts["dashboard"] else "")
-            )
+            board.say(f"{counted(len(parts), 'part')} on {counted(int(str(facts['workers'])), 'worker')} of {facts['address']}")
+            board.say(f"Dashboard: {facts['dashboard'] or 'none here; pip install bokeh gives one'}")
             for row in run_batch(parts, client, out, terms, board=board, title=" ".join(request.sources)):
-                code = max(code, row.code)
+                code = max(code, code_of(row) if fault(row) in fail_on else FEASIBLE)
                 totals[outcome(row)] += 1
                 board.row(row)
     finally:
@@ -158,9 +182,16 @@ def _all(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", request: 
         out.end()
     if not request.quiet:
         many = ", ".join(f"{totals[each]} {word}" for each, word in reversed(OUTCOMES.items()) if totals[each])
-        terminal.show(f"{counted(totals.total(), 'part')}: {many}.", f"Look at them in a browser: {out.root_url}/{PAGE}")
+        terminal.show(f"{counted(totals.total(), 'part')}: {many}.", _where(out, PAGE))
         terminal.all_shown()
     return code
+
+
+def _where(out: "Store", page: str) -> str:
+    """Say how to look at the table: no browser opens an address on object storage."""
+    if out.local:
+        return f"Look at them in a browser: {out.root_url}/{page}"
+    return f"The table is {out.root_url}/{page}: copy the folder to this machine to open it, or give --out a folder."
 
 
 def _foreseen(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms") -> int:

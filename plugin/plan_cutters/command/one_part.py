@@ -6,10 +6,11 @@ import time
 import traceback
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import ExitStack, closing, contextmanager
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from plan_cutters.batch.job_input import job_input
+from plan_cutters.batch.job_input import default_density, job_input
 from plan_cutters.command import terminal
 from plan_cutters.command.codes import UNREADABLE, code_of
 from plan_cutters.command.partial_plan import verdicts_text
@@ -39,6 +40,7 @@ def one_part(
 
     `began`: when the command did, for the first part (`time.monotonic`); `omitted`: why faces are not to be worked on, by number.
     """
+    from plan_cutters.errors import TooManySamplesError
     from plan_cutters.report.folder import DEFAULT_FORMATS, Staging, ended, file_name, read_formats, write_all, write_unfinished
     from plan_cutters.report.to_json import dumps
 
@@ -66,9 +68,16 @@ def one_part(
         handed = job_input().part
         source = pickle.loads(handed) if handed else part
         with _judging(request) as judged:
-            result = run(source, options, clock, read_timeout=request.read_timeout, at=report_work, compiling=compiling,
-                         excluded=omitted, judged=judged, stands=stands if staging else None,
-                         folder=_folder(out), cache=StageCache.of_user() if request.cache else None)  # fmt: skip
+            planned = partial(run, source, clock=clock, read_timeout=request.read_timeout, at=report_work, compiling=compiling,
+                              excluded=omitted, judged=judged, stands=stands if staging else None,
+                              folder=_folder(out), cache=StageCache.of_user() if request.cache else None)  # fmt: skip
+            try:
+                result = planned(options)
+            except TooManySamplesError:
+                if assignment().job is None:
+                    raise
+                # One density for all parts of a batch asks too much of this one: its row says so (`batch.work.coarser`).
+                result = planned(default_density(options))
         document = result.plan
         if out is None:
             watch.summarise(document)

@@ -139,6 +139,7 @@ class BatchRequest(PlanningRequest):
     workers: int | None
     timeout_part: float | None
     limit_memory: float | None
+    fail_on: str | None
     force: bool
     dry_run: bool
 

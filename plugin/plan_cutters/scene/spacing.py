@@ -9,7 +9,7 @@ import numpy as np
 from cad_io import Orientation, Part, SurfaceSamples
 from cad_io.sample import sample
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.errors import OptionError
+from plan_cutters.errors import OptionError, TooManySamplesError
 from plan_cutters.options import Options
 
 #: Spacing of samples, mm: one, by face number, or none where they are taken on a grid.
@@ -96,7 +96,7 @@ def affordable(part: Part, faces: Sequence[int], options: Options) -> None:
     elif options.spacing is not None:
         wanted = sum(part.faces[n - 1].area for n in faces) / options.spacing / options.spacing
     if wanted > most:
-        raise OptionError(
+        raise TooManySamplesError(
             f"that would take about {wanted:.2g} samples, at most {most:.0e} are taken: sample more coarsely, "
             "or choose faces with --faces",
             file=part.file,
