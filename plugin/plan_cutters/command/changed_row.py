@@ -62,8 +62,9 @@ def row_cases(row: Row, rule: str) -> "Iterator[Case]":
     if row.unread:
         case = Case(name, "planned as it was", "error", "not_planned", row.unread)
         yield counted(case, "not-comparable")
-    for case in difference_cases(row.difference) if row.difference is not None else ():
-        yield counted(case, "lost" if case.outcome == "failure" else "not-comparable")
+    if row.difference is not None:
+        for case in difference_cases(row.difference):
+            yield counted(case, "lost" if row.difference.lost else "not-comparable")
     whole = Case(name, "each face is reached whole by a cutter")
     if row.unreachable:
         text = f"no cutter reaches all of {listed(row.unreachable, 20)}"

@@ -121,7 +121,8 @@ def _text(face: FaceEntry, cutter: CutterEntry, verdicts: FaceVerdicts, required
         return f"{face.id} could not be judged: {unjudged or 'it has no sample'}"
     if not verdicts.not_reached:
         return f"not all of {face.id} could be judged: {unjudged}"
-    why = ", ".join(f"{reason(code)} {percent(part, some=True, whole=False)}" for code, part in by_share(share.lost_by))
+    alone = len(share.lost_by) == 1 and not verdicts.reached
+    why = ", ".join(f"{reason(code)} {percent(part, some=True, whole=alone)}" for code, part in by_share(share.lost_by))
     what = "is not reached" if verdicts.blocked else "is undecided"
     text = f"{unreached(verdicts, share)} of {face.id} {what}: {why or 'no reason is known'}"
     return f"{text}; {unjudged}" if unjudged else text
