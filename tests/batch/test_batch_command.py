@@ -76,9 +76,11 @@ def test_nothing_to_plan_is_one_line(batch, tmp_path):
 
 
 def test_parts_that_cannot_be_planned_are_errors_of_the_report(batch, tmp_path):
-    assert batch("none.step", "--out", "out", "--junit", "junit.xml", cwd=tmp_path).returncode == 3
+    (tmp_path / "all.toml").write_text("[[part]]\nfile='b.step'\ngrit=5\n")
+    assert batch("all.toml", "--out", "out", "--junit", "junit.xml", cwd=tmp_path).returncode == 3
     (found,) = cases((tmp_path / "junit.xml").read_bytes())
-    assert (found.part, found.outcome) == ("none.step", "error")
+    assert (found.name, found.outcome) == ("b", "error")
+    assert "no option of a part is called grit" in found.message
     for words in (["--junit", "-"], ["--junit", "b.xml", "--dry-run"]):
         done = batch("none.step", "--out", "out", *words, cwd=tmp_path)
         assert (done.returncode, "--junit" in done.stderr) == (2, True)

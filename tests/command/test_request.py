@@ -25,13 +25,15 @@ COMMANDS = {
     "stored": (request.StoredRequest, ["m.npz"], ["p.step", "--cutter", "R6L80", "--setup", "s.toml", "--grid", "5",
                "--spacing", "2", "--jobs", "3", "--json", "-"]),
     "diff": (request.DiffRequest, ["a", "b"], ["--slack", "1", "--despite", "unit", "-o", "out", "--json", "--junit", "j.xml"]),
-    "changed": (request.ChangedRequest, [], ["--junit", "j.xml", "--base", "main", "--staged", "--cache", "c", "--pictures-branch", "p", "--",
+    "changed": (request.ChangedRequest, [], ["--junit", "j.xml", "--base", "main", "--staged",
+                 "--cache", "c", "--pictures-branch", "p", "--",
                 "--grid", "5"]),
     "tools": (request.ToolsRequest, [], ["a.toml", "--cutter", "D12L80", "--holder", "er32", "--assume-stickout", "30",
               "--to-toml", "b.toml", "--draw", "out", "--json"]),
     "machines": (request.MachinesRequest, [], ["trunnion-ac", "--angles", "0,0,1", "--axis", "A=3", "--to-toml", "m.toml"]),
     "batch": (request.BatchRequest, ["parts", "--out", "plans"], ["--cutter", "R6L80", "--setup", "+x", "--workers", "2",
-              "--timeout-part", "9", "--limit-memory", "4", "--cluster", "tcp://h:1", "--force", "--dry-run", "--jobs", "1", "--junit", "j.xml"]),
+              "--timeout-part", "9", "--limit-memory", "4", "--cluster", "tcp://h:1", "--force", "--dry-run", "--jobs", "1",
+              "--junit", "j.xml"]),
     "mcp": (request.McpRequest, [], ["--root", "parts", "--client-roots", "--most-mb", "3", "--memory", "4", "--timeout", "9"]),
 }  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""What became of a part that changed, by which rule it fails, and its test cases."""
+"""A part that changed is a row: what became of it, by which rule it fails, and its test cases."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -71,7 +71,7 @@ def requested_words() -> Sequence[str]:
     default="",
     help="Compare although these differ: unit, faces, sampling, postures, tolerance, clearance, machine, setup, fixtures.",
 )
-@options("debug", junit={"help": "Also write what was lost as JUnit XML: a test case for each face and cutter that differs."})
+@options("debug", junit={"help": "Also write JUnit XML: a test case for each face and cutter that differs."})
 @takes(DiffRequest)
 def command(request: DiffRequest) -> int:
     """Show which faces and cutters were lost or won from plan OLD to plan NEW.

@@ -7,7 +7,7 @@ code of `diff` says.
 from collections.abc import Iterator
 
 from plan_cutters.comparison.model import Comparison, PlanDifference
-from plan_cutters.comparison.wording import called, cutter_rows, face_rows, headline
+from plan_cutters.comparison.wording import CUTTERS, apart, called, cutter_rows, face_rows, headline
 from plan_cutters.report.junit.cases import Case
 
 #: Name of the case that is about two plans as wholes.
@@ -17,9 +17,9 @@ COMPARABLE = "comparable"
 def comparison_cases(comparison: Comparison) -> list[Case]:
     """The cases of all plans of two folders, or of two plans."""
     cases = [case for each in comparison.plans for case in difference_cases(each)]
-    cases += [
-        Case(name, COMPARABLE, "failure", "lost", f"only in {comparison.old}; it counts as lost") for name in comparison.only_old
-    ]
+    # Lines as the terminal has them, these first.
+    gone = zip(comparison.only_old, apart(comparison), strict=False)
+    cases += [Case(name, COMPARABLE, "failure", "gone", line.removeprefix(f"{name}: ")) for name, line in gone]
     cases += [Case(name, COMPARABLE) for name in comparison.only_new]
     return cases + [Case(line.partition(":")[0], COMPARABLE, "error", "unread", line) for line in comparison.unread]
 
@@ -38,10 +38,10 @@ def difference_cases(difference: PlanDifference) -> Iterator[Case]:
             continue
         text = f"was {was}, now {now}" if face.was is not None else f"is new, and {now}"
         yield case._replace(outcome="failure", kind="lost", message=text, details=f"{kind}, {area}")
-    for cutter, (_, what, was, now, lost, _, changed) in zip(difference.cutters, cutter_rows(difference), strict=True):
+    for cutter, (_, what, was, now, faces, _, changed) in zip(difference.cutters, cutter_rows(difference), strict=True):
         case = Case(name, f"cutter {what}")
         if not cutter.lost:
             yield case
             continue
-        more = [f"faces lost: {lost}"] * bool(lost) + [f"changed: {changed}"] * bool(changed)
+        more = [f"{CUTTERS[4]}: {faces}"] * bool(faces) + [f"changed: {changed}"] * bool(changed)
         yield case._replace(outcome="failure", kind="lost", message=f"was {was}, now {now}", details="\n".join(more))
