@@ -348,7 +348,7 @@ class ChangedRow(Entry):
     """A face or cutter that two plans answer otherwise."""
 
     name: str
-    what: str = Field(description="lost, won, lost and won, changed, new or gone")
+    what: str = Field(description="what became of it, as `diff` of the command line says it")
     was: str
     now: str
     changed: str = ""
@@ -358,7 +358,7 @@ class PlanDifferenceAnswer(Answer):
     format: Literal["plan-cutters-agent-difference"] = "plan-cutters-agent-difference"
     comparable: bool
     why_not: list[str] = Field(default=[])
-    lost: bool | None = Field(description="whether a face or cutter lost something; null: not comparable")
+    lost: bool | None = Field(description="whether a face or cutter reaches less; null: not comparable")
     won: bool | None
     selected: list[str | None] = Field(description="ids of the cutters to take, old and new")
     faces: list[ChangedRow] = Field(description="the worst first")

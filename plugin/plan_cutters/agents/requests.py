@@ -195,7 +195,7 @@ class ShopQuestion(Question):
 
 
 class DifferenceQuestion(Question):
-    """What did a change of a part, its tools or its setup cost?"""
+    """How do two plans differ?"""
 
     old: Path = Field(description="plan.json, in a root")
     new: Path = Field(description="plan.json, in a root")

@@ -2,7 +2,7 @@
 
 Limits of lengths and defaults of None are left out: a call that breaks one is refused in a line. What a question shares with
 that of `plan_part` is described there alone. Of an answer the fields and their types are stated, but not what lists and objects
-hold: an answer says that itself, and the documentation describes it.
+hold: their names say it in the answer itself.
 """
 
 from typing import Any
@@ -10,7 +10,7 @@ from typing import Any
 from pydantic import BaseModel
 
 #: What a program needs to make a call; the rest is checked when it comes.
-_KEPT = (
+_FIELDS = (
     "type",
     "enum",
     "const",
@@ -58,25 +58,25 @@ def answer_schema(model: type[BaseModel]) -> dict[str, Any]:
 def _short(field: dict[str, Any], definitions: dict[str, Any], *, nullable: bool = False) -> dict[str, Any]:
     """A field without what need not be read; `nullable`: that it may be null is said."""
     field = _named(field, definitions)
-    kept = {key: field[key] for key in _KEPT if key in field and field[key] not in (None, [], "")}
-    if len(kept.get("pattern", "")) > _PATTERN:
-        del kept["pattern"]
+    short = {key: field[key] for key in _FIELDS if key in field and field[key] not in (None, [], "")}
+    if len(short.get("pattern", "")) > _PATTERN:
+        del short["pattern"]
     if choices := field.get("anyOf"):
         made = [_short(each, definitions) for each in choices]
         types = [each["type"] for each in made if "type" in each]
         merged = next((each for each in made if each.get("type") != "null"), {})
-        kept = {**merged, **kept}
+        short = {**merged, **short}
         if nullable and len(types) > 1:
-            kept["type"] = types
-    if "prefixItems" in kept:
+            short["type"] = types
+    if "prefixItems" in short:
         # Points and ranges: so many numbers.
-        items = kept.pop("prefixItems")
-        kept |= {"items": {"type": "number"}, "minItems": len(items), "maxItems": len(items)}
-    if isinstance(kept.get("items"), dict):
-        kept["items"] = {
-            key: value for key, value in _short(kept["items"], definitions).items() if key not in ("description", "pattern")
+        items = short.pop("prefixItems")
+        short |= {"items": {"type": "number"}, "minItems": len(items), "maxItems": len(items)}
+    if isinstance(short.get("items"), dict):
+        short["items"] = {
+            key: value for key, value in _short(short["items"], definitions).items() if key not in ("description", "pattern")
         }
-    return kept
+    return short
 
 
 def _named(field: dict[str, Any], definitions: dict[str, Any]) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""What there is to plan with: the tools of a library or the built-in set, machines and holders."""
+"""List what there is to plan with: the tools of a library or the built-in set, and machines."""
 
 import json
 from collections.abc import Sequence
@@ -50,7 +50,7 @@ def shop_answer(
     named, more_named = first([*machines], most)
     lines, more_lines = first([*unused], most)
     what = library or "the built-in set, for a first look: nobody's tools"
-    text = f"{len(tools)} tools of {what}; {len(machines)} built-in machines, beside `unlimited` and `tilt:DEG`."
+    text = f"{len(tools)} tools of {what}; {len(machines)} built-in machines; `unlimited` and `tilt:DEG` are others."
     return ShopAnswer(
         part="", told=text, library=library, tools=shown, more_tools=more, unused=lines, more_unused=more_lines, machines=named,
         more_machines=more_named,
