@@ -362,7 +362,7 @@ TOOLS = (
     ),
     Tool(
         "compare_plans", "What changed from one plan to another",
-        "Compare two plan.json files, as before and after a change of the part: which faces and cutters reach less, and which more.",
+        "Compare two plan.json files, as before and after a change of the part: which faces and cutters reach less or more.",
         DifferenceQuestion, PlanDifferenceAnswer, compare_plans,
     ),
 )  # fmt: skip

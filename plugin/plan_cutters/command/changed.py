@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from cad_io.whole import whole
+from plan_cutters.command.annotations import KINDS, annotations, requested
 from plan_cutters.command.changed_row import RULES, Row, row_cases
 from plan_cutters.command.codes import run
 from plan_cutters.command.help_groups import Command, heading
@@ -125,6 +126,11 @@ class PartRequest:
     help="Plans before and after, summary.md and changed.json.  [default: plan-cutters-changed]",
 )
 @_output("--cache", type=Folder("DIR"), help="Plans of earlier runs, by content; parts that are there are not planned again.")
+@_output(
+    "--annotations",
+    type=click.Choice(KINDS),
+    help="github: an ::error line for each part that fails, on standard error; none.  [default: github in a job of GitHub]",
+)
 @_output("--pictures-branch", metavar="NAME", help="Push pictures to this branch of origin and show them in the summary.")
 @options("debug", junit={"help": "Also write what became of each part as JUnit XML; what --fail-on lets pass is skipped."})
 @takes(ChangedRequest)
@@ -159,8 +165,11 @@ def command(request: ChangedRequest) -> int:
     failing = [row for row in rows if row.breaks(request.fail_on)]
     text, job = (_summary(rows, request.fail_on, failing, links, began, at) for at in ("", _artifacts()))
     _hand_on(rows, out, text, job, failing)
+    cases = [(row.part.name, [*row_cases(row, request.fail_on)]) for row in rows]
     if request.junit is not None:
-        write(request.junit, _SELF, [case for row in rows for case in row_cases(row, request.fail_on)])
+        write(request.junit, _SELF, [case for _, each in cases for case in each])
+    for line in annotations(cases) if requested(request.annotations) else ():
+        error(line)
     for row in rows:
         for line in filter(None, (row.failed, row.unread)):
             error(f"{_SELF}: {line}")

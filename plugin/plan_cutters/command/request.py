@@ -215,6 +215,7 @@ class ChangedRequest:
     fail_on: str
     out: str
     junit: str | None
+    annotations: str | None
     cache: str | None
     pictures_branch: str | None
     debug: bool
