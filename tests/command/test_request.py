@@ -25,7 +25,7 @@ COMMANDS = {
     "stored": (request.StoredRequest, ["m.npz"], ["p.step", "--cutter", "R6L80", "--setup", "s.toml", "--grid", "5",
                "--spacing", "2", "--jobs", "3", "--json", "-"]),
     "diff": (request.DiffRequest, ["a", "b"], ["--slack", "1", "--despite", "unit", "-o", "out", "--json", "--junit", "j.xml"]),
-    "changed": (request.ChangedRequest, [], ["--junit", "j.xml", "--base", "main", "--staged",
+    "changed": (request.ChangedRequest, [], ["--junit", "j.xml", "--annotations", "none", "--base", "main", "--staged",
                  "--cache", "c", "--pictures-branch", "p", "--",
                 "--grid", "5"]),
     "tools": (request.ToolsRequest, [], ["a.toml", "--cutter", "D12L80", "--holder", "er32", "--assume-stickout", "30",

@@ -20,10 +20,10 @@ def difference(old: Plan, new: Plan, most: int) -> PlanDifferenceAnswer:
     ]
     shown, more_faces = first(faces, most)
     named, more_cutters = first(cutters, most)
-    told = "\n".join([headline(result), *result.why_not, *remarks(result)])
+    sentences = "\n".join([headline(result), *result.why_not, *remarks(result)])
     open_faces, more_open = first(result.unreachable if result.comparable else [], most)
     return PlanDifferenceAnswer(
-        part=new.part.file or "", told=told, comparable=result.comparable,
+        part=new.part.file or "", told=sentences, comparable=result.comparable,
         why_not=result.why_not, lost=result.lost if result.comparable else None, won=result.won if result.comparable else None,
         selected=[*result.selected], faces=shown, more_faces=more_faces, cutters=named, more_cutters=more_cutters,
         unreachable=open_faces, more_unreachable=more_open,
