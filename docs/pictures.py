@@ -36,9 +36,9 @@ def main() -> None:
         text = said[: said.index("\nReview page")]
         (PICTURES / "summary.txt").write_text(text.rstrip() + "\n", encoding="utf-8")
         _readme(text.splitlines())
-        run("plan-cutters-map", "samples/peaks_and_valleys.step", "--at", "-2.241,4.502,-22.43", "--cutter", "D16L90", "-o",
+        run("plan-cutters", "map", "samples/peaks_and_valleys.step", "--at", "-2.241,4.502,-22.43", "--cutter", "D16L90", "-o",
             str(PICTURES / "map.png"))  # fmt: skip
-        run("plan-cutters-tools", "samples/shop.toml", "--draw", str(out / "drawings"))
+        run("plan-cutters", "tools", "samples/shop.toml", "--draw", str(out / "drawings"))
         shutil.copy(next((out / "drawings").glob("*flat*12*.svg")), PICTURES / "tool.svg")
         run("plan-cutters", "samples/pocket_top.step", "--cutters", "samples/shop.toml", "--machine", "trunnion-ac", "--fixture",
             "table", "--formats", "png", "-o", str(out / "sheet"))  # fmt: skip

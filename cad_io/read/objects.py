@@ -81,9 +81,9 @@ def face_numbers(part: Part, value: Any) -> tuple[int, ...]:
         if not number:
             partner = next((n for n in range(1, known.Extent() + 1) if known.FindKey(n).IsPartner(face)), None)
             raise ReadError(
-                "a face given is none of the part's: pick it on the shape that is planned, after its last change"
+                "a given face is not a face of the part: pick it on the shape that is planned, after its last change"
                 if partner is None
-                else f"a face given is F{partner} of the part, but in another place: pick it on the part as it is placed"
+                else f"a given face is F{partner} of the part, but in another place: pick it on the part as it is placed"
             )
         numbers.add(number)
     if not numbers:

@@ -212,7 +212,7 @@ class UnreadFaces:
                     if (why := self._altered(number, self.shapes[n - 1]))
                 ]
         for number, count in missing_faces(self.model):
-            why = self._cause("a face that the shell lists is missing, or is none", [number])
+            why = self._cause("a face that the shell lists is missing or invalid", [number])
             unread += [LostFace(self.ident(number), "", why)] * count
         unread += self._places()
         unread += self._not_placed()

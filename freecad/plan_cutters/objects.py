@@ -269,7 +269,7 @@ def put_tool(group, spot: results.Spot | results.Sample):
             counts = [len(solid.Faces) for solid in found.Shape.Solids]
             host.paint_faces(found, [tool.COLOURS[part] for part, count in zip(parts, counts) for _ in range(count)])
         if spot.tip is None:
-            raise model.Refused(f"where the tip of {spot.cutter} is cannot be told from the plan: the review page shows it")
+            raise model.Refused(f"the plan does not have the place of the tip of {spot.cutter}: the review page shows it")
         found.Placement = tool.placement(spot.tip, spot.axis)
         host.visible(found, True)
     return found

@@ -29,7 +29,7 @@ class Page:
         layout.addRow("Command", line)
         note = qt.QLabel(
             "The workbench runs the program plan-cutters as a process of its own, with its own Python. Install it once, for "
-            "example with “uv tool install plan-cutters” or “pipx install plan-cutters”."
+            "example with “uv tool install .” or “pipx install .” in its folder."
         )
         note.setWordWrap(True)
         layout.addRow(note)

@@ -44,7 +44,7 @@ class Watch:
                     if why:
                         objects.drop(group, why)
         except Exception as error:  # an observer that raises would stop the others
-            host.warn(f"whether plans are up to date could not be told: {error}")
+            host.warn(f"whether plans are up to date is not known: {error}")
         finally:
             self._busy = False
 

@@ -1,6 +1,15 @@
 """Planning raises these errors. Every error says the file, the face where there is one, and the cause."""
 
 
+def extra_hint(extra: str) -> str:
+    """Name the command that installs an extra. It takes the project's folder: no package index has the program.
+
+    >>> extra_hint("batch")
+    'pip install ".[batch]" in the folder of plan-cutters'
+    """
+    return f'pip install ".[{extra}]" in the folder of plan-cutters'
+
+
 class PlanError(Exception):
     """Base of all errors of `plan_cutters`.
 

@@ -294,7 +294,7 @@ def test_a_missing_extra_and_a_wrong_root_are_one_line(monkeypatch, tmp_path):
 
     assert said("--root", str(tmp_path / "none")).endswith("is no folder; give one with --root")
     monkeypatch.setattr(command, "find_spec", lambda name: None)
-    assert said() == 'the extra is not installed: pip install "plan-cutters[mcp]"'
+    assert said() == 'the extra is not installed: pip install ".[mcp]" in the folder of plan-cutters'
 
 
 def test_whoever_runs_a_service_allows_fewer_samples(monkeypatch):

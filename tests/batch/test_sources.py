@@ -43,7 +43,7 @@ def test_globs_and_files(folder):
     assert names(found(folder / "**/*.iges")) == ["deep/er/c"]
     assert names(found(folder / "b.step", folder / "deep/er/c.iges")) == ["b", "c"]
     (gone,) = faults(found(folder / "*.brep"))
-    assert "no STEP, IGES or BREP file is called so" in gone
+    assert "no STEP, IGES or BREP file matches it" in gone
 
 
 def test_an_empty_folder_is_one_line_and_the_others_go_on(folder, tmp_path):

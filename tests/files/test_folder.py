@@ -59,5 +59,5 @@ def test_a_file_larger_than_it_may_be_is_refused_here(tmp_path):
 def test_a_folder_here_needs_no_package(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "fsspec.core", None)
     Folder(str(tmp_path)).put("a", b"1")
-    with pytest.raises(PlanError, match=r"pip install .plan-cutters\[batch\]"):
+    with pytest.raises(PlanError, match=r"pip install .\.\[batch\]"):
         Folder("s3://shop")

@@ -202,7 +202,7 @@ def test_a_face_is_asked_for_in_many_ways(result, slotted):
     assert [each.number for each in result.faces("all")] == [face.number for face in result.part.faces]
     other = cq.Workplane().box(1, 1, 1).faces(">Z")
     for which, words in (("all", "11 faces were given"), (99, "no face F99"), ("nothing", "give sculptured"),
-                         (None, "no face of the part"), (other, "none of the part's")):  # fmt: skip
+                         (None, "no face of the part"), (other, "not a face of the part")):  # fmt: skip
         with pytest.raises(OptionError, match=words):
             result.face(which)
 

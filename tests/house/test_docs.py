@@ -28,3 +28,21 @@ def test_each_question_has_at_most_three_files():
     for question, files in ROWS:
         assert 1 <= len(files.split(",")) <= 3, question
         assert f"\n## {question.replace('-', ' ')}\n" in PAGE.lower()
+
+
+#: Phrases that a reader of other languages does not find in a dictionary, and the plain word.
+QUAINT = {
+    r"\b(?:is|are|was|were|be) told\b": "reported",
+    r"\bthat (?:is|are) none\b": "invalid",
+    r"\breckon": "compute",
+    r"\bcalled so\b": "has this name",
+    r"\bha(?:s|ve) no meaning\b": "unknown, invalid",
+    r"\bneither has a right\b": "not",
+}
+
+
+@pytest.mark.parametrize("phrase", QUAINT)
+def test_pages_have_plain_words(phrase):
+    pages = [ROOT / "README.md", ROOT / "freecad" / "README.md", *(ROOT / "docs").glob("*.md")]
+    found = {path.name: re.findall(rf".*{phrase}.*", path.read_text(encoding="utf-8")) for path in pages}
+    assert {name: lines for name, lines in found.items() if lines} == {}, f"say: {QUAINT[phrase]}"

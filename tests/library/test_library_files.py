@@ -61,7 +61,7 @@ HTML = "<!DOCTYPE html>\n<html><head><title>Sign in</title></head><body></body><
         ("a.csv", "Type (tool_type),Number (tool_number)\nflat end mill,3\n", r"no column \(tool_diameter\)"),
         ("a.csv", "a,b\n1,2\n", "a table .CSV. without Fusion's columns"),
         ("a.csv", "Type (tool_type),Diameter (tool_diameter),Unit (tool_unit),D2 (tool_diameter)\n", "twice"),
-        ("a.toml", '[[tools]]\nunit = "mm"\n', "'tools' has no meaning"),
+        ("a.toml", '[[tools]]\nunit = "mm"\n', "'tools' is unknown"),
         ("a.toml", "# none yet\n", "plan-cutters TOML: lists no tools"),
         ("a.toml", "[[tool]]\nDC = 12,5\n", "decimal point"),
         ("a.toml", 'unit = "mm"\n', "plan-cutters TOML: lists no tools"),

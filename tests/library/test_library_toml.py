@@ -125,8 +125,8 @@ def test_what_is_missing_is_asked_for(tmp_path, old, new, said):
         ("DC = 12", "DC = inf", "DC is inf"),
         ("DC = 12", "DC = -12", "DC is -12"),
         ("DC = 12", "DC = 1e9", "no tool is longer"),
-        ("DC = 12", "DC = 12\nDX = 3", "DX has no meaning"),
-        ("DC = 12", "DC = 12\n-1 = 3", "-1 has no meaning"),
+        ("DC = 12", "DC = 12\nDX = 3", "DX is unknown"),
+        ("DC = 12", "DC = 12\n-1 = 3", "-1 is unknown"),
         ("DC = 12", "DC = 12\nnumber = 1.5", "number is 1.5"),
         ("DC = 12", 'DC = 12\nnumber = ""', "number is"),
         ("DC = 12", 'DC = 12\nnumber = "3"', "number is 3"),
@@ -169,7 +169,7 @@ def test_a_unit_is_never_guessed(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("text", "said"), [("[tool]\nDC = 3\n", "two brackets"), ("colour = 3\n[[tool]]\n", "'?colour'? has no")]
+    ("text", "said"), [("[tool]\nDC = 3\n", "two brackets"), ("colour = 3\n[[tool]]\n", "'?colour'? is unknown")]
 )
 def test_tables_that_have_no_place(tmp_path, text, said):
     with pytest.raises(LibraryError, match=said):
@@ -251,7 +251,7 @@ def test_two_holders_of_one_name_are_not_chosen_from(tmp_path):
 
 def test_a_holder_that_is_called_none_is_no_reason_to_judge_without(tmp_path):
     holder = '[[holder]]\nname = "none"\npoints = [[0, 20], [9, 20]]\n'
-    with pytest.raises(LibraryError, match="call that otherwise"):
+    with pytest.raises(LibraryError, match="rename it"):
         read(tmp_path, MM + TOOL.replace('"R12:15L20+R15L30"', '"none"') + holder)
     (cutter,) = read(tmp_path, to_toml(read(tmp_path, MM + TOOL + holder)))
     assert cutter.holder.id == "R12:15L20+R15L30"

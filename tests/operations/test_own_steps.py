@@ -236,7 +236,7 @@ STEP = {"cutter": FLAT, "angles": UP}
 @pytest.mark.parametrize(
     ("process", "said"),
     [
-        ({"step": [{**STEP, "cutter": "D13L60"}]}, "step 1: cutter 'D13L60' is none of those that are judged: D12L60F26?"),
+        ({"step": [{**STEP, "cutter": "D13L60"}]}, "step 1: cutter 'D13L60' is not among those that are judged: D12L60F26?"),
         ({"step": [STEP, {"cutter": FLAT}]}, "step 2: angles are missing"),
         ({"step": [{**STEP, "axis": [0.0, 0.0, 1.0]}]}, "step 1: give angles or an axis, not both"),
         ({"step": [{**STEP, "angles": {"B": 0.0, "C": 0.0}}]}, "the rotary axes are C and A"),
@@ -253,7 +253,7 @@ STEP = {"cutter": FLAT, "angles": UP}
         ({"version": 2, "step": [STEP]}, "version is 2"),
         ({}, "has no step, and forbids nothing"),
         ({"step": [{**STEP, "faces": ["F9"]}]}, "step 1: faces: F9: no target face has this number"),
-        ({"steps": []}, "'steps' has no meaning here"),
+        ({"steps": []}, "'steps' is unknown here"),
         ({"rest": "leave"}, "nothing to judge"),
         ({"rest": "perhaps"}, "rest is 'perhaps'"),
         ({"forbid": [{"cutter": "R1", "faces": ["F1"]}]}, "forbid 1: cutter 'R1'"),

@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from plan_cutters.batch import keys
-from plan_cutters.errors import PlanError
+from plan_cutters.errors import PlanError, extra_hint
 from plan_cutters.files.temporary import require_temporary
 
 #: Bytes of memory for a part where nothing else is said, at least, and the share of a machine's memory that all parts may take.
@@ -50,7 +50,7 @@ def opened(address: str | None, workers: int = 1) -> Iterator[Any]:
     try:
         import distributed
     except ImportError:
-        raise PlanError('the package distributed is not there: pip install "plan-cutters[batch]"') from None
+        raise PlanError(f"the package distributed is not there: {extra_hint('batch')}") from None
     with contextlib.ExitStack() as stack:
         stack.enter_context(_quiet())
         if address is None:

@@ -69,7 +69,7 @@ def _of(word: str, out: str, manifest: Callable[[str], Sequence[Source | Fault]]
                 base,
                 [each for each in sorted(fs.glob(path)) if _is_part(each)],
                 fs,
-                "no STEP, IGES or BREP file is called so",
+                "no STEP, IGES or BREP file matches it",
             )
         if word.lower().endswith(MANIFESTS):
             return manifest(word)

@@ -66,10 +66,10 @@ def command(request: McpRequest) -> int:
 
     The tools are plan_part, posture_map, explain_sample, compare_cutters and render. Each call works in a process of its own.
     """
-    from plan_cutters.errors import OptionError
+    from plan_cutters.errors import OptionError, extra_hint
 
     if find_spec("mcp") is None:
-        raise OptionError('the extra is not installed: pip install "plan-cutters[mcp]"')
+        raise OptionError(f"the extra is not installed: {extra_hint('mcp')}")
     if sys.stdin is None or sys.stdout is None:
         raise OptionError("standard input or output is closed: a client talks over them")
     from plan_cutters.agents.limits import Limits

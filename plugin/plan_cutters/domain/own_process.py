@@ -153,7 +153,7 @@ def cutter_of(word: str, cutters: Sequence[Cutter], where: str) -> Cutter:
     words: Mapping[str, None] = dict.fromkeys([*(c.typed for c in cutters), *(c.id for c in cutters)])
     near = get_close_matches(word, list(words), 1)
     hint = f"{near[0]}?" if near else ", ".join(list(words)[:6])
-    raise OptionError(f"{where}: cutter {word!r} is none of those that are judged: {hint}")
+    raise OptionError(f"{where}: cutter {word!r} is not among those that are judged: {hint}")
 
 
 def _written(step: OwnStep) -> dict[str, Any]:

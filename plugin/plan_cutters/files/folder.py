@@ -10,10 +10,10 @@ from typing import Any
 from cad_io import files as user_files
 from cad_io.files import checksum, open_regular
 from cad_io.whole import whole
-from plan_cutters.errors import PlanError
+from plan_cutters.errors import PlanError, extra_hint
 from plan_cutters.files.regular import regular_bytes
 
-_MISSING = 'is not there: pip install "plan-cutters[batch]"'
+_MISSING = f"is not there: {extra_hint('batch')}"
 
 
 def file_system(url: str) -> tuple[Any, str]:

@@ -88,7 +88,7 @@ def read_toml(content: Content) -> LibraryContent:
         raise LibraryError(f"is no TOML: {_syntax(error)}", file=content.name) from None
     for key in document:
         if key not in ("unit", "tool", "holder"):
-            raise LibraryError(f"{shown(key)} has no meaning; a library has unit, [[tool]] and [[holder]]", file=content.name)
+            raise LibraryError(f"{shown(key)} is unknown; a library has unit, [[tool]] and [[holder]]", file=content.name)
     tools, holders = (document.get(key, []) for key in ("tool", "holder"))
     for key, tables in (("tool", tools), ("holder", holders)):
         if not isinstance(tables, list):
@@ -137,7 +137,7 @@ def _why(error: Exception) -> str:
     words = [word for word in words if (word.isidentifier() and word not in _KINDS) or word.isdigit()]
     field = " ".join(words) or "it"
     if first["type"] == "extra_forbidden":
-        return f"{shown(first['loc'][-1])} has no meaning here{_meant(first['loc'][-1])}"
+        return f"{shown(first['loc'][-1])} is unknown here{_meant(first['loc'][-1])}"
     if not first["loc"]:
         return f"it is {shown(first['input'])}, not a table"
     if first["type"] == "missing":
@@ -251,12 +251,12 @@ def _holder(value: Any, scale: float, named: dict[str, Holder | None]) -> Holder
         return _outlined(value, unit_of(value.unit, "unit")[1] if value.unit else scale)
     if value == "none":
         if "none" in named:
-            raise FaultError("holder 'none' means that there is none, but a [[holder]] is called so: call that otherwise")
+            raise FaultError("holder 'none' means that there is none, but a [[holder]] has that name: rename it")
         return "none"
     if value in named:
         meant = named[value]
         if meant is None:
-            raise FaultError(f"holder {shown(value)}: several different [[holder]] are called so")
+            raise FaultError(f"holder {shown(value)}: several different [[holder]] have this name")
         return meant
     try:
         return Holder.parse(value)

@@ -172,7 +172,7 @@ def explained(error: ValidationError) -> str:
     place, last = " ".join(words[:-1]), words[-1] if words else "it"
     place = f"{place}: " if place else ""
     if first["type"] == "extra_forbidden":
-        return f"{place}{shown(last)} has no meaning here"
+        return f"{place}{shown(last)} is unknown here"
     if first["type"] == "missing":
         hint = {
             "unit": ', as unit = "mm"',

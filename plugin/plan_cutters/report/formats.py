@@ -9,6 +9,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from plan_cutters.errors import extra_hint
 from plan_cutters.report.protocol import Judged
 
 if TYPE_CHECKING:
@@ -57,7 +58,7 @@ _COPY = 300.0
 
 
 #: What is said where a picture was to be drawn and Matplotlib is not installed.
-NO_PICTURES = 'pictures need Matplotlib: pip install "plan-cutters[pictures]"'
+NO_PICTURES = f"pictures need Matplotlib: {extra_hint('pictures')}"
 
 
 def draws_pictures() -> bool:

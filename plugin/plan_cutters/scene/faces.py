@@ -291,7 +291,7 @@ def _of_component(tree: "Sequence[Node]", name: str, where: str) -> set[int]:
     known = sorted({path for path in component_of(tree).values() if path})
     numbers = faces_of(tree, name.strip("/")) if name.strip("/") else set()
     if not numbers and known:
-        raise OptionError(f"{where}: no component is called so; the part has {listed(list(known))}")
+        raise OptionError(f"{where}: no component has this name; the part has {listed(list(known))}")
     if not numbers:
         raise OptionError(f"{where}: the components of this part have no names")
     return numbers

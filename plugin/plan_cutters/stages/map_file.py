@@ -156,9 +156,9 @@ def _rows(maps: Any, refuse: Fault) -> None:
     """Check the values of each sample."""
     verdict, reason, undecided = maps.verdict, maps.reason, maps.undecided
     for row in np.flatnonzero(~np.isin(verdict, list(WORDS)))[:1].tolist():
-        raise refuse(f"verdict, row {row}: {verdict[row]} is none")
+        raise refuse(f"verdict, row {row}: {verdict[row]} is no valid code")
     for row in np.flatnonzero((reason >= len(REASONS)) & (reason != NO_REASON))[:1].tolist():
-        raise refuse(f"reason, row {row}: {reason[row]} is none")
+        raise refuse(f"reason, row {row}: {reason[row]} is no valid code")
     if maps.inside.size:
         for row in np.flatnonzero(maps.inside.view(np.uint8) > 1)[:1].tolist():
             raise refuse(f"inside, row {row}: it is neither true nor false")

@@ -1,0 +1,168 @@
+"""Make the gallery anew: `python docs/gallery.py FOLDER [NAME...]` (needs Debian's Chromium and the `dev` extra).
+
+FOLDER has the files of the parts that are not our own; `docs/gallery/parts.toml` says where they come from. Without names all
+parts are made. With `-` as FOLDER nothing is planned: pictures are taken of the stored pages, and `docs/gallery.md` is written.
+
+Each part is planned by its command, as a reader types it. The script writes a picture, the headline, `docs/gallery.md`, and the
+review page without its script and style: these are the same in all pages, so they are stored once, and
+`docs/hooks/review_pages.py` puts the pages together.
+"""
+
+import io
+import json
+import os
+import shlex
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+from pathlib import Path
+from typing import Any
+
+sys.path.insert(0, str(Path(__file__).parent.parent))
+from docs.hooks.review_pages import SHARED, whole
+
+DOCS = Path(__file__).parent
+ROOT, GALLERY, PAGE = DOCS.parent, DOCS / "gallery", DOCS / "gallery.md"
+#: Dots of a picture; a file has at most so many bytes.
+WIDTH, HEIGHT, MOST = 720, 540, 60_000
+#: Without these WebGL shows nothing where there is no graphics card.
+_CHROMIUM = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking"]
+#: Only the picture is shown, on the whole window: no controls, no legend.
+_ALONE = """view => {
+    const { stage } = review, { canvas, table } = stage;
+    for (let at = canvas; at !== document.body; at = at.parentElement) {
+        for (const other of at.parentElement.children) if (other !== at) other.style.display = "none";
+        at.style.cssText += "position:fixed;inset:0;width:100vw;height:100vh;max-width:none;max-height:none";
+        at.style.cssText += "margin:0;border:0;border-radius:0";
+    }
+    window.dispatchEvent(new Event("resize"));
+    if (view) table.show(...view);
+}"""
+
+
+def table() -> dict[str, Any]:
+    """The table of parts: `intro`, and `part` with a row for each."""
+    return tomllib.loads((GALLERY / "parts.toml").read_text("utf-8"))
+
+
+def main(folder: Path | None, names: list[str]) -> None:
+    made = [row for row in table()["part"] if not names or row["name"] in names]
+    with tempfile.TemporaryDirectory() as place:
+        work = Path(place)
+        if folder:
+            (work / "samples").symlink_to(ROOT / "samples")
+            subprocess.run([sys.executable, DOCS / "gallery_parts.py", work], check=True, stdout=subprocess.DEVNULL)
+        for row in made:
+            if folder and "source" in row:
+                shutil.copy(folder / row["file"], work)
+            if folder:
+                _plan(row, work)
+            (work / "review.html").write_text(whole(GALLERY / f"{row['name']}.page"), encoding="utf-8", newline="")
+            (GALLERY / f"{row['name']}.webp").write_bytes(_picture(work / "review.html", row))
+    PAGE.write_text(text(), encoding="utf-8")
+
+
+def _plan(row: dict[str, Any], work: Path) -> None:
+    """Plan a part; write its headline and its page."""
+    name = row["name"]
+    program, *words = shlex.split(row["command"])
+    done = subprocess.run(
+        [str(Path(sys.executable).with_name(program)), *words, "-o", name, "--formats", "json,html", "--quiet"],
+        cwd=work, text=True, capture_output=True, check=False, env={**os.environ, "PYTHONWARNINGS": "ignore"},
+    )  # fmt: skip
+    if done.returncode not in (0, 1, 4):
+        raise SystemExit(f"{name}: exit code {done.returncode}: {done.stderr}")
+    plan = json.loads((work / name / "plan.json").read_text("utf-8"))
+    (GALLERY / f"{name}.json").write_text(
+        json.dumps({"headline": plan["text"]["headline"], "exit_code": done.returncode}, indent=2, ensure_ascii=False) + "\n",
+        encoding="utf-8",
+    )
+    _split(name, (work / name / "review.html").read_text("utf-8"))
+
+
+def _split(name: str, page: str) -> None:
+    """Write a page without what all pages share, and that once."""
+    for file, (begins, ends) in SHARED.items():
+        start = page.rindex(begins) + len(begins)
+        end = page.index(ends, start)
+        (GALLERY / file).write_text(page[start:end], encoding="utf-8", newline="")
+        page = page[:start] + f"<!-- {file} -->" + page[end:]
+    (GALLERY / f"{name}.page").write_text(page, encoding="utf-8", newline="")
+
+
+def _picture(page: Path, row: dict[str, Any]) -> bytes:
+    """The picture of a review page, in a file that is as good as its size allows."""
+    from PIL import Image
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as driver:
+        browser = driver.chromium.launch(executable_path=shutil.which("chromium"), args=_CHROMIUM)
+        # Zoomed is a piece of a larger picture: where the page zooms itself, it adds a small picture of the whole.
+        zoom, x, y = row.get("zoom", (1, 0, 0))
+        wide, high = round(zoom * WIDTH), round(zoom * HEIGHT)
+        tab = browser.new_page(viewport={"width": wide, "height": high}, color_scheme="light")
+        tab.goto(page.as_uri())
+        tab.wait_for_selector("html[data-ready]")
+        if "cutter" in row:
+            tab.locator(f'#cutters tr[data-cutter="{row["cutter"]}"]').first.click()
+        tab.evaluate(_ALONE, row.get("view"))
+        tab.wait_for_timeout(1500)
+        left, top = round((wide - WIDTH) * (1 + x) / 2), round((high - HEIGHT) * (1 - y) / 2)
+        piece = tab.screenshot(clip={"x": left, "y": top, "width": WIDTH, "height": HEIGHT})
+        shot = Image.open(io.BytesIO(piece)).convert("RGB")
+        browser.close()
+    for quality in range(90, 30, -10):
+        file = io.BytesIO()
+        shot.save(file, "WEBP", quality=quality, method=6)
+        if file.tell() <= MOST:
+            break
+    return file.getvalue()
+
+
+def text() -> str:
+    """The page of the gallery, Markdown: its introduction, and the parts one after the other."""
+    parts = table()
+    shown = [_entry(row, json.loads((GALLERY / f"{row['name']}.json").read_text("utf-8"))) for row in parts["part"]]
+    return "\n\n".join([parts["intro"].strip(), *shown]) + "\n"
+
+
+def _entry(row: dict[str, Any], result: dict[str, Any]) -> str:
+    name, title = row["name"], row["title"]
+    command = " \\\n  ".join(_lines(row["command"]))
+    return "\n\n".join(
+        [
+            f"## {title}",
+            f"![{title}, coloured by verdict](gallery/{name}.webp){{ width=480 }}",
+            f"*{_source(row)}*",
+            row["learns"].strip(),
+            f"The plan says: **{result['headline']}** <!-- review: {name} -->",
+            f"```sh\n{command}\n```",
+        ]
+    )
+
+
+def _lines(command: str, most: int = 90) -> list[str]:
+    """A command on lines that a page can show, parted before options."""
+    first, *options = command.split(" --")
+    lines = [first]
+    for option in options:
+        if len(lines[-1]) + len(option) < most:
+            lines[-1] += f" --{option}"
+        else:
+            lines.append(f"--{option}")
+    return lines
+
+
+def _source(row: dict[str, Any]) -> str:
+    """Where the part comes from, and under which licence."""
+    if "source" not in row:
+        return f"Part: {row['ours']}, {row.get('licence', 'MIT as this project')}."
+    repository, path, commit = (row["source"][key] for key in ("repository", "path", "commit"))
+    address = f"https://github.com/{repository}/blob/{commit}/{path.replace(' ', '%20')}"
+    return f"Part: [{row['file']}]({address}) of {repository}, {row['licence']}."
+
+
+if __name__ == "__main__":
+    main(None if sys.argv[1] == "-" else Path(sys.argv[1]), sys.argv[2:])
