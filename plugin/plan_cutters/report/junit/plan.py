@@ -56,13 +56,23 @@ def plan_cases(plan: Plan, code: int, file: str) -> list[Case]:
     names = short_names(plan)
     left = [each for each in plan.process.left if each.cause != UNJUDGED_CAUSE] if plan.process else []
     open_faces = {face for each in left for face in each.faces}
+    # Grouped once: a part may have thousands of faces, and a cutter as many witnesses.
+    places: dict[tuple[str, str], list[WitnessEntry]] = {}
+    for cutter in plan.cutters:
+        for each in cutter.witnesses:
+            if not each.inside_bodies:
+                places.setdefault((cutter.id, each.face), []).append(each)
     cases = [_process(plan, code, file)]
     for face in plan.faces:
         if not face.target:
             continue
         cutters = [c.id for c in plan.cutters if _whole(face, c.faces.get(face.id))]
         reached = _Reached(cutters, plan.process is not None and face.id not in open_faces)
-        cases += [_case(plan, face, cutter, file, names, reached) for cutter in plan.cutters]
+        for cutter in plan.cutters:
+            case = _case(plan, face, cutter, Case(file, f"{face.id} {names[cutter.id]}"), reached.text(names))
+            if case.outcome != "passed":
+                case = case._replace(details="\n".join(_witnesses(places.get((cutter.id, face.id), []))))
+            cases.append(case)
     return [_as_counted(case, code) for case in cases]
 
 
@@ -75,8 +85,8 @@ def _process(plan: Plan, code: int, file: str) -> Case:
     return Case(file, PROCESS, outcome, kind, title, lines, plan.run.total)
 
 
-def _case(plan: Plan, face: FaceEntry, cutter: CutterEntry, file: str, names: dict[str, str], reached: _Reached) -> Case:
-    case = Case(file, f"{face.id} {names[cutter.id]}")
+def _case(plan: Plan, face: FaceEntry, cutter: CutterEntry, case: Case, finished: str) -> Case:
+    """The case with its outcome; `finished`: who finishes the face, empty where nobody does."""
     verdicts = cutter.faces.get(face.id, FaceVerdicts())
     required = verdicts.reached + verdicts.not_reached + verdicts.unjudged
     if not required and (verdicts.inside_bodies or verdicts.exempt):
@@ -88,12 +98,11 @@ def _case(plan: Plan, face: FaceEntry, cutter: CutterEntry, file: str, names: di
         return doubtful if doubt else case
     text = _text(face, cutter, verdicts, required)
     kind = main_reason(verdicts.area_share) or ("unjudged" if not verdicts.not_reached else "undecided")
-    details = "\n".join(_witnesses(cutter, face))
-    case = case._replace(kind=kind, message=text, details=details)
+    case = case._replace(kind=kind, message=text)
     if not verdicts.not_reached:
         return case._replace(outcome="error")
-    if others := reached.text(names):
-        return case._replace(outcome="skipped", message=f"{text}; {others}")
+    if finished:
+        return case._replace(outcome="skipped", message=f"{text}; {finished}")
     return case._replace(outcome="failure" if verdicts.blocked else "error")
 
 
@@ -128,10 +137,9 @@ def _text(face: FaceEntry, cutter: CutterEntry, verdicts: FaceVerdicts, required
     return f"{text}; {unjudged}" if unjudged else text
 
 
-def _witnesses(cutter: CutterEntry, face: FaceEntry) -> Iterator[str]:
+def _witnesses(places: Sequence[WitnessEntry]) -> Iterator[str]:
     """The worst places: a line each."""
-    mine: list[WitnessEntry] = [w for w in cutter.witnesses if w.face == face.id and not w.inside_bodies]
-    for w in sorted(mine, key=lambda w: -(w.depth_mm or 0.0))[:_NAMED]:
+    for w in sorted(places, key=lambda w: -(w.depth_mm or 0.0))[:_NAMED]:
         way = f", {called(w.obstacle_face)} in the way" if w.obstacle_face else ""
         deep = f", {mm(w.depth_mm)} deep in the tool" if w.depth_mm is not None else ""
         yield f"at {place(w.point)}: {reason(w.reason)}{way}{deep}"
