@@ -1,5 +1,6 @@
 """What stands between the protocol and the command: roots, lengths of answers, names of cutters, and the client's own roots."""
 
+import io
 import json
 from types import SimpleNamespace
 
@@ -12,6 +13,7 @@ from mcp import Client, types
 
 from plan_cutters.agents import child
 from plan_cutters.agents.cutter_names import chosen
+from plan_cutters.agents.digits import short
 from plan_cutters.agents.limits import CallError, Limits
 from plan_cutters.agents.plan_answers import compared, explained, planned
 from plan_cutters.agents.roots import Roots
@@ -77,6 +79,40 @@ def test_an_answer_is_short_and_says_how_much_it_leaves_out(cutters, faces, char
 def test_an_answer_that_cannot_be_short_is_refused():
     with pytest.raises(CallError, match="even without its lists"):
         fitting(lambda most: planned(read(), 0, most, {}), 300)
+
+
+@given(st.floats(0.0, 1.0, exclude_min=True, exclude_max=True), st.floats(1e-6, 1e6))
+def test_a_short_number_is_near_and_never_all_nor_nothing(share, length):
+    """A share is neither 0 nor 1 where it is not; a clearance is never told larger than it is."""
+    found = short({"reached": share, "clearance_mm": length, "list": [{"undecided": share}]})
+    assert 0.0 < found["reached"] < 1.0
+    assert found["list"][0]["undecided"] == found["reached"] == pytest.approx(share, rel=1e-3)
+    assert length * 0.998 <= found["clearance_mm"] <= length
+    assert {float(f"{each:.4g}") for each in (found["reached"], found["clearance_mm"])} == {
+        found["reached"],
+        found["clearance_mm"],
+    }
+
+
+def test_what_is_handed_back_or_would_be_wider_stays_as_it_is():
+    exact = {"angles": {"C": 123.456789}, "axis": [0.123456789, 0.0, 0.99234567], "free": [[12.3456, 78.9012]],
+             "undecided": [[1.23456, 2.34567]], "forbidden": {"holder": [[1.23456, 2.34567]]}}  # fmt: skip
+    assert short(exact) == exact
+    assert short({"forbidden": {"holder": 0.123456}, "point": [1234.56789, 0.0, -1.0]}) == {
+        "forbidden": {"holder": 0.1235}, "point": [1234.5679, 0.0, -1.0],
+    }  # fmt: skip
+
+
+def test_progress_has_a_total_where_the_rest_is_known():
+    """The lines of the command, as it writes them where there is no terminal."""
+    told = []
+
+    async def tell(seconds, words, rest=None):
+        told.append((seconds, words, rest))
+
+    lines = b"    0.8 s  starting\n   12.5 s  judging R6L80 (1 of 2), 40 %, about 18 s left\nplan-cutters: not read\n"
+    anyio.run(child._listen, io.BytesIO(lines), bytearray(), tell)
+    assert told == [(0.8, "starting", None), (12.5, "judging R6L80 (1 of 2), 40 %", 18.0)]
 
 
 def test_silence_is_not_an_answer():

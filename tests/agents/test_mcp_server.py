@@ -23,8 +23,20 @@ from tests.support.step_references import BALL, BOX, write_assembly
 GROOVE, PEAKS = "v_groove.step", "peaks_and_valleys.step"
 #: The limit of tilt loses samples, and no library is needed for that.
 HELD = {"cutters": ["R6L80"], "machine": "tilt:20", "grid": 5}
-NAMES = ["plan_part", "posture_map", "explain_sample", "compare_cutters", "render"]
+NAMES = ["plan_part", "posture_map", "explain_sample", "compare_cutters", "render", "list_tools_and_machines", "compare_plans"]
+#: Fields that stay as they are, for they are handed back or must not be wider than they are; and places, in 0.1 um.
+EXACT, PLACES = {"axis", "angles", "free"}, {"point", "obstacle_point", "place_mm", "normal", "direction_max"}
 LIMITS = ("--most-mb", "2", "--most-cutters", "2", "--most-samples", "10000", "--timeout", "200")
+
+
+def numbers(value, name=""):
+    """All numbers of an answer, each with the name of the field that it stands in."""
+    if name in EXACT:
+        return
+    for key, each in value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else ():
+        yield from numbers(each, key if isinstance(key, str) else name)
+    if isinstance(value, float):
+        yield name, value
 
 
 class Server:
@@ -50,6 +62,10 @@ class Server:
     def call(self, name, /, **arguments):
         found = self.answer(self.begin(name, **arguments))
         jsonschema.validate(found, self.tools[name].output_schema)
+        assert set(found) == set(self.tools[name].output_schema["properties"])
+        for field, number in numbers(found):
+            if field not in EXACT | PLACES | {"undecided", "forbidden"}:
+                assert number == float(f"{number:.4g}"), field
         return found
 
     def refused(self, name, /, **arguments):
@@ -70,11 +86,15 @@ def server(tmp_path_factory):
     with start_blocking_portal() as portal, open(os.devnull, "w") as nowhere:
         from mcp.client.stdio import stdio_client
 
-        given = StdioServerParameters(command=sys.executable, args=words, env={"PYTHONPATH": ENV["PYTHONPATH"]}, cwd=str(root))
+        given = StdioServerParameters(command=sys.executable, args=words, env=given_environment(root), cwd=str(root))
         client = Client(stdio_client(given, errlog=nowhere))
         with portal.wrap_async_context_manager(client):
             listed = portal.call(client.list_tools).tools
             yield Server(root, portal, client, {each.name: each for each in listed})
+
+
+def given_environment(root):
+    return {"PYTHONPATH": ENV["PYTHONPATH"], "PLAN_CUTTERS_CACHE": f"{root}-cache"}
 
 
 @pytest.fixture(scope="module")
@@ -95,6 +115,17 @@ def test_the_tools_say_what_they_take_and_give(server):
         assert each.annotations.read_only_hint is (each.name != "plan_part")
 
 
+def test_the_list_of_tools_is_short(server):
+    """It is read before the first question: 15 kB, names of what a call needs and the words for it included."""
+    listed = server.portal.call(server.client.list_tools)
+    assert len(listed.model_dump_json(by_alias=True, exclude_none=True).encode()) < 15_000
+    for name in ("part", "cutters", "machine", "faces", "setup", "process", "operations", "out"):
+        assert server.tools["plan_part"].input_schema["properties"][name]["description"], name
+    shared = server.tools["compare_cutters"].input_schema["properties"]
+    assert shared["cutters"] == {"type": "array", "items": {"type": "string"}}
+    assert set(shared) < set(server.tools["plan_part"].input_schema["properties"])
+
+
 def test_two_calls_work_at_once_and_tell_how_far_they_are(server, planned):
     told = [name for name, _, _ in server.told]
     assert set(told) >= {"plan_part", "posture_map"}
@@ -111,11 +142,91 @@ def test_a_plan_is_what_its_file_says(server, planned):
     assert found["exit_code"] == 1
     assert found["selected"] is plan["selected"] is None
     (mine,), (cutter,) = found["cutters"], plan["cutters"]
-    assert mine["lost_by"] == cutter["area_share"]["lost_by"]
-    assert mine["reached"] == pytest.approx(1 - cutter["area_share"]["inaccessible"] - cutter["area_share"]["undecided"])
+    assert mine["lost_by"] == pytest.approx(cutter["area_share"]["lost_by"], rel=1e-3)
+    assert mine["reached"] == pytest.approx(
+        1 - cutter["area_share"]["inaccessible"] - cutter["area_share"]["undecided"], rel=1e-3
+    )
     assert [note["code"] for note in found["notes"]][: len(plan["note_codes"])] == plan["note_codes"]
     assert found["files"] == {"json": f"{server.root}/out/plan.json", "npz": f"{server.root}/out/samples.npz"}
     assert sorted(os.listdir(server.root / "out")) == ["plan.json", "samples.npz"]
+
+
+def test_written_files_are_linked(server, planned):
+    reply = server.begin("plan_part", part=GROOVE, out="linked", formats=["json", "html"], **HELD).result(200)
+    links = [each for each in reply.content if each.type == "resource_link"]
+    files = reply.structured_content["files"]
+    assert {each.uri: each.name for each in links} == {Path(file).as_uri(): Path(file).name for file in files.values()}
+    assert {each.name: each.mime_type for each in links} == {
+        "plan.json": "application/json", "review.html": "text/html", "process.toml": "application/toml",
+    }  # fmt: skip
+    for each in links:
+        assert each.size == (server.root / "linked" / each.name).stat().st_size
+    nothing = server.begin("compare_plans", old="linked/plan.json", new="out/plan.json").result(200)
+    assert [each.type for each in nothing.content] == ["text"]
+
+
+def test_two_plans_are_compared(server, planned):
+    """The groove with a shorter limit of tilt is another question; with another cutter of the same one, faces are lost."""
+    server.answer(server.begin("plan_part", part=GROOVE, cutters=["R6L80"], grid=5, out="whole"))
+    found = server.call("compare_plans", old="whole/plan.json", new="out/plan.json")
+    assert (found["comparable"], found["lost"], found["faces"]) == (False, None, [])
+    assert any("machine differs" in line for line in found["why_not"])
+    server.answer(server.begin("plan_part", part=GROOVE, cutters=["R6L80rc6"], grid=5, out="ball"))
+    back, forth = (server.call("compare_plans", old=f"{a}/plan.json", new=f"{b}/plan.json", **{})
+                   for a, b in (("whole", "ball"), ("ball", "whole")))  # fmt: skip
+    if back["comparable"]:
+        assert (back["lost"], back["won"]) == (forth["won"], forth["lost"])
+    same = server.call("compare_plans", old="whole/plan.json", new="whole/plan.json")
+    assert (same["comparable"], same["lost"], same["won"], same["faces"], same["cutters"]) == (True, False, False, [], [])
+    assert "lies outside the roots" in server.refused("compare_plans", old="whole/plan.json", new="/etc/passwd")
+
+
+def test_tools_and_machines_are_listed(server):
+    from plan_cutters.domain.default_tools import builtin
+    from plan_cutters.domain.machine import builtin_machines
+
+    found = server.call("list_tools_and_machines")
+    assert [each["id"] for each in found["tools"]] + [None] * found["more_tools"] == [
+        each.id for each in builtin()[: len(found["tools"])]
+    ] + [None] * (len(builtin()) - len(found["tools"]))
+    assert {each["name"] for each in found["machines"]} == {*builtin_machines()}
+    assert next(each for each in found["machines"] if each["name"] == "trunnion-ac")["axes"] == ["C", "A"][::-1]
+    mine = server.call("list_tools_and_machines", library="shop.toml", machines=False)
+    assert [(each["number"], each["diameter_mm"], each["holder"]) for each in mine["tools"]] == [
+        (1, 12.0, "ER32 chuck"), (2, 10.0, "ER32 chuck"), (3, 6.0, "ER32 chuck"),
+    ]  # fmt: skip
+    assert mine["machines"] == []
+    assert "lies outside the roots" in server.refused("list_tools_and_machines", library="/etc/passwd")
+
+
+def test_one_spacing_makes_the_samples_of_all_calls_the_same(server):
+    """By default the smallest cutter decides: then the answers say that their samples differ."""
+    fine, coarse = ({"cutters": [name], "part": GROOVE} for name in ("R4L60", "R12L60"))
+    spacings = [
+        server.call("plan_part", **each)["samples"]
+        for each in (coarse, {**coarse, "spacing_mm": 6.0}, {**fine, "spacing_mm": 6.0})
+    ]
+    default, one, other = spacings
+    assert (default["sampled_by"], one["sampled_by"]) == ("default", "spacing")
+    assert default["spacing_mm"] == 3.0  # a quarter of the radius
+    assert one == other
+    assert one["spacing_mm"] == 6.0
+
+
+def test_a_second_call_takes_what_the_first_one_made_of_the_part(server):
+    cache = Path(f"{server.root}-cache")
+
+    def stored():
+        return {path: path.stat().st_ino for path in cache.rglob("*.stage")}
+
+    ask = {"part": PEAKS, "cutters": ["R7L90"], "grid": 6}
+    first = server.call("plan_part", **ask)
+    before = stored()
+    assert before
+    second = server.call("plan_part", **ask)
+    assert second["cutters"] == first["cutters"]
+    # A file that is written again is another one.
+    assert before.items() <= stored().items()
 
 
 def test_a_map_is_answered_with_its_picture(planned):
@@ -135,13 +246,15 @@ def test_a_plan_that_is_there_is_explained_by_face_and_by_point(server, planned)
     face = max(cutter["faces"], key=lambda name: cutter["faces"][name]["area_share"]["inaccessible"])
     found = server.call("explain_sample", plan="out/plan.json", cutter="R6", face=face)
     assert (found["cutter"], found["face"], found["reached"]) == ("R6L80", face, False)
-    assert {each["code"]: each["share"] for each in found["reasons"]} == cutter["faces"][face]["area_share"]["lost_by"]
+    assert {each["code"]: each["share"] for each in found["reasons"]} == pytest.approx(
+        cutter["faces"][face]["area_share"]["lost_by"], rel=1e-3
+    )
     assert found["no_help"].startswith("the plan was made without --answers mend")
     witness = next(each for each in cutter["witnesses"] if each["face"] == face)
     at = server.call("explain_sample", plan="out/plan.json", cutter="R6", point=witness["point"])
     assert at["sample"]["distance_mm"] == pytest.approx(0.0, abs=1e-9)
     assert (at["sample"]["verdict"], at["sample"]["reason"]) == (witness["verdict"], witness["reason"])
-    assert at["witnesses"][0]["point"] == witness["point"]
+    assert at["witnesses"][0]["point"] == pytest.approx(witness["point"], abs=1e-4)
     assert "mm from the point" in server.refused("explain_sample", plan="out/plan.json", cutter="R6", point=[0, 0, 900])
     assert "no cutter is called 'R5'" in server.refused("explain_sample", plan="out/plan.json", cutter="R5", face=face)
     assert "there is no such face" in server.refused("explain_sample", plan="out/plan.json", cutter="R6", face="F99")
@@ -150,10 +263,10 @@ def test_a_plan_that_is_there_is_explained_by_face_and_by_point(server, planned)
 def test_why_not_and_what_would_help_is_one_call(server):
     found = server.call("explain_sample", part=PEAKS, cutter="R8L90", face="F1", grid=9)
     assert found["reached"] is False
-    assert sum(each["share"] for each in found["reasons"]) == pytest.approx(found["lost_share"])
+    assert sum(each["share"] for each in found["reasons"]) == pytest.approx(found["lost_share"], rel=1e-3)
     assert found["help_is_about"] == "this face"
     best = found["would_help"][0]
-    assert best["lost_after"] < best["lost_before"] == pytest.approx(found["lost_share"])
+    assert best["lost_after"] < best["lost_before"] == pytest.approx(found["lost_share"], rel=1e-3)
     assert best["option"].startswith("--cutter R")
     for word in ("flat end D16 x 90 does not reach", "F1", "rear gouge", "What would help: ", best["option"]):
         assert word in found["told"]
@@ -327,8 +440,8 @@ def test_steps_of_an_answer_are_edited_and_judged_again(server):
     first = server.answer(server.begin("plan_part", part=GROOVE, operations="fastest", **STEPPED))
     steps = first["steps"]
     assert steps
-    assert sum(each["area_mm2"] for each in [*steps, *first["left"]]) == pytest.approx(first["asked_mm2"])
-    assert sum(each["area_mm2"] for each in steps) == pytest.approx(first["finished_share"] * first["asked_mm2"])
+    assert sum(each["area_mm2"] for each in [*steps, *first["left"]]) == pytest.approx(first["asked_mm2"], rel=1e-3)
+    assert sum(each["area_mm2"] for each in steps) == pytest.approx(first["finished_share"] * first["asked_mm2"], rel=1e-3)
     mine = [{name: each[name] for name in ("setup", "mode", "angles", "cutter", "faces", "take")} for each in steps]
     same = server.answer(server.begin("plan_part", part=GROOVE, process={"step": mine, "rest": "leave"}, **STEPPED))
     assert [each["own"]["number"] for each in same["steps"]] == [*range(1, 1 + len(steps))]

@@ -15,6 +15,7 @@ import pytest
 from plan_cutters.command import batch as of_many
 from plan_cutters.command.codes import guarded, invoked
 from tests.support.forked import ENV
+from tests.support.junit import cases
 from tests.support.places import ROOT
 
 GROOVE = (ROOT / "samples/v_groove.step").read_bytes()
@@ -72,6 +73,18 @@ def test_nothing_to_plan_is_one_line(batch, tmp_path):
     done = batch("none.step", "none.toml", "--out", "out", "--dry-run", cwd=tmp_path)
     assert done.returncode == 3
     assert not (tmp_path / "out").exists()
+
+
+def test_parts_that_cannot_be_planned_are_errors_of_the_report(batch, tmp_path):
+    (tmp_path / "all.toml").write_text("[[part]]\nfile='b.step'\ngrit=5\n")
+    assert batch("all.toml", "--out", "out", "--junit", "junit.xml", cwd=tmp_path).returncode == 2
+    (found,) = cases((tmp_path / "junit.xml").read_bytes())
+    assert (found.name, found.outcome) == ("b", "error")
+    assert "no option of a part is called grit" in found.message
+    for words in (["--junit", "-"], ["--junit", "b.xml", "--dry-run"]):
+        done = batch("none.step", "--out", "out", *words, cwd=tmp_path)
+        assert (done.returncode, "--junit" in done.stderr) == (2, True)
+    assert not (tmp_path / "b.xml").exists()
 
 
 def test_each_bad_part_of_a_manifest_is_one_line_and_the_others_go_on(batch, parts):
@@ -141,7 +154,7 @@ def killed_at(parts, moment, victim, workers="2"):
 
 def finished(parts, workers="2"):
     """Run again to the end: what each part was, planned or kept."""
-    client = started(".", "--out", "out", *QUICK, "--workers", workers, cwd=parts)
+    client = started(".", "--out", "out", *QUICK, "--workers", workers, "--junit", "ci/junit.xml", cwd=parts)
     found, said = client.communicate(timeout=240)
     assert client.returncode == 0, said
     first, *where = found.splitlines()
@@ -152,6 +165,8 @@ def finished(parts, workers="2"):
     for name in ("a", "b", "c"):
         assert json.loads((parts / f"out/{name}-plan/plan.json").read_text())["selected"] == "R6L80"
     assert not (parts / "out/.batch").exists()
+    reported = cases((parts / "ci/junit.xml").read_bytes())
+    assert [(each.name, each.outcome) for each in reported] == [("a", "passed"), ("b", "passed"), ("c", "passed")]
     return {row["name"]: row["status"] for row in rows}
 
 

@@ -12,10 +12,13 @@ import pytest
 import yaml
 
 from plan_cutters.batch import keys
+from plan_cutters.command.annotations import annotations, requested
 from plan_cutters.command.changed import RULES, PartRequest, Row
 from plan_cutters.command.repository import Changed, changed, content
 from plan_cutters.errors import PlanError
+from plan_cutters.report.junit.cases import Case
 from tests.support.forked import ENV
+from tests.support.junit import cases
 from tests.support.places import ROOT, real_file
 
 ACTION = yaml.safe_load((ROOT / "action.yml").read_text(encoding="utf-8"))
@@ -80,7 +83,7 @@ def step(folder, base, temp, **inputs):
         (temp / name).unlink(missing_ok=True)
     job = {"RUNNER_TEMP": str(temp), "GITHUB_STEP_SUMMARY": str(temp / "summary"), "GITHUB_OUTPUT": str(temp / "output"),
            "GITHUB_SERVER_URL": "https://forge.test", "GITHUB_REPOSITORY": "us/parts", "GITHUB_RUN_ID": "7",
-           "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}  # fmt: skip
+           "GITHUB_ACTIONS": "true", "PATH": f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"}  # fmt: skip
     done = subprocess.run(["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", mine["run"]], cwd=folder,
                           env=ENV | job | env, capture_output=True, text=True, check=False)  # fmt: skip
     outputs = (
@@ -119,6 +122,12 @@ def test_the_action_tells_what_a_branch_loses(repository, ran):
     artifacts = "https://forge.test/us/parts/actions/runs/7#artifacts"
     assert f"[Both plans side by side]({artifacts}): {page} there\n" in summary
     assert not (temp / "plan-cutters-changed/compare/sub").exists()
+    # The report agrees with the rule, and each part that fails has one line at its file.
+    reported = cases((temp / "plan-cutters-changed/junit.xml").read_bytes())
+    assert {each.part for each in reported if each.outcome in ("failure", "error")} == {"large.STEP", "parts/slot.step"}
+    assert {each.part for each in reported} == set(told)
+    marked = [line for line in done.stderr.splitlines() if line.startswith("::error ")]
+    assert [line.partition(",")[0] for line in marked] == ["::error file=large.STEP", "::error file=parts/slot.step"]
     assert (temp / "plan-cutters-changed/after/sub/a name.step/review.html").is_file()
 
 
@@ -305,6 +314,51 @@ def test_each_rule_is_stricter_than_the_one_before():
         [False, True, True, True], [False, False, True, True], [False, False, False, True],
     ]  # fmt: skip
     assert set(RULES) == set(ACTION["inputs"]["fail-on"]["description"].partition(" (")[0].replace(" or ", ", ").split(", "))
+
+
+def test_a_job_without_a_request_has_annotations_and_nobody_else(monkeypatch):
+    monkeypatch.setenv("GITHUB_ACTIONS", "true")
+    assert [requested(kind) for kind in (None, "github", "none")] == [True, True, False]
+    monkeypatch.delenv("GITHUB_ACTIONS")
+    assert [requested(kind) for kind in (None, "github", "none")] == [False, True, False]
+
+
+def test_names_can_neither_end_an_annotation_nor_begin_a_command():
+    """As the runner reads a line: properties up to `::`, parted by commas, then the text; each with its escapes undone."""
+    name, text = "a,b:c\n::stop%0A.step", "100 %\r\n::add-mask::x"
+    (line,) = annotations([(name, [Case(name, "F1", "failure", "k", text), Case(name, "F2"), Case(name, "F3", "skipped")])])
+    assert len(line.splitlines()) == 1
+    head, _, data = line.removeprefix("::error ").partition("::")
+
+    def undone(value):
+        for escape, char in (("%3A", ":"), ("%2C", ","), ("%0A", "\n"), ("%0D", "\r"), ("%25", "%")):
+            value = value.replace(escape, char)
+        return value
+
+    properties = dict(each.split("=") for each in head.split(","))
+    assert {key: undone(value) for key, value in properties.items()} == {"file": name, "title": "plan-cutters"}
+    assert undone(data) == f"F1: {text}"
+
+
+def test_no_more_annotations_are_written_than_github_shows():
+    def lines(parts, findings=1):
+        rows = [(f"{i}.step", [Case("p", f"F{k}", "error", "k", "m") for k in range(findings)]) for i in range(parts)]
+        return [*annotations(rows)]
+
+    assert [len(lines(n)) for n in (0, 1, 10, 11, 40)] == [0, 1, 10, 10, 10]
+    assert lines(40)[-1].endswith("::31 more parts fail: the summary has all")
+    assert lines(1, 7)[0].endswith("%0AF4: m%0Aand 2 more")
+
+
+def test_what_pip_downloads_is_cached_before_it_is_installed():
+    steps = ACTION["runs"]["steps"]
+    (cache,) = [i for i, each in enumerate(steps) if each.get("with", {}).get("path") == "~/.cache/pip"]
+    (install,) = [i for i, each in enumerate(steps) if each.get("name") == "Install"]
+    (key,) = [i for i, each in enumerate(steps) if each.get("id") == "requirements"]
+    assert key < cache < install
+    assert "steps.requirements.outputs.key" in steps[cache]["with"]["key"]
+    assert {"author", "branding"} <= set(ACTION)
+    assert set(ACTION["branding"]) == {"icon", "color"}
 
 
 def test_the_image_is_slim_and_not_root():

@@ -100,7 +100,13 @@ class Note(Entry):
 
 
 class Samples(Entry):
+    """Shares of two answers about one part and its faces can be compared where both have the same samples."""
+
     count: int
+    spacing_mm: float | None = Field(
+        default=None, description="the widest of any face; give it as `spacing_mm` in each call to have the same samples in all"
+    )
+    sampled_by: str = Field(default="default", description="default: by curvature and the smallest cutter; else the option")
     max_gap_mm: float | None = None
     unjudged: int = 0
     inside_bodies: int = 0
@@ -304,6 +310,63 @@ class Picture(OfPlan):
     format: Literal["plan-cutters-agent-picture"] = "plan-cutters-agent-picture"
     shown: str = Field(description="id of the cutter whose verdicts are shown")
     legend: dict[str, str] = Field(description="colour -> what it means")
+
+
+class ToolRow(Entry):
+    """A tool that can be judged."""
+
+    id: str = Field(description="as `cutters` and `cutter` take it, where it says all of the tool")
+    name: str = ""
+    number: int | None = Field(default=None, description="in the tool changer")
+    kind: str
+    diameter_mm: float
+    corner_radius_mm: float = 0.0
+    stickout_mm: float
+    holder: str = ""
+
+
+class MachineRow(Entry):
+    """A machine that is built in."""
+
+    name: str = Field(description="as `machine` takes it")
+    axes: list[str] = Field(description="from the tool to the part")
+    reaches: float = Field(description="share of all directions of the tool axis")
+
+
+class ShopAnswer(Answer):
+    format: Literal["plan-cutters-agent-shop"] = "plan-cutters-agent-shop"
+    library: str = Field(description="empty: the built-in set")
+    tools: list[ToolRow]
+    more_tools: int = 0
+    unused: list[str] = Field(default=[], description="entries of the library that cannot be judged, and why")
+    more_unused: int = 0
+    machines: list[MachineRow]
+    more_machines: int = 0
+
+
+class ChangedRow(Entry):
+    """A face or cutter that two plans answer otherwise."""
+
+    name: str
+    what: str = Field(description="what became of it, as `diff` of the command line says it")
+    was: str
+    now: str
+    changed: str = ""
+
+
+class PlanDifferenceAnswer(Answer):
+    format: Literal["plan-cutters-agent-difference"] = "plan-cutters-agent-difference"
+    comparable: bool
+    why_not: list[str] = Field(default=[])
+    lost: bool | None = Field(description="whether a face or cutter reaches less; null: not comparable")
+    won: bool | None
+    selected: list[str | None] = Field(description="ids of the cutters to take, old and new")
+    faces: list[ChangedRow] = Field(description="the worst first")
+    more_faces: int = 0
+    cutters: list[ChangedRow]
+    more_cutters: int = 0
+    unreachable: list[str] = Field(default=[], description="target faces of the new plan that no cutter reaches whole")
+    more_unreachable: int = 0
 
 
 def first(entries: list[Any], most: int) -> tuple[list[Any], int]:

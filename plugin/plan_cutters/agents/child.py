@@ -3,11 +3,11 @@
 import json
 import os
 import re
-from collections.abc import AsyncIterator, Awaitable, Callable, Mapping, Sequence
+from collections.abc import AsyncIterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from subprocess import DEVNULL, PIPE
-from typing import IO
+from typing import IO, Protocol
 
 import anyio
 from anyio.to_thread import run_sync
@@ -17,10 +17,16 @@ from plan_cutters.agents.limits import CallError, Limits
 from plan_cutters.workers.assignment import Assignment
 from plan_cutters.workers.child import Child, command
 
-#: Told of each step of the work: seconds since it began, and words about it.
-ProgressListener = Callable[[float, str], Awaitable[None]]
+
+class ProgressListener(Protocol):
+    """Told of each step of the work: seconds since it began, words about it, and the seconds it will still take, where known."""
+
+    async def __call__(self, seconds: float, words: str, rest: float | None = None) -> None: ...
+
+
 #: A line of progress of the command, and a line about what went wrong.
-_STEP, _FAULT = re.compile(r"^\s*(\d+\.\d) s  (.+)$"), re.compile(r"^plan-cutters[\w -]*: ")
+_STEP = re.compile(r"^\s*(\d+\.\d) s  (.+?)(?:, about (\d+) s left)?$")
+_FAULT = re.compile(r"^plan-cutters[\w -]*: ")
 #: Seconds that a process has to end in order.
 _GRACE = 3.0
 #: Most bytes of its output that are kept: what is longer is no answer, and of what it says the end counts.
@@ -110,4 +116,4 @@ async def _listen(pipe: IO[bytes] | None, output: bytearray, tell: ProgressListe
         *lines, rest = (rest + piece).split(b"\n")
         for line in lines:
             if step := _STEP.match(line.decode(errors="replace")):
-                await tell(float(step[1]), step[2])
+                await tell(float(step[1]), step[2], None if step[3] is None else float(step[3]))

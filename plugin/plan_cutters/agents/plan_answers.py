@@ -89,10 +89,15 @@ def _of_plan(plan: Plan, code: int, most: int) -> dict[str, Any]:
     text = plan.text or text_of(plan)
     return {
         "part": plan.part.file or "", "told": "\n".join([text.headline, *text.lines]), "exit_code": code,
-        "samples": Samples.model_validate(plan.samples), "selected": plan.selected or plan.selected_over_setups,
+        "samples": _samples(plan), "selected": plan.selected or plan.selected_over_setups,
         "cutters": [_cutter(plan, c, text.cutters[c.id], most) for c in cutters], "more_cutters": more, "not_judged": left,
         "more_not_judged": more_left, "missing": missing, "more_missing": more_missing,
     }  # fmt: skip
+
+
+def _samples(plan: Plan) -> Samples:
+    sampling = {"spacing_mm": plan.effective.spacing_mm, "sampled_by": plan.effective.sampled_by}
+    return Samples.model_validate(plan.samples).model_copy(update=sampling)
 
 
 def _missing(plan: Plan) -> list[Missing]:

@@ -51,7 +51,7 @@ def _process(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
 
 
 #: The planner's own steps, as a file has them.
-Process = Annotated[ProcessTable, WrapValidator(_process)]
+Process = Annotated[ProcessTable, WrapValidator(_process), WithJsonSchema({"type": "object"})]
 #: Files that a plan may write.
 Format = Literal["json", "step", "glb", "merged", "npz", "html", "png", "csv", "vtk", "regions"]
 
@@ -91,7 +91,11 @@ class Sampling(Question):
     """How densely a surface is looked at: by default from its curvature and the smallest cutter."""
 
     grid: int | None = Field(default=None, ge=2, le=2000, description="so many samples a side and face")
-    spacing_mm: float | None = Field(default=None, gt=0.0, description="largest distance of neighbouring samples")
+    spacing_mm: float | None = Field(
+        default=None,
+        gt=0.0,
+        description="largest distance of neighbouring samples: with one value in all calls shares can be compared",
+    )
 
     @model_validator(mode="after")
     def _one(self) -> Self:
@@ -181,6 +185,20 @@ class MapQuestion(Conditions):
     tilt_deg: tuple[float, float] = Field(default=(0.0, 90.0), description="tilts to search, from the normal")
     rotation_step_deg: float = Field(default=10.0, ge=1.0, le=360.0, description="step between rotations")
     picture: bool = Field(default=False, description="also draw it: tilt against rotation")
+
+
+class ShopQuestion(Question):
+    """Which tools and machines are there?"""
+
+    library: Path | None = Field(default=None, description="a tool library, in a root; without it, the built-in set is listed")
+    machines: bool = Field(default=True, description="list the built-in machines, too")
+
+
+class DifferenceQuestion(Question):
+    """How do two plans differ?"""
+
+    old: Path = Field(description="plan.json, in a root")
+    new: Path = Field(description="plan.json, in a root")
 
 
 class RenderQuestion(PartQuestion):

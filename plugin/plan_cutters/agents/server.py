@@ -14,7 +14,9 @@ from pydantic import ValidationError
 
 from plan_cutters import __version__
 from plan_cutters.agents.limits import CallError, Limits
+from plan_cutters.agents.requests import PlanQuestion
 from plan_cutters.agents.roots import Roots
+from plan_cutters.agents.schemas import answer_schema, question_schema
 from plan_cutters.agents.tools import TOOLS, Call, Reply, Tool
 from plan_cutters.agents.words import Permissions
 from plan_cutters.errors import PlanError
@@ -26,9 +28,14 @@ if TYPE_CHECKING:
 
 _INSTRUCTIONS = (
     "plan-cutters says which milling cutters can finish the surfaces of a CAD part without gouging or collision, before any "
-    "toolpath exists. Lengths are mm, angles degrees. `undecided` is an answer: neither proved safe nor proved blocked, so never "
-    "safe. To ask why a cutter does not reach a face and what would help, use explain_sample: one call answers both."
+    "toolpath exists. Lengths are mm, angles degrees, shares of an area 0 to 1. `undecided` is an answer: neither proved safe "
+    "nor proved blocked, so never safe. To ask why a cutter does not reach a face and what would help, use explain_sample: one "
+    "call answers both. Fields of a question without a description are those of plan_part. A list that was cut says how much it "
+    "leaves out."
 )
+#: Media types of written files, by suffix.
+_MEDIA = {".json": "application/json", ".html": "text/html", ".png": "image/png", ".step": "model/step", ".csv": "text/csv",
+          ".glb": "model/gltf-binary", ".toml": "application/toml"}  # fmt: skip
 #: Name of the request for the client's roots, where it is part of an answer.
 _ROOTS = "roots"
 
@@ -87,6 +94,7 @@ class Service:
         content: list[Any] = [types.TextContent(text=json.dumps(reply.answer, ensure_ascii=False))]
         if reply.picture is not None:
             content.append(types.ImageContent(data=base64.b64encode(reply.picture).decode(), mime_type="image/png"))
+        content += [_link(what, Path(file)) for what, file in reply.files.items()]
         return types.CallToolResult(content=content, structured_content=reply.answer)
 
     async def end(self) -> None:
@@ -101,11 +109,11 @@ class Service:
             self._turns = anyio.CapacityLimiter(self.limits.calls)
         shown = 0.0
 
-        async def tell(seconds: float, words: str) -> None:
+        async def tell(seconds: float, words: str, rest: float | None = None) -> None:
             # Several processes may work on one call: what is told grows all the same.
             nonlocal shown
             shown = max(seconds, shown + 0.001)
-            await context.session.report_progress(shown, None, words)
+            await context.session.report_progress(shown, None if rest is None else shown + rest, words)
 
         with anyio.fail_after(self.limits.seconds):
             async with self._turns:
@@ -151,17 +159,6 @@ def _question(tool: Tool, arguments: dict[str, Any]) -> Any:
         raise CallError(f"{place + ': ' if place else ''}{faults[0]['msg'].removeprefix('Value error, ')}{more}") from None
 
 
-def _schema(model: Any, **more: Any) -> Any:
-    """The schema of a model without the titles that only repeat names: an agent reads every word."""
-
-    def plain(each: Any) -> Any:
-        if isinstance(each, dict):
-            return {key: plain(value) for key, value in each.items() if key != "title" or not isinstance(value, str)}
-        return [plain(value) for value in each] if isinstance(each, list) else each
-
-    return plain(model.model_json_schema(**more))
-
-
 def _declared(tool: Tool) -> "types.Tool":
     import mcp.types as types
 
@@ -169,12 +166,22 @@ def _declared(tool: Tool) -> "types.Tool":
         name=tool.name,
         title=tool.title,
         description=tool.description,
-        input_schema=_schema(tool.question),
-        output_schema=_schema(tool.answer, mode="serialization"),
+        input_schema=question_schema(tool.question, PlanQuestion),
+        output_schema=answer_schema(tool.answer),
         annotations=types.ToolAnnotations(
             read_only_hint=not tool.writes, destructive_hint=tool.writes, idempotent_hint=True, open_world_hint=False
         ),
     )
+
+
+def _link(what: str, file: Path) -> "types.ResourceLink":
+    """A link to a written file, for clients that open files themselves."""
+    import mcp.types as types
+
+    return types.ResourceLink(
+        name=file.name, uri=file.absolute().as_uri(), mime_type=_MEDIA.get(file.suffix.lower(), "application/octet-stream"),
+        description=what, size=file.stat().st_size if file.is_file() else None,
+    )  # fmt: skip
 
 
 def _failed(line: str) -> "types.CallToolResult":

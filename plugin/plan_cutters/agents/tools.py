@@ -3,29 +3,44 @@
 import contextlib
 import json
 import shutil
-from collections.abc import Awaitable, Callable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Awaitable, Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import anyio.to_thread
 
-from plan_cutters.agents.answers import Answer, Comparison, Explanation, MapAnswer, Picture, PlanAnswer, Sample, Vector
+from plan_cutters.agents.answers import (
+    Answer,
+    Comparison,
+    Explanation,
+    MapAnswer,
+    Picture,
+    PlanAnswer,
+    PlanDifferenceAnswer,
+    ShopAnswer,
+)
 from plan_cutters.agents.child import Ended, ProgressListener, run
 from plan_cutters.agents.cutter_names import chosen, cutter_of
+from plan_cutters.agents.digits import short
 from plan_cutters.agents.limits import CallError
+from plan_cutters.agents.nearest_sample import nearest_sample
 from plan_cutters.agents.plan_answers import compared, explained, pictured, planned
+from plan_cutters.agents.plan_difference import difference
 from plan_cutters.agents.postures import postures_of
 from plan_cutters.agents.requests import (
     CompareQuestion,
     Conditions,
+    DifferenceQuestion,
     ExplainQuestion,
     MapQuestion,
     PartQuestion,
     PlanQuestion,
     Question,
     RenderQuestion,
+    ShopQuestion,
 )
+from plan_cutters.agents.shop import built_in_tools, machines_in, shop_answer, tools_in
 from plan_cutters.agents.words import Permissions
 from plan_cutters.errors import CutterError
 from plan_cutters.plan_file.load import plan_of
@@ -45,6 +60,8 @@ class Reply:
 
     answer: dict[str, Any]
     picture: bytes | None = None
+    #: Written files, by what they are.
+    files: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +80,15 @@ class Call:
         """Plan a part; the plan and the exit code."""
         ended = await self._run(["plan", *words, "--json=-"], within=(*self.permissions.roots.folders, self.cwd))
         return plan_of(ended.output, "the plan", CallError), ended.code
+
+    async def plan_in(self, file: str) -> Plan:
+        """Read a plan that is there."""
+        path = Path(self.permissions.file(file))
+        return plan_of(await anyio.to_thread.run_sync(path.read_bytes), file, CallError)
+
+    async def listed(self, command: str, *words: str) -> bytes:
+        """What a command lists, as JSON."""
+        return (await self._run([command, *words, "--json"], answers=(0,))).output
 
     async def map(self, question: MapQuestion, most: int, spec: str | None = None) -> tuple[bytes, int]:
         """Map the postures at a point; the map as JSON and the exit code."""
@@ -83,12 +109,8 @@ class Call:
         CallError
             There are too many.
         """
-        ended = await self._run(["tools", self.permissions.file(library), "--json"], answers=(0,))
-        libraries = [
-            (each["id"], next(iter(each["names"]), ""))
-            for one in json.loads(ended.output)["libraries"]
-            for each in one["cutters"]
-        ]
+        rows, _ = tools_in(await self.listed("tools", self.permissions.file(library)))
+        libraries = [(each.id, each.name) for each in rows]
         if len(libraries) > self.permissions.limits.cutters:
             raise CallError(
                 f"lists {len(libraries)} cutters, and this server judges at most {self.permissions.limits.cutters} in a call: "
@@ -120,9 +142,9 @@ def fitting(make: Callable[[int], Answer], characters: int, picture: bytes | Non
         It is too long even without them.
     """
     for most in _LENGTHS:
-        answer = make(most)
-        if len(answer.model_dump_json()) <= characters:
-            return Reply(answer.model_dump(mode="json"), picture)
+        answer = short(make(most).model_dump(mode="json"))
+        if len(json.dumps(answer, ensure_ascii=False)) <= characters:
+            return Reply(answer, picture)
     raise CallError(f"the answer has more than {characters} characters even without its lists: ask about fewer faces or cutters")
 
 
@@ -146,7 +168,8 @@ async def plan_part(question: PlanQuestion, call: Call) -> Reply:
         with _whole(out):
             plan, code = await call.plan([*words, f"--out={out}", f"--formats={formats}"])
         files = {"json": str(out / "plan.json"), **{name: str(out / each.name) for name, each in plan.files.items()}}
-    return fitting(lambda most: planned(plan, code, most, files), call.permissions.limits.characters)
+    reply = fitting(lambda most: planned(plan, code, most, files), call.permissions.limits.characters)
+    return replace(reply, files=files)
 
 
 async def compare_cutters(question: CompareQuestion, call: Call) -> Reply:
@@ -190,11 +213,10 @@ async def explain_sample(question: ExplainQuestion, call: Call) -> Reply:
     postures: bytes | None = None
     sample = None
     if question.plan is not None:
-        path = Path(call.permissions.file(question.plan))
-        plan = plan_of(await anyio.to_thread.run_sync(path.read_bytes), question.plan, CallError)
+        plan = await call.plan_in(question.plan)
         cutter, face = cutter_of(plan, question.cutter), question.face
         if question.point is not None:
-            sample = await anyio.to_thread.run_sync(_nearest, question.plan, plan, cutter.id, question, call.permissions)
+            sample = await anyio.to_thread.run_sync(nearest_sample, question.plan, plan, cutter.id, question, call.permissions)
             face = sample.face
     else:
         plan, name, face, postures = await _judged(question, call)
@@ -207,6 +229,26 @@ async def explain_sample(question: ExplainQuestion, call: Call) -> Reply:
         return explained(plan, cutter, face, most, point=question.point, postures=judged, sample=sample)
 
     return fitting(make, call.permissions.limits.characters)
+
+
+async def list_tools_and_machines(question: ShopQuestion, call: Call) -> Reply:
+    """List the tools of a library, or the built-in ones, and the built-in machines."""
+    unused: list[str] = []
+    if question.library is None:
+        tools = await anyio.to_thread.run_sync(built_in_tools)
+    else:
+        tools, unused = tools_in(await call.listed("tools", call.permissions.file(question.library)))
+    machines = machines_in(await call.listed("machines")) if question.machines else []
+    library = "" if question.library is None else Path(question.library).name
+    return fitting(lambda most: shop_answer(library, tools, unused, machines, most), call.permissions.limits.characters)
+
+
+async def compare_plans(question: DifferenceQuestion, call: Call) -> Reply:
+    """Compare two plans that are there."""
+    old, new = [await call.plan_in(file) for file in (question.old, question.new)]
+    return await anyio.to_thread.run_sync(
+        lambda: fitting(lambda most: difference(old, new, most), call.permissions.limits.characters)
+    )
 
 
 async def _judged(question: ExplainQuestion, call: Call) -> tuple[Plan, str, str, bytes | None]:
@@ -267,52 +309,6 @@ async def _spec(name: str, question: Conditions, call: Call) -> str:
     )
 
 
-def _nearest(file: str, plan: Plan, cutter: str, question: ExplainQuestion, permissions: Permissions) -> Sample:
-    """The sample of a plan that is nearest to the point in question."""
-    import numpy as np
-
-    from plan_cutters.domain.verdicts import NO_REASON, WORDS
-    from plan_cutters.files.arrays import Archive
-
-    if "npz" not in plan.files:
-        raise CallError(
-            "has no samples.npz in its folder, so a point cannot be looked up: give a face, or plan with the format npz",
-            file=file,
-        )
-    npz = str(Path(file).parent / plan.files["npz"].name)
-    with Archive(permissions.file(npz), "samples", CallError) as archive:
-        names = ("point", "face", f"verdict_{cutter}", f"reason_{cutter}", f"axis_{cutter}")
-        if any(name not in archive.headers for name in names):
-            raise archive.fault(f"without {cutter}")
-        points, faces, verdicts, reasons, axes = (archive.read(name) for name in names)
-    if (
-        points.ndim != 2
-        or points.shape[1:] != (3,)
-        or not len(points)
-        or any(len(a) != len(points) for a in (faces, verdicts, reasons, axes))
-    ):
-        raise CallError("its arrays do not belong together: plan the part again", file=npz)
-    off = np.linalg.norm(points - np.array(question.point), axis=1)
-    row = int(np.nanargmin(off))
-    most, face = max(question.within_mm, plan.samples.max_gap_mm or 0.0), f"F{int(faces[row])}"
-    if not off[row] <= most:
-        raise CallError(
-            f"the nearest sample is {off[row]:.4g} mm from the point, on {face}; give a point within {most:.3g} mm "
-            "of one, or a face",
-            file=file,
-        )
-    axis: Vector | None = tuple(axes[row].tolist()) if np.isfinite(axes[row]).all() else None
-    code = int(reasons[row])
-    return Sample(
-        point=tuple(points[row].tolist()),
-        distance_mm=float(off[row]),
-        face=face,
-        verdict=WORDS.get(int(verdicts[row]), "unknown"),
-        axis=axis,
-        reason=None if code == NO_REASON or code >= len(plan.reasons) else plan.reasons[code],
-    )
-
-
 @contextlib.contextmanager
 def _whole(out: Path) -> Iterator[None]:
     """Take a folder away again that a call has made and not finished: its plan may be there, and models not."""
@@ -357,5 +353,16 @@ TOOLS = (
         "Draw a part in four views (PNG), coloured by the verdicts of the cutter that is selected, or that comes nearest: give "
         "one cutter to see its verdicts.",
         RenderQuestion, Picture, render,
+    ),
+    Tool(
+        "list_tools_and_machines", "Which tools and machines there are",
+        "List the tools of a library, or the built-in ones, by id, kind and size, and the built-in machines: words for "
+        "`cutters`, `cutter` and `machine`.",
+        ShopQuestion, ShopAnswer, list_tools_and_machines,
+    ),
+    Tool(
+        "compare_plans", "What changed from one plan to another",
+        "Compare two plan.json files, as before and after a change of the part: which faces and cutters reach less or more.",
+        DifferenceQuestion, PlanDifferenceAnswer, compare_plans,
     ),
 )  # fmt: skip

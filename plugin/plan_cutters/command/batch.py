@@ -20,6 +20,7 @@ from plan_cutters.report.folder import DEFAULT_FORMATS, with_pictures
 
 if TYPE_CHECKING:
     from plan_cutters.batch.job import Fault, Job, Settings
+    from plan_cutters.batch.row import PartRow
     from plan_cutters.batch.run import Terms
     from plan_cutters.batch.sources import Source
     from plan_cutters.batch.store import Store
@@ -53,6 +54,7 @@ _many = heading("Many parts")
     "units",
     "quiet",
     out={"required": True, "help": "Folder or URL for the table of all parts, and the folder NAME-plan of each."},
+    junit={"help": "Also write what became of each part as JUnit XML; a file on this machine."},
     formats={
         "help": "As of a single plan; json is always among them, for the table is made of it.  "
         f"[default: {','.join(DEFAULT_FORMATS)}, and png where the extra pictures is installed]"
@@ -106,9 +108,14 @@ def command(request: BatchRequest) -> int:
     from plan_cutters.batch.store import Store
     from plan_cutters.errors import OptionError
     from plan_cutters.files.seal import key_of
+    from plan_cutters.report.junit.cases import check as check_junit
 
+    check_junit(request.junit)
+    if request.dry_run and request.junit is not None:
+        raise OptionError("--dry-run plans nothing, and --junit is about what was planned: leave one of them out")
     parts = _parts(request)
     if all(isinstance(part, Fault) for part in parts):
+        _report(request.junit, [part.row for part in parts if isinstance(part, Fault)])
         for part in parts:
             _progress_line(part.row.error or "")  # type: ignore[union-attr]
         return max(part.row.code for part in parts)  # type: ignore[union-attr]
@@ -165,6 +172,7 @@ def _all(
     out.begin()  # what is wrong with it is said before any worker is started
     board = Board(request.quiet, len(parts))
     code, totals = FEASIBLE, Counter[str]()
+    rows: list[PartRow] = []
     try:
         count, share = cluster.workers_of(request.workers, terms.memory, request.jobs or 1)
         if request.cluster is None:
@@ -176,10 +184,12 @@ def _all(
             for row in run_batch(parts, client, out, terms, board=board, title=" ".join(request.sources)):
                 code = max(code, code_of(row) if fault(row) in fail_on else FEASIBLE)
                 totals[outcome(row)] += 1
+                rows.append(row)
                 board.row(row)
     finally:
         board.close()
         out.end()
+    _report(request.junit, rows)
     if not request.quiet:
         many = ", ".join(f"{totals[each]} {word}" for each, word in reversed(OUTCOMES.items()) if totals[each])
         terminal.show(f"{counted(totals.total(), 'part')}: {many}.", _where(out, PAGE))
@@ -192,6 +202,16 @@ def _where(out: "Store", page: str) -> str:
     if out.local:
         return f"Look at them in a browser: {out.root_url}/{page}"
     return f"The table is {out.root_url}/{page}: copy the folder to this machine to open it, or give --out a folder."
+
+
+def _report(junit: str | None, rows: "Sequence[PartRow]") -> None:
+    """Write the test cases of the parts, where a file for them is named."""
+    if junit is None:
+        return
+    from plan_cutters.batch.cases import part_case
+    from plan_cutters.report.junit.cases import write
+
+    write(junit, _SELF, map(part_case, sorted(rows, key=lambda row: row.name)))
 
 
 def _foreseen(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms") -> int:

@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Any, NoReturn
 import click
 
 from cad_io.whole import whole
+from plan_cutters.command.annotations import KINDS, annotations, requested
+from plan_cutters.command.changed_row import RULES, Row, row_cases
 from plan_cutters.command.codes import ENDED, run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import options
@@ -29,40 +31,14 @@ from plan_cutters.report.folder import with_pictures
 if TYPE_CHECKING:
     from plan_cutters.batch.content import Content
     from plan_cutters.batch.job import Handed, Settings
-    from plan_cutters.comparison.model import PlanDifference
 
 _SELF = "plan-cutters changed"
-#: Rules by which the command fails, each one stricter than the one before it.
-RULES = ("none", "lost", "unreachable", "not-comparable")
 #: Options of a plan that this command gives itself.
-_OURS = ("-o", "--out", "--formats", "--json", "--quiet", "--postures", "--check-operations", "--help", "-h", "--version")
+_OURS = ("-o", "--out", "--formats", "--json", "--junit", "--quiet", "--postures", "--check-operations", "--help", "-h",
+         "--version")  # fmt: skip
 _PLANNED = (0, 1, 4)
 
 _commits, _output, _rules = heading("Commits"), heading("Output"), heading("Rule")
-
-
-@dataclass(frozen=True, slots=True)
-class Row:
-    """A part that changed: its folders of plans before and after, the difference, or why there is none."""
-
-    part: Changed
-    before: Path | None = None
-    after: Path | None = None
-    difference: "PlanDifference | None" = None
-    #: The page of both plans, below the output folder, where they differ.
-    beside: Path | None = None
-    #: Target faces as it is that no cutter reaches whole.
-    unreachable: tuple[str, ...] = ()
-    #: Why it could not be planned as it is, or as it was.
-    failed: str = ""
-    unread: str = ""
-
-    def breaks(self, rule: str) -> bool:
-        """Whether the part fails by a rule."""
-        at = RULES.index(rule)
-        worse = self.difference is not None and self.difference.lost
-        doubtful = bool(self.unread) or (self.difference is not None and not self.difference.comparable)
-        return (at >= 1 and (worse or bool(self.failed))) or (at >= 2 and bool(self.unreachable)) or (at >= 3 and doubtful)
 
 
 @dataclass(frozen=True)
@@ -150,8 +126,13 @@ class PartRequest:
     help="Plans before and after, summary.md and changed.json.  [default: plan-cutters-changed]",
 )
 @_output("--cache", type=Folder("DIR"), help="Plans of earlier runs, by content; parts that are there are not planned again.")
+@_output(
+    "--annotations",
+    type=click.Choice(KINDS),
+    help="github: an ::error line for each part that fails, on standard error; none.  [default: github in a job of GitHub]",
+)
 @_output("--pictures-branch", metavar="NAME", help="Push pictures to this branch of origin and show them in the summary.")
-@options("debug")
+@options("debug", junit={"help": "Also write what became of each part as JUnit XML; what --fail-on lets pass is skipped."})
 @takes(ChangedRequest)
 def command(request: ChangedRequest) -> int:
     """Find the parts (STEP, IGES, BREP) that changed since COMMIT, and show which faces and cutters were lost.
@@ -159,12 +140,15 @@ def command(request: ChangedRequest) -> int:
     Each part is planned as it was and as it is, with the same options: those after --. The summary is Markdown, on standard
     output and in the file that GITHUB_STEP_SUMMARY names.
     """
+    from plan_cutters.report.junit.cases import check, write
+
     for word in request.plan_options:
         if word.partition("=")[0] in _OURS or re.match("-o.", word):
             raise OptionError(f"{word} cannot stand after --: this command gives it itself")
     base = request.base or (f"origin/{ref}" if (ref := os.environ.get("GITHUB_BASE_REF")) else "")
     if not base:
         raise OptionError("compare with which commit? give --base, as --base origin/main")
+    check(request.junit)
     require_temporary()
     began, head, parts = changed(base, None if request.staged else request.head)
     out = Path(request.out)
@@ -181,6 +165,11 @@ def command(request: ChangedRequest) -> int:
     failing = [row for row in rows if row.breaks(request.fail_on)]
     text, job = (_summary(rows, request.fail_on, failing, links, began, at) for at in ("", _artifacts()))
     _hand_on(rows, out, text, job, failing)
+    cases = [(row.part.name, [*row_cases(row, request.fail_on)]) for row in rows]
+    if request.junit is not None:
+        write(request.junit, _SELF, [case for _, each in cases for case in each])
+    for line in annotations(cases) if requested(request.annotations) else ():
+        error(line)
     for row in rows:
         for line in filter(None, (row.failed, row.unread)):
             error(f"{_SELF}: {line}")

@@ -13,9 +13,11 @@ from typing import NoReturn
 
 import click
 
+from cad_io.errors import CadIoError
 from plan_cutters.command import help_groups, terminal
 from plan_cutters.command.codes import CODES, USAGE, ended, guarded, interrupt, invoked, keep_interrupts
 from plan_cutters.command.entry import SUBCOMMANDS
+from plan_cutters.command.junit_file import JUnitFile
 from plan_cutters.command.option_groups import EXAMPLES, options
 from plan_cutters.command.piped import spooled
 from plan_cutters.command.request import PlanRequest, takes
@@ -23,7 +25,7 @@ from plan_cutters.command.values import File
 from plan_cutters.files.terminal_text import clean
 from plan_cutters.workers.assignment import INTERRUPTED, assignment, began, is_child, limit_memory, report, wait_to_begin
 from plan_cutters.workers.child import can_supervise
-from plan_cutters.workers.errors import Unfinished
+from plan_cutters.workers.errors import Supervised, Unfinished
 from plan_cutters.workers.supervise import default_memory
 
 _SELF = "plan-cutters"
@@ -55,6 +57,7 @@ def command(request: PlanRequest) -> int:
 
         return checked(parts[0], request.check_operations, requested, quiet=request.quiet, read_timeout=request.read_timeout)
     codes = []
+    junit = JUnitFile(request.junit, parts) if request.junit is not None else None
     outs = folders(request)
     since: float | None = began()
     done, excluded = assignment().done, assignment().excluded
@@ -62,10 +65,12 @@ def command(request: PlanRequest) -> int:
         if i < done:
             continue
         out = outs[i] if outs else None
-        code, line = guarded(partial(one_part, part, out, requested, request, since, excluded), request.debug)
+        code, line = guarded(partial(one_part, part, out, requested, request, since, excluded, junit), request.debug)
         since, excluded = None, {}
         codes.append(code)
         report("done", str(code))
+        if line and junit is not None:
+            junit.failed(line, part)
         if line:
             terminal.error(f"{part}: {line}" if len(parts) > 1 and not request.quiet else line)
         elif len(parts) > 1 and not request.quiet:
@@ -73,6 +78,8 @@ def command(request: PlanRequest) -> int:
         if code == INTERRUPTED:
             break
     if not is_child():
+        if junit is not None:
+            junit.write()
         terminal.all_shown()
     return max(codes)
 
@@ -136,7 +143,12 @@ def _watched(words: list[str], name: str) -> int:
             request = PlanRequest(**context.params)
     except click.exceptions.Exit as done:
         return done.exit_code
-    requested, faults = check(request)
+    try:
+        requested, faults = check(request)
+    except CadIoError as unread:
+        if request.junit is not None:
+            JUnitFile(request.junit, request.parts).write(str(unread))
+        raise
     if not can_supervise():
         if request.timeout is not None:
             raise OptionError("--timeout: this system has no process that could be ended; leave it out")
@@ -148,6 +160,7 @@ def _watched(words: list[str], name: str) -> int:
         terminal.error(f"plan-cutters: {fault}; the other parts are planned")
     memory = default_memory() if request.memory is None else int(request.memory * 1e9)
     display.stage("start")
+    display.junit = junit = JUnitFile(request.junit, request.parts) if request.junit is not None else None
     try:
         code = supervised(
             words,
@@ -163,7 +176,14 @@ def _watched(words: list[str], name: str) -> int:
 
         display.clear()
         code = without_models(stopped, request)
+    except Supervised as stopped:
+        if junit is not None:
+            junit.failed(str(stopped))
+            junit.write()
+        raise
     finally:
         display.clear()
+    if junit is not None:
+        junit.write("interrupted" if code == INTERRUPTED else "not planned")
     terminal.all_shown()
     return code

@@ -71,7 +71,7 @@ def requested_words() -> Sequence[str]:
     default="",
     help="Compare although these differ: unit, faces, sampling, postures, tolerance, clearance, machine, setup, fixtures.",
 )
-@options("debug")
+@options("debug", junit={"help": "Also write JUnit XML: a test case for each face and cutter that differs."})
 @takes(DiffRequest)
 def command(request: DiffRequest) -> int:
     """Show which faces and cutters were lost or won from plan OLD to plan NEW.
@@ -79,8 +79,10 @@ def command(request: DiffRequest) -> int:
     OLD and NEW are plan.json files, the folders of two plans, or two folders of many plans, which are paired by name.
     A face whose number shifted is known again by its place, its surface or its neighbours; one that is not known again is told.
     """
+    from plan_cutters.comparison.cases import COMPARABLE, comparison_cases
     from plan_cutters.comparison.folders import compare_folders
-    from plan_cutters.errors import OptionError
+    from plan_cutters.errors import OptionError, PlanError
+    from plan_cutters.report.junit.cases import Case, check, write
 
     if request.as_json and request.as_markdown:
         raise OptionError("--json and --markdown both write standard output: give one of them")
@@ -88,8 +90,16 @@ def command(request: DiffRequest) -> int:
     for word in despite:
         if word not in requested_words():
             raise OptionError(f"--despite {word!r} is not known; give some of {','.join(requested_words())}")
+    check(request.junit)
     old, new = Path(request.old), Path(request.new)
-    comparison = compare_folders(old, new, slack=request.slack / 100.0, despite=despite)
+    try:
+        comparison = compare_folders(old, new, slack=request.slack / 100.0, despite=despite)
+    except PlanError as fault:
+        if request.junit is not None:
+            write(request.junit, _SELF, [Case(request.new, COMPARABLE, "error", "unread", str(fault))])
+        raise
+    if request.junit is not None:
+        write(request.junit, _SELF, comparison_cases(comparison))
     made = _pages(old, new, comparison, Path(request.out)) if request.out else {}
     if request.as_json:
         hand_out(comparison.model_dump_json(indent=2) + "\n")

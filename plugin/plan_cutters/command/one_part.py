@@ -21,6 +21,7 @@ from plan_cutters.plan_file.words.names import called
 from plan_cutters.workers.assignment import INTERRUPTED, assignment, is_child, report, report_work
 
 if TYPE_CHECKING:
+    from plan_cutters.command.junit_file import JUnitFile
     from plan_cutters.command.request import PlanRequest
     from plan_cutters.options import Options
     from plan_cutters.plan_file.model import Plan
@@ -35,10 +36,12 @@ def one_part(
     request: "PlanRequest",
     began: float | None = None,
     omitted: Mapping[int, str] | None = None,
+    junit: "JUnitFile | None" = None,
 ) -> tuple[int, str]:
     """Plan one part into a folder, None for none; exit code and a line about it.
 
-    `began`: when the command did, for the first part (`time.monotonic`); `omitted`: why faces are not to be worked on, by number.
+    `began`: when the command did, for the first part (`time.monotonic`); `omitted`: why faces are not to be worked on, by number;
+    `junit`: takes the test cases of the plan, as soon as its verdicts stand.
     """
     from plan_cutters.errors import TooManySamplesError
     from plan_cutters.report.folder import DEFAULT_FORMATS, Staging, ended, file_name, read_formats, write_all, write_unfinished
@@ -49,6 +52,8 @@ def one_part(
     report("part", part)
     staging = Staging(out, lambda folder: report("staging", str(folder))) if out else None
     watch = ProgressListener(out, options, request, began)
+    if junit is not None:
+        watch.judged = partial(junit.planned, part)
 
     def stands(result: "Result") -> None:
         if staging and write_unfinished(result, formats, staging, clock):
@@ -80,6 +85,7 @@ def one_part(
                 result = planned(default_density(options))
         document = result.plan
         if out is None:
+            watch.judged(document, code_of(document, request.fail_under))
             watch.summarise(document)
         else:
             watch.tell("files", 0, 1)
@@ -168,6 +174,8 @@ class ProgressListener:
 
     def __init__(self, out: Path | None, options: "Options", request: "PlanRequest", began: float | None) -> None:
         self.out, self.request = out, request
+        #: Called with the plan and its exit code before any model is written.
+        self.judged: Callable[[Plan, int], None] = lambda plan, code: None
         self.display = None
         if not is_child():
             names = {cutter.id: called(cutter) for cutter in options.judged}
@@ -185,8 +193,10 @@ class ProgressListener:
             report("safe", f"{UNREADABLE} {self.out.absolute()}")
 
     def safe(self, plan: "Plan") -> None:
+        code = code_of(plan, self.request.fail_under)
         if self.out is not None:
-            report("safe", f"{code_of(plan, self.request.fail_under)} {self.out.absolute()}")
+            report("safe", f"{code} {self.out.absolute()}")
+        self.judged(plan, code)
         self.summarise(plan)
 
     def begins(self, what: str) -> None:

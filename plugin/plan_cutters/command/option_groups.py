@@ -227,6 +227,12 @@ _OPTIONS = (
         help="The plan of one part on standard output, nothing else there; files only where -o names a folder.",
     ),
     _output(
+        "--junit",
+        type=File("FILE"),
+        help="Also write a report for continuous integration (JUnit XML): a test case for each face and cutter, of many parts "
+        "for each part.",
+    ),
+    _output(
         "--units",
         brief="Unit of lengths in the summary and on the page.",
         type=click.Choice(["mm", "in"]),

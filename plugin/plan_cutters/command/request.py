@@ -123,6 +123,7 @@ class PlanRequest(PlanningRequest):
     process: str | None
     out: str | None
     json_out: str | None
+    junit: str | None
     verbose: bool
     verdicts: str | None
     fail_under: float | None
@@ -136,6 +137,7 @@ class BatchRequest(PlanningRequest):
 
     sources: tuple[str, ...]
     out: str
+    junit: str | None
     workers: int | None
     timeout_part: float | None
     limit_memory: float | None
@@ -196,6 +198,7 @@ class DiffRequest:
     as_json: bool
     as_markdown: bool
     out: str | None
+    junit: str | None
     slack: float
     despite: str
     debug: bool
@@ -212,6 +215,8 @@ class ChangedRequest:
     staged: bool
     fail_on: str
     out: str
+    junit: str | None
+    annotations: str | None
     cache: str | None
     pictures_branch: str | None
     debug: bool

@@ -48,7 +48,10 @@ def supervised(
             done, code = done + stopped.before, max(code, stopped.code)
             if done == len(parts):  # all of them are, and only the end was slow
                 return code
-            terminal.error(f"plan-cutters: {parts[done]}: {_failure_text(stopped.out, timeout)}")
+            line = _failure_text(stopped.out, timeout)
+            terminal.error(f"plan-cutters: {parts[done]}: {line}")
+            if display is not None:
+                display.failed(f"{parts[done]}: {line}", parts[done])
             done, faces, began = done + 1, {}, None
             code = max(code, TIMED_OUT)
             if done == len(parts):

@@ -31,6 +31,8 @@ class Display(Protocol):
     def show(self, text: str) -> None: ...
     def at(self, done: int, total: int) -> None: ...
     def tick(self) -> None: ...
+    def cases(self, text: str) -> None: ...
+    def failed(self, line: str) -> None: ...
 
 
 #: Seconds that an interrupted child has to end in order; it has not if the kernel does not come back to it.
@@ -205,7 +207,7 @@ class _Watch:
     def _show(self, word: str, text: str) -> None:
         if self.display is None:
             return
-        if word in ("part", "stage", "detail", "say", "show"):
+        if word in ("part", "stage", "detail", "say", "show", "cases", "failed"):
             getattr(self.display, "begins" if word == "part" else word)(text)
         elif word == "at":
             done, total = map(int, text.split())

@@ -1,0 +1,69 @@
+"""`--junit` of a plan: cases of each part come from the process that plans it, and the file is written when all have ended."""
+
+import json
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+from plan_cutters.workers.assignment import is_child, report
+
+if TYPE_CHECKING:
+    from plan_cutters.plan_file.model import Plan
+    from plan_cutters.report.junit.cases import Case
+
+_SUITE = "plan-cutters"
+
+
+class JUnitFile:
+    """Gathers what came of each part.
+
+    Parameters
+    ----------
+    path : str
+    parts : sequence of str
+        All that were requested: one of which nothing is known when the file is written is an error.
+    """
+
+    def __init__(self, path: str, parts: Sequence[str]) -> None:
+        self.path, self.parts = path, parts
+        self.part = ""
+        self.cases: dict[str, list[Case]] = {}
+        self.faults: dict[str, str] = {}
+
+    def planned(self, part: str, plan: "Plan", code: int) -> None:
+        """Take the cases of a plan, or hand them to the process that gathers them."""
+        from plan_cutters.report.junit.plan import plan_cases
+
+        cases = plan_cases(plan, code, part)
+        if is_child():
+            report("cases", json.dumps(cases))
+        else:
+            self.cases[part] = cases
+
+    def handed(self, text: str) -> None:
+        """Take the cases of the part that began last."""
+        from plan_cutters.report.junit.cases import Case
+
+        self.cases[self.part] = [Case(*each) for each in json.loads(text)]
+
+    def failed(self, line: str, part: str | None = None) -> None:
+        """Take the line on a part without a plan, by default the one that began last."""
+        if is_child():
+            report("failed", line)
+        self.faults.setdefault(self.part if part is None else part, line.removeprefix("plan-cutters: "))
+
+    def write(self, rest: str = "not planned") -> None:
+        """Write the file; `rest`: why parts of which nothing is known have no plan.
+
+        Raises
+        ------
+        PlanError
+            It cannot be written.
+        """
+        from plan_cutters.report.junit.cases import Case, write
+        from plan_cutters.report.junit.plan import PROCESS
+
+        cases: list[Case] = []
+        for part in self.parts:
+            fault = Case(part, PROCESS, "error", "not_planned", self.faults.get(part, rest))
+            cases += self.cases.get(part, [fault])
+        write(self.path, _SUITE, cases)
