@@ -32,6 +32,8 @@ class Tools:
         Holder of those that have none: `er32`, `R15L30`, a path; empty: none is given.
     stick_out : float, optional
         mm from tip to holder for tools that state none.
+    cam_job : str
+        Name of a CAM job: bits have the numbers and feeds of its tool controllers; empty: they have none.
     """
 
     specs: tuple[str, ...] = ()
@@ -39,6 +41,7 @@ class Tools:
     bits: tuple[str, ...] = ()
     holder: str = ""
     stick_out: float | None = None
+    cam_job: str = ""
 
 
 @dataclass(frozen=True)
@@ -105,6 +108,9 @@ def picked(selection) -> tuple[str, str, tuple[int, ...]]:
     documents = {entry.Object.Document.Name for entry in selection}
     if len(documents) > 1:
         raise Refused(f"the selection lies in {len(documents)} documents: select in one of them")
+    if len(selection) == 1 and host.is_job(selection[0].Object):
+        thing = cam.body_of(selection[0].Object)
+        return thing.Document.Name, thing.Name, ()
     if len(selection) != 1:
         raise Refused(f"select one body, or faces of one body; selected are {len(selection)} objects")
     thing, names = selection[0].Object, list(selection[0].SubElementNames)
