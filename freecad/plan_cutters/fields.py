@@ -1,15 +1,15 @@
-"""What the panel asks for: part and faces, tools, machine and setup."""
+"""What the panel asks for: part and faces, machine and setup."""
 
 from __future__ import annotations
 
-import os
 import shlex
 from typing import Any
 
-from . import model, windows
+from . import cam, model, windows
 from .picking import Picker
 from .remembered import Choices
 from .windows import QtCore, QtGui
+from .words import length
 
 FACES = [("Free-form faces and fillets", "sculptured,blends"), ("Picked faces", "picked"), ("All faces", "all")]
 MACHINES = [
@@ -26,28 +26,19 @@ MACHINES = [
     ("Within 60° of the setup axis", "tilt:60"),
 ]
 AXES = [(f"{sign}{name} of the document", f"{sign}{name}".lower()) for name in "ZXY" for sign in "+-"]
-HOLDERS = [
-    ("As the tools say", ""),
-    ("None at all", "none"),
-    ("Collet chuck ER16", "er16"),
-    ("Collet chuck ER32", "er32"),
-    ("HSK63-A with ER32", "hsk63a-er32"),
-    ("BT40 with ER32", "bt40-er32"),
-]
 OPERATIONS = [("No", ""), ("The fewest", "fewest"), ("The fastest", "fastest"), ("Both plans", "both")]
-LIBRARIES = "Tool libraries (*.json *.tools *.csv *.hsmlib *.fctl *.fctb *.toml *.fcholder);;All files (*)"
 
 
 class PartBox:
     """Which body, and which of its faces are to be machined."""
 
-    def __init__(self, picker: Picker, choices: Choices, changed) -> None:
-        self._picker, self._changed = picker, changed
+    def __init__(self, picker: Picker, choices: Choices, changed, job_taken=lambda job: None) -> None:
+        self._picker, self._changed, self._job_taken = picker, changed, job_taken
         self.document, self.body = "", ""
         self.faces: tuple[int, ...] = ()
         self.form, layout = windows.box("Part and faces", "part")
         self._name = windows.words("none: select a body", "body")
-        layout.addRow("Body", windows.row(self._name, windows.button("Take", self.take, "Take the body, or faces, selected now")))
+        layout.addRow("Body", windows.row(self._name, windows.button("Take", self.take, "Take the body, faces, or CAM job selected now")))
         self._kind = windows.combo(FACES, choices.faces)
         self._kind.setObjectName("faces")
         layout.addRow("To machine", self._kind)
@@ -67,10 +58,13 @@ class PartBox:
         selection = Gui.Selection.getSelectionEx("*")
         if not selection and quiet:
             return self._tell()
+        job = cam.job_of(selection)
+        if job is not None:
+            self._job_taken(job)
         try:
             found = model.picked(selection)
         except model.Refused as error:
-            if not quiet:
+            if not quiet or job is not None:
                 self._name.setText(str(error))
             return self._tell()
         self.document, self.body, self.faces = found
@@ -123,97 +117,6 @@ class PartBox:
         self._changed()
 
 
-class ToolsBox:
-    """Which tools are judged: what is ticked, or else the program's default tool set."""
-
-    def __init__(self, document, choices: Choices, changed) -> None:
-        self._changed = changed
-        self.form, layout = windows.box("Tools", "tools")
-        self._list = QtGui.QListWidget()
-        self._list.setObjectName("tools")
-        windows.narrow(self._list).setFixedHeight(74)
-        self._list.setToolTip("Tick what is judged. Nothing ticked: the program's own set of usual metric sizes. Del takes away.")
-        layout.addRow(self._list)
-        self._typed = QtGui.QLineEdit()
-        self._typed.setObjectName("typed")
-        self._typed.setPlaceholderText("D12L80, R6L80rc6…")
-        self._typed.setToolTip("Diameter D or radius R, stick-out L, corner radius rc: R6L80rc6 is a ball end. Enter adds it.")
-        self._typed.editingFinished.connect(self._add_typed)
-        layout.addRow("Add", windows.narrow(self._typed))
-        layout.addRow("", windows.button("Tool library…", self._add_library, "Fusion, HSMWorks, FreeCAD or TOML"))
-        self._holder = windows.combo(HOLDERS, choices.holder, editable=True)
-        self._holder.setObjectName("holder")
-        self._holder.setToolTip("Of the tools that have none: a name as er32, R15L30 (radius, length), or a file")
-        layout.addRow("Holder", self._holder)
-        self._stick_out = windows.length(choices.stick_out, "as the tools say", "stick_out")
-        self._stick_out.setToolTip("From the holder's face to the tip, of library tools that state none")
-        layout.addRow("Stick-out", self._stick_out)
-        for name, label in model.bits(document) if document else ():
-            self._add("bit", name, f"{label} (tool bit of this document)", False)
-        for path in choices.libraries:
-            self._add("file", path, os.path.basename(path), os.path.exists(path))
-        for word in choices.typed:
-            self._add("spec", word, word, True)
-        self._list.itemChanged.connect(lambda *_: changed())
-        remove = QtGui.QShortcut(QtGui.QKeySequence("Del"), self._list)
-        remove.setContext(QtCore.Qt.WidgetShortcut)
-        remove.activated.connect(self._remove)
-        self._holder.currentTextChanged.connect(lambda *_: changed())
-
-    def _add(self, kind: str, value: str, text: str, ticked: bool) -> None:
-        item = QtGui.QListWidgetItem(text)
-        item.setToolTip(value)
-        item.setData(QtCore.Qt.UserRole, (kind, value))
-        item.setFlags(item.flags() | QtCore.Qt.ItemIsUserCheckable)
-        item.setCheckState(QtCore.Qt.Checked if ticked else QtCore.Qt.Unchecked)
-        self._list.addItem(item)
-
-    def _add_typed(self) -> None:
-        words = self._typed.text().replace(",", " ").replace(";", " ").split()
-        self._typed.clear()
-        for word in words:
-            if word not in self._entries("spec", False):
-                self._add("spec", word, word, True)
-        if words:
-            self._changed()
-
-    def _add_library(self) -> None:
-        for path in QtGui.QFileDialog.getOpenFileNames(self.form, "Tool libraries", "", LIBRARIES)[0]:
-            self._add("file", path, os.path.basename(path), True)
-        self._changed()
-
-    def _remove(self) -> None:
-        self._list.takeItem(self._list.currentRow())
-        self._changed()
-
-    def _entries(self, kind: str, ticked: bool = True) -> tuple[str, ...]:
-        items = [self._list.item(place) for place in range(self._list.count())]
-        return tuple(
-            item.data(QtCore.Qt.UserRole)[1] for item in items if item.data(QtCore.Qt.UserRole)[0] == kind
-            and (not ticked or item.checkState() == QtCore.Qt.Checked)
-        )  # fmt: skip
-
-    def tools(self) -> model.Tools:
-        """What is requested."""
-        return model.Tools(
-            specs=self._entries("spec"), files=self._entries("file"), bits=self._entries("bit"),
-            holder=windows.chosen(self._holder), stick_out=self._stick_out.value() or None,
-        )  # fmt: skip
-
-    def choices(self) -> dict:
-        """What is remembered."""
-        return {"libraries": self._entries("file", False), "typed": self._entries("spec", False),
-                "holder": windows.chosen(self._holder), "stick_out": self._stick_out.value()}  # fmt: skip
-
-    def summary(self) -> str:
-        """In a few words."""
-        tools = self.tools()
-        count = len(tools.specs) + len(tools.bits)
-        parts = [f"{count} tool{'s' * (count != 1)}"] * bool(count)
-        parts += [os.path.basename(path) for path in tools.files]
-        return ", ".join(parts) or "the default tool set"
-
-
 class MachineBox:
     """The machine, how the part stands in it, what holds it, what is left on it."""
 
@@ -245,6 +148,14 @@ class MachineBox:
         self._allowance = windows.length(choices.allowance, name="allowance")
         self._allowance.setToolTip("Stock that is left on the surface on purpose")
         layout.addRow("Allowance", self._allowance)
+        self._stock, self._stock_words = 0.0, windows.words("", "stock")
+        self._as_allowance = windows.button("As allowance", self._take_stock, "Judge with the stock of the job left on the surface")
+        self._stock_line = QtGui.QWidget()
+        line = windows.row(self._stock_words, self._as_allowance)
+        line.setContentsMargins(0, 0, 0, 0)
+        self._stock_line.setLayout(line)
+        self._stock_line.setVisible(False)
+        layout.addRow("", self._stock_line)
         self._operations = windows.combo(OPERATIONS, choices.operations)
         self._operations.setObjectName("operations")
         self._operations.setToolTip("Fixed orientations (3+2) that finish together all that is reached")
@@ -259,6 +170,16 @@ class MachineBox:
         self._machine.currentTextChanged.connect(lambda *_: changed())
         self._more.textChanged.connect(lambda *_: changed())
         self._setup_chosen()
+
+    def take_job(self, job) -> None:
+        """Take the direction of a CAM job, and offer its stock as the allowance, which is another thing unless the user says so."""
+        windows.choose(self._setup, "+z")
+        self._stock = cam.stock_over(job)
+        self._stock_words.setText(f"Stock of {job.Label}: {length(self._stock)} over the part at least")
+        self._stock_line.setVisible(self._stock > 0.0)
+
+    def _take_stock(self) -> None:
+        self._allowance.setValue(self._stock)
 
     def _machine_file(self) -> None:
         path = QtGui.QFileDialog.getOpenFileName(self.form, "Machine", "", "Machines (*.toml *.json *.fcm *.ini *.mch);;All (*)")[

@@ -11,7 +11,8 @@ import shlex
 import shutil
 from typing import Any
 
-from . import host, model, results
+from . import cam, host, model, results
+from .words import tr
 
 #: Of the plan, what the workbench shows.
 FORMATS = "json,html,npz,step"
@@ -152,6 +153,41 @@ def exported(thing, shape, folder: str) -> str:
     return path
 
 
+def _bits(job: model.Job, folder: str) -> str:
+    """Write the tool bits of a job as a library, with the numbers and feeds of the CAM job that they are taken from; its path."""
+    numbered = {}
+    if job.tools.cam_job:
+        numbered = cam.controllers(model.thing_of(job.document, job.tools.cam_job))
+    rows = []
+    for place, name in enumerate(job.tools.bits, 1):
+        bit = model.thing_of(job.document, name)
+        kind = host.bit_shape(bit)
+        if not kind:
+            raise model.Refused(tr("{bit} is no tool bit").format(bit=bit.Label))
+        mine = numbered.get(name, cam.Controller())
+        sizes: dict[str, str] = host.lengths(bit)
+        try:
+            holder = host.holder_of(bit)
+        except LookupError as error:
+            raise model.Refused(tr("the holder of {bit} cannot be read: {why}").format(bit=bit.Label, why=error)) from None
+        if holder is not None:
+            sizes["ToolHolder"] = f"bit{place}"
+            _written(os.path.join(folder, f"bit{place}.fcholder"), holder)
+        _written(os.path.join(folder, f"bit{place}.fctb"), {
+            "version": 2, "name": bit.Label, "shape": f"{kind}.fcstd", "parameter": sizes,
+            "attribute": {"cutting_feedrate": f"{mine.feed:.9g} mm/min"} if mine.feed else {},
+        })  # fmt: skip
+        rows.append({"path": f"bit{place}.fctb", **({"nr": mine.number} if mine.number > 0 else {})})
+    path = os.path.join(folder, "tool_bits.fctl")
+    _written(path, {"version": 1, "tools": rows})
+    return path
+
+
+def _written(path: str, entry: dict[str, Any]) -> None:
+    with open(path, "w", encoding="utf-8") as file:
+        json.dump(entry, file)
+
+
 def _tools(job: model.Job, folder: str) -> list[str]:
     tools = job.tools
     if (tools.files or tools.bits) and tools.specs:
@@ -159,16 +195,8 @@ def _tools(job: model.Job, folder: str) -> list[str]:
     found = [word for spec in tools.specs for word in ("--cutter", spec)]
     for path in tools.files:
         found += ["--cutters", path]
-    for number, name in enumerate(tools.bits, 1):
-        bit = model.thing_of(job.document, name)
-        kind = host.bit_shape(bit)
-        if not kind:
-            raise model.Refused(f"{bit.Label} is no tool bit")
-        path = os.path.join(folder, f"bit{number}.fctb")
-        entry = {"version": 2, "name": bit.Label, "shape": f"{kind}.fcstd", "parameter": host.lengths(bit), "attribute": {}}
-        with open(path, "w", encoding="utf-8") as file:
-            json.dump(entry, file)
-        found += ["--cutters", path]
+    if tools.bits:
+        found += ["--cutters", _bits(job, folder)]
     if tools.holder:
         found += ["--holder", tools.holder]
     if tools.stick_out is not None:

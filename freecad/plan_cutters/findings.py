@@ -166,6 +166,13 @@ class Findings(windows.Panel):
         self._stale.setText(why)
         self._stale.setVisible(bool(why))
 
+    def _gone(self) -> bool:
+        """Whether another command closed the panel, which FreeCAD does not tell it; it follows nothing any more then."""
+        if self.form and windows.alive(self._told):
+            return False
+        self.leave()
+        return True
+
     # FreeCAD tells what happens to documents, before it is done with it.
 
     def slotRecomputedDocument(self, _document) -> None:
@@ -175,7 +182,7 @@ class Findings(windows.Panel):
 
     def _follow(self) -> None:
         """Follow the document: the plan may be gone, or be about another cutter again."""
-        if LAST is not self:
+        if LAST is not self or self._gone():
             return
         if self.result.document not in App.listDocuments():
             self.leave()
@@ -243,6 +250,8 @@ class Findings(windows.Panel):
 
     def addSelection(self, document, thing, _element, point) -> None:
         """A click in the view (FreeCAD calls this): the sample nearest to it."""
+        if self._gone():
+            return
         shown = {each.Name for each in self.group.Group if getattr(each, "Verdict", "")}
         if document != self.group.Document.Name or thing.rpartition(".")[2] not in shown:
             return
@@ -279,12 +288,17 @@ class Findings(windows.Panel):
         self._map.setEnabled(True)
 
     def _map_drawn(self, found) -> None:
+        if self._gone():
+            runner.removed(found["folder"])
+            return
         self._map_ended()
         picture = QtGui.QPixmap(found["picture"])
         runner.removed(found["folder"])
         windows.show_picture(picture, f"Postures of {self.group.Cutter} at {self._here.face}")
 
     def _map_failed(self, line: str) -> None:
+        if self._gone():
+            return
         self._map_ended()
         self._told.setText(line)
 

@@ -109,7 +109,7 @@ def picked(selection) -> tuple[str, str, tuple[int, ...]]:
     if len(documents) > 1:
         raise Refused(f"the selection lies in {len(documents)} documents: select in one of them")
     if len(selection) == 1 and host.is_job(selection[0].Object):
-        thing = cam.body_of(selection[0].Object)
+        thing = planned(body_of(selection[0].Object))
         return thing.Document.Name, thing.Name, ()
     if len(selection) != 1:
         raise Refused(f"select one body, or faces of one body; selected are {len(selection)} objects")
@@ -125,6 +125,20 @@ def picked(selection) -> tuple[str, str, tuple[int, ...]]:
     if len(faces) < len(set(elements)):
         raise Refused("select faces or the whole body, not edges or points")
     return thing.Document.Name, planned(thing).Name, tuple(faces)
+
+
+def body_of(job):
+    """The body that a CAM job is about, as it stands in the job.
+
+    Raises
+    ------
+    Refused
+        There is none, or there are several.
+    """
+    models = list(getattr(job.Model, "Group", ()))
+    if len(models) != 1:
+        raise Refused(f"{job.Label} has {len(models)} models: select the one that is machined")
+    return models[0]
 
 
 def _within(thing, path: str):

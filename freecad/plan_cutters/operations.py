@@ -42,6 +42,24 @@ def add(document, group, result: results.Result) -> None:
                 host.visible(each, False)  # the verdicts are shown there
 
 
+def own_bits(document, result: results.Result) -> dict:
+    """The tool bits of the document that cutters of a plan were read from, by the ids of the cutters.
+
+    A bit that has another diameter or other flutes than its cutter was changed after the plan, and is none of them.
+    """
+    found = {}
+    for bit in filter(None, map(document.getObject, result.job.tools.bits)):
+        if not host.bit_shape(bit):
+            continue
+        for cutter in result.plan["cutters"]:
+            names = {cutter["name"], *(each["name"] for each in cutter.get("sources") or ())}
+            sizes = {"Diameter": 2.0 * cutter["radius"], "CuttingEdgeHeight": cutter["flutes_mm"] or cutter["length"]}
+            same = all(abs(getattr(getattr(bit, word, None), "Value", size) - size) < 1e-3 for word, size in sizes.items())
+            if bit.Label in names and same and cutter["id"] not in found:
+                found[cutter["id"]] = bit
+    return found
+
+
 def make_job(group, word: str = MODELS[0]):
     """A CAM job of a plan's operations: tool controllers, and work planes where operations of this FreeCAD know them.
 
@@ -80,7 +98,8 @@ def make_job(group, word: str = MODELS[0]):
         }
         order = [place for place, name in enumerate(names) if name is not None]
         document.recompute()
-        job = macro.tried_job(document, result.plan, plan, (part, planes, taken, {place: n for n, place in enumerate(order, 1)}))
+        shown = (part, planes, taken, {place: n for n, place in enumerate(order, 1)})
+        job = macro.tried_job(document, result.plan, plan, shown, own_bits(document, result))
         if job is None:
             raise model.Refused("this FreeCAD made no CAM job: the report view says why")
         host.visible(part, False)

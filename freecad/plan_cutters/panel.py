@@ -6,8 +6,9 @@ import FreeCAD as App
 import FreeCADGui as Gui
 
 from . import findings, model, objects, remembered, runner, windows
-from .fields import MachineBox, PartBox, ToolsBox
+from .fields import MachineBox, PartBox
 from .picking import Picker
+from .tools_box import ToolsBox
 from .windows import QtCore, QtGui
 
 _PLAN, _CLOSE = QtGui.QDialogButtonBox.Apply, QtGui.QDialogButtonBox.Close
@@ -27,7 +28,7 @@ class Panel(windows.Panel):
         self.bar.setVisible(False)
         layout.addRow(self.status)
         layout.addRow(self.bar)
-        self.part = PartBox(self.picker, choices, self._changed)
+        self.part = PartBox(self.picker, choices, self._changed, self._job_taken)
         self.tools = ToolsBox(App.ActiveDocument, choices, self._changed)
         self.machine = MachineBox(self.picker, choices, self._changed)
         self.form = [status, self.part.form, self.tools.form, self.machine.form]
@@ -36,9 +37,12 @@ class Panel(windows.Panel):
 
     def job(self) -> model.Job:
         """What is requested now."""
+        missing = self.tools.missing()
         if not self.part.body:
             raise model.Refused("select the body to machine, or faces of it, and press “Take”")
         model.thing_of(self.part.document, self.part.body)
+        if missing:
+            raise model.Refused(missing)
         kind, options = self.part.kind(), self.machine.options()
         if kind == "picked" and not self.part.faces:
             raise model.Refused("no face is picked: click faces in the view")
@@ -51,8 +55,12 @@ class Panel(windows.Panel):
             options=options,
         )  # fmt: skip
 
+    def _job_taken(self, job) -> None:
+        self.tools.take_job(job)
+        self.machine.take_job(job)
+
     def _changed(self) -> None:
-        if not self._ready or self._run is not None:
+        if not self._ready or self._run is not None or self._gone():
             return
         try:
             job = self.job()
@@ -103,7 +111,16 @@ class Panel(windows.Panel):
         for each in self.form[1:]:
             each.setEnabled(not running)
 
+    def _gone(self) -> bool:
+        """Whether another command closed the panel, which FreeCAD does not tell it; what it does is given up then."""
+        if windows.alive(self.status):
+            return False
+        self._leave()
+        return True
+
     def _progress(self, words: str, fraction: float | None) -> None:
+        if self._gone():
+            return
         self.status.setText(words[:1].upper() + words[1:])
         self.bar.setRange(0, 0 if fraction is None else 1000)
         if fraction is not None:
@@ -115,11 +132,16 @@ class Panel(windows.Panel):
         self._changed()
 
     def _failed(self, line: str) -> None:
+        if self._gone():
+            return
         self._end()
         self.status.setText(line[:1].upper() + line[1:])
         App.Console.PrintError(f"plan-cutters: {line}\n")
 
     def _done(self, result) -> None:
+        if self._gone():
+            result.discard()
+            return
         try:
             group = objects.show(App.getDocument(result.document), result)
         except Exception as error:  # whatever the document has against it: nothing is silent

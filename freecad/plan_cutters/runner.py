@@ -16,11 +16,17 @@ import time
 from typing import Any, Callable
 
 from . import files, host, model, results
+from .words import later, tr, unit
 
 #: Exit codes with which there is a plan: a cutter finishes, none does, something could not be judged.
 PLANNED = (0, 1, 4)
 #: A line of progress: seconds, the stage, and how much of it is done.
 _PROGRESS = re.compile(r"\s*[\d.]+ s  (.*?)(?:, (\d+) %)?\s*$")
+#: Options that the program names in its faults, and what they are in the panel.
+_IN_THE_PANEL = (
+    ("give --assume-stickout MM", later("fill in “Stick-out”")),
+    ("give --holder SPEC, as R15L30 (or none)", later("choose one in “Holder”, or “None at all”")),
+)
 #: The window asks so often, ms; a program that was told to end gets so long, s.
 _OFTEN, _PATIENCE = 100, 5.0
 #: Folders that have to be gone when FreeCAD ends, and programs that run.
@@ -83,6 +89,8 @@ class Process:
         named = [place for place, line in enumerate(lines) if line.startswith("plan-cutters")]
         text = " ".join(lines[named[-1] :] if named else lines[-1:])
         text = re.sub(r"^plan-cutters[\w ]*: ", "", text)
+        for option, field in _IN_THE_PANEL:
+            text = text.replace(option, tr(field))
         return text or f"the program ended with code {self.popen.returncode} and wrote nothing"
 
     def output(self) -> str:
@@ -199,7 +207,9 @@ class Run(_Watched):
         words, fingerprints = files.words(self.job, self.folder)
         with open(os.path.join(self.folder, results.JOB), "w", encoding="utf-8") as file:
             json.dump({**dataclasses.asdict(self.job), "fingerprints": fingerprints}, file)
-        # Behind the options of the user: the last one of a kind counts.
+        # Behind the options of the user the last one of a kind counts, so what is only preferred stands before them.
+        place = len(files.command())
+        words[place:place] = ["--units", unit()]
         return [*words, "--out", os.path.join(self.folder, "plan"), "--formats", files.FORMATS]
 
     def _answer(self, process: Process) -> results.Result:

@@ -134,7 +134,16 @@ class StepsBox:
         self.again.setText("Cancel")
         self._tell()
 
+    def _gone(self) -> bool:
+        """Whether another command closed the panel: what is being judged is given up then."""
+        if windows.alive(self.told):
+            return False
+        self.leave()
+        return True
+
     def _progress(self, words: str, fraction: float | None) -> None:
+        if self._gone():
+            return
         self.told.setText(words)
         self.bar.setRange(0, 0 if fraction is None else 1000)
         if fraction is not None:
@@ -146,10 +155,15 @@ class StepsBox:
         self._tell()
 
     def _failed(self, line: str) -> None:
+        if self._gone():
+            return
         self._ended()
         self.told.setText(line)
 
     def _done(self, result: results.Result) -> None:
+        if self._gone():
+            result.discard()
+            return
         self._ended()
         try:
             self._on_done(result)

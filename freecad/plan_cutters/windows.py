@@ -10,6 +10,8 @@ import FreeCADGui as Gui
 from . import host
 
 QtCore, QtGui = host.qt("QtCore"), host.qt("QtGui")
+#: How a field looks that has to be filled in; of the widget itself, not of what is in it.
+_MISSING = "QAbstractSpinBox, QComboBox { border: 2px solid #b34700; border-radius: 3px; padding: 2px }"
 
 
 class Panel:
@@ -135,6 +137,28 @@ def length(value: float, nothing: str = "", name: str = "") -> Any:
     made.setSpecialValueText(nothing)
     made.setValue(value)
     return narrow(made)
+
+
+def mark(widget: Any, why: str) -> None:
+    """Mark a field that has to be filled in, and say why; an empty text takes the mark away."""
+    if widget.property("missing") == why:
+        return
+    hint = widget.property("hint")
+    if hint is None:
+        hint = widget.toolTip()
+        widget.setProperty("hint", hint)
+    widget.setProperty("missing", why)
+    widget.setStyleSheet(_MISSING if why else "")
+    widget.setToolTip("\n".join(filter(None, (why, hint))))
+
+
+def alive(widget: Any) -> bool:
+    """Whether a widget is still there: where another command closes the panel, FreeCAD takes its widgets without a word."""
+    try:
+        widget.objectName()
+    except RuntimeError:
+        return False
+    return True
 
 
 def swatch(colour: tuple[float, float, float]) -> Any:
