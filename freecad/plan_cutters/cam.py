@@ -13,6 +13,8 @@ from .words import length, tr
 MILLS = ("endmill", "ballend", "bullnose", "torus", "vbit", "v-bit", "chamfer")
 #: Fields of the panel that fill what a bit does not state.
 STICK_OUT, HOLDER = "stick_out", "holder"
+#: The line for both fields where the same bits need them.
+BOTH = "both"
 
 
 @dataclass(frozen=True)
@@ -68,7 +70,7 @@ def bit_of_file(path: str) -> Bit | None:
 
 
 def missing(judged: list[Bit], holder: str, stick_out: float | None) -> dict[str, str]:
-    """What has to be filled in before bits can be judged, a line for each field of the panel; empty where nothing has to.
+    """What has to be filled in before bits can be judged, a line for each field of the panel; nothing where all is stated.
 
     Parameters
     ----------
@@ -81,17 +83,24 @@ def missing(judged: list[Bit], holder: str, stick_out: float | None) -> dict[str
     found = {}
     loose = [each.label for each in judged if each.stick_out is None]
     if loose and not stick_out:
-        found[STICK_OUT] = tr("{bits} without a stick-out: fill in “Stick-out”").format(bits=_listed(loose))
+        found[STICK_OUT] = tr("fill in “Stick-out”, which {bits} do not state").format(bits=_listed(loose))
     elif stick_out:
         long = [each for each in judged if each.stick_out is None and each.flutes > stick_out + 1e-9]
         if long:
             found[STICK_OUT] = tr("“Stick-out” is shorter than the flutes of {bit}, {length}").format(
                 bit=long[0].label, length=length(long[0].flutes)
             )
-    open_ = [each.label for each in judged if not each.held]
-    if open_ and not holder:
-        found[HOLDER] = tr("{bits} without a holder: choose one in “Holder”, or “None at all”").format(bits=_listed(open_))
+    bare = [each.label for each in judged if not each.held]
+    if bare and not holder:
+        found[HOLDER] = tr("choose a “Holder”, or “None at all”, which {bits} do not state").format(bits=_listed(bare))
+        if bare == loose and not stick_out:
+            found[BOTH] = tr("fill in “Stick-out” and “Holder”, which {bits} do not state").format(bits=_listed(bare))
     return found
+
+
+def line_of(found: dict[str, str]) -> str:
+    """What has to be filled in, in one line."""
+    return found.get(BOTH) or "; ".join(found.values())
 
 
 def _listed(labels: list[str]) -> str:

@@ -48,7 +48,7 @@ class ToolsBox:
         layout.addRow("Stick-out", self._stick_out)
         mills = False
         for each in cam.bits(document) if document else ():
-            self._add("bit", each.name, f"{each.label} (tool bit of this document)", each.mill)
+            self._add("bit", each.name, f"{each.label} (tool bit)", each.mill)
             mills = mills or each.mill
         for path in choices.libraries:
             self._add("file", path, os.path.basename(path), os.path.exists(path))
@@ -104,7 +104,7 @@ class ToolsBox:
         have = self._entries("bit", False)
         for each in cam.bits(job.Document):
             if each.name not in have:
-                self._add("bit", each.name, f"{each.label} (tool bit of this document)", False)
+                self._add("bit", each.name, f"{each.label} (tool bit)", False)
         self._list.blockSignals(True)
         for place in range(self._list.count()):
             item = self._list.item(place)
@@ -137,7 +137,7 @@ class ToolsBox:
         windows.mark(self._holder, found.get(cam.HOLDER, ""))
         if tools.specs and (tools.files or tools.bits):
             return "short words are judged without tool bits and libraries: untick one or the other"
-        return "; ".join(found.values())
+        return cam.line_of(found)
 
     def choices(self) -> dict:
         """What is remembered."""

@@ -26,9 +26,10 @@ def bit(cam, label, **more):
 def test_what_bits_do_not_state_is_asked_in_words_of_the_panel(cam):
     both = [bit(cam, "Mill10"), bit(cam, "Ball6", stick_out=30.0, held=True)]
     asked = cam.missing(both, "", None)
-    assert set(asked) == {cam.STICK_OUT, cam.HOLDER}
+    assert set(asked) == {cam.STICK_OUT, cam.HOLDER, cam.BOTH}
     assert all("Mill10" in line and "Ball6" not in line and "--" not in line for line in asked.values())
     assert "“Stick-out”" in asked[cam.STICK_OUT]
+    assert cam.line_of(asked) == "fill in “Stick-out” and “Holder”, which Mill10 do not state"
     assert set(cam.missing(both, "er32", None)) == {cam.STICK_OUT}
     assert set(cam.missing(both, "", 20.0)) == {cam.HOLDER}
     assert cam.missing(both, "none", 20.0) == cam.missing(both[1:], "", None) == cam.missing([], "", None) == {}
