@@ -66,7 +66,9 @@ def bit_of_file(path: str) -> Bit | None:
     except (OSError, ValueError, KeyError, AttributeError, TypeError):
         return None  # the program says what is wrong with it
     # How long it is, is the program's to read.
-    return Bit(path, name, True, 0.0, 1.0 if any(each in "123456789" for each in stick_out) else None, bool(sizes.get("ToolHolder")))
+    return Bit(
+        path, name, True, 0.0, 1.0 if any(each in "123456789" for each in stick_out) else None, bool(sizes.get("ToolHolder"))
+    )
 
 
 def missing(judged: list[Bit], holder: str, stick_out: float | None) -> dict[str, str]:

@@ -8,8 +8,8 @@ from typing import Any
 from . import cam, model, windows
 from .picking import Picker
 from .remembered import Choices
-from .windows import QtCore, QtGui
-from .words import length
+from .windows import QtGui
+from .words import length, tr
 
 FACES = [("Free-form faces and fillets", "sculptured,blends"), ("Picked faces", "picked"), ("All faces", "all")]
 MACHINES = [
@@ -36,14 +36,17 @@ class PartBox:
         self._picker, self._changed, self._job_taken = picker, changed, job_taken
         self.document, self.body = "", ""
         self.faces: tuple[int, ...] = ()
-        self.form, layout = windows.box("Part and faces", "part")
-        self._name = windows.words("none: select a body", "body")
-        layout.addRow("Body", windows.row(self._name, windows.button("Take", self.take, "Take the body, faces, or CAM job selected now")))
+        self.form, layout = windows.box(tr("Part and faces"), "part")
+        self._name = windows.words(tr("none: select a body"), "body")
+        layout.addRow(
+            tr("Body"),
+            windows.row(self._name, windows.button(tr("Take"), self.take, tr("Take the body, faces, or CAM job selected now"))),
+        )
         self._kind = windows.combo(FACES, choices.faces)
         self._kind.setObjectName("faces")
-        layout.addRow("To machine", self._kind)
+        layout.addRow(tr("To machine"), self._kind)
         self._list = windows.words("", "picked")
-        self.pick = windows.button("Pick", self._picking, "Click faces in the view, more of them with Ctrl", True)
+        self.pick = windows.button(tr("Pick"), self._picking, tr("Click faces in the view, more of them with Ctrl"), True)
         self._line = QtGui.QWidget()
         line = windows.row(self._list, self.pick)
         line.setContentsMargins(0, 0, 0, 0)
@@ -111,7 +114,7 @@ class PartBox:
         if self.faces:
             self._list.setText(", ".join(f"Face{number}" for number in self.faces))
         elif self.pick.isChecked():
-            self._list.setText("click faces in the view; Ctrl adds more")
+            self._list.setText(tr("click faces in the view; Ctrl adds more"))
         else:
             self._list.setText("none")
         self._changed()
@@ -124,32 +127,37 @@ class MachineBox:
         self._picker, self._changed = picker, changed
         self._axis, self._axis_name = "", ""
         self._fixtures: list[tuple[str, str, Any]] = []
-        self.form, layout = windows.box("Machine and setup", "settings")
+        self.form, layout = windows.box(tr("Machine and setup"), "settings")
         self._machine = windows.combo(MACHINES, choices.machine, editable=True)
         self._machine.setObjectName("machine")
-        self._machine.setToolTip("A machine that the program knows, tilt:45, or a machine file")
+        self._machine.setToolTip(tr("A machine that the program knows, tilt:45, or a machine file"))
         layout.addRow(
-            "Machine", windows.row(self._machine, windows.button("File…", self._machine_file, "TOML, JSON, .fcm, .ini, .mch"))
+            tr("Machine"),
+            windows.row(self._machine, windows.button(tr("File…"), self._machine_file, tr("TOML, JSON, .fcm, .ini, .mch"))),
         )
         entries = [*AXES, ("Proposed by the program", "auto"), ("Picked face or edge", "picked")]
         self._setup = windows.combo(entries, choices.setup if choices.setup != "picked" else "+z")
         self._setup.setObjectName("setup")
-        self._setup.setToolTip("The direction of the part that points along the spindle when all rotary axes are at zero")
-        self.pick_axis = windows.button("Pick", self._picking_axis, "Click a flat face, a straight edge or an axis", True)
-        layout.addRow("Spindle", windows.row(self._setup, self.pick_axis))
+        self._setup.setToolTip(tr("The direction of the part that points along the spindle when all rotary axes are at zero"))
+        self.pick_axis = windows.button(tr("Pick"), self._picking_axis, tr("Click a flat face, a straight edge or an axis"), True)
+        layout.addRow(tr("Spindle"), windows.row(self._setup, self.pick_axis))
         self._axis_words = windows.words("", "axis")
         layout.addRow("", self._axis_words)
         self._bodies = windows.words("none", "fixtures")
-        self.pick_fixtures = windows.button("Pick", self._picking_fixtures, "Click what holds the part; Ctrl adds more", True)
-        layout.addRow("Fixtures", windows.row(self._bodies, self.pick_fixtures))
-        self._table = QtGui.QCheckBox("Table under the part")
+        self.pick_fixtures = windows.button(
+            tr("Pick"), self._picking_fixtures, tr("Click what holds the part; Ctrl adds more"), True
+        )
+        layout.addRow(tr("Fixtures"), windows.row(self._bodies, self.pick_fixtures))
+        self._table = QtGui.QCheckBox(tr("Table under the part"))
         self._table.setChecked(choices.table)
         layout.addRow("", self._table)
         self._allowance = windows.length(choices.allowance, name="allowance")
-        self._allowance.setToolTip("Stock that is left on the surface on purpose")
-        layout.addRow("Allowance", self._allowance)
+        self._allowance.setToolTip(tr("Stock that is left on the surface on purpose"))
+        layout.addRow(tr("Allowance"), self._allowance)
         self._stock, self._stock_words = 0.0, windows.words("", "stock")
-        self._as_allowance = windows.button("As allowance", self._take_stock, "Judge with the stock of the job left on the surface")
+        self._as_allowance = windows.button(
+            tr("As allowance"), self._take_stock, tr("Judge with the stock of the job left on the surface")
+        )
         self._stock_line = QtGui.QWidget()
         line = windows.row(self._stock_words, self._as_allowance)
         line.setContentsMargins(0, 0, 0, 0)
@@ -158,14 +166,14 @@ class MachineBox:
         layout.addRow("", self._stock_line)
         self._operations = windows.combo(OPERATIONS, choices.operations)
         self._operations.setObjectName("operations")
-        self._operations.setToolTip("Fixed orientations (3+2) that finish together all that is reached")
-        layout.addRow("Operations", self._operations)
+        self._operations.setToolTip(tr("Fixed orientations (3+2) that finish together all that is reached"))
+        layout.addRow(tr("Operations"), self._operations)
         self._more = QtGui.QLineEdit(choices.more)
         self._more.setObjectName("more")
         self._more.setCursorPosition(0)
-        self._more.setPlaceholderText("--spacing 2 --answers mend")
-        self._more.setToolTip("More options of plan-cutters, as in a terminal")
-        layout.addRow("More", windows.narrow(self._more))
+        self._more.setPlaceholderText(tr("--spacing 2 --answers mend"))
+        self._more.setToolTip(tr("More options of plan-cutters, as in a terminal"))
+        layout.addRow(tr("More"), windows.narrow(self._more))
         self._setup.currentIndexChanged.connect(lambda *_: self._setup_chosen())
         self._machine.currentTextChanged.connect(lambda *_: changed())
         self._more.textChanged.connect(lambda *_: changed())
@@ -175,16 +183,18 @@ class MachineBox:
         """Take the direction of a CAM job, and offer its stock as the allowance, which is another thing unless the user says so."""
         windows.choose(self._setup, "+z")
         self._stock = cam.stock_over(job)
-        self._stock_words.setText(f"Stock of {job.Label}: {length(self._stock)} over the part at least")
+        self._stock_words.setText(
+            tr("Stock of {label}: {value} over the part at least").format(label=job.Label, value=length(self._stock))
+        )
         self._stock_line.setVisible(self._stock > 0.0)
 
     def _take_stock(self) -> None:
         self._allowance.setValue(self._stock)
 
     def _machine_file(self) -> None:
-        path = QtGui.QFileDialog.getOpenFileName(self.form, "Machine", "", "Machines (*.toml *.json *.fcm *.ini *.mch);;All (*)")[
-            0
-        ]
+        path = QtGui.QFileDialog.getOpenFileName(
+            self.form, tr("Machine"), "", "Machines (*.toml *.json *.fcm *.ini *.mch);;All (*)"
+        )[0]
         if path:
             self._machine.setEditText(path)
 
@@ -236,13 +246,13 @@ class MachineBox:
 
     def _tell(self) -> None:
         if self.pick_axis.isChecked():
-            self._axis_words.setText("click a flat face, a straight edge or an axis")
+            self._axis_words.setText(tr("click a flat face, a straight edge or an axis"))
         elif self._axis:
             self._axis_words.setText(f"{self._axis_name}: {self._axis}")
         else:
-            self._axis_words.setText("nothing is picked yet")
+            self._axis_words.setText(tr("nothing is picked yet"))
         names = ", ".join(label for _, _, label in self._fixtures)
-        self._bodies.setText(names or ("click what holds the part" if self.pick_fixtures.isChecked() else "none"))
+        self._bodies.setText(names or (tr("click what holds the part") if self.pick_fixtures.isChecked() else "none"))
         self._changed()
 
     def setup(self) -> str:
@@ -251,16 +261,16 @@ class MachineBox:
         if value != "picked":
             return value
         if not self._axis:
-            raise model.Refused("no spindle direction is picked: click a flat face, a straight edge or an axis")
+            raise model.Refused(tr("no spindle direction is picked: click a flat face, a straight edge or an axis"))
         return self._axis
 
     def fixtures(self, document: str, body: str) -> tuple[str, ...]:
         """Names of the bodies in the way."""
         for each in self._fixtures:
             if each[0] != document:
-                raise model.Refused(f"the fixture {each[2]} lies in another document than the body")
+                raise model.Refused(tr("the fixture {value} lies in another document than the body").format(value=each[2]))
             if each[1] == body:
-                raise model.Refused("the body that is planned is picked as a fixture, too")
+                raise model.Refused(tr("the body that is planned is picked as a fixture, too"))
             model.thing_of(*each[:2])
         return tuple(name for _, name, _ in self._fixtures)
 
@@ -277,7 +287,7 @@ class MachineBox:
         try:
             words = shlex.split(self._more.text())
         except ValueError as error:
-            raise model.Refused(f"“More” cannot be read: {error}") from None
+            raise model.Refused(tr("“More” cannot be read: {error}").format(error=error)) from None
         if self._table.isChecked():
             words += ["--fixture", "table"]
         kind = windows.chosen(self._operations)

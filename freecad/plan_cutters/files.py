@@ -34,12 +34,15 @@ def command() -> list[str]:
         try:
             return [words] if os.path.isfile(words) else shlex.split(words)
         except ValueError as error:
-            raise model.Refused(f"the program's path cannot be read: {error}") from None
+            raise model.Refused(tr("the program's path cannot be read: {error}").format(error=error)) from None
     found = shutil.which("plan-cutters") or shutil.which("plan-cutters", path=os.path.expanduser("~/.local/bin"))
     if not found:
         raise model.Refused(
-            "the program plan-cutters was not found: install it apart from FreeCAD, for example with `uv tool install` or "
-            "`pipx install` from its folder, or give its path in the settings or in the environment variable PLAN_CUTTERS"
+            tr(
+                "the program plan-cutters was not found: install it apart from FreeCAD, for example with "
+                "`uv tool install` or `pipx install` from its folder, or give its path in the settings "
+                "or in the environment variable PLAN_CUTTERS"
+            )
         )
     return [found]
 
@@ -58,9 +61,13 @@ def words(job: model.Job, folder: str) -> tuple[list[str], dict[str, str]]:
     shape = model.shape_of(thing)
     wrong = [number for number in job.faces if not 1 <= number <= len(shape.Faces)]
     if wrong:
-        raise model.Refused(f"{thing.Label} has no Face{wrong[0]}: it has {len(shape.Faces)} faces")
+        raise model.Refused(
+            tr("{label} has no Face{value}: it has {count} faces").format(
+                label=thing.Label, value=wrong[0], count=len(shape.Faces)
+            )
+        )
     if not (math.isfinite(job.allowance) and job.allowance >= 0.0):
-        raise model.Refused(f"the allowance must be 0 mm or more, not {job.allowance:g}")
+        raise model.Refused(tr("the allowance must be 0 mm or more, not {allowance:g}").format(allowance=job.allowance))
     source, fingerprints = exported(thing, shape, folder), {job.body: model.fingerprint(shape)}
     found = [*command(), *job.options]
     found += _tools(job, folder)
@@ -73,7 +80,7 @@ def words(job: model.Job, folder: str) -> tuple[list[str], dict[str, str]]:
     for name in job.fixtures:
         fixture = model.thing_of(job.document, name)
         if name == job.body:
-            raise model.Refused(f"{fixture.Label} is the body itself: it cannot be a fixture, too")
+            raise model.Refused(tr("{label} is the body itself: it cannot be a fixture, too").format(label=fixture.Label))
         held = model.shape_of(fixture)
         fingerprints[name] = model.fingerprint(held)
         found += ["--fixture", exported(fixture, held, folder)]
@@ -112,7 +119,11 @@ def library(result: results.Result, cutter: dict[str, Any], folder: str) -> str:
         The plan does not hold all of its shape.
     """
     if cutter["shape"] != "end":
-        raise model.Refused(f"the plan does not hold the whole shape of {cutter['id']}: ask the program for its posture maps")
+        raise model.Refused(
+            tr("the plan does not hold the whole shape of {value}: ask the program for its posture maps").format(
+                value=cutter["id"]
+            )
+        )
     parts: dict[str, list[dict[str, float]]] = {"neck": [], "shank": [], "holder": []}
     for stage in cutter["stages"]:
         parts[stage["part"]].append(stage)
@@ -191,7 +202,7 @@ def _written(path: str, entry: dict[str, Any]) -> None:
 def _tools(job: model.Job, folder: str) -> list[str]:
     tools = job.tools
     if (tools.files or tools.bits) and tools.specs:
-        raise model.Refused("give short words of cutters, or libraries and tool bits, not both")
+        raise model.Refused(tr("give short words of cutters, or libraries and tool bits, not both"))
     found = [word for spec in tools.specs for word in ("--cutter", spec)]
     for path in tools.files:
         found += ["--cutters", path]

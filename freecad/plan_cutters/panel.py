@@ -10,6 +10,7 @@ from .fields import MachineBox, PartBox
 from .picking import Picker
 from .tools_box import ToolsBox
 from .windows import QtCore, QtGui
+from .words import tr
 
 _PLAN, _CLOSE = QtGui.QDialogButtonBox.Apply, QtGui.QDialogButtonBox.Close
 
@@ -22,7 +23,7 @@ class Panel(windows.Panel):
         self._buttons, self._ready = None, False
         choices = remembered.load()
         self.picker = Picker()
-        status, layout = windows.box("Plan cutters", "plan_cutters")
+        status, layout = windows.box(tr("Plan cutters"), "plan_cutters")
         self.status = windows.words(name="status")
         self.bar = QtGui.QProgressBar()
         self.bar.setVisible(False)
@@ -39,13 +40,13 @@ class Panel(windows.Panel):
         """What is requested now."""
         missing = self.tools.missing()
         if not self.part.body:
-            raise model.Refused("select the body to machine, or faces of it, and press “Take”")
+            raise model.Refused(tr("select the body to machine, or faces of it, and press “Take”"))
         model.thing_of(self.part.document, self.part.body)
         if missing:
             raise model.Refused(missing)
         kind, options = self.part.kind(), self.machine.options()
         if kind == "picked" and not self.part.faces:
-            raise model.Refused("no face is picked: click faces in the view")
+            raise model.Refused(tr("no face is picked: click faces in the view"))
         if kind == "all":
             options = ("--faces", "all", *options)
         return model.Job(
@@ -72,13 +73,17 @@ class Panel(windows.Panel):
         kinds = {"all": "all faces", "picked": f"{count} face{'s' * (count != 1)}"}
         what = kinds.get(self.part.kind(), "free-form faces and fillets")
         label = App.getDocument(job.document).getObject(job.body).Label
-        self.status.setText(f"{label}: {what}; {self.tools.summary()}; {job.machine or 'any tool axis'}; spindle {job.setup}.")
+        self.status.setText(
+            tr("{label}: {what}; {value}; {value_2}; spindle {setup}.").format(
+                label=label, what=what, value=self.tools.summary(), value_2=job.machine or "any tool axis", setup=job.setup
+            )
+        )
         self._offer(True)
 
     def _offer(self, ready: bool) -> None:
         if self._buttons is not None:
             plan = self._buttons.button(_PLAN)
-            plan.setText("Plan" if self._run is None else "Cancel")
+            plan.setText(tr("Plan") if self._run is None else tr("Cancel"))
             plan.setEnabled(ready)
 
     def start(self) -> None:
@@ -188,7 +193,7 @@ class Panel(windows.Panel):
 def open_panel() -> Panel:
     """Show the panel, with what is selected now."""
     if App.ActiveDocument is None:
-        raise model.Refused("no document is open")
+        raise model.Refused(tr("no document is open"))
     panel = Panel()
     Gui.Control.showDialog(panel)
     return panel

@@ -50,7 +50,9 @@ class Process:
                 errors="replace", env=host.environment(), cwd=folder, **own_group,
             )  # fmt: skip
         except (OSError, ValueError) as error:
-            raise model.Refused(f"{words[0]} cannot be started: {getattr(error, 'strerror', error)}") from None
+            raise model.Refused(
+                tr("{value} cannot be started: {value_2}").format(value=words[0], value_2=getattr(error, "strerror", error))
+            ) from None
         _programs.add(self.popen)
         self.lines: list[str] = []
         self._output: list[str] = []
@@ -252,7 +254,7 @@ class Map(_Watched):
             found = json.loads(process.output())
             return {"picture": os.path.join(self.folder, "map.png"), "json": found, "folder": self.folder}
         except ValueError:
-            raise model.Refused("the program drew no posture map that can be read") from None
+            raise model.Refused(tr("the program drew no posture map that can be read")) from None
 
 
 def folder() -> str:

@@ -9,6 +9,7 @@ import FreeCAD as App
 from . import cam, model, windows
 from .remembered import Choices
 from .windows import QtCore, QtGui
+from .words import tr
 
 HOLDERS = [
     ("As the tools say", ""),
@@ -26,26 +27,30 @@ class ToolsBox:
 
     def __init__(self, document, choices: Choices, changed) -> None:
         self._changed, self._document, self._cam_job = changed, document.Name if document else "", ""
-        self.form, layout = windows.box("Tools", "tools")
+        self.form, layout = windows.box(tr("Tools"), "tools")
         self._list = QtGui.QListWidget()
         self._list.setObjectName("tools")
         windows.narrow(self._list).setFixedHeight(74)
-        self._list.setToolTip("Tick what is judged. Nothing ticked: the program's own set of usual metric sizes. Del takes away.")
+        self._list.setToolTip(
+            tr("Tick what is judged. Nothing ticked: the program's own set of usual metric sizes. Del takes away.")
+        )
         layout.addRow(self._list)
         self._typed = QtGui.QLineEdit()
         self._typed.setObjectName("typed")
-        self._typed.setPlaceholderText("D12L80, R6L80rc6…")
-        self._typed.setToolTip("Diameter D or radius R, stick-out L, corner radius rc: R6L80rc6 is a ball end. Enter adds it.")
+        self._typed.setPlaceholderText(tr("D12L80, R6L80rc6…"))
+        self._typed.setToolTip(
+            tr("Diameter D or radius R, stick-out L, corner radius rc: R6L80rc6 is a ball end. Enter adds it.")
+        )
         self._typed.editingFinished.connect(self._add_typed)
-        layout.addRow("Add", windows.narrow(self._typed))
-        layout.addRow("", windows.button("Tool library…", self._add_library, "Fusion, HSMWorks, FreeCAD or TOML"))
+        layout.addRow(tr("Add"), windows.narrow(self._typed))
+        layout.addRow("", windows.button(tr("Tool library…"), self._add_library, tr("Fusion, HSMWorks, FreeCAD or TOML")))
         self._holder = windows.combo(HOLDERS, choices.holder, editable=True)
         self._holder.setObjectName("holder")
-        self._holder.setToolTip("Of the tools that have none: a name as er32, R15L30 (radius, length), or a file")
-        layout.addRow("Holder", self._holder)
-        self._stick_out = windows.length(choices.stick_out, "as the tools say", "stick_out")
-        self._stick_out.setToolTip("From the holder's face to the tip, of library tools that state none")
-        layout.addRow("Stick-out", self._stick_out)
+        self._holder.setToolTip(tr("Of the tools that have none: a name as er32, R15L30 (radius, length), or a file"))
+        layout.addRow(tr("Holder"), self._holder)
+        self._stick_out = windows.length(choices.stick_out, tr("as the tools say"), "stick_out")
+        self._stick_out.setToolTip(tr("From the holder's face to the tip, of library tools that state none"))
+        layout.addRow(tr("Stick-out"), self._stick_out)
         mills = False
         for each in cam.bits(document) if document else ():
             self._add("bit", each.name, f"{each.label} (tool bit)", each.mill)
@@ -80,7 +85,7 @@ class ToolsBox:
             self._changed()
 
     def _add_library(self) -> None:
-        for path in QtGui.QFileDialog.getOpenFileNames(self.form, "Tool libraries", "", LIBRARIES)[0]:
+        for path in QtGui.QFileDialog.getOpenFileNames(self.form, tr("Tool libraries"), "", LIBRARIES)[0]:
             self._add("file", path, os.path.basename(path), True)
         self._changed()
 
@@ -113,7 +118,9 @@ class ToolsBox:
             if kind == "bit" and value in held:
                 number, feed = held[value].number, held[value].feed
                 label = model.thing_of(job.Document.Name, value).Label
-                item.setText(f"T{number} {label}" + (f", {feed:.4g} mm/min" if feed else "") + f" ({job.Label})")
+                item.setText(
+                    f"T{number} {label}" + (tr(", {feed:.4g} mm/min").format(feed=feed) if feed else "") + f" ({job.Label})"
+                )
         self._list.blockSignals(False)
         self._changed()
 
@@ -136,7 +143,7 @@ class ToolsBox:
         windows.mark(self._stick_out, found.get(cam.STICK_OUT, ""))
         windows.mark(self._holder, found.get(cam.HOLDER, ""))
         if tools.specs and (tools.files or tools.bits):
-            return "short words are judged without tool bits and libraries: untick one or the other"
+            return tr("short words are judged without tool bits and libraries: untick one or the other")
         return cam.line_of(found)
 
     def choices(self) -> dict:

@@ -2,10 +2,12 @@
 
 import json
 import shutil
+import sys
 from types import ModuleType, SimpleNamespace
 
 import pytest
 
+from plan_cutters.library import read_library
 from tests.support.freecad_host import CONSOLE, run
 from tests.support.places import ROOT
 from tests.support.workbench import imported
@@ -67,8 +69,6 @@ class Holder:
 
 def test_a_bit_of_the_newest_release_brings_its_holder_and_stick_out(tmp_path):
     """What the program is given reads as a cutter of that length in that holder, without the fields of the panel."""
-    from plan_cutters.library import read_library
-
     thing = SimpleNamespace(
         Name="Bit", Label="Mill10", ShapeType="Endmill", Diameter=1, ToolHolder="ER32", Stickout=SimpleNamespace(Value=40.0),
         Proxy=SimpleNamespace(get_holder=Holder),
@@ -79,14 +79,16 @@ def test_a_bit_of_the_newest_release_brings_its_holder_and_stick_out(tmp_path):
         patch.setattr(files.model, "thing_of", lambda *_: thing)
         patch.setattr(files.host, "lengths", lambda _: dict(sizes))
         job = files.model.Job("D", "B", tools=files.model.Tools(bits=("Bit",)))
-        (cutter,) = read_library(files._bits(job, str(tmp_path)))
-        assert (cutter.radius, cutter.length, cutter.name, cutter.holder.id) == (5.0, 40.0, "Mill10", "R10:12L5+R12L25")
+        path = files._bits(job, str(tmp_path))
         assert files.cam.missing([files.cam._bit(thing)], "", None) == {}
         # A holder that is named and not there is never left out.
         for lost in (lambda: None, lambda: 1 / 0):
             thing.Proxy = SimpleNamespace(get_holder=lost)
             with pytest.raises(files.model.Refused, match="the holder of Mill10 cannot be read: ER32"):
-                files._bits(job, str(tmp_path))
+                files._bits(job, str(tmp_path / "lost"))
+    # Not where the modules of the program would be forgotten.
+    (cutter,) = read_library(path)
+    assert (cutter.radius, cutter.length, cutter.name, cutter.holder.id) == (5.0, 40.0, "Mill10", "R10:12L5+R12L25")
 
 
 def test_faults_of_the_program_have_the_words_of_the_panel():
@@ -105,8 +107,6 @@ def test_faults_of_the_program_have_the_words_of_the_panel():
 
 def test_planes_are_made_by_freecad_where_it_has_a_function_for_them(monkeypatch):
     """A job of the newest release files a plane that it made; a second operation on that plane takes the same one."""
-    import sys
-
     text = (ROOT / "freecad" / "PlanOperations.FCMacro").read_text(encoding="utf-8")
     for name in ("FreeCAD", "Part", "Path", "Path.Main"):
         monkeypatch.setitem(sys.modules, name, ModuleType(name))
