@@ -9,24 +9,33 @@ from . import cam, model, windows
 from .picking import Picker
 from .remembered import Choices
 from .windows import QtGui
-from .words import length, tr
+from .words import later, length, tr
 
-FACES = [("Free-form faces and fillets", "sculptured,blends"), ("Picked faces", "picked"), ("All faces", "all")]
-MACHINES = [
-    ("Any tool axis", ""),
-    ("3 axes", "3-axis"),
-    ("4 axes, A", "4-axis-a"),
-    ("3+2 table, C on A", "3+2"),
-    ("Trunnion, C on A", "trunnion-ac"),
-    ("Trunnion, C on B", "trunnion-bc"),
-    ("Table C, head B", "head-table-bc"),
-    ("Head C, A", "head-head-ca"),
-    ("Nutating head B, table C", "nutating-bc"),
-    ("Within 30° of the setup axis", "tilt:30"),
-    ("Within 60° of the setup axis", "tilt:60"),
+FACES = [
+    (later("Free-form faces and fillets"), "sculptured,blends"),
+    (later("Picked faces"), "picked"),
+    (later("All faces"), "all"),
 ]
-AXES = [(f"{sign}{name} of the document", f"{sign}{name}".lower()) for name in "ZXY" for sign in "+-"]
-OPERATIONS = [("No", ""), ("The fewest", "fewest"), ("The fastest", "fastest"), ("Both plans", "both")]
+MACHINES = [
+    (later("Any tool axis"), ""),
+    (later("3 axes"), "3-axis"),
+    (later("4 axes, A"), "4-axis-a"),
+    (later("3+2 table, C on A"), "3+2"),
+    (later("Trunnion, C on A"), "trunnion-ac"),
+    (later("Trunnion, C on B"), "trunnion-bc"),
+    (later("Table C, head B"), "head-table-bc"),
+    (later("Head C, A"), "head-head-ca"),
+    (later("Nutating head B, table C"), "nutating-bc"),
+    (later("Within 30° of the setup axis"), "tilt:30"),
+    (later("Within 60° of the setup axis"), "tilt:60"),
+]
+AXES = [f"{sign}{name}" for name in "ZXY" for sign in "+-"]
+OPERATIONS = [
+    (later("No"), ""),
+    (later("The fewest"), "fewest"),
+    (later("The fastest"), "fastest"),
+    (later("Both plans"), "both"),
+]
 
 
 class PartBox:
@@ -116,7 +125,7 @@ class PartBox:
         elif self.pick.isChecked():
             self._list.setText(tr("click faces in the view; Ctrl adds more"))
         else:
-            self._list.setText("none")
+            self._list.setText(tr("none"))
         self._changed()
 
 
@@ -135,7 +144,8 @@ class MachineBox:
             tr("Machine"),
             windows.row(self._machine, windows.button(tr("File…"), self._machine_file, tr("TOML, JSON, .fcm, .ini, .mch"))),
         )
-        entries = [*AXES, ("Proposed by the program", "auto"), ("Picked face or edge", "picked")]
+        entries = [(tr("{axis} of the document").format(axis=axis), axis.lower()) for axis in AXES]
+        entries += [(later("Proposed by the program"), "auto"), (later("Picked face or edge"), "picked")]
         self._setup = windows.combo(entries, choices.setup if choices.setup != "picked" else "+z")
         self._setup.setObjectName("setup")
         self._setup.setToolTip(tr("The direction of the part that points along the spindle when all rotary axes are at zero"))
@@ -143,7 +153,7 @@ class MachineBox:
         layout.addRow(tr("Spindle"), windows.row(self._setup, self.pick_axis))
         self._axis_words = windows.words("", "axis")
         layout.addRow("", self._axis_words)
-        self._bodies = windows.words("none", "fixtures")
+        self._bodies = windows.words(tr("none"), "fixtures")
         self.pick_fixtures = windows.button(
             tr("Pick"), self._picking_fixtures, tr("Click what holds the part; Ctrl adds more"), True
         )
@@ -171,7 +181,7 @@ class MachineBox:
         self._more = QtGui.QLineEdit(choices.more)
         self._more.setObjectName("more")
         self._more.setCursorPosition(0)
-        self._more.setPlaceholderText(tr("--spacing 2 --answers mend"))
+        self._more.setPlaceholderText("--spacing 2 --answers mend")
         self._more.setToolTip(tr("More options of plan-cutters, as in a terminal"))
         layout.addRow(tr("More"), windows.narrow(self._more))
         self._setup.currentIndexChanged.connect(lambda *_: self._setup_chosen())
@@ -180,11 +190,11 @@ class MachineBox:
         self._setup_chosen()
 
     def take_job(self, job) -> None:
-        """Take the direction of a CAM job, and offer its stock as the allowance, which is another thing unless the user says so."""
+        """Take the direction of a CAM job, and offer its stock as the allowance: it counts only if the user says so."""
         windows.choose(self._setup, "+z")
         self._stock = cam.stock_over(job)
         self._stock_words.setText(
-            tr("Stock of {label}: {value} over the part at least").format(label=job.Label, value=length(self._stock))
+            tr("Stock of {job}: {length} over the part at least").format(job=job.Label, length=length(self._stock))
         )
         self._stock_line.setVisible(self._stock > 0.0)
 
@@ -193,7 +203,7 @@ class MachineBox:
 
     def _machine_file(self) -> None:
         path = QtGui.QFileDialog.getOpenFileName(
-            self.form, tr("Machine"), "", "Machines (*.toml *.json *.fcm *.ini *.mch);;All (*)"
+            self.form, tr("Machine"), "", tr("Machines") + " (*.toml *.json *.fcm *.ini *.mch);;" + tr("All files") + " (*)"
         )[0]
         if path:
             self._machine.setEditText(path)
@@ -252,7 +262,7 @@ class MachineBox:
         else:
             self._axis_words.setText(tr("nothing is picked yet"))
         names = ", ".join(label for _, _, label in self._fixtures)
-        self._bodies.setText(names or (tr("click what holds the part") if self.pick_fixtures.isChecked() else "none"))
+        self._bodies.setText(names or (tr("click what holds the part") if self.pick_fixtures.isChecked() else tr("none")))
         self._changed()
 
     def setup(self) -> str:
@@ -268,7 +278,7 @@ class MachineBox:
         """Names of the bodies in the way."""
         for each in self._fixtures:
             if each[0] != document:
-                raise model.Refused(tr("the fixture {value} lies in another document than the body").format(value=each[2]))
+                raise model.Refused(tr("the fixture {label} lies in another document than the body").format(label=each[2]))
             if each[1] == body:
                 raise model.Refused(tr("the body that is planned is picked as a fixture, too"))
             model.thing_of(*each[:2])

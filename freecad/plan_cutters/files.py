@@ -62,8 +62,8 @@ def words(job: model.Job, folder: str) -> tuple[list[str], dict[str, str]]:
     wrong = [number for number in job.faces if not 1 <= number <= len(shape.Faces)]
     if wrong:
         raise model.Refused(
-            tr("{label} has no Face{value}: it has {count} faces").format(
-                label=thing.Label, value=wrong[0], count=len(shape.Faces)
+            tr("{label} has no Face{number}: it has {count} faces").format(
+                label=thing.Label, number=wrong[0], count=len(shape.Faces)
             )
         )
     if not (math.isfinite(job.allowance) and job.allowance >= 0.0):
@@ -120,8 +120,8 @@ def library(result: results.Result, cutter: dict[str, Any], folder: str) -> str:
     """
     if cutter["shape"] != "end":
         raise model.Refused(
-            tr("the plan does not hold the whole shape of {value}: ask the program for its posture maps").format(
-                value=cutter["id"]
+            tr("the plan does not hold the whole shape of {cutter}: ask the program for its posture maps").format(
+                cutter=cutter["id"]
             )
         )
     parts: dict[str, list[dict[str, float]]] = {"neck": [], "shank": [], "holder": []}

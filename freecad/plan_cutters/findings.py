@@ -10,7 +10,7 @@ import FreeCADGui as Gui
 
 from . import camera, model, objects, remembered, runner, steps, windows
 from .windows import QtCore, QtGui
-from .words import tr
+from .words import fine, tr
 
 #: Sign and colour of a verdict on a cutter, by its tone.
 SIGNS = {"good": ("✔", "#007a58"), "bad": ("✘", "#b34700"), "unsure": ("?", "#6b6400")}
@@ -93,10 +93,10 @@ class Findings(windows.Panel):
         box, layout = windows.box(tr("Worst spots"), "map")
         self._list = QtGui.QTreeWidget()
         self._list.setObjectName("spots")
-        self._list.setHeaderLabels(["Face", "Why", "In the way", "mm"])
+        self._list.setHeaderLabels([tr("Face"), tr("Why"), tr("In the way"), tr("Depth")])
         self._list.setRootIsDecorated(False)
         self._list.setIndentation(0)
-        self._list.setToolTip(tr("mm: how deep what is in the way reaches into the tool"))
+        self._list.setToolTip(tr("Depth: how far what is in the way reaches into the tool"))
         windows.narrow(self._list).setFixedHeight(110)
         self._list.currentItemChanged.connect(lambda *_: self._fly())
         self._list.itemClicked.connect(lambda *_: self._fly())
@@ -125,12 +125,12 @@ class Findings(windows.Panel):
         entry = self.result.shown(cutter)
         text = self.result.cutter_text(entry["id"])
         sign, colour = SIGNS[text.tone]
-        selected = "· selected" if entry["id"] == self.result.plan["selected"] else ""
+        selected = "· " + tr("selected") if entry["id"] == self.result.plan["selected"] else ""
         self._chip.setText(" ".join(filter(None, (sign, text.verdict, selected))))
         self._chip.setStyleSheet(f"background: {colour}; color: white; font-weight: bold; padding: 4px; border-radius: 4px")
         self._headline.setText(self.result.headline())
         self._headline.setToolTip("\n".join(self.result.summary()))
-        whole = "" if entry is self.result.shown() else "Each face has the colour of its worst verdict with this cutter."
+        whole = "" if entry is self.result.shown() else tr("Each face has the colour of its worst verdict with this cutter.")
         self._sentence.setText(" ".join(filter(None, (text.sentence, whole))))
         while self._legend.rowCount():
             self._legend.removeRow(0)
@@ -145,7 +145,7 @@ class Findings(windows.Panel):
         self._list.blockSignals(True)
         self._list.clear()
         for spot in self._spots:
-            depth = f"{spot.depth_mm:.2f}" if spot.depth_mm is not None else ""
+            depth = fine(spot.depth_mm) if spot.depth_mm is not None else ""
             item = QtGui.QTreeWidgetItem([spot.face, self.result.reason(spot.reason), spot.obstacle, depth])
             for column in range(4):
                 item.setToolTip(column, spot.text)
@@ -241,7 +241,7 @@ class Findings(windows.Panel):
             try:
                 if spot.axis is None:
                     objects.hide_tool(self.group)
-                    words += " — no posture is known here: no tool is shown"
+                    words += " — " + tr("no posture is known here: no tool is shown")
                 else:
                     objects.put_tool(self.group, spot)
             except model.Refused as error:

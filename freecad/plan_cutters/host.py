@@ -110,7 +110,7 @@ def stick_out(bit) -> float | None:
 
 
 def holder_of(bit) -> dict[str, Any] | None:
-    """The holder that a tool bit names, as a `.fcholder` file has it; None where it names none, as in all but the newest releases.
+    """The holder that a tool bit names, as a `.fcholder` file has it; None where it names none: only the newest releases do.
 
     Raises
     ------

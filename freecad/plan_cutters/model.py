@@ -171,8 +171,8 @@ def planned(thing):
     if parent is not None and parent.isDerivedFrom("PartDesign::Body"):
         if parent.Tip is not thing:
             raise Refused(
-                tr("{label} is not the last step of {label_2}: select faces of the body as it is shown").format(
-                    label=thing.Label, label_2=parent.Label
+                tr("{label} is not the last step of {body}: select faces of the body as it is shown").format(
+                    label=thing.Label, body=parent.Label
                 )
             )
         thing = parent
@@ -232,7 +232,11 @@ def axis(thing, element: str = "", reverse: bool = False) -> str:
         else:
             found = None
     if found is None or not math.isfinite(found.Length) or found.Length < 1e-9:
-        raise Refused(f"{thing.Label} {name}".strip() + tr(" has no axis: pick a plane or round face, a straight or round edge"))
+        raise Refused(
+            tr("{thing} has no axis: pick a plane or round face, a straight or round edge").format(
+                thing=f"{thing.Label} {name}".strip()
+            )
+        )
     found = found.normalize() * (-1.0 if reverse else 1.0)
     return ",".join(f"{round(value, 12) + 0.0:.12g}" for value in found)
 

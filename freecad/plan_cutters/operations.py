@@ -14,7 +14,7 @@ def add(document, group, result: results.Result) -> None:
     entry = result.plan.get("operations")
     for plan, word in zip(entry["plans"] if entry else (), MODELS):
         if word not in result.paths:
-            host.warn(tr("the {value} plan of operations has no model: it is not shown").format(value=plan["name"]))
+            host.warn(tr("the {plan} plan of operations has no model: it is not shown").format(plan=plan["name"]))
             continue
         before = {each.Name for each in document.Objects}
         try:
@@ -22,7 +22,7 @@ def add(document, group, result: results.Result) -> None:
             shape, faces, names = macro.pieces(result.paths[word])
             part, _, _ = macro.show(document, result.plan, plan, shape, faces, names)
         except Exception as error:  # also what the macro and the kernel raise
-            host.warn(tr("the {value} plan of operations is not shown: {error}").format(value=plan["name"], error=error))
+            host.warn(tr("the {plan} plan of operations is not shown: {error}").format(plan=plan["name"], error=error))
             for name in {each.Name for each in document.Objects} - before:
                 document.removeObject(name)
             continue

@@ -96,7 +96,7 @@ def process_of(steps: Sequence[Step], plan: dict[str, Any], rest: bool) -> str:
         A row cannot be read; the line names its step.
     """
     names = axes_of(plan)
-    entries = [_entry(each, f"step {number}", names) for number, each in enumerate(steps, 1)]
+    entries = [_entry(each, tr("step {number}").format(number=number), names) for number, each in enumerate(steps, 1)]
     if not entries:
         raise model.Refused(tr("there is no step to judge"))
     before = (plan.get("effective") or {}).get("process") or {}

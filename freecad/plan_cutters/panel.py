@@ -10,7 +10,7 @@ from .fields import MachineBox, PartBox
 from .picking import Picker
 from .tools_box import ToolsBox
 from .windows import QtCore, QtGui
-from .words import tr
+from .words import several, tr
 
 _PLAN, _CLOSE = QtGui.QDialogButtonBox.Apply, QtGui.QDialogButtonBox.Close
 
@@ -70,12 +70,12 @@ class Panel(windows.Panel):
             self._offer(False)
             return
         count = len(job.faces)
-        kinds = {"all": "all faces", "picked": f"{count} face{'s' * (count != 1)}"}
-        what = kinds.get(self.part.kind(), "free-form faces and fillets")
+        kinds = {"all": tr("all faces"), "picked": several(count, tr("{count} face"), tr("{count} faces"))}
+        what = kinds.get(self.part.kind(), tr("free-form faces and fillets"))
         label = App.getDocument(job.document).getObject(job.body).Label
         self.status.setText(
-            tr("{label}: {what}; {value}; {value_2}; spindle {setup}.").format(
-                label=label, what=what, value=self.tools.summary(), value_2=job.machine or "any tool axis", setup=job.setup
+            tr("{label}: {faces}; {tools}; {machine}; spindle {setup}.").format(
+                label=label, faces=what, tools=self.tools.summary(), machine=job.machine or tr("any tool axis"), setup=job.setup
             )
         )
         self._offer(True)

@@ -55,4 +55,4 @@ def register() -> None:
     """Add the page to FreeCAD's preferences."""
     # FreeCAD looks there for the picture of the page, `preferences-plan_cutters`.
     Gui.addIconPath(os.path.dirname(icons.path("plan_cutters")))
-    Gui.addPreferencePage(Page, "Plan cutters")
+    Gui.addPreferencePage(Page, tr("Plan cutters"))

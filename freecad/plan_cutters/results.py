@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from . import arrays, model, tool
-from .words import tr
+from .words import fine, tr
 
 #: The question, beside the folder of its plan.
 JOB = "job.json"
@@ -144,7 +144,9 @@ class Result:
         """The verdict in one line: that of the plan."""
         if self._text:
             return self._text["headline"]
-        verdict = f"take {self.plan['selected']}" if self.plan["selected"] else "no cutter is selected"
+        verdict = (
+            tr("take {cutter}").format(cutter=self.plan["selected"]) if self.plan["selected"] else tr("no cutter is selected")
+        )
         shown = self.shown()["id"]
         return tr("An older program made this plan, without text ({verdict}; the colours show {shown}): plan again.").format(
             verdict=verdict, shown=shown
@@ -197,11 +199,13 @@ class Result:
     def sentence(self, sample: Sample) -> str:
         """What is known of a sample, with the angles of the machine: of the solution taken, then of the other one."""
         verdict = self.plan.get("legend_words", {}).get(sample.verdict, sample.verdict)
-        words = [f"{sample.face}, {sample.away_mm:.2g} mm from the click: {verdict}"]
+        words = [
+            tr("{face}, {away} from the click: {verdict}").format(face=sample.face, away=fine(sample.away_mm), verdict=verdict)
+        ]
         if sample.reason:
-            words.append(f"for {self.reason(sample.reason)}")
+            words.append(tr("for {reason}").format(reason=self.reason(sample.reason)))
         angles = [" ".join(f"{name} {value:g}°" for name, value in each.items()) for each in sample.angles]
-        return " ".join(words) + (f"; {', or '.join(angles)}" if angles else "")
+        return " ".join(words) + ("; " + tr(", or ").join(angles) if angles else "")
 
     def _spot(self, cutter: dict[str, Any], number: int, entry: dict[str, Any]) -> Spot:
         posture, axis, tip = entry["best_posture"], None, None
@@ -212,9 +216,9 @@ class Result:
             tip = tool.tip(cutter, entry["point"], normal, axis, direction)
         depth = entry["depth_mm"]
         words = [entry["face"], self.reason(entry["reason"]), entry["obstacle_face"] or ""]
-        text = " ".join(filter(None, words)) + (f", {depth:.3g} mm deep" if depth is not None else "")
+        text = " ".join(filter(None, words)) + (", " + tr("{depth} deep").format(depth=fine(depth)) if depth is not None else "")
         if entry["verdict"] == "undecided":
-            text += " (undecided)"
+            text += " " + tr("(undecided)")
         point, obstacle = tuple(entry["point"]), entry["obstacle_face"] or ""
         return Spot(cutter["id"], number, entry["face"], point, axis, tip, entry["reason"], obstacle, depth, text)
 
@@ -314,8 +318,8 @@ def parsed(path: str) -> dict[str, Any]:
     if plan.get("format_version") != VERSION:
         version = plan.get("format_version")
         raise model.Refused(
-            tr("the plan has the format {version}, this workbench reads {version_2}: update the add-on").format(
-                version=version, version_2=VERSION
+            tr("the plan has the format {version}, this workbench reads {known}: update the add-on").format(
+                version=version, known=VERSION
             )
         )
     return plan

@@ -51,7 +51,7 @@ class Process:
             )  # fmt: skip
         except (OSError, ValueError) as error:
             raise model.Refused(
-                tr("{value} cannot be started: {value_2}").format(value=words[0], value_2=getattr(error, "strerror", error))
+                tr("{program} cannot be started: {why}").format(program=words[0], why=getattr(error, "strerror", error))
             ) from None
         _programs.add(self.popen)
         self.lines: list[str] = []
@@ -93,7 +93,7 @@ class Process:
         text = re.sub(r"^plan-cutters[\w ]*: ", "", text)
         for option, field in _IN_THE_PANEL:
             text = text.replace(option, tr(field))
-        return text or f"the program ended with code {self.popen.returncode} and wrote nothing"
+        return text or tr("the program ended with code {code} and wrote nothing").format(code=self.popen.returncode)
 
     def output(self) -> str:
         """Its standard output."""
@@ -133,7 +133,7 @@ class _Watched:
         except (model.Refused, OSError) as error:
             self._fault = str(error)
         except Exception as error:  # the kernel raises many kinds
-            self._fault = f"the body cannot be written: {error}"
+            self._fault = tr("the body cannot be written: {why}").format(why=error)
         self._stop = host.every(_OFTEN, self.poll)
 
     def _words(self) -> list[str]:
@@ -154,7 +154,7 @@ class _Watched:
             except model.Refused as error:
                 self._ends("failed", str(error))
             except Exception as error:  # a window must not ask again and again
-                self._ends("failed", f"the answer cannot be read ({type(error).__name__}: {error})")
+                self._ends("failed", tr("the answer cannot be read ({why})").format(why=f"{type(error).__name__}: {error}"))
             else:
                 self._ends("done", answer)
         else:
@@ -176,7 +176,7 @@ class _Watched:
         if self.state == "running":
             if self._process is not None:
                 self._process.end()
-            self._ends("cancelled", "cancelled; nothing was changed")
+            self._ends("cancelled", tr("cancelled; nothing was changed"))
 
     def wait(self, seconds: float = 600.0) -> str:
         """Wait for the end; the state."""

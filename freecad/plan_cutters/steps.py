@@ -7,7 +7,7 @@ from typing import Any, Callable
 
 from . import model, objects, own_process, results, runner, windows
 from .windows import QtCore, QtGui
-from .words import tr
+from .words import area_of, tr
 
 #: Columns: their heads, and the part of a step that is edited in each; none is edited where that is empty.
 _COLUMNS = (("Setup", ""), ("Orientation", "turned"), ("Cutter", "cutter"), ("Faces", "faces"), ("Area, mm²", ""))
@@ -65,7 +65,7 @@ class StepsBox:
         self.list.blockSignals(True)
         self.list.clear()
         for step in self.steps:
-            area = "" if step.area is None else f"{step.area:,.4g}"
+            area = "" if step.area is None else area_of(step.area)
             item = QtGui.QTreeWidgetItem([str(step.setup), step.turned, step.cutter, step.faces, area])
             item.setFlags(item.flags() | QtCore.Qt.ItemIsEditable)
             for column in range(len(_COLUMNS)):
@@ -95,7 +95,11 @@ class StepsBox:
             self.told.setText(tr("There is no step.") if not self.steps else "")
             return
         step = self.steps[place]
-        gone = "" if step.alone is None else f"{step.alone:,.4g} mm² are gone if it is left out and nothing is planned there."
+        gone = (
+            ""
+            if step.alone is None
+            else tr("{area} are gone if it is left out and nothing is planned there.").format(area=area_of(step.alone))
+        )
         self.told.setText(" ".join(filter(None, (step.fault, gone))) or tr("Changed: judge again."))
 
     def _edit(self, item: Any, column: int) -> None:

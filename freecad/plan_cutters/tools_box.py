@@ -9,17 +9,17 @@ import FreeCAD as App
 from . import cam, model, windows
 from .remembered import Choices
 from .windows import QtCore, QtGui
-from .words import tr
+from .words import later, several, speed, tr
 
 HOLDERS = [
-    ("As the tools say", ""),
-    ("None at all", "none"),
-    ("Collet chuck ER16", "er16"),
-    ("Collet chuck ER32", "er32"),
-    ("HSK63-A with ER32", "hsk63a-er32"),
-    ("BT40 with ER32", "bt40-er32"),
+    (later("As the tools say"), ""),
+    (later("None at all"), "none"),
+    (later("Collet chuck ER16"), "er16"),
+    (later("Collet chuck ER32"), "er32"),
+    (later("HSK63-A with ER32"), "hsk63a-er32"),
+    (later("BT40 with ER32"), "bt40-er32"),
 ]
-LIBRARIES = "Tool libraries (*.json *.tools *.csv *.hsmlib *.fctl *.fctb *.toml *.fcholder);;All files (*)"
+LIBRARIES = " (*.json *.tools *.csv *.hsmlib *.fctl *.fctb *.toml *.fcholder);;"
 
 
 class ToolsBox:
@@ -37,7 +37,7 @@ class ToolsBox:
         layout.addRow(self._list)
         self._typed = QtGui.QLineEdit()
         self._typed.setObjectName("typed")
-        self._typed.setPlaceholderText(tr("D12L80, R6L80rc6…"))
+        self._typed.setPlaceholderText("D12L80, R6L80rc6…")
         self._typed.setToolTip(
             tr("Diameter D or radius R, stick-out L, corner radius rc: R6L80rc6 is a ball end. Enter adds it.")
         )
@@ -53,7 +53,7 @@ class ToolsBox:
         layout.addRow(tr("Stick-out"), self._stick_out)
         mills = False
         for each in cam.bits(document) if document else ():
-            self._add("bit", each.name, f"{each.label} (tool bit)", each.mill)
+            self._add("bit", each.name, tr("{label} (tool bit)").format(label=each.label), each.mill)
             mills = mills or each.mill
         for path in choices.libraries:
             self._add("file", path, os.path.basename(path), os.path.exists(path))
@@ -85,7 +85,8 @@ class ToolsBox:
             self._changed()
 
     def _add_library(self) -> None:
-        for path in QtGui.QFileDialog.getOpenFileNames(self.form, tr("Tool libraries"), "", LIBRARIES)[0]:
+        kinds = tr("Tool libraries") + LIBRARIES + tr("All files") + " (*)"
+        for path in QtGui.QFileDialog.getOpenFileNames(self.form, tr("Tool libraries"), "", kinds)[0]:
             self._add("file", path, os.path.basename(path), True)
         self._changed()
 
@@ -109,7 +110,7 @@ class ToolsBox:
         have = self._entries("bit", False)
         for each in cam.bits(job.Document):
             if each.name not in have:
-                self._add("bit", each.name, f"{each.label} (tool bit)", False)
+                self._add("bit", each.name, tr("{label} (tool bit)").format(label=each.label), False)
         self._list.blockSignals(True)
         for place in range(self._list.count()):
             item = self._list.item(place)
@@ -118,9 +119,7 @@ class ToolsBox:
             if kind == "bit" and value in held:
                 number, feed = held[value].number, held[value].feed
                 label = model.thing_of(job.Document.Name, value).Label
-                item.setText(
-                    f"T{number} {label}" + (tr(", {feed:.4g} mm/min").format(feed=feed) if feed else "") + f" ({job.Label})"
-                )
+                item.setText(f"T{number} {label}" + (f", {speed(feed)}" if feed else "") + f" ({job.Label})")
         self._list.blockSignals(False)
         self._changed()
 
@@ -155,6 +154,6 @@ class ToolsBox:
         """In a few words."""
         tools = self.tools()
         count = len(tools.specs) + len(tools.bits)
-        parts = [f"{count} tool{'s' * (count != 1)}"] * bool(count)
+        parts = [several(count, tr("{count} tool"), tr("{count} tools"))] * bool(count)
         parts += [os.path.basename(path) for path in tools.files]
-        return ", ".join(parts) or "the default tool set"
+        return ", ".join(parts) or tr("the default tool set")

@@ -8,6 +8,8 @@ import FreeCAD as App
 import FreeCADGui as Gui
 
 from . import host
+from . import words as texts
+from .words import tr
 
 QtCore, QtGui = host.qt("QtCore"), host.qt("QtGui")
 #: How a field looks that has to be filled in; of the widget itself, not of what is in it.
@@ -30,7 +32,7 @@ class Panel:
 def complain(text: str) -> None:
     """Say in a window, and in the report view, why something was not done."""
     App.Console.PrintError(f"plan-cutters: {text}\n")
-    QtGui.QMessageBox.warning(Gui.getMainWindow(), "Plan cutters", text)
+    QtGui.QMessageBox.warning(Gui.getMainWindow(), tr("Plan cutters"), text)
 
 
 def code(buttons: Any) -> int:
@@ -98,7 +100,7 @@ def combo(entries: list[tuple[str, str]], value: str, editable: bool = False) ->
     """A list to choose from: words and values; an editable one takes any other value."""
     made = QtGui.QComboBox()
     for text, data in entries:
-        made.addItem(text, data)
+        made.addItem(tr(text), data)
     made.setEditable(editable)
     made.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
     choose(made, value)
@@ -126,14 +128,34 @@ def chosen(made: Any) -> str:
     return str(made.itemData(place) or "")
 
 
+class Length(QtGui.QDoubleSpinBox):
+    """A field whose value is in mm and whose text is in the units that the user chose in FreeCAD; it takes any unit."""
+
+    def textFromValue(self, value: float) -> str:
+        return texts.length(value)
+
+    def valueFromText(self, text: str) -> float:
+        try:
+            return 0.0 if text == self.specialValueText() else texts.mm_of(text)
+        except ValueError:
+            return float(self.value())
+
+    def validate(self, text: str, place: int) -> Any:
+        try:
+            right = text == self.specialValueText() or self.minimum() <= texts.mm_of(text) <= self.maximum()
+        except ValueError:
+            right = False
+        # What is half typed need not be a length yet.
+        return (QtGui.QValidator.Acceptable if right else QtGui.QValidator.Intermediate, text, place)
+
+
 def length(value: float, nothing: str = "", name: str = "") -> Any:
-    """A field for mm; at 0 it shows `nothing`."""
-    made = QtGui.QDoubleSpinBox()
+    """A field for a length, mm; at 0 it shows `nothing`."""
+    made = Length()
     made.setObjectName(name)
     made.setRange(0.0, 1000.0)
-    made.setDecimals(3)
-    made.setSingleStep(0.1)
-    made.setSuffix(" mm")
+    made.setDecimals(6)
+    made.setSingleStep(0.1 if texts.unit() == "mm" else 0.254)
     made.setSpecialValueText(nothing)
     made.setValue(value)
     return narrow(made)

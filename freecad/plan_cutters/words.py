@@ -1,8 +1,7 @@
 """Texts in the user's language, and lengths in the user's units.
 
-FreeCAD translates by the text in English, in a context. `tr` marks a text for the file of translations
-(`translations/plan_cutters.ts`), which `texts.py` writes from these modules: its argument is one literal, with names in braces
-for what is filled in.
+FreeCAD translates by the text in English, in a context. `tr` marks a text for the file of translations, which
+`freecad/translations.py` writes from these modules: its argument is one literal, with names in braces for what is filled in.
 """
 
 from __future__ import annotations
@@ -26,6 +25,14 @@ def tr(text: str) -> str:
     return str(qt.translate(CONTEXT, text)) if qt is not None else text
 
 
+def load() -> None:
+    """Have FreeCAD read the translations of this add-on, where there are any for the user's language."""
+    import FreeCADGui as Gui
+
+    Gui.addLanguagePath(FOLDER)
+    Gui.updateLocale()
+
+
 def later(text: str) -> str:
     """A text that is translated where it is shown, by `tr` of what this answers."""
     return text
@@ -44,6 +51,26 @@ def _quantity(mm: float) -> Any:
 def length(mm: float) -> str:
     """A length in the units, and with the decimals, that the user chose in FreeCAD."""
     return str(_quantity(mm).UserString)
+
+
+def fine(mm: float) -> str:
+    """A short length with three digits, in the unit that the user chose: FreeCAD's decimals may show 0 of it."""
+    if not hasattr(App, "Units"):
+        return f"{mm:.3g} mm"
+    _, factor, name = _quantity(25.4).getUserPreferred()
+    return f"{mm / factor:.3g} {name}"
+
+
+def area_of(mm2: float) -> str:
+    """An area in the units that the user chose in FreeCAD."""
+    units = App.Units
+    return str(units.Quantity(mm2, units.Area).UserString)
+
+
+def speed(mm_per_minute: float) -> str:
+    """A feed in the units that the user chose in FreeCAD."""
+    units = App.Units
+    return str(units.Quantity(mm_per_minute / 60.0, units.Velocity).UserString)
 
 
 def mm_of(text: str) -> float:

@@ -169,7 +169,7 @@ def test_what_the_bits_lack_is_marked_before_anything_starts(window):
 def test_a_job_fills_the_panel(window):
     body, bits, job, hidden, words, allowance = window["job"]
     assert (body, bits, job) == ("Clone", ["Endmill", "Mill10"], "Job")
-    assert window["rows"][:2] == ["T1 Endmill (Job)", "T7 Mill10, 900 mm/min (Job)"]
+    assert window["rows"][:2] == ["T1 Endmill (Job)", "T7 Mill10, 15.00 mm/s (Job)"]
     # The stock is offered, and counts only when the user says so.
     assert (hidden, allowance, window["allowance"]) == (False, 0.0, 1.0)
     assert words.startswith("Stock of Job: 1")
