@@ -1,11 +1,10 @@
-"""Write the file of translations anew: `python freecad/translations.py` reads the texts that the workbench marks with `tr` and `later`.
+"""Write the file of translations anew, `python freecad/translations.py`: texts that the workbench marks with `tr` and `later`.
 
 What was translated is kept, where its text in English is still there. `lrelease` (Qt) makes of a file `plan_cutters_de.ts`
 beside it the `plan_cutters_de.qm` that FreeCAD reads.
 """
 
 import ast
-import sys
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
@@ -66,4 +65,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

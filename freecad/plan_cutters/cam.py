@@ -123,7 +123,7 @@ def controllers(job) -> dict[str, Controller]:
     found: dict[str, Controller] = {}
     for each in getattr(job.Tools, "Group", ()):
         bit = getattr(each, "Tool", None)
-        if not host.bit_shape(bit):
+        if bit is None or not host.bit_shape(bit):
             continue
         mine = Controller(int(getattr(each, "ToolNumber", 0)), host.per_minute(getattr(each, "HorizFeed", 0.0)))
         if bit.Name not in found or (mine.feed and not found[bit.Name].feed):

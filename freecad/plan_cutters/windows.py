@@ -128,7 +128,7 @@ def chosen(made: Any) -> str:
     return str(made.itemData(place) or "")
 
 
-class Length(QtGui.QDoubleSpinBox):
+class Length(QtGui.QDoubleSpinBox):  # type: ignore[name-defined]
     """A field whose value is in mm and whose text is in the units that the user chose in FreeCAD; it takes any unit."""
 
     def textFromValue(self, value: float) -> str:

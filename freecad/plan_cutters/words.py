@@ -84,11 +84,12 @@ def mm_of(text: str) -> float:
     text = text.strip()
     try:
         found = App.Units.Quantity(text)
-        if found.Unit == App.Units.Unit():
-            return float(found.Value) * unit_mm()
-        return float(found.getValueAs("mm").Value)
     except Exception as error:  # FreeCAD's parser raises many kinds
         raise ValueError(f"{text} is no length") from error
+    if not text or found.Unit not in (App.Units.Unit(), App.Units.Length):
+        raise ValueError(f"{text} is no length")
+    # FreeCAD counts in mm.
+    return float(found.Value) * (unit_mm() if found.Unit == App.Units.Unit() else 1.0)
 
 
 def unit_mm() -> float:

@@ -1,4 +1,4 @@
-"""The panels in FreeCAD's window beside CAM: bits are ticked, what they lack is marked, a job fills the panel, others close it."""
+"""Panels in FreeCAD's window beside CAM: bits are ticked, what they lack is marked, a job fills them, others close them."""
 
 import shutil
 

@@ -459,7 +459,7 @@ def test_a_bit_says_its_stick_out_and_its_holder(tmp_path, place):
         with pytest.raises(LibraryError, match=why):
             freecad(write_bit(tmp_path / "Bit" / "b.fctb", ToolHolder=word))
     holder.write_text(json.dumps({"profile": profile, "units": "ell"}))
-    with pytest.raises(LibraryError, match="units is .ell."):
+    with pytest.raises(LibraryError, match=r"units is .ell.:"):
         freecad(path)
 
 

@@ -708,7 +708,23 @@
    <translation type="unfinished" />
   </message>
   <message>
+   <source>{face}, {away} from the click: {verdict}</source>
+   <translation type="unfinished" />
+  </message>
+  <message>
+   <source>for {reason}</source>
+   <translation type="unfinished" />
+  </message>
+  <message>
+   <source>, or </source>
+   <translation type="unfinished" />
+  </message>
+  <message>
    <source>{depth} deep</source>
+   <translation type="unfinished" />
+  </message>
+  <message>
+   <source>(undecided)</source>
    <translation type="unfinished" />
   </message>
   <message>
