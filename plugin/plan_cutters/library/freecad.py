@@ -192,7 +192,7 @@ def _set_in(tool: Listed, parameters: dict[str, Any], folder: Path) -> None:
                 tool.faults.append(f"ToolHolder {shown(word)}: {fault}")
             return
     # What is assumed for tools without a holder is another one than this.
-    tool.doubts.append(f"ToolHolder {shown(word)}: put its file {word[:40]}.fcholder beside the bit or in ../ToolHolder")
+    tool.doubts.append(f"ToolHolder {shown(word)}: put its file {word[:40]}.fcholder into the folder of the bit or ../ToolHolder")
 
 
 def _tool(content: Content, place: str, number: int | None) -> Listed:
