@@ -135,6 +135,9 @@ class Length(QtGui.QDoubleSpinBox):  # type: ignore[name-defined]
         return texts.length(value)
 
     def valueFromText(self, text: str) -> float:
+        # Its own text is rounded to the user's decimals: the value is not.
+        if text == self.textFromValue(self.value()):
+            return float(self.value())
         try:
             return 0.0 if text == self.specialValueText() else texts.mm_of(text)
         except ValueError:

@@ -151,6 +151,7 @@ drill = bits.Factory.Create("Drill", "drill.fcstd")
 first = job.Tools.Group[0]
 first.Tool.Label = "Left alone"
 held = controllers.Create("TC_Mill10", tool=bit, toolNumber=7)
+held.Label = "TC: Mill10"
 held.HorizFeed, held.VertFeed, held.SpindleSpeed = "900 mm/min", "300 mm/min", 8000
 job.Proxy.addToolController(held)
 document.recompute()
@@ -211,6 +212,6 @@ def test_a_job_is_planned_with_its_tools_and_gets_the_users_own_bits(tmp_path):
     assert found["seconds"]
     assert all(seconds > 0 for seconds in found["seconds"])
     assert found["new bits"] == []
-    assert found["job"] == [["TC: Mill10", True, 7, pytest.approx(900.0), pytest.approx(300.0), 8000.0]]
+    assert found["job"] == [["TC: Mill10 (2)", True, 7, pytest.approx(900.0), pytest.approx(300.0), 8000.0]]
     assert found["kept"] == ["Left alone", "Mill10"]
     assert found["changed"] == []

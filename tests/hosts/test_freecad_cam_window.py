@@ -78,6 +78,20 @@ def session():
     found["short"] = [two.status.text(), plan.isEnabled(), marked()]
     two.tools._stick_out.setValue(40)
     found["whole"] = [two.status.text(), plan.isEnabled(), marked()]
+    # Lengths in the user's units.
+    field, rows = two.tools._stick_out, []
+    line = field.findChild(QtGui.QLineEdit)
+    for schema in (3, 0):
+        App.Units.setSchema(schema)
+        for text in ("2", "50 mm", "0.5 in", "wide"):
+            line.setText(text)
+            field.interpretText()
+            rows.append([field.value(), field.text()])
+        field.setValue(12.3456)
+        field.interpretText()
+        rows.append([field.value(), field.text()])
+    field.setValue(0)
+    found["lengths"] = [*rows, [field.value(), field.text()]]
     two.tools._typed.setText("R4L15")
     two.tools._add_typed()
     found["both"] = [two.status.text(), plan.isEnabled()]
@@ -164,6 +178,15 @@ def test_what_the_bits_lack_is_marked_before_anything_starts(window):
     assert (ready, marked) == (False, [True, False])
     assert window["whole"][1:] == [True, [False, False]]
     assert window["both"] == ["Short words are judged without tool bits and libraries: untick one or the other.", False]
+
+
+def test_a_length_is_typed_and_shown_in_the_users_units(window):
+    """What is no length leaves the value, and so does the rounding of what is shown."""
+    inches, metric = [50.8, 50.0, 12.7, 12.7, 12.3456], [2.0, 50.0, 12.7, 12.7, 12.3456]
+    values, texts = zip(*window["lengths"], strict=True)
+    assert values == pytest.approx([*inches, *metric, 0.0])
+    assert [*texts[:5]] == ["2.00 in", "1.97 in", "0.50 in", "0.50 in", "0.49 in"]
+    assert [*texts[5:]] == ["2.00 mm", "50.00 mm", "12.70 mm", "12.70 mm", "12.35 mm", "as the tools say"]
 
 
 def test_a_job_fills_the_panel(window):
