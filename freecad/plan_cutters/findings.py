@@ -348,6 +348,9 @@ class Findings(windows.Panel):
 def open_panel(group=None) -> Findings:
     """Show the panel of a plan, by default of the one that is selected."""
     global LAST
-    LAST = Findings(group or chosen_group())
+    group = group or chosen_group()
+    if LAST is not None:  # another command closed it
+        LAST.leave()
+    LAST = Findings(group)
     Gui.Control.showDialog(LAST)
     return LAST
