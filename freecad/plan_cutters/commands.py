@@ -8,6 +8,7 @@ import FreeCAD as App
 import FreeCADGui as Gui
 
 from . import icons, windows
+from .words import later, tr
 
 
 def _document_open() -> bool:
@@ -51,7 +52,7 @@ def _clear() -> None:
 
 
 def _settings() -> None:
-    Gui.showPreferences("Plan cutters", 0)
+    Gui.showPreferences(tr("Plan cutters"), 0)
 
 
 class Command:
@@ -61,7 +62,7 @@ class Command:
         self._words, self._hint, self._icon, self._work, self._when = words, hint, icon, work, when
 
     def GetResources(self) -> dict[str, Any]:
-        return {"MenuText": self._words, "ToolTip": self._hint, "Pixmap": icons.path(self._icon)}
+        return {"MenuText": tr(self._words), "ToolTip": tr(self._hint), "Pixmap": icons.path(self._icon)}
 
     def IsActive(self) -> bool:
         return self._when()
@@ -77,22 +78,26 @@ class Command:
 
 COMMANDS = {
     "PlanCutters_Plan": Command(
-        "Plan cutters…", "Say which cutters can finish the selected body or faces", "plan_cutters", _plan, _document_open
+        later("Plan cutters…"), later("Say which cutters can finish the selected body or faces"), "plan_cutters", _plan,
+        _document_open,
     ),
     "PlanCutters_Results": Command(
-        "Results…", "Legend, cutters and worst spots of a plan in this document", "results", _results,
+        later("Results…"), later("Legend, cutters and worst spots of a plan in this document"), "results", _results,
         lambda: _plan_shown() and not Gui.Control.activeDialog(),
     ),
-    "PlanCutters_Review": Command("Review page", "Open the plan's review page in a browser", "review", _review, _plan_shown),
+    "PlanCutters_Review": Command(
+        later("Review page"), later("Open the plan's review page in a browser"), "review", _review, _plan_shown),
     "PlanCutters_Job": Command(
-        "CAM job of the operations", "A job with the tool controllers, and work planes, of a plan that has operations",
+        later("CAM job of the operations"),
+        later("A job with the tool controllers, and work planes, of a plan that has operations"),
         "operations", _job, lambda: _plan_shown() and not Gui.Control.activeDialog(),
     ),
     "PlanCutters_Clear": Command(
-        "Remove results", "Take away what plans show in this document; the bodies are shown again", "clear", _clear,
+        later("Remove results"), later("Take away what plans show in this document; the bodies are shown again"), "clear", _clear,
         lambda: _plan_shown() and not Gui.Control.activeDialog(),
     ),
-    "PlanCutters_Settings": Command("Settings…", "Where the program is, and more", "settings", _settings, lambda: True),
+    "PlanCutters_Settings": Command(later("Settings…"), later("Where the program is, and more"), "settings", _settings,
+                                     lambda: True),
 }  # fmt: skip
 NAMES = list(COMMANDS)
 IN_CONTEXT = ["PlanCutters_Plan", "PlanCutters_Results"]

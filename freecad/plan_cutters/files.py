@@ -11,7 +11,8 @@ import shlex
 import shutil
 from typing import Any
 
-from . import host, model, results
+from . import cam, host, model, results
+from .words import tr
 
 #: Of the plan, what the workbench shows.
 FORMATS = "json,html,npz,step"
@@ -33,12 +34,15 @@ def command() -> list[str]:
         try:
             return [words] if os.path.isfile(words) else shlex.split(words)
         except ValueError as error:
-            raise model.Refused(f"the program's path cannot be read: {error}") from None
+            raise model.Refused(tr("the program's path cannot be read: {error}").format(error=error)) from None
     found = shutil.which("plan-cutters") or shutil.which("plan-cutters", path=os.path.expanduser("~/.local/bin"))
     if not found:
         raise model.Refused(
-            "the program plan-cutters was not found: install it apart from FreeCAD, for example with `uv tool install` or "
-            "`pipx install` from its folder, or give its path in the settings or in the environment variable PLAN_CUTTERS"
+            tr(
+                "the program plan-cutters was not found: install it apart from FreeCAD, for example with "
+                "`uv tool install` or `pipx install` from its folder, or give its path in the settings "
+                "or in the environment variable PLAN_CUTTERS"
+            )
         )
     return [found]
 
@@ -57,9 +61,13 @@ def words(job: model.Job, folder: str) -> tuple[list[str], dict[str, str]]:
     shape = model.shape_of(thing)
     wrong = [number for number in job.faces if not 1 <= number <= len(shape.Faces)]
     if wrong:
-        raise model.Refused(f"{thing.Label} has no Face{wrong[0]}: it has {len(shape.Faces)} faces")
+        raise model.Refused(
+            tr("{label} has no Face{number}: it has {count} faces").format(
+                label=thing.Label, number=wrong[0], count=len(shape.Faces)
+            )
+        )
     if not (math.isfinite(job.allowance) and job.allowance >= 0.0):
-        raise model.Refused(f"the allowance must be 0 mm or more, not {job.allowance:g}")
+        raise model.Refused(tr("the allowance must be 0 mm or more, not {allowance:g}").format(allowance=job.allowance))
     source, fingerprints = exported(thing, shape, folder), {job.body: model.fingerprint(shape)}
     found = [*command(), *job.options]
     found += _tools(job, folder)
@@ -72,7 +80,7 @@ def words(job: model.Job, folder: str) -> tuple[list[str], dict[str, str]]:
     for name in job.fixtures:
         fixture = model.thing_of(job.document, name)
         if name == job.body:
-            raise model.Refused(f"{fixture.Label} is the body itself: it cannot be a fixture, too")
+            raise model.Refused(tr("{label} is the body itself: it cannot be a fixture, too").format(label=fixture.Label))
         held = model.shape_of(fixture)
         fingerprints[name] = model.fingerprint(held)
         found += ["--fixture", exported(fixture, held, folder)]
@@ -111,7 +119,11 @@ def library(result: results.Result, cutter: dict[str, Any], folder: str) -> str:
         The plan does not hold all of its shape.
     """
     if cutter["shape"] != "end":
-        raise model.Refused(f"the plan does not hold the whole shape of {cutter['id']}: ask the program for its posture maps")
+        raise model.Refused(
+            tr("the plan does not hold the whole shape of {cutter}: ask the program for its posture maps").format(
+                cutter=cutter["id"]
+            )
+        )
     parts: dict[str, list[dict[str, float]]] = {"neck": [], "shank": [], "holder": []}
     for stage in cutter["stages"]:
         parts[stage["part"]].append(stage)
@@ -152,23 +164,50 @@ def exported(thing, shape, folder: str) -> str:
     return path
 
 
-def _tools(job: model.Job, folder: str) -> list[str]:
-    tools = job.tools
-    if (tools.files or tools.bits) and tools.specs:
-        raise model.Refused("give short words of cutters, or libraries and tool bits, not both")
-    found = [word for spec in tools.specs for word in ("--cutter", spec)]
-    for path in tools.files:
-        found += ["--cutters", path]
-    for number, name in enumerate(tools.bits, 1):
+def _bits(job: model.Job, folder: str) -> str:
+    """Write the tool bits of a job as a library, with the numbers and feeds of the CAM job that they are taken from; its path."""
+    numbered = {}
+    if job.tools.cam_job:
+        numbered = cam.controllers(model.thing_of(job.document, job.tools.cam_job))
+    rows = []
+    for place, name in enumerate(job.tools.bits, 1):
         bit = model.thing_of(job.document, name)
         kind = host.bit_shape(bit)
         if not kind:
-            raise model.Refused(f"{bit.Label} is no tool bit")
-        path = os.path.join(folder, f"bit{number}.fctb")
-        entry = {"version": 2, "name": bit.Label, "shape": f"{kind}.fcstd", "parameter": host.lengths(bit), "attribute": {}}
-        with open(path, "w", encoding="utf-8") as file:
-            json.dump(entry, file)
+            raise model.Refused(tr("{bit} is no tool bit").format(bit=bit.Label))
+        mine = numbered.get(name, cam.Controller())
+        sizes: dict[str, str] = host.lengths(bit)
+        try:
+            holder = host.holder_of(bit)
+        except LookupError as error:
+            raise model.Refused(tr("the holder of {bit} cannot be read: {why}").format(bit=bit.Label, why=error)) from None
+        if holder is not None:
+            sizes["ToolHolder"] = f"bit{place}"
+            _written(os.path.join(folder, f"bit{place}.fcholder"), holder)
+        _written(os.path.join(folder, f"bit{place}.fctb"), {
+            "version": 2, "name": bit.Label, "shape": f"{kind}.fcstd", "parameter": sizes,
+            "attribute": {"cutting_feedrate": f"{mine.feed:.9g} mm/min"} if mine.feed else {},
+        })  # fmt: skip
+        rows.append({"path": f"bit{place}.fctb", **({"nr": mine.number} if mine.number > 0 else {})})
+    path = os.path.join(folder, "tool_bits.fctl")
+    _written(path, {"version": 1, "tools": rows})
+    return path
+
+
+def _written(path: str, entry: dict[str, Any]) -> None:
+    with open(path, "w", encoding="utf-8") as file:
+        json.dump(entry, file)
+
+
+def _tools(job: model.Job, folder: str) -> list[str]:
+    tools = job.tools
+    if (tools.files or tools.bits) and tools.specs:
+        raise model.Refused(tr("give short words of cutters, or libraries and tool bits, not both"))
+    found = [word for spec in tools.specs for word in ("--cutter", spec)]
+    for path in tools.files:
         found += ["--cutters", path]
+    if tools.bits:
+        found += ["--cutters", _bits(job, folder)]
     if tools.holder:
         found += ["--holder", tools.holder]
     if tools.stick_out is not None:

@@ -10,6 +10,7 @@ import FreeCADGui as Gui
 
 from . import camera, model, objects, remembered, runner, steps, windows
 from .windows import QtCore, QtGui
+from .words import fine, tr
 
 #: Sign and colour of a verdict on a cutter, by its tone.
 SIGNS = {"good": ("✔", "#007a58"), "bad": ("✘", "#b34700"), "unsure": ("?", "#6b6400")}
@@ -25,7 +26,7 @@ def chosen_group():
     document = App.ActiveDocument
     groups = objects.plans(document) if document else []
     if document is None or not groups:
-        raise model.Refused("no plan is shown in this document: plan first")
+        raise model.Refused(tr("no plan is shown in this document: plan first"))
     selected = {each.Name for each in Gui.Selection.getSelection(document.Name)}
     for group in groups:
         if group.Name in selected or selected & {each.Name for each in group.OutListRecursive}:
@@ -37,7 +38,7 @@ def open_review(group) -> None:
     """Open the review page of a plan in the browser."""
     path = objects.result_of(group).review()
     if not path or not os.path.exists(path):
-        raise model.Refused("the review page of this plan is not there any more: plan again")
+        raise model.Refused(tr("the review page of this plan is not there any more: plan again"))
     QtGui.QDesktopServices.openUrl(QtCore.QUrl.fromLocalFile(path))
 
 
@@ -64,7 +65,7 @@ class Findings(windows.Panel):
     # The boxes.
 
     def _verdict_box(self):
-        box, layout = windows.box("Result", "results")
+        box, layout = windows.box(tr("Result"), "results")
         self._chip = QtGui.QLabel()
         self._chip.setObjectName("chip")
         layout.addRow(self._chip)
@@ -79,41 +80,41 @@ class Findings(windows.Panel):
             entries.append((f"{sign} {each['name'] or each['id']}", each["id"]))
         self._cutters = windows.combo(entries, self.result.shown()["id"])
         self._cutters.setObjectName("cutters")
-        layout.addRow("Cutter", self._cutters)
+        layout.addRow(tr("Cutter"), self._cutters)
         self._sentence = windows.words("", "sentence")
         layout.addRow(self._sentence)
         return box
 
     def _legend_box(self):
-        box, self._legend = windows.box("Legend: share of the area", "results")
+        box, self._legend = windows.box(tr("Legend: share of the area"), "results")
         return box
 
     def _spots_box(self):
-        box, layout = windows.box("Worst spots", "map")
+        box, layout = windows.box(tr("Worst spots"), "map")
         self._list = QtGui.QTreeWidget()
         self._list.setObjectName("spots")
-        self._list.setHeaderLabels(["Face", "Why", "In the way", "mm"])
+        self._list.setHeaderLabels([tr("Face"), tr("Why"), tr("In the way"), tr("Depth")])
         self._list.setRootIsDecorated(False)
         self._list.setIndentation(0)
-        self._list.setToolTip("mm: how deep what is in the way reaches into the tool")
+        self._list.setToolTip(tr("Depth: how far what is in the way reaches into the tool"))
         windows.narrow(self._list).setFixedHeight(110)
         self._list.currentItemChanged.connect(lambda *_: self._fly())
         self._list.itemClicked.connect(lambda *_: self._fly())
         self._told = windows.words("", "told")
         layout.addRow(self._told)
         layout.addRow(self._list)
-        self._tool = QtGui.QCheckBox("Show the tool there")
+        self._tool = QtGui.QCheckBox(tr("Show the tool there"))
         self._tool.setChecked(remembered.load().show_tool)
         self._tool.toggled.connect(self._tool_wanted)
         layout.addRow(self._tool)
         self._map = windows.button(
-            "Posture map", self._draw_map, "All postures of the cutter at the spot shown, or at the last click"
+            tr("Posture map"), self._draw_map, tr("All postures of the cutter at the spot shown, or at the last click")
         )
         self._map.setEnabled(False)
         layout.addRow(windows.row(self._map))
-        whole = windows.button("Whole part", lambda: Gui.SendMsgToActiveView("ViewFit"), "Fit all in the view")
-        page = windows.button("Review page", self._page, "Open the plan's page in a browser")
-        away = windows.button("Remove", self._remove, "Take this plan away and show the body again")
+        whole = windows.button(tr("Whole part"), lambda: Gui.SendMsgToActiveView("ViewFit"), tr("Fit all in the view"))
+        page = windows.button(tr("Review page"), self._page, tr("Open the plan's page in a browser"))
+        away = windows.button(tr("Remove"), self._remove, tr("Take this plan away and show the body again"))
         layout.addRow(windows.row(whole, page))
         layout.addRow(windows.row(away))
         return box
@@ -124,12 +125,12 @@ class Findings(windows.Panel):
         entry = self.result.shown(cutter)
         text = self.result.cutter_text(entry["id"])
         sign, colour = SIGNS[text.tone]
-        selected = "· selected" if entry["id"] == self.result.plan["selected"] else ""
+        selected = "· " + tr("selected") if entry["id"] == self.result.plan["selected"] else ""
         self._chip.setText(" ".join(filter(None, (sign, text.verdict, selected))))
         self._chip.setStyleSheet(f"background: {colour}; color: white; font-weight: bold; padding: 4px; border-radius: 4px")
         self._headline.setText(self.result.headline())
         self._headline.setToolTip("\n".join(self.result.summary()))
-        whole = "" if entry is self.result.shown() else "Each face has the colour of its worst verdict with this cutter."
+        whole = "" if entry is self.result.shown() else tr("Each face has the colour of its worst verdict with this cutter.")
         self._sentence.setText(" ".join(filter(None, (text.sentence, whole))))
         while self._legend.rowCount():
             self._legend.removeRow(0)
@@ -144,7 +145,7 @@ class Findings(windows.Panel):
         self._list.blockSignals(True)
         self._list.clear()
         for spot in self._spots:
-            depth = f"{spot.depth_mm:.2f}" if spot.depth_mm is not None else ""
+            depth = fine(spot.depth_mm) if spot.depth_mm is not None else ""
             item = QtGui.QTreeWidgetItem([spot.face, self.result.reason(spot.reason), spot.obstacle, depth])
             for column in range(4):
                 item.setToolTip(column, spot.text)
@@ -154,9 +155,9 @@ class Findings(windows.Panel):
         self._list.setCurrentItem(None)
         self._list.blockSignals(False)
         self._told.setText(
-            "Click a spot: the view flies there. Or click a face: what is known there."
+            tr("Click a spot: the view flies there. Or click a face: what is known there.")
             if self._spots
-            else "No sample is lost with this cutter. Click a face: what is known there."
+            else tr("No sample is lost with this cutter. Click a face: what is known there.")
         )
         self.look_again()
 
@@ -165,6 +166,13 @@ class Findings(windows.Panel):
         why = objects.stale(self.group)
         self._stale.setText(why)
         self._stale.setVisible(bool(why))
+
+    def _gone(self) -> bool:
+        """Whether another command closed the panel, which FreeCAD does not tell it; it follows nothing any more then."""
+        if self.form and windows.alive(self._told):
+            return False
+        self.leave()
+        return True
 
     # FreeCAD tells what happens to documents, before it is done with it.
 
@@ -175,7 +183,7 @@ class Findings(windows.Panel):
 
     def _follow(self) -> None:
         """Follow the document: the plan may be gone, or be about another cutter again."""
-        if LAST is not self:
+        if LAST is not self or self._gone():
             return
         if self.result.document not in App.listDocuments():
             self.leave()
@@ -186,7 +194,7 @@ class Findings(windows.Panel):
         for each in self.form:
             each.setEnabled(bool(mine))
         if not mine:
-            self._told.setText("The plan is no longer in the document.")
+            self._told.setText(tr("The plan is no longer in the document."))
             return
         self.group = mine[-1]
         if self.group.Cutter != windows.chosen(self._cutters):
@@ -233,7 +241,7 @@ class Findings(windows.Panel):
             try:
                 if spot.axis is None:
                     objects.hide_tool(self.group)
-                    words += " — no posture is known here: no tool is shown"
+                    words += " — " + tr("no posture is known here: no tool is shown")
                 else:
                     objects.put_tool(self.group, spot)
             except model.Refused as error:
@@ -243,6 +251,8 @@ class Findings(windows.Panel):
 
     def addSelection(self, document, thing, _element, point) -> None:
         """A click in the view (FreeCAD calls this): the sample nearest to it."""
+        if self._gone():
+            return
         shown = {each.Name for each in self.group.Group if getattr(each, "Verdict", "")}
         if document != self.group.Document.Name or thing.rpartition(".")[2] not in shown:
             return
@@ -268,23 +278,28 @@ class Findings(windows.Panel):
         if self._here is None or self._drawing is not None:
             return
         self._map.setEnabled(False)
-        self._map.setText("drawing…")
+        self._map.setText(tr("drawing…"))
         self._drawing = runner.Map(
             self.group, self._here.point, self.group.Cutter, lambda *_: None, self._map_drawn, self._map_failed
         )
 
     def _map_ended(self) -> None:
         self._drawing = None
-        self._map.setText("Posture map")
+        self._map.setText(tr("Posture map"))
         self._map.setEnabled(True)
 
     def _map_drawn(self, found) -> None:
+        if self._gone():
+            runner.removed(found["folder"])
+            return
         self._map_ended()
         picture = QtGui.QPixmap(found["picture"])
         runner.removed(found["folder"])
-        windows.show_picture(picture, f"Postures of {self.group.Cutter} at {self._here.face}")
+        windows.show_picture(picture, tr("Postures of {cutter} at {face}").format(cutter=self.group.Cutter, face=self._here.face))
 
     def _map_failed(self, line: str) -> None:
+        if self._gone():
+            return
         self._map_ended()
         self._told.setText(line)
 
@@ -333,6 +348,9 @@ class Findings(windows.Panel):
 def open_panel(group=None) -> Findings:
     """Show the panel of a plan, by default of the one that is selected."""
     global LAST
-    LAST = Findings(group or chosen_group())
+    group = group or chosen_group()
+    if LAST is not None:  # another command closed it
+        LAST.leave()
+    LAST = Findings(group)
     Gui.Control.showDialog(LAST)
     return LAST

@@ -17,6 +17,8 @@ SETTINGS = "User parameter:BaseApp/Preferences/Mod/PlanCutters"
 CONTAINERS = ("App::Part", "App::DocumentObjectGroup", "App::LinkGroup", "Assembly::AssemblyObject")
 #: A tool bit of CAM: it names the shape that it was made from in one of these, by release.
 BIT_SHAPES = ("ShapeType", "ShapeName", "ShapeID", "BitShape")
+#: A job of CAM has all of these.
+JOB_PARTS = ("Model", "Operations", "Stock", "Tools")
 
 
 def settings() -> Any:
@@ -99,6 +101,43 @@ def bit_shape(thing) -> str:
         return ""
     word = next((str(getattr(thing, name)) for name in BIT_SHAPES if getattr(thing, name, "")), "")
     return os.path.splitext(os.path.basename(word))[0].lower()
+
+
+def stick_out(bit) -> float | None:
+    """From the holder's face to the tip as a tool bit states it, mm: bits of the newest releases may."""
+    value = getattr(getattr(bit, "Stickout", None), "Value", 0.0)
+    return float(value) if value > 0.0 else None
+
+
+def holder_of(bit) -> dict[str, Any] | None:
+    """The holder that a tool bit names, as a `.fcholder` file has it; None where it names none: only the newest releases do.
+
+    Raises
+    ------
+    LookupError
+        It names one whose outline this FreeCAD does not have.
+    """
+    word = getattr(bit, "ToolHolder", "")
+    if not isinstance(word, str) or not word:
+        return None
+    try:
+        found = bit.Proxy.get_holder()
+        entry = None if found is None else found.to_dict()
+    except Exception as error:  # also what its file raises
+        raise LookupError(f"{word}: {error}") from None
+    if not isinstance(entry, dict):
+        raise LookupError(word)
+    return {"name": word, **entry}
+
+
+def is_job(thing) -> bool:
+    """Whether an object of a document is a job of CAM."""
+    return all(name in getattr(thing, "PropertiesList", ()) for name in JOB_PARTS)
+
+
+def per_minute(speed) -> float:
+    """A feed of a tool controller, mm/min; FreeCAD keeps it in mm/s."""
+    return float(getattr(speed, "Value", speed) or 0.0) * 60.0
 
 
 def lengths(thing) -> dict[str, str]:

@@ -4,24 +4,27 @@ from __future__ import annotations
 
 import FreeCADGui as Gui
 
-from . import commands, icons, preferences
+from . import commands, icons, preferences, words
+from .words import tr
+
+words.load()
 
 
 class PlanCutters(Gui.Workbench):
     """Which cutters can finish the picked faces."""
 
-    MenuText = "Plan cutters"
-    ToolTip = "Says which cutters can finish the picked faces, before any toolpath exists"
+    MenuText = tr("Plan cutters")
+    ToolTip = tr("Says which cutters can finish the picked faces, before any toolpath exists")
     Icon = icons.path("plan_cutters")
 
     def Initialize(self) -> None:
         """Called when the workbench is opened for the first time."""
-        self.appendToolbar("Plan cutters", commands.NAMES)
-        self.appendMenu("&Plan cutters", commands.NAMES)
+        self.appendToolbar(tr("Plan cutters"), commands.NAMES)
+        self.appendMenu(tr("&Plan cutters"), commands.NAMES)
 
     def ContextMenu(self, recipient: str) -> None:
         """Called where the right button opens a menu, in the view or in the tree."""
-        self.appendContextMenu("Plan cutters", commands.IN_CONTEXT)
+        self.appendContextMenu(tr("Plan cutters"), commands.IN_CONTEXT)
 
     def GetClassName(self) -> str:
         return "Gui::PythonWorkbench"

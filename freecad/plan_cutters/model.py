@@ -10,6 +10,7 @@ from typing import Any
 import FreeCAD as App
 
 from . import host
+from .words import tr
 
 
 class Refused(Exception):
@@ -32,6 +33,8 @@ class Tools:
         Holder of those that have none: `er32`, `R15L30`, a path; empty: none is given.
     stick_out : float, optional
         mm from tip to holder for tools that state none.
+    cam_job : str
+        Name of a CAM job: bits have the numbers and feeds of its tool controllers; empty: they have none.
     """
 
     specs: tuple[str, ...] = ()
@@ -39,6 +42,7 @@ class Tools:
     bits: tuple[str, ...] = ()
     holder: str = ""
     stick_out: float | None = None
+    cam_job: str = ""
 
 
 @dataclass(frozen=True)
@@ -104,28 +108,49 @@ def picked(selection) -> tuple[str, str, tuple[int, ...]]:
     """
     documents = {entry.Object.Document.Name for entry in selection}
     if len(documents) > 1:
-        raise Refused(f"the selection lies in {len(documents)} documents: select in one of them")
+        raise Refused(tr("the selection lies in {count} documents: select in one of them").format(count=len(documents)))
+    if len(selection) == 1 and host.is_job(selection[0].Object):
+        thing = planned(body_of(selection[0].Object))
+        return thing.Document.Name, thing.Name, ()
     if len(selection) != 1:
-        raise Refused(f"select one body, or faces of one body; selected are {len(selection)} objects")
+        raise Refused(tr("select one body, or faces of one body; selected are {count} objects").format(count=len(selection)))
     thing, names = selection[0].Object, list(selection[0].SubElementNames)
     owners = {name.rpartition(".")[0] for name in names}
     if len(owners) > 1:
-        raise Refused(f"select faces of one body; selected are faces of {len(owners)}")
+        raise Refused(tr("select faces of one body; selected are faces of {count}").format(count=len(owners)))
     owner = owners.pop() if owners else ""
     if owner:
         thing = _within(thing, owner)
     elements = [name.rpartition(".")[2] for name in names if name and not name.endswith(".")]
     faces = sorted({int(name[4:]) for name in elements if name.startswith("Face")})
     if len(faces) < len(set(elements)):
-        raise Refused("select faces or the whole body, not edges or points")
+        raise Refused(tr("select faces or the whole body, not edges or points"))
     return thing.Document.Name, planned(thing).Name, tuple(faces)
+
+
+def body_of(job):
+    """The body that a CAM job is about, as it stands in the job.
+
+    Raises
+    ------
+    Refused
+        There is none, or there are several.
+    """
+    models = list(getattr(job.Model, "Group", ()))
+    if len(models) != 1:
+        raise Refused(
+            tr("{label} has {count} models: select the one that is machined").format(label=job.Label, count=len(models))
+        )
+    return models[0]
 
 
 def _within(thing, path: str):
     """The object that a selection's path within a container ends at."""
     for name in filter(None, path.split(".")):
         if thing.isDerivedFrom("App::Link"):
-            raise Refused(f"select the link {thing.Label} itself in the tree: its faces belong to another object")
+            raise Refused(
+                tr("select the link {label} itself in the tree: its faces belong to another object").format(label=thing.Label)
+            )
         thing = thing.Document.getObject(name) or thing
     return thing
 
@@ -139,13 +164,17 @@ def planned(thing):
         It holds no faces, or is a step that others follow.
     """
     if host.is_container(thing):
-        raise Refused(f"{thing.Label} is a container: select a body in it")
+        raise Refused(tr("{label} is a container: select a body in it").format(label=thing.Label))
     if thing.isDerivedFrom("Mesh::Feature"):
-        raise Refused(f"{thing.Label} is a mesh: select a body with CAD faces")
+        raise Refused(tr("{label} is a mesh: select a body with CAD faces").format(label=thing.Label))
     parent = thing.getParentGeoFeatureGroup()
     if parent is not None and parent.isDerivedFrom("PartDesign::Body"):
         if parent.Tip is not thing:
-            raise Refused(f"{thing.Label} is not the last step of {parent.Label}: select faces of the body as it is shown")
+            raise Refused(
+                tr("{label} is not the last step of {body}: select faces of the body as it is shown").format(
+                    label=thing.Label, body=parent.Label
+                )
+            )
         thing = parent
     shape_of(thing)
     return thing
@@ -155,17 +184,17 @@ def shape_of(thing):
     """The shape of an object where it stands in the document."""
     found = host.shape_of(thing)
     if found.isNull() or not found.Faces:
-        raise Refused(f"{thing.Label} holds no faces: select a body")
+        raise Refused(tr("{label} holds no faces: select a body").format(label=thing.Label))
     return found
 
 
 def thing_of(document: str, name: str):
     """An object by the names of its document and of itself."""
     if document not in App.listDocuments():
-        raise Refused(f"the document {document} was closed")
+        raise Refused(tr("the document {document} was closed").format(document=document))
     thing = App.getDocument(document).getObject(name)
     if thing is None:
-        raise Refused(f"{name} is no longer in the document {document}")
+        raise Refused(tr("{name} is no longer in the document {document}").format(name=name, document=document))
     return thing
 
 
@@ -203,7 +232,11 @@ def axis(thing, element: str = "", reverse: bool = False) -> str:
         else:
             found = None
     if found is None or not math.isfinite(found.Length) or found.Length < 1e-9:
-        raise Refused(f"{thing.Label} {name}".strip() + " has no axis: pick a plane or round face, a straight or round edge")
+        raise Refused(
+            tr("{thing} has no axis: pick a plane or round face, a straight or round edge").format(
+                thing=f"{thing.Label} {name}".strip()
+            )
+        )
     found = found.normalize() * (-1.0 if reverse else 1.0)
     return ",".join(f"{round(value, 12) + 0.0:.12g}" for value in found)
 

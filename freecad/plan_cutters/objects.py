@@ -11,6 +11,7 @@ from collections.abc import Iterator
 import Part
 
 from . import host, model, operations, pieces, results, runner, tool
+from .words import tr
 
 #: The property that tells a group of ours, and those that hold files of the plan.
 JOB = "PlanJob"
@@ -83,17 +84,23 @@ def show(document, result: results.Result, cutter: str = ""):
         The body is gone or another one than was planned.
     """
     if document.Name != result.job.document:
-        raise model.Refused(f"the plan is about the document {result.job.document}, not {document.Name}")
+        raise model.Refused(
+            tr("the plan is about the document {document}, not {name}").format(document=result.job.document, name=document.Name)
+        )
     changed = _changed(result)
     if changed:
-        raise model.Refused(f"{changed} while it was planned: plan again")
+        raise model.Refused(tr("{changed} while it was planned: plan again").format(changed=changed))
     thing = model.thing_of(document.Name, result.job.body)
     if len(result.plan["faces"]) != len(model.shape_of(thing).Faces):
-        raise model.Refused(f"the plan has {len(result.plan['faces'])} faces, {thing.Label} another number of them")
+        raise model.Refused(
+            tr("the plan has {count} faces, {label} another number of them").format(
+                count=len(result.plan["faces"]), label=thing.Label
+            )
+        )
     entry = result.shown(cutter)
     if not result.folder:
         result = _copied(result)
-    with step(document, "Plan cutters"):
+    with step(document, tr("Plan cutters")):
         old = [each for each in plans(document) if json.loads(getattr(each, JOB))["body"] == thing.Name]
         seen = host.visible(thing) or any(each.BodyWasVisible and not each.OutOfDate for each in old)
         for each in old:
@@ -116,7 +123,11 @@ def show(document, result: results.Result, cutter: str = ""):
         missing = pieces.not_shown(result, found, entry["id"])
         _note(group, "StringList", "NotShown", missing, "Verdicts on a face that no object shows")
         if missing:
-            host.warn(f"without a colour of their own, for they are too small or whole faces are coloured: {', '.join(missing)}")
+            host.warn(
+                tr("without a colour of their own, for they are too small or whole faces are coloured: {names}").format(
+                    names=", ".join(missing)
+                )
+            )
         operations.add(document, group, result)
         host.visible(thing, False)
     document.recompute()
@@ -178,7 +189,7 @@ def _changed(result: results.Result) -> str:
         try:
             thing = model.thing_of(result.job.document, name)
             if model.fingerprint(model.shape_of(thing)) != print_:
-                return f"{thing.Label} was changed"
+                return tr("{label} was changed").format(label=thing.Label)
         except model.Refused as error:
             return str(error)
     return ""
@@ -189,14 +200,14 @@ def stale(group) -> str:
     if group.OutOfDate:
         return group.OutOfDate
     changed = _changed(result_of(group))
-    return f"{changed} after the plan: plan again" if changed else ""
+    return tr("{changed} after the plan: plan again").format(changed=changed) if changed else ""
 
 
 def clear(document) -> int:
     """Take away what plans show in a document, and show the bodies again; how many plans that were."""
     groups = plans(document)
     if groups:
-        with step(document, "Clear plans"):
+        with step(document, tr("Clear plans")):
             for group in groups:
                 _taken_away(document, group)
         document.recompute()
@@ -230,12 +241,12 @@ def drop(group, why: str) -> None:
 
     The group stays with what the plan said.
     """
-    with step(group.Document, "Plan is out of date"):
+    with step(group.Document, tr("Plan is out of date")):
         _removed(group.Document, _within(group))
         _shown_again(group)
         group.OutOfDate = why
         group.Label = f"{group.Label} (out of date)"
-    host.warn(f"{why}. The colours of {group.Label} were dropped")
+    host.warn(tr("{why}. The colours of {label} were dropped").format(why=why, label=group.Label))
 
 
 def put_tool(group, spot: results.Spot | results.Sample):
@@ -251,10 +262,12 @@ def put_tool(group, spot: results.Spot | results.Sample):
         raise model.Refused(why)
     entry = result_of(group).shown(spot.cutter)
     if spot.axis is None:
-        raise model.Refused(f"no posture of {spot.cutter} is known at {spot.face}: there is no tool to show")
+        raise model.Refused(
+            tr("no posture of {cutter} is known at {face}: there is no tool to show").format(cutter=spot.cutter, face=spot.face)
+        )
     document = group.Document
     found = next((each for each in group.Group if getattr(each, ROLE, "") == "tool"), None)
-    with step(document, "Tool at a spot"):
+    with step(document, tr("Tool at a spot")):
         if found is None:
             found = document.addObject("Part::Feature", "Plan_tool")
             _note(found, "String", ROLE, "tool")
@@ -269,7 +282,9 @@ def put_tool(group, spot: results.Spot | results.Sample):
             counts = [len(solid.Faces) for solid in found.Shape.Solids]
             host.paint_faces(found, [tool.COLOURS[part] for part, count in zip(parts, counts) for _ in range(count)])
         if spot.tip is None:
-            raise model.Refused(f"the plan does not have the place of the tip of {spot.cutter}: the review page shows it")
+            raise model.Refused(
+                tr("the plan does not have the place of the tip of {cutter}: the review page shows it").format(cutter=spot.cutter)
+            )
         found.Placement = tool.placement(spot.tip, spot.axis)
         host.visible(found, True)
     return found
@@ -279,7 +294,7 @@ def hide_tool(group) -> None:
     """Take the tool of a group away."""
     names = [each.Name for each in group.Group if getattr(each, ROLE, "") == "tool"]
     if names:
-        with step(group.Document, "Hide tool"):
+        with step(group.Document, tr("Hide tool")):
             _removed(group.Document, names)
 
 

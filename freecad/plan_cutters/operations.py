@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from . import host, model, results
+from .words import tr
 
 #: Models of the plans of operations in their order, as `files` of the plan names them.
 MODELS = ("operations_step", "fastest_step")
@@ -13,7 +14,7 @@ def add(document, group, result: results.Result) -> None:
     entry = result.plan.get("operations")
     for plan, word in zip(entry["plans"] if entry else (), MODELS):
         if word not in result.paths:
-            host.warn(f"the {plan['name']} plan of operations has no model: it is not shown")
+            host.warn(tr("the {plan} plan of operations has no model: it is not shown").format(plan=plan["name"]))
             continue
         before = {each.Name for each in document.Objects}
         try:
@@ -21,7 +22,7 @@ def add(document, group, result: results.Result) -> None:
             shape, faces, names = macro.pieces(result.paths[word])
             part, _, _ = macro.show(document, result.plan, plan, shape, faces, names)
         except Exception as error:  # also what the macro and the kernel raise
-            host.warn(f"the {plan['name']} plan of operations is not shown: {error}")
+            host.warn(tr("the {plan} plan of operations is not shown: {error}").format(plan=plan["name"], error=error))
             for name in {each.Name for each in document.Objects} - before:
                 document.removeObject(name)
             continue
@@ -42,6 +43,24 @@ def add(document, group, result: results.Result) -> None:
                 host.visible(each, False)  # the verdicts are shown there
 
 
+def own_bits(document, result: results.Result) -> dict:
+    """The tool bits of the document that cutters of a plan were read from, by the ids of the cutters.
+
+    A bit that has another diameter or other flutes than its cutter was changed after the plan, and is none of them.
+    """
+    found = {}
+    for bit in filter(None, map(document.getObject, result.job.tools.bits)):
+        if not host.bit_shape(bit):
+            continue
+        for cutter in result.plan["cutters"]:
+            names = {cutter["name"], *(each["name"] for each in cutter.get("sources") or ())}
+            sizes = {"Diameter": 2.0 * cutter["radius"], "CuttingEdgeHeight": cutter["flutes_mm"] or cutter["length"]}
+            same = all(abs(getattr(getattr(bit, word, None), "Value", size) - size) < 1e-3 for word, size in sizes.items())
+            if bit.Label in names and same and cutter["id"] not in found:
+                found[cutter["id"]] = bit
+    return found
+
+
 def make_job(group, word: str = MODELS[0]):
     """A CAM job of a plan's operations: tool controllers, and work planes where operations of this FreeCAD know them.
 
@@ -60,10 +79,10 @@ def make_job(group, word: str = MODELS[0]):
     document, result = group.Document, objects.result_of(group)
     holder = next((each for each in group.Group if getattr(each, "PlanModel", "") == word), None)
     if holder is None or word not in result.paths:
-        raise model.Refused("this plan shows no operations: plan with --operations fewest")
+        raise model.Refused(tr("this plan shows no operations: plan with --operations fewest"))
     plan = result.plan["operations"]["plans"][MODELS.index(word)]
     macro = host.operations_macro()
-    with objects.step(document, "Job of a plan"):
+    with objects.step(document, tr("Job of a plan")):
         try:
             shape, _, names = macro.pieces(result.paths[word])
             part = document.addObject("Part::Feature", "Part")
@@ -80,9 +99,10 @@ def make_job(group, word: str = MODELS[0]):
         }
         order = [place for place, name in enumerate(names) if name is not None]
         document.recompute()
-        job = macro.tried_job(document, result.plan, plan, (part, planes, taken, {place: n for n, place in enumerate(order, 1)}))
+        shown = (part, planes, taken, {place: n for n, place in enumerate(order, 1)})
+        job = macro.tried_job(document, result.plan, plan, shown, own_bits(document, result))
         if job is None:
-            raise model.Refused("this FreeCAD made no CAM job: the report view says why")
+            raise model.Refused(tr("this FreeCAD made no CAM job: the report view says why"))
         host.visible(part, False)
     document.recompute()
     return job

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from . import model
+from .words import tr
 
 _NUMBER = r"[+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?"
 _SIMULTANEOUS = ("simultaneous", "any")
@@ -95,20 +96,20 @@ def process_of(steps: Sequence[Step], plan: dict[str, Any], rest: bool) -> str:
         A row cannot be read; the line names its step.
     """
     names = axes_of(plan)
-    entries = [_entry(each, f"step {number}", names) for number, each in enumerate(steps, 1)]
+    entries = [_entry(each, tr("step {number}").format(number=number), names) for number, each in enumerate(steps, 1)]
     if not entries:
-        raise model.Refused("there is no step to judge")
+        raise model.Refused(tr("there is no step to judge"))
     before = (plan.get("effective") or {}).get("process") or {}
     return json.dumps({"rest": "plan" if rest else "leave", "step": entries, "forbid": before.get("forbid", [])})
 
 
 def _entry(step: Step, where: str, names: Sequence[str]) -> dict[str, Any]:
     if not step.cutter.strip():
-        raise model.Refused(f"{where}: the cutter is missing")
+        raise model.Refused(tr("{where}: the cutter is missing").format(where=where))
     faces = re.split(r"[\s,;]+", step.faces.strip())
     wrong = next((each for each in faces if each != "left" and not re.fullmatch(r"F[1-9]\d*", each)), None)
     if wrong is not None or ("left" in faces and len(faces) > 1):
-        raise model.Refused(f"{where}: faces: write F3 F6, or left, not “{step.faces}”")
+        raise model.Refused(tr("{where}: faces: write F3 F6, or left, not “{faces}”").format(where=where, faces=step.faces))
     entry = {"setup": step.setup, **turned_of(step.turned, where, names), "cutter": step.cutter.strip(), "take": step.take}
     return {**entry, "faces": "left" if faces == ["left"] else faces}
 
@@ -132,7 +133,11 @@ def turned_of(text: str, where: str, names: Sequence[str]) -> dict[str, Any]:
     found = re.findall(angle, words)
     if not found or re.sub(angle, "", words).strip(" ,;°\t") or len({name for name, _ in found}) < len(found):
         example = " ".join(f"{name} 0" for name in names) or "C 0 A 90"
-        raise model.Refused(f"{where}: “{text}” is no orientation: write {example}, or simultaneous")
+        raise model.Refused(
+            tr("{where}: “{text}” is no orientation: write {example}, or simultaneous").format(
+                where=where, text=text, example=example
+            )
+        )
     return {"angles": {name: float(value) for name, value in found}}
 
 

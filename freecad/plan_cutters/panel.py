@@ -6,9 +6,11 @@ import FreeCAD as App
 import FreeCADGui as Gui
 
 from . import findings, model, objects, remembered, runner, windows
-from .fields import MachineBox, PartBox, ToolsBox
+from .fields import MachineBox, PartBox
 from .picking import Picker
+from .tools_box import ToolsBox
 from .windows import QtCore, QtGui
+from .words import several, tr
 
 _PLAN, _CLOSE = QtGui.QDialogButtonBox.Apply, QtGui.QDialogButtonBox.Close
 
@@ -21,13 +23,13 @@ class Panel(windows.Panel):
         self._buttons, self._ready = None, False
         choices = remembered.load()
         self.picker = Picker()
-        status, layout = windows.box("Plan cutters", "plan_cutters")
+        status, layout = windows.box(tr("Plan cutters"), "plan_cutters")
         self.status = windows.words(name="status")
         self.bar = QtGui.QProgressBar()
         self.bar.setVisible(False)
         layout.addRow(self.status)
         layout.addRow(self.bar)
-        self.part = PartBox(self.picker, choices, self._changed)
+        self.part = PartBox(self.picker, choices, self._changed, self._job_taken)
         self.tools = ToolsBox(App.ActiveDocument, choices, self._changed)
         self.machine = MachineBox(self.picker, choices, self._changed)
         self.form = [status, self.part.form, self.tools.form, self.machine.form]
@@ -36,12 +38,15 @@ class Panel(windows.Panel):
 
     def job(self) -> model.Job:
         """What is requested now."""
+        missing = self.tools.missing()
         if not self.part.body:
-            raise model.Refused("select the body to machine, or faces of it, and press “Take”")
+            raise model.Refused(tr("select the body to machine, or faces of it, and press “Take”"))
         model.thing_of(self.part.document, self.part.body)
+        if missing:
+            raise model.Refused(missing)
         kind, options = self.part.kind(), self.machine.options()
         if kind == "picked" and not self.part.faces:
-            raise model.Refused("no face is picked: click faces in the view")
+            raise model.Refused(tr("no face is picked: click faces in the view"))
         if kind == "all":
             options = ("--faces", "all", *options)
         return model.Job(
@@ -51,8 +56,12 @@ class Panel(windows.Panel):
             options=options,
         )  # fmt: skip
 
+    def _job_taken(self, job) -> None:
+        self.tools.take_job(job)
+        self.machine.take_job(job)
+
     def _changed(self) -> None:
-        if not self._ready or self._run is not None:
+        if not self._ready or self._run is not None or self._gone():
             return
         try:
             job = self.job()
@@ -61,16 +70,20 @@ class Panel(windows.Panel):
             self._offer(False)
             return
         count = len(job.faces)
-        kinds = {"all": "all faces", "picked": f"{count} face{'s' * (count != 1)}"}
-        what = kinds.get(self.part.kind(), "free-form faces and fillets")
+        kinds = {"all": tr("all faces"), "picked": several(count, tr("{count} face"), tr("{count} faces"))}
+        what = kinds.get(self.part.kind(), tr("free-form faces and fillets"))
         label = App.getDocument(job.document).getObject(job.body).Label
-        self.status.setText(f"{label}: {what}; {self.tools.summary()}; {job.machine or 'any tool axis'}; spindle {job.setup}.")
+        self.status.setText(
+            tr("{label}: {faces}; {tools}; {machine}; spindle {setup}.").format(
+                label=label, faces=what, tools=self.tools.summary(), machine=job.machine or tr("any tool axis"), setup=job.setup
+            )
+        )
         self._offer(True)
 
     def _offer(self, ready: bool) -> None:
         if self._buttons is not None:
             plan = self._buttons.button(_PLAN)
-            plan.setText("Plan" if self._run is None else "Cancel")
+            plan.setText(tr("Plan") if self._run is None else tr("Cancel"))
             plan.setEnabled(ready)
 
     def start(self) -> None:
@@ -103,7 +116,16 @@ class Panel(windows.Panel):
         for each in self.form[1:]:
             each.setEnabled(not running)
 
+    def _gone(self) -> bool:
+        """Whether another command closed the panel, which FreeCAD does not tell it; what it does is given up then."""
+        if windows.alive(self.status):
+            return False
+        self._leave()
+        return True
+
     def _progress(self, words: str, fraction: float | None) -> None:
+        if self._gone():
+            return
         self.status.setText(words[:1].upper() + words[1:])
         self.bar.setRange(0, 0 if fraction is None else 1000)
         if fraction is not None:
@@ -115,11 +137,16 @@ class Panel(windows.Panel):
         self._changed()
 
     def _failed(self, line: str) -> None:
+        if self._gone():
+            return
         self._end()
         self.status.setText(line[:1].upper() + line[1:])
         App.Console.PrintError(f"plan-cutters: {line}\n")
 
     def _done(self, result) -> None:
+        if self._gone():
+            result.discard()
+            return
         try:
             group = objects.show(App.getDocument(result.document), result)
         except Exception as error:  # whatever the document has against it: nothing is silent
@@ -166,7 +193,7 @@ class Panel(windows.Panel):
 def open_panel() -> Panel:
     """Show the panel, with what is selected now."""
     if App.ActiveDocument is None:
-        raise model.Refused("no document is open")
+        raise model.Refused(tr("no document is open"))
     panel = Panel()
     Gui.Control.showDialog(panel)
     return panel

@@ -6,6 +6,8 @@ from typing import Any, Callable
 
 import FreeCADGui as Gui
 
+from . import windows
+
 
 class Picker:
     """The row that takes what is selected, if one does.
@@ -47,6 +49,9 @@ class Picker:
         Gui.Selection.removeObserver(self)
 
     def _changed(self) -> None:
+        if self._button is not None and not windows.alive(self._button):
+            self.close()
+            return
         if self._take is not None and not self._quiet:
             self._take(Gui.Selection.getSelectionEx("*"))
 

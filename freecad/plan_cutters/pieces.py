@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from . import host, results
+from .words import tr
 
 
 def by_verdict(result: results.Result, shape, cutter: str) -> dict[str, tuple[list, list[int]]]:
@@ -22,7 +23,7 @@ def by_verdict(result: results.Result, shape, cutter: str) -> dict[str, tuple[li
     if rows is None:
         words = result.verdicts(cutter)
         rows = [(number, word, face) for number, (word, face) in enumerate(zip(words, shape.Faces), 1)]
-        host.say(f"{cutter}: each face has the colour of the worst verdict on it")
+        host.say(tr("{cutter}: each face has the colour of the worst verdict on it").format(cutter=cutter))
     found: dict[str, tuple[list, list[int]]] = {}
     for word in (*results.WORST_FIRST, *sorted({row[1] for row in rows} - set(results.WORST_FIRST))):
         mine = [(number, face) for number, each, face in rows if each == word]
@@ -49,7 +50,7 @@ def _of_model(result: results.Result, count: int) -> list[tuple[int, str, object
     try:
         macro = host.operations_macro()
     except OSError:
-        host.warn("PlanOperations.FCMacro is not beside the add-on: copy the whole folder")
+        host.warn(tr("PlanOperations.FCMacro is not beside the add-on: copy the whole folder"))
         return None
     try:
         _, faces, names = macro.pieces(result.paths["step"])

@@ -8,6 +8,7 @@ import shutil
 import FreeCADGui as Gui
 
 from . import host, icons
+from .words import tr
 
 
 class Page:
@@ -16,27 +17,30 @@ class Page:
     def __init__(self, _parent=None) -> None:
         qt = host.qt("QtGui")
         self.form = qt.QWidget()
-        self.form.setWindowTitle("Program")
+        self.form.setWindowTitle(tr("Program"))
         layout = qt.QFormLayout(self.form)
         self._command = qt.QLineEdit()
-        self._command.setPlaceholderText(shutil.which("plan-cutters") or "plan-cutters is not on the search path")
-        self._command.setToolTip("Path of plan-cutters, or a command with words; empty: as it is found on the search path")
-        find = qt.QPushButton("Find…")
+        self._command.setPlaceholderText(shutil.which("plan-cutters") or tr("plan-cutters is not on the search path"))
+        self._command.setToolTip(tr("Path of plan-cutters, or a command with words; empty: as it is found on the search path"))
+        find = qt.QPushButton(tr("Find…"))
         find.clicked.connect(lambda *_: self._find())
         line = qt.QHBoxLayout()
         line.addWidget(self._command, 1)
         line.addWidget(find)
-        layout.addRow("Command", line)
+        layout.addRow(tr("Command"), line)
         note = qt.QLabel(
-            "The workbench runs the program plan-cutters as a process of its own, with its own Python. Install it once, for "
-            "example with “uv tool install .” or “pipx install .” in its folder."
+            tr(
+                "The workbench runs the program plan-cutters as a process of its own, with its own "
+                "Python. Install it once, for example with “uv tool install .” or “pipx install .” in its "
+                "folder."
+            )
         )
         note.setWordWrap(True)
         layout.addRow(note)
 
     def _find(self) -> None:
         qt = host.qt("QtGui")
-        path = qt.QFileDialog.getOpenFileName(self.form, "The program plan-cutters")[0]
+        path = qt.QFileDialog.getOpenFileName(self.form, tr("The program plan-cutters"))[0]
         if path:
             self._command.setText(path)
 
@@ -51,4 +55,4 @@ def register() -> None:
     """Add the page to FreeCAD's preferences."""
     # FreeCAD looks there for the picture of the page, `preferences-plan_cutters`.
     Gui.addIconPath(os.path.dirname(icons.path("plan_cutters")))
-    Gui.addPreferencePage(Page, "Plan cutters")
+    Gui.addPreferencePage(Page, tr("Plan cutters"))

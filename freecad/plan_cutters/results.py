@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import Any, NamedTuple
 
 from . import arrays, model, tool
+from .words import fine, tr
 
 #: The question, beside the folder of its plan.
 JOB = "job.json"
@@ -130,7 +131,7 @@ class Result:
         if wanted:
             found = next((each for each in self.plan["cutters"] if each["id"] == wanted), None)
             if found is None:
-                raise model.Refused(f"the plan has no cutter {wanted}")
+                raise model.Refused(tr("the plan has no cutter {wanted}").format(wanted=wanted))
             return found
         # A plan of an older program, from a document that was saved with it, does not say which one it shows.
         return min(self.plan["cutters"], key=lambda each: each["area_share"]["inaccessible"] + each["area_share"]["undecided"])
@@ -143,9 +144,13 @@ class Result:
         """The verdict in one line: that of the plan."""
         if self._text:
             return self._text["headline"]
-        verdict = f"take {self.plan['selected']}" if self.plan["selected"] else "no cutter is selected"
+        verdict = (
+            tr("take {cutter}").format(cutter=self.plan["selected"]) if self.plan["selected"] else tr("no cutter is selected")
+        )
         shown = self.shown()["id"]
-        return f"An older program made this plan, without text ({verdict}; the colours show {shown}): plan again."
+        return tr("An older program made this plan, without text ({verdict}; the colours show {shown}): plan again.").format(
+            verdict=verdict, shown=shown
+        )
 
     def summary(self) -> list[str]:
         """What the plan says, line by line: the headline, then the rest of its text."""
@@ -194,11 +199,13 @@ class Result:
     def sentence(self, sample: Sample) -> str:
         """What is known of a sample, with the angles of the machine: of the solution taken, then of the other one."""
         verdict = self.plan.get("legend_words", {}).get(sample.verdict, sample.verdict)
-        words = [f"{sample.face}, {sample.away_mm:.2g} mm from the click: {verdict}"]
+        words = [
+            tr("{face}, {away} from the click: {verdict}").format(face=sample.face, away=fine(sample.away_mm), verdict=verdict)
+        ]
         if sample.reason:
-            words.append(f"for {self.reason(sample.reason)}")
+            words.append(tr("for {reason}").format(reason=self.reason(sample.reason)))
         angles = [" ".join(f"{name} {value:g}°" for name, value in each.items()) for each in sample.angles]
-        return " ".join(words) + (f"; {', or '.join(angles)}" if angles else "")
+        return " ".join(words) + ("; " + tr(", or ").join(angles) if angles else "")
 
     def _spot(self, cutter: dict[str, Any], number: int, entry: dict[str, Any]) -> Spot:
         posture, axis, tip = entry["best_posture"], None, None
@@ -209,9 +216,9 @@ class Result:
             tip = tool.tip(cutter, entry["point"], normal, axis, direction)
         depth = entry["depth_mm"]
         words = [entry["face"], self.reason(entry["reason"]), entry["obstacle_face"] or ""]
-        text = " ".join(filter(None, words)) + (f", {depth:.3g} mm deep" if depth is not None else "")
+        text = " ".join(filter(None, words)) + (", " + tr("{depth} deep").format(depth=fine(depth)) if depth is not None else "")
         if entry["verdict"] == "undecided":
-            text += " (undecided)"
+            text += " " + tr("(undecided)")
         point, obstacle = tuple(entry["point"]), entry["obstacle_face"] or ""
         return Spot(cutter["id"], number, entry["face"], point, axis, tip, entry["reason"], obstacle, depth, text)
 
@@ -230,7 +237,7 @@ class Result:
         """The sample nearest to a point (mm), and its posture for a cutter."""
         samples, entry = self._arrays, self.shown(cutter)
         if samples is None:
-            raise model.Refused("the samples of this plan cannot be read: plan again")
+            raise model.Refused(tr("the samples of this plan cannot be read: plan again"))
         apart = ((samples["point"] - tuple(point)) ** 2).sum(axis=1)
         row, mine = int(apart.argmin()), entry["id"]
         verdict = VERDICTS.get(int(samples[f"verdict_{mine}"][row]), "unjudged")
@@ -305,10 +312,14 @@ def parsed(path: str) -> dict[str, Any]:
         with open(path, encoding="utf-8") as file:
             plan = json.load(file)
     except (OSError, ValueError):
-        raise model.Refused("the program wrote no plan: give options of plan-cutters alone, no files of parts") from None
+        raise model.Refused(tr("the program wrote no plan: give options of plan-cutters alone, no files of parts")) from None
     if not isinstance(plan, dict) or plan.get("format") != FORMAT:
-        raise model.Refused("the program wrote no plan of plan-cutters")
+        raise model.Refused(tr("the program wrote no plan of plan-cutters"))
     if plan.get("format_version") != VERSION:
         version = plan.get("format_version")
-        raise model.Refused(f"the plan has the format {version}, this workbench reads {VERSION}: update the add-on")
+        raise model.Refused(
+            tr("the plan has the format {version}, this workbench reads {known}: update the add-on").format(
+                version=version, known=VERSION
+            )
+        )
     return plan

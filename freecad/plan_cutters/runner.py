@@ -16,11 +16,17 @@ import time
 from typing import Any, Callable
 
 from . import files, host, model, results
+from .words import later, tr, unit
 
 #: Exit codes with which there is a plan: a cutter finishes, none does, something could not be judged.
 PLANNED = (0, 1, 4)
 #: A line of progress: seconds, the stage, and how much of it is done.
 _PROGRESS = re.compile(r"\s*[\d.]+ s  (.*?)(?:, (\d+) %)?\s*$")
+#: Options that the program names in its faults, and what they are in the panel.
+_IN_THE_PANEL = (
+    ("give --assume-stickout MM", later("fill in “Stick-out”")),
+    ("give --holder SPEC, as R15L30 (or none)", later("choose one in “Holder”, or “None at all”")),
+)
 #: The window asks so often, ms; a program that was told to end gets so long, s.
 _OFTEN, _PATIENCE = 100, 5.0
 #: Folders that have to be gone when FreeCAD ends, and programs that run.
@@ -44,7 +50,9 @@ class Process:
                 errors="replace", env=host.environment(), cwd=folder, **own_group,
             )  # fmt: skip
         except (OSError, ValueError) as error:
-            raise model.Refused(f"{words[0]} cannot be started: {getattr(error, 'strerror', error)}") from None
+            raise model.Refused(
+                tr("{program} cannot be started: {why}").format(program=words[0], why=getattr(error, "strerror", error))
+            ) from None
         _programs.add(self.popen)
         self.lines: list[str] = []
         self._output: list[str] = []
@@ -83,7 +91,9 @@ class Process:
         named = [place for place, line in enumerate(lines) if line.startswith("plan-cutters")]
         text = " ".join(lines[named[-1] :] if named else lines[-1:])
         text = re.sub(r"^plan-cutters[\w ]*: ", "", text)
-        return text or f"the program ended with code {self.popen.returncode} and wrote nothing"
+        for option, field in _IN_THE_PANEL:
+            text = text.replace(option, tr(field))
+        return text or tr("the program ended with code {code} and wrote nothing").format(code=self.popen.returncode)
 
     def output(self) -> str:
         """Its standard output."""
@@ -123,7 +133,7 @@ class _Watched:
         except (model.Refused, OSError) as error:
             self._fault = str(error)
         except Exception as error:  # the kernel raises many kinds
-            self._fault = f"the body cannot be written: {error}"
+            self._fault = tr("the body cannot be written: {why}").format(why=error)
         self._stop = host.every(_OFTEN, self.poll)
 
     def _words(self) -> list[str]:
@@ -144,7 +154,7 @@ class _Watched:
             except model.Refused as error:
                 self._ends("failed", str(error))
             except Exception as error:  # a window must not ask again and again
-                self._ends("failed", f"the answer cannot be read ({type(error).__name__}: {error})")
+                self._ends("failed", tr("the answer cannot be read ({why})").format(why=f"{type(error).__name__}: {error}"))
             else:
                 self._ends("done", answer)
         else:
@@ -166,7 +176,7 @@ class _Watched:
         if self.state == "running":
             if self._process is not None:
                 self._process.end()
-            self._ends("cancelled", "cancelled; nothing was changed")
+            self._ends("cancelled", tr("cancelled; nothing was changed"))
 
     def wait(self, seconds: float = 600.0) -> str:
         """Wait for the end; the state."""
@@ -199,7 +209,9 @@ class Run(_Watched):
         words, fingerprints = files.words(self.job, self.folder)
         with open(os.path.join(self.folder, results.JOB), "w", encoding="utf-8") as file:
             json.dump({**dataclasses.asdict(self.job), "fingerprints": fingerprints}, file)
-        # Behind the options of the user: the last one of a kind counts.
+        # Behind the options of the user the last one of a kind counts, so what is only preferred stands before them.
+        place = len(files.command())
+        words[place:place] = ["--units", unit()]
         return [*words, "--out", os.path.join(self.folder, "plan"), "--formats", files.FORMATS]
 
     def _answer(self, process: Process) -> results.Result:
@@ -242,7 +254,7 @@ class Map(_Watched):
             found = json.loads(process.output())
             return {"picture": os.path.join(self.folder, "map.png"), "json": found, "folder": self.folder}
         except ValueError:
-            raise model.Refused("the program drew no posture map that can be read") from None
+            raise model.Refused(tr("the program drew no posture map that can be read")) from None
 
 
 def folder() -> str:

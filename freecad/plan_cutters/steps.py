@@ -7,6 +7,7 @@ from typing import Any, Callable
 
 from . import model, objects, own_process, results, runner, windows
 from .windows import QtCore, QtGui
+from .words import area_of, tr
 
 #: Columns: their heads, and the part of a step that is edited in each; none is edited where that is empty.
 _COLUMNS = (("Setup", ""), ("Orientation", "turned"), ("Cutter", "cutter"), ("Faces", "faces"), ("Area, mm²", ""))
@@ -28,28 +29,30 @@ class StepsBox:
         self._group, self._result, self._on_done = group, result, on_done
         self._run: runner.Run | None = None
         self.steps = own_process.steps_of(result.plan)
-        self.form, layout = windows.box("Steps", "plan_cutters")
+        self.form, layout = windows.box(tr("Steps"), "plan_cutters")
         self.list = QtGui.QTreeWidget()
         self.list.setObjectName("steps")
         self.list.setHeaderLabels([head for head, _ in _COLUMNS])
         self.list.setRootIsDecorated(False)
         self.list.setIndentation(0)
         self.list.setEditTriggers(QtGui.QAbstractItemView.NoEditTriggers)
-        self.list.setToolTip("Double-click an orientation (C 0 A 90, simultaneous), a cutter or faces (F3 F6, left) to change it")
+        self.list.setToolTip(
+            tr("Double-click an orientation (C 0 A 90, simultaneous), a cutter or faces (F3 F6, left) to change it")
+        )
         windows.narrow(self.list).setFixedHeight(130)
         self.list.itemDoubleClicked.connect(self._edit)
         self.list.itemChanged.connect(self._edited)
         self.list.currentItemChanged.connect(lambda *_: self._tell())
         layout.addRow(self.list)
-        self._up = windows.button("Up", lambda: self._move(-1), "This step before the one above")
-        self._down = windows.button("Down", lambda: self._move(1), "This step behind the one below")
-        self._out = windows.button("Leave out", self._leave_out, "The process without this step")
+        self._up = windows.button(tr("Up"), lambda: self._move(-1), tr("This step before the one above"))
+        self._down = windows.button(tr("Down"), lambda: self._move(1), tr("This step behind the one below"))
+        self._out = windows.button(tr("Leave out"), self._leave_out, tr("The process without this step"))
         layout.addRow(windows.row(self._up, self._down, self._out))
-        self.rest = QtGui.QCheckBox("Plan what they leave")
+        self.rest = QtGui.QCheckBox(tr("Plan what they leave"))
         before = (result.plan.get("effective") or {}).get("process") or {}
         self.rest.setChecked(before.get("rest", "plan") == "plan")
         layout.addRow(self.rest)
-        self.again = windows.button("Judge again", self.judge, "Judge these steps as they stand, in this order")
+        self.again = windows.button(tr("Judge again"), self.judge, tr("Judge these steps as they stand, in this order"))
         layout.addRow(self.again)
         self.told = windows.words("", "steps_told")
         layout.addRow(self.told)
@@ -62,7 +65,7 @@ class StepsBox:
         self.list.blockSignals(True)
         self.list.clear()
         for step in self.steps:
-            area = "" if step.area is None else f"{step.area:,.4g}"
+            area = "" if step.area is None else area_of(step.area)
             item = QtGui.QTreeWidgetItem([str(step.setup), step.turned, step.cutter, step.faces, area])
             item.setFlags(item.flags() | QtCore.Qt.ItemIsEditable)
             for column in range(len(_COLUMNS)):
@@ -89,11 +92,15 @@ class StepsBox:
             return
         self.again.setEnabled(bool(self.steps))
         if place < 0:
-            self.told.setText("There is no step." if not self.steps else "")
+            self.told.setText(tr("There is no step.") if not self.steps else "")
             return
         step = self.steps[place]
-        gone = "" if step.alone is None else f"{step.alone:,.4g} mm² are gone if it is left out and nothing is planned there."
-        self.told.setText(" ".join(filter(None, (step.fault, gone))) or "Changed: judge again.")
+        gone = (
+            ""
+            if step.alone is None
+            else tr("{area} are gone if it is left out and nothing is planned there.").format(area=area_of(step.alone))
+        )
+        self.told.setText(" ".join(filter(None, (step.fault, gone))) or tr("Changed: judge again."))
 
     def _edit(self, item: Any, column: int) -> None:
         if _COLUMNS[column][1] and self._run is None:
@@ -131,10 +138,19 @@ class StepsBox:
         except model.Refused as error:
             self.told.setText(str(error))
             return
-        self.again.setText("Cancel")
+        self.again.setText(tr("Cancel"))
         self._tell()
 
+    def _gone(self) -> bool:
+        """Whether another command closed the panel: what is being judged is given up then."""
+        if windows.alive(self.told):
+            return False
+        self.leave()
+        return True
+
     def _progress(self, words: str, fraction: float | None) -> None:
+        if self._gone():
+            return
         self.told.setText(words)
         self.bar.setRange(0, 0 if fraction is None else 1000)
         if fraction is not None:
@@ -142,14 +158,19 @@ class StepsBox:
 
     def _ended(self) -> None:
         self._run = None
-        self.again.setText("Judge again")
+        self.again.setText(tr("Judge again"))
         self._tell()
 
     def _failed(self, line: str) -> None:
+        if self._gone():
+            return
         self._ended()
         self.told.setText(line)
 
     def _done(self, result: results.Result) -> None:
+        if self._gone():
+            result.discard()
+            return
         self._ended()
         try:
             self._on_done(result)

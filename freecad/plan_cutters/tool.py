@@ -12,6 +12,8 @@ from typing import Any
 import FreeCAD as App
 import Part
 
+from .words import tr
+
 #: Colours of the parts of an assembly.
 COLOURS = {"flutes": (0.55, 0.60, 0.65), "neck": (0.45, 0.50, 0.55), "shank": (0.45, 0.50, 0.55), "holder": (0.25, 0.27, 0.30)}
 #: Shapes of cutters whose dimensions in the plan say all.
@@ -54,7 +56,7 @@ def assembly(cutter: dict[str, Any]) -> tuple[Any, list[str]]:
         The plan does not say enough of its shape.
     """
     if cutter["shape"] not in DRAWN:
-        raise ValueError(f"a {cutter['shape']} cutter is not drawn here: the review page shows it")
+        raise ValueError(tr("a {shape} cutter is not drawn here: the review page shows it").format(shape=cutter["shape"]))
     solids, parts = [_flutes(cutter)], ["flutes"]
     for stage in cutter["stages"]:
         low, high, length = stage["radius_mm"], stage["upper_radius_mm"], stage["length_mm"]

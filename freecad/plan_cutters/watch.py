@@ -7,6 +7,7 @@ import json
 import FreeCAD as App
 
 from . import host, objects
+from .words import tr
 
 
 class Watch:
@@ -44,7 +45,7 @@ class Watch:
                     if why:
                         objects.drop(group, why)
         except Exception as error:  # an observer that raises would stop the others
-            host.warn(f"whether plans are up to date is not known: {error}")
+            host.warn(tr("whether plans are up to date is not known: {error}").format(error=error))
         finally:
             self._busy = False
 

@@ -8,8 +8,12 @@ import FreeCAD as App
 import FreeCADGui as Gui
 
 from . import host
+from . import words as texts
+from .words import tr
 
 QtCore, QtGui = host.qt("QtCore"), host.qt("QtGui")
+#: How a field looks that has to be filled in; of the widget itself, not of what is in it.
+_MISSING = "QAbstractSpinBox, QComboBox { border: 2px solid #b34700; border-radius: 3px; padding: 2px }"
 
 
 class Panel:
@@ -28,7 +32,7 @@ class Panel:
 def complain(text: str) -> None:
     """Say in a window, and in the report view, why something was not done."""
     App.Console.PrintError(f"plan-cutters: {text}\n")
-    QtGui.QMessageBox.warning(Gui.getMainWindow(), "Plan cutters", text)
+    QtGui.QMessageBox.warning(Gui.getMainWindow(), tr("Plan cutters"), text)
 
 
 def code(buttons: Any) -> int:
@@ -96,7 +100,7 @@ def combo(entries: list[tuple[str, str]], value: str, editable: bool = False) ->
     """A list to choose from: words and values; an editable one takes any other value."""
     made = QtGui.QComboBox()
     for text, data in entries:
-        made.addItem(text, data)
+        made.addItem(tr(text), data)
     made.setEditable(editable)
     made.setSizeAdjustPolicy(QtGui.QComboBox.AdjustToMinimumContentsLengthWithIcon)
     choose(made, value)
@@ -124,17 +128,62 @@ def chosen(made: Any) -> str:
     return str(made.itemData(place) or "")
 
 
+class Length(QtGui.QDoubleSpinBox):  # type: ignore[name-defined]
+    """A field whose value is in mm and whose text is in the units that the user chose in FreeCAD; it takes any unit."""
+
+    def textFromValue(self, value: float) -> str:
+        return texts.length(value)
+
+    def valueFromText(self, text: str) -> float:
+        # Its own text is rounded to the user's decimals: the value is not.
+        if text == self.textFromValue(self.value()):
+            return float(self.value())
+        try:
+            return 0.0 if text == self.specialValueText() else texts.mm_of(text)
+        except ValueError:
+            return float(self.value())
+
+    def validate(self, text: str, place: int) -> Any:
+        try:
+            right = text == self.specialValueText() or self.minimum() <= texts.mm_of(text) <= self.maximum()
+        except ValueError:
+            right = False
+        # What is half typed need not be a length yet.
+        return (QtGui.QValidator.Acceptable if right else QtGui.QValidator.Intermediate, text, place)
+
+
 def length(value: float, nothing: str = "", name: str = "") -> Any:
-    """A field for mm; at 0 it shows `nothing`."""
-    made = QtGui.QDoubleSpinBox()
+    """A field for a length, mm; at 0 it shows `nothing`."""
+    made = Length()
     made.setObjectName(name)
     made.setRange(0.0, 1000.0)
-    made.setDecimals(3)
-    made.setSingleStep(0.1)
-    made.setSuffix(" mm")
+    made.setDecimals(6)
+    made.setSingleStep(0.1 if texts.unit() == "mm" else 0.254)
     made.setSpecialValueText(nothing)
     made.setValue(value)
     return narrow(made)
+
+
+def mark(widget: Any, why: str) -> None:
+    """Mark a field that has to be filled in, and say why; an empty text takes the mark away."""
+    if widget.property("missing") == why:
+        return
+    hint = widget.property("hint")
+    if hint is None:
+        hint = widget.toolTip()
+        widget.setProperty("hint", hint)
+    widget.setProperty("missing", why)
+    widget.setStyleSheet(_MISSING if why else "")
+    widget.setToolTip("\n".join(filter(None, (why, hint))))
+
+
+def alive(widget: Any) -> bool:
+    """Whether a widget is still there: where another command closes the panel, FreeCAD takes its widgets without a word."""
+    try:
+        widget.objectName()
+    except RuntimeError:
+        return False
+    return True
 
 
 def swatch(colour: tuple[float, float, float]) -> Any:

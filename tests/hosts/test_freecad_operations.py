@@ -52,6 +52,7 @@ def told(document, points):
     job = document.getObject("Job")
     return dict(
         groups=groups, rest=[each.Label for each in document.Rest.Group], whole=len(document.Part.Shape.Faces),
+        feeds=[each.HorizFeed.Value * 60 for each in job.Tools.Group],
         tools=[[each.Label, each.ToolNumber, each.Tool.Diameter.Value, each.Tool.Length.Value,
                 [face.BoundBox.XMax for face in each.Tool.Shape.Faces if abs(face.BoundBox.ZMax) < 1e-6]]
                for each in job.Tools.Group],
@@ -259,6 +260,7 @@ def test_the_job_has_the_cutters_and_no_path_along_z(written, inside):
         assert shown["operations"] == []
         ((label, number, diameter, length, flat),) = shown["tools"]
         assert (label, number, diameter, length) == ("TC R6L80rc2", 1, 12.0, 80.0)
+        assert shown["feeds"] == [pytest.approx(2000.0)]
         # The bottom is flat up to where the corner begins.
         assert flat == pytest.approx([4.0])
     assert [line for line in inside["said"] if "no work plane" in line] == inside["said"][:1]

@@ -440,6 +440,29 @@ def test_holders_are_found_by_file_and_name(tmp_path):
             holder_of(str(path))
 
 
+@pytest.mark.parametrize("place", ["Bit", "ToolHolder"])
+def test_a_bit_says_its_stick_out_and_its_holder(tmp_path, place):
+    """As the newest FreeCAD writes it; what is assumed for tools without is for others then."""
+    profile = [[0, 0], [10, 0], [12, 5], [12, 30], [0, 30]]
+    path = tmp_path / "Bit" / "a.fctb"
+    write_bit(path, Stickout="1.25 in", ToolHolder="chuck")
+    holder = tmp_path / place / "chuck.fcholder"
+    holder.parent.mkdir(exist_ok=True)
+    holder.write_text(json.dumps({"version": 1, "name": "chuck", "units": "mm", "profile": profile}))
+    for (mine,) in (read_library(path), freecad(path)):
+        assert (mine.length, mine.holder.id) == (31.75, "R10:12L5+R12L25")
+    holder.unlink()
+    (entry,) = freecad(write_bit(tmp_path / "b.fctb", Stickout="0 mm", ToolHolder="")).entries
+    assert (entry.cutter.length, entry.cutter.holder.id) == (40.0, "R15L30")
+    # Another holder than the bit's own is never taken for it.
+    for word, why in (("chuck", "put its file chuck.fcholder"), ("../Bit/chuck", "no name of a holder"), (7, "no name")):
+        with pytest.raises(LibraryError, match=why):
+            freecad(write_bit(tmp_path / "Bit" / "b.fctb", ToolHolder=word))
+    holder.write_text(json.dumps({"profile": profile, "units": "ell"}))
+    with pytest.raises(LibraryError, match=r"units is .ell.:"):
+        freecad(path)
+
+
 def test_a_library_is_a_list_of_cutters(tmp_path):
     library = read_library(write_json(tmp_path / "a.json", [fusion(), fusion(LB=50)]))
     assert isinstance(library[0], Cutter)

@@ -1,5 +1,8 @@
 """FreeCAD tools: bits (`.fctb`), libraries that list them by file (`.fctl`), and holders (`.fcholder`).
 
+A bit of FreeCAD's newest releases may say its stick-out (`Stickout`), and by name the holder that it is set in (`ToolHolder`),
+whose file lies in a folder of holders beside that of the bits.
+
 A length is a text with a unit, in the writer's language: `6,0 mm`, `20.83 µm`. Without a unit it is mm, which is what FreeCAD
 itself counts in, unless the bit says that its units are imperial.
 """
@@ -66,6 +69,8 @@ _SORTS = {
 }
 #: Folders in which a library's bits are looked for.
 _FOLDERS = (".", "Bit", "bit", "../Bit", "../bit", "../Bits", "../bits")
+#: Folders in which the holder of a bit is looked for, from the bit's own folder.
+_HOLDERS = (".", "ToolHolder", "../ToolHolder", "Holder", "../Holder")
 
 
 def is_bit(content: Content) -> bool:
@@ -90,7 +95,7 @@ def is_holder(content: Content) -> bool:
 
 def read_bit(content: Content) -> LibraryContent:
     """A bit is a library of one."""
-    return LibraryContent([_tool(content.json, "tool 1", None)])
+    return LibraryContent([_tool(content, "tool 1", None)])
 
 
 def read_library(content: Content) -> LibraryContent:
@@ -106,7 +111,7 @@ def read_library(content: Content) -> LibraryContent:
                 raise FaultError("it has no path of a bit")
             number = whole_of(item.get("nr"), "nr")
             bit = _bit(content.path.parent, item["path"])
-            library.tools.append(_tool(bit.json, place, number))
+            library.tools.append(_tool(bit, place, number))
         except FaultError as fault:
             name = name_of(item.get("path")) if isinstance(item, dict) else ""
             library.tools.append(Entry(place, None, name, unused=str(fault), broken=True))
@@ -166,7 +171,32 @@ def _holder(entry: dict[str, Any], name: str) -> Holder:
     return Holder(tuple(sections(rows, "profile")), name)
 
 
-def _tool(entry: dict[str, Any], place: str, number: int | None) -> Listed:
+def _set_in(tool: Listed, parameters: dict[str, Any], folder: Path) -> None:
+    """Take the holder that a bit names, by the last part of its name: nothing outside the usual folders is opened."""
+    word = parameters.get("ToolHolder")
+    if word in (None, ""):
+        return
+    if not isinstance(word, str) or not word.isprintable() or PurePosixPath(PureWindowsPath(word).as_posix()).name != word:
+        tool.faults.append(f"ToolHolder {shown(word)} is no name of a holder")
+        return
+    for each in (folder / place / f"{word}.fcholder" for place in _HOLDERS):
+        if is_there(each):
+            try:
+                content = Content(each, data_of(each))
+                if not is_holder(content):
+                    raise FaultError("it is no FreeCAD holder")
+                tool.holder = _holder(content.json, name_of(content.json.get("name")) or word)
+            except LibraryError as error:
+                tool.faults.append(f"ToolHolder {shown(word)}: {error.cause}")
+            except (FaultError, CutterError) as fault:
+                tool.faults.append(f"ToolHolder {shown(word)}: {fault}")
+            return
+    # What is assumed for tools without a holder is another one than this.
+    tool.doubts.append(f"ToolHolder {shown(word)}: put its file {word[:40]}.fcholder into the folder of the bit or ../ToolHolder")
+
+
+def _tool(content: Content, place: str, number: int | None) -> Listed:
+    entry = content.json
     called, shape = (_stem(entry.get(word)) for word in ("shape-type", "shape"))
     kind = called or shape
     tool = Listed(place, number, name_of(entry.get("name")), kind, _SORTS.get(kind.lower(), ""), "mm")
@@ -194,7 +224,12 @@ def _tool(entry: dict[str, Any], place: str, number: int | None) -> Listed:
         if re.search("[1-9]", neck):
             tool.notes.append(f"{_NECK} {neck[:40]} is not used")
         _cone(tool, parameters.get(_ANGLE))
-    tool.words["LPR"] = "length below the holder"
+    # FreeCAD writes 0 for a stick-out that nobody gave.
+    if re.search("[1-9]", str(parameters.get("Stickout") or "")):
+        tool.take("LPR", parameters["Stickout"], "Stickout", length)
+    else:
+        tool.words["LPR"] = "length below the holder"
+    _set_in(tool, parameters, content.path.parent)
     attribute = entry.get("attribute")
     if isinstance(attribute, dict):
         take_feed(tool, [Preset("", attribute.get("cutting_feedrate"))], "cutting_feedrate", _feed)
