@@ -11,8 +11,8 @@ from plan_cutters.errors import OptionError
 
 #: The word for standard input.
 PIPE = "-"
-#: Options whose value may be that word, and means standard output.
-_OF_OUTPUT = ("--json",)
+#: Options behind which that word is about what is written.
+_OF_OUTPUT = ("--json", "--junit", "-o", "--out")
 #: Names of files by the kind that their content tells.
 _SUFFIXES = {"step": ".step", "iges": ".igs", "brep": ".brep", "binary brep": ".brep"}
 
