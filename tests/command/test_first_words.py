@@ -10,6 +10,7 @@ import pytest
 from plan_cutters import plan
 from plan_cutters.command import entry
 from plan_cutters.command.help_groups import MOST_LINES, Grouped
+from plan_cutters.command.piped import spooled
 from plan_cutters.errors import OptionError, PlanError
 from tests.support.forked import ENV, run
 from tests.support.places import ROOT, SAMPLES
@@ -148,6 +149,20 @@ def test_a_list_of_parts_comes_through_a_pipe(tmp_path):
     told = (done.stdout + done.stderr).decode()
     assert "v_groove" in told
     assert "pocket_top" in told
+
+
+@pytest.mark.parametrize("option", ["--json", "--junit", "-o", "--verdicts", "--cluster"])
+def test_behind_an_option_with_a_value_the_word_is_that_value(option):
+    words = ["part.step", option, "-", "--quiet"]
+    with spooled(entry.module_of("plan-cutters").command, words) as named:
+        assert named == words
+
+
+@pytest.mark.parametrize(("rule", "code"), [("none", 0), ("late", 0), ("unreadable", 3), ("nonsense", 2)])
+def test_a_batch_of_nothing_but_faults_ends_as_it_is_told(tmp_path, rule, code):
+    done = run("batch", "none.step", "-o", "out", "--fail-on", rule, cwd=tmp_path)
+    assert done.returncode == code
+    assert ("--fail-on takes" in done.stderr) == (rule == "nonsense")
 
 
 def test_docs_show_all_options():

@@ -113,12 +113,14 @@ def command(request: BatchRequest) -> int:
     check_junit(request.junit)
     if request.dry_run and request.junit is not None:
         raise OptionError("--dry-run plans nothing, and --junit is about what was planned: leave one of them out")
+    fail_on = _fail_on(request.fail_on)
     parts = _parts(request)
-    if all(isinstance(part, Fault) for part in parts):
-        _report(request.junit, [part.row for part in parts if isinstance(part, Fault)])
-        for part in parts:
-            _progress_line(part.row.error or "")  # type: ignore[union-attr]
-        return max(part.row.code for part in parts)  # type: ignore[union-attr]
+    faults = [part.row for part in parts if isinstance(part, Fault)]
+    if len(faults) == len(parts):
+        _report(request.junit, faults)
+        for row in faults:
+            _progress_line(row.error or "")
+        return max(_code(row, fail_on) for row in faults)
     memory = None if request.limit_memory is None else request.limit_memory * 1e9
     for word in ("timeout_part", "limit_memory", "read_timeout"):
         value = getattr(request, word)
@@ -128,7 +130,6 @@ def command(request: BatchRequest) -> int:
         raise OptionError("--limit-memory must be at least 2 GB")
     if request.cluster is not None and request.workers is not None:
         raise OptionError("--workers is about this machine: leave it out with --cluster")
-    fail_on = _fail_on(request.fail_on)
     secret = None if request.verdicts_key is None else key_of(request.verdicts_key)
     out = Store(request.out, secret)
     terms = Terms(request.force, request.timeout_part, memory, secret)
@@ -158,6 +159,13 @@ def _fail_on(words: str | None) -> frozenset[str]:
     return frozenset(chosen)
 
 
+def _code(row: "PartRow", fail_on: frozenset[str]) -> int:
+    """The exit code that a part gives the batch."""
+    from plan_cutters.batch.summary import code_of, fault
+
+    return code_of(row) if fault(row) in fail_on else FEASIBLE
+
+
 def _all(
     parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", request: BatchRequest, fail_on: frozenset[str]
 ) -> int:  # fmt: skip
@@ -166,7 +174,7 @@ def _all(
     from plan_cutters.batch.index import PAGE
     from plan_cutters.batch.progress import Board
     from plan_cutters.batch.run import run_batch
-    from plan_cutters.batch.summary import OUTCOMES, code_of, fault, outcome
+    from plan_cutters.batch.summary import OUTCOMES, outcome
     from plan_cutters.plan_file.numbers import count as counted
 
     out.begin()  # what is wrong with it is said before any worker is started
@@ -182,7 +190,7 @@ def _all(
             board.say(f"{counted(len(parts), 'part')} on {counted(int(str(facts['workers'])), 'worker')} of {facts['address']}")
             board.say(f"Dashboard: {facts['dashboard'] or 'none here; pip install bokeh gives one'}")
             for row in run_batch(parts, client, out, terms, board=board, title=" ".join(request.sources)):
-                code = max(code, code_of(row) if fault(row) in fail_on else FEASIBLE)
+                code = max(code, _code(row, fail_on))
                 totals[outcome(row)] += 1
                 rows.append(row)
                 board.row(row)

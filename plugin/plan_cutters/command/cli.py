@@ -121,7 +121,7 @@ def load() -> None:
 
 def _piped(words: list[str], name: str) -> int:
     """Run the command with a file in place of what is piped to it."""
-    with spooled(words) as named:
+    with spooled(command, words) as named:
         return _watched(named, name)
 
 

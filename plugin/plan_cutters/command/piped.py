@@ -7,18 +7,18 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import BinaryIO
 
+import click
+
 from plan_cutters.errors import OptionError
 
 #: The word for standard input.
 PIPE = "-"
-#: Options behind which that word is about what is written.
-_OF_OUTPUT = ("--json", "--junit", "-o", "--out")
 #: Names of files by the kind that their content tells.
 _SUFFIXES = {"step": ".step", "iges": ".igs", "brep": ".brep", "binary brep": ".brep"}
 
 
 @contextlib.contextmanager
-def spooled(words: Sequence[str]) -> Iterator[list[str]]:
+def spooled(command: click.Command, words: Sequence[str]) -> Iterator[list[str]]:
     """The words of a command, with a file of what comes through the pipe in place of `-`; the file is removed in the end.
 
     Its name is `stdin`, with the suffix of its kind, so that a plan says where its part came from. The kernel opens a part
@@ -31,7 +31,9 @@ def spooled(words: Sequence[str]) -> Iterator[list[str]]:
     ReadError
         What comes is no CAD file.
     """
-    places = [k for k, word in enumerate(words) if word == PIPE and (k == 0 or words[k - 1] not in _OF_OUTPUT)]
+    # Behind an option that takes a value the word is that value, as in `--json -`.
+    valued = {each for p in command.params if isinstance(p, click.Option) and not (p.is_flag or p.count) for each in p.opts}
+    places = [k for k, word in enumerate(words) if word == PIPE and (k == 0 or words[k - 1] not in valued)]
     if not places:
         yield list(words)
         return
