@@ -4,38 +4,18 @@ import shutil
 
 import pytest
 
-from tests.support.freecad_host import run
+from tests.support.freecad_host import IN_WINDOW, run
 from tests.support.places import ROOT
 
 WINDOW = shutil.which("freecad") and shutil.which("xvfb-run")
 
-SESSION = """
+SESSION = (
+    IN_WINDOW
+    + """
 import json, os, sys, time, traceback
 import FreeCAD as App, Part
 import FreeCADGui as Gui
-from PySide import QtCore, QtGui
-found = {}
 V = App.Vector
-
-def pump(until=lambda: False, seconds=0.4):
-    end = time.monotonic() + seconds
-    while time.monotonic() < end and not until():
-        QtGui.QApplication.processEvents(QtCore.QEventLoop.AllEvents, 50)
-        time.sleep(0.02)
-
-def shot(name):
-    pump()
-    QtGui.QApplication.primaryScreen().grabWindow(0).save(name)
-
-def work():
-    try:
-        session()
-    except BaseException:
-        traceback.print_exc()
-    else:
-        json.dump(found, open("found.json", "w"))
-    sys.stdout.flush()
-    os._exit(0)
 
 def session():
     from freecad.plan_cutters import findings, model, objects, panel, runner, windows
@@ -144,6 +124,7 @@ def session():
 
 QtCore.QTimer.singleShot(1000, work)
 """
+)
 
 
 @pytest.fixture(scope="module")

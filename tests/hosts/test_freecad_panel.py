@@ -6,41 +6,21 @@ import shutil
 import numpy as np
 import pytest
 
-from tests.support.freecad_host import run
+from tests.support.freecad_host import IN_WINDOW, run
 from tests.support.places import ROOT
 
 WINDOW = shutil.which("freecad") and shutil.which("xvfb-run")
 
-SESSION = """
+SESSION = (
+    IN_WINDOW
+    + """
 import glob, json, os, sys, tempfile, time, traceback
 import FreeCAD as App, Part
 import FreeCADGui as Gui
-from PySide import QtCore, QtGui
-found = {}
 V = App.Vector
-
-def pump(until=lambda: False, seconds=0.4):
-    end = time.monotonic() + seconds
-    while time.monotonic() < end and not until():
-        QtGui.QApplication.processEvents(QtCore.QEventLoop.AllEvents, 50)
-        time.sleep(0.02)
-
-def shot(name):
-    pump()
-    QtGui.QApplication.primaryScreen().grabWindow(0).save(name)
 
 def number_of(shape, area):
     return next(n for n, face in enumerate(shape.Faces, 1) if abs(face.Area - area) < 1e-6)
-
-def work():
-    try:
-        session()
-    except BaseException:
-        traceback.print_exc()
-    else:
-        json.dump(found, open("found.json", "w"))
-    sys.stdout.flush()
-    os._exit(0)
 
 def session():
     found["benches"] = [name for name in Gui.listWorkbenches() if name == "PlanCutters"]
@@ -158,6 +138,7 @@ def session():
 
 QtCore.QTimer.singleShot(1000, work)
 """
+)
 
 
 @pytest.fixture(scope="module")

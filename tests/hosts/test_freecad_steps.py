@@ -9,7 +9,7 @@ import pytest
 from plan_cutters import plan
 from plan_cutters.machines.process_file import process_of
 from tests.support.cad_parts import box
-from tests.support.freecad_host import CONSOLE, run
+from tests.support.freecad_host import CONSOLE, IN_WINDOW, run
 from tests.support.places import ROOT
 from tests.support.workbench import imported
 
@@ -173,28 +173,12 @@ def test_steps_are_judged_again_in_freecad(tmp_path):
     assert "process.json: step 1: cutter 'R9L9'" in line
 
 
-SESSION = """
+SESSION = (
+    IN_WINDOW
+    + """
 import json, os, sys, time, traceback
 import FreeCAD as App, Part
 import FreeCADGui as Gui
-from PySide import QtCore, QtGui
-found = {}
-
-def pump(until=lambda: False, seconds=0.4):
-    end = time.monotonic() + seconds
-    while time.monotonic() < end and not until():
-        QtGui.QApplication.processEvents(QtCore.QEventLoop.AllEvents, 50)
-        time.sleep(0.02)
-
-def work():
-    try:
-        session()
-    except BaseException:
-        traceback.print_exc()
-    else:
-        json.dump(found, open("found.json", "w"))
-    sys.stdout.flush()
-    os._exit(0)
 
 def session():
     from freecad.plan_cutters import findings, model, objects, runner
@@ -249,6 +233,7 @@ def session():
 
 QtCore.QTimer.singleShot(1000, work)
 """
+)
 
 
 @pytest.mark.skipif(not (shutil.which("freecad") and shutil.which("xvfb-run")), reason="FreeCAD or a virtual display is missing")

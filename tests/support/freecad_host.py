@@ -11,6 +11,33 @@ from tests.support.places import ROOT
 
 CONSOLE = next(filter(None, map(shutil.which, ("freecadcmd", "FreeCADCmd", "freecad.cmd"))), None)
 
+#: What a session in FreeCAD's window begins with: it defines `session`, which fills `found`, and lets the event loop call `work`.
+IN_WINDOW = """
+import json, os, sys, time, traceback
+from PySide import QtCore, QtGui
+found = {}
+
+def pump(until=lambda: False, seconds=0.4):
+    end = time.monotonic() + seconds
+    while time.monotonic() < end and not until():
+        QtGui.QApplication.processEvents(QtCore.QEventLoop.AllEvents, 50)
+        time.sleep(0.02)
+
+def shot(name):
+    pump()
+    QtGui.QApplication.primaryScreen().grabWindow(0).save(name)
+
+def work():
+    try:
+        session()
+    except BaseException:
+        traceback.print_exc()
+    else:
+        json.dump(found, open("found.json", "w"))
+    sys.stdout.flush()
+    os._exit(0)
+"""
+
 
 def run(words, script, folder, **more):
     """Run a script in FreeCAD with a home of its own; what it put into `found`."""
