@@ -160,9 +160,9 @@ def test_behind_an_option_with_a_value_the_word_is_that_value(option):
 
 @pytest.mark.parametrize(("rule", "code"), [("none", 0), ("late", 0), ("unreadable", 3), ("nonsense", 2)])
 def test_a_batch_of_nothing_but_faults_ends_as_it_is_told(tmp_path, rule, code):
-    done = run("batch", "none.step", "-o", "out", "--fail-on", rule, cwd=tmp_path)
+    done = piped("batch", "none.step", "-o", "out", "--fail-on", rule, data=b"", cwd=tmp_path)
     assert done.returncode == code
-    assert ("--fail-on takes" in done.stderr) == (rule == "nonsense")
+    assert (b"--fail-on takes" in done.stderr) == (rule == "nonsense")
 
 
 def test_docs_show_all_options():

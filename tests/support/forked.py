@@ -33,6 +33,7 @@ def run(*words, cwd=None, command="plan-cutters", environment=None, bare=False, 
     if not bare:
         _warm(command)
     words = [str(word) for word in words]
+    assert bare or words[:1] != ["batch"], "dask's loop does not outlive a fork: start a real process"
     with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
         pid = os.fork()
         if pid == 0:
