@@ -1,0 +1,1 @@
+"""Parts whose answers are closed forms, one module a family."""

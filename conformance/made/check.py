@@ -1,0 +1,71 @@
+"""A made part against the slow twin: what a new part has to pass.
+
+`python -m conformance check NAME` writes the part's STEP file aside, reads it back, and compares closed forms with points of the exact surface.
+"""
+
+import tempfile
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from conformance.exact import slow
+from conformance.made.part import TOUCH, MadePart, held, postures
+from conformance.posture import Postures
+from conformance.tool import Floats
+
+#: The pitch (mm) of the twin's points, and how far (mm) its margin and the form's may differ.
+PITCH, AGREE = 1.0, 2e-3
+
+
+@dataclass(frozen=True)
+class Difference:
+    """One posture on which form and twin do not agree."""
+
+    row: int
+    form: float
+    twin: float
+
+
+def write_step(part: MadePart, path: Path) -> None:
+    """Write the part as STEP, in mm."""
+    import cadquery as cq
+
+    cq.exporters.export(cq.Workplane(obj=part.build().val()) if not isinstance(part.build(), cq.Workplane) else part.build(), str(path))
+
+
+def faces_of(part: MadePart, pitch: float = PITCH) -> list[slow.Face]:
+    """Return the faces of the part as another program reads them: through STEP."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"{part.name}.step"
+        write_step(part, path)
+        return slow.faces(slow.read(path), pitch)
+
+
+def exempt_faces(part: MadePart, faces: list[slow.Face], contact: Floats) -> list[list[bool]]:
+    """Return for each contact which faces belong to the material that it touches."""
+    on = np.array([held(m, contact) for m in part.materials])
+    rows = []
+    for face in faces:
+        some = face.points[:: max(1, len(face.points) // 25)]
+        rows.append([len(some) > 0 and bool(np.all(held(m, some))) for m in part.materials])
+    belongs = np.array(rows)
+    return [[bool(np.any(belongs[f] & on[:, i])) for f in range(len(faces))] for i in range(len(contact))]
+
+
+def differences(part: MadePart, table: Postures | None = None, count: int = 24, pitch: float = PITCH) -> Iterator[Difference]:
+    """Yield the postures on which form and twin differ by more than AGREE; those blocked by limits or fixtures are left out."""
+    table = postures(part, count, seed=1) if table is None else table
+    faces = faces_of(part, pitch)
+    exempt = exempt_faces(part, faces, table.contact)
+    for i in range(len(table)):
+        if table.reason[i] in ("limit", "fixture"):
+            continue
+        tool = part.tool(str(table.tool[i]))
+        twin = slow.margin(faces, exempt[i], tool, table.tip[i], table.axis[i], TOUCH)
+        form = float(table.low[i])
+        # Deep in the material its inside counts, too, which has no points; at the border in the contact the clearance is left out.
+        agree = abs(twin - form) <= AGREE or (form < -0.5 and twin < -0.2) or (form == 0.0 and twin > -AGREE)
+        if not agree:
+            yield Difference(i, form, twin)
