@@ -121,6 +121,11 @@ def wedge(name: str, point: tuple[float, float, float], first: tuple[float, floa
     return Prism(name, (point,), tuple(along / np.linalg.norm(along)), tuple(a), 0.0, float(angle))
 
 
+def section(name: str, *points: tuple[float, float], radius: float = 0.0) -> Prism:
+    """Return a convex polygon of the x z plane, without end along y, its corners in any order."""
+    return Prism(name, tuple((x, 0.0, z) for x, z in points), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), 0.0, 2.0 * np.pi, radius)
+
+
 def _most(of: Callable[[Floats], Floats], start: float, end: float, count: int) -> Floats:
     """Return the largest value (n,) over an interval: `of(angles (n, k))` on a grid, then on ever smaller grids about its best."""
     if end <= start:

@@ -4,7 +4,7 @@ from typing import Any
 
 import numpy as np
 
-from conformance.forms import Surface, wedge
+from conformance.forms import Surface, section
 from conformance.made.part import Answer, MadePart
 from conformance.tool import Floats, Tool
 
@@ -80,12 +80,12 @@ _GROOVE_TOOL = Tool.flat(16.0, 90.0)
 
 V_GROOVE = MadePart(
     "v_groove", "grooves", "V-groove with a round bottom, the seed's first example",
-    """Two planes at 120 degrees, each 25 mm wide, joined by 60 degrees of a cylinder of radius 5. Walls are wedges with their edge at the rim
-    (form: separating planes); the bottom is a Surface. Free tilts at the middle of the bottom line: see `_free_tilts`. The seed's rule for rear
+    """Two planes at 120 degrees, each 25 mm wide, joined by 60 degrees of a cylinder of radius 5. Walls are convex prisms between join
+    and rim (form: separating planes); the bottom is a Surface. Free tilts at the middle of the bottom line: see `_free_tilts`. The seed's rule for rear
     gouging takes a point that is free at tilt 0 as free for good; the true lower ends lie up to 13 degrees higher, and none is left at 50 degrees.""",
     _v_groove,
-    (wedge("right wall", (_RIM[0], 0.0, _RIM[1]), (-np.sin(_SLOPE), 0.0, np.cos(_SLOPE)), (1.0, 0.0, 0.0)),
-     wedge("left wall", (-_RIM[0], 0.0, _RIM[1]), (np.sin(_SLOPE), 0.0, np.cos(_SLOPE)), (-1.0, 0.0, 0.0)),
+    (section("right wall", _JOIN, _RIM, (_RIM[0], -10.0), (_JOIN[0], -10.0)),
+     section("left wall", (-_JOIN[0], _JOIN[1]), (-_RIM[0], _RIM[1]), (-_RIM[0], -10.0), (-_JOIN[0], -10.0)),
      Surface("bottom", _arc, (-_SLOPE, _SLOPE), (-_HALF, _HALF), (25, 221))),
     (_GROOVE_TOOL, Tool.ball(8.0, 60.0), Tool.flat(6.0, 50.0, corner=1.0)),
     _v_contacts,
