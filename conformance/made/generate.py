@@ -1,0 +1,51 @@
+"""Write the made half of the suite: STEP files, `made.json`, `made.parquet`."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from conformance.made.check import write_step
+from conformance.made.part import MadePart, postures
+from conformance.made.parts import PARTS
+from conformance.posture import Postures
+from conformance.suite import DATA, document, setup_entry, sha256, tool_entry
+
+#: Postures of each part.
+EACH = 300
+
+
+def generate(folder: Path = DATA, each: int = EACH, tell: Callable[[str], None] = lambda line: None) -> None:
+    """Write all made parts with their truths to a folder."""
+    (folder / "made").mkdir(parents=True, exist_ok=True)
+    entries, tables = [], []
+    for part in PARTS.values():
+        path = folder / "made" / f"{part.name}.step"
+        write_step(part, path)
+        _without_date(path)
+        # A twin is asked the same postures as its analytic form, so that the two can be compared row by row.
+        table = postures(part if part.twin_of is None else PARTS[part.twin_of], each)
+        if part.twin_of is not None:
+            table = Postures(table.part.astype(f"U{len(part.name)}"), *list(vars(table).values())[1:])
+            table.part[:] = part.name
+        tables.append(table)
+        entries.append(_entry(part, path))
+        tell(f"{part.name}: {len(table)} postures, {(table.verdict == 'safe').sum()} safe")
+    Postures.joined(tables).write(folder / "made.parquet")
+    (folder / "made.json").write_text(document("made", entries), encoding="utf-8")
+
+
+def _entry(part: MadePart, path: Path) -> dict[str, Any]:
+    """Return a part as the file has it."""
+    answers = [{"kind": a.kind, "value": a.value, "formula": a.formula, **({"tool": a.tool} if a.tool else {}), "setup": a.setup, **a.given}
+               for a in part.answers]
+    return {"name": part.name, "family": part.family, "title": part.title, "file": path.name, "sha256": sha256(path), "licence": "CC0-1.0",
+            **({"twin_of": part.twin_of} if part.twin_of else {}), "derivation": " ".join(part.derivation.split()),
+            "tools": {t.name: tool_entry(t) for t in part.tools},
+            "setups": {s.name: setup_entry(s.axis, s.limit_deg, s.boxes, s.table) for s in part.setups}, "answers": answers}
+
+
+def _without_date(path: Path) -> None:
+    """Take the date out of a STEP file: the same part gives the same bytes."""
+    text = path.read_text(encoding="utf-8")
+    path.write_text(re.sub(r"'\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d'", "'2026-01-01T00:00:00'", text), encoding="utf-8")
