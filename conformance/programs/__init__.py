@@ -22,6 +22,18 @@ MODULES = {
     "undecided": ("undecided", "Program", "says undecided everywhere: scores nothing"),
 }
 
+#: Module and what to install, of each program that needs a library.
+NEEDS = {
+    "plan-cutters": [("plan_cutters", "plan-cutters")],
+    "plan-cutters-maps": [("plan_cutters", "plan-cutters")],
+    "plan-cutters-plans": [("plan_cutters", "plan-cutters")],
+    "fcl": [("fcl", "python-fcl"), ("OCP", "cadquery-ocp")],
+    "embree": [("embreex", "embreex"), ("OCP", "cadquery-ocp")],
+    "trimesh": [("trimesh", "trimesh embreex"), ("OCP", "cadquery-ocp")],
+    "opencamlib": [("opencamlib", "opencamlib"), ("OCP", "cadquery-ocp")],
+    "naive": [("OCP", "cadquery-ocp")],
+}
+
 
 def program(name: str) -> Any:
     """Return a program by its name.
@@ -36,6 +48,8 @@ def program(name: str) -> Any:
     if name not in MODULES:
         raise ValueError(f"no program is called {name!r}: choose one of {', '.join(MODULES)}")
     module, made, _ = MODULES[name]
+    for library, install in NEEDS.get(name, ()):
+        needs(library, install)
     return getattr(import_module(f"conformance.programs.{module}"), made)()
 
 

@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 
 from conformance.posture import Postures
-from conformance.programs import needs
 from conformance.programs.meshes import Mesh, fixture_meshes, frames, outlines, part_mesh, segments, turned
 from conformance.programs.protocol import Words, answered, beyond_limit
 from conformance.suite import Held, Part
@@ -29,7 +28,6 @@ class Program:
 
     def prepare(self, part: Part) -> None:
         """Mesh the part and build its tree."""
-        needs("fcl", "python-fcl")
         self._parts[part.name] = _model(part_mesh(part.path, self.settings["part_chord_error_mm"], self.settings["part_angle_rad"]))
 
     def answer(self, part: Part, tool: Tool, setup: Held, postures: Postures) -> Words:

@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 
 from conformance.posture import Postures
-from conformance.programs import needs
 from conformance.programs.protocol import Words, answered, below_table, beyond_limit
 from conformance.suite import Held, Part
 from conformance.tool import Floats, Tool
@@ -28,7 +27,6 @@ class Program:
 
     def prepare(self, part: Part) -> None:
         """Sample every face at most `pitch_mm` apart, 400 steps a side at most, kept where the trim has the point."""
-        needs("OCP", "cadquery-ocp")
         from conformance.exact.slow import faces, read
 
         self._points[part.name] = np.vstack([face.points for face in faces(read(part.path), self.settings["pitch_mm"])])

@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 
 from conformance.posture import Postures
-from conformance.programs import needs
 from conformance.programs.meshes import Mesh, fixture_meshes, part_mesh
 from conformance.programs.protocol import BLOCKED, SAFE, UNDECIDED, Words, beyond_limit
 from conformance.suite import Held, Part
@@ -29,7 +28,6 @@ class Program:
 
     def prepare(self, part: Part) -> None:
         """Mesh the part."""
-        needs("opencamlib", "opencamlib")
         self._parts[part.name] = part_mesh(part.path, self.settings["part_chord_error_mm"], self.settings["part_angle_rad"])
 
     def answer(self, part: Part, tool: Tool, setup: Held, postures: Postures) -> Words:

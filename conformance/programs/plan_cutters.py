@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 
 from conformance.posture import Postures
-from conformance.programs import needs
 from conformance.programs.protocol import BLOCKED, SAFE, UNDECIDED, Words
 from conformance.suite import Held, Part
 from conformance.tool import Floats, Tool
@@ -32,7 +31,6 @@ class PointMaps:
 
     def prepare(self, part: Part) -> None:
         """Read the part and gather what is in the way, without fixtures."""
-        needs("plan_cutters", "plan-cutters")
         from cad_io import read_part
 
         self._parts[part.name] = read_part(part.path)

@@ -60,8 +60,8 @@ class Claimer(Protocol):
     def prepare(self, part: Part) -> None:
         """Read a part."""
 
-    def claims(self, part: Part, tool: Tool, setup: Held) -> Postures:
-        """Return postures that the program calls safe or blocked."""
+    def claims(self, part: Part, tool: Tool, setup: str) -> Postures:
+        """Return postures that the program calls safe or blocked, of a tool in a setup by its name."""
 
 
 class Unavailable(Exception):
