@@ -104,7 +104,7 @@ def run_command(
     groups = sum(1 for _ in some.groups())
     columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()
     try:
-        with Progress(*columns, console=err, transient=True) as progress:
+        with Progress(*columns, console=err, transient=True, disable=not err.is_terminal) as progress:
             task = progress.add_task(name, total=groups)
             ran = run(name, some, lambda text: progress.update(task, advance=1, description=text))
     except (Unavailable, ValueError) as error:
