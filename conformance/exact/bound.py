@@ -136,10 +136,10 @@ def _bounds(pieces, tip, axis, corners, delta, whole, on):  # type: ignore[no-un
 
 
 @numba.njit(cache=True)
-def _least(nodes, child, span, corners, delta, face, whole, pieces, tip, axis, exempt, enough, work):  # type: ignore[no-untyped-def]
+def _least(nodes, child, span, corners, delta, face, whole, pieces, tip, axis, exempt, enough, deep, work):  # type: ignore[no-untyped-def]
     """Bounds (low, high) of the least signed distance over the cells of faces that are not exempt, and how many boxes it took.
 
-    It ends as soon as the lower bound is above `enough`, which stands for "far": nothing nearer is asked for.
+    Distances above `enough` stand for "far". It ends as soon as the upper bound is below `deep`: how deep exactly is then not asked, and the lower bound is -inf.
     """
     high, low = np.inf, enough
     on = np.ones(len(pieces), np.bool_)
@@ -181,6 +181,8 @@ def _least(nodes, child, span, corners, delta, face, whole, pieces, tip, axis, e
                 lo, hi, reach = _bounds(pieces, tip, axis, cell, delta[row], whole[row], on)
                 if hi < high:
                     high = hi
+                    if high < deep:
+                        return -np.inf, high, boxes
                 # A cell cannot be told closer than its thickness on both sides.
                 if lo >= min(high - TIGHT - 2 * delta[row], enough) or reach < SMALL or boxes > MOST or depth + 2 > len(work):
                     low = min(low, lo)
@@ -215,12 +217,13 @@ def numbers(tool: Tool) -> Floats:
     return np.array([[p.h0, p.r0, p.h1, p.r1, p.rho] for p in tool.pieces], float)
 
 
-def least(shape: Tree, pieces: Floats, tip: Floats, axis: Floats, exempt: NDArray[np.bool_], enough: float = 5.0) -> tuple[float, float, int]:
+def least(shape: Tree, pieces: Floats, tip: Floats, axis: Floats, exempt: NDArray[np.bool_], enough: float = 5.0, deep: float = -np.inf) -> tuple[float, float, int]:
     """Return bounds of the least signed distance (mm) of one posture's tool from all faces that are not exempt.
 
-    `pieces (k, 5)` as `numbers` gives them; `exempt (faces,)`. Distances beyond `enough` are not told apart: the lower bound is then `enough`.
+    `pieces (k, 5)` as `numbers` gives them; `exempt (faces,)`. Distances beyond `enough` are not told apart: the lower bound is then `enough`. Depths beyond
+    `-deep` are not either: the lower bound is then -inf.
     """
     c = shape.cells
     work = np.empty((256, 4, 3))
-    low, high, boxes = _least(shape.nodes, shape.child, shape.span, c.corners, c.delta, c.face, c.whole, pieces, tip, axis, exempt, enough, work)
+    low, high, boxes = _least(shape.nodes, shape.child, shape.span, c.corners, c.delta, c.face, c.whole, pieces, tip, axis, exempt, enough, deep, work)
     return float(low), float(high), int(boxes)

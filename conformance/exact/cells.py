@@ -2,7 +2,7 @@
 
 A cell is a quadrilateral with a thickness `delta`: the exact surface over its parameters lies within `delta` of the quadrilateral. For planes, cylinders, cones, spheres and
 tori the bound follows from second derivatives, `|S - bilinear| <= (hu^2 max|Suu| + hv^2 max|Svv|) / 8`; for B-splines from the Bezier control net, whose hull
-holds the surface: each control point lies within `delta` of the corners' bilinear patch. The twist of the corners is added, so
+holds the surface: each control point lies within `delta` of the corners' bilinear patch. How far the corners are from one plane is added, so
 that the quadrilateral may be taken as flat, and split again without asking the surface.
 
 Cells that a trim curve may cross are split down to `EDGE`; what is left of them is `whole = False`: such a cell counts when safety is proved, and never when a
@@ -77,8 +77,6 @@ def _analytic(adaptor: BRepAdaptor_Surface, bounds: tuple[float, ...], delta: fl
     # Half of the thickness for the sag in each direction that bends, what remains for the twist.
     count = lambda span, bend: max(1, int(np.ceil(span * np.sqrt(bend / (8 * 0.4 * delta)))))
     nu, nv = count(u1 - u0, suu), count(v1 - v0, svv)
-    if suu > 0 and svv == 0 and nv == 1 and adaptor.GetType() == GeomAbs_Cone:
-        nv = max(1, int(np.ceil((v1 - v0) / max(1e-9, 4.0))))
     u, v = np.linspace(u0, u1, nu + 1), np.linspace(v0, v1, nv + 1)
     grid = np.array([_point(adaptor, a, b) for a in u for b in v]).reshape(nu + 1, nv + 1, 3)
     corners = np.stack([grid[:-1, :-1], grid[1:, :-1], grid[1:, 1:], grid[:-1, 1:]], axis=2).reshape(-1, 4, 3)
@@ -88,7 +86,15 @@ def _analytic(adaptor: BRepAdaptor_Surface, bounds: tuple[float, ...], delta: fl
 
 
 def _twist(corners: Floats) -> Floats:
-    return np.linalg.norm(corners[:, 0] - corners[:, 1] + corners[:, 2] - corners[:, 3], axis=1) / 4 + 1e-9
+    """Return how far each quadrilateral is from flat: the distance of its diagonals."""
+    a, b, c, d = (corners[:, i] for i in range(4))
+    across = np.cross(c - a, d - b)
+    size = np.linalg.norm(across, axis=1)
+    scale = np.linalg.norm(c - a, axis=1) * np.linalg.norm(d - b, axis=1)
+    flat = np.abs(np.einsum("ij,ij->i", b - a, across)) / np.where(size > 1e-9 * scale, size, 1.0)
+    # Without two diagonals there is no plane to be flat in: the plain twist is a bound.
+    plain = np.linalg.norm(a - b + c - d, axis=1) / 4
+    return np.where(size > 1e-9 * scale, flat, plain) + 1e-9
 
 
 def _point(adaptor: BRepAdaptor_Surface, u: float, v: float) -> list[float]:

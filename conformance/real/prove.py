@@ -29,6 +29,8 @@ from conformance.tool import Floats, Tool
 
 #: The depth (mm) up to which a posture is called safe, and the distance up to which clearances are told.
 SAFE, REACH = 4e-3, 5.0
+#: Depths beyond this (mm) are only proved to be beyond it.
+DEEP = 0.3
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,13 +103,13 @@ class Proved:
     clear_high: Floats
 
 
-def bounds(shape: Shape, tool: Tool, face: NDArray[np.int64], tip: Floats, axis: Floats, *, clearance: bool = True) -> Proved:
-    """Return the bounds of postures whose contacts lie on `face (n,)`."""
+def bounds(shape: Shape, tool: Tool, face: NDArray[np.int64], tip: Floats, axis: Floats, *, sign: bool = False) -> Proved:
+    """Return the bounds of postures whose contacts lie on `face (n,)`; `sign` asks for no more than whether they are blocked."""
     rows, none = numbers(tool), np.zeros(len(shape.faces), bool)
     out = np.full((4, len(tip)), np.nan)
     for i in range(len(tip)):
-        out[:2, i] = least(shape.tree, rows, tip[i], axis[i], none, enough=SAFE)[:2]
-        if clearance and out[0, i] >= -SAFE:
+        out[:2, i] = least(shape.tree, rows, tip[i], axis[i], none, enough=SAFE, deep=-SAFE if sign else -DEEP)[:2]
+        if not sign and out[0, i] >= -SAFE:
             out[2:, i] = least(shape.tree, rows, tip[i], axis[i], shape.joined[face[i]], enough=REACH)[:2]
     return Proved(*out)
 
@@ -146,7 +148,8 @@ def _of_tool(shape: Shape, name: str, tool: Tool, rng: np.random.Generator, coun
         where = tool.stands(contact[loose], normal[loose], near)
         for k, i in enumerate(loose):
             unsteady[i] |= least(shape.tree, numbers(tool), where[k], near[k], ~shape.joined[face[i]], enough=SAFE)[0] < -SAFE
-    low = np.where(blocked, proved.low, np.where(unsteady, np.minimum(proved.clear_low, 0.0), proved.clear_low))
+    radius = max(p.deepest for p in tool.pieces)
+    low = np.where(blocked, np.maximum(proved.low, -radius), np.where(unsteady, np.minimum(proved.clear_low, 0.0), proved.clear_low))
     high = np.where(blocked, proved.high, proved.clear_high)
     high = np.where(np.isfinite(high), high, 1000.0)
     kept = np.flatnonzero(blocked | safe)
@@ -166,7 +169,7 @@ def _drawn(rng: np.random.Generator, normal: Floats) -> Floats:
 
 
 def _blocked(shape: Shape, tool: Tool, contact: Floats, normal: Floats, face: NDArray[np.int64], axis: Floats) -> NDArray[np.bool_]:
-    return bounds(shape, tool, face, tool.stands(contact, normal, axis), axis, clearance=False).low < -SAFE
+    return bounds(shape, tool, face, tool.stands(contact, normal, axis), axis, sign=True).low < -SAFE
 
 
 def _border(
