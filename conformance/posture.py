@@ -18,6 +18,8 @@ Words = NDArray[np.str_]
 _PLACES_MM, _PLACES_UNIT = 9, 12
 #: Columns that hold three numbers each, and those of words.
 _VECTORS = ("contact", "normal", "axis", "tip")
+#: Columns that are the known answers.
+KNOWN = ("verdict", "low", "high", "limit_deg", "reason", "proof")
 _TEXTS = ("part", "tool", "setup", "verdict", "reason", "proof")
 
 
@@ -101,6 +103,15 @@ class Postures:
                 return values
             return np.round(values.astype(float), _PLACES_UNIT if name in ("normal", "axis") else _PLACES_MM) + 0.0
         return Postures(*(short(f.name, getattr(self, f.name)) for f in fields(self)))
+
+    def write_csv(self, path: Path, *, answers: bool = True) -> None:
+        """Write a CSV file with a column `id`, the row from 0; without `answers`, what is asked alone."""
+        import pyarrow as pa
+        import pyarrow.csv
+
+        columns = self.rounded().columns()
+        kept = [name for name in columns if answers or name not in KNOWN]
+        pyarrow.csv.write_csv(pa.table({"id": pa.array(np.arange(len(self))), **{n: pa.array(columns[n].tolist()) for n in kept}}), path)
 
     def write(self, path: Path) -> None:
         """Write a CSV or a Parquet file, by the suffix."""

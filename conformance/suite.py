@@ -63,15 +63,18 @@ class Suite:
             part, tool, setup = key.split("|")
             yield self.parts[part], self.parts[part].tools[tool], setup, np.flatnonzero(keys == key)
 
-    def some(self, each: int, names: set[str] | None = None) -> "Suite":
-        """Return a suite of at most `each` postures a part, evenly taken, of the parts named (default: all)."""
-        rows = []
+    def rows(self, each: int, names: set[str] | None = None) -> np.ndarray:
+        """Return the rows of at most `each` postures a part, evenly taken, of the parts named (default: all)."""
+        rows = [np.zeros(0, int)]
         for name in self.parts:
-            mine = np.flatnonzero(self.postures.part == name)
             if names is None or name in names:
-                rows.append(mine[np.unique(np.linspace(0, len(mine) - 1, min(each, len(mine))).astype(int))] if len(mine) else mine)
-        kept = np.concatenate(rows) if rows else np.zeros(0, int)
-        return Suite(self.parts, self.postures[kept])
+                mine = np.flatnonzero(self.postures.part == name)
+                rows.append(mine[np.unique(np.linspace(0, max(0, len(mine) - 1), min(each, len(mine))).astype(int))])
+        return np.concatenate(rows)
+
+    def some(self, each: int, names: set[str] | None = None) -> "Suite":
+        """Return a suite of at most `each` postures a part."""
+        return Suite(self.parts, self.postures[self.rows(each, names)])
 
 
 def tool_entry(tool: Tool) -> dict[str, Any]:

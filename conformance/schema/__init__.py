@@ -1,0 +1,1 @@
+"""The format: schemas and their check."""
