@@ -6,7 +6,7 @@ the insets of the piece (`tool.margin`). The derivations:
 *Separating planes.* Two convex bodies T and K are apart by the largest distance of two parallel planes between them:
 `gap = max over unit m of (min over T of m.x - max over K of m.x) = max over m of (-support_T(-m) - support_K(m))`. Only directions m that are outer
 normals of K somewhere count. A half-space has one such m; a wedge the arc between the normals of its two planes; a prism the arcs at each
-of its edges; a polyhedron a piece of the sphere.
+of its edges; a polyhedron the arcs at its edges and, at its vertices, the direction to the piece.
 
 *Void ball.* Material outside a ball of radius `rb`: the tool has to stay inside. The farthest point of a frustum from the centre lies on one of its
 two circles, on the side away from the centre: `far = max over circles of hypot(h - hc, r + rc)`, and `gap = rb - far - rho`.
@@ -19,6 +19,7 @@ of the margin itself, for a tool that does not lie in the material as a whole.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import Protocol
 
 import numpy as np
@@ -28,7 +29,6 @@ from conformance.tool import Floats, Piece, local, margin
 
 #: A search on a surface: where it starts, how often its pattern shrinks, and the pattern.
 _STARTS, _SHRINKS = 4, 40
-_SQUARE = np.array([(a, b) for a in np.linspace(-1, 1, 5) for b in np.linspace(-1, 1, 5)])
 #: How often the grid of directions shrinks to a quarter about its best.
 _ZOOMS = 11
 _PATTERN = np.array([(a, b) for a in (-1.0, 0.0, 1.0) for b in (-1.0, 0.0, 1.0)])
@@ -152,7 +152,11 @@ class Hull(_Gapped):
     radius: float = 0.0
 
     def gap(self, piece: Piece, tip: Floats, axis: Floats) -> Floats:
-        """Return the largest distance between parallel planes over the sphere of normals."""
+        """Return the largest distance between parallel planes: over the arc of normals at each edge, and from each vertex to the piece.
+
+        The nearest point of the hull is in a face or on an edge, then the normal is on an arc, or it is a vertex, then it points to the nearest
+        point of the piece. Where they meet, no normal gives more than zero.
+        """
         corners = np.array(self.vertices, float)
         if len(corners) == 1:
             return piece.at(np.broadcast_to(corners[0], tip.shape), tip, axis) - self.radius
@@ -160,21 +164,37 @@ class Hull(_Gapped):
         def apart(m: Floats) -> Floats:
             return -_support(piece, -m, tip, axis) - np.max(m @ corners.T, axis=-1) - self.radius
 
-        rows = np.arange(len(tip))
-        directions = np.broadcast_to(_SPHERE, (len(tip), *_SPHERE.shape))
-        best, width = np.full(len(tip), -np.inf), 0.2
-        for _ in range(2 * _ZOOMS):
-            values = apart(directions)
-            pick = np.argmax(values, axis=1)
-            centre = directions[rows, pick]
-            best = np.maximum(best, values[rows, pick])
-            e1 = np.cross(centre, np.where(np.abs(centre[:, :1]) < 0.7, [[1.0, 0, 0]], [[0, 1.0, 0]]))
-            e1 /= np.linalg.norm(e1, axis=1)[:, None]
-            e2 = np.cross(centre, e1)
-            directions = centre[:, None] + width * (_SQUARE[:, :1] * e1[:, None] + _SQUARE[:, 1:] * e2[:, None])
-            directions = directions / np.linalg.norm(directions, axis=2)[..., None]
-            width *= 0.5
-        return best
+        best = np.full(len(tip), -np.inf)
+        for first, across, turn in _edges(self.vertices):
+            arc = lambda angle, x=first, y=across: apart(np.cos(angle)[..., None] * x + np.sin(angle)[..., None] * y)
+            best = np.maximum(best, _most(arc, 0.0, turn, len(tip)))
+        towards = np.stack([_away(piece, np.broadcast_to(corner, tip.shape), tip, axis) for corner in corners], axis=1)
+        return np.maximum(best, np.max(apart(towards), axis=1))
+
+
+@cache
+def _edges(vertices: tuple[tuple[float, float, float], ...]) -> tuple[tuple[Floats, Floats, float], ...]:
+    """Return for each edge of a hull the normal of one face, the unit vector across it towards the other face's normal, and the angle between."""
+    from scipy.spatial import ConvexHull
+
+    hull = ConvexHull(np.array(vertices, float))
+    out = []
+    for i, neighbours in enumerate(hull.neighbors):
+        for j in neighbours[neighbours > i]:
+            a, b = hull.equations[i, :3], hull.equations[j, :3]
+            across = b - (a @ b) * a
+            width = np.linalg.norm(across)
+            if width > 1e-9:
+                out.append((a, across / width, float(np.arctan2(width, a @ b))))
+    return tuple(out)
+
+
+def _away(piece: Piece, points: Floats, tip: Floats, axis: Floats) -> Floats:
+    """Return the unit vectors (n, 3) from points to a piece: minus the slope of its distance. The error of the slope counts squared."""
+    step = 1e-5 * np.eye(3)
+    slope = np.stack([piece.at(points + s, tip, axis) - piece.at(points - s, tip, axis) for s in step], axis=-1)
+    size = np.linalg.norm(slope, axis=-1, keepdims=True)
+    return np.where(size > 1e-9, -slope / np.where(size > 1e-9, size, 1.0), [0.0, 0.0, 1.0])
 
 
 def box(name: str, low: tuple[float, float, float], high: tuple[float, float, float]) -> Hull:
@@ -186,17 +206,6 @@ def box(name: str, low: tuple[float, float, float], high: tuple[float, float, fl
 def ball(name: str, centre: tuple[float, float, float], radius: float) -> Hull:
     """Return a ball of material."""
     return Hull(name, (centre,), radius)
-
-
-def _sphere() -> Floats:
-    """Return some hundred directions, spread evenly."""
-    k = np.arange(400) + 0.5
-    z, turn = 1 - 2 * k / 400, np.pi * (1 + np.sqrt(5.0)) * k
-    spiral = np.column_stack([np.sqrt(1 - z**2) * np.cos(turn), np.sqrt(1 - z**2) * np.sin(turn), z])
-    return np.vstack([spiral, np.eye(3), -np.eye(3)])
-
-
-_SPHERE = _sphere()
 
 
 @dataclass(frozen=True)
