@@ -112,7 +112,7 @@ def _span(curve: BRepAdaptor_Curve) -> float:
     return float(np.sum(np.linalg.norm(np.diff(walk, axis=0), axis=1)))
 
 
-def least(face: Face, tool: Tool, tip: Floats, axis: Floats, rounds: int = 40, seeds: int = 3) -> float:
+def least(face: Face, tool: Tool, tip: Floats, axis: Floats, rounds: int = 60, seeds: int = 3) -> float:
     """Return the least signed distance of one posture's tool from a face: negative is a depth."""
     best = np.inf
     if len(face.edges):
@@ -130,7 +130,8 @@ def least(face: Face, tool: Tool, tip: Floats, axis: Floats, rounds: int = 40, s
                 pick = int(np.argmin(new))
                 if new[pick] < value:
                     value, (u, v) = float(new[pick]), tries[pick]
-            du, dv = du * 0.7, dv * 0.7
+                    continue
+            du, dv = du * 0.6, dv * 0.6
         best = min(best, value)
     return best
 
