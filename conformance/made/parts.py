@@ -1,9 +1,9 @@
 """All made parts, by name."""
 
-from conformance.made import grooves
+from conformance.made import balls, cones, grooves
 from conformance.made.part import MadePart
 
 #: The modules of the families; a new one is added here, and lists its parts as PARTS.
-FAMILIES = (grooves,)
+FAMILIES = (grooves, balls, cones)
 
 PARTS: dict[str, MadePart] = {part.name: part for family in FAMILIES for part in family.PARTS}
