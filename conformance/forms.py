@@ -6,7 +6,7 @@ the insets of the piece (`tool.margin`). The derivations:
 *Separating planes.* Two convex bodies T and K are apart by the largest distance of two parallel planes between them:
 `gap = max over unit m of (min over T of m.x - max over K of m.x) = max over m of (-support_T(-m) - support_K(m))`. Only directions m that are outer
 normals of K somewhere count. A half-space has one such m; a wedge the arc between the normals of its two planes; a prism the arcs at each
-of its edges; a polyhedron a piece of the sphere.
+of its edges; a polyhedron the normals of its faces, the arcs at its edges, and at each corner the direction to the piece.
 
 *Void ball.* Material outside a ball of radius `rb`: the tool has to stay inside. The farthest point of a frustum from the centre lies on one of its
 two circles, on the side away from the centre: `far = max over circles of hypot(h - hc, r + rc)`, and `gap = rb - far - rho`.
@@ -19,6 +19,7 @@ of the margin itself, for a tool that does not lie in the material as a whole.
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
@@ -26,12 +27,17 @@ import numpy as np
 from conformance.tool import Floats, Piece, local, margin
 
 
-#: A search on a surface: where it starts, how often its pattern shrinks, and the pattern.
-_STARTS, _SHRINKS = 4, 40
-_SQUARE = np.array([(a, b) for a in np.linspace(-1, 1, 5) for b in np.linspace(-1, 1, 5)])
-#: How often the grid of directions shrinks to a quarter about its best.
+#: How often a grid of angles shrinks to a quarter about its best.
 _ZOOMS = 11
-_PATTERN = np.array([(a, b) for a in (-1.0, 0.0, 1.0) for b in (-1.0, 0.0, 1.0)])
+#: A search in two parameters: where it starts, its rounds, the factor by which its pattern shrinks, and by which it turns (rad).
+_STARTS, _ROUNDS, _SHRINK, _TURN = 8, 70, 0.5, 2.399963
+_RINGS = np.array([(0.0, 0.0), *((r * np.cos(t), r * np.sin(t)) for r in (1.0, 0.3) for t in 2 * np.pi * np.arange(8) / 8)])
+
+
+def _pattern(turns: int) -> Floats:
+    """Return the pattern (17, 2) of a round: it turns, for an edge of a tool makes a crease, and the way along a crease has one direction only."""
+    c, s = np.cos(_TURN * turns), np.sin(_TURN * turns)
+    return _RINGS @ np.array([[c, s], [-s, c]])
 
 
 class Material(Protocol):
@@ -101,9 +107,13 @@ class Prism(_Gapped):
 
 def _support(piece: Piece, u: Floats, tip: Floats, axis: Floats) -> Floats:
     """Return the support (n, k) of a piece in k directions `u (n, k, 3)` for each posture."""
+    return _wide(piece).support(u, tip[:, None], axis[:, None])
+
+
+def _wide(piece: Piece) -> Piece:
+    """Return the piece with a second axis in its numbers."""
     wide = {name: np.asarray(getattr(piece, name), float) for name in ("h0", "r0", "h1", "r1", "rho")}
-    wide = {name: value[:, None] if value.ndim else value for name, value in wide.items()}
-    return Piece(**wide).support(u, tip[:, None], axis[:, None])
+    return Piece(**{name: value[:, None] if value.ndim else value for name, value in wide.items()})
 
 
 def half_space(name: str, point: tuple[float, float, float], normal: tuple[float, float, float]) -> Prism:
@@ -152,7 +162,7 @@ class Hull(_Gapped):
     radius: float = 0.0
 
     def gap(self, piece: Piece, tip: Floats, axis: Floats) -> Floats:
-        """Return the largest distance between parallel planes over the sphere of normals."""
+        """Return the largest distance between parallel planes over the normals of faces, edges and corners."""
         corners = np.array(self.vertices, float)
         if len(corners) == 1:
             return piece.at(np.broadcast_to(corners[0], tip.shape), tip, axis) - self.radius
@@ -160,21 +170,42 @@ class Hull(_Gapped):
         def apart(m: Floats) -> Floats:
             return -_support(piece, -m, tip, axis) - np.max(m @ corners.T, axis=-1) - self.radius
 
-        rows = np.arange(len(tip))
-        directions = np.broadcast_to(_SPHERE, (len(tip), *_SPHERE.shape))
-        best, width = np.full(len(tip), -np.inf), 0.2
-        for _ in range(2 * _ZOOMS):
-            values = apart(directions)
-            pick = np.argmax(values, axis=1)
-            centre = directions[rows, pick]
-            best = np.maximum(best, values[rows, pick])
-            e1 = np.cross(centre, np.where(np.abs(centre[:, :1]) < 0.7, [[1.0, 0, 0]], [[0, 1.0, 0]]))
-            e1 /= np.linalg.norm(e1, axis=1)[:, None]
-            e2 = np.cross(centre, e1)
-            directions = centre[:, None] + width * (_SQUARE[:, :1] * e1[:, None] + _SQUARE[:, 1:] * e2[:, None])
-            directions = directions / np.linalg.norm(directions, axis=2)[..., None]
-            width *= 0.5
-        return best
+        faces, first, second = _normals(self.vertices)
+        best = np.max(apart(np.broadcast_to(faces, (len(tip), *faces.shape))), axis=1)
+        slant = np.linalg.norm(first + second, axis=1, keepdims=True)
+        middle, across = (first + second) / slant, (second - first) / np.linalg.norm(second - first, axis=1, keepdims=True)
+        angle = np.arccos(np.clip(0.5 * slant, -1.0, 1.0))
+        centre, width = np.zeros((len(tip), len(first), 1)), 1.0
+        for _ in range(_ZOOMS):
+            share = np.clip(centre + width * np.linspace(-1, 1, 9), -1.0, 1.0)
+            turn = share * angle
+            m = np.cos(turn)[..., None] * middle[:, None] + np.sin(turn)[..., None] * across[:, None]
+            values = apart(m.reshape(len(tip), -1, 3)).reshape(share.shape)
+            centre = np.take_along_axis(share, np.argmax(values, axis=2)[..., None], 2)
+            best, width = np.maximum(best, np.max(values, axis=(1, 2))), 0.25 * width
+        # Of the directions about a corner, the one from the corner to the piece: the slope of the piece's distance.
+        steps = 1e-6 * np.eye(3)
+        at = lambda p: piece_at(piece, p, tip, axis)
+        m = np.stack([at(corners + e) - at(corners - e) for e in steps], axis=-1)
+        length = np.linalg.norm(m, axis=-1, keepdims=True)
+        m = np.where(length > 0, -m / np.where(length > 0, length, 1.0), faces[0])
+        return np.maximum(best, np.max(apart(m), axis=1))
+
+
+def piece_at(piece: Piece, points: Floats, tip: Floats, axis: Floats) -> Floats:
+    """Return the signed distance (n, k) of points (k, 3) from the piece of each posture."""
+    return _wide(piece).at(points, tip[:, None], axis[:, None])
+
+
+@lru_cache(maxsize=512)
+def _normals(vertices: tuple[tuple[float, float, float], ...]) -> tuple[Floats, Floats, Floats]:
+    """Return the outer normals of a polyhedron's faces, and for each of its edges the normals of the two faces."""
+    from scipy.spatial import ConvexHull
+
+    hull = ConvexHull(np.array(vertices, float))
+    n = hull.equations[:, :3]
+    pairs = np.array([(i, j) for i, row in enumerate(hull.neighbors) for j in row if i < j and n[i] @ n[j] < 1 - 1e-12])
+    return np.unique(np.round(n, 15), axis=0), n[pairs[:, 0]], n[pairs[:, 1]]
 
 
 def box(name: str, low: tuple[float, float, float], high: tuple[float, float, float]) -> Hull:
@@ -186,17 +217,6 @@ def box(name: str, low: tuple[float, float, float], high: tuple[float, float, fl
 def ball(name: str, centre: tuple[float, float, float], radius: float) -> Hull:
     """Return a ball of material."""
     return Hull(name, (centre,), radius)
-
-
-def _sphere() -> Floats:
-    """Return some hundred directions, spread evenly."""
-    k = np.arange(400) + 0.5
-    z, turn = 1 - 2 * k / 400, np.pi * (1 + np.sqrt(5.0)) * k
-    spiral = np.column_stack([np.sqrt(1 - z**2) * np.cos(turn), np.sqrt(1 - z**2) * np.sin(turn), z])
-    return np.vstack([spiral, np.eye(3), -np.eye(3)])
-
-
-_SPHERE = _sphere()
 
 
 @dataclass(frozen=True)
@@ -268,18 +288,25 @@ class Surface:
         u, v = (x.ravel() for x in np.meshgrid(np.linspace(*self.u, self.grid[0]), np.linspace(*self.v, self.grid[1]), indexing="ij"))
         tip, axis = tip[:, None], axis[:, None]
         values = piece.at(self.at(u, v)[None], tip, axis)
-        # From the best few of the grid a shrinking pattern: more than one minimum may be near the least.
-        start = np.argpartition(values, min(_STARTS, values.shape[1] - 1), axis=1)[:, :_STARTS]
+        # A shrinking pattern from the best few points of the grid that no neighbour is below: along a crease there are many.
+        square = np.pad(values.reshape(-1, *self.grid), ((0, 0), (1, 1), (1, 1)), constant_values=np.inf)
+        (a, b), lowest = self.grid, np.ones((len(values), *self.grid), bool)
+        for i, j in ((0, 1), (1, 0), (1, 2), (2, 1), (0, 0), (0, 2), (2, 0), (2, 2)):
+            lowest &= square[:, 1:-1, 1:-1] <= square[:, i : i + a, j : j + b]
+        start = np.argpartition(np.where(lowest.reshape(len(values), -1), values, values + 1e3), _STARTS, axis=1)[:, :_STARTS]
         bu, bv, best = u[start], v[start], np.take_along_axis(values, start, axis=1)
         du, dv = (self.u[1] - self.u[0]) / (self.grid[0] - 1), (self.v[1] - self.v[0]) / (self.grid[1] - 1)
-        for _ in range(_SHRINKS):
-            tu = np.clip(bu[..., None] + du * _PATTERN[:, 0], *self.u)
-            tv = np.clip(bv[..., None] + dv * _PATTERN[:, 1], *self.v)
+        steps = np.ones_like(bu)
+        for turns in range(_ROUNDS):
+            pattern = _pattern(turns)
+            tu = np.clip(bu[..., None] + (du * steps)[..., None] * pattern[:, 0], *self.u)
+            tv = np.clip(bv[..., None] + (dv * steps)[..., None] * pattern[:, 1], *self.v)
             new = piece.at(self.at(tu, tv), tip[..., None, :], axis[..., None, :])
             pick = np.argmin(new, axis=2)[..., None]
             bu, bv = np.take_along_axis(tu, pick, 2)[..., 0], np.take_along_axis(tv, pick, 2)[..., 0]
             best = np.take_along_axis(new, pick, 2)[..., 0]
-            du, dv = du * 0.65, dv * 0.65
+            # A way down goes on with the same step.
+            steps = np.where(pick[..., 0] == 0, _SHRINK * steps, steps)
         return np.min(best, axis=1)
 
     def gap(self, piece: Piece, tip: Floats, axis: Floats) -> Floats:

@@ -6,7 +6,7 @@ import numpy as np
 
 from conformance.forms import VoidBall, ball, box
 from conformance.made.part import Answer, MadePart, Setup, frame
-from conformance.made.patches import Inner, boxes_round, descent, inner, placed, revolved_arc, revolved_line, squares
+from conformance.made.patches import Inner, boxes_round, descent, inner, placed, revolved_arc, revolved_line, walls_of
 from conformance.tool import Floats, Tool
 
 _FLAT, _BALL, _BULL = Tool.flat(8.0, 40.0), Tool.ball(6.0, 40.0), Tool.flat(8.0, 40.0, corner=2.0)
@@ -130,7 +130,7 @@ HOLLOW_BALL = MadePart(
     own circle when sin t >= R / Rb. The rim of its top on the side of the contact is the end of a chord from the contact along the axis, and that
     chord has length 2 Rb cos t: free when L <= 2 Rb cos t, whatever R. Both circles inside, so the cylinder is (the ball is convex).""",
     lambda: _block(50.0, -50.0, 50.0).cut(_ball(_RV, 0.0)),
-    (VoidBall("hollow", (0.0, 0.0, 0.0), _RV), *squares(50.0)),
+    (VoidBall("hollow", (0.0, 0.0, 0.0), _RV), *walls_of(50.0)),
     _SHORT, _hollow_contacts,
     answers=(
         *(Answer("free_tilts", [[float(np.degrees(np.arcsin(5.0 / _RV))), float(np.degrees(np.arccos(_LV / (2 * _RV))))]],

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from conformance.forms import Hull, Material, Surface, box
+from conformance.forms import Material, Prism, Surface, box, half_space
 from conformance.tool import Floats, Piece
 
 #: A full turn with some overlap (rad), so that no least distance lies at the seam.
@@ -47,14 +47,10 @@ class Inner:
         return np.full(len(points), _NONE)
 
 
-def squares(half: float) -> tuple[Hull, ...]:
-    """Return the six sides of a cube, flat hulls: its skin seen from within."""
-    out = []
-    for k in range(3):
-        for side in (-half, half):
-            corners = [np.insert(np.array([a, b]), k, side) for a in (-half, half) for b in (-half, half)]
-            out.append(Hull(f"side {'xyz'[k]} {side:g}", tuple((float(x), float(y), float(z)) for x, y, z in corners)))
-    return tuple(out)
+def walls_of(half: float) -> tuple[Prism, ...]:
+    """Return what lies outside a cube: its sides seen from within, where each nearest point of a plane is on the side."""
+    at = [tuple(float(x) for x in side * half * np.eye(3)[k]) for k in range(3) for side in (-1, 1)]
+    return tuple(half_space(f"side {i}", p, tuple(-x for x in p)) for i, p in enumerate(at))
 
 
 def revolved_line(name: str, start: Flat, end: Flat, grid: tuple[int, int], turn: Flat = TURN) -> Surface:
@@ -171,6 +167,24 @@ class Spline:
     def surface(self, name: str, grid: tuple[int, int]) -> Surface:
         """Return the form of the material under it."""
         return Surface(name, self.at, self.span(0), self.span(1), grid)
+
+    def bodies(self, name: str, grid: tuple[int, int], depth: float) -> tuple[Surface, ...]:
+        """Return the skin of `solid`: the surface, its copy below, and the four sides."""
+        (u0, u1), (v0, v1) = self.span(0), self.span(1)
+        down = np.array([0.0, 0.0, -depth])
+
+        def side(u: float | None, v: float | None) -> Surface:
+            def at(t: Floats, s: Floats) -> Floats:
+                on = self.at(t if u is None else np.full_like(t, u), t if v is None else np.full_like(t, v))
+                return on + s[..., None] * down
+
+            return Surface(f"side {'v' if u is None else 'u'}", at, self.span(0 if u is None else 1), (0.0, 1.0), (grid[0 if u is None else 1], 13))
+
+        def below(u: Floats, v: Floats) -> Floats:
+            return self.at(u, v) + down
+
+        return (self.surface(name, grid), Surface("below", below, (u0, u1), (v0, v1), (25, 25)),
+                side(u0, None), side(u1, None), side(None, v0), side(None, v1))
 
     def solid(self, depth: float) -> Any:
         """Return the solid from the surface down to its copy `depth` below."""
