@@ -29,15 +29,9 @@ from conformance.tool import Floats, Piece, local, margin
 
 #: How often a grid of angles shrinks to a quarter about its best.
 _ZOOMS = 11
-#: A search in two parameters: where it starts, its rounds, the factor by which its pattern shrinks, and by which it turns (rad).
-_STARTS, _ROUNDS, _SHRINK, _TURN = 8, 70, 0.5, 2.399963
-_RINGS = np.array([(0.0, 0.0), *((r * np.cos(t), r * np.sin(t)) for r in (1.0, 0.3) for t in 2 * np.pi * np.arange(8) / 8)])
-
-
-def _pattern(turns: int) -> Floats:
-    """Return the pattern (17, 2) of a round: it turns, for an edge of a tool makes a crease, and the way along a crease has one direction only."""
-    c, s = np.cos(_TURN * turns), np.sin(_TURN * turns)
-    return _RINGS @ np.array([[c, s], [-s, c]])
+#: A search on a surface: where it starts, its rounds, the factor by which its grid shrinks, and the grid.
+_STARTS, _ROUNDS, _SHRINK = 5, 34, 0.6
+_GRID = np.array([(a, b) for a in np.linspace(-1.5, 1.5, 9) for b in np.linspace(-1.5, 1.5, 9)])
 
 
 class Material(Protocol):
@@ -291,22 +285,21 @@ class Surface:
         # A shrinking pattern from the best few points of the grid that no neighbour is below: along a crease there are many.
         square = np.pad(values.reshape(-1, *self.grid), ((0, 0), (1, 1), (1, 1)), constant_values=np.inf)
         (a, b), lowest = self.grid, np.ones((len(values), *self.grid), bool)
-        for i, j in ((0, 1), (1, 0), (1, 2), (2, 1), (0, 0), (0, 2), (2, 0), (2, 2)):
-            lowest &= square[:, 1:-1, 1:-1] <= square[:, i : i + a, j : j + b]
+        for k, (i, j) in enumerate(((0, 1), (1, 0), (0, 0), (0, 2), (1, 2), (2, 1), (2, 0), (2, 2))):
+            # Of equal neighbours, as at the apex of a cone, one is enough.
+            other = square[:, i : i + a, j : j + b]
+            lowest &= square[:, 1:-1, 1:-1] < other if k < 4 else square[:, 1:-1, 1:-1] <= other
         start = np.argpartition(np.where(lowest.reshape(len(values), -1), values, values + 1e3), _STARTS, axis=1)[:, :_STARTS]
         bu, bv, best = u[start], v[start], np.take_along_axis(values, start, axis=1)
         du, dv = (self.u[1] - self.u[0]) / (self.grid[0] - 1), (self.v[1] - self.v[0]) / (self.grid[1] - 1)
-        steps = np.ones_like(bu)
-        for turns in range(_ROUNDS):
-            pattern = _pattern(turns)
-            tu = np.clip(bu[..., None] + (du * steps)[..., None] * pattern[:, 0], *self.u)
-            tv = np.clip(bv[..., None] + (dv * steps)[..., None] * pattern[:, 1], *self.v)
+        for _ in range(_ROUNDS):
+            tu = np.clip(bu[..., None] + du * _GRID[:, 0], *self.u)
+            tv = np.clip(bv[..., None] + dv * _GRID[:, 1], *self.v)
             new = piece.at(self.at(tu, tv), tip[..., None, :], axis[..., None, :])
             pick = np.argmin(new, axis=2)[..., None]
             bu, bv = np.take_along_axis(tu, pick, 2)[..., 0], np.take_along_axis(tv, pick, 2)[..., 0]
             best = np.take_along_axis(new, pick, 2)[..., 0]
-            # A way down goes on with the same step.
-            steps = np.where(pick[..., 0] == 0, _SHRINK * steps, steps)
+            du, dv = du * _SHRINK, dv * _SHRINK
         return np.min(best, axis=1)
 
     def gap(self, piece: Piece, tip: Floats, axis: Floats) -> Floats:

@@ -6,7 +6,7 @@ import numpy as np
 
 from conformance.forms import Prism, Surface, section
 from conformance.made.part import Answer, MadePart
-from conformance.made.patches import TURN, boxes_round, descent, inner, past_edge, placed, revolved_arc, revolved_line
+from conformance.made.patches import TURN, Inner, boxes_round, descent, inner, past_edge, placed, revolved_arc, revolved_line
 from conformance.tool import Floats, Tool
 
 _FLAT, _BALL, _BULL = Tool.flat(8.0, 40.0), Tool.ball(6.0, 40.0), Tool.flat(8.0, 40.0, corner=1.5)
@@ -59,7 +59,7 @@ TORUS_FILLET = MadePart(
     from the mast: tilted to either, the rim of its flat top touches it (patches.descent; for the mast in the plane of both axes, where the rim is nearest), so
     both intervals end at 45 deg + b.""",
     _mast,
-    (Prism("mast", ((0.0, 0.0, 0.0),), _UP, (1.0, 0.0, 0.0), 0.0, 2 * np.pi, _RM),
+    (revolved_line("mast", (_RM, _RF), (_RM, _MAST), (61, 41)), Inner(Prism("in the mast", ((0.0, 0.0, 0.0),), _UP, (1.0, 0.0, 0.0), 0.0, 2 * np.pi, _RM)),
      revolved_arc("fillet", (_RM + _RF, _RF), _RF, (-np.pi, -np.pi / 2), (15, 91)),
      revolved_line("top", (_RM + _RF, 0.0), (69.9, 0.0), (25, 121)), inner("plate", (-70.0, -70.0, -20.0), (70.0, 70.0, 0.0))),
     _TOOLS, _fillet_contacts,
@@ -98,7 +98,7 @@ ROUNDED_BOSS = MadePart(
     _boss,
     (revolved_arc("edge", (_RB - _RE, _HB - _RE), _RE, (0.0, np.pi / 2), (11, 81)), revolved_line("wall", (_RB, 0.0), (_RB, _HB - _RE), (17, 81)),
      revolved_line("roof", (0.0, _HB), (_RB - _RE, _HB), (12, 61)), revolved_line("top", (_RB, 0.0), (69.9, 0.0), (28, 121)),
-     inner("inside", (-10.0, -10.0, -20.0), (10.0, 10.0, _HB)), inner("plate", (-70.0, -70.0, -20.0), (70.0, 70.0, 0.0))),
+     inner("inside", (-7.0, -7.0, -20.0), (7.0, 7.0, _HB)), inner("plate", (-70.0, -70.0, -20.0), (70.0, 70.0, 0.0))),
     (_FLAT, _LONG, _BULL), _edge_contacts,
     answers=(
         Answer("free_tilts", [[0.0, 45.0 + descent(_HB - _RE + (_RE + 3.0) * _S2, 3.0, 60.0)]], "(L - r) sin b + r cos b = 16 + (E + r) / sqrt 2; 45 deg + b",
@@ -147,8 +147,8 @@ FILLET_PAIR = MadePart(
     r = F. A ball end r 3 tilted there to either wall meets that wall's upper edge with its side (patches.past_edge), its face not: the centre is
     more than r away from it.""",
     _channel,
-    (section("right wall", (_W, _FC), (_W, _HC), (40.0, _HC), (40.0, -20.0), (_W, -20.0)),
-     section("left wall", (-_W, _FC), (-_W, _HC), (-40.0, _HC), (-40.0, -20.0), (-_W, -20.0)),
+    (section("right wall", (_W, _FC), (_W, _HC), (40.0, _HC), (40.0, _FC)),
+     section("left wall", (-_W, _FC), (-_W, _HC), (-40.0, _HC), (-40.0, _FC)),
      _channel_fillet("right fillet", 1.0), _channel_fillet("left fillet", -1.0),
      section("floor", (_FC - _W, 0.0), (_W - _FC, 0.0), (_W - _FC, -20.0), (_FC - _W, -20.0))),
     _TOOLS, _channel_contacts,
