@@ -154,7 +154,7 @@ FILLET_PAIR = MadePart(
     _TOOLS, _channel_contacts,
     answers=(
         Answer("largest_radius", _W, "r = half the width", given=placed((0.0, 0.0, 0.0), _UP, axis=[0.0, 0.0, 1.0], end="ball", length=60.0)),
-        Answer("largest_radius", _FC, "r = F", given=placed((_W - _FC * (1 - _S2), 0.0, _FC * (1 - _S2)), (-1.0, 0.0, 1.0), axis=[-_S2, 0.0, _S2], end="ball", length=40.0)),
+        Answer("largest_radius", _FC, "r = F", given=placed((_W - _FC * (1 - _S2), 0.0, _FC * (1 - _S2)), (-1.0, 0.0, 1.0), axis=[0.0, 0.0, 1.0], end="ball", length=40.0)),
         *(Answer("free_tilts", [[0.0, float(first + past_edge(_W - side * _CF[0], _HC - _CF[1], 3.0))]], "across cos b - up sin b = r at the wall's upper edge; 45 deg from the normal to z",
                  tool=_BALL.name, given=placed((_W - _FC * (1 - _S2), 0.0, _FC * (1 - _S2)), (-1.0, 0.0, 1.0), (side, 0.0, side)))
           for side, first in ((1.0, 45.0), (-1.0, -45.0))),

@@ -12,6 +12,8 @@ from conformance.tool import Floats, Tool
 
 #: Beyond the end of an interval, in deg, mm and as a share.
 STEP_DEG, STEP_MM, STEP_SHARE = 0.05, 0.01, 0.005
+#: Below a bound of curvature an edge enters by the fourth power of its width: so much further (deg) the depth exceeds TOUCH.
+GOUGE_DEG = 0.5
 
 
 @lru_cache(maxsize=2)
@@ -59,7 +61,7 @@ def wrong(part: MadePart, answer: Answer) -> list[str]:
             expect(f"{low} + step", True, at(low + STEP_DEG))
             expect(f"{high} - step", True, at(high - STEP_DEG))
             if low > STEP_DEG:
-                expect(f"{low} - step", False, at(low - STEP_DEG))
+                expect(f"{low} - step", False, at(low - STEP_DEG) and at(low - GOUGE_DEG))
             if high < 90.0 - STEP_DEG:
                 expect(f"{high} + step", False, at(high + STEP_DEG))
     elif answer.kind == "largest_radius":
