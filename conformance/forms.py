@@ -142,7 +142,9 @@ def _most(of: Callable[[Floats], Floats], start: float, end: float, count: int) 
         values = of(angles)
         pick = np.argmax(values, axis=1)[:, None]
         best = np.maximum(best, np.take_along_axis(values, pick, 1)[:, 0])
-        angles = np.clip(np.take_along_axis(angles, pick, 1) + width * np.linspace(-1, 1, 9), start, end)
+        angles = np.take_along_axis(angles, pick, 1) + width * np.linspace(-1, 1, 9)
+        # A full turn has no ends: the best may lie across the seam.
+        angles = angles if end - start > 2 * np.pi - 1e-9 else np.clip(angles, start, end)
         width = 0.25 * width
     return best
 

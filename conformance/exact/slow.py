@@ -22,7 +22,10 @@ from conformance.tool import Floats, Tool
 
 @dataclass(frozen=True, eq=False)
 class Face:
-    """A trimmed face with its points: `points (n, 3)`, `uv (n, 2)`, pitch `du`, `dv` of the grid, and `edges (m, 3)`, points of its edges."""
+    """A trimmed face with its points: `points (n, 3)`, `uv (n, 2)`, pitch `du`, `dv` of the grid, and `edges (m, 3)`, points of its edges.
+
+    No point of the face is farther than `near` (mm) from all of these, so no search from them gains more.
+    """
 
     adaptor: BRepAdaptor_Surface
     trim: BRepTopAdaptor_FClass2d
@@ -30,6 +33,7 @@ class Face:
     uv: Floats
     pitch: tuple[float, float]
     edges: Floats
+    near: float = np.inf
 
     def at(self, u: float, v: float) -> Floats:
         """Return a point of the surface."""
@@ -81,7 +85,7 @@ def _face(face: TopoDS_Face, pitch: float) -> Face:
     kept = np.array([trim.Perform(gp_Pnt2d(u, v)) in (TopAbs_IN, TopAbs_ON) for u, v in uv])
     uv = uv[kept]
     points = np.array([_point(adaptor, u, v) for u, v in uv]).reshape(-1, 3)
-    return Face(adaptor, trim, points, uv, ((u1 - u0) / nu, (v1 - v0) / nv), _edges(face, pitch))
+    return Face(adaptor, trim, points, uv, ((u1 - u0) / nu, (v1 - v0) / nv), _edges(face, pitch), 1.5 * pitch)
 
 
 def _point(adaptor: BRepAdaptor_Surface, u: float, v: float) -> list[float]:
@@ -112,36 +116,50 @@ def _span(curve: BRepAdaptor_Curve) -> float:
     return float(np.sum(np.linalg.norm(np.diff(walk, axis=0), axis=1)))
 
 
-def least(face: Face, tool: Tool, tip: Floats, axis: Floats, rounds: int = 60, seeds: int = 3) -> float:
-    """Return the least signed distance of one posture's tool from a face: negative is a depth."""
-    best = np.inf
-    if len(face.edges):
-        best = float(np.min(tool.signed(face.edges, tip, axis)))
+def least(face: Face, tool: Tool, tip: Floats, axis: Floats, *, below: float = np.inf, rounds: int = 45, seeds: int = 4) -> float:
+    """Return the least signed distance of one posture's tool from a face: negative is a depth; where it is not `below`, any such number."""
+    best = float(np.min(tool.signed(face.edges, tip, axis), initial=np.inf))
     if not len(face.points):
         return best
     values = tool.signed(face.points, tip, axis)
-    for k in np.argsort(values, kind="stable")[:seeds]:
+    for k in _apart(face.points, values, seeds, 2.0 * face.near):
         (u, v), value, (du, dv) = face.uv[k], float(values[k]), face.pitch
-        for _ in range(rounds):
-            tries = [(u + a * du, v + b * dv) for a in (-1, -0.4, 0, 0.4, 1) for b in (-1, -0.4, 0, 0.4, 1) if a or b]
+        if min(best, value) - face.near > below:
+            break
+        for turns in range(rounds):
+            # The pattern turns: along the crease that an edge of the tool makes, few directions go down.
+            angles = 2.4 * turns + np.arange(16) * np.pi / 8
+            scale = np.where(np.arange(16) % 2 == 0, 1.0, 0.35)
+            tries = list(zip(u + du * scale * np.cos(angles), v + dv * scale * np.sin(angles), strict=True))
             tries = [t for t in tries if face.holds(*t)]
             if tries:
                 new = tool.signed(np.array([face.at(*t) for t in tries]), tip, axis)
                 pick = int(np.argmin(new))
                 if new[pick] < value:
                     value, (u, v) = float(new[pick]), tries[pick]
-                    continue
-            du, dv = du * 0.6, dv * 0.6
+            du, dv = du * 0.7, dv * 0.7
         best = min(best, value)
     return best
 
 
-def margin(
-    listed: list[Face], exempt: list[bool], tool: Tool, tip: Floats, axis: Floats, touch: float = 1e-6
-) -> float:
+def _apart(points: Floats, values: Floats, count: int, way: float) -> list[int]:
+    """Return the lowest points, no two within `way` (mm): a tool that touches at one point may enter the face at another."""
+    values, out = values.copy(), []
+    for _ in range(min(count, len(values))):
+        k = int(np.argmin(values))
+        if not np.isfinite(values[k]):
+            break
+        out.append(k)
+        values[np.linalg.norm(points - points[k], axis=1) < (way if np.isfinite(way) else 0.0)] = np.inf
+        values[k] = np.inf
+    return out
+
+
+def margin(listed: list[Face], exempt: list[bool], tool: Tool, tip: Floats, axis: Floats, touch: float = 1e-6) -> float:
     """Return the margin of one posture by points: depth counts on every face, clearance on those that are not `exempt`."""
     worst = 1000.0
-    for face, out in zip(listed, exempt, strict=True):
-        value = least(face, tool, tip, axis)
-        worst = min(worst, 1000.0 if out and value > -touch else value)
+    first = [float(np.min(tool.signed(np.vstack([f.edges, f.points]), tip, axis), initial=np.inf)) for f in listed]
+    for k in np.argsort(first, kind="stable"):
+        value = least(listed[k], tool, tip, axis, below=-touch if exempt[k] else worst)
+        worst = min(worst, 1000.0 if exempt[k] and value > -touch else value)
     return worst

@@ -1,9 +1,10 @@
 """All made parts, by name."""
 
-from conformance.made import bodies, grooves, holders, machines, slots, walls
+from conformance.made import balls, bodies, cones, freeform, grooves, holders, machines, rods, rounds, slots, twins, walls
 from conformance.made.part import MadePart
 
 #: The modules of the families; a new one is added here, and lists its parts as PARTS.
-FAMILIES = (grooves, walls, slots, holders, bodies, machines)
+FAMILIES = (grooves, walls, slots, holders, bodies, machines, balls, cones, rounds, rods, freeform)
 
-PARTS: dict[str, MadePart] = {part.name: part for family in FAMILIES for part in family.PARTS}
+_ANALYTIC = tuple(part for family in FAMILIES for part in family.PARTS)
+PARTS: dict[str, MadePart] = {part.name: part for part in (*_ANALYTIC, *twins.twins(_ANALYTIC))}
