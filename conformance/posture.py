@@ -4,7 +4,7 @@ A posture is a tool that stands at a contact point: unit mm, part coordinates, a
 """
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
 
 import numpy as np
@@ -71,6 +71,10 @@ class Postures:
         """Return several tables as one."""
         listed = list(tables)
         return cls(*(np.concatenate([getattr(t, f.name) for t in listed]) for f in fields(cls)))
+
+    def renamed(self, part: str) -> "Postures":
+        """Return the same postures of another part."""
+        return replace(self, part=np.full(len(self), part))
 
     def columns(self) -> dict[str, NDArray[np.generic]]:
         """Return the flat columns, as the files have them."""
