@@ -20,7 +20,10 @@ from conformance.suite import DATA, Suite, read
 
 app = typer.Typer(
     help="A benchmark of cutter accessibility: may this tool stand at this point of this part? Parts with known answers, and a scorer.",
-    no_args_is_help=True, add_completion=False, pretty_exceptions_enable=False, rich_markup_mode="rich",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    rich_markup_mode="rich",
 )
 out, err = Console(), Console(stderr=True)
 #: Where results lie.
@@ -124,7 +127,9 @@ def run_command(
 def score_command(
     file: Annotated[Path, typer.Argument(help="CSV or Parquet with the columns id (row of the table, from 0) and answer (safe, blocked, undecided).")],
     json_file: Annotated[Path | None, typer.Option("--json", help="Write the results here.")] = None,
-    only_answered: Annotated[bool, typer.Option("--only-answered", help="Leave out postures that the file does not have; else they count as undecided.")] = False,
+    only_answered: Annotated[
+        bool, typer.Option("--only-answered", help="Leave out postures that the file does not have; else they count as undecided.")
+    ] = False,
     name: Annotated[str | None, typer.Option("--name", help="Name of the program.", show_default="that of the file")] = None,
     kind: Kind = "made",
     data: Data = DATA,
@@ -175,10 +180,7 @@ def export(
 
 
 @app.command()
-def check(
-    name: Annotated[str, typer.Argument(help="A made part.")],
-    count: Annotated[int, typer.Option(help="Postures that are compared.")] = 24,
-) -> None:
+def check(name: Annotated[str, typer.Argument(help="A made part.")], count: Annotated[int, typer.Option(help="Postures that are compared.")] = 24) -> None:
     """Compare a made part's closed forms with points of its exact surface."""
     from conformance.made.check import AGREE, differences
     from conformance.made.parts import PARTS
@@ -225,8 +227,7 @@ def available(name: str) -> str:
 
 @app.command()
 def table(
-    file: Annotated[Path, typer.Argument(help="The page to write.")],
-    results: Annotated[Path, typer.Option(help="Folder with results as JSON.")] = RESULTS,
+    file: Annotated[Path, typer.Argument(help="The page to write.")], results: Annotated[Path, typer.Option(help="Folder with results as JSON.")] = RESULTS
 ) -> None:
     """Write the page of results: a table of the programs, and one of each class of parts."""
     from conformance.page import page
@@ -253,11 +254,19 @@ def _show(document: dict[str, Any]) -> None:
     for text, count in document["why"].items():
         out.print(f"{count} times: {text}", markup=False, highlight=False)
     if document["seconds"]:
-        out.print(f"{document['seconds']:.1f} s ({document['prepare_seconds']:.1f} to prepare, {document['answer_seconds']:.1f} to answer), "
-                  f"{document['memory_mb']:.0f} MB", highlight=False)
+        out.print(
+            f"{document['seconds']:.1f} s ({document['prepare_seconds']:.1f} to prepare, {document['answer_seconds']:.1f} to answer), "
+            f"{document['memory_mb']:.0f} MB",
+            highlight=False,
+        )
     for each in document["false_answers"][:5]:
-        out.print(f"false {each['answer']}: row {each['row']}, {each['part']}, {each['tool']}, {each['setup']}: margin {each['low']} to {each['high']} mm, "
-                  f"{each['reason']}", markup=False, highlight=False, soft_wrap=True)
+        out.print(
+            f"false {each['answer']}: row {each['row']}, {each['part']}, {each['tool']}, {each['setup']}: margin {each['low']} to {each['high']} mm, "
+            f"{each['reason']}",
+            markup=False,
+            highlight=False,
+            soft_wrap=True,
+        )
 
 
 def main() -> None:

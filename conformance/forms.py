@@ -26,7 +26,6 @@ import numpy as np
 
 from conformance.tool import Floats, Piece, local, margin
 
-
 #: How often a grid of angles shrinks to a quarter about its best.
 _ZOOMS = 11
 #: A search on a surface: where it starts, its rounds, and the grid.

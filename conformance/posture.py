@@ -92,20 +92,25 @@ class Postures:
     def of_columns(cls, columns: dict[str, NDArray[np.generic]]) -> "Postures":
         """Return the table of flat columns; a column that is missing is a ValueError."""
         try:
-            return cls(*(
-                np.column_stack([np.asarray(columns[f"{f.name}_{x}"], float) for x in "xyz"]) if f.name in _VECTORS
-                else np.asarray(columns[f.name], str if f.name in _TEXTS else float)
-                for f in fields(cls)
-            ))
+            return cls(
+                *(
+                    np.column_stack([np.asarray(columns[f"{f.name}_{x}"], float) for x in "xyz"])
+                    if f.name in _VECTORS
+                    else np.asarray(columns[f.name], str if f.name in _TEXTS else float)
+                    for f in fields(cls)
+                )
+            )
         except KeyError as error:
             raise ValueError(f"the table of postures has no column {error.args[0]}") from None
 
     def rounded(self) -> "Postures":
         """Return the table as the files keep it."""
+
         def short(name: str, values: NDArray[np.generic]) -> NDArray[np.generic]:
             if name in _TEXTS:
                 return values
             return np.round(values.astype(float), _PLACES_UNIT if name in ("normal", "axis") else _PLACES_MM) + 0.0
+
         return Postures(*(short(f.name, getattr(self, f.name)) for f in fields(self)))
 
     def write_csv(self, path: Path, *, answers: bool = True) -> None:
@@ -124,8 +129,7 @@ class Postures:
         import pyarrow.parquet
 
         columns = self.rounded().columns()
-        words = {n: pa.array(v.tolist()).dictionary_encode() if path.suffix == ".parquet" else pa.array(v.tolist())
-                 for n, v in columns.items() if n in _TEXTS}
+        words = {n: pa.array(v.tolist()).dictionary_encode() if path.suffix == ".parquet" else pa.array(v.tolist()) for n, v in columns.items() if n in _TEXTS}
         table = pa.table({n: words[n] if n in words else pa.array(v) for n, v in columns.items()})
         if path.suffix == ".parquet":
             pyarrow.parquet.write_table(table, path, compression="zstd")
@@ -141,7 +145,7 @@ class Postures:
         import pyarrow.parquet
 
         if path.suffix == ".csv":
-            keep = pyarrow.csv.ConvertOptions(strings_can_be_null=False, column_types={n: "string" for n in _TEXTS})
+            keep = pyarrow.csv.ConvertOptions(strings_can_be_null=False, column_types=dict.fromkeys(_TEXTS, "string"))
             table = pyarrow.csv.read_csv(path, convert_options=keep)
         else:
             table = pyarrow.parquet.read_table(path)

@@ -49,11 +49,21 @@ class Ran:
         families = {name: part.family for name, part in suite.parts.items()}
         total = self.start_seconds + self.prepare_seconds + self.answer_seconds
         return {
-            "format": "cutter-accessibility-results", "version": VERSION, "kind": kind, "program": self.name, "all": every, "claims": self.claims,
+            "format": "cutter-accessibility-results",
+            "version": VERSION,
+            "kind": kind,
+            "program": self.name,
+            "all": every,
+            "claims": self.claims,
             **scored(self.postures, self.answers, families, tolerance, rows),
-            "seconds": round(total, 3), "start_seconds": round(self.start_seconds, 3), "prepare_seconds": round(self.prepare_seconds, 3),
-            "answer_seconds": round(self.answer_seconds, 3), "memory_mb": round(self.memory_mb, 1), "settings": self.settings,
-            "versions": {"python": sys.version.split()[0], **self.versions}, "why": dict(self.why.most_common()),
+            "seconds": round(total, 3),
+            "start_seconds": round(self.start_seconds, 3),
+            "prepare_seconds": round(self.prepare_seconds, 3),
+            "answer_seconds": round(self.answer_seconds, 3),
+            "memory_mb": round(self.memory_mb, 1),
+            "settings": self.settings,
+            "versions": {"python": sys.version.split()[0], **self.versions},
+            "why": dict(self.why.most_common()),
         }
 
 
@@ -178,7 +188,6 @@ def _work(pipe: Connection, name: str, groups: list[tuple[Part, Tool, str]], pos
         pipe.send((-1, error))
     except KeyboardInterrupt:
         pass
-
 
 
 def peak_memory() -> float:

@@ -113,8 +113,10 @@ def read(kind: str, folder: Path = DATA) -> Suite:
     parts = {}
     for entry in document["parts"]:
         path = folder / "made" / entry["file"] if kind == "made" else FETCHED / entry["file"]
-        held = {name: Held(tuple(s["axis"]), s.get("limit_deg"), tuple((tuple(a), tuple(b)) for a, b in s.get("boxes", ())), s.get("table"))
-                for name, s in entry["setups"].items()}
+        held = {
+            name: Held(tuple(s["axis"]), s.get("limit_deg"), tuple((tuple(a), tuple(b)) for a, b in s.get("boxes", ())), s.get("table"))
+            for name, s in entry["setups"].items()
+        }
         tools = {name: tool_of(name, tool) for name, tool in entry["tools"].items()}
         parts[entry["name"]] = Part(entry["name"], entry["family"], entry["title"], path, tools, held, tuple(entry.get("answers", ())))
     return Suite(parts, Postures.read(folder / f"{kind}.parquet"))

@@ -74,8 +74,7 @@ class Piece:
         hi, b = np.where((b < 0) & (a >= 0), hi - b / steep, hi), np.maximum(b, np.where(a >= 0, 0.0, b))
         gone = (cut > 0) & ((lo > hi) | (a < 0) | (b < 0))
         keep = lambda new, old: np.where(gone, old, new)
-        return replace(self, h0=keep(lo, h0), r0=keep(a, r0), h1=keep(hi, h1), r1=keep(b, r1),
-                       rho=np.maximum(self.rho - s, 0.0)), gone
+        return replace(self, h0=keep(lo, h0), r0=keep(a, r0), h1=keep(hi, h1), r1=keep(b, r1), rho=np.maximum(self.rho - s, 0.0)), gone
 
     @property
     def deepest(self) -> float:
@@ -125,8 +124,17 @@ class Tool:
     cutting: float | None = None
 
     @classmethod
-    def flat(cls, diameter: float, length: float, *, holder: tuple[Vertex, ...] = (), flutes: float | None = None,
-             shank: float | None = None, corner: float = 0.0, name: str | None = None) -> "Tool":
+    def flat(
+        cls,
+        diameter: float,
+        length: float,
+        *,
+        holder: tuple[Vertex, ...] = (),
+        flutes: float | None = None,
+        shank: float | None = None,
+        corner: float = 0.0,
+        name: str | None = None,
+    ) -> "Tool":
         """Return a flat end, a bull nose (`corner`) or a ball end (`corner` = half the diameter), with a shank above the flutes."""
         radius, top = 0.5 * diameter, length if flutes is None else flutes
         low = [(0.0, radius)] if corner == 0 else [(0.0, radius - corner), (corner, radius, corner)]

@@ -217,7 +217,9 @@ def numbers(tool: Tool) -> Floats:
     return np.array([[p.h0, p.r0, p.h1, p.r1, p.rho] for p in tool.pieces], float)
 
 
-def least(shape: Tree, pieces: Floats, tip: Floats, axis: Floats, exempt: NDArray[np.bool_], enough: float = 5.0, deep: float = -np.inf) -> tuple[float, float, int]:
+def least(
+    shape: Tree, pieces: Floats, tip: Floats, axis: Floats, exempt: NDArray[np.bool_], enough: float = 5.0, deep: float = -np.inf
+) -> tuple[float, float, int]:
     """Return bounds of the least signed distance (mm) of one posture's tool from all faces that are not exempt.
 
     `pieces (k, 5)` as `numbers` gives them; `exempt (faces,)`. Distances beyond `enough` are not told apart: the lower bound is then `enough`. Depths beyond

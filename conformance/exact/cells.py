@@ -224,8 +224,9 @@ def _trim(face: TopoDS_Face, adaptor: BRepAdaptor_Surface) -> tuple[Floats, Floa
         bezier = Geom2dConvert_BSplineCurveToBezierCurve(spline)
         for k in range(bezier.NbArcs()):
             arc = bezier.Arc(k + 1)
-            net = np.array([[arc.Pole(i + 1).X() * arc.Weight(i + 1), arc.Pole(i + 1).Y() * arc.Weight(i + 1), arc.Weight(i + 1)]
-                            for i in range(arc.NbPoles())])
+            net = np.array(
+                [[arc.Pole(i + 1).X() * arc.Weight(i + 1), arc.Pole(i + 1).Y() * arc.Weight(i + 1), arc.Weight(i + 1)] for i in range(arc.NbPoles())]
+            )
             length = _length(adaptor, net)
             for piece in _pieces(net, max(1, int(np.ceil(length / (0.5 * EDGE))))):
                 poles = piece[:, :2] / piece[:, 2:]
@@ -271,9 +272,7 @@ def _pieces(net: Floats, count: int) -> list[Floats]:
     return pieces
 
 
-def _trimmed(
-    trim: BRepTopAdaptor_FClass2d, corners: Floats, thick: Floats, rect: Floats, boxes: Floats
-) -> tuple[Floats, Floats, Floats, NDArray[np.bool_]]:
+def _trimmed(trim: BRepTopAdaptor_FClass2d, corners: Floats, thick: Floats, rect: Floats, boxes: Floats) -> tuple[Floats, Floats, Floats, NDArray[np.bool_]]:
     """Drop cells outside the trim, split those that it may cross down to EDGE, and tell the whole ones."""
     done: list[tuple[Any, ...]] = []
     order = np.argsort(boxes[:, 0], kind="stable")

@@ -36,12 +36,22 @@ def generate(folder: Path = DATA, each: int = EACH, tell: Callable[[str], None] 
 
 def _entry(part: MadePart, path: Path) -> dict[str, Any]:
     """Return a part as the file has it."""
-    answers = [{"kind": a.kind, "value": a.value, "formula": a.formula, **({"tool": a.tool} if a.tool else {}), "setup": a.setup, **a.given}
-               for a in part.answers]
-    return {"name": part.name, "family": part.family, "title": part.title, "file": path.name, "sha256": sha256(path), "licence": "CC0-1.0",
-            **({"twin_of": part.twin_of} if part.twin_of else {}), "derivation": " ".join(part.derivation.split()),
-            "tools": {t.name: tool_entry(t) for t in part.tools},
-            "setups": {s.name: setup_entry(s.axis, s.limit_deg, s.boxes, s.table) for s in part.setups}, "answers": answers}
+    answers = [
+        {"kind": a.kind, "value": a.value, "formula": a.formula, **({"tool": a.tool} if a.tool else {}), "setup": a.setup, **a.given} for a in part.answers
+    ]
+    return {
+        "name": part.name,
+        "family": part.family,
+        "title": part.title,
+        "file": path.name,
+        "sha256": sha256(path),
+        "licence": "CC0-1.0",
+        **({"twin_of": part.twin_of} if part.twin_of else {}),
+        "derivation": " ".join(part.derivation.split()),
+        "tools": {t.name: tool_entry(t) for t in part.tools},
+        "setups": {s.name: setup_entry(s.axis, s.limit_deg, s.boxes, s.table) for s in part.setups},
+        "answers": answers,
+    }
 
 
 def _without_date(path: Path) -> None:

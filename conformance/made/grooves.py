@@ -18,8 +18,16 @@ _RIM = (_JOIN[0] + _LP * np.cos(_SLOPE), _JOIN[1] + _LP * np.sin(_SLOPE))
 def _v_groove() -> Any:
     import cadquery as cq
 
-    profile = (cq.Workplane("XZ").moveTo(*_RIM).lineTo(*_JOIN).threePointArc((0.0, 0.0), (-_JOIN[0], _JOIN[1])).lineTo(-_RIM[0], _RIM[1])
-               .lineTo(-_RIM[0], -10.0).lineTo(_RIM[0], -10.0).close())
+    profile = (
+        cq.Workplane("XZ")
+        .moveTo(*_RIM)
+        .lineTo(*_JOIN)
+        .threePointArc((0.0, 0.0), (-_JOIN[0], _JOIN[1]))
+        .lineTo(-_RIM[0], _RIM[1])
+        .lineTo(-_RIM[0], -10.0)
+        .lineTo(_RIM[0], -10.0)
+        .close()
+    )
     return profile.extrude(_HALF, both=True)
 
 
@@ -79,22 +87,35 @@ def _free_tilts(rotation: float) -> list[list[float]]:
 _GROOVE_TOOL = Tool.flat(16.0, 90.0)
 
 V_GROOVE = MadePart(
-    "v_groove", "grooves", "V-groove with a round bottom, the seed's first example",
+    "v_groove",
+    "grooves",
+    "V-groove with a round bottom, the seed's first example",
     """Two planes at 120 degrees, each 25 mm wide, joined by 60 degrees of a cylinder of radius 5. Walls are convex prisms between join
     and rim (form: separating planes); the bottom is a Surface. Free tilts at the middle of the bottom line: see `_free_tilts`. The seed's rule for rear
     gouging takes a point that is free at tilt 0 as free for good; the true lower ends lie up to 13 degrees higher, and none is left at 50 degrees.""",
     _v_groove,
-    (section("right wall", _JOIN, _RIM, (_RIM[0], -10.0), (_JOIN[0], -10.0)),
-     section("left wall", (-_JOIN[0], _JOIN[1]), (-_RIM[0], _RIM[1]), (-_RIM[0], -10.0), (-_JOIN[0], -10.0)),
-     Surface("bottom", _arc, (-_SLOPE, _SLOPE), (-_HALF, _HALF), (25, 221))),
+    (
+        section("right wall", _JOIN, _RIM, (_RIM[0], -10.0), (_JOIN[0], -10.0)),
+        section("left wall", (-_JOIN[0], _JOIN[1]), (-_RIM[0], _RIM[1]), (-_RIM[0], -10.0), (-_JOIN[0], -10.0)),
+        Surface("bottom", _arc, (-_SLOPE, _SLOPE), (-_HALF, _HALF), (25, 221)),
+    ),
     (_GROOVE_TOOL, Tool.ball(8.0, 60.0), Tool.flat(6.0, 50.0, corner=1.0)),
     _v_contacts,
     answers=tuple(
-        Answer("free_tilts", _free_tilts(turn), "rim on the opposite wall, side on the rim line, local gouging: grooves._free_tilts",
-               tool=_GROOVE_TOOL.name,
-               given={"contact": [0.0, 0.0, 0.0], "normal": [0.0, 0.0, 1.0],
-                      "lean": [float(np.cos(np.radians(turn))), float(np.sin(np.radians(turn))), 0.0], "rotation_deg": turn})
-        for turn in (0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 90.0)),
+        Answer(
+            "free_tilts",
+            _free_tilts(turn),
+            "rim on the opposite wall, side on the rim line, local gouging: grooves._free_tilts",
+            tool=_GROOVE_TOOL.name,
+            given={
+                "contact": [0.0, 0.0, 0.0],
+                "normal": [0.0, 0.0, 1.0],
+                "lean": [float(np.cos(np.radians(turn))), float(np.sin(np.radians(turn))), 0.0],
+                "rotation_deg": turn,
+            },
+        )
+        for turn in (0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 90.0)
+    ),
 )
 
 PARTS = (V_GROOVE,)

@@ -31,10 +31,14 @@ def _tilts_away() -> list[list[float]]:
 
 
 HOLDER_AT_WALL = MadePart(
-    "holder_at_wall", "holders", "A holder against a wall of height h at distance d",
+    "holder_at_wall",
+    "holders",
+    "A holder against a wall of height h at distance d",
     """Two convex bars: the plate and a wall, 22 mm high, 8 mm from the contact; the holder's radius is 12. Upright, the holder has to stay above the wall. With 20 mm of
     stick-out the tool has to tilt away, until its holder is beside the wall or above its edge, and not so far that it comes to the plate.""",
-    _build, _MATERIALS, (_TALL, _LOW, Tool.flat(8.0, 25.0, corner=1.0, holder=holder(25.0, 10.0))),
+    _build,
+    _MATERIALS,
+    (_TALL, _LOW, Tool.flat(8.0, 25.0, corner=1.0, holder=holder(25.0, 10.0))),
     on_lines(((-10, 0), (_D, 0)), ((_D, 0), (_D, _H)), ((_D, _H), (_D + 8, _H))),
     answers=(
         Answer("least_stickout", _H, "the wall's height", _TALL.name, given=along((0, 0, 0), _Z, _Z)),
@@ -63,19 +67,25 @@ def _away(tilt: float) -> tuple[float, float, float]:
 
 
 HOLDER_TILTED = MadePart(
-    "holder_tilted_at_wall", "holders", "A tilted holder against a wall",
+    "holder_tilted_at_wall",
+    "holders",
+    "A tilted holder against a wall",
     """Two convex bars: the plate and a wall, 25 mm high, 11 mm from the contact. A flat end of radius 5 tilts away from it: its heel is before the wall, and its holder of
     radius 12 is above the wall's edge or before the wall, whichever needs less stick-out.""",
-    _build, _MATERIALS, (_LEANT, Tool.flat(10.0, 35.0), Tool.ball(8.0, 22.0, holder=((22.0, 6.0), (34.0, 14.0)))),
+    _build,
+    _MATERIALS,
+    (_LEANT, Tool.flat(10.0, 35.0), Tool.ball(8.0, 22.0, holder=((22.0, 6.0), (34.0, 14.0)))),
     on_lines(((-10, 0), (_FAR, 0)), ((_FAR, 0), (_FAR, _HIGH)), ((_FAR, _HIGH), (_FAR + 8, _HIGH))),
     answers=tuple(
         Answer("least_stickout", _least(t), "min(h cos t - d sin t, ((R + Rh) cos t - d) / sin t)", _LEANT.name, given=along((0, 0, 0), _Z, _away(t)))
-        for t in (8.0, 15.0, 25.0)),
+        for t in (8.0, 15.0, 25.0)
+    ),
 )
 
 _STEPS = ((6.0, 8.0), (14.0, 20.0))
-_MATERIALS, _build = bars(floor=rectangle(-40, _STEPS[0][0], -8, 0), low=rectangle(_STEPS[0][0], _STEPS[1][0], -8, _STEPS[0][1]),
-                          high=rectangle(_STEPS[1][0], 30, -8, _STEPS[1][1]))
+_MATERIALS, _build = bars(
+    floor=rectangle(-40, _STEPS[0][0], -8, 0), low=rectangle(_STEPS[0][0], _STEPS[1][0], -8, _STEPS[0][1]), high=rectangle(_STEPS[1][0], 30, -8, _STEPS[1][1])
+)
 _SMALL = Tool.ball(6.0, 24.0, holder=holder(24.0, 10.0), name="ball_D6_holder_D20")
 _LARGE = Tool.ball(6.0, 24.0, holder=holder(24.0, 16.0), name="ball_D6_holder_D32")
 _CONE = Tool.ball(6.0, 24.0, holder=((24.0, 7.0), (34.0, 16.0)), name="ball_D6_holder_cone")
@@ -91,10 +101,14 @@ def _above(low: float, slope: float) -> float:
 
 
 HOLDER_OVER_STEP = MadePart(
-    "holder_over_step", "holders", "A holder over two steps",
+    "holder_over_step",
+    "holders",
+    "A holder over two steps",
     """Three convex bars side by side: floor, a step of 8 mm at 6 mm from the contact and one of 20 mm at 14 mm. A holder of radius 10 has to clear the first, one of
     radius 16 both; a conical holder clears the second with that part of it which is as wide.""",
-    _build, _MATERIALS, (_SMALL, _LARGE, _CONE),
+    _build,
+    _MATERIALS,
+    (_SMALL, _LARGE, _CONE),
     on_lines(((-10, 0), (6, 0)), ((6, 0), (6, 8)), ((6, 8), (14, 8)), ((14, 8), (14, 20)), ((14, 20), (22, 20))),
     answers=(
         Answer("least_stickout", _above(10.0, 0.0), "the first step's height", _SMALL.name, given=along((0, 0, 0), _Z, _Z)),

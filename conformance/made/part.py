@@ -166,8 +166,17 @@ def _drawn(part: MadePart, tool: Tool, setup: Setup, rng: np.random.Generator, c
     here, there = (blocked(part, tool, setup, holds, a, tool.stands(contact, normal, a)) for a in (one, two))
     pair = np.flatnonzero(here != there)[: count // 3]
     swap = here[pair, None]
-    border = _at_border(part, tool, setup, [h[pair] for h in holds], contact[pair], normal[pair], np.where(swap, two[pair], one[pair]),
-                        np.where(swap, one[pair], two[pair]), rng)
+    border = _at_border(
+        part,
+        tool,
+        setup,
+        [h[pair] for h in holds],
+        contact[pair],
+        normal[pair],
+        np.where(swap, two[pair], one[pair]),
+        np.where(swap, one[pair], two[pair]),
+        rng,
+    )
     rest = count - len(pair)
     both = np.flatnonzero(~here), np.flatnonzero(here)
     rows = np.concatenate([mine[: max(rest // 2, rest - len(other))] for mine, other in zip(both, both[::-1], strict=True)])
@@ -186,8 +195,7 @@ def _axes(part: MadePart, rng: np.random.Generator, contact: Floats, normal: Flo
 
 
 def _at_border(
-    part: MadePart, tool: Tool, setup: Setup, holds: list[np.ndarray], contact: Floats, normal: Floats, safe: Floats, hit: Floats,
-    rng: np.random.Generator,
+    part: MadePart, tool: Tool, setup: Setup, holds: list[np.ndarray], contact: Floats, normal: Floats, safe: Floats, hit: Floats, rng: np.random.Generator
 ) -> Floats:
     """Return axes near the border: between a safe and a blocked one, by bisection, then some thousandths of the way beside it."""
     n = len(contact)
@@ -219,5 +227,18 @@ def _table(part: MadePart, tool: Tool, setup: Setup, contact: Floats, normal: Fl
         border |= blocked(part, tool, setup, holds, near, tool.stands(contact, normal, near), contact_only=True)
     margin = np.where(border & ~judged.blocked, 0.0, judged.margin)
     word = lambda text: np.full(n, text)
-    return Postures(word(part.name), word(tool.name), word(setup.name), contact, normal, axis, tip,
-                    np.where(judged.blocked, "blocked", "safe"), margin, margin, judged.limit_deg, judged.reason, word("form"))
+    return Postures(
+        word(part.name),
+        word(tool.name),
+        word(setup.name),
+        contact,
+        normal,
+        axis,
+        tip,
+        np.where(judged.blocked, "blocked", "safe"),
+        margin,
+        margin,
+        judged.limit_deg,
+        judged.reason,
+        word("form"),
+    )

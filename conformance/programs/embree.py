@@ -23,8 +23,13 @@ class Program:
 
     def __init__(self, chord: float = 0.005, angle: float = 0.1, tolerance: float = 0.01, lines: int = 72) -> None:
         self.settings: dict[str, Any] = {
-            "part_chord_error_mm": chord, "part_angle_rad": angle, "tool_chord_error_mm": chord, "tool_shrunk_by_mm": tolerance,
-            "lines_about_the_axis": lines, "rays": "both ways along each side of the outline, and across the bottom", "precision": "single",
+            "part_chord_error_mm": chord,
+            "part_angle_rad": angle,
+            "tool_chord_error_mm": chord,
+            "tool_shrunk_by_mm": tolerance,
+            "lines_about_the_axis": lines,
+            "rays": "both ways along each side of the outline, and across the bottom",
+            "precision": "single",
         }
         self.why: Counter[str] = Counter()
         self._parts: dict[str, Mesh] = {}

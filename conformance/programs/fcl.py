@@ -20,8 +20,12 @@ class Program:
 
     def __init__(self, chord: float = 0.005, angle: float = 0.1, tolerance: float = 0.01) -> None:
         self.settings: dict[str, Any] = {
-            "part_chord_error_mm": chord, "part_angle_rad": angle, "tool_chord_error_mm": chord, "tool_shrunk_by_mm": tolerance,
-            "query": "BVHModel against BVHModel, collide, one contact", "table": "a block of 4 m",
+            "part_chord_error_mm": chord,
+            "part_angle_rad": angle,
+            "tool_chord_error_mm": chord,
+            "tool_shrunk_by_mm": tolerance,
+            "query": "BVHModel against BVHModel, collide, one contact",
+            "table": "a block of 4 m",
         }
         self.why: Counter[str] = Counter()
         self._parts: dict[str, Any] = {}

@@ -23,8 +23,11 @@ class PointMaps:
     libraries: tuple[str, ...] = ("plan-cutters", "cadquery-ocp-novtk", "numba", "numpy")
 
     def __init__(self, tolerance: float = 0.01) -> None:
-        self.settings: dict[str, Any] = {"tolerance_mm": tolerance, "call": "posture_map(Scene.of(part, setup, tolerance, fixtures), point, cutter, machine, "
-                                         "rotations=[that of the posture], tilt=that of the posture and 0.25 deg about it)"}
+        self.settings: dict[str, Any] = {
+            "tolerance_mm": tolerance,
+            "call": "posture_map(Scene.of(part, setup, tolerance, fixtures), point, cutter, machine, "
+            "rotations=[that of the posture], tilt=that of the posture and 0.25 deg about it)",
+        }
         self.why: Counter[str] = Counter()
         self._scenes: dict[tuple[str, Any], Any] = {}
         self._parts: dict[str, Any] = {}
@@ -74,8 +77,7 @@ class PointMaps:
         if np.linalg.norm(stands - row.tip[0]) > _SAME_MM:
             return UNDECIDED, "the normal at the contact is another one: an edge, or another face"
         low, high = max(0.0, tilt - _ABOUT), min(np.pi, tilt + _ABOUT)
-        pm = posture_map(scene, point=point, cutter=cutter, rotations=[rotation], tilt=(low, high), machine=machine,
-                            tolerance=self.settings["tolerance_mm"])
+        pm = posture_map(scene, point=point, cutter=cutter, rotations=[rotation], tilt=(low, high), machine=machine, tolerance=self.settings["tolerance_mm"])
         if not pm.certified:
             return UNDECIDED, "the map is not certified: " + "; ".join(pm.missing)
         if _holds(pm.free[0], tilt, _SAME_RAD):
@@ -158,8 +160,9 @@ def cutter_of(tool: Tool) -> Any:
         if nose > top + 1e-9 or (nose < top - 1e-9 and (stages or cutting[-1][1] > tool.holder[0][1])):
             raise ValueError("a holder that begins where the cutter does not end")
         length = nose
-        holder = Holder(tuple(Segment(float(a[1]), float(b[0] - a[0]), float(b[1])) for a, b in zip(tool.holder, tool.holder[1:], strict=False)
-                              if b[0] - a[0] > 1e-9))
+        holder = Holder(
+            tuple(Segment(float(a[1]), float(b[0] - a[0]), float(b[1])) for a, b in zip(tool.holder, tool.holder[1:], strict=False) if b[0] - a[0] > 1e-9)
+        )
     more: dict[str, Any] = {"holder": holder, "name": tool.name}
     if stages:
         more |= {"flutes": flutes, "neck": tuple(stages)}

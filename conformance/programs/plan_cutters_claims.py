@@ -21,7 +21,11 @@ class _Planner:
 
     def __init__(self, tolerance: float = 0.01, spacing: float = 4.0, claims: int = 120) -> None:
         self.settings: dict[str, Any] = {
-            "tolerance_mm": tolerance, "spacing_mm": spacing, "claims_a_tool_and_setup": claims, "area_budget": 0, "posture_maps": self._maps,
+            "tolerance_mm": tolerance,
+            "spacing_mm": spacing,
+            "claims_a_tool_and_setup": claims,
+            "area_budget": 0,
+            "posture_maps": self._maps,
         }
         self.why: Counter[str] = Counter()
         self._parts: dict[str, Any] = {}
@@ -45,8 +49,15 @@ class _Planner:
             return claimed(part, tool, setup, rows)
         held = part.setups[setup]
         result = plan(
-            self._parts[part.name], cutters=[cutter], setup=held.axis, machine=machine_of(held), fixtures=fixtures_of(held),
-            tolerance=self.settings["tolerance_mm"], spacing=self.settings["spacing_mm"], area_budget=0, posture_maps=self._maps,
+            self._parts[part.name],
+            cutters=[cutter],
+            setup=held.axis,
+            machine=machine_of(held),
+            fixtures=fixtures_of(held),
+            tolerance=self.settings["tolerance_mm"],
+            spacing=self.settings["spacing_mm"],
+            area_budget=0,
+            posture_maps=self._maps,
         )
         self._gather(result, tool, held, rows)
         count, most = len(rows["verdict"]), self.settings["claims_a_tool_and_setup"]

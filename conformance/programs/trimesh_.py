@@ -24,8 +24,13 @@ class Program:
 
     def __init__(self, chord: float = 0.005, angle: float = 0.1, tolerance: float = 0.01, pitch: float = 1.0) -> None:
         self.settings: dict[str, Any] = {
-            "part_chord_error_mm": chord, "part_angle_rad": angle, "tool_shrunk_by_mm": tolerance, "pitch_mm": pitch,
-            "query": "Trimesh.contains (rays, by embreex where it is installed)", "boxes": "points within", "table": "the tool's lowest point",
+            "part_chord_error_mm": chord,
+            "part_angle_rad": angle,
+            "tool_shrunk_by_mm": tolerance,
+            "pitch_mm": pitch,
+            "query": "Trimesh.contains (rays, by embreex where it is installed)",
+            "boxes": "points within",
+            "table": "the tool's lowest point",
         }
         self.why: Counter[str] = Counter()
         self._parts: dict[str, Any] = {}

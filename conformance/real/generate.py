@@ -21,8 +21,11 @@ def tools(diameter: float) -> list[Tool]:
     """Return the tools that ask about a part: a flat end with shank and holder, a bull nose, a ball end with holder."""
     d = diameter
     holder = ((5.5 * d, 1.6 * d), (8.0 * d, 1.6 * d), (9.0 * d, 2.2 * d))
-    return [Tool.flat(d, 5.5 * d, flutes=3.0 * d, shank=d, holder=holder), Tool.flat(0.75 * d, 6.0 * d, corner=0.15 * d),
-            Tool.ball(0.5 * d, 5.5 * d, flutes=1.5 * d, shank=0.8 * d, holder=holder)]
+    return [
+        Tool.flat(d, 5.5 * d, flutes=3.0 * d, shank=d, holder=holder),
+        Tool.flat(0.75 * d, 6.0 * d, corner=0.15 * d),
+        Tool.ball(0.5 * d, 5.5 * d, flutes=1.5 * d, shank=0.8 * d, holder=holder),
+    ]
 
 
 def one(source: Source, folder: Path = FETCHED, each: int = EACH, tell: Callable[[str], None] = lambda line: None) -> Postures:
@@ -32,9 +35,18 @@ def one(source: Source, folder: Path = FETCHED, each: int = EACH, tell: Callable
 
 def entry(source: Source) -> dict[str, Any]:
     """Return a part as `real.json` has it."""
-    return {"name": source.name, "family": "real", "title": f"{source.repo}: {source.path}", "file": source.file, "sha256": source.sha256,
-            "licence": source.licence, "source": {"repo": source.repo, "path": source.path, "commit": source.commit},
-            "tools": {t.name: tool_entry(t) for t in tools(source.diameter)}, "setups": {"free": setup_entry((0.0, 0.0, 1.0))}, "answers": []}
+    return {
+        "name": source.name,
+        "family": "real",
+        "title": f"{source.repo}: {source.path}",
+        "file": source.file,
+        "sha256": source.sha256,
+        "licence": source.licence,
+        "source": {"repo": source.repo, "path": source.path, "commit": source.commit},
+        "tools": {t.name: tool_entry(t) for t in tools(source.diameter)},
+        "setups": {"free": setup_entry((0.0, 0.0, 1.0))},
+        "answers": [],
+    }
 
 
 def generate(folder: Path = DATA, fetched: Path = FETCHED, each: int = EACH, tell: Callable[[str], None] = lambda line: None) -> None:

@@ -60,8 +60,10 @@ def ready(shape: TopoDS_Shape) -> Shape:
     while walk.More():
         solids.append(walk.Current())
         walk.Next()
-    faces = [(BRepAdaptor_Surface(f, True), BRepTopAdaptor_FClass2d(f, 1e-9), BRepTools.UVBounds_s(f), -1.0 if f.Orientation() == TopAbs_REVERSED else 1.0)
-             for f in listed]
+    faces = [
+        (BRepAdaptor_Surface(f, True), BRepTopAdaptor_FClass2d(f, 1e-9), BRepTools.UVBounds_s(f), -1.0 if f.Orientation() == TopAbs_REVERSED else 1.0)
+        for f in listed
+    ]
     return Shape(tree(cells(shape)), faces, joined, solids)
 
 
@@ -114,9 +116,7 @@ def bounds(shape: Shape, tool: Tool, face: NDArray[np.int64], tip: Floats, axis:
     return Proved(*out)
 
 
-def postures(
-    shape: Shape, name: str, tools: list[Tool], count: int, seed: int, tell: Callable[[str], None] = lambda line: None
-) -> Postures:
+def postures(shape: Shape, name: str, tools: list[Tool], count: int, seed: int, tell: Callable[[str], None] = lambda line: None) -> Postures:
     """Return about `count` proved postures, half of them safe as far as there are both."""
     rng = np.random.default_rng([seed, *name.encode()])
     each = int(np.ceil(count / len(tools)))
@@ -156,8 +156,21 @@ def _of_tool(shape: Shape, name: str, tool: Tool, rng: np.random.Generator, coun
     tell(f"{name} {tool.name}: {safe.sum()} safe, {blocked.sum()} blocked, {len(axis) - len(kept)} not decided")
     n = len(kept)
     word = lambda text: np.full(n, text)
-    return Postures(word(name), word(tool.name), word("free"), contact[kept], normal[kept], axis[kept], tip[kept],
-                    np.where(blocked[kept], "blocked", "safe"), low[kept], high[kept], np.full(n, np.nan), word(""), word("bound"))
+    return Postures(
+        word(name),
+        word(tool.name),
+        word("free"),
+        contact[kept],
+        normal[kept],
+        axis[kept],
+        tip[kept],
+        np.where(blocked[kept], "blocked", "safe"),
+        low[kept],
+        high[kept],
+        np.full(n, np.nan),
+        word(""),
+        word("bound"),
+    )
 
 
 def _drawn(rng: np.random.Generator, normal: Floats) -> Floats:
@@ -172,9 +185,7 @@ def _blocked(shape: Shape, tool: Tool, contact: Floats, normal: Floats, face: ND
     return bounds(shape, tool, face, tool.stands(contact, normal, axis), axis, sign=True).low < -SAFE
 
 
-def _border(
-    shape: Shape, tool: Tool, contact: Floats, normal: Floats, face: NDArray[np.int64], safe: Floats, hit: Floats, rng: np.random.Generator
-) -> Floats:
+def _border(shape: Shape, tool: Tool, contact: Floats, normal: Floats, face: NDArray[np.int64], safe: Floats, hit: Floats, rng: np.random.Generator) -> Floats:
     """Return axes near the border between a safe and a blocked one."""
     n = len(contact)
     a, b = np.zeros(n), np.ones(n)

@@ -74,6 +74,7 @@ def _local(source: Source, files: Path | None) -> Path | None:
 
 def _by_git(source: Source, remote: str, scratch: Path) -> Path:
     """Fetch one commit without its other files, and return the one asked for."""
+
     def git(*words: str) -> None:
         subprocess.run(["git", "-C", str(scratch), *words], check=True, capture_output=True, text=True, timeout=600)
 

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 pytest.importorskip("typer")
-from typer.testing import CliRunner  # noqa: E402
+from typer.testing import CliRunner
 
-from conformance.__main__ import app, write_aside  # noqa: E402
-from conformance.score import write_answers  # noqa: E402
-from conformance.suite import Suite  # noqa: E402
+from conformance.__main__ import app, write_aside
+from conformance.score import write_answers
+from conformance.suite import Suite
 
 
 def call(*words: object) -> tuple[int, str, str]:
