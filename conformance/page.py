@@ -55,8 +55,9 @@ def page(folder: Path) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _rank(document: dict[str, Any]) -> tuple[int, float, str]:
-    return document["false_safe"], -(document["score"] or 0.0), document["program"]
+def _rank(document: dict[str, Any]) -> tuple[bool, int, float, str]:
+    """Return the key of the order: the fewest false safe answers first, but who decides nothing comes last."""
+    return not document["score"], document["false_safe"], -(document["score"] or 0.0), document["program"]
 
 
 def _section(kind: str, claims: bool, found: list[dict[str, Any]]) -> list[str]:

@@ -90,7 +90,7 @@ def _outline() -> list[str]:
     holder = [spot(h, r) for h, r in [(24.0, 0.0), (24.0, 9.0), (34.0, 9.0), (34.0, 0.0)]]
     return [
         _shape([*cutter, spot(24.0, 0.0)], _TOOL, 'fill-opacity="0.65"'), _shape(holder, _HOLDER, 'fill-opacity="0.65"'),
-        _arrow(spot(0, 0), spot(39, 0)), _text((base[0] - 8, spot(38, 0)[1]), "height", anchor="end", weight="bold"),
+        _arrow(spot(0, 0), spot(37, 0)), _text((base[0] - 8, spot(35.4, 0)[1]), "height", anchor="end", weight="bold"),
         _arrow(spot(0, 0), spot(0, 13)), _text((spot(0, 13)[0] - 4, base[1] + 22), "radius", weight="bold", anchor="end"),
         *(_dot(spot(h, r)) for h, r in [(0, 4), (2, 6), (14, 6), (14, 4.5), (24, 4.5), (24, 9), (34, 9)]),
         _text((spot(0, 4)[0] - 4, base[1] + 22), "(0, 4)", size=13, anchor="middle"), _text((spot(2, 6)[0] + 8, spot(2, 6)[1] + 2), "(2, 6, 2): corner arc 2", size=13),
@@ -115,7 +115,7 @@ def _margins() -> list[str]:
         f'<circle cx="{right + 5}" cy="250" r="40" fill="none" stroke="{_BAD}" stroke-width="2"/>', _dot((right + 5, 250), _BAD),
         _line((right + 5, 250), (right + 45, 250), _BAD), _text((right - 25, 355), "margin &lt; 0", _BAD, weight="bold"),
         _text((right - 45, 375), "minus the depth: radius of the", size=13), _text((right - 45, 392), "largest ball about a point of the", size=13),
-        _text((right - 45, 409), "material that fits in the tool", size=13),
+        _text((right - 45, 409), "material that fits in a piece of it", size=13),
         _text((845, 30), "Signs of a margin", size=18, weight="bold"),
         _text((845, 52), "low and high bound it; limit_deg &gt; 0: within the machine's limit", size=13),
         _text((845, 74), "blocked: margin &lt; 0 or limit_deg &lt; 0", size=13),

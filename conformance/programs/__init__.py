@@ -29,7 +29,7 @@ NEEDS = {
     "plan-cutters-plans": [("plan_cutters", "plan-cutters")],
     "fcl": [("fcl", "python-fcl"), ("OCP", "cadquery-ocp")],
     "embree": [("embreex", "embreex"), ("OCP", "cadquery-ocp")],
-    "trimesh": [("trimesh", "trimesh embreex"), ("OCP", "cadquery-ocp")],
+    "trimesh": [("trimesh", "trimesh embreex"), ("embreex", "trimesh embreex"), ("OCP", "cadquery-ocp")],
     "opencamlib": [("opencamlib", "opencamlib"), ("OCP", "cadquery-ocp")],
     "naive": [("OCP", "cadquery-ocp")],
 }

@@ -168,7 +168,9 @@ def cutter_of(tool: Tool) -> Any:
         return Cutter(radius, length, corner, **more)
     if corner:
         raise ValueError("a round corner under a taper")
-    outline = tuple((r, h) for h, r in cutting)
+    if len(cutting) == 2:
+        return Cutter(radius, length, taper=float(np.arctan2(cutting[1][1] - radius, flutes)), flutes=flutes, **{k: v for k, v in more.items() if k != "flutes"})
+    outline = ((0.0, 0.0), *((r, h) for h, r in cutting if (h, r) != (0.0, 0.0)))
     return Cutter.form(outline, length=length, **{k: v for k, v in more.items() if k != "flutes"})
 
 

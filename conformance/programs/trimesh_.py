@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 
 from conformance.posture import Postures
-from conformance.programs import needs
 from conformance.programs.meshes import frames, outlines, part_mesh
 from conformance.programs.protocol import UNDECIDED, Words, answered, below_table, beyond_limit, within_boxes
 from conformance.suite import Held, Part
@@ -25,14 +24,15 @@ class Program:
     def __init__(self, chord: float = 0.005, angle: float = 0.1, tolerance: float = 0.01, pitch: float = 1.0) -> None:
         self.settings: dict[str, Any] = {
             "part_chord_error_mm": chord, "part_angle_rad": angle, "tool_shrunk_by_mm": tolerance, "pitch_mm": pitch,
-            "query": "Trimesh.contains (rays, by embreex where it is installed)", "boxes": "points within", "table": "the tool's lowest point",
+            "query": "Trimesh.contains (rays, by embreex)", "boxes": "points within", "table": "the tool's lowest point",
         }
         self.why: Counter[str] = Counter()
         self._parts: dict[str, Any] = {}
 
     def prepare(self, part: Part) -> None:
         """Mesh the part."""
-        trimesh = needs("trimesh", "trimesh embreex")
+        import trimesh
+
         mesh = part_mesh(part.path, self.settings["part_chord_error_mm"], self.settings["part_angle_rad"])
         self._parts[part.name] = trimesh.Trimesh(mesh.vertices, mesh.faces, process=True)
 
