@@ -6,8 +6,14 @@ from typing import Any
 
 #: Columns of a table of results: title and key.
 CELLS = (
-    ("postures", "postures"), ("border", "border"), ("right", "right"), ("false safe", "false_safe"), ("false blocked", "false_blocked"),
-    ("undecided", "undecided"), ("worst mm", "worst_mm"), ("score", "score"),
+    ("postures", "postures"),
+    ("border", "border"),
+    ("right", "right"),
+    ("false safe", "false_safe"),
+    ("false blocked", "false_blocked"),
+    ("undecided", "undecided"),
+    ("worst mm", "worst_mm"),
+    ("score", "score"),
 )
 
 
@@ -45,8 +51,13 @@ def page(folder: Path) -> str:
         found.append(document)
     if not found:
         raise ValueError(f"no results in {folder.name}: write one with `run --json`")
-    lines = ["# Results", "", "Made by `python -m conformance table`. *False safe* is what breaks a tool: look there first. *Border*: within the tolerance "
-             "of the surface, where each answer is right. *Score*: right answers among all others."]
+    lines = [
+        "# Results",
+        "",
+        "Made by `python -m conformance table`. *False safe* is what breaks a tool: look there first. "
+        "*Border*: within the tolerance "
+        "of the surface, where each answer is right. *Score*: right answers among all others.",
+    ]
     for kind in sorted({d["kind"] for d in found}):
         for claims in (False, True):
             mine = sorted((d for d in found if d["kind"] == kind and d["claims"] == claims), key=_rank)
@@ -65,15 +76,38 @@ def _section(kind: str, claims: bool, found: list[dict[str, Any]]) -> list[str]:
     title = f"{kind.capitalize()} parts" + (": postures that a program names itself" if claims else "")
     lines = ["", f"## {title}", "", f"Benchmark {found[0]['version']}, tolerance {found[0]['tolerance_mm']:g} mm."]
     heads = ["program", "parts", *(head for head, _ in CELLS), "seconds", "MB"]
-    lines += ["", *_table(heads, [[d["program"] + ("" if d["all"] or claims else " (part of the postures)"), str(d["parts"]), *cells(d), f"{d['seconds']:.1f}",
-                                   f"{d['memory_mb']:.0f}"] for d in found])]
+    lines += [
+        "",
+        *_table(
+            heads,
+            [
+                [
+                    d["program"] + ("" if d["all"] or claims else " (part of the postures)"),
+                    str(d["parts"]),
+                    *cells(d),
+                    f"{d['seconds']:.1f}",
+                    f"{d['memory_mb']:.0f}",
+                ]
+                for d in found
+            ],
+        ),
+    ]
     families = list(dict.fromkeys(name for d in found for name in d["families"]))
     lines += ["", "### False safe, false blocked and undecided by class of part", ""]
     rows = []
     for family in families:
         counted = [d["families"].get(family) for d in found]
-        rows.append([family, *("-" if c is None else f"{c['false_safe']} / {c['false_blocked']} / {c['undecided']} of {c['postures'] - c['border']}"
-                               for c in counted)])
+        rows.append(
+            [
+                family,
+                *(
+                    "-"
+                    if c is None
+                    else f"{c['false_safe']} / {c['false_blocked']} / {c['undecided']} of {c['postures'] - c['border']}"
+                    for c in counted
+                ),
+            ]
+        )
     lines += _table(["class", *(d["program"] for d in found)], rows)
     lines += ["", "### Settings", ""]
     for d in found:
@@ -85,5 +119,12 @@ def _section(kind: str, claims: bool, found: list[dict[str, Any]]) -> list[str]:
 
 def _table(heads: list[str], rows: list[list[str]]) -> list[str]:
     """Return a table in Markdown."""
-    clean = lambda text: text.replace("|", "/")
-    return ["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads), *("| " + " | ".join(map(clean, row)) + " |" for row in rows)]
+
+    def clean(text: str) -> str:
+        return text.replace("|", "/")
+
+    return [
+        "| " + " | ".join(heads) + " |",
+        "|" + "---|" * len(heads),
+        *("| " + " | ".join(map(clean, row)) + " |" for row in rows),
+    ]

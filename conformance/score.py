@@ -6,8 +6,9 @@ With a tolerance t (mm) and 0.01 degrees at the machine's limit a posture is
 * *free*, if it is proved to have more clearance than t (`low > t`) and to lie within the limit by more than 0.01 degrees,
 * at the *border*, if it is neither: there each answer is right, and counts in no share.
 
-`score` is the share of right answers among the postures that are not at the border: one who is always undecided has 0. It hides nothing: a single
-false safe answer is one that breaks a part or a spindle, so look at `false_safe` and `worst_mm` first.
+`score` is the share of right answers among the postures that are not at the border: one who is always
+undecided has 0. It hides nothing: a single false safe answer is one that breaks a part or a spindle, so look at `false_safe`
+and `worst_mm` first.
 """
 
 import math
@@ -60,11 +61,16 @@ def counts(table: Postures, answers: Words, tolerance: float = TOLERANCE, known:
     undecided = ~known.border & (answers == UNDECIDED)
     judged = int((~known.border).sum())
     return {
-        "postures": len(table), "border": int(known.border.sum()), "right": int(right.sum()), "false_safe": int(false_safe.sum()),
-        "false_blocked": int(false_blocked.sum()), "undecided": int(undecided.sum()),
+        "postures": len(table),
+        "border": int(known.border.sum()),
+        "right": int(right.sum()),
+        "false_safe": int(false_safe.sum()),
+        "false_blocked": int(false_blocked.sum()),
+        "undecided": int(undecided.sum()),
         "undecided_border": int((known.border & (answers == UNDECIDED)).sum()),
         "score": round(float(right.sum()) / judged, 6) if judged else None,
-        "worst_mm": _worst(-table.high[false_safe]), "worst_deg": _worst(-table.limit_deg[false_safe]),
+        "worst_mm": _worst(-table.high[false_safe]),
+        "worst_deg": _worst(-table.limit_deg[false_safe]),
         "worst_false_blocked_mm": _worst(table.low[false_blocked]),
     }
 
@@ -76,9 +82,16 @@ def _worst(values: NDArray[np.float64]) -> float:
 
 
 def scored(
-    table: Postures, answers: Words, families: Mapping[str, str], tolerance: float = TOLERANCE, rows: NDArray[np.int64] | None = None,
+    table: Postures,
+    answers: Words,
+    families: Mapping[str, str],
+    tolerance: float = TOLERANCE,
+    rows: NDArray[np.int64] | None = None,
 ) -> dict[str, Any]:
-    """Return the counts of all, of each family and of each part, and the worst false answers. `rows` are the rows of the suite's table."""
+    """Return the counts of all, of each family and of each part, and the worst false answers.
+
+    `rows` are the rows of the suite's table.
+    """
     if len(answers) != len(table):
         raise ValueError(f"{len(answers)} answers to {len(table)} postures")
     known = Known.of(table, tolerance)
@@ -93,22 +106,43 @@ def scored(
         return out
 
     return {
-        "parts": len(set(table.part.tolist())), **counts(table, answers, tolerance, known), "tolerance_mm": tolerance, "limit_deg": LIMIT_DEG,
-        "families": groups(family), "by_part": groups(table.part),
-        "false_answers": [*_listed(table, answers, rows, known.blocked & (answers == SAFE), np.nan_to_num(-table.high, nan=0.0)),
-                          *_listed(table, answers, rows, known.free & (answers == BLOCKED), np.nan_to_num(table.low, nan=0.0))],
+        "parts": len(set(table.part.tolist())),
+        **counts(table, answers, tolerance, known),
+        "tolerance_mm": tolerance,
+        "limit_deg": LIMIT_DEG,
+        "families": groups(family),
+        "by_part": groups(table.part),
+        "false_answers": [
+            *_listed(table, answers, rows, known.blocked & (answers == SAFE), np.nan_to_num(-table.high, nan=0.0)),
+            *_listed(table, answers, rows, known.free & (answers == BLOCKED), np.nan_to_num(table.low, nan=0.0)),
+        ],
     }
 
 
-def _listed(table: Postures, answers: Words, rows: NDArray[np.int64], wrong: Mask, by: NDArray[np.float64]) -> list[dict[str, Any]]:
+def _listed(
+    table: Postures, answers: Words, rows: NDArray[np.int64], wrong: Mask, by: NDArray[np.float64]
+) -> list[dict[str, Any]]:
     """Return the worst of the wrong answers, with all that is needed to repeat them."""
     order = np.flatnonzero(wrong)
     order = order[np.argsort(-by[order], kind="stable")][:LISTED]
-    number = lambda value: None if not math.isfinite(value) else float(value)
+
+    def number(value: float) -> float | None:
+        return float(value) if math.isfinite(value) else None
+
     return [
-        {"row": int(rows[i]), "part": str(table.part[i]), "tool": str(table.tool[i]), "setup": str(table.setup[i]), "answer": str(answers[i]),
-         "truth": str(table.verdict[i]), "low": number(table.low[i]), "high": number(table.high[i]), "limit_deg": number(table.limit_deg[i]),
-         "reason": str(table.reason[i]), **{name: getattr(table, name)[i].tolist() for name in ("contact", "normal", "axis", "tip")}}
+        {
+            "row": int(rows[i]),
+            "part": str(table.part[i]),
+            "tool": str(table.tool[i]),
+            "setup": str(table.setup[i]),
+            "answer": str(answers[i]),
+            "truth": str(table.verdict[i]),
+            "low": number(table.low[i]),
+            "high": number(table.high[i]),
+            "limit_deg": number(table.limit_deg[i]),
+            "reason": str(table.reason[i]),
+            **{name: getattr(table, name)[i].tolist() for name in ("contact", "normal", "axis", "tip")},
+        }
         for i in order
     ]
 

@@ -26,12 +26,15 @@ def _both(a: Point, b: Point, colour: str = _INK) -> str:
 
 
 def _text(at: Point, words: str, colour: str = _INK, anchor: str = "start", size: int = 15, weight: str = "normal") -> str:
-    return (f'<text x="{at[0]:.1f}" y="{at[1]:.1f}" fill="{colour}" text-anchor="{anchor}" font-size="{size}" font-weight="{weight}" '
-            f'stroke="white" stroke-width="4" paint-order="stroke">{words}</text>')
+    return (
+        f'<text x="{at[0]:.1f}" y="{at[1]:.1f}" fill="{colour}" text-anchor="{anchor}" font-size="{size}" font-weight="{weight}" '
+        f'stroke="white" stroke-width="4" paint-order="stroke">{words}</text>'
+    )
 
 
 def _shape(points: list[Point], fill: str, more: str = "") -> str:
-    return f'<polygon points="{" ".join(f"{x:.1f},{y:.1f}" for x, y in points)}" fill="{fill}" stroke="{_INK}" stroke-width="1.2" {more}/>'
+    corners = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
+    return f'<polygon points="{corners}" fill="{fill}" stroke="{_INK}" stroke-width="1.2" {more}/>'
 
 
 def _dot(at: Point, colour: str = _INK) -> str:
@@ -47,9 +50,14 @@ def _posture() -> list[str]:
     tip = (-flat * out[0] - corner * axis[0], corner - flat * out[1] - corner * axis[1])
 
     def at(height: float, r: float) -> Point:
-        return (contact[0] + _SCALE * (tip[0] + height * axis[0] + r * out[0]), contact[1] - _SCALE * (tip[1] + height * axis[1] + r * out[1]))
+        return (
+            contact[0] + _SCALE * (tip[0] + height * axis[0] + r * out[0]),
+            contact[1] - _SCALE * (tip[1] + height * axis[1] + r * out[1]),
+        )
 
-    corner_line = [(corner - corner * math.cos(t), flat + corner * math.sin(t)) for t in (math.pi / 2 * k / 16 for k in range(17))]
+    corner_line = [
+        (corner - corner * math.cos(t), flat + corner * math.sin(t)) for t in (math.pi / 2 * k / 16 for k in range(17))
+    ]
 
     def body(line: list[Point], fill: str) -> str:
         return _shape([at(h, r) for h, r in line] + [at(h, -r) for h, r in reversed(line)], fill, 'fill-opacity="0.65"')
@@ -60,20 +68,29 @@ def _posture() -> list[str]:
         body([(flutes, shank), (top, shank)], "#BFE0F2"),
         body([(0.0, flat), *corner_line, (flutes, radius)], _TOOL),
         _line(at(-3, 0), at(37, 0), _INK, 'stroke-dasharray="9 4 2 4"'),
-        _arrow(at(34, 0), at(42, 0)), _text((at(42, 0)[0] - 10, at(42, 0)[1] - 2), "axis", anchor="end", weight="bold"),
-        _arrow(contact, (contact[0], contact[1] - 190)), _text((contact[0] - 8, contact[1] - 180), "normal", anchor="end", weight="bold"),
+        _arrow(at(34, 0), at(42, 0)),
+        _text((at(42, 0)[0] - 10, at(42, 0)[1] - 2), "axis", anchor="end", weight="bold"),
+        _arrow(contact, (contact[0], contact[1] - 190)),
+        _text((contact[0] - 8, contact[1] - 180), "normal", anchor="end", weight="bold"),
         _text((contact[0] - 8, contact[1] - 163), "out of the material", anchor="end", size=12),
-        _dot(contact, _BAD), _text((contact[0] + 4, contact[1] + 24), "contact", _BAD, weight="bold"),
-        _dot(at(0, 0)), _text((at(0, 0)[0] - 12, at(0, 0)[1] + 4), "tip", anchor="end", weight="bold"),
+        _dot(contact, _BAD),
+        _text((contact[0] + 4, contact[1] + 24), "contact", _BAD, weight="bold"),
+        _dot(at(0, 0)),
+        _text((at(0, 0)[0] - 12, at(0, 0)[1] + 4), "tip", anchor="end", weight="bold"),
     ]
     # The angle from the normal to the axis, about the contact.
     reach = 120.0
     end = (contact[0] + reach * math.sin(_TILT), contact[1] - reach * math.cos(_TILT))
     out_lines += [
-        _line(contact, (contact[0] + 1.15 * reach * axis[0], contact[1] - 1.15 * reach * axis[1]), _INK, 'stroke-dasharray="3 3"'),
-        f'<path d="M {contact[0]} {contact[1] - reach} A {reach} {reach} 0 0 1 {end[0]:.1f} {end[1]:.1f}" fill="none" stroke="{_INK}" stroke-width="1.6"/>',
+        _line(
+            contact, (contact[0] + 1.15 * reach * axis[0], contact[1] - 1.15 * reach * axis[1]), _INK, 'stroke-dasharray="3 3"'
+        ),
+        f'<path d="M {contact[0]} {contact[1] - reach} A {reach} {reach} 0 0 1 {end[0]:.1f} {end[1]:.1f}" '
+        f'fill="none" stroke="{_INK}" stroke-width="1.6"/>',
         _text((contact[0] + 14, contact[1] - reach - 8), "tilt", weight="bold"),
-        _text((30, 455), "material"), _text((at(29, 0)[0] - 24, at(29, 0)[1] + 5), "holder"), _text((at(19, 0)[0] - 22, at(19, 0)[1] + 5), "shank"),
+        _text((30, 455), "material"),
+        _text((at(29, 0)[0] - 24, at(29, 0)[1] + 5), "holder"),
+        _text((at(19, 0)[0] - 22, at(19, 0)[1] + 5), "shank"),
         _text((at(9, 0)[0] - 14, at(9, 0)[1] + 20), "cutter"),
         _text((20, 30), "A posture: contact, normal, axis, tip", size=18, weight="bold"),
         _text((20, 52), "mm, unit vectors, part coordinates", size=13),
@@ -84,19 +101,28 @@ def _posture() -> list[str]:
 def _outline() -> list[str]:
     """Return the second drawing: the outline of the tool, radius over height."""
     base, scale = (590.0, 400.0), 9.0
-    spot = lambda h, r: (base[0] + scale * r, base[1] - scale * h)
+
+    def spot(h: float, r: float) -> Point:
+        return (base[0] + scale * r, base[1] - scale * h)
+
     arc = [(2.0 - 2.0 * math.cos(t), 4.0 + 2.0 * math.sin(t)) for t in (math.pi / 2 * k / 16 for k in range(17))]
     cutter = [spot(h, r) for h, r in [(0.0, 0.0), (0.0, 4.0), *arc, (14.0, 6.0), (14.0, 4.5), (24.0, 4.5)]]
     holder = [spot(h, r) for h, r in [(24.0, 0.0), (24.0, 9.0), (34.0, 9.0), (34.0, 0.0)]]
     return [
-        _shape([*cutter, spot(24.0, 0.0)], _TOOL, 'fill-opacity="0.65"'), _shape(holder, _HOLDER, 'fill-opacity="0.65"'),
-        _arrow(spot(0, 0), spot(37, 0)), _text((base[0] - 8, spot(35.4, 0)[1]), "height", anchor="end", weight="bold"),
-        _arrow(spot(0, 0), spot(0, 13)), _text((spot(0, 13)[0] - 4, base[1] + 22), "radius", weight="bold", anchor="end"),
+        _shape([*cutter, spot(24.0, 0.0)], _TOOL, 'fill-opacity="0.65"'),
+        _shape(holder, _HOLDER, 'fill-opacity="0.65"'),
+        _arrow(spot(0, 0), spot(37, 0)),
+        _text((base[0] - 8, spot(35.4, 0)[1]), "height", anchor="end", weight="bold"),
+        _arrow(spot(0, 0), spot(0, 13)),
+        _text((spot(0, 13)[0] - 4, base[1] + 22), "radius", weight="bold", anchor="end"),
         *(_dot(spot(h, r)) for h, r in [(0, 4), (2, 6), (14, 6), (14, 4.5), (24, 4.5), (24, 9), (34, 9)]),
-        _text((spot(0, 4)[0] - 4, base[1] + 22), "(0, 4)", size=13, anchor="middle"), _text((spot(2, 6)[0] + 8, spot(2, 6)[1] + 2), "(2, 6, 2): corner arc 2", size=13),
-        _text((spot(14, 6)[0] + 8, spot(14, 6)[1] + 5), "(14, 6), then (14, 4.5)", size=13), _text((spot(24, 9)[0] + 8, spot(24, 9)[1] + 5), "holder (24, 9)", size=13),
+        _text((spot(0, 4)[0] - 4, base[1] + 22), "(0, 4)", size=13, anchor="middle"),
+        _text((spot(2, 6)[0] + 8, spot(2, 6)[1] + 2), "(2, 6, 2): corner arc 2", size=13),
+        _text((spot(14, 6)[0] + 8, spot(14, 6)[1] + 5), "(14, 6), then (14, 4.5)", size=13),
+        _text((spot(24, 9)[0] + 8, spot(24, 9)[1] + 5), "holder (24, 9)", size=13),
         _text((spot(34, 9)[0] + 8, spot(34, 9)[1] + 5), "(34, 9)", size=13),
-        _line((base[0] - 34, spot(14, 0)[1]), spot(14, 0), _INK, 'stroke-dasharray="3 3"'), _text((base[0] - 36, spot(14, 0)[1] + 5), "cutting", anchor="end", size=13),
+        _line((base[0] - 34, spot(14, 0)[1]), spot(14, 0), _INK, 'stroke-dasharray="3 3"'),
+        _text((base[0] - 36, spot(14, 0)[1] + 5), "cutting", anchor="end", size=13),
         _text((base[0] - 8, base[1] + 5), "tip", anchor="end", weight="bold"),
         _text((540, 30), "A tool: radius over height", size=18, weight="bold"),
         _text((540, 52), "cutter and holder, both from the tip", size=13),
@@ -106,15 +132,25 @@ def _outline() -> list[str]:
 def _margins() -> list[str]:
     """Return the third drawing: the signs."""
     left, right = 890.0, 1095.0
-    tool = lambda x: _shape([(x - 45, 130), (x + 45, 130), (x + 45, 330), (x - 45, 330)], _TOOL, 'fill-opacity="0.65"')
+
+    def tool(x: float) -> str:
+        return _shape([(x - 45, 130), (x + 45, 130), (x + 45, 330), (x - 45, 330)], _TOOL, 'fill-opacity="0.65"')
+
     return [
-        tool(left), _shape([(left + 85, 180), (left + 125, 180), (left + 125, 330), (left + 85, 330)], _PART),
-        _both((left + 46, 250), (left + 84, 250), _GOOD), _text((left + 10, 355), "margin &gt; 0", _GOOD, weight="bold"),
-        _text((left - 45, 375), "clearance of what is not", size=13), _text((left - 45, 392), "in contact", size=13),
-        tool(right), _shape([(right + 5, 180), (right + 105, 180), (right + 105, 330), (right + 5, 330)], _PART, 'fill-opacity="0.8"'),
-        f'<circle cx="{right + 5}" cy="250" r="40" fill="none" stroke="{_BAD}" stroke-width="2"/>', _dot((right + 5, 250), _BAD),
-        _line((right + 5, 250), (right + 45, 250), _BAD), _text((right - 25, 355), "margin &lt; 0", _BAD, weight="bold"),
-        _text((right - 45, 375), "minus the depth: radius of the", size=13), _text((right - 45, 392), "largest ball about a point of the", size=13),
+        tool(left),
+        _shape([(left + 85, 180), (left + 125, 180), (left + 125, 330), (left + 85, 330)], _PART),
+        _both((left + 46, 250), (left + 84, 250), _GOOD),
+        _text((left + 10, 355), "margin &gt; 0", _GOOD, weight="bold"),
+        _text((left - 45, 375), "clearance of what is not", size=13),
+        _text((left - 45, 392), "in contact", size=13),
+        tool(right),
+        _shape([(right + 5, 180), (right + 105, 180), (right + 105, 330), (right + 5, 330)], _PART, 'fill-opacity="0.8"'),
+        f'<circle cx="{right + 5}" cy="250" r="40" fill="none" stroke="{_BAD}" stroke-width="2"/>',
+        _dot((right + 5, 250), _BAD),
+        _line((right + 5, 250), (right + 45, 250), _BAD),
+        _text((right - 25, 355), "margin &lt; 0", _BAD, weight="bold"),
+        _text((right - 45, 375), "minus the depth: radius of the", size=13),
+        _text((right - 45, 392), "largest ball about a point of the", size=13),
         _text((right - 45, 409), "material that fits in a piece of it", size=13),
         _text((845, 30), "Signs of a margin", size=18, weight="bold"),
         _text((845, 52), "low and high bound it; limit_deg &gt; 0: within the machine's limit", size=13),
@@ -125,11 +161,16 @@ def _margins() -> list[str]:
 
 def figure() -> str:
     """Return the figure."""
-    head = ('<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1280 490" font-family="sans-serif" role="img" aria-labelledby="t d">\n'
-            "<title id=\"t\">Frames and signs of the benchmark</title>\n"
-            "<desc id=\"d\">A tool at its contact with normal, axis, tip and tilt; its outline as radius over height; positive and negative margin.</desc>\n"
-            f'<defs><marker id="head" markerWidth="10" markerHeight="8" refX="9" refY="4" orient="auto-start-reverse"><path d="M0,0 L10,4 L0,8 z" fill="{_INK}"/>'
-            '</marker></defs>\n<rect width="1280" height="490" fill="white"/>\n')
+    head = (
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1280 490" font-family="sans-serif" '
+        'role="img" aria-labelledby="t d">\n'
+        '<title id="t">Frames and signs of the benchmark</title>\n'
+        '<desc id="d">A tool at its contact with normal, axis, tip and tilt; its outline as radius over height; '
+        "positive and negative margin.</desc>\n"
+        f'<defs><marker id="head" markerWidth="10" markerHeight="8" refX="9" refY="4" orient="auto-start-reverse">'
+        f'<path d="M0,0 L10,4 L0,8 z" fill="{_INK}"/>'
+        '</marker></defs>\n<rect width="1280" height="490" fill="white"/>\n'
+    )
     return head + "\n".join([*_posture(), *_outline(), *_margins()]) + "\n</svg>\n"
 
 

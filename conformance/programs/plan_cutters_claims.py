@@ -1,4 +1,4 @@
-"""plan-cutters with postures of its own: those that its plans name, and those that its stored posture maps call free or blocked."""
+"""plan-cutters with postures of its own: those that plans name, and those that stored posture maps call free or blocked."""
 
 from collections import Counter
 from typing import Any
@@ -21,7 +21,11 @@ class _Planner:
 
     def __init__(self, tolerance: float = 0.01, spacing: float = 4.0, claims: int = 120) -> None:
         self.settings: dict[str, Any] = {
-            "tolerance_mm": tolerance, "spacing_mm": spacing, "claims_a_tool_and_setup": claims, "area_budget": 0, "posture_maps": self._maps,
+            "tolerance_mm": tolerance,
+            "spacing_mm": spacing,
+            "claims_a_tool_and_setup": claims,
+            "area_budget": 0,
+            "posture_maps": self._maps,
         }
         self.why: Counter[str] = Counter()
         self._parts: dict[str, Any] = {}
@@ -45,8 +49,15 @@ class _Planner:
             return claimed(part, tool, setup, rows)
         held = part.setups[setup]
         result = plan(
-            self._parts[part.name], cutters=[cutter], setup=held.axis, machine=machine_of(held), fixtures=fixtures_of(held),
-            tolerance=self.settings["tolerance_mm"], spacing=self.settings["spacing_mm"], area_budget=0, posture_maps=self._maps,
+            self._parts[part.name],
+            cutters=[cutter],
+            setup=held.axis,
+            machine=machine_of(held),
+            fixtures=fixtures_of(held),
+            tolerance=self.settings["tolerance_mm"],
+            spacing=self.settings["spacing_mm"],
+            area_budget=0,
+            posture_maps=self._maps,
         )
         self._gather(result, tool, held, rows)
         count, most = len(rows["verdict"]), self.settings["claims_a_tool_and_setup"]
@@ -67,7 +78,7 @@ class Plans(_Planner):
 
 
 class StoredMaps(_Planner):
-    """Of each sample and rotation of stored maps: tilts just within the ends of a free interval, and just beyond where nothing is undecided."""
+    """Tilts of stored maps: just within the ends of a free interval, and just beyond where nothing is undecided."""
 
     name = "plan-cutters-maps"
     _maps = True
@@ -107,7 +118,7 @@ def _of_verdicts(samples: Any, verdicts: Any, tool: Tool, rows: dict[str, list[A
     for i in np.flatnonzero(verdicts.reached).tolist():
         contact, normal, axis = samples.point[i], samples.normal[i], verdicts.axis[i]
         if verdicts.tilt[i] < 1e-9:
-            # Upright, the direction goes from the axis to the contact, and may be shorter than 1: the contact lies under the flat.
+            # Upright, the direction goes from the axis to the contact; shorter than 1, the contact lies under the flat.
             tip = contact - tool.flat_radius * np.nan_to_num(verdicts.tilt_direction[i])
         else:
             tip = tool.stands(contact[None], normal[None], axis[None])[0]

@@ -1,6 +1,7 @@
 """trimesh: points of the tool's skin, shrunk by the tolerance, and whether the part's mesh contains one."""
 
 from collections import Counter
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -23,8 +24,13 @@ class Program:
 
     def __init__(self, chord: float = 0.005, angle: float = 0.1, tolerance: float = 0.01, pitch: float = 1.0) -> None:
         self.settings: dict[str, Any] = {
-            "part_chord_error_mm": chord, "part_angle_rad": angle, "tool_shrunk_by_mm": tolerance, "pitch_mm": pitch,
-            "query": "Trimesh.contains (rays, by embreex)", "boxes": "points within", "table": "the tool's lowest point",
+            "part_chord_error_mm": chord,
+            "part_angle_rad": angle,
+            "tool_shrunk_by_mm": tolerance,
+            "pitch_mm": pitch,
+            "query": "Trimesh.contains (rays, by embreex)",
+            "boxes": "points within",
+            "table": "the tool's lowest point",
         }
         self.why: Counter[str] = Counter()
         self._parts: dict[str, Any] = {}
@@ -63,7 +69,7 @@ def _skin(tool: Tool, shrunk: float, pitch: float) -> Floats:
     """Return points (k, 3) of the skin of each piece in the frame of the tool, about `pitch` (mm) apart."""
     points = []
     for line in outlines(tool, shrunk, 0.005):
-        for (h0, r0), (h1, r1) in zip(line, line[1:], strict=False):
+        for (h0, r0), (h1, r1) in pairwise(line):
             for t in np.linspace(0.0, 1.0, max(2, int(np.ceil(np.hypot(h1 - h0, r1 - r0) / pitch)) + 1)):
                 h, r = h0 + t * (h1 - h0), r0 + t * (r1 - r0)
                 turn = np.linspace(0, 2 * np.pi, max(1, int(np.ceil(2 * np.pi * r / pitch))), endpoint=False)
