@@ -19,7 +19,7 @@ from conformance.programs.protocol import UNDECIDED, Unavailable
 from conformance.suite import DATA, Suite, read
 
 app = typer.Typer(
-    help="A benchmark of cutter accessibility: may this tool stand at this point of this part? Parts with known answers, and a scorer.",
+    help="A benchmark of cutter accessibility: may this tool stand at this point? Parts with known answers, and a scorer.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
@@ -31,7 +31,9 @@ RESULTS = Path(__file__).parent / "results"
 
 Kind = Annotated[str, typer.Option(help="Which half of the suite: made (closed forms) or real (bounds).")]
 Data = Annotated[Path, typer.Option(help="Folder with made.json, made.parquet and made/.", show_default="the suite's own")]
-Tolerance = Annotated[float, typer.Option(help="Depths and clearances up to this are at the border, mm: there each answer is right.")]
+Tolerance = Annotated[
+    float, typer.Option(help="Depths and clearances up to this are at the border, mm: there each answer is right.")
+]
 
 
 def _refuse(text: object) -> NoReturn:
@@ -125,10 +127,16 @@ def run_command(
 
 @app.command("score")
 def score_command(
-    file: Annotated[Path, typer.Argument(help="CSV or Parquet with the columns id (row of the table, from 0) and answer (safe, blocked, undecided).")],
+    file: Annotated[
+        Path,
+        typer.Argument(
+            help="CSV or Parquet with the columns id (row of the table, from 0) and answer (safe, blocked, undecided)."
+        ),
+    ],
     json_file: Annotated[Path | None, typer.Option("--json", help="Write the results here.")] = None,
     only_answered: Annotated[
-        bool, typer.Option("--only-answered", help="Leave out postures that the file does not have; else they count as undecided.")
+        bool,
+        typer.Option("--only-answered", help="Leave out postures that the file does not have; else they count as undecided."),
     ] = False,
     name: Annotated[str | None, typer.Option("--name", help="Name of the program.", show_default="that of the file")] = None,
     kind: Kind = "made",
@@ -255,13 +263,15 @@ def _show(document: dict[str, Any]) -> None:
         out.print(f"{count} times: {text}", markup=False, highlight=False)
     if document["seconds"]:
         out.print(
-            f"{document['seconds']:.1f} s ({document['prepare_seconds']:.1f} to prepare, {document['answer_seconds']:.1f} to answer), "
+            f"{document['seconds']:.1f} s ({document['prepare_seconds']:.1f} to prepare, "
+            f"{document['answer_seconds']:.1f} to answer), "
             f"{document['memory_mb']:.0f} MB",
             highlight=False,
         )
     for each in document["false_answers"][:5]:
         out.print(
-            f"false {each['answer']}: row {each['row']}, {each['part']}, {each['tool']}, {each['setup']}: margin {each['low']} to {each['high']} mm, "
+            f"false {each['answer']}: row {each['row']}, {each['part']}, {each['tool']}, {each['setup']}: "
+            f"margin {each['low']} to {each['high']} mm, "
             f"{each['reason']}",
             markup=False,
             highlight=False,

@@ -54,7 +54,8 @@ def page(folder: Path) -> str:
     lines = [
         "# Results",
         "",
-        "Made by `python -m conformance table`. *False safe* is what breaks a tool: look there first. *Border*: within the tolerance "
+        "Made by `python -m conformance table`. *False safe* is what breaks a tool: look there first. "
+        "*Border*: within the tolerance "
         "of the surface, where each answer is right. *Score*: right answers among all others.",
     ]
     for kind in sorted({d["kind"] for d in found}):
@@ -65,8 +66,9 @@ def page(folder: Path) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _rank(document: dict[str, Any]) -> tuple[int, float, str]:
-    return document["false_safe"], -(document["score"] or 0.0), document["program"]
+def _rank(document: dict[str, Any]) -> tuple[bool, int, float, str]:
+    """Return the key of the order: the fewest false safe answers first, but who decides nothing comes last."""
+    return not document["score"], document["false_safe"], -(document["score"] or 0.0), document["program"]
 
 
 def _section(kind: str, claims: bool, found: list[dict[str, Any]]) -> list[str]:
@@ -96,7 +98,15 @@ def _section(kind: str, claims: bool, found: list[dict[str, Any]]) -> list[str]:
     for family in families:
         counted = [d["families"].get(family) for d in found]
         rows.append(
-            [family, *("-" if c is None else f"{c['false_safe']} / {c['false_blocked']} / {c['undecided']} of {c['postures'] - c['border']}" for c in counted)]
+            [
+                family,
+                *(
+                    "-"
+                    if c is None
+                    else f"{c['false_safe']} / {c['false_blocked']} / {c['undecided']} of {c['postures'] - c['border']}"
+                    for c in counted
+                ),
+            ]
         )
     lines += _table(["class", *(d["program"] for d in found)], rows)
     lines += ["", "### Settings", ""]
@@ -109,5 +119,12 @@ def _section(kind: str, claims: bool, found: list[dict[str, Any]]) -> list[str]:
 
 def _table(heads: list[str], rows: list[list[str]]) -> list[str]:
     """Return a table in Markdown."""
-    clean = lambda text: text.replace("|", "/")
-    return ["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads), *("| " + " | ".join(map(clean, row)) + " |" for row in rows)]
+
+    def clean(text: str) -> str:
+        return text.replace("|", "/")
+
+    return [
+        "| " + " | ".join(heads) + " |",
+        "|" + "---|" * len(heads),
+        *("| " + " | ".join(map(clean, row)) + " |" for row in rows),
+    ]

@@ -6,8 +6,9 @@ With a tolerance t (mm) and 0.01 degrees at the machine's limit a posture is
 * *free*, if it is proved to have more clearance than t (`low > t`) and to lie within the limit by more than 0.01 degrees,
 * at the *border*, if it is neither: there each answer is right, and counts in no share.
 
-`score` is the share of right answers among the postures that are not at the border: one who is always undecided has 0. It hides nothing: a single
-false safe answer is one that breaks a part or a spindle, so look at `false_safe` and `worst_mm` first.
+`score` is the share of right answers among the postures that are not at the border: one who is always
+undecided has 0. It hides nothing: a single false safe answer is one that breaks a part or a spindle, so look at `false_safe`
+and `worst_mm` first.
 """
 
 import math
@@ -80,8 +81,17 @@ def _worst(values: NDArray[np.float64]) -> float:
     return round(float(some.max()), 6) if len(some) else 0.0
 
 
-def scored(table: Postures, answers: Words, families: Mapping[str, str], tolerance: float = TOLERANCE, rows: NDArray[np.int64] | None = None) -> dict[str, Any]:
-    """Return the counts of all, of each family and of each part, and the worst false answers. `rows` are the rows of the suite's table."""
+def scored(
+    table: Postures,
+    answers: Words,
+    families: Mapping[str, str],
+    tolerance: float = TOLERANCE,
+    rows: NDArray[np.int64] | None = None,
+) -> dict[str, Any]:
+    """Return the counts of all, of each family and of each part, and the worst false answers.
+
+    `rows` are the rows of the suite's table.
+    """
     if len(answers) != len(table):
         raise ValueError(f"{len(answers)} answers to {len(table)} postures")
     known = Known.of(table, tolerance)
@@ -109,11 +119,16 @@ def scored(table: Postures, answers: Words, families: Mapping[str, str], toleran
     }
 
 
-def _listed(table: Postures, answers: Words, rows: NDArray[np.int64], wrong: Mask, by: NDArray[np.float64]) -> list[dict[str, Any]]:
+def _listed(
+    table: Postures, answers: Words, rows: NDArray[np.int64], wrong: Mask, by: NDArray[np.float64]
+) -> list[dict[str, Any]]:
     """Return the worst of the wrong answers, with all that is needed to repeat them."""
     order = np.flatnonzero(wrong)
     order = order[np.argsort(-by[order], kind="stable")][:LISTED]
-    number = lambda value: None if not math.isfinite(value) else float(value)
+
+    def number(value: float) -> float | None:
+        return float(value) if math.isfinite(value) else None
+
     return [
         {
             "row": int(rows[i]),

@@ -1,7 +1,7 @@
 """The truth of postures that a program chose itself: closed forms where they hold, else points of the exact surface.
 
-The closed forms of a made part describe it wherever a tool reaches from one of its contacts. A claim anywhere else is judged by the slow twin: its margin is an
-upper bound, so it can prove a claim false and not prove it true.
+The closed forms of a made part describe it wherever a tool reaches from one of its contacts. A claim anywhere else is
+judged by the slow twin: its margin is an upper bound, so it can prove a claim false and not prove it true.
 """
 
 from pathlib import Path
@@ -16,14 +16,18 @@ from conformance.posture import Postures
 from conformance.suite import Held
 from conformance.tool import Floats, Tool
 
-#: Drawn contacts that show where the closed forms hold; a claim is there within this distance (mm) of one, with a normal within this angle (rad).
+#: Drawn contacts that show where the closed forms hold: a claim is there within this distance (mm) of one, its normal within this
+#: angle (rad).
 _DRAWN, _NEAR, _TURN = 4000, 1.0, 0.2
 #: The pitch (mm) of the twin's points.
 PITCH = 1.0
 
 
 def truth(part: str, tool: Tool, setup: str, postures: Postures, path: Path | None = None) -> tuple[Floats, Floats]:
-    """Return bounds (n,) of the margins, mm: `low <= margin <= high`. `path` is the part's file, for what no closed form covers."""
+    """Return bounds (n,) of the margins, mm: `low <= margin <= high`.
+
+    `path` is the part's file, for what no closed form covers.
+    """
     n = len(postures)
     low, high = np.full(n, -np.inf), np.full(n, np.inf)
     made = PARTS.get(part)

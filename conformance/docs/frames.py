@@ -33,7 +33,8 @@ def _text(at: Point, words: str, colour: str = _INK, anchor: str = "start", size
 
 
 def _shape(points: list[Point], fill: str, more: str = "") -> str:
-    return f'<polygon points="{" ".join(f"{x:.1f},{y:.1f}" for x, y in points)}" fill="{fill}" stroke="{_INK}" stroke-width="1.2" {more}/>'
+    corners = " ".join(f"{x:.1f},{y:.1f}" for x, y in points)
+    return f'<polygon points="{corners}" fill="{fill}" stroke="{_INK}" stroke-width="1.2" {more}/>'
 
 
 def _dot(at: Point, colour: str = _INK) -> str:
@@ -49,9 +50,14 @@ def _posture() -> list[str]:
     tip = (-flat * out[0] - corner * axis[0], corner - flat * out[1] - corner * axis[1])
 
     def at(height: float, r: float) -> Point:
-        return (contact[0] + _SCALE * (tip[0] + height * axis[0] + r * out[0]), contact[1] - _SCALE * (tip[1] + height * axis[1] + r * out[1]))
+        return (
+            contact[0] + _SCALE * (tip[0] + height * axis[0] + r * out[0]),
+            contact[1] - _SCALE * (tip[1] + height * axis[1] + r * out[1]),
+        )
 
-    corner_line = [(corner - corner * math.cos(t), flat + corner * math.sin(t)) for t in (math.pi / 2 * k / 16 for k in range(17))]
+    corner_line = [
+        (corner - corner * math.cos(t), flat + corner * math.sin(t)) for t in (math.pi / 2 * k / 16 for k in range(17))
+    ]
 
     def body(line: list[Point], fill: str) -> str:
         return _shape([at(h, r) for h, r in line] + [at(h, -r) for h, r in reversed(line)], fill, 'fill-opacity="0.65"')
@@ -76,8 +82,11 @@ def _posture() -> list[str]:
     reach = 120.0
     end = (contact[0] + reach * math.sin(_TILT), contact[1] - reach * math.cos(_TILT))
     out_lines += [
-        _line(contact, (contact[0] + 1.15 * reach * axis[0], contact[1] - 1.15 * reach * axis[1]), _INK, 'stroke-dasharray="3 3"'),
-        f'<path d="M {contact[0]} {contact[1] - reach} A {reach} {reach} 0 0 1 {end[0]:.1f} {end[1]:.1f}" fill="none" stroke="{_INK}" stroke-width="1.6"/>',
+        _line(
+            contact, (contact[0] + 1.15 * reach * axis[0], contact[1] - 1.15 * reach * axis[1]), _INK, 'stroke-dasharray="3 3"'
+        ),
+        f'<path d="M {contact[0]} {contact[1] - reach} A {reach} {reach} 0 0 1 {end[0]:.1f} {end[1]:.1f}" '
+        f'fill="none" stroke="{_INK}" stroke-width="1.6"/>',
         _text((contact[0] + 14, contact[1] - reach - 8), "tilt", weight="bold"),
         _text((30, 455), "material"),
         _text((at(29, 0)[0] - 24, at(29, 0)[1] + 5), "holder"),
@@ -92,15 +101,18 @@ def _posture() -> list[str]:
 def _outline() -> list[str]:
     """Return the second drawing: the outline of the tool, radius over height."""
     base, scale = (590.0, 400.0), 9.0
-    spot = lambda h, r: (base[0] + scale * r, base[1] - scale * h)
+
+    def spot(h: float, r: float) -> Point:
+        return (base[0] + scale * r, base[1] - scale * h)
+
     arc = [(2.0 - 2.0 * math.cos(t), 4.0 + 2.0 * math.sin(t)) for t in (math.pi / 2 * k / 16 for k in range(17))]
     cutter = [spot(h, r) for h, r in [(0.0, 0.0), (0.0, 4.0), *arc, (14.0, 6.0), (14.0, 4.5), (24.0, 4.5)]]
     holder = [spot(h, r) for h, r in [(24.0, 0.0), (24.0, 9.0), (34.0, 9.0), (34.0, 0.0)]]
     return [
         _shape([*cutter, spot(24.0, 0.0)], _TOOL, 'fill-opacity="0.65"'),
         _shape(holder, _HOLDER, 'fill-opacity="0.65"'),
-        _arrow(spot(0, 0), spot(39, 0)),
-        _text((base[0] - 8, spot(38, 0)[1]), "height", anchor="end", weight="bold"),
+        _arrow(spot(0, 0), spot(37, 0)),
+        _text((base[0] - 8, spot(35.4, 0)[1]), "height", anchor="end", weight="bold"),
         _arrow(spot(0, 0), spot(0, 13)),
         _text((spot(0, 13)[0] - 4, base[1] + 22), "radius", weight="bold", anchor="end"),
         *(_dot(spot(h, r)) for h, r in [(0, 4), (2, 6), (14, 6), (14, 4.5), (24, 4.5), (24, 9), (34, 9)]),
@@ -120,7 +132,10 @@ def _outline() -> list[str]:
 def _margins() -> list[str]:
     """Return the third drawing: the signs."""
     left, right = 890.0, 1095.0
-    tool = lambda x: _shape([(x - 45, 130), (x + 45, 130), (x + 45, 330), (x - 45, 330)], _TOOL, 'fill-opacity="0.65"')
+
+    def tool(x: float) -> str:
+        return _shape([(x - 45, 130), (x + 45, 130), (x + 45, 330), (x - 45, 330)], _TOOL, 'fill-opacity="0.65"')
+
     return [
         tool(left),
         _shape([(left + 85, 180), (left + 125, 180), (left + 125, 330), (left + 85, 330)], _PART),
@@ -136,7 +151,7 @@ def _margins() -> list[str]:
         _text((right - 25, 355), "margin &lt; 0", _BAD, weight="bold"),
         _text((right - 45, 375), "minus the depth: radius of the", size=13),
         _text((right - 45, 392), "largest ball about a point of the", size=13),
-        _text((right - 45, 409), "material that fits in the tool", size=13),
+        _text((right - 45, 409), "material that fits in a piece of it", size=13),
         _text((845, 30), "Signs of a margin", size=18, weight="bold"),
         _text((845, 52), "low and high bound it; limit_deg &gt; 0: within the machine's limit", size=13),
         _text((845, 74), "blocked: margin &lt; 0 or limit_deg &lt; 0", size=13),
@@ -147,10 +162,13 @@ def _margins() -> list[str]:
 def figure() -> str:
     """Return the figure."""
     head = (
-        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1280 490" font-family="sans-serif" role="img" aria-labelledby="t d">\n'
+        '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 1280 490" font-family="sans-serif" '
+        'role="img" aria-labelledby="t d">\n'
         '<title id="t">Frames and signs of the benchmark</title>\n'
-        '<desc id="d">A tool at its contact with normal, axis, tip and tilt; its outline as radius over height; positive and negative margin.</desc>\n'
-        f'<defs><marker id="head" markerWidth="10" markerHeight="8" refX="9" refY="4" orient="auto-start-reverse"><path d="M0,0 L10,4 L0,8 z" fill="{_INK}"/>'
+        '<desc id="d">A tool at its contact with normal, axis, tip and tilt; its outline as radius over height; '
+        "positive and negative margin.</desc>\n"
+        f'<defs><marker id="head" markerWidth="10" markerHeight="8" refX="9" refY="4" orient="auto-start-reverse">'
+        f'<path d="M0,0 L10,4 L0,8 z" fill="{_INK}"/>'
         '</marker></defs>\n<rect width="1280" height="490" fill="white"/>\n'
     )
     return head + "\n".join([*_posture(), *_outline(), *_margins()]) + "\n</svg>\n"

@@ -1,6 +1,7 @@
 """embreex: rays along the outline of the tool, at many angles about its axis, against the mesh of the part."""
 
 from collections import Counter
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -58,7 +59,9 @@ class Program:
             rows = slice(i, i + step)
             origin = np.einsum("nij,kj->nki", turns[rows], start) + (postures.tip[rows] - middle)[:, None]
             direction = np.einsum("nij,kj->nki", turns[rows], way)
-            reach = scene.run(origin.reshape(-1, 3).astype(np.float32), direction.reshape(-1, 3).astype(np.float32), query="DISTANCE")
+            reach = scene.run(
+                origin.reshape(-1, 3).astype(np.float32), direction.reshape(-1, 3).astype(np.float32), query="DISTANCE"
+            )
             blocked[rows] |= np.any(reach.reshape(-1, len(start)) < length, axis=1)
         return answered(np.asarray(blocked))
 
@@ -68,7 +71,7 @@ def _rays(tool: Tool, settings: dict[str, Any]) -> tuple[Floats, Floats]:
     turn = 2 * np.pi * np.arange(settings["lines_about_the_axis"]) / settings["lines_about_the_axis"]
     begins, ends = [], []
     for line in outlines(tool, settings["tool_shrunk_by_mm"], settings["tool_chord_error_mm"]):
-        for (h0, r0), (h1, r1) in zip(line, line[1:], strict=False):
+        for (h0, r0), (h1, r1) in pairwise(line):
             a, b = (np.column_stack([r * np.cos(turn), r * np.sin(turn), np.full(len(turn), h)]) for h, r in ((h0, r0), (h1, r1)))
             begins += [a, b]
             ends += [b, a]

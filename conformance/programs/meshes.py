@@ -1,6 +1,7 @@
 """Meshes as users of mesh libraries make them: of a part by the CAD kernel, of a tool by turning its outline."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -13,7 +14,22 @@ from conformance.tool import Floats, Piece, Tool
 #: The size (mm) of the block that stands for a table.
 _TABLE = 2000.0
 #: Two triangles for each side of a box whose corners are in the order of `_corners`.
-_SIDES = np.array([[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]])
+_SIDES = np.array(
+    [
+        [0, 1, 3],
+        [0, 3, 2],
+        [4, 6, 7],
+        [4, 7, 5],
+        [0, 4, 5],
+        [0, 5, 1],
+        [2, 3, 7],
+        [2, 7, 6],
+        [0, 2, 6],
+        [0, 6, 4],
+        [1, 5, 7],
+        [1, 7, 3],
+    ]
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +47,10 @@ class Mesh:
 
 
 def part_mesh(path: Path, chord: float, angle: float) -> Mesh:
-    """Return the part's faces as the CAD kernel meshes them: chord error `chord` (mm), `angle` (rad) between neighbours. Seams are joined by position."""
+    """Return the part's faces as the CAD kernel meshes them: chord error `chord` (mm), `angle` (rad) between neighbours.
+
+    Seams are joined by position.
+    """
     needs("OCP", "cadquery-ocp")
     from OCP.BRep import BRep_Tool
     from OCP.BRepMesh import BRepMesh_IncrementalMesh
@@ -81,9 +100,10 @@ def _corners(low: Floats, high: Floats) -> Floats:
 
 
 def outlines(tool: Tool, shrunk: float, chord: float) -> list[Floats]:
-    """Return for each convex piece of a tool, shrunk by `shrunk` (mm), a line `(k, 2)` of height and radius from the axis below to the axis above.
+    """Return for each convex piece of a tool, shrunk by `shrunk` (mm), a line `(k, 2)` of height and radius.
 
-    The line lies within the piece: arcs are chords of a height of at most `chord` (mm).
+    It goes from the axis below to the axis above, and lies within the piece: arcs are chords of a height of at most `chord`
+    (mm).
     """
     lines = []
     for piece in tool.pieces:
@@ -117,7 +137,7 @@ def segments(tool: Tool, chord: float) -> int:
 
 
 def turned(line: Floats, sides: int) -> Mesh:
-    """Return the closed surface that a line (k, 2) of height and radius makes when it is turned, its circles as polygons within."""
+    """Return the closed surface that a line (k, 2) of height and radius makes when it is turned; circles are polygons within."""
     turn = 2 * np.pi * np.arange(sides) / sides
     circle = np.column_stack([np.cos(turn), np.sin(turn)])
     vertices, rings = [], []
@@ -129,7 +149,7 @@ def turned(line: Floats, sides: int) -> Mesh:
         rings.append(count + np.arange(n))
         count += n
     faces = []
-    for low, high in zip(rings, rings[1:], strict=False):
+    for low, high in pairwise(rings):
         if len(low) > 1:
             faces.append(np.column_stack([low, np.roll(low, -1), np.broadcast_to(high, len(low)) if len(high) == 1 else high]))
         if len(high) > 1:

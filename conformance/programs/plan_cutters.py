@@ -1,6 +1,7 @@
 """plan-cutters, posture maps of single points: the only module, with `plan_cutters_claims`, that imports it."""
 
 from collections import Counter
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,10 @@ _ABOUT = np.radians(0.25)
 
 
 class PointMaps:
-    """A posture map at the contact, at the posture's rotation: safe where its tilt is free, undecided where the map leaves it so, else blocked."""
+    """A posture map at the contact, at the posture's rotation.
+
+    Safe where its tilt is free, undecided where the map leaves it so, else blocked.
+    """
 
     name = "plan-cutters"
     libraries: tuple[str, ...] = ("plan-cutters", "cadquery-ocp-novtk", "numba", "numpy")
@@ -77,7 +81,15 @@ class PointMaps:
         if np.linalg.norm(stands - row.tip[0]) > _SAME_MM:
             return UNDECIDED, "the normal at the contact is another one: an edge, or another face"
         low, high = max(0.0, tilt - _ABOUT), min(np.pi, tilt + _ABOUT)
-        pm = posture_map(scene, point=point, cutter=cutter, rotations=[rotation], tilt=(low, high), machine=machine, tolerance=self.settings["tolerance_mm"])
+        pm = posture_map(
+            scene,
+            point=point,
+            cutter=cutter,
+            rotations=[rotation],
+            tilt=(low, high),
+            machine=machine,
+            tolerance=self.settings["tolerance_mm"],
+        )
         if not pm.certified:
             return UNDECIDED, "the map is not certified: " + "; ".join(pm.missing)
         if _holds(pm.free[0], tilt, _SAME_RAD):
@@ -94,7 +106,9 @@ class PointMaps:
 
         key = (part.name, setup)
         if key not in self._scenes:
-            scene = Scene.of(self._parts[part.name], setup=setup.axis, tolerance=self.settings["tolerance_mm"], fixtures=fixtures_of(setup))
+            scene = Scene.of(
+                self._parts[part.name], setup=setup.axis, tolerance=self.settings["tolerance_mm"], fixtures=fixtures_of(setup)
+            )
             scene.surround()
             self._scenes[key] = scene
         return self._scenes[key]
@@ -119,7 +133,7 @@ def machine_of(setup: Held) -> Any:
 
 
 def angles(normal: Floats, across: Floats, axis: Floats, towards: Floats) -> tuple[float, float]:
-    """Return tilt and rotation, rad, of an axis; where it is the normal, the rotation is that of `towards`, from the tip to the contact."""
+    """Return tilt and rotation, rad, of an axis; where it is the normal, the rotation is that of `towards`, tip to contact."""
     side = axis - (axis @ normal) * normal
     tilt = float(np.arctan2(np.linalg.norm(side), axis @ normal))
     if np.linalg.norm(side) < 1e-9:
@@ -153,7 +167,7 @@ def cutter_of(tool: Tool) -> Any:
         raise ValueError("no vertex where the flutes end")
     last = next(i for i, (h, _) in enumerate(line) if abs(h - flutes) < 1e-9)
     cutting, above = line[: last + 1], line[last:]
-    stages = [Segment(r0, h1 - h0, r1) for (h0, r0), (h1, r1) in zip(above, above[1:], strict=False) if h1 - h0 > 1e-9]
+    stages = [Segment(r0, h1 - h0, r1) for (h0, r0), (h1, r1) in pairwise(above) if h1 - h0 > 1e-9]
     holder, length = None, top
     if tool.holder:
         nose = float(tool.holder[0][0])
@@ -161,7 +175,7 @@ def cutter_of(tool: Tool) -> Any:
             raise ValueError("a holder that begins where the cutter does not end")
         length = nose
         holder = Holder(
-            tuple(Segment(float(a[1]), float(b[0] - a[0]), float(b[1])) for a, b in zip(tool.holder, tool.holder[1:], strict=False) if b[0] - a[0] > 1e-9)
+            tuple(Segment(float(a[1]), float(b[0] - a[0]), float(b[1])) for a, b in pairwise(tool.holder) if b[0] - a[0] > 1e-9)
         )
     more: dict[str, Any] = {"holder": holder, "name": tool.name}
     if stages:
@@ -171,7 +185,15 @@ def cutter_of(tool: Tool) -> Any:
         return Cutter(radius, length, corner, **more)
     if corner:
         raise ValueError("a round corner under a taper")
-    outline = tuple((r, h) for h, r in cutting)
+    if len(cutting) == 2:
+        return Cutter(
+            radius,
+            length,
+            taper=float(np.arctan2(cutting[1][1] - radius, flutes)),
+            flutes=flutes,
+            **{k: v for k, v in more.items() if k != "flutes"},
+        )
+    outline = ((0.0, 0.0), *((r, h) for h, r in cutting if (h, r) != (0.0, 0.0)))
     return Cutter.form(outline, length=length, **{k: v for k, v in more.items() if k != "flutes"})
 
 

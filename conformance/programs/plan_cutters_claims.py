@@ -1,4 +1,4 @@
-"""plan-cutters with postures of its own: those that its plans name, and those that its stored posture maps call free or blocked."""
+"""plan-cutters with postures of its own: those that plans name, and those that stored posture maps call free or blocked."""
 
 from collections import Counter
 from typing import Any
@@ -78,7 +78,7 @@ class Plans(_Planner):
 
 
 class StoredMaps(_Planner):
-    """Of each sample and rotation of stored maps: tilts just within the ends of a free interval, and just beyond where nothing is undecided."""
+    """Tilts of stored maps: just within the ends of a free interval, and just beyond where nothing is undecided."""
 
     name = "plan-cutters-maps"
     _maps = True
@@ -118,7 +118,7 @@ def _of_verdicts(samples: Any, verdicts: Any, tool: Tool, rows: dict[str, list[A
     for i in np.flatnonzero(verdicts.reached).tolist():
         contact, normal, axis = samples.point[i], samples.normal[i], verdicts.axis[i]
         if verdicts.tilt[i] < 1e-9:
-            # Upright, the direction goes from the axis to the contact, and may be shorter than 1: the contact lies under the flat.
+            # Upright, the direction goes from the axis to the contact; shorter than 1, the contact lies under the flat.
             tip = contact - tool.flat_radius * np.nan_to_num(verdicts.tilt_direction[i])
         else:
             tip = tool.stands(contact[None], normal[None], axis[None])[0]

@@ -76,14 +76,31 @@ def blind(postures: Postures) -> Postures:
 
 
 def claimed(part: Part, tool: Tool, setup: str, rows: Mapping[str, Any]) -> Postures:
-    """Return a table of claims from `contact, normal, axis (n, 3)` and `verdict (n,)`, and `tip (n, 3)` where the tool has it elsewhere."""
+    """Return a table of claims.
+
+    `rows` has `contact, normal, axis (n, 3)` and `verdict (n,)`, and `tip (n, 3)` where the tool has it elsewhere.
+    """
     contact, normal, axis = (np.asarray(rows[name], float).reshape(-1, 3) for name in ("contact", "normal", "axis"))
     n = len(contact)
     tip = rows.get("tip")
     tip = tool.stands(contact, normal, axis) if tip is None else np.asarray(tip, float).reshape(-1, 3)
     unknown, word = np.full(n, np.nan), lambda text: np.full(n, text)
     verdict = np.asarray(rows["verdict"], dtype="U9")
-    return Postures(word(part.name), word(tool.name), word(setup), contact, normal, axis, tip, verdict, unknown, unknown, unknown, word(""), word(""))
+    return Postures(
+        word(part.name),
+        word(tool.name),
+        word(setup),
+        contact,
+        normal,
+        axis,
+        tip,
+        verdict,
+        unknown,
+        unknown,
+        unknown,
+        word(""),
+        word(""),
+    )
 
 
 def beyond_limit(setup: Held, axis: Floats) -> NDArray[np.bool_]:

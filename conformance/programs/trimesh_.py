@@ -1,12 +1,12 @@
 """trimesh: points of the tool's skin, shrunk by the tolerance, and whether the part's mesh contains one."""
 
 from collections import Counter
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
 from conformance.posture import Postures
-from conformance.programs import needs
 from conformance.programs.meshes import frames, outlines, part_mesh
 from conformance.programs.protocol import UNDECIDED, Words, answered, below_table, beyond_limit, within_boxes
 from conformance.suite import Held, Part
@@ -28,7 +28,7 @@ class Program:
             "part_angle_rad": angle,
             "tool_shrunk_by_mm": tolerance,
             "pitch_mm": pitch,
-            "query": "Trimesh.contains (rays, by embreex where it is installed)",
+            "query": "Trimesh.contains (rays, by embreex)",
             "boxes": "points within",
             "table": "the tool's lowest point",
         }
@@ -37,7 +37,8 @@ class Program:
 
     def prepare(self, part: Part) -> None:
         """Mesh the part."""
-        trimesh = needs("trimesh", "trimesh embreex")
+        import trimesh
+
         mesh = part_mesh(part.path, self.settings["part_chord_error_mm"], self.settings["part_angle_rad"])
         self._parts[part.name] = trimesh.Trimesh(mesh.vertices, mesh.faces, process=True)
 
@@ -68,7 +69,7 @@ def _skin(tool: Tool, shrunk: float, pitch: float) -> Floats:
     """Return points (k, 3) of the skin of each piece in the frame of the tool, about `pitch` (mm) apart."""
     points = []
     for line in outlines(tool, shrunk, 0.005):
-        for (h0, r0), (h1, r1) in zip(line, line[1:], strict=False):
+        for (h0, r0), (h1, r1) in pairwise(line):
             for t in np.linspace(0.0, 1.0, max(2, int(np.ceil(np.hypot(h1 - h0, r1 - r0) / pitch)) + 1)):
                 h, r = h0 + t * (h1 - h0), r0 + t * (r1 - r0)
                 turn = np.linspace(0, 2 * np.pi, max(1, int(np.ceil(2 * np.pi * r / pitch))), endpoint=False)

@@ -64,7 +64,8 @@ def test_a_run_writes_what_its_issue_asks_for(small_folder: Path, tmp_path: Path
     code, out, _ = call("run", "--program", "undecided", "--all", "--data", small_folder, "--json", path, "--answers", answers)
     assert code == 0
     document = json.loads(path.read_text())
-    assert {"parts", "postures", "false_safe", "false_blocked", "undecided", "seconds", "border", "right", "worst_mm", "families", "settings",
+    assert {"parts", "postures", "false_safe", "false_blocked", "undecided", "seconds", "border", "right", "worst_mm",
+            "families", "settings",
             "versions", "memory_mb"} <= set(document)  # fmt: skip
     assert (document["parts"], document["postures"], document["score"], document["right"]) == (1, 72, 0.0, 0)
     assert document["undecided"] + document["border"] == 72

@@ -22,7 +22,9 @@ def test_a_table_is_read_as_it_was_written(small: Suite, tmp_path: Path, suffix:
     small.postures.write(path)
     again = Postures.read(path)
     for field in fields(Postures):
-        np.testing.assert_array_equal(getattr(again, field.name), getattr(small.postures.rounded(), field.name), err_msg=field.name)
+        np.testing.assert_array_equal(
+            getattr(again, field.name), getattr(small.postures.rounded(), field.name), err_msg=field.name
+        )
 
 
 def test_the_exported_table_has_row_numbers_and_hides_answers_where_it_is_asked_to(small: Suite, tmp_path: Path):
@@ -46,8 +48,10 @@ def _without(key):
 
 @pytest.mark.parametrize("spoil", [
     _without("tools"), _without("sha256"), lambda d: d.update(unit="in"), lambda d: d["parts"][0].update(colour="red"),
-    lambda d: d["parts"][0]["setups"]["free"].update(axis=[0, 0]), lambda d: d["parts"][0]["setups"]["free"].update(boxes=[[[0, 0, 0]]]),
-    lambda d: d["parts"][0]["tools"].update(bad={"cutter": [[0.0, -1.0], [5.0, 1.0]]}), lambda d: d["parts"][0].update(name="a|b"),
+    lambda d: d["parts"][0]["setups"]["free"].update(axis=[0, 0]),
+    lambda d: d["parts"][0]["setups"]["free"].update(boxes=[[[0, 0, 0]]]),
+    lambda d: d["parts"][0]["tools"].update(bad={"cutter": [[0.0, -1.0], [5.0, 1.0]]}),
+    lambda d: d["parts"][0].update(name="a|b"),
 ])  # fmt: skip
 def test_the_schema_is_strict(small_folder: Path, spoil):
     document = copy.deepcopy(json.loads((small_folder / "made.json").read_text()))
@@ -57,12 +61,18 @@ def test_the_schema_is_strict(small_folder: Path, spoil):
 
 def test_setups_with_limit_boxes_and_table_are_of_the_format(small_folder: Path):
     document = json.loads((small_folder / "made.json").read_text())
-    document["parts"][0]["setups"]["held"] = {"axis": [0, 0, 1], "limit_deg": 60, "boxes": [[[0, 0, 0], [1, 2, 3]]], "table": -15.0}
+    document["parts"][0]["setups"]["held"] = {
+        "axis": [0, 0, 1],
+        "limit_deg": 60,
+        "boxes": [[[0, 0, 0], [1, 2, 3]]],
+        "table": -15.0,
+    }
     assert parts_errors(document) == []
 
 
 @pytest.mark.parametrize(("column", "value", "word"), [
-    ("verdict", "maybe", "verdict"), ("proof", "guess", "proof"), ("low", np.nan, "low"), ("low", 99.0, "low"), ("axis", 2.0, "axis"),
+    ("verdict", "maybe", "verdict"), ("proof", "guess", "proof"), ("low", np.nan, "low"), ("low", 99.0, "low"),
+    ("axis", 2.0, "axis"),
     ("reason", "luck", "reason"),
 ])  # fmt: skip
 def test_what_a_column_cannot_hold_is_named(small: Suite, column: str, value: object, word: str):
@@ -74,14 +84,18 @@ def test_what_a_column_cannot_hold_is_named(small: Suite, column: str, value: ob
 
 
 def test_a_tip_that_is_elsewhere_and_a_part_that_is_unknown_are_named(small: Suite):
-    assert "tip is 1 mm" in suite_errors(Suite(small.parts, replace(small.postures, tip=small.postures.tip + [0, 0, 1.0])))[0]
+    assert (
+        "tip is 1 mm"
+        in suite_errors(Suite(small.parts, replace(small.postures, tip=small.postures.tip + np.array([0, 0, 1.0]))))[0]
+    )
     other = small.postures.part.astype("U12")
     other[0] = "nowhere"
     assert "nowhere" in suite_errors(Suite(small.parts, replace(small.postures, part=other)))[0]
 
 
 @pytest.mark.parametrize("tool", [
-    Tool.flat(16.0, 90.0), Tool.ball(8.0, 60.0, flutes=20.0, shank=6.0, holder=((60.0, 12.0), (80.0, 15.0), (80.0, 20.0), (120.0, 20.0))),
+    Tool.flat(16.0, 90.0),
+    Tool.ball(8.0, 60.0, flutes=20.0, shank=6.0, holder=((60.0, 12.0), (80.0, 15.0), (80.0, 20.0), (120.0, 20.0))),
     Tool.flat(6.0, 50.0, corner=1.0),
 ], ids=lambda tool: tool.name)  # fmt: skip
 def test_tools_are_read_as_they_were_written(tool: Tool):

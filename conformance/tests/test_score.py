@@ -14,10 +14,27 @@ def table(low: list[float], high: list[float] | None = None, limit: list[float] 
     """Return postures with these margins (mm) and angles to the limit (degrees)."""
     n = len(low)
     a, b = np.array(low, float), np.array(low if high is None else high, float)
-    word = lambda text: np.full(n, text)
+
+    def word(text: str) -> np.ndarray:
+        return np.full(n, text)
+
     zero, limits = np.zeros((n, 3)), np.full(n, np.nan) if limit is None else np.array(limit, float)
     blocked = (a < 0) | (limits < 0)
-    return Postures(word("p"), word("t"), word("s"), zero, zero, zero, zero, np.where(blocked, "blocked", "safe"), a, b, limits, word(""), word("form"))
+    return Postures(
+        word("p"),
+        word("t"),
+        word("s"),
+        zero,
+        zero,
+        zero,
+        zero,
+        np.where(blocked, "blocked", "safe"),
+        a,
+        b,
+        limits,
+        word(""),
+        word("form"),
+    )
 
 
 MIXED = table([-2.0, -0.011, -0.009, 0.0, 0.009, 0.011, 3.0])
@@ -125,7 +142,7 @@ def test_answers_are_read_as_they_were_written(tmp_path: Path, suffix: str):
 def test_files_that_are_no_answers_are_refused(tmp_path: Path, text: str, message: str):
     path = tmp_path / "answers.csv"
     path.write_text(text)
-    with pytest.raises(ValueError, match="answers.csv: ") as caught:
+    with pytest.raises(ValueError, match=r"answers\.csv: ") as caught:
         read_answers(path, 5)
     assert message in str(caught.value)
     assert "\n" not in str(caught.value)
