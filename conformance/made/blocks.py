@@ -8,8 +8,8 @@ import numpy as np
 from conformance.forms import Hull, Prism, section
 from conformance.tool import Floats
 
-#: Half the length (mm) of a bar along y. No tool here is longer than 60 and contacts lie near the middle, so that the ends of a bar are
-#: farther than any other face: its materials go on without end.
+#: Half the length (mm) of a bar along y. No tool here is longer than 60 and contacts lie near the middle, so that the ends of a
+#: bar are farther than any other face: its materials go on without end.
 HALF = 110.0
 
 Point2 = tuple[float, float]
@@ -64,7 +64,8 @@ def together(*solids: Any) -> Any:
 
 
 def on_lines(*lines: tuple[Point2, Point2], wide: float = 3.0) -> Contacts:
-    """Return what draws contacts on faces of bars: the lines of their outlines, the material to the right of each way, |y| up to `wide`."""
+    """Return what draws contacts on faces of bars: the lines of their outlines, the material to the right of each way, |y| up
+    to `wide`."""
     start, end = (np.array([line[i] for line in lines], float) for i in (0, 1))
 
     def contacts(rng: np.random.Generator, n: int) -> tuple[Floats, Floats]:

@@ -16,16 +16,28 @@ BODY_IN_BODY = MadePart(
     "body_in_body",
     "bodies",
     "A body inside another body",
-    """Two boxes, both solid, the small one inside the large one. A contact on the small one lies within the large one, not on its skin, so that the large one's
-    depth counts there: the end of a tool that stands in material is in it, and every posture is blocked. On the large one all is behind the contact.""",
+    """Two boxes, both solid, the small one inside the large one. A contact on the small one lies within the large one, not on
+    its skin, so that the large one's depth counts there: the end of a tool that stands in material is in it, and every posture
+    is blocked. On the large one all is behind the contact.""",
     lambda: together(cuboid(*_OUTER), cuboid(*_INNER)),
     (box("outer", *_OUTER), box("inner", *_INNER)),
     (_FLAT, _BALL, _BULL),
-    on_rectangles(((-6, -6, 6), (6, 6, 6), _Z), ((-15, -15, 20), (15, 15, 20), _Z), ((6, -6, -6), (6, 6, 6), _X), ((20, -15, -15), (20, 15, 15), _X)),
+    on_rectangles(
+        ((-6, -6, 6), (6, 6, 6), _Z),
+        ((-15, -15, 20), (15, 15, 20), _Z),
+        ((6, -6, -6), (6, 6, 6), _X),
+        ((20, -15, -15), (20, 15, 15), _X),
+    ),
     answers=(
         Answer("free_tilts", [], "the contact is in the outer body", _FLAT.name, given=at((0, 0, 6), _Z, _X)),
         Answer("free_tilts", [], "the contact is in the outer body", _BALL.name, given=at((6, 0, 0), _X, _Z)),
-        Answer("free_tilts", [[0.0, 90.0]], "all material is behind the plane of the contact", _FLAT.name, given=at((5, 0, 20), _Z, _X)),
+        Answer(
+            "free_tilts",
+            [[0.0, 90.0]],
+            "all material is behind the plane of the contact",
+            _FLAT.name,
+            given=at((5, 0, 20), _Z, _X),
+        ),
     ),
 )
 
@@ -43,16 +55,25 @@ HOLLOW = MadePart(
     "closed_hollow",
     "bodies",
     "A block with a closed hollow",
-    """A cube of 40 mm with a hollow of 16 mm in its middle: six slabs side by side. Each tool is 40 mm long, more than the hollow's diagonal, 16 sqrt 3 = 27.7:
-    a tool that touches a wall of the hollow goes through another wall. On the outer faces all is behind the contact.""",
+    """A cube of 40 mm with a hollow of 16 mm in its middle: six slabs side by side. Each tool is 40 mm long, more than the
+    hollow's diagonal, 16 sqrt 3 = 27.7: a tool that touches a wall of the hollow goes through another wall. On the outer faces
+    all is behind the contact.""",
     lambda: cuboid((-_A, -_A, -_A), (_A, _A, _A)).cut(cuboid((-_B, -_B, -_B), (_B, _B, _B))),
     tuple(box(name, *c) for name, c in _SLABS.items()),
     (_FLAT, _BALL, _BULL),
-    on_rectangles(((-_B, -_B, -_B), (_B, _B, -_B), _Z), ((-_B, -_B, -_B), (-_B, _B, _B), _X), ((-15, -15, _A), (15, 15, _A), _Z)),
+    on_rectangles(((-_B, -_B, -_B), (_B, _B, -_B), _Z), ((-_B, -_B, -_B), (-_B, _B, _B), _X)),
     answers=(
         Answer("free_tilts", [], "the tool is longer than the hollow's diagonal", _BALL.name, given=at((0, 0, -_B), _Z, _X)),
-        Answer("free_tilts", [], "the tool is longer than the hollow's diagonal", _FLAT.name, given=at((-_B, 2, 1), _X, (0, 1, 1))),
-        Answer("free_tilts", [[0.0, 90.0]], "all material is behind the plane of the contact", _BALL.name, given=at((3, 4, _A), _Z, _Y)),
+        Answer(
+            "free_tilts", [], "the tool is longer than the hollow's diagonal", _FLAT.name, given=at((-_B, 2, 1), _X, (0, 1, 1))
+        ),
+        Answer(
+            "free_tilts",
+            [[0.0, 90.0]],
+            "all material is behind the plane of the contact",
+            _BALL.name,
+            given=at((3, 4, _A), _Z, _Y),
+        ),
     ),
 )
 
@@ -62,16 +83,21 @@ TOUCHING = MadePart(
     "touching_bodies",
     "bodies",
     "Two bodies that touch",
-    """Two boxes that share the plane x = 0 below z = 0. A contact on what they share lies on the skin of both, and a tool that stands on the one goes into the other:
-    blocked. Above, the second body is a step of 20 mm: down, the side of the tool comes to its edge (planar.ball_until, flat_until).""",
+    """Two boxes that share the plane x = 0 below z = 0. A contact on what they share lies on the skin of both, and a tool that
+    stands on the one goes into the other: blocked. Above, the second body is a step of 20 mm: down, the side of the tool comes
+    to its edge (planar.ball_until, flat_until).""",
     lambda: together(cuboid(*_HIGH), cuboid(*_LOW)),
     (box("high", *_HIGH), box("low", *_LOW)),
     (_FLAT, _BALL, _BULL),
     on_rectangles(((0, -8, 0), (0, 8, 15), _X), ((0, -8, -20), (0, 8, 0), _X), ((0, -8, 0), (20, 8, 0), _Z)),
     answers=(
         Answer("free_tilts", [], "the shared plane: the tool is in the second body", _FLAT.name, given=at((0, 0, -8), _X, _Z)),
-        Answer("free_tilts", [], "the shared plane: the tool is in the second body", _BALL.name, given=at((0, 3, -10), _X, _DOWN)),
-        Answer("free_tilts", [[0.0, ball_until((8.0, 20.0), 3.0)]], "planar.ball_until", _BALL.name, given=at((0, 0, 8), _X, _DOWN)),
+        Answer(
+            "free_tilts", [], "the shared plane: the tool is in the second body", _BALL.name, given=at((0, 3, -10), _X, _DOWN)
+        ),
+        Answer(
+            "free_tilts", [[0.0, ball_until((8.0, 20.0), 3.0)]], "planar.ball_until", _BALL.name, given=at((0, 0, 8), _X, _DOWN)
+        ),
         Answer("free_tilts", [[0.0, flat_until((8.0, 20.0))]], "atan(z / 20)", _FLAT.name, given=at((0, 0, 8), _X, _DOWN)),
     ),
 )
@@ -84,15 +110,27 @@ APART = MadePart(
     "blocks_with_gap",
     "bodies",
     "Two blocks with a gap, open above and below",
-    """Two boxes, 6 mm apart, from z = -10 to 10. From the face of one a tool comes out above or below when its side passes the other's edge: planar.ball_from. A ball end
-    between the two has at most half the gap as its radius.""",
+    """Two boxes, 6 mm apart, from z = -10 to 10. From the face of one a tool comes out above or below when its side passes the
+    other's edge: planar.ball_from. A ball end between the two has at most half the gap as its radius.""",
     lambda: together(cuboid(*_ONE), cuboid(*_TWO)),
     (box("one", *_ONE), box("two", *_TWO)),
     (_THIN, Tool.flat(3.0, 40.0), _BALL),
     on_rectangles(((0, -3, -10), (0, 3, 10), _X), ((_GAP, -3, -10), (_GAP, 3, 10), _BACK), ((-15, -3, 10), (0, 3, 10), _Z)),
     answers=(
-        Answer("free_tilts", [[ball_from((8.0, _GAP), 2.0), 90.0]], "planar.ball_from, upwards", _THIN.name, given=at((0, 0, 2), _X, _Z)),
-        Answer("free_tilts", [[ball_from((12.0, _GAP), 2.0), 90.0]], "planar.ball_from, downwards", _THIN.name, given=at((0, 0, 2), _X, _DOWN)),
+        Answer(
+            "free_tilts",
+            [[ball_from((8.0, _GAP), 2.0), 90.0]],
+            "planar.ball_from, upwards",
+            _THIN.name,
+            given=at((0, 0, 2), _X, _Z),
+        ),
+        Answer(
+            "free_tilts",
+            [[ball_from((12.0, _GAP), 2.0), 90.0]],
+            "planar.ball_from, downwards",
+            _THIN.name,
+            given=at((0, 0, 2), _X, _DOWN),
+        ),
         Answer("largest_radius", 0.5 * _GAP, "half the gap", _THIN.name, given=along((0, 0, 2), _X, _Z)),
     ),
 )
@@ -105,18 +143,32 @@ NEAR_FIXTURE = MadePart(
     "near_fixture",
     "bodies",
     "A plate near a clamp",
-    """One box. The clamp is a box 4 mm from it, 12 mm higher than its top: a wall at 10 mm from the contact at x = 14, for the tool that tilts to it in its middle plane.
-    Without the clamp all is behind the contact.""",
+    """One box. The clamp is a box 4 mm from it, 12 mm higher than its top: a wall at 10 mm from the contact at x = 14, for the
+    tool that tilts to it in its middle plane. Without the clamp all is behind the contact.""",
     lambda: cuboid(*_PLATE),
     (box("plate", *_PLATE),),
     (_FLAT, _BALL, _HELD),
     on_rectangles(((0, -8, 0), (20, 8, 0), _Z), ((20, -8, -10), (20, 8, 0), _X)),
     setups=(Setup(), Setup("clamped", fixtures=(box("clamp", *_CLAMP),), boxes=(_CLAMP,))),
     answers=(
-        Answer("free_tilts", [[0.0, ball_until((10.0, 12.0), 3.0)]], "planar.ball_until", _BALL.name, "clamped", at((14, 0, 0), _Z, _X)),
+        Answer(
+            "free_tilts",
+            [[0.0, ball_until((10.0, 12.0), 3.0)]],
+            "planar.ball_until",
+            _BALL.name,
+            "clamped",
+            at((14, 0, 0), _Z, _X),
+        ),
         Answer("free_tilts", [[0.0, flat_until((10.0, 12.0))]], "atan(10 / 12)", _FLAT.name, "clamped", at((14, 0, 0), _Z, _X)),
         Answer("free_tilts", [[0.0, 90.0]], "no clamp", _FLAT.name, "free", at((14, 0, 0), _Z, _X)),
-        Answer("least_stickout", 12.0, "the clamp's height: the holder's radius is more than 10", _HELD.name, "clamped", along((14, 0, 0), _Z, _Z)),
+        Answer(
+            "least_stickout",
+            12.0,
+            "the clamp's height: the holder's radius is more than 10",
+            _HELD.name,
+            "clamped",
+            along((14, 0, 0), _Z, _Z),
+        ),
     ),
 )
 
@@ -127,8 +179,9 @@ FIXTURE_ON_FACE = MadePart(
     "fixture_on_face",
     "bodies",
     "A clamp on the face that is to be cut",
-    """One box, and a clamp that stands on its top from x = 5 to 15. Below the clamp a contact lies on the skin of both, and a tool there is in the clamp. At x = -3 the clamp is a
-    wall at 8 mm, 10 mm high: the front side comes to its edge, or the heel has to be clear of it or above it.""",
+    """One box, and a clamp that stands on its top from x = 5 to 15. Below the clamp a contact lies on the skin of both, and a
+    tool there is in the clamp. At x = -3 the clamp is a wall at 8 mm, 10 mm high: the front side comes to its edge, or the heel
+    has to be clear of it or above it.""",
     lambda: cuboid(*_BASE),
     (box("plate", *_BASE),),
     (_FLAT, _WIDE, _BALL),
@@ -138,7 +191,14 @@ FIXTURE_ON_FACE = MadePart(
         Answer("free_tilts", [], "the contact is below the clamp", _FLAT.name, "clamped", at((10, 0, 0), _Z, _X)),
         Answer("free_tilts", [], "the contact is below the clamp", _BALL.name, "clamped", at((10, 0, 0), _Z, _Y)),
         Answer("free_tilts", [[0.0, flat_until((8.0, 10.0))]], "atan(8 / 10)", _FLAT.name, "clamped", at((-3, 0, 0), _Z, _X)),
-        Answer("free_tilts", [[0.0, ball_until((8.0, 10.0), 3.0)]], "planar.ball_until", _BALL.name, "clamped", at((-3, 0, 0), _Z, _X)),
+        Answer(
+            "free_tilts",
+            [[0.0, ball_until((8.0, 10.0), 3.0)]],
+            "planar.ball_until",
+            _BALL.name,
+            "clamped",
+            at((-3, 0, 0), _Z, _X),
+        ),
         Answer(
             "free_tilts",
             [[heel_from((8.0, 10.0), 8.0), 90.0]],

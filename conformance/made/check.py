@@ -1,6 +1,7 @@
 """A made part against the slow twin: what a new part has to pass.
 
-`python -m conformance check NAME` writes the part's STEP file aside, reads it back, and compares closed forms with points of the exact surface.
+`python -m conformance check NAME` writes the part's STEP file aside, reads it back, and compares closed forms with points of
+the exact surface.
 """
 
 import tempfile
@@ -32,7 +33,8 @@ def write_step(part: MadePart, path: Path) -> None:
     """Write the part as STEP, in mm."""
     import cadquery as cq
 
-    cq.exporters.export(cq.Workplane(obj=part.build().val()) if not isinstance(part.build(), cq.Workplane) else part.build(), str(path))
+    shape = part.build()
+    cq.exporters.export(shape if isinstance(shape, cq.Workplane) else cq.Workplane(obj=shape.val()), str(path))
 
 
 def faces_of(part: MadePart, pitch: float = PITCH) -> list[slow.Face]:
@@ -65,7 +67,8 @@ def differences(part: MadePart, table: Postures | None = None, count: int = 24, 
         tool = part.tool(str(table.tool[i]))
         twin = slow.margin(faces, exempt[i], tool, table.tip[i], table.axis[i], TOUCH)
         form = float(table.low[i])
-        # Deep in the material its inside counts, too, which has no points; at the border in the contact the clearance is left out.
+        # Deep in the material its inside counts, too, which has no points; at the border in the contact the clearance is
+        # left out.
         agree = abs(twin - form) <= AGREE or (form < -0.5 and twin < -0.2) or (form == 0.0 and twin > -AGREE)
         if not agree:
             yield Difference(i, form, twin)

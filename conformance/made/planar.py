@@ -1,12 +1,13 @@
 """Tilts at which a tool meets edges and planes across its tilt: the closed forms that parts of planes share.
 
-All is in the plane of the tilt. The contact is the origin, `h` runs along the normal, `d` along the direction that the axis tilts to: the axis
-is `(sin t, cos t)`. Corners are edges of material across this plane, seen as points `(d, h)`; on both sides of the plane a round tool is narrower,
-so what happens in the plane decides. Angles are degrees.
+All is in the plane of the tilt. The contact is the origin, `h` runs along the normal, `d` along the direction that the axis
+tilts to: the axis is `(sin t, cos t)`. Corners are edges of material across this plane, seen as points `(d, h)`; on both sides
+of the plane a round tool is narrower, so what happens in the plane decides. Angles are degrees.
 
-A ball end of radius R has its centre at `(0, R)`, whatever the tilt: its side is a strip of half-width R about the ray from there along the axis.
-A flat end stands on the edge of its disk: `x_T = (cos t, -sin t)` goes from the middle of the disk to the contact, so the front side is the ray
-from the contact along the axis, and the heel, the other end of the disk, is at `2 R (-cos t, sin t)`.
+A ball end of radius R has its centre at `(0, R)`, whatever the tilt: its side is a strip of half-width R about the ray from
+there along the axis. A flat end stands on the edge of its disk: `x_T = (cos t, -sin t)` goes from the middle of the disk to the
+contact, so the front side is the ray from the contact along the axis, and the heel, the other end of the disk, is at `2 R (-cos
+t, sin t)`.
 """
 
 import numpy as np
@@ -19,8 +20,8 @@ Corner = tuple[float, float]
 def ball_until(corner: Corner, radius: float) -> float:
     """Return the tilt at which the side of a ball end comes to a corner before it.
 
-    The corner's distance from the ray is `d cos t - (h - R) sin t = p cos(t + f)`, `p = hypot(d, h - R)`, `f = atan2(h - R, d)`; it is R
-    at `t = acos(R / p) - f`.
+    The corner's distance from the ray is `d cos t - (h - R) sin t = p cos(t + f)`, `p = hypot(d, h - R)`, `f = atan2(h - R,
+    d)`; it is R at `t = acos(R / p) - f`.
     """
     d, h = corner
     return float(np.degrees(np.arccos(radius / np.hypot(d, h - radius)) - np.arctan2(h - radius, d)))
@@ -36,7 +37,8 @@ def ball_from(corner: Corner, radius: float) -> float:
 
 
 def ball_end_until(distance: float, radius: float, length: float) -> float:
-    """Return the tilt at which the upper end of a ball end, or of its shank, comes to a plane `d = distance` that is higher than the tool.
+    """Return the tilt at which the upper end of a ball end, or of its shank, comes to a plane `d = distance` that is higher
+    than the tool.
 
     The end's far corner is at `d = A sin t + R cos t`, `A = length - R`, so `t = atan2(A, R) - acos(distance / hypot(A, R))`.
     """
@@ -58,24 +60,27 @@ def ball_end_from(height: float, radius: float, length: float) -> float:
 
 
 def flat_until(corner: Corner) -> float:
-    """Return the tilt at which the front side of a flat end comes to a corner before it: the ray from the contact goes through the corner."""
+    """Return the tilt at which the front side of a flat end comes to a corner before it: the ray from the contact goes through
+    the corner."""
     return float(np.degrees(np.arctan2(corner[0], corner[1])))
 
 
 def flat_from(corner: Corner, radius: float) -> float:
     """Return the tilt from which the back of a flat end passes a corner behind it.
 
-    The corner's distance from the front side is `h sin t - d cos t = p sin(t - f)`; it is the diameter at `t = f + asin(2 R / p)`.
+    The corner's distance from the front side is `h sin t - d cos t = p sin(t - f)`; it is the diameter at `t = f + asin(2 R /
+    p)`.
     """
     d, h = corner
     return float(np.degrees(np.arctan2(d, h) + np.arcsin(2.0 * radius / np.hypot(d, h))))
 
 
 def heel_from(corner: Corner, radius: float, nose: float = 0.0) -> float:
-    """Return the tilt from which the heel of a flat end or bull nose is clear of a wall behind it, at distance `d`, of height `h`.
+    """Return the tilt from which the heel of a flat end or bull nose is clear of a wall behind it, at distance `d`, of height
+    `h`.
 
-    The heel reaches back to `2 r cos t + nose`, `r` the flat's radius: clear of the wall from `acos((d - nose) / (2 r))`. A flat end whose disk
-    passes above the wall's corner is clear as well, from `atan2(h, d)`.
+    The heel reaches back to `2 r cos t + nose`, `r` the flat's radius: clear of the wall from `acos((d - nose) / (2 r))`. A
+    flat end whose disk passes above the wall's corner is clear as well, from `atan2(h, d)`.
     """
     flat = radius - nose
     before = float(np.degrees(np.arccos((corner[0] - nose) / (2.0 * flat)))) if corner[0] - nose < 2.0 * flat else 0.0
@@ -87,15 +92,20 @@ def holder(stickout: float, radius: float, height: float = 10.0) -> tuple[Vertex
     return ((stickout, radius), (stickout + height, radius))
 
 
-def at(contact: tuple[float, float, float], normal: tuple[float, float, float], tilts_to: tuple[float, float, float]) -> dict[str, list[float]]:
+def at(
+    contact: tuple[float, float, float], normal: tuple[float, float, float], tilts_to: tuple[float, float, float]
+) -> dict[str, list[float]]:
     """Return what a question about tilts states: contact, normal and the direction that the axis tilts to, as a unit vector."""
-    return {"contact": [float(x) for x in contact], "normal": _unit(normal), "lean": _unit(tilts_to)}
+    return {"contact": [float(x) for x in contact], "normal": unit(normal), "lean": unit(tilts_to)}
 
 
-def along(contact: tuple[float, float, float], normal: tuple[float, float, float], axis: tuple[float, float, float]) -> dict[str, list[float]]:
+def along(
+    contact: tuple[float, float, float], normal: tuple[float, float, float], axis: tuple[float, float, float]
+) -> dict[str, list[float]]:
     """Return what a question about a fixed axis states."""
-    return {"contact": [float(x) for x in contact], "normal": _unit(normal), "axis": _unit(axis)}
+    return {"contact": [float(x) for x in contact], "normal": unit(normal), "axis": unit(axis)}
 
 
-def _unit(v: tuple[float, float, float]) -> list[float]:
+def unit(v: tuple[float, float, float]) -> list[float]:
+    """Return a direction of length 1, as a list."""
     return [float(x) for x in np.array(v, float) / np.linalg.norm(v)]

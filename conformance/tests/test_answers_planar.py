@@ -10,7 +10,7 @@ from conformance.exact import slow
 from conformance.made import bodies, holders, machines, slots, walls
 from conformance.made.blocks import cuboid
 from conformance.made.check import exempt_faces, faces_of
-from conformance.made.part import TOUCH, frame, judge
+from conformance.made.part import TOUCH, blocked, frame, held
 from conformance.tool import Tool
 
 PARTS = {part.name: part for family in (walls, slots, holders, bodies, machines) for part in family.PARTS}
@@ -27,6 +27,11 @@ def of_kind(kind):
 @cache
 def part_faces(name):
     return faces_of(PARTS[name], PITCH)
+
+
+@cache
+def own_faces(name, contact):
+    return exempt_faces(PARTS[name], part_faces(name), np.array([contact]))[0]
 
 
 @cache
@@ -48,13 +53,13 @@ def stands(tool, contact, normal, axis, lean):
 
 def is_blocked(name, tool, setup_name, contact, normal, axis, lean=None):
     """Whether the twin finds material or fixture in the tool, or the axis beyond the limit."""
-    part, setup = PARTS[name], PARTS[name].setup(setup_name)
+    setup = PARTS[name].setup(setup_name)
     axis, tip = stands(tool, contact, normal, np.array(axis, float), lean)
     if setup.limit_deg is not None and np.degrees(np.arccos(np.clip(axis[0] @ np.array(setup.axis), -1, 1))) > setup.limit_deg:
         return True
     faces = part_faces(name)
     fixed = fixture_faces(name, setup_name)
-    exempt = [*exempt_faces(part, faces, np.array([contact], float))[0], *(False for _ in fixed)]
+    exempt = [*own_faces(name, tuple(contact)), *(False for _ in fixed)]
     quick = [float(np.min(tool.signed(np.vstack([f.points, f.edges]), tip[0], axis[0]))) for f in (*faces, *fixed)]
     for least, face, own in sorted(zip(quick, (*faces, *fixed), exempt, strict=True), key=lambda row: row[0]):
         if least < -DEPTH:
@@ -72,7 +77,9 @@ def is_blocked(name, tool, setup_name, contact, normal, axis, lean=None):
 def form_blocks(name, tool, setup_name, contact, normal, axis, lean=None):
     part = PARTS[name]
     axis, tip = stands(tool, contact, normal, np.array(axis, float), lean)
-    return bool(judge(part, tool, part.setup(setup_name), np.array([contact], float), axis, tip).blocked[0])
+    setup = part.setup(setup_name)
+    holds = [held(m, np.array([contact], float)) for m in (*part.materials, *setup.fixtures)]
+    return bool(blocked(part, tool, setup, holds, axis, tip)[0])
 
 
 def tilted(normal, lean, tilt):
@@ -137,7 +144,11 @@ def directions(step):
     for low in np.arange(-90.0, 90.1, step):
         turns = np.arange(0.0, 359.9, step / max(np.cos(np.radians(low)), 0.02))
         z = np.full(len(turns), np.sin(np.radians(low)))
-        out.append(np.column_stack([np.cos(np.radians(low)) * np.cos(np.radians(turns)), np.cos(np.radians(low)) * np.sin(np.radians(turns)), z]))
+        out.append(
+            np.column_stack(
+                [np.cos(np.radians(low)) * np.cos(np.radians(turns)), np.cos(np.radians(low)) * np.sin(np.radians(turns)), z]
+            )
+        )
     return np.vstack(out)
 
 
@@ -150,7 +161,11 @@ def may_serve(name, tool, contact, normal, most, axes):
         for rows in np.array_split(np.flatnonzero(open_), 40):
             if len(rows):
                 axis, tip = stands(
-                    tool, np.tile(contact, (len(rows), 1)), np.tile(normal, (len(rows), 1)), axes[rows], np.tile(frame(np.array([normal]))[0], (len(rows), 1))
+                    tool,
+                    np.tile(contact, (len(rows), 1)),
+                    np.tile(normal, (len(rows), 1)),
+                    axes[rows],
+                    np.tile(frame(np.array([normal]))[0], (len(rows), 1)),
                 )
                 open_[rows] = np.min(tool.signed(few[None], tip[:, None], axis[:, None]), axis=1) > -DEPTH
     return open_
@@ -164,10 +179,13 @@ def test_orientations(name, number):
     for contact, normal in zip(at["contacts"], at["normals"], strict=True):
         tilts = [np.degrees(np.arccos(np.clip(np.dot(a, normal), -1, 1))) for a in at["axes"]]
         assert any(
-            tilt <= at["max_tilt_deg"] and not is_blocked(name, tool, answer.setup, contact, normal, a) for a, tilt in zip(at["axes"], tilts, strict=True)
+            tilt <= at["max_tilt_deg"] and not is_blocked(name, tool, answer.setup, contact, normal, a)
+            for a, tilt in zip(at["axes"], tilts, strict=True)
         ), contact
     axes = directions(2.0)
-    serves = np.array([may_serve(name, tool, c, n, at["max_tilt_deg"], axes) for c, n in zip(at["contacts"], at["normals"], strict=True)])
+    serves = np.array(
+        [may_serve(name, tool, c, n, at["max_tilt_deg"], axes) for c, n in zip(at["contacts"], at["normals"], strict=True)]
+    )
     if at["apart"]:
         assert len(at["apart"]) == answer.value
         assert np.max(np.sum(serves[at["apart"]], axis=0)) == 1
@@ -180,7 +198,10 @@ def test_a_wrong_answer_is_seen():
     tool, at = PARTS["plate_and_wall"].tool(answer.tool), answer.given
     [[_, high]] = answer.value
     wrong = [
-        is_blocked("plate_and_wall", tool, answer.setup, at["contact"], at["normal"], tilted(at["normal"], at["lean"], t), at["lean"]) is not free
+        is_blocked(
+            "plate_and_wall", tool, answer.setup, at["contact"], at["normal"], tilted(at["normal"], at["lean"], t), at["lean"]
+        )
+        is not free
         for t, free in expected_tilts([[0.0, high + 0.2]])
     ]
     assert not all(wrong)
