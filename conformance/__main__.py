@@ -31,9 +31,7 @@ RESULTS = Path(__file__).parent / "results"
 
 Kind = Annotated[str, typer.Option(help="Which half of the suite: made (closed forms) or real (bounds).")]
 Data = Annotated[Path, typer.Option(help="Folder with made.json, made.parquet and made/.", show_default="the suite's own")]
-Tolerance = Annotated[
-    float, typer.Option(help="Depths and clearances up to this are at the border, mm: there each answer is right.")
-]
+Tolerance = Annotated[float, typer.Option(help="Depths and clearances up to this are at the border, mm: there each answer is right.")]
 
 
 def _refuse(text: object) -> NoReturn:
@@ -127,16 +125,10 @@ def run_command(
 
 @app.command("score")
 def score_command(
-    file: Annotated[
-        Path,
-        typer.Argument(
-            help="CSV or Parquet with the columns id (row of the table, from 0) and answer (safe, blocked, undecided)."
-        ),
-    ],
+    file: Annotated[Path, typer.Argument(help="CSV or Parquet with the columns id (row of the table, from 0) and answer (safe, blocked, undecided).")],
     json_file: Annotated[Path | None, typer.Option("--json", help="Write the results here.")] = None,
     only_answered: Annotated[
-        bool,
-        typer.Option("--only-answered", help="Leave out postures that the file does not have; else they count as undecided."),
+        bool, typer.Option("--only-answered", help="Leave out postures that the file does not have; else they count as undecided.")
     ] = False,
     name: Annotated[str | None, typer.Option("--name", help="Name of the program.", show_default="that of the file")] = None,
     kind: Kind = "made",

@@ -98,15 +98,7 @@ def _section(kind: str, claims: bool, found: list[dict[str, Any]]) -> list[str]:
     for family in families:
         counted = [d["families"].get(family) for d in found]
         rows.append(
-            [
-                family,
-                *(
-                    "-"
-                    if c is None
-                    else f"{c['false_safe']} / {c['false_blocked']} / {c['undecided']} of {c['postures'] - c['border']}"
-                    for c in counted
-                ),
-            ]
+            [family, *("-" if c is None else f"{c['false_safe']} / {c['false_blocked']} / {c['undecided']} of {c['postures'] - c['border']}" for c in counted)]
         )
     lines += _table(["class", *(d["program"] for d in found)], rows)
     lines += ["", "### Settings", ""]
@@ -123,8 +115,4 @@ def _table(heads: list[str], rows: list[list[str]]) -> list[str]:
     def clean(text: str) -> str:
         return text.replace("|", "/")
 
-    return [
-        "| " + " | ".join(heads) + " |",
-        "|" + "---|" * len(heads),
-        *("| " + " | ".join(map(clean, row)) + " |" for row in rows),
-    ]
+    return ["| " + " | ".join(heads) + " |", "|" + "---|" * len(heads), *("| " + " | ".join(map(clean, row)) + " |" for row in rows)]

@@ -44,9 +44,7 @@ class Ran:
     memory_mb: float = 0.0
     claims: bool = False
 
-    def document(
-        self, suite: Suite, kind: str, every: bool, rows: NDArray[np.int64] | None = None, tolerance: float = TOLERANCE
-    ) -> dict[str, Any]:
+    def document(self, suite: Suite, kind: str, every: bool, rows: NDArray[np.int64] | None = None, tolerance: float = TOLERANCE) -> dict[str, Any]:
         """Return the results as the JSON file has them."""
         families = {name: part.family for name, part in suite.parts.items()}
         total = self.start_seconds + self.prepare_seconds + self.answer_seconds
@@ -141,9 +139,7 @@ def _child(name: str, groups: list[Group], postures: list[Postures], patience: f
     """Yield what a process of the program sends: the number of the group, and a reply; an exception, or that it died."""
     context = multiprocessing.get_context("spawn")
     here, there = context.Pipe(duplex=False)
-    process = context.Process(
-        target=_work, args=(there, name, [(p, t, s) for p, t, s, _ in groups], [blind(p) for p in postures]), daemon=True
-    )
+    process = context.Process(target=_work, args=(there, name, [(p, t, s) for p, t, s, _ in groups], [blind(p) for p in postures]), daemon=True)
     process.start()
     there.close()
     done = -1
@@ -182,19 +178,13 @@ def _work(pipe: Connection, name: str, groups: list[tuple[Part, Tool, str]], pos
                 if before is None or part.name != before.name:
                     made.prepare(part)
                 before, ready = part, time.perf_counter()
-                reply = (
-                    {"claims": made.claims(part, tool, setup)}
-                    if claims
-                    else {"answers": made.answer(part, tool, part.setups[setup], table)}
-                )
+                reply = {"claims": made.claims(part, tool, setup)} if claims else {"answers": made.answer(part, tool, part.setups[setup], table)}
             except Unavailable:
                 raise
             except Exception as error:
                 reply = {"died": f"{type(error).__name__}: {' '.join(str(error).split())[:200]}"}
             end = time.perf_counter()
-            pipe.send(
-                (k, {**reply, "why": dict(made.why), "prepare": ready - begin, "answer": end - ready, "memory": peak_memory()})
-            )
+            pipe.send((k, {**reply, "why": dict(made.why), "prepare": ready - begin, "answer": end - ready, "memory": peak_memory()}))
     except (Unavailable, ValueError) as error:
         pipe.send((-1, error))
     except KeyboardInterrupt:

@@ -81,13 +81,7 @@ def _worst(values: NDArray[np.float64]) -> float:
     return round(float(some.max()), 6) if len(some) else 0.0
 
 
-def scored(
-    table: Postures,
-    answers: Words,
-    families: Mapping[str, str],
-    tolerance: float = TOLERANCE,
-    rows: NDArray[np.int64] | None = None,
-) -> dict[str, Any]:
+def scored(table: Postures, answers: Words, families: Mapping[str, str], tolerance: float = TOLERANCE, rows: NDArray[np.int64] | None = None) -> dict[str, Any]:
     """Return the counts of all, of each family and of each part, and the worst false answers.
 
     `rows` are the rows of the suite's table.
@@ -119,9 +113,7 @@ def scored(
     }
 
 
-def _listed(
-    table: Postures, answers: Words, rows: NDArray[np.int64], wrong: Mask, by: NDArray[np.float64]
-) -> list[dict[str, Any]]:
+def _listed(table: Postures, answers: Words, rows: NDArray[np.int64], wrong: Mask, by: NDArray[np.float64]) -> list[dict[str, Any]]:
     """Return the worst of the wrong answers, with all that is needed to repeat them."""
     order = np.flatnonzero(wrong)
     order = order[np.argsort(-by[order], kind="stable")][:LISTED]

@@ -50,14 +50,9 @@ def _posture() -> list[str]:
     tip = (-flat * out[0] - corner * axis[0], corner - flat * out[1] - corner * axis[1])
 
     def at(height: float, r: float) -> Point:
-        return (
-            contact[0] + _SCALE * (tip[0] + height * axis[0] + r * out[0]),
-            contact[1] - _SCALE * (tip[1] + height * axis[1] + r * out[1]),
-        )
+        return (contact[0] + _SCALE * (tip[0] + height * axis[0] + r * out[0]), contact[1] - _SCALE * (tip[1] + height * axis[1] + r * out[1]))
 
-    corner_line = [
-        (corner - corner * math.cos(t), flat + corner * math.sin(t)) for t in (math.pi / 2 * k / 16 for k in range(17))
-    ]
+    corner_line = [(corner - corner * math.cos(t), flat + corner * math.sin(t)) for t in (math.pi / 2 * k / 16 for k in range(17))]
 
     def body(line: list[Point], fill: str) -> str:
         return _shape([at(h, r) for h, r in line] + [at(h, -r) for h, r in reversed(line)], fill, 'fill-opacity="0.65"')
@@ -82,11 +77,8 @@ def _posture() -> list[str]:
     reach = 120.0
     end = (contact[0] + reach * math.sin(_TILT), contact[1] - reach * math.cos(_TILT))
     out_lines += [
-        _line(
-            contact, (contact[0] + 1.15 * reach * axis[0], contact[1] - 1.15 * reach * axis[1]), _INK, 'stroke-dasharray="3 3"'
-        ),
-        f'<path d="M {contact[0]} {contact[1] - reach} A {reach} {reach} 0 0 1 {end[0]:.1f} {end[1]:.1f}" '
-        f'fill="none" stroke="{_INK}" stroke-width="1.6"/>',
+        _line(contact, (contact[0] + 1.15 * reach * axis[0], contact[1] - 1.15 * reach * axis[1]), _INK, 'stroke-dasharray="3 3"'),
+        f'<path d="M {contact[0]} {contact[1] - reach} A {reach} {reach} 0 0 1 {end[0]:.1f} {end[1]:.1f}" fill="none" stroke="{_INK}" stroke-width="1.6"/>',
         _text((contact[0] + 14, contact[1] - reach - 8), "tilt", weight="bold"),
         _text((30, 455), "material"),
         _text((at(29, 0)[0] - 24, at(29, 0)[1] + 5), "holder"),

@@ -22,22 +22,11 @@ BODY_IN_BODY = MadePart(
     lambda: together(cuboid(*_OUTER), cuboid(*_INNER)),
     (box("outer", *_OUTER), box("inner", *_INNER)),
     (_FLAT, _BALL, _BULL),
-    on_rectangles(
-        ((-6, -6, 6), (6, 6, 6), _Z),
-        ((-15, -15, 20), (15, 15, 20), _Z),
-        ((6, -6, -6), (6, 6, 6), _X),
-        ((20, -15, -15), (20, 15, 15), _X),
-    ),
+    on_rectangles(((-6, -6, 6), (6, 6, 6), _Z), ((-15, -15, 20), (15, 15, 20), _Z), ((6, -6, -6), (6, 6, 6), _X), ((20, -15, -15), (20, 15, 15), _X)),
     answers=(
         Answer("free_tilts", [], "the contact is in the outer body", _FLAT.name, given=at((0, 0, 6), _Z, _X)),
         Answer("free_tilts", [], "the contact is in the outer body", _BALL.name, given=at((6, 0, 0), _X, _Z)),
-        Answer(
-            "free_tilts",
-            [[0.0, 90.0]],
-            "all material is behind the plane of the contact",
-            _FLAT.name,
-            given=at((5, 0, 20), _Z, _X),
-        ),
+        Answer("free_tilts", [[0.0, 90.0]], "all material is behind the plane of the contact", _FLAT.name, given=at((5, 0, 20), _Z, _X)),
     ),
 )
 
@@ -64,16 +53,8 @@ HOLLOW = MadePart(
     on_rectangles(((-_B, -_B, -_B), (_B, _B, -_B), _Z), ((-_B, -_B, -_B), (-_B, _B, _B), _X)),
     answers=(
         Answer("free_tilts", [], "the tool is longer than the hollow's diagonal", _BALL.name, given=at((0, 0, -_B), _Z, _X)),
-        Answer(
-            "free_tilts", [], "the tool is longer than the hollow's diagonal", _FLAT.name, given=at((-_B, 2, 1), _X, (0, 1, 1))
-        ),
-        Answer(
-            "free_tilts",
-            [[0.0, 90.0]],
-            "all material is behind the plane of the contact",
-            _BALL.name,
-            given=at((3, 4, _A), _Z, _Y),
-        ),
+        Answer("free_tilts", [], "the tool is longer than the hollow's diagonal", _FLAT.name, given=at((-_B, 2, 1), _X, (0, 1, 1))),
+        Answer("free_tilts", [[0.0, 90.0]], "all material is behind the plane of the contact", _BALL.name, given=at((3, 4, _A), _Z, _Y)),
     ),
 )
 
@@ -92,12 +73,8 @@ TOUCHING = MadePart(
     on_rectangles(((0, -8, 0), (0, 8, 15), _X), ((0, -8, -20), (0, 8, 0), _X), ((0, -8, 0), (20, 8, 0), _Z)),
     answers=(
         Answer("free_tilts", [], "the shared plane: the tool is in the second body", _FLAT.name, given=at((0, 0, -8), _X, _Z)),
-        Answer(
-            "free_tilts", [], "the shared plane: the tool is in the second body", _BALL.name, given=at((0, 3, -10), _X, _DOWN)
-        ),
-        Answer(
-            "free_tilts", [[0.0, ball_until((8.0, 20.0), 3.0)]], "planar.ball_until", _BALL.name, given=at((0, 0, 8), _X, _DOWN)
-        ),
+        Answer("free_tilts", [], "the shared plane: the tool is in the second body", _BALL.name, given=at((0, 3, -10), _X, _DOWN)),
+        Answer("free_tilts", [[0.0, ball_until((8.0, 20.0), 3.0)]], "planar.ball_until", _BALL.name, given=at((0, 0, 8), _X, _DOWN)),
         Answer("free_tilts", [[0.0, flat_until((8.0, 20.0))]], "atan(z / 20)", _FLAT.name, given=at((0, 0, 8), _X, _DOWN)),
     ),
 )
@@ -117,20 +94,8 @@ APART = MadePart(
     (_THIN, Tool.flat(3.0, 40.0), _BALL),
     on_rectangles(((0, -3, -10), (0, 3, 10), _X), ((_GAP, -3, -10), (_GAP, 3, 10), _BACK), ((-15, -3, 10), (0, 3, 10), _Z)),
     answers=(
-        Answer(
-            "free_tilts",
-            [[ball_from((8.0, _GAP), 2.0), 90.0]],
-            "planar.ball_from, upwards",
-            _THIN.name,
-            given=at((0, 0, 2), _X, _Z),
-        ),
-        Answer(
-            "free_tilts",
-            [[ball_from((12.0, _GAP), 2.0), 90.0]],
-            "planar.ball_from, downwards",
-            _THIN.name,
-            given=at((0, 0, 2), _X, _DOWN),
-        ),
+        Answer("free_tilts", [[ball_from((8.0, _GAP), 2.0), 90.0]], "planar.ball_from, upwards", _THIN.name, given=at((0, 0, 2), _X, _Z)),
+        Answer("free_tilts", [[ball_from((12.0, _GAP), 2.0), 90.0]], "planar.ball_from, downwards", _THIN.name, given=at((0, 0, 2), _X, _DOWN)),
         Answer("largest_radius", 0.5 * _GAP, "half the gap", _THIN.name, given=along((0, 0, 2), _X, _Z)),
     ),
 )
@@ -151,24 +116,10 @@ NEAR_FIXTURE = MadePart(
     on_rectangles(((0, -8, 0), (20, 8, 0), _Z), ((20, -8, -10), (20, 8, 0), _X)),
     setups=(Setup(), Setup("clamped", fixtures=(box("clamp", *_CLAMP),), boxes=(_CLAMP,))),
     answers=(
-        Answer(
-            "free_tilts",
-            [[0.0, ball_until((10.0, 12.0), 3.0)]],
-            "planar.ball_until",
-            _BALL.name,
-            "clamped",
-            at((14, 0, 0), _Z, _X),
-        ),
+        Answer("free_tilts", [[0.0, ball_until((10.0, 12.0), 3.0)]], "planar.ball_until", _BALL.name, "clamped", at((14, 0, 0), _Z, _X)),
         Answer("free_tilts", [[0.0, flat_until((10.0, 12.0))]], "atan(10 / 12)", _FLAT.name, "clamped", at((14, 0, 0), _Z, _X)),
         Answer("free_tilts", [[0.0, 90.0]], "no clamp", _FLAT.name, "free", at((14, 0, 0), _Z, _X)),
-        Answer(
-            "least_stickout",
-            12.0,
-            "the clamp's height: the holder's radius is more than 10",
-            _HELD.name,
-            "clamped",
-            along((14, 0, 0), _Z, _Z),
-        ),
+        Answer("least_stickout", 12.0, "the clamp's height: the holder's radius is more than 10", _HELD.name, "clamped", along((14, 0, 0), _Z, _Z)),
     ),
 )
 
@@ -191,14 +142,7 @@ FIXTURE_ON_FACE = MadePart(
         Answer("free_tilts", [], "the contact is below the clamp", _FLAT.name, "clamped", at((10, 0, 0), _Z, _X)),
         Answer("free_tilts", [], "the contact is below the clamp", _BALL.name, "clamped", at((10, 0, 0), _Z, _Y)),
         Answer("free_tilts", [[0.0, flat_until((8.0, 10.0))]], "atan(8 / 10)", _FLAT.name, "clamped", at((-3, 0, 0), _Z, _X)),
-        Answer(
-            "free_tilts",
-            [[0.0, ball_until((8.0, 10.0), 3.0)]],
-            "planar.ball_until",
-            _BALL.name,
-            "clamped",
-            at((-3, 0, 0), _Z, _X),
-        ),
+        Answer("free_tilts", [[0.0, ball_until((8.0, 10.0), 3.0)]], "planar.ball_until", _BALL.name, "clamped", at((-3, 0, 0), _Z, _X)),
         Answer(
             "free_tilts",
             [[heel_from((8.0, 10.0), 8.0), 90.0]],

@@ -80,22 +80,14 @@ HOLDER_TILTED = MadePart(
     (_LEANT, Tool.flat(10.0, 35.0), Tool.ball(8.0, 22.0, holder=((22.0, 6.0), (34.0, 14.0)))),
     on_lines(((-10, 0), (_FAR, 0)), ((_FAR, 0), (_FAR, _HIGH)), ((_FAR, _HIGH), (_FAR + 8, _HIGH))),
     answers=tuple(
-        Answer(
-            "least_stickout",
-            _least(t),
-            "min(h cos t - d sin t, ((R + Rh) cos t - d) / sin t)",
-            _LEANT.name,
-            given=along((0, 0, 0), _Z, _away(t)),
-        )
+        Answer("least_stickout", _least(t), "min(h cos t - d sin t, ((R + Rh) cos t - d) / sin t)", _LEANT.name, given=along((0, 0, 0), _Z, _away(t)))
         for t in (8.0, 15.0, 25.0)
     ),
 )
 
 _STEPS = ((6.0, 8.0), (14.0, 20.0))
 _MATERIALS, _build = bars(
-    floor=rectangle(-40, _STEPS[0][0], -8, 0),
-    low=rectangle(_STEPS[0][0], _STEPS[1][0], -8, _STEPS[0][1]),
-    high=rectangle(_STEPS[1][0], 30, -8, _STEPS[1][1]),
+    floor=rectangle(-40, _STEPS[0][0], -8, 0), low=rectangle(_STEPS[0][0], _STEPS[1][0], -8, _STEPS[0][1]), high=rectangle(_STEPS[1][0], 30, -8, _STEPS[1][1])
 )
 _SMALL = Tool.ball(6.0, 24.0, holder=holder(24.0, 10.0), name="ball_D6_holder_D20")
 _LARGE = Tool.ball(6.0, 24.0, holder=holder(24.0, 16.0), name="ball_D6_holder_D32")

@@ -14,9 +14,7 @@ _FLAT, _BALL, _BULL = Tool.flat(8.0, 40.0), Tool.ball(6.0, 40.0), Tool.flat(8.0,
 Vector = tuple[float, float, float]
 
 
-def _directions(
-    axes: tuple[Vector, ...], contacts: tuple[tuple[Vector, Vector], ...], most: float, apart: tuple[int, ...]
-) -> dict[str, object]:
+def _directions(axes: tuple[Vector, ...], contacts: tuple[tuple[Vector, Vector], ...], most: float, apart: tuple[int, ...]) -> dict[str, object]:
     """Return what a question about directions states: `axes` that do, `contacts` and their normals, the largest tilt (deg) from
     the normal that counts, and which contacts, by their numbers, need a direction each: no direction serves two of them."""
     return {
@@ -46,14 +44,7 @@ TABLE = MadePart(
     on_rectangles(((10, -10, 2), (10, 10, 28), _X), ((-10, -10, 2), (10, -10, 28), _ASIDE), ((-10, -10, 30), (10, 10, 30), _Z)),
     setups=(_LIMIT, _TABLE),
     answers=(
-        Answer(
-            "free_tilts",
-            [[0.0, min(_TILTING - 90.0, ball_end_until(12.0, 3.0, 40.0))]],
-            "the limit",
-            _BALL.name,
-            _TABLE.name,
-            at((10, 0, 12), _X, _DOWN),
-        ),
+        Answer("free_tilts", [[0.0, min(_TILTING - 90.0, ball_end_until(12.0, 3.0, 40.0))]], "the limit", _BALL.name, _TABLE.name, at((10, 0, 12), _X, _DOWN)),
         Answer(
             "free_tilts",
             [[0.0, min(_TILTING - 90.0, ball_end_until(6.0, 3.0, 40.0))]],
@@ -107,14 +98,7 @@ RAMP_LIMIT = MadePart(
     setups=(_THIRTY,),
     answers=(
         Answer("free_tilts", [[0.0, 30.0 + _SLOPE]], "30 + 20", _FLAT.name, _THIRTY.name, at((0, 0, 0), _OUT, _UPHILL)),
-        Answer(
-            "free_tilts",
-            [[0.0, 30.0 - _SLOPE]],
-            "30 - 20",
-            _BALL.name,
-            _THIRTY.name,
-            at((0, 0, 0), _OUT, (-_UPHILL[0], 0.0, -_UPHILL[2])),
-        ),
+        Answer("free_tilts", [[0.0, 30.0 - _SLOPE]], "30 - 20", _BALL.name, _THIRTY.name, at((0, 0, 0), _OUT, (-_UPHILL[0], 0.0, -_UPHILL[2]))),
         Answer(
             "free_tilts",
             [[0.0, float(np.degrees(np.arccos(np.cos(np.radians(30.0)) / np.cos(np.radians(_SLOPE)))))]],
@@ -127,13 +111,7 @@ RAMP_LIMIT = MadePart(
 )
 
 _CUBE = ((-10.0, -10.0, -10.0), (10.0, 10.0, 10.0))
-_FIVE = (
-    ((10.0, 1.0, 2.0), _X),
-    ((-10.0, 1.0, 2.0), _BACK),
-    ((1.0, 10.0, 2.0), _Y),
-    ((1.0, -10.0, 2.0), _ASIDE),
-    ((1.0, 2.0, 10.0), _Z),
-)
+_FIVE = (((10.0, 1.0, 2.0), _X), ((-10.0, 1.0, 2.0), _BACK), ((1.0, 10.0, 2.0), _Y), ((1.0, -10.0, 2.0), _ASIDE), ((1.0, 2.0, 10.0), _Z))
 
 CUBE = MadePart(
     "cube_five_faces",
@@ -147,20 +125,9 @@ CUBE = MadePart(
     lambda: cuboid(*_CUBE),
     (box("cube", *_CUBE),),
     (_FLAT, _BALL, _BULL),
-    on_rectangles(
-        ((10, -9, -9), (10, 9, 9), _X),
-        ((-10, -9, -9), (-10, 9, 9), _BACK),
-        ((-9, 10, -9), (9, 10, 9), _Y),
-        ((-9, -9, 10), (9, 9, 10), _Z),
-    ),
+    on_rectangles(((10, -9, -9), (10, 9, 9), _X), ((-10, -9, -9), (-10, 9, 9), _BACK), ((-9, 10, -9), (9, 10, 9), _Y), ((-9, -9, 10), (9, 9, 10), _Z)),
     answers=(
-        Answer(
-            "orientations",
-            2,
-            "opposite faces need a direction each",
-            _FLAT.name,
-            given=_directions(((1, 1, 1), (-1, -1, 1)), _FIVE, 89.0, (0, 1)),
-        ),
+        Answer("orientations", 2, "opposite faces need a direction each", _FLAT.name, given=_directions(((1, 1, 1), (-1, -1, 1)), _FIVE, 89.0, (0, 1))),
         Answer(
             "orientations",
             3,
@@ -189,8 +156,7 @@ BOTH_SIDES = MadePart(
 _ANGLES = np.radians([90.0, 210.0, 330.0])
 _TRIANGLE = tuple((float(20 * np.cos(a)), float(20 * np.sin(a))) for a in _ANGLES)
 _FACETS = tuple(
-    ((float(-10 * np.cos(a)), y, float(-10 * np.sin(a))), (float(-np.cos(a)), 0.0, float(-np.sin(a))))
-    for a, y in zip(_ANGLES, (1.0, 2.0, 3.0), strict=True)
+    ((float(-10 * np.cos(a)), y, float(-10 * np.sin(a))), (float(-np.cos(a)), 0.0, float(-np.sin(a)))) for a, y in zip(_ANGLES, (1.0, 2.0, 3.0), strict=True)
 )
 
 
@@ -214,11 +180,7 @@ THREE_SIDES = MadePart(
     _on_facets,
     answers=(
         Answer(
-            "orientations",
-            2,
-            "the normals add up to zero",
-            _BALL.name,
-            given=_directions((tuple(-x for x in _FACETS[0][1]), _FACETS[0][1]), _FACETS, 89.0, ()),
+            "orientations", 2, "the normals add up to zero", _BALL.name, given=_directions((tuple(-x for x in _FACETS[0][1]), _FACETS[0][1]), _FACETS, 89.0, ())
         ),
     ),
 )
@@ -232,15 +194,7 @@ _MIDDLE = ((-_WIDE + _HALF, -_DEEP), (_WIDE - _HALF, -_DEEP), (_WIDE - _HALF + _
 _RIGHT = ((_WIDE + _HALF, -_DEEP), (35.0, -_DEEP), (35.0, 0.0), (_WIDE + _HALF + _SHIFT, 0.0))
 _LEFT = tuple((-x, z) for x, z in _RIGHT)
 _CUTS = tuple(
-    tuple(
-        (side * x, z)
-        for x, z in (
-            (_WIDE - _HALF, -_DEEP),
-            (_WIDE + _HALF, -_DEEP),
-            (_WIDE + _HALF + _SHIFT, 0.0),
-            (_WIDE - _HALF + _SHIFT, 0.0),
-        )
-    )
+    tuple((side * x, z) for x, z in ((_WIDE - _HALF, -_DEEP), (_WIDE + _HALF, -_DEEP), (_WIDE + _HALF + _SHIFT, 0.0), (_WIDE - _HALF + _SHIFT, 0.0)))
     for side in (-1.0, 1.0)
 )
 _THIN = Tool.ball(4.0, 40.0)
@@ -292,13 +246,7 @@ OPPOSED_SLOTS = MadePart(
             _THIN.name,
             given=_directions(((-np.sin(_PHI), 0.0, np.cos(_PHI)), (np.sin(_PHI), 0.0, np.cos(_PHI))), _BOTTOMS, 89.0, (0, 1)),
         ),
-        Answer(
-            "free_tilts",
-            [[ball_from(_NEAR, 2.0), ball_until(_AWAY, 2.0)]],
-            "planar.ball_from, ball_until",
-            _THIN.name,
-            given=at(_BOTTOMS[1][0], _Z, _X),
-        ),
+        Answer("free_tilts", [[ball_from(_NEAR, 2.0), ball_until(_AWAY, 2.0)]], "planar.ball_from, ball_until", _THIN.name, given=at(_BOTTOMS[1][0], _Z, _X)),
         Answer(
             "largest_radius",
             float(_HALF * np.cos(_PHI) / (1 + np.sin(_PHI))),

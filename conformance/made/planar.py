@@ -92,16 +92,12 @@ def holder(stickout: float, radius: float, height: float = 10.0) -> tuple[Vertex
     return ((stickout, radius), (stickout + height, radius))
 
 
-def at(
-    contact: tuple[float, float, float], normal: tuple[float, float, float], tilts_to: tuple[float, float, float]
-) -> dict[str, list[float]]:
+def at(contact: tuple[float, float, float], normal: tuple[float, float, float], tilts_to: tuple[float, float, float]) -> dict[str, list[float]]:
     """Return what a question about tilts states: contact, normal and the direction that the axis tilts to, as a unit vector."""
     return {"contact": [float(x) for x in contact], "normal": unit(normal), "lean": unit(tilts_to)}
 
 
-def along(
-    contact: tuple[float, float, float], normal: tuple[float, float, float], axis: tuple[float, float, float]
-) -> dict[str, list[float]]:
+def along(contact: tuple[float, float, float], normal: tuple[float, float, float], axis: tuple[float, float, float]) -> dict[str, list[float]]:
     """Return what a question about a fixed axis states."""
     return {"contact": [float(x) for x in contact], "normal": unit(normal), "axis": unit(axis)}
 

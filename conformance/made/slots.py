@@ -13,9 +13,7 @@ _BACK, _DOWN = (-1.0, 0.0, 0.0), (0.0, 0.0, -1.0)
 _FLAT, _BALL = Tool.flat(8.0, 40.0), Tool.ball(6.0, 40.0)
 
 _B, _H = 6.0, 5.0
-_MATERIALS, _build = bars(
-    floor=rectangle(-_B, _B, -8, 0), left_side=rectangle(-25, -_B, -8, _H), right_side=rectangle(_B, 25, -8, _H)
-)
+_MATERIALS, _build = bars(floor=rectangle(-_B, _B, -8, 0), left_side=rectangle(-25, -_B, -8, _H), right_side=rectangle(_B, 25, -8, _H))
 
 SLOT = MadePart(
     "slot",
@@ -77,9 +75,7 @@ T_SLOT = MadePart(
     _build,
     _MATERIALS,
     (_CUTTER, _BALL, Tool.flat(6.0, 40.0)),
-    on_lines(
-        ((-_HEAD, 0), (_HEAD, 0)), ((_HEAD, 0), (_HEAD, _LIP)), ((_HEAD, _LIP), (_NECK, _LIP)), ((_NECK, _LIP), (_NECK, _TOP))
-    ),
+    on_lines(((-_HEAD, 0), (_HEAD, 0)), ((_HEAD, 0), (_HEAD, _LIP)), ((_HEAD, _LIP), (_NECK, _LIP)), ((_NECK, _LIP), (_NECK, _TOP))),
     answers=(
         Answer("free_tilts", [[0.0, _disk_until()]], "slots._disk_until", _CUTTER.name, given=at((0, 0, 0), _Z, _Y)),
         Answer(
@@ -89,13 +85,7 @@ T_SLOT = MadePart(
             _BALL.name,
             given=at((0, 0, 0), _Z, _X),
         ),
-        Answer(
-            "free_tilts",
-            [[ball_end_from(_LIP, 3.0, 40.0), 90.0]],
-            "planar.ball_end_from",
-            _BALL.name,
-            given=at((6.5, 0, _LIP), _DOWN, _Y),
-        ),
+        Answer("free_tilts", [[ball_end_from(_LIP, 3.0, 40.0), 90.0]], "planar.ball_end_from", _BALL.name, given=at((6.5, 0, _LIP), _DOWN, _Y)),
     ),
 )
 
@@ -145,13 +135,7 @@ DOVETAIL = MadePart(
             _FLAT.name,
             given=at((_FOOT + 9.0 * _UP[0], 0, 9.0 * _UP[2]), _IN, _UP),
         ),
-        Answer(
-            "largest_radius",
-            float(5.0 * np.tan(_SIDE / 2)),
-            "s tan(w / 2)",
-            _BALL.name,
-            given=along((_FOOT - 5.0, 0, 0), _Z, _UP),
-        ),
+        Answer("largest_radius", float(5.0 * np.tan(_SIDE / 2)), "s tan(w / 2)", _BALL.name, given=along((_FOOT - 5.0, 0, 0), _Z, _UP)),
     ),
 )
 
@@ -179,20 +163,8 @@ THIN_GAP = MadePart(
     (_THIN_BALL, _THIN, _HELD),
     on_lines(((-_GAP / 2, _TALL), (-_GAP / 2, 0)), ((-_GAP / 2, 0), (_GAP / 2, 0)), ((_GAP / 2, _TALL), (_GAP / 2 + 3, _TALL))),
     answers=(
-        Answer(
-            "free_tilts",
-            [[ball_from((5.0, _GAP), 2.0), 90.0]],
-            "planar.ball_from",
-            _THIN_BALL.name,
-            given=at((-_GAP / 2, 0, 20), _X, _Z),
-        ),
-        Answer(
-            "free_tilts",
-            [[flat_from((5.0, _GAP), 1.5), 90.0]],
-            "planar.flat_from",
-            _THIN.name,
-            given=at((-_GAP / 2, 0, 20), _X, _Z),
-        ),
+        Answer("free_tilts", [[ball_from((5.0, _GAP), 2.0), 90.0]], "planar.ball_from", _THIN_BALL.name, given=at((-_GAP / 2, 0, 20), _X, _Z)),
+        Answer("free_tilts", [[flat_from((5.0, _GAP), 1.5), 90.0]], "planar.flat_from", _THIN.name, given=at((-_GAP / 2, 0, 20), _X, _Z)),
         Answer("largest_radius", 0.5 * _GAP, "half the gap", _THIN_BALL.name, given=along((-_GAP / 2, 0, 15), _X, _Z)),
         Answer("least_stickout", _TALL, "the holder is above the plates", _HELD.name, given=along((0, 0, 0), _Z, _Z)),
     ),
@@ -200,9 +172,7 @@ THIN_GAP = MadePart(
 
 _NARROW, _HIGH = 5.0, 15.0
 _MATERIALS, _build = bars(
-    floor=rectangle(-_NARROW, _NARROW, -8, 0),
-    left_side=rectangle(-25, -_NARROW, -8, _HIGH),
-    right_side=rectangle(_NARROW, 25, -8, _HIGH),
+    floor=rectangle(-_NARROW, _NARROW, -8, 0), left_side=rectangle(-25, -_NARROW, -8, _HIGH), right_side=rectangle(_NARROW, 25, -8, _HIGH)
 )
 _SHORT = Tool.flat(6.0, 40.0, flutes=12.0, shank=12.0, name="flat_D6_flutes12_shank_D12")
 _FLUTES = Tool.flat(6.0, 40.0, flutes=16.0, shank=12.0, name="flat_D6_flutes16_shank_D12")
@@ -231,21 +201,9 @@ SHANK_IN_SLOT = MadePart(
     (_SHORT, _FLUTES, _BALL),
     on_lines(((-_NARROW, 0), (_NARROW, 0)), ((_NARROW, 0), (_NARROW, _HIGH)), ((_NARROW, _HIGH), (15, _HIGH))),
     answers=(
-        Answer(
-            "free_tilts",
-            [],
-            "c < h: the shank's circle is below the edges at every tilt",
-            _SHORT.name,
-            given=at((0, 0, 0), _Z, _Y),
-        ),
+        Answer("free_tilts", [], "c < h: the shank's circle is below the edges at every tilt", _SHORT.name, given=at((0, 0, 0), _Z, _Y)),
         Answer("free_tilts", [[0.0, _shank_until(16.0)]], "slots._shank_until", _FLUTES.name, given=at((0, 0, 0), _Z, _Y)),
-        Answer(
-            "free_tilts",
-            [],
-            "acos(b / 2R) of the heel is after atan(b / h) of the front side",
-            _FLUTES.name,
-            given=at((0, 0, 0), _Z, _X),
-        ),
+        Answer("free_tilts", [], "acos(b / 2R) of the heel is after atan(b / h) of the front side", _FLUTES.name, given=at((0, 0, 0), _Z, _X)),
     ),
 )
 
@@ -283,23 +241,9 @@ SHANK_IN_BORE = MadePart(
     (_IN_BORE, _BALL, _FLAT),
     _on_floor,
     answers=(
-        Answer(
-            "free_tilts",
-            [[0.0, end_until(_BORE, 37.0, 5.0)]],
-            "planar.end_until of the shank",
-            _IN_BORE.name,
-            given=at((0, 0, 0), _Z, _X),
-        ),
-        Answer(
-            "free_tilts", [[0.0, end_until(_BORE, 37.0, 3.0)]], "planar.end_until", _BALL.name, given=at((0, 0, 0), _Z, (3, 4, 0))
-        ),
-        Answer(
-            "largest_radius",
-            _BORE - 3.0,
-            "bore's radius less the distance from its axis",
-            _BALL.name,
-            given=along((3, 0, 0), _Z, _Z),
-        ),
+        Answer("free_tilts", [[0.0, end_until(_BORE, 37.0, 5.0)]], "planar.end_until of the shank", _IN_BORE.name, given=at((0, 0, 0), _Z, _X)),
+        Answer("free_tilts", [[0.0, end_until(_BORE, 37.0, 3.0)]], "planar.end_until", _BALL.name, given=at((0, 0, 0), _Z, (3, 4, 0))),
+        Answer("largest_radius", _BORE - 3.0, "bore's radius less the distance from its axis", _BALL.name, given=along((3, 0, 0), _Z, _Z)),
     ),
     axes=_steep,
 )
@@ -334,23 +278,11 @@ POCKET = MadePart(
     lambda: fused(*(cuboid(*c) for c in _POCKET.values())),
     tuple(box(name, *c) for name, c in _POCKET.items()),
     (_DEEP_BALL, _WIDE_HOLDER, Tool.flat(8.0, 45.0, corner=1.0)),
-    on_rectangles(
-        ((-_PX, -_PY, 0), (_PX, _PY, 0), _Z), ((_PX, -_PY, 0), (_PX, _PY, _PZ), _BACK), ((_PX, -10, _PZ), (20, 10, _PZ), _Z)
-    ),
+    on_rectangles(((-_PX, -_PY, 0), (_PX, _PY, 0), _Z), ((_PX, -_PY, 0), (_PX, _PY, _PZ), _BACK), ((_PX, -10, _PZ), (20, 10, _PZ), _Z)),
     answers=(
-        Answer(
-            "free_tilts", [[0.0, ball_until((_PX, _PZ), 3.0)]], "planar.ball_until", _DEEP_BALL.name, given=at((0, 0, 0), _Z, _X)
-        ),
-        Answer(
-            "free_tilts", [[0.0, ball_until((_PY, _PZ), 3.0)]], "planar.ball_until", _DEEP_BALL.name, given=at((0, 0, 0), _Z, _Y)
-        ),
-        Answer(
-            "free_tilts",
-            [[0.0, _skew_until()]],
-            "tan t = sqrt 2 tan q: slots._skew_until",
-            _DEEP_BALL.name,
-            given=at((0, 0, 0), _Z, (1, 1, 0)),
-        ),
+        Answer("free_tilts", [[0.0, ball_until((_PX, _PZ), 3.0)]], "planar.ball_until", _DEEP_BALL.name, given=at((0, 0, 0), _Z, _X)),
+        Answer("free_tilts", [[0.0, ball_until((_PY, _PZ), 3.0)]], "planar.ball_until", _DEEP_BALL.name, given=at((0, 0, 0), _Z, _Y)),
+        Answer("free_tilts", [[0.0, _skew_until()]], "tan t = sqrt 2 tan q: slots._skew_until", _DEEP_BALL.name, given=at((0, 0, 0), _Z, (1, 1, 0))),
         Answer("least_stickout", _PZ, "the holder is above the pocket", _WIDE_HOLDER.name, given=along((0, 0, 0), _Z, _Z)),
         Answer("largest_radius", min(_PX - 5.0, _PY - 9.0), "the nearest wall", _DEEP_BALL.name, given=along((5, 9, 0), _Z, _Z)),
     ),

@@ -14,9 +14,7 @@ _FLAT, _WIDE, _BALL = Tool.flat(8.0, 40.0), Tool.flat(16.0, 40.0), Tool.ball(6.0
 
 _D, _H = 10.0, 25.0
 _BULL = Tool.flat(14.0, 40.0, corner=2.0)
-_MATERIALS, _build = bars(
-    plate=rectangle(-40, _D, -8, 0), wall=rectangle(_D, _D + 8, -8, _H), plate_behind=rectangle(_D + 8, 40, -8, 0)
-)
+_MATERIALS, _build = bars(plate=rectangle(-40, _D, -8, 0), wall=rectangle(_D, _D + 8, -8, _H), plate_behind=rectangle(_D + 8, 40, -8, 0))
 
 PLATE_AND_WALL = MadePart(
     "plate_and_wall",
@@ -29,25 +27,11 @@ PLATE_AND_WALL = MadePart(
     _build,
     _MATERIALS,
     (_FLAT, _WIDE, _BULL, _BALL),
-    on_lines(
-        ((-12, 0), (_D, 0)), ((_D, 0), (_D, _H)), ((_D, _H), (_D + 8, _H)), ((_D + 8, _H), (_D + 8, 0)), ((_D + 8, 0), (30, 0))
-    ),
+    on_lines(((-12, 0), (_D, 0)), ((_D, 0), (_D, _H)), ((_D, _H), (_D + 8, _H)), ((_D + 8, _H), (_D + 8, 0)), ((_D + 8, 0), (30, 0))),
     answers=(
-        Answer(
-            "free_tilts",
-            [[0.0, flat_until((_D, _H))]],
-            "atan(d / h): the front side comes to the edge",
-            _FLAT.name,
-            given=at((0, 0, 0), _Z, _X),
-        ),
+        Answer("free_tilts", [[0.0, flat_until((_D, _H))]], "atan(d / h): the front side comes to the edge", _FLAT.name, given=at((0, 0, 0), _Z, _X)),
         Answer("free_tilts", [[0.0, ball_until((_D, _H), 3.0)]], "planar.ball_until", _BALL.name, given=at((0, 0, 0), _Z, _X)),
-        Answer(
-            "free_tilts",
-            [[heel_from((_D, _H), 8.0), 90.0]],
-            "acos(d / 2R): the heel is before the wall",
-            _WIDE.name,
-            given=at((0, 0, 0), _Z, _BACK),
-        ),
+        Answer("free_tilts", [[heel_from((_D, _H), 8.0), 90.0]], "acos(d / 2R): the heel is before the wall", _WIDE.name, given=at((0, 0, 0), _Z, _BACK)),
         Answer(
             "free_tilts",
             [[heel_from((_D, _H), 7.0, 2.0), 90.0]],
@@ -83,13 +67,7 @@ STEP = MadePart(
             _BALL.name,
             given=at((0, 0, 8), _BACK, _DOWN),
         ),
-        Answer(
-            "free_tilts",
-            [[0.0, 90.0]],
-            "all material is behind the plane of the contact",
-            _TOE.name,
-            given=at((5, 0, _STEP), _Z, _BACK),
-        ),
+        Answer("free_tilts", [[0.0, 90.0]], "all material is behind the plane of the contact", _TOE.name, given=at((5, 0, _STEP), _Z, _BACK)),
     ),
 )
 
@@ -117,20 +95,8 @@ CORNER_OF_THREE = MadePart(
     (_BALL, _FLAT, Tool.flat(10.0, 35.0, corner=2.0)),
     on_rectangles(((0, 0, 0), (25, 25, 0), _Z), ((0, 0, 0), (0, 20, 30), _X), ((0, 0, 0), (20, 0, 30), _Y)),
     answers=(
-        Answer(
-            "free_tilts",
-            [[0.0, ball_end_until(12.0, 3.0, 40.0)]],
-            "planar.ball_end_until",
-            _BALL.name,
-            given=at((12, 12, 0), _Z, _BACK),
-        ),
-        Answer(
-            "free_tilts",
-            [[0.0, _diagonal(12.0, 3.0, 40.0)]],
-            "sin t = sqrt 2 sin q: walls._diagonal",
-            _BALL.name,
-            given=at((12, 12, 0), _Z, (-1, -1, 0)),
-        ),
+        Answer("free_tilts", [[0.0, ball_end_until(12.0, 3.0, 40.0)]], "planar.ball_end_until", _BALL.name, given=at((12, 12, 0), _Z, _BACK)),
+        Answer("free_tilts", [[0.0, _diagonal(12.0, 3.0, 40.0)]], "sin t = sqrt 2 sin q: walls._diagonal", _BALL.name, given=at((12, 12, 0), _Z, (-1, -1, 0))),
         Answer("largest_radius", min(9.0, 12.0), "the nearer wall", _BALL.name, given=along((9, 12, 0), _Z, _Z)),
     ),
 )
@@ -138,9 +104,7 @@ CORNER_OF_THREE = MadePart(
 _OPEN, _SLANT = np.radians(80.0), 60.0
 _UP = (float(np.sin(_OPEN / 2)), float(np.cos(_OPEN / 2)))
 _RIM = (_SLANT * _UP[0], _SLANT * _UP[1])
-_MATERIALS, _build = bars(
-    right=((0, 0), (0, -8), (_RIM[0], -8), _RIM), left=((0, 0), (-_RIM[0], _RIM[1]), (-_RIM[0], -8), (0, -8))
-)
+_MATERIALS, _build = bars(right=((0, 0), (0, -8), (_RIM[0], -8), _RIM), left=((0, 0), (-_RIM[0], _RIM[1]), (-_RIM[0], -8), (0, -8)))
 _V_NORMAL, _V_DOWN = (-_UP[1], 0.0, _UP[0]), (-_UP[0], 0.0, -_UP[1])
 
 
@@ -172,22 +136,10 @@ SHARP_V = MadePart(
     (_BALL, _FLAT, Tool.flat(6.0, 40.0, corner=1.0)),
     on_lines(((0, 0), (25 * _UP[0], 25 * _UP[1])), ((-25 * _UP[0], 25 * _UP[1]), (0, 0))),
     answers=(
+        Answer("largest_radius", float(10.0 * np.tan(_OPEN / 2)), "s tan(w / 2)", _BALL.name, given=along(_on_v(10.0), _V_NORMAL, _Z)),
+        Answer("free_tilts", [[0.0, _v_until(20.0, 3.0, 40.0)]], "walls._v_until", _BALL.name, given=at(_on_v(20.0), _V_NORMAL, _V_DOWN)),
         Answer(
-            "largest_radius", float(10.0 * np.tan(_OPEN / 2)), "s tan(w / 2)", _BALL.name, given=along(_on_v(10.0), _V_NORMAL, _Z)
-        ),
-        Answer(
-            "free_tilts",
-            [[0.0, _v_until(20.0, 3.0, 40.0)]],
-            "walls._v_until",
-            _BALL.name,
-            given=at(_on_v(20.0), _V_NORMAL, _V_DOWN),
-        ),
-        Answer(
-            "free_tilts",
-            [[0.0, 90.0]],
-            "up the wall the axis goes away from the other",
-            _BALL.name,
-            given=at(_on_v(20.0), _V_NORMAL, (_UP[0], 0.0, _UP[1])),
+            "free_tilts", [[0.0, 90.0]], "up the wall the axis goes away from the other", _BALL.name, given=at(_on_v(20.0), _V_NORMAL, (_UP[0], 0.0, _UP[1]))
         ),
     ),
 )
@@ -212,45 +164,19 @@ RIB = MadePart(
     _build,
     _MATERIALS,
     (_NINE, _BALL, Tool.flat(10.0, 40.0, corner=1.0)),
-    on_lines(
-        ((-2, _RIB), (2, _RIB)),
-        ((2, _RIB), (2, 0)),
-        ((2, 0), (_ACROSS, 0)),
-        ((_ACROSS, 0), (_ACROSS, _WALLS)),
-        ((-_ACROSS, 0), (-2, 0)),
-    ),
+    on_lines(((-2, _RIB), (2, _RIB)), ((2, _RIB), (2, 0)), ((2, 0), (_ACROSS, 0)), ((_ACROSS, 0), (_ACROSS, _WALLS)), ((-_ACROSS, 0), (-2, 0))),
     answers=(
         Answer(
-            "free_tilts",
-            [[heel_from((8.0, _RIB), 4.5), flat_until((10.0, _WALLS))]],
-            "acos(8 / 2R) to atan(10 / 14)",
-            _NINE.name,
-            given=at((10, 0, 0), _Z, _X),
+            "free_tilts", [[heel_from((8.0, _RIB), 4.5), flat_until((10.0, _WALLS))]], "acos(8 / 2R) to atan(10 / 14)", _NINE.name, given=at((10, 0, 0), _Z, _X)
         ),
-        Answer(
-            "free_tilts",
-            [[0.0, flat_until((8.0, _RIB))]],
-            "atan(8 / 12); the heel, 9 mm, is before the wall",
-            _NINE.name,
-            given=at((10, 0, 0), _Z, _BACK),
-        ),
-        Answer(
-            "free_tilts",
-            [[0.0, ball_until((_ACROSS, _WALLS - _RIB), 3.0)]],
-            "planar.ball_until",
-            _BALL.name,
-            given=at((0, 0, _RIB), _Z, _X),
-        ),
-        Answer(
-            "largest_radius", 0.5 * (_ACROSS - 2.0), "half the way from rib to wall", _BALL.name, given=along((11, 0, 0), _Z, _Z)
-        ),
+        Answer("free_tilts", [[0.0, flat_until((8.0, _RIB))]], "atan(8 / 12); the heel, 9 mm, is before the wall", _NINE.name, given=at((10, 0, 0), _Z, _BACK)),
+        Answer("free_tilts", [[0.0, ball_until((_ACROSS, _WALLS - _RIB), 3.0)]], "planar.ball_until", _BALL.name, given=at((0, 0, _RIB), _Z, _X)),
+        Answer("largest_radius", 0.5 * (_ACROSS - 2.0), "half the way from rib to wall", _BALL.name, given=along((11, 0, 0), _Z, _Z)),
     ),
 )
 
 _ROOT = 15.0
-_MATERIALS, _build = bars(
-    left_root=rectangle(-_ROOT, -1, -10, 0), blade=rectangle(-1, 1, -10, 30), right_root=rectangle(1, _ROOT, -10, 0)
-)
+_MATERIALS, _build = bars(left_root=rectangle(-_ROOT, -1, -10, 0), blade=rectangle(-1, 1, -10, 30), right_root=rectangle(1, _ROOT, -10, 0))
 
 BLADE = MadePart(
     "blade_on_root",
@@ -264,27 +190,15 @@ BLADE = MadePart(
     (_FLAT, _BALL, Tool.flat(8.0, 25.0, corner=1.0, holder=holder(25.0, 9.0))),
     on_lines(((1, 30), (1, 0)), ((-1, 30), (1, 30)), ((1, 0), (_ROOT, 0))),
     answers=(
-        Answer(
-            "free_tilts",
-            [[0.0, ball_until((10.0, _ROOT - 1), 3.0)]],
-            "planar.ball_until",
-            _BALL.name,
-            given=at((1, 0, 10), _X, _DOWN),
-        ),
+        Answer("free_tilts", [[0.0, ball_until((10.0, _ROOT - 1), 3.0)]], "planar.ball_until", _BALL.name, given=at((1, 0, 10), _X, _DOWN)),
         Answer("free_tilts", [[0.0, flat_until((10.0, _ROOT - 1))]], "atan(z / 14)", _FLAT.name, given=at((1, 0, 10), _X, _DOWN)),
         Answer("free_tilts", [[heel_from((5.0, _ROOT - 1), 4.0), 90.0]], "acos(z / 2R)", _FLAT.name, given=at((1, 0, 5), _X, _Z)),
-        Answer(
-            "free_tilts", [[0.0, 90.0]], "on the tip of the blade nothing is in the way", _FLAT.name, given=at((0, 0, 30), _Z, _X)
-        ),
+        Answer("free_tilts", [[0.0, 90.0]], "on the tip of the blade nothing is in the way", _FLAT.name, given=at((0, 0, 30), _Z, _X)),
     ),
 )
 
 _UNDER, _THICK, _INNER = 14.0, 6.0, 6.0
-_MATERIALS, _build = bars(
-    floor=rectangle(-22, 40, -8, 0),
-    post=rectangle(-30, -22, -8, _UNDER + _THICK),
-    shelf=rectangle(-22, 0, _UNDER, _UNDER + _THICK),
-)
+_MATERIALS, _build = bars(floor=rectangle(-22, 40, -8, 0), post=rectangle(-30, -22, -8, _UNDER + _THICK), shelf=rectangle(-22, 0, _UNDER, _UNDER + _THICK))
 _LONG = Tool.ball(6.0, 25.0, holder=holder(25.0, 8.0), name="ball_D6_holder_D16")
 
 
@@ -312,20 +226,8 @@ SHELF = MadePart(
     (_BALL, _FLAT, _LONG),
     on_lines(((-20, 0), (0, 0)), ((0, 0), (15, 0)), ((0, _UNDER), (-20, _UNDER)), ((0, _UNDER + _THICK), (0, _UNDER))),
     answers=(
-        Answer(
-            "free_tilts",
-            [[ball_from((_INNER, _UNDER), 3.0), 90.0]],
-            "planar.ball_from",
-            _BALL.name,
-            given=at((-_INNER, 0, 0), _Z, _X),
-        ),
-        Answer(
-            "free_tilts",
-            [[flat_from((_INNER, _UNDER), 4.0), 90.0]],
-            "planar.flat_from",
-            _FLAT.name,
-            given=at((-_INNER, 0, 0), _Z, _X),
-        ),
+        Answer("free_tilts", [[ball_from((_INNER, _UNDER), 3.0), 90.0]], "planar.ball_from", _BALL.name, given=at((-_INNER, 0, 0), _Z, _X)),
+        Answer("free_tilts", [[flat_from((_INNER, _UNDER), 4.0), 90.0]], "planar.flat_from", _FLAT.name, given=at((-_INNER, 0, 0), _Z, _X)),
         Answer(
             "least_stickout",
             _stickout(60.0, 3.0, 8.0),
@@ -333,9 +235,7 @@ SHELF = MadePart(
             _LONG.name,
             given=along((-_INNER, 0, 0), _Z, (float(np.sin(np.radians(60.0))), 0.0, float(np.cos(np.radians(60.0))))),
         ),
-        Answer(
-            "largest_radius", 0.5 * _UNDER, "half the height under the shelf", _BALL.name, given=along((-_INNER, 0, 0), _Z, _X)
-        ),
+        Answer("largest_radius", 0.5 * _UNDER, "half the height under the shelf", _BALL.name, given=along((-_INNER, 0, 0), _Z, _X)),
     ),
 )
 

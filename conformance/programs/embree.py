@@ -59,9 +59,7 @@ class Program:
             rows = slice(i, i + step)
             origin = np.einsum("nij,kj->nki", turns[rows], start) + (postures.tip[rows] - middle)[:, None]
             direction = np.einsum("nij,kj->nki", turns[rows], way)
-            reach = scene.run(
-                origin.reshape(-1, 3).astype(np.float32), direction.reshape(-1, 3).astype(np.float32), query="DISTANCE"
-            )
+            reach = scene.run(origin.reshape(-1, 3).astype(np.float32), direction.reshape(-1, 3).astype(np.float32), query="DISTANCE")
             blocked[rows] |= np.any(reach.reshape(-1, len(start)) < length, axis=1)
         return answered(np.asarray(blocked))
 

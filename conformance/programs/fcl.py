@@ -32,9 +32,7 @@ class Program:
 
     def prepare(self, part: Part) -> None:
         """Mesh the part and build its tree."""
-        self._parts[part.name] = _model(
-            part_mesh(part.path, self.settings["part_chord_error_mm"], self.settings["part_angle_rad"])
-        )
+        self._parts[part.name] = _model(part_mesh(part.path, self.settings["part_chord_error_mm"], self.settings["part_angle_rad"]))
 
     def answer(self, part: Part, tool: Tool, setup: Held, postures: Postures) -> Words:
         """Return safe or blocked."""
@@ -43,10 +41,7 @@ class Program:
         chord = self.settings["tool_chord_error_mm"]
         sides = segments(tool, chord)
         pieces = [_model(turned(line, sides)) for line in outlines(tool, self.settings["tool_shrunk_by_mm"], chord)]
-        obstacles = [
-            fcl.CollisionObject(self._parts[part.name]),
-            *(fcl.CollisionObject(_model(mesh)) for mesh in fixture_meshes(setup)),
-        ]
+        obstacles = [fcl.CollisionObject(self._parts[part.name]), *(fcl.CollisionObject(_model(mesh)) for mesh in fixture_meshes(setup))]
         movers = [fcl.CollisionObject(piece) for piece in pieces]
         blocked = beyond_limit(setup, postures.axis)
         request = fcl.CollisionRequest()
@@ -54,9 +49,7 @@ class Program:
             place = fcl.Transform(turn, postures.tip[i])
             for mover in movers:
                 mover.setTransform(place)
-            blocked[i] |= any(
-                fcl.collide(mover, obstacle, request, fcl.CollisionResult()) for mover in movers for obstacle in obstacles
-            )
+            blocked[i] |= any(fcl.collide(mover, obstacle, request, fcl.CollisionResult()) for mover in movers for obstacle in obstacles)
         return answered(np.asarray(blocked))
 
 

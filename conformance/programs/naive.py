@@ -21,12 +21,7 @@ class Program:
     libraries: tuple[str, ...] = ("cadquery-ocp", "cadquery-ocp-novtk", "numpy")
 
     def __init__(self, pitch: float = 0.5, tolerance: float = 0.01) -> None:
-        self.settings: dict[str, Any] = {
-            "pitch_mm": pitch,
-            "tolerance_mm": tolerance,
-            "edges": "not sampled",
-            "table": "the tool's lowest point",
-        }
+        self.settings: dict[str, Any] = {"pitch_mm": pitch, "tolerance_mm": tolerance, "edges": "not sampled", "table": "the tool's lowest point"}
         self.why: Counter[str] = Counter()
         self._points: dict[str, Floats] = {}
 
@@ -39,12 +34,7 @@ class Program:
     def answer(self, part: Part, tool: Tool, setup: Held, postures: Postures) -> Words:
         """Return safe or blocked."""
         tolerance, pitch = self.settings["tolerance_mm"], self.settings["pitch_mm"]
-        points = np.vstack(
-            [
-                self._points[part.name],
-                *(_box_points(np.array(low, float), np.array(high, float), pitch) for low, high in setup.boxes),
-            ]
-        )
+        points = np.vstack([self._points[part.name], *(_box_points(np.array(low, float), np.array(high, float), pitch) for low, high in setup.boxes)])
         blocked = beyond_limit(setup, postures.axis) | below_table(tool, setup, postures.axis, postures.tip, tolerance)
         step = max(1, _BLOCK // len(points))
         for i in range(0, len(postures), step):

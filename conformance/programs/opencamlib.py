@@ -22,12 +22,7 @@ class Program:
     libraries: tuple[str, ...] = ("opencamlib", "cadquery-ocp", "numpy")
 
     def __init__(self, chord: float = 0.005, angle: float = 0.1, tolerance: float = 0.01) -> None:
-        self.settings: dict[str, Any] = {
-            "part_chord_error_mm": chord,
-            "part_angle_rad": angle,
-            "tolerance_mm": tolerance,
-            "query": "BatchDropCutter",
-        }
+        self.settings: dict[str, Any] = {"part_chord_error_mm": chord, "part_angle_rad": angle, "tolerance_mm": tolerance, "query": "BatchDropCutter"}
         self.why: Counter[str] = Counter()
         self._parts: dict[str, Mesh] = {}
 
@@ -42,9 +37,7 @@ class Program:
         up = np.array(setup.axis, float) / np.linalg.norm(setup.axis)
         out = np.full(len(postures), UNDECIDED)
         out[beyond_limit(setup, postures.axis)] = BLOCKED
-        along = np.flatnonzero(
-            (np.linalg.norm(np.cross(postures.axis, up), axis=1) < _SAME) & (postures.axis @ up > 0) & (out == UNDECIDED)
-        )
+        along = np.flatnonzero((np.linalg.norm(np.cross(postures.axis, up), axis=1) < _SAME) & (postures.axis @ up > 0) & (out == UNDECIDED))
         self.why["the axis is not that of the setup"] += int((out == UNDECIDED).sum()) - len(along)
         cutter = _cutter(tool)
         if not len(along):

@@ -81,15 +81,7 @@ class PointMaps:
         if np.linalg.norm(stands - row.tip[0]) > _SAME_MM:
             return UNDECIDED, "the normal at the contact is another one: an edge, or another face"
         low, high = max(0.0, tilt - _ABOUT), min(np.pi, tilt + _ABOUT)
-        pm = posture_map(
-            scene,
-            point=point,
-            cutter=cutter,
-            rotations=[rotation],
-            tilt=(low, high),
-            machine=machine,
-            tolerance=self.settings["tolerance_mm"],
-        )
+        pm = posture_map(scene, point=point, cutter=cutter, rotations=[rotation], tilt=(low, high), machine=machine, tolerance=self.settings["tolerance_mm"])
         if not pm.certified:
             return UNDECIDED, "the map is not certified: " + "; ".join(pm.missing)
         if _holds(pm.free[0], tilt, _SAME_RAD):
@@ -106,9 +98,7 @@ class PointMaps:
 
         key = (part.name, setup)
         if key not in self._scenes:
-            scene = Scene.of(
-                self._parts[part.name], setup=setup.axis, tolerance=self.settings["tolerance_mm"], fixtures=fixtures_of(setup)
-            )
+            scene = Scene.of(self._parts[part.name], setup=setup.axis, tolerance=self.settings["tolerance_mm"], fixtures=fixtures_of(setup))
             scene.surround()
             self._scenes[key] = scene
         return self._scenes[key]
@@ -174,9 +164,7 @@ def cutter_of(tool: Tool) -> Any:
         if nose > top + 1e-9 or (nose < top - 1e-9 and (stages or cutting[-1][1] > tool.holder[0][1])):
             raise ValueError("a holder that begins where the cutter does not end")
         length = nose
-        holder = Holder(
-            tuple(Segment(float(a[1]), float(b[0] - a[0]), float(b[1])) for a, b in pairwise(tool.holder) if b[0] - a[0] > 1e-9)
-        )
+        holder = Holder(tuple(Segment(float(a[1]), float(b[0] - a[0]), float(b[1])) for a, b in pairwise(tool.holder) if b[0] - a[0] > 1e-9))
     more: dict[str, Any] = {"holder": holder, "name": tool.name}
     if stages:
         more |= {"flutes": flutes, "neck": tuple(stages)}
@@ -187,11 +175,7 @@ def cutter_of(tool: Tool) -> Any:
         raise ValueError("a round corner under a taper")
     if len(cutting) == 2:
         return Cutter(
-            radius,
-            length,
-            taper=float(np.arctan2(cutting[1][1] - radius, flutes)),
-            flutes=flutes,
-            **{k: v for k, v in more.items() if k != "flutes"},
+            radius, length, taper=float(np.arctan2(cutting[1][1] - radius, flutes)), flutes=flutes, **{k: v for k, v in more.items() if k != "flutes"}
         )
     outline = ((0.0, 0.0), *((r, h) for h, r in cutting if (h, r) != (0.0, 0.0)))
     return Cutter.form(outline, length=length, **{k: v for k, v in more.items() if k != "flutes"})

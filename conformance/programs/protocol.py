@@ -86,21 +86,7 @@ def claimed(part: Part, tool: Tool, setup: str, rows: Mapping[str, Any]) -> Post
     tip = tool.stands(contact, normal, axis) if tip is None else np.asarray(tip, float).reshape(-1, 3)
     unknown, word = np.full(n, np.nan), lambda text: np.full(n, text)
     verdict = np.asarray(rows["verdict"], dtype="U9")
-    return Postures(
-        word(part.name),
-        word(tool.name),
-        word(setup),
-        contact,
-        normal,
-        axis,
-        tip,
-        verdict,
-        unknown,
-        unknown,
-        unknown,
-        word(""),
-        word(""),
-    )
+    return Postures(word(part.name), word(tool.name), word(setup), contact, normal, axis, tip, verdict, unknown, unknown, unknown, word(""), word(""))
 
 
 def beyond_limit(setup: Held, axis: Floats) -> NDArray[np.bool_]:

@@ -24,10 +24,7 @@ def parts_errors(document: Any) -> list[str]:
     import jsonschema
 
     checker = jsonschema.Draft202012Validator(schema("parts"))
-    return [
-        f"{'/'.join(map(str, error.absolute_path)) or 'document'}: {error.message[:200]}"
-        for error in checker.iter_errors(document)
-    ]
+    return [f"{'/'.join(map(str, error.absolute_path)) or 'document'}: {error.message[:200]}" for error in checker.iter_errors(document)]
 
 
 def postures_errors(table: Postures) -> list[str]:

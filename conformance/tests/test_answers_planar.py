@@ -144,11 +144,7 @@ def directions(step):
     for low in np.arange(-90.0, 90.1, step):
         turns = np.arange(0.0, 359.9, step / max(np.cos(np.radians(low)), 0.02))
         z = np.full(len(turns), np.sin(np.radians(low)))
-        out.append(
-            np.column_stack(
-                [np.cos(np.radians(low)) * np.cos(np.radians(turns)), np.cos(np.radians(low)) * np.sin(np.radians(turns)), z]
-            )
-        )
+        out.append(np.column_stack([np.cos(np.radians(low)) * np.cos(np.radians(turns)), np.cos(np.radians(low)) * np.sin(np.radians(turns)), z]))
     return np.vstack(out)
 
 
@@ -161,11 +157,7 @@ def may_serve(name, tool, contact, normal, most, axes):
         for rows in np.array_split(np.flatnonzero(open_), 40):
             if len(rows):
                 axis, tip = stands(
-                    tool,
-                    np.tile(contact, (len(rows), 1)),
-                    np.tile(normal, (len(rows), 1)),
-                    axes[rows],
-                    np.tile(frame(np.array([normal]))[0], (len(rows), 1)),
+                    tool, np.tile(contact, (len(rows), 1)), np.tile(normal, (len(rows), 1)), axes[rows], np.tile(frame(np.array([normal]))[0], (len(rows), 1))
                 )
                 open_[rows] = np.min(tool.signed(few[None], tip[:, None], axis[:, None]), axis=1) > -DEPTH
     return open_
@@ -179,13 +171,10 @@ def test_orientations(name, number):
     for contact, normal in zip(at["contacts"], at["normals"], strict=True):
         tilts = [np.degrees(np.arccos(np.clip(np.dot(a, normal), -1, 1))) for a in at["axes"]]
         assert any(
-            tilt <= at["max_tilt_deg"] and not is_blocked(name, tool, answer.setup, contact, normal, a)
-            for a, tilt in zip(at["axes"], tilts, strict=True)
+            tilt <= at["max_tilt_deg"] and not is_blocked(name, tool, answer.setup, contact, normal, a) for a, tilt in zip(at["axes"], tilts, strict=True)
         ), contact
     axes = directions(2.0)
-    serves = np.array(
-        [may_serve(name, tool, c, n, at["max_tilt_deg"], axes) for c, n in zip(at["contacts"], at["normals"], strict=True)]
-    )
+    serves = np.array([may_serve(name, tool, c, n, at["max_tilt_deg"], axes) for c, n in zip(at["contacts"], at["normals"], strict=True)])
     if at["apart"]:
         assert len(at["apart"]) == answer.value
         assert np.max(np.sum(serves[at["apart"]], axis=0)) == 1
@@ -198,10 +187,7 @@ def test_a_wrong_answer_is_seen():
     tool, at = PARTS["plate_and_wall"].tool(answer.tool), answer.given
     [[_, high]] = answer.value
     wrong = [
-        is_blocked(
-            "plate_and_wall", tool, answer.setup, at["contact"], at["normal"], tilted(at["normal"], at["lean"], t), at["lean"]
-        )
-        is not free
+        is_blocked("plate_and_wall", tool, answer.setup, at["contact"], at["normal"], tilted(at["normal"], at["lean"], t), at["lean"]) is not free
         for t, free in expected_tilts([[0.0, high + 0.2]])
     ]
     assert not all(wrong)

@@ -22,9 +22,7 @@ def test_a_table_is_read_as_it_was_written(small: Suite, tmp_path: Path, suffix:
     small.postures.write(path)
     again = Postures.read(path)
     for field in fields(Postures):
-        np.testing.assert_array_equal(
-            getattr(again, field.name), getattr(small.postures.rounded(), field.name), err_msg=field.name
-        )
+        np.testing.assert_array_equal(getattr(again, field.name), getattr(small.postures.rounded(), field.name), err_msg=field.name)
 
 
 def test_the_exported_table_has_row_numbers_and_hides_answers_where_it_is_asked_to(small: Suite, tmp_path: Path):
@@ -61,12 +59,7 @@ def test_the_schema_is_strict(small_folder: Path, spoil):
 
 def test_setups_with_limit_boxes_and_table_are_of_the_format(small_folder: Path):
     document = json.loads((small_folder / "made.json").read_text())
-    document["parts"][0]["setups"]["held"] = {
-        "axis": [0, 0, 1],
-        "limit_deg": 60,
-        "boxes": [[[0, 0, 0], [1, 2, 3]]],
-        "table": -15.0,
-    }
+    document["parts"][0]["setups"]["held"] = {"axis": [0, 0, 1], "limit_deg": 60, "boxes": [[[0, 0, 0], [1, 2, 3]]], "table": -15.0}
     assert parts_errors(document) == []
 
 
@@ -84,10 +77,7 @@ def test_what_a_column_cannot_hold_is_named(small: Suite, column: str, value: ob
 
 
 def test_a_tip_that_is_elsewhere_and_a_part_that_is_unknown_are_named(small: Suite):
-    assert (
-        "tip is 1 mm"
-        in suite_errors(Suite(small.parts, replace(small.postures, tip=small.postures.tip + np.array([0, 0, 1.0]))))[0]
-    )
+    assert "tip is 1 mm" in suite_errors(Suite(small.parts, replace(small.postures, tip=small.postures.tip + np.array([0, 0, 1.0]))))[0]
     other = small.postures.part.astype("U12")
     other[0] = "nowhere"
     assert "nowhere" in suite_errors(Suite(small.parts, replace(small.postures, part=other)))[0]

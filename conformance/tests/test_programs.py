@@ -125,9 +125,7 @@ def test_frames_are_rotations_to_the_axis():
     np.testing.assert_allclose(turn @ [0.0, 0.0, 1.0], axis, atol=1e-12)
 
 
-@pytest.mark.parametrize(
-    "tool", [*TOOLS, Tool("taper", ((0.0, 3.0), (20.0, 5.0)), ((20.0, 12.0), (60.0, 20.0)))], ids=lambda tool: tool.name
-)
+@pytest.mark.parametrize("tool", [*TOOLS, Tool("taper", ((0.0, 3.0), (20.0, 5.0)), ((20.0, 12.0), (60.0, 20.0)))], ids=lambda tool: tool.name)
 def test_a_cutter_of_the_product_is_the_tool(tool: Tool):
     pytest.importorskip("plan_cutters")
     from conformance.programs.plan_cutters import cutter_of
@@ -192,14 +190,10 @@ def test_claims_are_judged_by_form_and_by_points(small: Suite):
         np.testing.assert_allclose(high, low)
         break
     tool = part.tools["flat_D16L90"]
-    one = small.postures[
-        np.flatnonzero((small.postures.tool == tool.name) & (small.postures.low < -0.02) & (small.postures.low > -0.5))[:1]
-    ]
+    one = small.postures[np.flatnonzero((small.postures.tool == tool.name) & (small.postures.low < -0.02) & (small.postures.low > -0.5))[:1]]
     assert len(one) == 1
     low, high = truth("no form", tool, "free", one, Path(part.path))
     assert low[0] == -np.inf
     assert abs(high[0] - one.high[0]) < 5e-3
-    away = type(one)(
-        *(getattr(one, n) + 500.0 * one.axis if n in ("tip", "contact") else getattr(one, n) for n in one.__dataclass_fields__)
-    )
+    away = type(one)(*(getattr(one, n) + 500.0 * one.axis if n in ("tip", "contact") else getattr(one, n) for n in one.__dataclass_fields__))
     assert truth("no form", tool, "free", away, Path(part.path))[1][0] >= min(FAR, 100.0)

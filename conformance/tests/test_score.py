@@ -20,21 +20,7 @@ def table(low: list[float], high: list[float] | None = None, limit: list[float] 
 
     zero, limits = np.zeros((n, 3)), np.full(n, np.nan) if limit is None else np.array(limit, float)
     blocked = (a < 0) | (limits < 0)
-    return Postures(
-        word("p"),
-        word("t"),
-        word("s"),
-        zero,
-        zero,
-        zero,
-        zero,
-        np.where(blocked, "blocked", "safe"),
-        a,
-        b,
-        limits,
-        word(""),
-        word("form"),
-    )
+    return Postures(word("p"), word("t"), word("s"), zero, zero, zero, zero, np.where(blocked, "blocked", "safe"), a, b, limits, word(""), word("form"))
 
 
 MIXED = table([-2.0, -0.011, -0.009, 0.0, 0.009, 0.011, 3.0])
