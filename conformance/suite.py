@@ -1,7 +1,7 @@
 """The suite as files: what a program that is scored reads.
 
-`made.json` and `real.json` describe the parts with their tools, setups and answers; `made.parquet` and `real.parquet` hold the postures. The files of made parts lie in
-`made/`; those of real parts are fetched (`python -m conformance fetch`).
+`made.json` and `real.json` describe the parts with their tools, setups and answers; `made.parquet` and `real.parquet` hold the postures.
+The files of made parts lie in `made/`; those of real parts are fetched (`python -m conformance fetch`).
 """
 
 import hashlib

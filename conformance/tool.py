@@ -7,6 +7,7 @@ a cylinder, a cone, a ball end or a rounded disk. All signs and distances of the
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -194,7 +195,7 @@ class Tool:
 def _pieces(vertices: tuple[Vertex, ...], part: str, cutting: float | None) -> list[Piece]:
     """Return the pieces of one outline."""
     made: list[Piece] = []
-    for (h0, r0, *_), (h1, r1, *arc) in zip(vertices, vertices[1:], strict=False):
+    for (h0, r0, *_), (h1, r1, *arc) in pairwise(vertices):
         name = "shank" if part == "cutter" and cutting is not None and h0 >= cutting else part
         if arc and arc[0] > 0:
             made.append(Piece(h0 + arc[0], r0, h0 + arc[0], r0, arc[0], name))

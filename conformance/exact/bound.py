@@ -1,7 +1,7 @@
 """Branch and bound of margins over the cells of a shape.
 
-The signed distance of a convex piece is a convex function, so over the hull of a cell's corners it is at least its value at the middle plus the gradient there times the
-way to each corner; a cell's thickness is taken off. Points of whole cells bound the margin from above. What neither settles is halved.
+The signed distance of a convex piece is a convex function, so over the hull of a cell's corners it is at least its value at the middle plus the
+gradient there times the way to each corner; a cell's thickness is taken off. Points of whole cells bound the margin from above. What neither settles is halved.
 Nothing here knows closed forms or triangles: it is the second, independent proof, and the only one for real parts.
 """
 
@@ -139,7 +139,8 @@ def _bounds(pieces, tip, axis, corners, delta, whole, on):  # type: ignore[no-un
 def _least(nodes, child, span, corners, delta, face, whole, pieces, tip, axis, exempt, enough, deep, work):  # type: ignore[no-untyped-def]
     """Bounds (low, high) of the least signed distance over the cells of faces that are not exempt, and how many boxes it took.
 
-    Distances above `enough` stand for "far". It ends as soon as the upper bound is below `deep`: how deep exactly is then not asked, and the lower bound is -inf.
+    Distances above `enough` stand for "far". It ends as soon as the upper bound is below `deep`: how deep exactly is then not asked,
+    and the lower bound is -inf.
     """
     high, low = np.inf, enough
     on = np.ones(len(pieces), np.bool_)

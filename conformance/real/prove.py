@@ -1,8 +1,8 @@
 """Postures of real parts, proved by branch and bound on the exact surface.
 
 No closed form is known here: contacts and axes are drawn, a third is moved to the border by bisection, and each is kept only where the bounds decide it.
-`safe` means that no point of the surface is proved to lie, nor can lie, deeper than `SAFE` in the tool; `blocked` that a point of it surely lies in the tool. The clearance of a
-safe posture leaves out the face in contact and its neighbours. What the bounds do not decide is dropped and counted.
+`safe` means that no point of the surface can lie deeper than `SAFE` in the tool; `blocked` that a point of it surely lies in the tool.
+The clearance of a safe posture leaves out the face in contact and its neighbours. What the bounds do not decide is dropped and counted.
 """
 
 from collections.abc import Callable

@@ -40,8 +40,8 @@ def fetch(
 ) -> list[str]:
     """Bring the files into a folder by git, one commit and no history; return a line for each that failed.
 
-    `remote` is the address of a repository with `{repo}` in it. `files` is a folder (searched with its subfolders) that is looked through first, by checksum. A file
-    whose checksum is another one is not kept.
+    `remote` is the address of a repository with `{repo}` in it. `files` is a folder (searched with its subfolders) that is looked
+    through first, by checksum. A file whose checksum is another one is not kept.
     """
     folder.mkdir(parents=True, exist_ok=True)
     failed = []
