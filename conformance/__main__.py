@@ -196,6 +196,26 @@ def check(name: Annotated[str, typer.Argument(help="A made part.")], count: Anno
 
 
 @app.command()
+def fetch(
+    remote: Annotated[str, typer.Option(help="Address of a repository, with {repo} for owner/name.")] = "https://github.com/{repo}.git",
+    files: Annotated[Path | None, typer.Option(help="A folder that is looked through first, by checksum.")] = None,
+    only: Annotated[list[str] | None, typer.Option("--part", help="Only this part; may be given again.")] = None,
+) -> None:
+    """Bring the files of the real parts by git, into data/fetched; each has the licence that real/sources.csv names."""
+    from conformance.real.sources import fetch as bring
+    from conformance.real.sources import sources
+
+    listed = [s for s in sources() if not only or s.name in only]
+    if not listed:
+        _refuse(f"--part {only[0] if only else ''}: no real part has that name")
+    failed = bring(listed, remote=remote, files=files, tell=lambda line: out.print(line, highlight=False))
+    for line in failed:
+        err.print(line, style="red", markup=False, highlight=False, soft_wrap=True)
+    if failed:
+        raise typer.Exit(1)
+
+
+@app.command()
 def generate(
     data: Annotated[Path, typer.Option(help="Where to.", show_default="the suite's own folder")] = DATA,
     each: Annotated[int | None, typer.Option(help="Postures of each part.", show_default="those of the suite")] = None,
