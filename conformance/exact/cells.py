@@ -2,8 +2,8 @@
 
 A cell is a quadrilateral with a thickness `delta`: the exact surface over its parameters lies within `delta` of the quadrilateral.
 For planes, cylinders, cones, spheres and tori the bound follows from second derivatives, `|S - bilinear| <= (hu^2 max|Suu| + hv^2 max|Svv|) / 8`;
-for B-splines from the Bezier control net, whose hull holds the surface: each control point lies within `delta` of the corners' bilinear patch. How far the corners are from one plane is added, so
-that the quadrilateral may be taken as flat, and split again without asking the surface.
+for B-splines from the Bezier control net, whose hull holds the surface: each control point lies within `delta` of the corners' bilinear
+patch. How far the corners are from one plane is added, so that the quadrilateral may be taken as flat, and split again without asking the surface.
 
 Cells that a trim curve may cross are split down to `EDGE`; what is left of them is `whole = False`: such a cell counts when safety is proved, and never when a
 collision is. Points of the trim curves stand in for them there.
