@@ -22,8 +22,8 @@ from conformance.score import TOLERANCE, scored
 from conformance.suite import Part, Suite
 from conformance.tool import Tool
 
-#: Postures a part of the default run: what plan-cutters answers within a minute over all made parts.
-EACH = 6
+#: Postures a part of the default run: what plan-cutters answers in about a minute over all made parts.
+EACH = 3
 #: Seconds that one part may take before its process is ended.
 PATIENCE = 1800.0
 
@@ -67,14 +67,18 @@ class Ran:
         }
 
 
+#: What makes a program of its name.
+Make = Callable[[str], Any]
 Group = tuple[Part, Tool, str, NDArray[np.int64]]
 
 
-def run(name: str, suite: Suite, step: Callable[[str], None] = lambda text: None, *, patience: float = PATIENCE) -> Ran:
+def run(
+    name: str, suite: Suite, step: Callable[[str], None] = lambda text: None, *, patience: float = PATIENCE, make: Make = program
+) -> Ran:
     """Run a program over a suite's postures; a claimer over its parts, tools and setups.
 
     A process that dies, or takes longer than `patience` (seconds) over one group, leaves that group undecided; the rest goes on
-    in a new one.
+    in a new one. `make(name)` makes the program, in its own process.
 
     Raises
     ------
@@ -92,14 +96,16 @@ def run(name: str, suite: Suite, step: Callable[[str], None] = lambda text: None
     pending = list(range(len(groups)))
     while pending:
         began = time.perf_counter()
-        for k, reply in _child(name, [groups[i] for i in pending], [suite.postures[groups[i][3]] for i in pending], patience):
-            part, tool, setup, rows = groups[pending[k]] if k >= 0 else (None, None, "", np.zeros(0, int))
+        for k, reply in _child(
+            make, name, [groups[i] for i in pending], [suite.postures[groups[i][3]] for i in pending], patience
+        ):
             if isinstance(reply, Exception):
                 raise reply
             if "started" in reply:
                 ran.settings, ran.versions, ran.claims = reply["settings"], reply["versions"], reply["claims"]
                 ran.start_seconds += time.perf_counter() - began
                 continue
+            part, tool, setup, rows = groups[pending[k]]
             ran.memory_mb = max(ran.memory_mb, reply.get("memory", 0.0))
             ran.why.update(reply["why"])
             ran.prepare_seconds += reply.get("prepare", 0.0)
@@ -135,11 +141,13 @@ def _judged(part: Part, tool: Tool, setup: str, claims: Postures) -> Postures:
     return replace(claims, low=low, high=high, limit_deg=limits(part.setups[setup], claims.axis))
 
 
-def _child(name: str, groups: list[Group], postures: list[Postures], patience: float) -> Iterator[tuple[int, Any]]:
+def _child(make: Make, name: str, groups: list[Group], postures: list[Postures], patience: float) -> Iterator[tuple[int, Any]]:
     """Yield what a process of the program sends: the number of the group, and a reply; an exception, or that it died."""
     context = multiprocessing.get_context("spawn")
     here, there = context.Pipe(duplex=False)
-    process = context.Process(target=_work, args=(there, name, [(p, t, s) for p, t, s, _ in groups], [blind(p) for p in postures]), daemon=True)
+    process = context.Process(
+        target=_work, args=(there, make, name, [(p, t, s) for p, t, s, _ in groups], [blind(p) for p in postures]), daemon=True
+    )
     process.start()
     there.close()
     done = -1
@@ -162,10 +170,10 @@ def _child(name: str, groups: list[Group], postures: list[Postures], patience: f
         here.close()
 
 
-def _work(pipe: Connection, name: str, groups: list[tuple[Part, Tool, str]], postures: list[Postures]) -> None:
+def _work(pipe: Connection, make: Make, name: str, groups: list[tuple[Part, Tool, str]], postures: list[Postures]) -> None:
     """Answer group after group in a process of its own."""
     try:
-        made = program(name)
+        made = make(name)
         claims = hasattr(made, "claims")
         started = {"started": True, "settings": made.settings, "versions": versions(made.libraries), "claims": claims}
         pipe.send((-1, started))

@@ -61,14 +61,15 @@ class _Planner:
         )
         self._gather(result, tool, held, rows)
         count, most = len(rows["verdict"]), self.settings["claims_a_tool_and_setup"]
-        pick = np.unique(np.linspace(0, count - 1, min(most, count)).astype(int)) if count else []
+        pick = np.unique(np.linspace(0, max(0, count - 1), min(most, count)).astype(int)).tolist()
         return claimed(part, tool, setup, {name: [values[i] for i in pick] for name, values in rows.items()})
 
     def _gather(self, result: Any, tool: Tool, held: Any, rows: dict[str, list[Any]]) -> None:
         """Add the postures of a plan."""
         (verdicts,) = result.here.values()
         _of_verdicts(result.samples, verdicts, tool, rows)
-        self.why["samples without a posture"] += int((~verdicts.reached).sum())
+        if not verdicts.reached.all():
+            self.why["samples without a posture"] += int((~verdicts.reached).sum())
 
 
 class Plans(_Planner):

@@ -108,7 +108,7 @@ def test_the_page_of_results_has_each_program(small_folder: Path, tmp_path: Path
         assert call("run", "--program", name, "--each", 6, "--data", small_folder, "--json", tmp_path / f"{name}.json")[0] == 0
     assert call("table", tmp_path / "results.md", "--results", tmp_path)[0] == 0
     text = (tmp_path / "results.md").read_text()
-    assert text.index("| naive") < text.index("| undecided")
+    assert text.index("\n| naive ") < text.index("\n| undecided ")
     assert "pitch_mm 0.5" in text
     empty = tmp_path / "empty"
     empty.mkdir()
