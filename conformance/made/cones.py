@@ -40,26 +40,51 @@ def _pit_contacts(rng: np.random.Generator, n: int) -> tuple[Floats, Floats]:
 
 def _in_pit(r: float) -> tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]:
     """Return contact, normal and the way up of a point of the pit at +x."""
-    return ((r, 0.0, float(r / np.tan(_AP) - _DP)), (float(-np.cos(_AP)), 0.0, float(np.sin(_AP))),
-            (float(np.sin(_AP)), 0.0, float(np.cos(_AP))))
+    return (
+        (r, 0.0, float(r / np.tan(_AP) - _DP)),
+        (float(-np.cos(_AP)), 0.0, float(np.sin(_AP))),
+        (float(np.sin(_AP)), 0.0, float(np.cos(_AP))),
+    )
 
 
 CONE_PIT = MadePart(
-    "cone_pit", "cones", "Conical pit in a block",
+    "cone_pit",
+    "cones",
+    "Conical pit in a block",
     """Half angle A = 60 deg from z, apex 20 below the top. A ball that touches at distance d from the axis fits when its centre does not lie beyond the
     axis, r <= d / cos A: this is also the radius of curvature across. A flat end that tilts by t up the generator has its bottom plane cut the cone in
     a conic whose vertex, with radius of curvature (d / cos A) sin t, is the contact: the edge's circle is inside if and only if R is
     no larger (a vertex of the long axis has the least radius). Its axis stays among the directions along which nothing leaves the convex void (at
     least 30 deg above the horizon), so the cylinder is free up to 90 deg.""",
     lambda: _block(50.0, -35.0, 0.0).cut(_cone((0.0, -_DP), (_TOP, 0.0), (0.0, 0.0))),
-    (revolved_line("cone", (0.0, -_DP), (_TOP, 0.0), (31, 81)), revolved_line("top", (_TOP, 0.0), (49.9, 0.0), (12, 101)),
-     *boxes_round((_TOP + 0.1, _TOP + 0.1), (50.0, 50.0), (-35.0, 0.0)), inner("under", (-35.0, -35.0, -35.0), (35.0, 35.0, -20.0))),
-    _TOOLS, _pit_contacts,
+    (
+        revolved_line("cone", (0.0, -_DP), (_TOP, 0.0), (31, 81)),
+        revolved_line("top", (_TOP, 0.0), (49.9, 0.0), (12, 101)),
+        *boxes_round((_TOP + 0.1, _TOP + 0.1), (50.0, 50.0), (-35.0, 0.0)),
+        inner("under", (-35.0, -35.0, -35.0), (35.0, 35.0, -20.0)),
+    ),
+    _TOOLS,
+    _pit_contacts,
     answers=(
-        *(Answer("free_tilts", [[float(np.degrees(np.arcsin(4.0 * np.cos(_AP) / d))), 90.0]], "sin t = R cos A / d", tool=_TOOLS[0].name,
-                 given=placed(*_in_pit(d))) for d in (8.0, 20.0)),
-        *(Answer("largest_radius", float(d / np.cos(_AP)), "r = d / cos A", given=placed(*_in_pit(d)[:2], axis=[0.0, 0.0, 1.0], end="ball", length=60.0))
-          for d in (5.0, 12.0)),
+        *(
+            Answer(
+                "free_tilts",
+                [[float(np.degrees(np.arcsin(4.0 * np.cos(_AP) / d))), 90.0]],
+                "sin t = R cos A / d",
+                tool=_TOOLS[0].name,
+                given=placed(*_in_pit(d)),
+            )
+            for d in (8.0, 20.0)
+        ),
+        *(
+            Answer(
+                "largest_radius",
+                float(d / np.cos(_AP)),
+                "r = d / cos A",
+                given=placed(*_in_pit(d)[:2], axis=[0.0, 0.0, 1.0], end="ball", length=60.0),
+            )
+            for d in (5.0, 12.0)
+        ),
     ),
 )
 
@@ -89,21 +114,45 @@ def _tilt_down(z: float) -> float:
 
 
 CONE_BOSS = MadePart(
-    "cone_boss", "cones", "Pointed cone on a plate",
+    "cone_boss",
+    "cones",
+    "Pointed cone on a plate",
     """Half angle A = 25 deg, 30 high. The normal rises by A above the horizon: a ball end that touches at height z has its centre at z + r sin A, and
     touches the plate too when r = z / (1 - sin A). Tilted down the generator, the rim of its flat top meets the plate (patches.descent); tilted up,
     nothing is in the way of a convex body. Form: the cone and the plate's top as Surfaces, polyhedron and box inside.""",
     lambda: _block(60.0, -20.0, 0.0).union(_cone((0.0, -1.0), (_FOOT, -1.0), (_FOOT, 0.0), (0.0, _HB))),
-    (revolved_line("cone", (_FOOT, 0.0), (0.0, _HB), (35, 61)), revolved_line("top", (_FOOT, 0.0), (59.9, 0.0), (25, 121)),
-     Inner(Hull("inside", (*polygon(_FOOT - 0.1, 0.0), (0.0, 0.0, _HB - 0.1)))), inner("plate", (-60.0, -60.0, -20.0), (60.0, 60.0, 0.0))),
-    _TOOLS, _cone_contacts,
+    (
+        revolved_line("cone", (_FOOT, 0.0), (0.0, _HB), (35, 61)),
+        revolved_line("top", (_FOOT, 0.0), (59.9, 0.0), (25, 121)),
+        Inner(Hull("inside", (*polygon(_FOOT - 0.1, 0.0), (0.0, 0.0, _HB - 0.1)))),
+        inner("plate", (-60.0, -60.0, -20.0), (60.0, 60.0, 0.0)),
+    ),
+    _TOOLS,
+    _cone_contacts,
     answers=(
-        *(Answer("free_tilts", [[0.0, _tilt_down(z)]], "(L - r) sin b + r cos b = z + r sin A; tilt = A + b", tool=_TOOLS[1].name,
-                 given=placed(*_on_cone(z), _DOWN)) for z in (6.0, 15.0)),
-        Answer("free_tilts", [[0.0, 90.0]], "the way up a convex body is free", tool=_TOOLS[0].name,
-               given=placed(*_on_cone(20.0), tuple(-x for x in _DOWN))),
-        Answer("largest_radius", float(8.0 / (1 - np.sin(_AB))), "r = z / (1 - sin A)",
-               given=placed(*_on_cone(8.0), axis=[float(np.cos(_AB)), 0.0, float(np.sin(_AB))], end="ball", length=60.0)),
+        *(
+            Answer(
+                "free_tilts",
+                [[0.0, _tilt_down(z)]],
+                "(L - r) sin b + r cos b = z + r sin A; tilt = A + b",
+                tool=_TOOLS[1].name,
+                given=placed(*_on_cone(z), _DOWN),
+            )
+            for z in (6.0, 15.0)
+        ),
+        Answer(
+            "free_tilts",
+            [[0.0, 90.0]],
+            "the way up a convex body is free",
+            tool=_TOOLS[0].name,
+            given=placed(*_on_cone(20.0), tuple(-x for x in _DOWN)),
+        ),
+        Answer(
+            "largest_radius",
+            float(8.0 / (1 - np.sin(_AB))),
+            "r = z / (1 - sin A)",
+            given=placed(*_on_cone(8.0), axis=[float(np.cos(_AB)), 0.0, float(np.sin(_AB))], end="ball", length=60.0),
+        ),
     ),
 )
 
@@ -153,23 +202,47 @@ def _tilt_to_wall(x: float, tool: Tool) -> float:
 
 
 CONE_AND_WALL = MadePart(
-    "cone_and_wall", "cones", "Cone and tapered wall on a plate",
+    "cone_and_wall",
+    "cones",
+    "Cone and tapered wall on a plate",
     """A wall tapered by B = 20 deg, 25 high, and a truncated cone of half angle A = 15 deg, 20 high. A ball on the plate at distance d from the foot of a
     wall that leans away by an angle touches both when r = d tan(45 deg + angle / 2): in the bisector of the open angle. For the cone the same
     holds in the plane of its axis. The side of a ball end that tilts to the wall meets the wall's upper edge before its face where that edge is
     nearer to the axis than the tilt, `across cos t - up sin t = r` (patches.past_edge): the angle of the tilt exceeds B.""",
     _cone_and_wall,
-    (section("wall", *_WALL), _shifted("cone", (_RC, 0.0), (_CT, _HC), (25, 81)), _shifted("top of the cone", (0.0, _HC), (_CT, _HC), (10, 41)),
-     Inner(Hull("inside", tuple((x + _XC, y, z) for x, y, z in (*polygon(_RC - 0.1, 0.0), *polygon(_CT - 0.1, _HC))))),
-     box("plate", (-60.0, -60.0, -20.0), (_XW, 60.0, 0.0)), inner("under the wall", (_XW, -60.0, -20.0), (60.0, 60.0, 0.0))),
-    _TOOLS, _floor_contacts,
+    (
+        section("wall", *_WALL),
+        _shifted("cone", (_RC, 0.0), (_CT, _HC), (25, 81)),
+        _shifted("top of the cone", (0.0, _HC), (_CT, _HC), (10, 41)),
+        Inner(Hull("inside", tuple((x + _XC, y, z) for x, y, z in (*polygon(_RC - 0.1, 0.0), *polygon(_CT - 0.1, _HC))))),
+        box("plate", (-60.0, -60.0, -20.0), (_XW, 60.0, 0.0)),
+        inner("under the wall", (_XW, -60.0, -20.0), (60.0, 60.0, 0.0)),
+    ),
+    _TOOLS,
+    _floor_contacts,
     answers=(
-        Answer("largest_radius", float(8.0 * np.tan(np.pi / 4 + _AW / 2)), "r = d tan(45 deg + B / 2), d = 8 from the wall",
-               given=placed((_XW - 8.0, 0.0, 0.0), (0.0, 0.0, 1.0), axis=[0.0, 0.0, 1.0], end="ball", length=60.0)),
-        Answer("largest_radius", float(6.0 * np.tan(np.pi / 4 + _AC / 2)), "r = d tan(45 deg + A / 2), d = 6 from the cone",
-               given=placed((_XC + _RC + 6.0, 0.0, 0.0), (0.0, 0.0, 1.0), axis=[0.0, 0.0, 1.0], end="ball", length=60.0)),
-        *(Answer("free_tilts", [[0.0, _tilt_to_wall(x, _TOOLS[1])]], "across cos t - up sin t = r at the wall's upper edge", tool=_TOOLS[1].name,
-                 given=placed((x, 0.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))) for x in (5.0, 14.0)),
+        Answer(
+            "largest_radius",
+            float(8.0 * np.tan(np.pi / 4 + _AW / 2)),
+            "r = d tan(45 deg + B / 2), d = 8 from the wall",
+            given=placed((_XW - 8.0, 0.0, 0.0), (0.0, 0.0, 1.0), axis=[0.0, 0.0, 1.0], end="ball", length=60.0),
+        ),
+        Answer(
+            "largest_radius",
+            float(6.0 * np.tan(np.pi / 4 + _AC / 2)),
+            "r = d tan(45 deg + A / 2), d = 6 from the cone",
+            given=placed((_XC + _RC + 6.0, 0.0, 0.0), (0.0, 0.0, 1.0), axis=[0.0, 0.0, 1.0], end="ball", length=60.0),
+        ),
+        *(
+            Answer(
+                "free_tilts",
+                [[0.0, _tilt_to_wall(x, _TOOLS[1])]],
+                "across cos t - up sin t = r at the wall's upper edge",
+                tool=_TOOLS[1].name,
+                given=placed((x, 0.0, 0.0), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)),
+            )
+            for x in (5.0, 14.0)
+        ),
     ),
 )
 

@@ -56,7 +56,10 @@ def _ruling_end(c: float, radius: float, length: float) -> float:
 def _product(half: float, xx: float, xy: float, yy: float) -> Spline:
     """Return z = xx x^2 + xy x y + yy y^2 over a square, degree 2 in both: the poles are its blossom."""
     ends = ((-half, -half), (-half, half), (half, half))
-    poles = [[(0.5 * (a + b), 0.5 * (c + d), xx * a * b + xy * 0.25 * (a + b) * (c + d) + yy * c * d) for c, d in ends] for a, b in ends]
+    poles = [
+        [(0.5 * (a + b), 0.5 * (c + d), xx * a * b + xy * 0.25 * (a + b) * (c + d) + yy * c * d) for c, d in ends]
+        for a, b in ends
+    ]
     return Spline(np.array(poles, float), (2, 2))
 
 
@@ -85,20 +88,37 @@ def _wave_contacts(rng: np.random.Generator, n: int) -> tuple[Floats, Floats]:
 
 
 WAVE = MadePart(
-    "wave", "freeform", "Extruded wave, a quadratic B-spline of uniform knots",
+    "wave",
+    "freeform",
+    "Extruded wave, a quadratic B-spline of uniform knots",
     """Poles h = 14 apart, A = 3 up and down in turn: each span is a parabola z = +-(x^2 / (2 p) - A / 2) with p = h^2 / (4 A), and |x| <= h / 2. A ball in a
     trough: r - sqrt(r^2 - x^2) >= x^2 / (2 r), so r <= p is enough, and needed at x = 0; beyond the span the wave lies below its parabola. A
     flat end that tilts along y touches with the edge across the wave: R <= p sin t at the contact, and (1 - cos s) R sin t >= (R sin s)^2 / (2 p) for
     the whole edge is the same condition. On a crest (convex near it) a ball end is free at tilt 0.""",
     lambda: _wave().solid(30.0),
     _wave().bodies("wave", (101, 41), 30.0),
-    _TOOLS, _wave_contacts,
+    _TOOLS,
+    _wave_contacts,
     answers=(
-        Answer("largest_radius", _PW, "r = h^2 / (4 A)", given=placed((0.0, 0.0, -0.5 * _A), _UP, axis=[0.0, 0.0, 1.0], end="ball", length=40.0)),
-        Answer("largest_radius", _PW * 0.5, "R = p sin t, t = 30 deg",
-               given=placed((0.0, 0.0, -0.5 * _A), _UP, axis=[0.0, 0.5, float(np.sqrt(0.75))], end="flat", length=40.0)),
-        Answer("free_tilts", [[_deg(4.0 / _PW), 90.0]], "sin t = R / p, tilted along the trough", tool=_FLAT.name,
-               given=placed((0.0, 0.0, -0.5 * _A), _UP, (0.0, 1.0, 0.0))),
+        Answer(
+            "largest_radius",
+            _PW,
+            "r = h^2 / (4 A)",
+            given=placed((0.0, 0.0, -0.5 * _A), _UP, axis=[0.0, 0.0, 1.0], end="ball", length=40.0),
+        ),
+        Answer(
+            "largest_radius",
+            _PW * 0.5,
+            "R = p sin t, t = 30 deg",
+            given=placed((0.0, 0.0, -0.5 * _A), _UP, axis=[0.0, 0.5, float(np.sqrt(0.75))], end="flat", length=40.0),
+        ),
+        Answer(
+            "free_tilts",
+            [[_deg(4.0 / _PW), 90.0]],
+            "sin t = R / p, tilted along the trough",
+            tool=_FLAT.name,
+            given=placed((0.0, 0.0, -0.5 * _A), _UP, (0.0, 1.0, 0.0)),
+        ),
     ),
 )
 
@@ -118,7 +138,9 @@ def _twist_contacts(rng: np.random.Generator, n: int) -> tuple[Floats, Floats]:
 
 
 TWIST = MadePart(
-    "twist", "freeform", "Ruled surface between two skew lines",
+    "twist",
+    "freeform",
+    "Ruled surface between two skew lines",
     """z = x y / c, c = 30, a B-spline of degree 1. Let the edge's point be contact - m R cos t f + R sin s w + m R sin t z, m = 1 - cos s, f the direction
     of the tilt, w across; x y is harmonic, so the edge decides for the whole flat. Tilt along a ruling: x y = -m R cos t R sin s, free when
     R cos t <= c sin t, up to where the side meets the twist (`_ruling_end`). Tilt up the valley, f = (1, 1): (a^2 - b^2) / 2 is largest at the rear, m = 2: R cos(t)^2 <= c sin t; the side
@@ -126,15 +148,30 @@ TWIST = MadePart(
     |x y| <= (x^2 + y^2) / 2, so r = c, and the diagonal needs it.""",
     lambda: _twist().solid(60.0),
     _twist().bodies("twist", (65, 65), 60.0),
-    _TOOLS, _twist_contacts,
+    _TOOLS,
+    _twist_contacts,
     answers=(
-        Answer("free_tilts", [[float(np.degrees(np.arctan(4.0 / _C))), _ruling_end(_C, 4.0, 30.0)]],
-               "tan t = R / c along a ruling; the side at the top: freeform._ruling_end", tool=_FLAT.name,
-               given=placed((0.0, 0.0, 0.0), _UP, (1.0, 0.0, 0.0))),
-        Answer("free_tilts", [[_rear(_C, 4.0), _parabola_end(_C, 30.0)]], "R cos(t)^2 = c sin t; L sin(t)^2 = 2 c cos t", tool=_FLAT.name,
-               given=placed((0.0, 0.0, 0.0), _UP, (_S2, _S2, 0.0))),
-        Answer("free_tilts", [[_deg(4.0 / _C), 90.0]], "sin t = R / c down the ridge", tool=_FLAT.name,
-               given=placed((0.0, 0.0, 0.0), _UP, (_S2, -_S2, 0.0))),
+        Answer(
+            "free_tilts",
+            [[float(np.degrees(np.arctan(4.0 / _C))), _ruling_end(_C, 4.0, 30.0)]],
+            "tan t = R / c along a ruling; the side at the top: freeform._ruling_end",
+            tool=_FLAT.name,
+            given=placed((0.0, 0.0, 0.0), _UP, (1.0, 0.0, 0.0)),
+        ),
+        Answer(
+            "free_tilts",
+            [[_rear(_C, 4.0), _parabola_end(_C, 30.0)]],
+            "R cos(t)^2 = c sin t; L sin(t)^2 = 2 c cos t",
+            tool=_FLAT.name,
+            given=placed((0.0, 0.0, 0.0), _UP, (_S2, _S2, 0.0)),
+        ),
+        Answer(
+            "free_tilts",
+            [[_deg(4.0 / _C), 90.0]],
+            "sin t = R / c down the ridge",
+            tool=_FLAT.name,
+            given=placed((0.0, 0.0, 0.0), _UP, (_S2, -_S2, 0.0)),
+        ),
         Answer("largest_radius", _C, "r = c", given=placed((0.0, 0.0, 0.0), _UP, axis=[0.0, 0.0, 1.0], end="ball", length=70.0)),
     ),
 )
@@ -154,17 +191,31 @@ def _saddle() -> Spline:
 
 
 SADDLE = MadePart(
-    "saddle", "freeform", "Saddle of two curvatures, degree 2",
+    "saddle",
+    "freeform",
+    "Saddle of two curvatures, degree 2",
     """z = x^2 / (2 p) - y^2 / (2 q), p = 15, q = 25, subharmonic as p <= q: the edge decides for the whole flat. With m = 1 - cos s as in the twist: tilted
     along x, R (cos(t)^2 m / p - (2 - m) / q) <= 2 sin t is worst at the rear, m = 2: R cos(t)^2 <= p sin t; the side meets the rise at the tool's
     top, L sin(t)^2 = 2 p cos t. Tilted along y, R ((2 - m) / p - cos(t)^2 m / q) <= 2 sin t is worst at the contact: R <= p sin t. A ball: r = p.""",
     lambda: _saddle().solid(60.0),
     _saddle().bodies("saddle", (65, 65), 60.0),
-    _TOOLS, _saddle_contacts,
+    _TOOLS,
+    _saddle_contacts,
     answers=(
-        Answer("free_tilts", [[_rear(_P, 4.0), _parabola_end(_P, 30.0)]], "R cos(t)^2 = p sin t; L sin(t)^2 = 2 p cos t", tool=_FLAT.name,
-               given=placed((0.0, 0.0, 0.0), _UP, (1.0, 0.0, 0.0))),
-        Answer("free_tilts", [[_deg(4.0 / _P), 90.0]], "sin t = R / p", tool=_FLAT.name, given=placed((0.0, 0.0, 0.0), _UP, (0.0, 1.0, 0.0))),
+        Answer(
+            "free_tilts",
+            [[_rear(_P, 4.0), _parabola_end(_P, 30.0)]],
+            "R cos(t)^2 = p sin t; L sin(t)^2 = 2 p cos t",
+            tool=_FLAT.name,
+            given=placed((0.0, 0.0, 0.0), _UP, (1.0, 0.0, 0.0)),
+        ),
+        Answer(
+            "free_tilts",
+            [[_deg(4.0 / _P), 90.0]],
+            "sin t = R / p",
+            tool=_FLAT.name,
+            given=placed((0.0, 0.0, 0.0), _UP, (0.0, 1.0, 0.0)),
+        ),
         Answer("largest_radius", _P, "r = p", given=placed((0.0, 0.0, 0.0), _UP, axis=[0.0, 0.0, 1.0], end="ball", length=60.0)),
     ),
 )
@@ -188,19 +239,37 @@ def _in_bowl(d: float) -> tuple[tuple[float, float, float], tuple[float, float, 
 
 
 PARABOLOID = MadePart(
-    "paraboloid", "freeform", "Paraboloid bowl, degree 2",
+    "paraboloid",
+    "freeform",
+    "Paraboloid bowl, degree 2",
     """z = (x^2 + y^2) / (2 p), p = 20. At distance d from the axis the sphere about the axis that touches has radius sqrt(p^2 + d^2): along the surface the
     squared distance from its centre has the derivative (w - d^2) / (2 p^2) by w = x^2 + y^2, least at w = d^2, so that ball fits and no larger one.
     Flat end at the vertex: R (cos(t)^2 m + 2 - m) <= 2 p sin t is worst at the contact, m = 0: R <= p sin t. The side through the contact, worst again,
     meets the bowl at the tool's top: L sin(t)^2 = 2 p cos t.""",
     lambda: _bowl().solid(60.0),
     _bowl().bodies("bowl", (65, 65), 60.0),
-    _TOOLS, _bowl_contacts,
+    _TOOLS,
+    _bowl_contacts,
     answers=(
-        *(Answer("free_tilts", [[_deg(4.0 / _PB), _parabola_end(_PB, 30.0)]], "sin t = R / p; L sin(t)^2 = 2 p cos t", tool=_FLAT.name,
-                 given=placed((0.0, 0.0, 0.0), _UP, f)) for f in ((1.0, 0.0, 0.0), (0.6, 0.8, 0.0))),
-        *(Answer("largest_radius", float(np.hypot(_PB, d)), "r = sqrt(p^2 + d^2)",
-                 given=placed(*_in_bowl(d), axis=[0.0, 0.0, 1.0], end="ball", length=70.0)) for d in (0.0, 10.0)),
+        *(
+            Answer(
+                "free_tilts",
+                [[_deg(4.0 / _PB), _parabola_end(_PB, 30.0)]],
+                "sin t = R / p; L sin(t)^2 = 2 p cos t",
+                tool=_FLAT.name,
+                given=placed((0.0, 0.0, 0.0), _UP, f),
+            )
+            for f in ((1.0, 0.0, 0.0), (0.6, 0.8, 0.0))
+        ),
+        *(
+            Answer(
+                "largest_radius",
+                float(np.hypot(_PB, d)),
+                "r = sqrt(p^2 + d^2)",
+                given=placed(*_in_bowl(d), axis=[0.0, 0.0, 1.0], end="ball", length=70.0),
+            )
+            for d in (0.0, 10.0)
+        ),
     ),
 )
 

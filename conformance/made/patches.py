@@ -55,6 +55,7 @@ def walls_of(half: float) -> tuple[Prism, ...]:
 
 def revolved_line(name: str, start: Flat, end: Flat, grid: tuple[int, int], turn: Flat = TURN) -> Surface:
     """Return the surface of a line (radius, z) revolved about z: a cone, a cylinder, a ring."""
+
     def at(u: Floats, v: Floats) -> Floats:
         r, z = start[0] + u * (end[0] - start[0]), start[1] + u * (end[1] - start[1])
         return np.stack([r * np.cos(v), r * np.sin(v), z], axis=-1)
@@ -64,6 +65,7 @@ def revolved_line(name: str, start: Flat, end: Flat, grid: tuple[int, int], turn
 
 def revolved_arc(name: str, centre: Flat, radius: float, arc: Flat, grid: tuple[int, int]) -> Surface:
     """Return the surface of an arc revolved about z; angles (rad) in the (radius, z) plane from the r direction: a sphere or a torus."""
+
     def at(u: Floats, v: Floats) -> Floats:
         r, z = centre[0] + radius * np.cos(u), centre[1] + radius * np.sin(u)
         return np.stack([r * np.cos(v), r * np.sin(v), z], axis=-1)
@@ -84,8 +86,12 @@ def tile(name: str, corner: Point, first: Point, second: Point, grid: tuple[int,
 def boxes_round(half: Flat, size: Flat, z: Flat) -> tuple[Inner, ...]:
     """Return, as inner bodies, the four boxes between a rectangle of `half` extents and a block of half extents `size`, from `z[0]` to `z[1]`."""
     (a, b), (x, y), (low, high) = half, size, z
-    return (inner("block at +x", (a, -y, low), (x, y, high)), inner("block at -x", (-x, -y, low), (-a, y, high)),
-            inner("block at +y", (-a, b, low), (a, y, high)), inner("block at -y", (-a, -y, low), (a, -b, high)))
+    return (
+        inner("block at +x", (a, -y, low), (x, y, high)),
+        inner("block at -x", (-x, -y, low), (-a, y, high)),
+        inner("block at +y", (-a, b, low), (a, y, high)),
+        inner("block at -y", (-a, -y, low), (a, -b, high)),
+    )
 
 
 def inner(name: str, low: Point, high: Point) -> Inner:
@@ -178,13 +184,25 @@ class Spline:
                 on = self.at(t if u is None else np.full_like(t, u), t if v is None else np.full_like(t, v))
                 return on + s[..., None] * down
 
-            return Surface(f"side {'v' if u is None else 'u'}", at, self.span(0 if u is None else 1), (0.0, 1.0), (grid[0 if u is None else 1], 13))
+            return Surface(
+                f"side {'v' if u is None else 'u'}",
+                at,
+                self.span(0 if u is None else 1),
+                (0.0, 1.0),
+                (grid[0 if u is None else 1], 13),
+            )
 
         def below(u: Floats, v: Floats) -> Floats:
             return self.at(u, v) + down
 
-        return (self.surface(name, grid), Surface("below", below, (u0, u1), (v0, v1), (25, 25)),
-                side(u0, None), side(u1, None), side(None, v0), side(None, v1))
+        return (
+            self.surface(name, grid),
+            Surface("below", below, (u0, u1), (v0, v1), (25, 25)),
+            side(u0, None),
+            side(u1, None),
+            side(None, v0),
+            side(None, v1),
+        )
 
     def solid(self, depth: float) -> Any:
         """Return the solid from the surface down to its copy `depth` below."""

@@ -44,21 +44,42 @@ def _at(deg: float, z: float = _Z, radius: float = _R) -> tuple[tuple[float, flo
 
 
 ROD_ON_PLATE = MadePart(
-    "rod_on_plate", "rods", "Cylinder boss lying on a plate",
+    "rod_on_plate",
+    "rods",
+    "Cylinder boss lying on a plate",
     """A cylinder of radius Rb = 12 along y, its axis 8 above the plate. At angle q from z a ball end r has its centre 8 + (Rb + r) cos q above the
     plate, and touches both when r = (8 + Rb cos q) / (1 - cos q). Tilted down across the cylinder, the rim of the flat top meets the plate (patches.descent);
     tilted along the cylinder nothing is in the way of a convex body. Form: a rod as a prism of all normals, the plate in two boxes.""",
     lambda: _box((-70, -_Y, -20), (70, _Y, 0)).union(_rod(_R, _Z)),
-    (Prism("rod", ((0.0, 0.0, _Z),), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), 0.0, 2 * np.pi, _R),
-     box("plate at +x", (_FOOT, -_Y, -20.0), (70.0, _Y, 0.0)), box("plate at -x", (-70.0, -_Y, -20.0), (-_FOOT, _Y, 0.0)),
-     inner("plate under it", (-_FOOT, -_Y, -20.0), (_FOOT, _Y, 0.0))),
-    _TOOLS, _rod_contacts,
+    (
+        Prism("rod", ((0.0, 0.0, _Z),), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), 0.0, 2 * np.pi, _R),
+        box("plate at +x", (_FOOT, -_Y, -20.0), (70.0, _Y, 0.0)),
+        box("plate at -x", (-70.0, -_Y, -20.0), (-_FOOT, _Y, 0.0)),
+        inner("plate under it", (-_FOOT, -_Y, -20.0), (_FOOT, _Y, 0.0)),
+    ),
+    _TOOLS,
+    _rod_contacts,
     answers=(
-        Answer("largest_radius", (_Z + _R * 0.5) / 0.5, "r = (8 + Rb cos q) / (1 - cos q), q = 60 deg",
-               given=placed(*_at(60.0), axis=list(_at(45.0)[1]), end="ball", length=70.0)),
-        Answer("free_tilts", [[0.0, 90.0]], "along a convex body the way is free", tool=_FLAT.name, given=placed(*_at(40.0), (0.0, 1.0, 0.0))),
-        Answer("free_tilts", [[0.0, 30.0 + descent(_Z + 15.0 * 0.5, 3.0, 40.0)]], "(L - r) sin b + r cos b = 8 + (Rb + r) cos q; tilt = 90 - q + b",
-               tool=_BALL.name, given=placed(*_at(60.0), (0.5, 0.0, -float(np.sqrt(0.75))))),
+        Answer(
+            "largest_radius",
+            (_Z + _R * 0.5) / 0.5,
+            "r = (8 + Rb cos q) / (1 - cos q), q = 60 deg",
+            given=placed(*_at(60.0), axis=list(_at(45.0)[1]), end="ball", length=70.0),
+        ),
+        Answer(
+            "free_tilts",
+            [[0.0, 90.0]],
+            "along a convex body the way is free",
+            tool=_FLAT.name,
+            given=placed(*_at(40.0), (0.0, 1.0, 0.0)),
+        ),
+        Answer(
+            "free_tilts",
+            [[0.0, 30.0 + descent(_Z + 15.0 * 0.5, 3.0, 40.0)]],
+            "(L - r) sin b + r cos b = 8 + (Rb + r) cos q; tilt = 90 - q + b",
+            tool=_BALL.name,
+            given=placed(*_at(60.0), (0.5, 0.0, -float(np.sqrt(0.75)))),
+        ),
     ),
 )
 
@@ -87,23 +108,51 @@ def _tube_axes(rng: np.random.Generator, points: Floats, normals: Floats) -> Flo
 
 
 TUBE = MadePart(
-    "tube", "rods", "Tube to be reached from both ends",
+    "tube",
+    "rods",
+    "Tube to be reached from both ends",
     """Bore radius 10, length 80, a holder of radius 12 that does not enter it. Along the axis of the bore, a ball end r that touches the wall at depth d
     has its tip at depth d + r, and the holder its end face: least stick-out d + r. Tilted, the holder's lower disk, wider than the bore, stays
     outside the end as well, so with stick-out S no point deeper than S is within reach of that end: with S = 50 and length 80 one end is not enough,
     and S - r >= 40 on both sides is: two directions, +z and -z.""",
     lambda: _ring(),
-    (revolved_line("bore", (_RI, 0.0), (_RI, _LT), (55, 49)), revolved_line("wall", (_RO, 0.0), (_RO, _LT), (41, 61)),
-     revolved_line("upper end", (_RI, _LT), (_RO, _LT), (9, 73)), revolved_line("lower end", (_RI, 0.0), (_RO, 0.0), (9, 73))),
-    (_HELD, _SHORT), _tube_contacts, axes=_tube_axes,
+    (
+        revolved_line("bore", (_RI, 0.0), (_RI, _LT), (55, 49)),
+        revolved_line("wall", (_RO, 0.0), (_RO, _LT), (41, 61)),
+        revolved_line("upper end", (_RI, _LT), (_RO, _LT), (9, 73)),
+        revolved_line("lower end", (_RI, 0.0), (_RO, 0.0), (9, 73)),
+    ),
+    (_HELD, _SHORT),
+    _tube_contacts,
+    axes=_tube_axes,
     answers=(
-        *(Answer("least_stickout", d + 3.0, "depth + r", tool=_HELD.name, given=placed((_RI, 0.0, _LT - d), (-1.0, 0.0, 0.0), axis=[0.0, 0.0, 1.0]))
-          for d in (10.0, 30.0)),
-        Answer("least_stickout", 25.0 + 3.0, "depth + r, from the lower end", tool=_HELD.name,
-               given=placed((0.0, -_RI, 25.0), (0.0, 1.0, 0.0), axis=[0.0, 0.0, -1.0])),
-        Answer("orientations", 2, "no point deeper than the stick-out is within reach of an end: 50 < 80; 47 >= 40", tool=_HELD.name,
-               given={"axes": [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]],
-                      "places": [placed((_RI, 0.0, z), (-1.0, 0.0, 0.0)) for z in (5.0, 39.0, 41.0, 75.0)]}),
+        *(
+            Answer(
+                "least_stickout",
+                d + 3.0,
+                "depth + r",
+                tool=_HELD.name,
+                given=placed((_RI, 0.0, _LT - d), (-1.0, 0.0, 0.0), axis=[0.0, 0.0, 1.0]),
+            )
+            for d in (10.0, 30.0)
+        ),
+        Answer(
+            "least_stickout",
+            25.0 + 3.0,
+            "depth + r, from the lower end",
+            tool=_HELD.name,
+            given=placed((0.0, -_RI, 25.0), (0.0, 1.0, 0.0), axis=[0.0, 0.0, -1.0]),
+        ),
+        Answer(
+            "orientations",
+            2,
+            "no point deeper than the stick-out is within reach of an end: 50 < 80; 47 >= 40",
+            tool=_HELD.name,
+            given={
+                "axes": [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]],
+                "places": [placed((_RI, 0.0, z), (-1.0, 0.0, 0.0)) for z in (5.0, 39.0, 41.0, 75.0)],
+            },
+        ),
     ),
 )
 
@@ -136,18 +185,31 @@ def _under(x: float, r: float) -> list[list[float]]:
 
 
 ROD_OVER_GROOVE = MadePart(
-    "rod_over_groove", "rods", "Cylinder across a groove in a plate",
+    "rod_over_groove",
+    "rods",
+    "Cylinder across a groove in a plate",
     """A groove along x, 24 wide and 20 deep, and across it a cylinder of radius Rr = 6 whose axis is 4 above the plate. A ball end r on the groove's floor
     tilts along the groove: it passes the cylinder when its axis is Rr + r away from the cylinder's, asin((Rr + r) / d) to either side of the line between the
     centres, d apart. Upright it stands free where it is Rr + r from under the cylinder's axis.""",
     lambda: _box((-90, -70, -40), (90, 70, 0)).cut(_box((-90, -_GW, -_GD), (90, _GW, 1))).union(_rod(_RR, _ZR)),
-    (Prism("rod", ((0.0, 0.0, _ZR),), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), 0.0, 2 * np.pi, _RR),
-     box("side at +y", (-90.0, _GW, -40.0), (90.0, 70.0, 0.0)), box("side at -y", (-90.0, -70.0, -40.0), (90.0, -_GW, 0.0)),
-     box("floor", (-90.0, -_GW, -40.0), (90.0, _GW, -_GD))),
-    _TOOLS, _groove_contacts,
+    (
+        Prism("rod", ((0.0, 0.0, _ZR),), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0), 0.0, 2 * np.pi, _RR),
+        box("side at +y", (-90.0, _GW, -40.0), (90.0, 70.0, 0.0)),
+        box("side at -y", (-90.0, -70.0, -40.0), (90.0, -_GW, 0.0)),
+        box("floor", (-90.0, -_GW, -40.0), (90.0, _GW, -_GD)),
+    ),
+    _TOOLS,
+    _groove_contacts,
     answers=tuple(
-        Answer("free_tilts", _under(x, 3.0), "asin((Rr + r) / d) to both sides of the line of centres", tool=_BALL.name,
-               given=placed((x, 0.0, -_GD), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0))) for x in (0.0, 5.0, -15.0)),
+        Answer(
+            "free_tilts",
+            _under(x, 3.0),
+            "asin((Rr + r) / d) to both sides of the line of centres",
+            tool=_BALL.name,
+            given=placed((x, 0.0, -_GD), (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)),
+        )
+        for x in (0.0, 5.0, -15.0)
+    ),
 )
 
 
@@ -159,8 +221,16 @@ def _blade() -> Any:
     import cadquery as cq
 
     c, s = np.cos(_BA), np.sin(_BA)
-    profile = (cq.Workplane("XY", origin=(0, 0, -1)).moveTo(_BI * c, -_BI * s).lineTo(_BO * c, -_BO * s).threePointArc((_BO, 0), (_BO * c, _BO * s))
-               .lineTo(_BI * c, _BI * s).threePointArc((_BI, 0), (_BI * c, -_BI * s)).close().extrude(_BH + 1))
+    profile = (
+        cq.Workplane("XY", origin=(0, 0, -1))
+        .moveTo(_BI * c, -_BI * s)
+        .lineTo(_BO * c, -_BO * s)
+        .threePointArc((_BO, 0), (_BO * c, _BO * s))
+        .lineTo(_BI * c, _BI * s)
+        .threePointArc((_BI, 0), (_BI * c, -_BI * s))
+        .close()
+        .extrude(_BH + 1)
+    )
     return _box((-70, -70, -20), (90, 70, 0)).union(profile)
 
 
@@ -182,20 +252,46 @@ def _blade_contacts(rng: np.random.Generator, n: int) -> tuple[Floats, Floats]:
 
 
 BLADE = MadePart(
-    "blade", "rods", "Curved blade on a root",
+    "blade",
+    "rods",
+    "Curved blade on a root",
     """Two arcs of radius 27 and 30 about z, 80 deg long, 40 high, on a plate. On the hollow side a ball has r <= 27. The bottom plane of a flat end at tilt t
     towards z cuts the cylinder in an ellipse with half axes 27 / sin t and 27, which the edge's circle touches at the end of the long axis: inside if
     and only if R <= 27 sin t, and the cylinder above it runs up along the wall. A ball on the other side at height z touches the plate when r = z.""",
     _blade,
-    (_blade_surface("hollow side", (_BI, 0.0), (_BI, _BH), (37, 41)), _blade_surface("round side", (_BO, 0.0), (_BO, _BH), (37, 41)),
-     _blade_surface("top", (_BI, _BH), (_BO, _BH), (5, 41)), _end("end at +y", _BA), _end("end at -y", -_BA),
-     box("root", (-70.0, -70.0, -20.0), (90.0, 70.0, 0.0))),
-    _TOOLS, _blade_contacts,
+    (
+        _blade_surface("hollow side", (_BI, 0.0), (_BI, _BH), (37, 41)),
+        _blade_surface("round side", (_BO, 0.0), (_BO, _BH), (37, 41)),
+        _blade_surface("top", (_BI, _BH), (_BO, _BH), (5, 41)),
+        _end("end at +y", _BA),
+        _end("end at -y", -_BA),
+        box("root", (-70.0, -70.0, -20.0), (90.0, 70.0, 0.0)),
+    ),
+    _TOOLS,
+    _blade_contacts,
     answers=(
-        *(Answer("free_tilts", [[float(np.degrees(np.arcsin(4.0 / _BI))), 90.0]], "sin t = R / 27", tool=_FLAT.name,
-                 given=placed((_BI, 0.0, z), (-1.0, 0.0, 0.0), (0.0, 0.0, 1.0))) for z in (15.0, 30.0)),
-        Answer("largest_radius", _BI, "r = 27", given=placed((_BI, 0.0, 35.0), (-1.0, 0.0, 0.0), axis=[-0.6, 0.0, 0.8], end="ball", length=70.0)),
-        Answer("largest_radius", 12.0, "r = height", given=placed((_BO, 0.0, 12.0), (1.0, 0.0, 0.0), axis=[0.6, 0.0, 0.8], end="ball", length=70.0)),
+        *(
+            Answer(
+                "free_tilts",
+                [[float(np.degrees(np.arcsin(4.0 / _BI))), 90.0]],
+                "sin t = R / 27",
+                tool=_FLAT.name,
+                given=placed((_BI, 0.0, z), (-1.0, 0.0, 0.0), (0.0, 0.0, 1.0)),
+            )
+            for z in (15.0, 30.0)
+        ),
+        Answer(
+            "largest_radius",
+            _BI,
+            "r = 27",
+            given=placed((_BI, 0.0, 35.0), (-1.0, 0.0, 0.0), axis=[-0.6, 0.0, 0.8], end="ball", length=70.0),
+        ),
+        Answer(
+            "largest_radius",
+            12.0,
+            "r = height",
+            given=placed((_BO, 0.0, 12.0), (1.0, 0.0, 0.0), axis=[0.6, 0.0, 0.8], end="ball", length=70.0),
+        ),
     ),
 )
 
