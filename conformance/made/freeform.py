@@ -35,10 +35,31 @@ def _rear(c: float, radius: float) -> float:
     return _deg((-c + np.hypot(c, 2 * radius)) / (2 * radius))
 
 
+def _ruling_end(c: float, radius: float, length: float) -> float:
+    """Return the tilt (deg) along a ruling of z = x y / c at which the side of a flat end meets the twist at its top.
+
+    The generator at angle s of the edge leaves the surface by `h (cos t - sin t R sin s / c) + m R (sin t + cos t R sin s / c)`, m = 1 - cos s: linear in
+    the height h, so the two ends decide, h = 0 (the edge) and h = L.
+    """
+    from scipy.optimize import brentq, minimize_scalar
+
+    def least(t: float) -> float:
+        def over(s: float) -> float:
+            k = radius * np.sin(s) / c
+            return float(length * (np.cos(t) - np.sin(t) * k) + radius * (1 - np.cos(s)) * (np.sin(t) + np.cos(t) * k))
+
+        return float(minimize_scalar(over, bounds=(0.0, np.pi), method="bounded", options={"xatol": 1e-12}).fun)
+
+    return float(np.degrees(brentq(least, np.radians(20.0), np.radians(89.9))))
+
+
 def _product(half: float, xx: float, xy: float, yy: float) -> Spline:
     """Return z = xx x^2 + xy x y + yy y^2 over a square, degree 2 in both: the poles are its blossom."""
     ends = ((-half, -half), (-half, half), (half, half))
-    poles = [[(0.5 * (a + b), 0.5 * (c + d), xx * a * b + xy * 0.25 * (a + b) * (c + d) + yy * c * d) for c, d in ends] for a, b in ends]
+    poles = [
+        [(0.5 * (a + b), 0.5 * (c + d), xx * a * b + xy * 0.25 * (a + b) * (c + d) + yy * c * d) for c, d in ends]
+        for a, b in ends
+    ]
     return Spline(np.array(poles, float), (2, 2))
 
 
@@ -79,7 +100,12 @@ WAVE = MadePart(
     _TOOLS,
     _wave_contacts,
     answers=(
-        Answer("largest_radius", _PW, "r = h^2 / (4 A)", given=placed((0.0, 0.0, -0.5 * _A), _UP, axis=[0.0, 0.0, 1.0], end="ball", length=40.0)),
+        Answer(
+            "largest_radius",
+            _PW,
+            "r = h^2 / (4 A)",
+            given=placed((0.0, 0.0, -0.5 * _A), _UP, axis=[0.0, 0.0, 1.0], end="ball", length=40.0),
+        ),
         Answer(
             "largest_radius",
             _PW * 0.5,
@@ -117,7 +143,7 @@ TWIST = MadePart(
     "Ruled surface between two skew lines",
     """z = x y / c, c = 30, a B-spline of degree 1. Let the edge's point be contact - m R cos t f + R sin s w + m R sin t z, m = 1 - cos s, f the direction
     of the tilt, w across; x y is harmonic, so the edge decides for the whole flat. Tilt along a ruling: x y = -m R cos t R sin s, free when
-    R cos t <= c sin t. Tilt up the valley, f = (1, 1): (a^2 - b^2) / 2 is largest at the rear, m = 2: R cos(t)^2 <= c sin t; the side
+    R cos t <= c sin t, up to where the side meets the twist (`_ruling_end`). Tilt up the valley, f = (1, 1): (a^2 - b^2) / 2 is largest at the rear, m = 2: R cos(t)^2 <= c sin t; the side
     meets the rise at the tool's top, L sin(t)^2 = 2 c cos t. Tilt down, f = (1, -1): largest at m = 0: R <= c sin t, the local bound. A ball:
     |x y| <= (x^2 + y^2) / 2, so r = c, and the diagonal needs it.""",
     lambda: _twist().solid(60.0),
@@ -127,8 +153,8 @@ TWIST = MadePart(
     answers=(
         Answer(
             "free_tilts",
-            [[float(np.degrees(np.arctan(4.0 / _C))), 90.0]],
-            "tan t = R / c along a ruling",
+            [[float(np.degrees(np.arctan(4.0 / _C))), _ruling_end(_C, 4.0, 30.0)]],
+            "tan t = R / c along a ruling; the side at the top: freeform._ruling_end",
             tool=_FLAT.name,
             given=placed((0.0, 0.0, 0.0), _UP, (1.0, 0.0, 0.0)),
         ),
@@ -139,7 +165,13 @@ TWIST = MadePart(
             tool=_FLAT.name,
             given=placed((0.0, 0.0, 0.0), _UP, (_S2, _S2, 0.0)),
         ),
-        Answer("free_tilts", [[_deg(4.0 / _C), 90.0]], "sin t = R / c down the ridge", tool=_FLAT.name, given=placed((0.0, 0.0, 0.0), _UP, (_S2, -_S2, 0.0))),
+        Answer(
+            "free_tilts",
+            [[_deg(4.0 / _C), 90.0]],
+            "sin t = R / c down the ridge",
+            tool=_FLAT.name,
+            given=placed((0.0, 0.0, 0.0), _UP, (_S2, -_S2, 0.0)),
+        ),
         Answer("largest_radius", _C, "r = c", given=placed((0.0, 0.0, 0.0), _UP, axis=[0.0, 0.0, 1.0], end="ball", length=70.0)),
     ),
 )
@@ -177,7 +209,13 @@ SADDLE = MadePart(
             tool=_FLAT.name,
             given=placed((0.0, 0.0, 0.0), _UP, (1.0, 0.0, 0.0)),
         ),
-        Answer("free_tilts", [[_deg(4.0 / _P), 90.0]], "sin t = R / p", tool=_FLAT.name, given=placed((0.0, 0.0, 0.0), _UP, (0.0, 1.0, 0.0))),
+        Answer(
+            "free_tilts",
+            [[_deg(4.0 / _P), 90.0]],
+            "sin t = R / p",
+            tool=_FLAT.name,
+            given=placed((0.0, 0.0, 0.0), _UP, (0.0, 1.0, 0.0)),
+        ),
         Answer("largest_radius", _P, "r = p", given=placed((0.0, 0.0, 0.0), _UP, axis=[0.0, 0.0, 1.0], end="ball", length=60.0)),
     ),
 )
@@ -224,7 +262,12 @@ PARABOLOID = MadePart(
             for f in ((1.0, 0.0, 0.0), (0.6, 0.8, 0.0))
         ),
         *(
-            Answer("largest_radius", float(np.hypot(_PB, d)), "r = sqrt(p^2 + d^2)", given=placed(*_in_bowl(d), axis=[0.0, 0.0, 1.0], end="ball", length=70.0))
+            Answer(
+                "largest_radius",
+                float(np.hypot(_PB, d)),
+                "r = sqrt(p^2 + d^2)",
+                given=placed(*_in_bowl(d), axis=[0.0, 0.0, 1.0], end="ball", length=70.0),
+            )
             for d in (0.0, 10.0)
         ),
     ),
