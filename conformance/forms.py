@@ -164,29 +164,45 @@ class Hull(_Gapped):
         def apart(m: Floats) -> Floats:
             return -_support(piece, -m, tip, axis) - np.max(m @ corners.T, axis=-1) - self.radius
 
-        best = np.full(len(tip), -np.inf)
-        for first, across, turn in _edges(self.vertices):
-            arc = lambda angle, x=first, y=across: apart(np.cos(angle)[..., None] * x + np.sin(angle)[..., None] * y)
-            best = np.maximum(best, _most(arc, 0.0, turn, len(tip)))
+        first, across, turn = _edges(self.vertices)
+
+        def arcs(share: Floats) -> Floats:
+            angle = share.reshape(len(tip), len(turn), -1) * turn[:, None]
+            m = np.cos(angle)[..., None] * first[:, None] + np.sin(angle)[..., None] * across[:, None]
+            return apart(m.reshape(len(tip), -1, 3)).reshape(share.shape)
+
+        best = np.max(_most(arcs, 0.0, 1.0, len(tip) * len(turn)).reshape(len(tip), -1), axis=1, initial=-np.inf)
         towards = np.stack([_away(piece, np.broadcast_to(corner, tip.shape), tip, axis) for corner in corners], axis=1)
         return np.maximum(best, np.max(apart(towards), axis=1))
 
+    def height(self, points: Floats) -> Floats:
+        """Return how far points lie outside, mm: of a hull with flat faces the farthest plane's distance, less than the hull's beyond its edges."""
+        if len(self.vertices) == 1 or self.radius > 0:
+            return super().height(points)
+        planes = _faces(self.vertices)
+        return np.max(points @ planes[:, :3].T + planes[:, 3], axis=-1)
+
 
 @cache
-def _edges(vertices: tuple[tuple[float, float, float], ...]) -> tuple[tuple[Floats, Floats, float], ...]:
+def _faces(vertices: tuple[tuple[float, float, float], ...]) -> Floats:
+    """Return the planes (k, 4) of a hull's faces: outer normal and offset."""
+    from scipy.spatial import ConvexHull
+
+    return np.unique(ConvexHull(np.array(vertices, float)).equations.round(13), axis=0)
+
+
+@cache
+def _edges(vertices: tuple[tuple[float, float, float], ...]) -> tuple[Floats, Floats, Floats]:
     """Return for each edge of a hull the normal of one face, the unit vector across it towards the other face's normal, and the angle between."""
     from scipy.spatial import ConvexHull
 
     hull = ConvexHull(np.array(vertices, float))
-    out = []
-    for i, neighbours in enumerate(hull.neighbors):
-        for j in neighbours[neighbours > i]:
-            a, b = hull.equations[i, :3], hull.equations[j, :3]
-            across = b - (a @ b) * a
-            width = np.linalg.norm(across)
-            if width > 1e-9:
-                out.append((a, across / width, float(np.arctan2(width, a @ b))))
-    return tuple(out)
+    pairs = [(i, j) for i, others in enumerate(hull.neighbors) for j in others if j > i]
+    a, b = (hull.equations[[pair[side] for pair in pairs], :3] for side in (0, 1))
+    across = b - np.sum(a * b, axis=1)[:, None] * a
+    width = np.linalg.norm(across, axis=1)
+    real = width > 1e-9
+    return a[real], across[real] / width[real, None], np.arctan2(width, np.sum(a * b, axis=1))[real]
 
 
 def _away(piece: Piece, points: Floats, tip: Floats, axis: Floats) -> Floats:
