@@ -1,20 +1,22 @@
 """Closed forms: the signed margin of a convex piece of a tool from a piece of material.
 
-Each form is a body of material. `gap(piece, tip, axis)` is its distance (mm) from the piece, below zero where they meet; the depth follows from
-the insets of the piece (`tool.margin`). The derivations:
+Each form is a body of material. `gap(piece, tip, axis)` is its distance (mm) from the piece, below zero where they meet; the
+depth follows from the insets of the piece (`tool.margin`). The derivations:
 
 *Separating planes.* Two convex bodies T and K are apart by the largest distance of two parallel planes between them:
-`gap = max over unit m of (min over T of m.x - max over K of m.x) = max over m of (-support_T(-m) - support_K(m))`. Only directions m that are outer
-normals of K somewhere count. A half-space has one such m; a wedge the arc between the normals of its two planes; a prism the arcs at each
-of its edges; a polyhedron the arcs at its edges and, at its vertices, the direction to the piece.
+`gap = max over unit m of (min over T of m.x - max over K of m.x) = max over m of (-support_T(-m) - support_K(m))`. Only
+directions m that are outer normals of K somewhere count. A half-space has one such m; a wedge the arc between the normals of
+its two planes; a prism the arcs at each of its edges; a polyhedron the arcs at its edges and, at its vertices, the direction to
+the piece.
 
-*Void ball.* Material outside a ball of radius `rb`: the tool has to stay inside. The farthest point of a frustum from the centre lies on one of its
-two circles, on the side away from the centre: `far = max over circles of hypot(h - hc, r + rc)`, and `gap = rb - far - rho`.
+*Void ball.* Material outside a ball of radius `rb`: the tool has to stay inside. The farthest point of a frustum from the
+centre lies on one of its two circles, on the side away from the centre: `far = max over circles of hypot(h - hc, r + rc)`, and
+`gap = rb - far - rho`.
 
 *Void cylinder.* Material outside a bore: the same with distances from a line, farthest on one of the two circles, by one angle.
 
-*Surface.* Material behind a parametrised surface: `gap = min over (u, v) of signed(S(u, v))`, by a grid and a local search that ends at 1e-9 mm. It is the definition
-of the margin itself, for a tool that does not lie in the material as a whole.
+*Surface.* Material behind a parametrised surface: `gap = min over (u, v) of signed(S(u, v))`, by a grid and a local search that
+ends at 1e-9 mm. It is the definition of the margin itself, for a tool that does not lie in the material as a whole.
 """
 
 from collections.abc import Callable
@@ -73,8 +75,8 @@ class _Gapped:
 class Prism(_Gapped):
     """A convex prism along `direction` without end, rounded by `radius`; its outer normals go from angle `start` to `end` (rad).
 
-    `vertices (k, 3)` are points of its edges. Angles are in the plane across: 0 is `zero`, and they grow about `direction`. A half-space has one
-    vertex and `start == end`; a wedge one vertex and an arc; a slab two; a rod one, a radius and all angles.
+    `vertices (k, 3)` are points of its edges. Angles are in the plane across: 0 is `zero`, and they grow about `direction`. A
+    half-space has one vertex and `start == end`; a wedge one vertex and an arc; a slab two; a rod one, a radius and all angles.
     """
 
     name: str
@@ -127,7 +129,8 @@ def section(name: str, *points: tuple[float, float], radius: float = 0.0) -> Pri
 
 
 def _most(of: Callable[[Floats], Floats], start: float, end: float, count: int) -> Floats:
-    """Return the largest value (n,) over an interval: `of(angles (n, k))` on a grid, then on ever smaller grids about its best."""
+    """Return the largest value (n,) over an interval: `of(angles (n, k))` on a grid, then on ever smaller grids about its
+    best."""
     if end <= start:
         return of(np.full((count, 1), start))[:, 0]
     grid = np.linspace(start, end, max(9, int(np.ceil((end - start) / 0.05)) + 1))
@@ -152,10 +155,11 @@ class Hull(_Gapped):
     radius: float = 0.0
 
     def gap(self, piece: Piece, tip: Floats, axis: Floats) -> Floats:
-        """Return the largest distance between parallel planes: over the arc of normals at each edge, and from each vertex to the piece.
+        """Return the largest distance between parallel planes: over the arc of normals at each edge, and from each vertex to
+        the piece.
 
-        The nearest point of the hull is in a face or on an edge, then the normal is on an arc, or it is a vertex, then it points to the nearest
-        point of the piece. Where they meet, no normal gives more than zero.
+        The nearest point of the hull is in a face or on an edge, then the normal is on an arc, or it is a vertex, then it
+        points to the nearest point of the piece. Where they meet, no normal gives more than zero.
         """
         corners = np.array(self.vertices, float)
         if len(corners) == 1:
@@ -176,7 +180,8 @@ class Hull(_Gapped):
         return np.maximum(best, np.max(apart(towards), axis=1))
 
     def height(self, points: Floats) -> Floats:
-        """Return how far points lie outside, mm: of a hull with flat faces the farthest plane's distance, less than the hull's beyond its edges."""
+        """Return how far points lie outside, mm: of a hull with flat faces the farthest plane's distance, less than the hull's
+        beyond its edges."""
         if len(self.vertices) == 1 or self.radius > 0:
             return super().height(points)
         planes = _faces(self.vertices)
@@ -193,7 +198,8 @@ def _faces(vertices: tuple[tuple[float, float, float], ...]) -> Floats:
 
 @cache
 def _edges(vertices: tuple[tuple[float, float, float], ...]) -> tuple[Floats, Floats, Floats]:
-    """Return for each edge of a hull the normal of one face, the unit vector across it towards the other face's normal, and the angle between."""
+    """Return for each edge of a hull the normal of one face, the unit vector across it towards the other face's normal, and the
+    angle between."""
     from scipy.spatial import ConvexHull
 
     hull = ConvexHull(np.array(vertices, float))
@@ -206,7 +212,8 @@ def _edges(vertices: tuple[tuple[float, float, float], ...]) -> tuple[Floats, Fl
 
 
 def _away(piece: Piece, points: Floats, tip: Floats, axis: Floats) -> Floats:
-    """Return the unit vectors (n, 3) from points to a piece: minus the slope of its distance. The error of the slope counts squared."""
+    """Return the unit vectors (n, 3) from points to a piece: minus the slope of its distance. The error of the slope counts
+    squared."""
     step = 1e-5 * np.eye(3)
     slope = np.stack([piece.at(points + s, tip, axis) - piece.at(points - s, tip, axis) for s in step], axis=-1)
     size = np.linalg.norm(slope, axis=-1, keepdims=True)
@@ -271,7 +278,8 @@ class Bore(_Gapped):
 
 @dataclass(frozen=True)
 class Surface:
-    """Material behind a parametrised surface `at(u, v) -> (..., 3)` over `u` and `v` ranges; `across` (mm) is the pitch of the grid.
+    """Material behind a parametrised surface `at(u, v) -> (..., 3)` over `u` and `v` ranges; `across` (mm) is the pitch of the
+    grid.
 
     The tool must not lie in the material as a whole, for only the skin is looked at.
     """
