@@ -212,7 +212,7 @@ def _slotted() -> object:
 def _into(rng: np.random.Generator, points: Floats, normals: Floats) -> Floats:
     """Draw axes about the slots' own directions, so that some are free."""
     out = np.sign(points[:, 0])
-    across, y = np.radians(rng.uniform(15.0, 50.0, len(points))), rng.uniform(-0.25, 0.25, len(points))
+    across, y = np.radians(rng.uniform(22.0, 40.0, len(points))), rng.uniform(-0.08, 0.08, len(points))
     axis = np.column_stack([out * np.sin(across), y, np.cos(across)])
     return axis / np.linalg.norm(axis, axis=1)[:, None]
 
@@ -237,7 +237,7 @@ OPPOSED_SLOTS = MadePart(
         prism("left", _LEFT, _HALF),
     ),
     (_THIN, Tool.flat(3.0, 40.0), Tool.flat(4.0, 45.0, corner=1.0)),
-    on_lines(((-_WIDE - _HALF, -_DEEP), (-_WIDE + _HALF, -_DEEP)), ((_WIDE - _HALF, -_DEEP), (_WIDE + _HALF, -_DEEP))),
+    on_lines(*(((side * _WIDE - 1.5, -_DEEP), (side * _WIDE + 1.5, -_DEEP)) for side in (-1.0, 1.0)), wide=1.0),
     answers=(
         Answer(
             "orientations",
