@@ -21,7 +21,6 @@ ends at 1e-9 mm. It is the definition of the margin itself, for a tool that does
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Protocol
 
 import numpy as np

@@ -72,9 +72,7 @@ Make = Callable[[str], Any]
 Group = tuple[Part, Tool, str, NDArray[np.int64]]
 
 
-def run(
-    name: str, suite: Suite, step: Callable[[str], None] = lambda text: None, *, patience: float = PATIENCE, make: Make = program
-) -> Ran:
+def run(name: str, suite: Suite, step: Callable[[str], None] = lambda text: None, *, patience: float = PATIENCE, make: Make = program) -> Ran:
     """Run a program over a suite's postures; a claimer over its parts, tools and setups.
 
     A process that dies, or takes longer than `patience` (seconds) over one group, leaves that group undecided; the rest goes on
@@ -96,9 +94,7 @@ def run(
     pending = list(range(len(groups)))
     while pending:
         began = time.perf_counter()
-        for k, reply in _child(
-            make, name, [groups[i] for i in pending], [suite.postures[groups[i][3]] for i in pending], patience
-        ):
+        for k, reply in _child(make, name, [groups[i] for i in pending], [suite.postures[groups[i][3]] for i in pending], patience):
             if isinstance(reply, Exception):
                 raise reply
             if "started" in reply:
@@ -145,9 +141,7 @@ def _child(make: Make, name: str, groups: list[Group], postures: list[Postures],
     """Yield what a process of the program sends: the number of the group, and a reply; an exception, or that it died."""
     context = multiprocessing.get_context("spawn")
     here, there = context.Pipe(duplex=False)
-    process = context.Process(
-        target=_work, args=(there, make, name, [(p, t, s) for p, t, s, _ in groups], [blind(p) for p in postures]), daemon=True
-    )
+    process = context.Process(target=_work, args=(there, make, name, [(p, t, s) for p, t, s, _ in groups], [blind(p) for p in postures]), daemon=True)
     process.start()
     there.close()
     done = -1

@@ -140,10 +140,7 @@ SPHERE_POCKET = MadePart(
     answers=(
         _rising(_FLAT),
         Answer(
-            "largest_radius",
-            _RP * 0.5,
-            "R = Rb sin t, t = 30 deg",
-            given=placed((0.0, 0.0, -_DEEP), _UP, axis=list(_at(30.0)[0]), end="flat", length=40.0),
+            "largest_radius", _RP * 0.5, "R = Rb sin t, t = 30 deg", given=placed((0.0, 0.0, -_DEEP), _UP, axis=list(_at(30.0)[0]), end="flat", length=40.0)
         ),
         Answer(
             "largest_radius",
@@ -320,10 +317,7 @@ LENS = MadePart(
             given={
                 "axes": [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]],
                 "places": [placed(_on(_RL, q, -_CL), _at(q)[0]) for q in (0.0, 20.0, 35.0)]
-                + [
-                    placed((p[0], 0.0, -p[2]), (n[0], 0.0, -n[2]))
-                    for p, n in ((_on(_RL, q, -_CL), _at(q)[0]) for q in (0.0, 20.0, 35.0))
-                ],
+                + [placed((p[0], 0.0, -p[2]), (n[0], 0.0, -n[2])) for p, n in ((_on(_RL, q, -_CL), _at(q)[0]) for q in (0.0, 20.0, 35.0))],
             },
         ),
     ),

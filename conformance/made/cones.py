@@ -40,11 +40,7 @@ def _pit_contacts(rng: np.random.Generator, n: int) -> tuple[Floats, Floats]:
 
 def _in_pit(r: float) -> tuple[tuple[float, float, float], tuple[float, float, float], tuple[float, float, float]]:
     """Return contact, normal and the way up of a point of the pit at +x."""
-    return (
-        (r, 0.0, float(r / np.tan(_AP) - _DP)),
-        (float(-np.cos(_AP)), 0.0, float(np.sin(_AP))),
-        (float(np.sin(_AP)), 0.0, float(np.cos(_AP))),
-    )
+    return ((r, 0.0, float(r / np.tan(_AP) - _DP)), (float(-np.cos(_AP)), 0.0, float(np.sin(_AP))), (float(np.sin(_AP)), 0.0, float(np.cos(_AP))))
 
 
 CONE_PIT = MadePart(
@@ -77,12 +73,7 @@ CONE_PIT = MadePart(
             for d in (8.0, 20.0)
         ),
         *(
-            Answer(
-                "largest_radius",
-                float(d / np.cos(_AP)),
-                "r = d / cos A",
-                given=placed(*_in_pit(d)[:2], axis=[0.0, 0.0, 1.0], end="ball", length=60.0),
-            )
+            Answer("largest_radius", float(d / np.cos(_AP)), "r = d / cos A", given=placed(*_in_pit(d)[:2], axis=[0.0, 0.0, 1.0], end="ball", length=60.0))
             for d in (5.0, 12.0)
         ),
     ),
@@ -140,13 +131,7 @@ CONE_BOSS = MadePart(
             )
             for z in (6.0, 15.0)
         ),
-        Answer(
-            "free_tilts",
-            [[0.0, 90.0]],
-            "the way up a convex body is free",
-            tool=_TOOLS[0].name,
-            given=placed(*_on_cone(20.0), tuple(-x for x in _DOWN)),
-        ),
+        Answer("free_tilts", [[0.0, 90.0]], "the way up a convex body is free", tool=_TOOLS[0].name, given=placed(*_on_cone(20.0), tuple(-x for x in _DOWN))),
         Answer(
             "largest_radius",
             float(8.0 / (1 - np.sin(_AB))),

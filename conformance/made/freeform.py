@@ -56,10 +56,7 @@ def _ruling_end(c: float, radius: float, length: float) -> float:
 def _product(half: float, xx: float, xy: float, yy: float) -> Spline:
     """Return z = xx x^2 + xy x y + yy y^2 over a square, degree 2 in both: the poles are its blossom."""
     ends = ((-half, -half), (-half, half), (half, half))
-    poles = [
-        [(0.5 * (a + b), 0.5 * (c + d), xx * a * b + xy * 0.25 * (a + b) * (c + d) + yy * c * d) for c, d in ends]
-        for a, b in ends
-    ]
+    poles = [[(0.5 * (a + b), 0.5 * (c + d), xx * a * b + xy * 0.25 * (a + b) * (c + d) + yy * c * d) for c, d in ends] for a, b in ends]
     return Spline(np.array(poles, float), (2, 2))
 
 
@@ -100,12 +97,7 @@ WAVE = MadePart(
     _TOOLS,
     _wave_contacts,
     answers=(
-        Answer(
-            "largest_radius",
-            _PW,
-            "r = h^2 / (4 A)",
-            given=placed((0.0, 0.0, -0.5 * _A), _UP, axis=[0.0, 0.0, 1.0], end="ball", length=40.0),
-        ),
+        Answer("largest_radius", _PW, "r = h^2 / (4 A)", given=placed((0.0, 0.0, -0.5 * _A), _UP, axis=[0.0, 0.0, 1.0], end="ball", length=40.0)),
         Answer(
             "largest_radius",
             _PW * 0.5,
@@ -165,13 +157,7 @@ TWIST = MadePart(
             tool=_FLAT.name,
             given=placed((0.0, 0.0, 0.0), _UP, (_S2, _S2, 0.0)),
         ),
-        Answer(
-            "free_tilts",
-            [[_deg(4.0 / _C), 90.0]],
-            "sin t = R / c down the ridge",
-            tool=_FLAT.name,
-            given=placed((0.0, 0.0, 0.0), _UP, (_S2, -_S2, 0.0)),
-        ),
+        Answer("free_tilts", [[_deg(4.0 / _C), 90.0]], "sin t = R / c down the ridge", tool=_FLAT.name, given=placed((0.0, 0.0, 0.0), _UP, (_S2, -_S2, 0.0))),
         Answer("largest_radius", _C, "r = c", given=placed((0.0, 0.0, 0.0), _UP, axis=[0.0, 0.0, 1.0], end="ball", length=70.0)),
     ),
 )
@@ -209,13 +195,7 @@ SADDLE = MadePart(
             tool=_FLAT.name,
             given=placed((0.0, 0.0, 0.0), _UP, (1.0, 0.0, 0.0)),
         ),
-        Answer(
-            "free_tilts",
-            [[_deg(4.0 / _P), 90.0]],
-            "sin t = R / p",
-            tool=_FLAT.name,
-            given=placed((0.0, 0.0, 0.0), _UP, (0.0, 1.0, 0.0)),
-        ),
+        Answer("free_tilts", [[_deg(4.0 / _P), 90.0]], "sin t = R / p", tool=_FLAT.name, given=placed((0.0, 0.0, 0.0), _UP, (0.0, 1.0, 0.0))),
         Answer("largest_radius", _P, "r = p", given=placed((0.0, 0.0, 0.0), _UP, axis=[0.0, 0.0, 1.0], end="ball", length=60.0)),
     ),
 )
@@ -262,12 +242,7 @@ PARABOLOID = MadePart(
             for f in ((1.0, 0.0, 0.0), (0.6, 0.8, 0.0))
         ),
         *(
-            Answer(
-                "largest_radius",
-                float(np.hypot(_PB, d)),
-                "r = sqrt(p^2 + d^2)",
-                given=placed(*_in_bowl(d), axis=[0.0, 0.0, 1.0], end="ball", length=70.0),
-            )
+            Answer("largest_radius", float(np.hypot(_PB, d)), "r = sqrt(p^2 + d^2)", given=placed(*_in_bowl(d), axis=[0.0, 0.0, 1.0], end="ball", length=70.0))
             for d in (0.0, 10.0)
         ),
     ),

@@ -184,25 +184,12 @@ class Spline:
                 on = self.at(t if u is None else np.full_like(t, u), t if v is None else np.full_like(t, v))
                 return on + s[..., None] * down
 
-            return Surface(
-                f"side {'v' if u is None else 'u'}",
-                at,
-                self.span(0 if u is None else 1),
-                (0.0, 1.0),
-                (grid[0 if u is None else 1], 13),
-            )
+            return Surface(f"side {'v' if u is None else 'u'}", at, self.span(0 if u is None else 1), (0.0, 1.0), (grid[0 if u is None else 1], 13))
 
         def below(u: Floats, v: Floats) -> Floats:
             return self.at(u, v) + down
 
-        return (
-            self.surface(name, grid),
-            Surface("below", below, (u0, u1), (v0, v1), (25, 25)),
-            side(u0, None),
-            side(u1, None),
-            side(None, v0),
-            side(None, v1),
-        )
+        return (self.surface(name, grid), Surface("below", below, (u0, u1), (v0, v1), (25, 25)), side(u0, None), side(u1, None), side(None, v0), side(None, v1))
 
     def solid(self, depth: float) -> Any:
         """Return the solid from the surface down to its copy `depth` below."""

@@ -66,13 +66,7 @@ ROD_ON_PLATE = MadePart(
             "r = (8 + Rb cos q) / (1 - cos q), q = 60 deg",
             given=placed(*_at(60.0), axis=list(_at(45.0)[1]), end="ball", length=70.0),
         ),
-        Answer(
-            "free_tilts",
-            [[0.0, 90.0]],
-            "along a convex body the way is free",
-            tool=_FLAT.name,
-            given=placed(*_at(40.0), (0.0, 1.0, 0.0)),
-        ),
+        Answer("free_tilts", [[0.0, 90.0]], "along a convex body the way is free", tool=_FLAT.name, given=placed(*_at(40.0), (0.0, 1.0, 0.0))),
         Answer(
             "free_tilts",
             [[0.0, 30.0 + descent(_Z + 15.0 * 0.5, 3.0, 40.0)]],
@@ -127,13 +121,7 @@ TUBE = MadePart(
     axes=_tube_axes,
     answers=(
         *(
-            Answer(
-                "least_stickout",
-                d + 3.0,
-                "depth + r",
-                tool=_HELD.name,
-                given=placed((_RI, 0.0, _LT - d), (-1.0, 0.0, 0.0), axis=[0.0, 0.0, 1.0]),
-            )
+            Answer("least_stickout", d + 3.0, "depth + r", tool=_HELD.name, given=placed((_RI, 0.0, _LT - d), (-1.0, 0.0, 0.0), axis=[0.0, 0.0, 1.0]))
             for d in (10.0, 30.0)
         ),
         Answer(
@@ -148,10 +136,7 @@ TUBE = MadePart(
             2,
             "no point deeper than the stick-out is within reach of an end: 50 < 80; 47 >= 40",
             tool=_HELD.name,
-            given={
-                "axes": [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]],
-                "places": [placed((_RI, 0.0, z), (-1.0, 0.0, 0.0)) for z in (5.0, 39.0, 41.0, 75.0)],
-            },
+            given={"axes": [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]], "places": [placed((_RI, 0.0, z), (-1.0, 0.0, 0.0)) for z in (5.0, 39.0, 41.0, 75.0)]},
         ),
     ),
 )
@@ -280,18 +265,8 @@ BLADE = MadePart(
             )
             for z in (15.0, 30.0)
         ),
-        Answer(
-            "largest_radius",
-            _BI,
-            "r = 27",
-            given=placed((_BI, 0.0, 35.0), (-1.0, 0.0, 0.0), axis=[-0.6, 0.0, 0.8], end="ball", length=70.0),
-        ),
-        Answer(
-            "largest_radius",
-            12.0,
-            "r = height",
-            given=placed((_BO, 0.0, 12.0), (1.0, 0.0, 0.0), axis=[0.6, 0.0, 0.8], end="ball", length=70.0),
-        ),
+        Answer("largest_radius", _BI, "r = 27", given=placed((_BI, 0.0, 35.0), (-1.0, 0.0, 0.0), axis=[-0.6, 0.0, 0.8], end="ball", length=70.0)),
+        Answer("largest_radius", 12.0, "r = height", given=placed((_BO, 0.0, 12.0), (1.0, 0.0, 0.0), axis=[0.6, 0.0, 0.8], end="ball", length=70.0)),
     ),
 )
 

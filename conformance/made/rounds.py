@@ -89,12 +89,7 @@ TORUS_FILLET = MadePart(
             )
             for f in ((-1.0, 0.0, 1.0), (1.0, 0.0, -1.0))
         ),
-        Answer(
-            "largest_radius",
-            _RF,
-            "r = F",
-            given=placed(_IN_FILLET, (1.0, 0.0, 1.0), axis=[_S2, 0.0, _S2], end="ball", length=40.0),
-        ),
+        Answer("largest_radius", _RF, "r = F", given=placed(_IN_FILLET, (1.0, 0.0, 1.0), axis=[_S2, 0.0, _S2], end="ball", length=40.0)),
     ),
 )
 
@@ -106,9 +101,7 @@ _RB, _HB, _RE = 15.0, 20.0, 4.0
 def _boss() -> Any:
     import cadquery as cq
 
-    return _block(70.0, -20.0, 0.0).union(
-        cq.Workplane("XY", origin=(0, 0, -1)).circle(_RB).extrude(_HB + 1).faces(">Z").edges().fillet(_RE)
-    )
+    return _block(70.0, -20.0, 0.0).union(cq.Workplane("XY", origin=(0, 0, -1)).circle(_RB).extrude(_HB + 1).faces(">Z").edges().fillet(_RE))
 
 
 def _edge_contacts(rng: np.random.Generator, n: int) -> tuple[Floats, Floats]:
@@ -146,19 +139,8 @@ ROUNDED_BOSS = MadePart(
             tool=_LONG.name,
             given=placed(_ON_EDGE, (1.0, 0.0, 1.0), (1.0, 0.0, -1.0)),
         ),
-        Answer(
-            "free_tilts",
-            [[0.0, 90.0]],
-            "the way over a convex body is free",
-            tool=_FLAT.name,
-            given=placed(_ON_EDGE, (1.0, 0.0, 1.0), (-1.0, 0.0, 1.0)),
-        ),
-        Answer(
-            "largest_radius",
-            _HB - _RE,
-            "r = 20 - E",
-            given=placed((_RB, 0.0, _HB - _RE), (1.0, 0.0, 0.0), axis=[_S2, 0.0, _S2], end="ball", length=60.0),
-        ),
+        Answer("free_tilts", [[0.0, 90.0]], "the way over a convex body is free", tool=_FLAT.name, given=placed(_ON_EDGE, (1.0, 0.0, 1.0), (-1.0, 0.0, 1.0))),
+        Answer("largest_radius", _HB - _RE, "r = 20 - E", given=placed((_RB, 0.0, _HB - _RE), (1.0, 0.0, 0.0), axis=[_S2, 0.0, _S2], end="ball", length=60.0)),
     ),
 )
 
@@ -223,19 +205,12 @@ FILLET_PAIR = MadePart(
     _TOOLS,
     _channel_contacts,
     answers=(
-        Answer(
-            "largest_radius",
-            _W,
-            "r = half the width",
-            given=placed((0.0, 0.0, 0.0), _UP, axis=[0.0, 0.0, 1.0], end="ball", length=60.0),
-        ),
+        Answer("largest_radius", _W, "r = half the width", given=placed((0.0, 0.0, 0.0), _UP, axis=[0.0, 0.0, 1.0], end="ball", length=60.0)),
         Answer(
             "largest_radius",
             _FC,
             "r = F",
-            given=placed(
-                (_W - _FC * (1 - _S2), 0.0, _FC * (1 - _S2)), (-1.0, 0.0, 1.0), axis=[0.0, 0.0, 1.0], end="ball", length=40.0
-            ),
+            given=placed((_W - _FC * (1 - _S2), 0.0, _FC * (1 - _S2)), (-1.0, 0.0, 1.0), axis=[0.0, 0.0, 1.0], end="ball", length=40.0),
         ),
         *(
             Answer(
@@ -297,18 +272,8 @@ ELLIPSE_POCKET = MadePart(
     (_SMALL, _BALL, Tool.flat(6.0, 40.0, corner=1.0)),
     _ellipse_contacts,
     answers=(
-        Answer(
-            "largest_radius",
-            _EB**2 / _EA,
-            "r = b^2 / a",
-            given=placed((_EA, 0.0, -8.0), (-1.0, 0.0, 0.0), axis=[-0.6, 0.0, 0.8], end="ball", length=60.0),
-        ),
-        Answer(
-            "largest_radius",
-            _EB,
-            "r = b",
-            given=placed((0.0, _EB, -8.0), (0.0, -1.0, 0.0), axis=[0.0, 0.0, 1.0], end="ball", length=60.0),
-        ),
+        Answer("largest_radius", _EB**2 / _EA, "r = b^2 / a", given=placed((_EA, 0.0, -8.0), (-1.0, 0.0, 0.0), axis=[-0.6, 0.0, 0.8], end="ball", length=60.0)),
+        Answer("largest_radius", _EB, "r = b", given=placed((0.0, _EB, -8.0), (0.0, -1.0, 0.0), axis=[0.0, 0.0, 1.0], end="ball", length=60.0)),
         Answer(
             "largest_radius",
             0.8 * _EB**2 / _EA,

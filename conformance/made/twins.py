@@ -18,14 +18,7 @@ def _converted(part: MadePart) -> Any:
 
 def twin(part: MadePart) -> MadePart:
     """Return the B-spline twin of a part."""
-    return replace(
-        part,
-        name=f"{part.name}_bspline",
-        family="twins",
-        title=f"{part.title}: B-spline faces",
-        build=lambda: _converted(part),
-        twin_of=part.name,
-    )
+    return replace(part, name=f"{part.name}_bspline", family="twins", title=f"{part.title}: B-spline faces", build=lambda: _converted(part), twin_of=part.name)
 
 
 def twins(parts: Iterable[MadePart]) -> tuple[MadePart, ...]:

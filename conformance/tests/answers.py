@@ -89,9 +89,7 @@ def wrong(part: MadePart, answer: Answer) -> list[str]:
                 expect(f"{high} + step", False, at(high + STEP_DEG))
     elif answer.kind == "largest_radius":
         for share, want in ((1 - STEP_SHARE, True), (1 + STEP_SHARE, False)):
-            expect(
-                f"radius * {share}", want, free(part, of_radius(g, answer.value * share), g["contact"], g["normal"], g["axis"])
-            )
+            expect(f"radius * {share}", want, free(part, of_radius(g, answer.value * share), g["contact"], g["normal"], g["axis"]))
     elif answer.kind == "least_stickout":
         for step, want in ((STEP_MM, True), (-STEP_MM, False)):
             tool = with_stickout(part.tool(answer.tool), answer.value + step)
@@ -106,9 +104,7 @@ def wrong(part: MadePart, answer: Answer) -> list[str]:
 
 def _serves(part: MadePart, tool: Tool, place: dict, axis: Floats) -> bool:
     tilt = np.array(place["normal"]) @ axis
-    return bool(tilt >= -1e-12) and free(
-        part, tool, place["contact"], place["normal"], axis, None if tilt < 1 - 1e-9 else _across(axis)
-    )
+    return bool(tilt >= -1e-12) and free(part, tool, place["contact"], place["normal"], axis, None if tilt < 1 - 1e-9 else _across(axis))
 
 
 def _across(axis: Floats) -> Floats:

@@ -5,9 +5,7 @@ import pytest
 from conformance.made import balls, cones, freeform, rods, rounds
 from conformance.tests.answers import wrong
 
-CASES = [
-    (part, k) for family in (balls, cones, rounds, rods, freeform) for part in family.PARTS for k in range(len(part.answers))
-]
+CASES = [(part, k) for family in (balls, cones, rounds, rods, freeform) for part in family.PARTS for k in range(len(part.answers))]
 
 
 @pytest.mark.parametrize(("part", "k"), CASES, ids=[f"{p.name}-{p.answers[k].kind}-{k}" for p, k in CASES])

@@ -81,9 +81,7 @@ def form_blocks(name, tool, setup_name, contact, normal, axes, lean=None):
     def many(v):
         return np.tile(np.array(v, float), (len(axes), 1))
 
-    axis, tip = stands(
-        tool, many(contact), many(normal), np.array(axes, float), many(frame(np.array([normal]))[0][0] if lean is None else lean)
-    )
+    axis, tip = stands(tool, many(contact), many(normal), np.array(axes, float), many(frame(np.array([normal]))[0][0] if lean is None else lean))
     setup = part.setup(setup_name)
     holds = [held(m, many(contact)) for m in (*part.materials, *setup.fixtures)]
     return blocked(part, tool, setup, holds, axis, tip).tolist()
@@ -115,9 +113,7 @@ def test_free_tilts(name, number):
     axes = [tilted(at["normal"], at["lean"], tilt) for tilt, _ in expected]
     for axis, (tilt, free) in zip(axes, expected, strict=True):
         assert is_blocked(name, tool, answer.setup, at["contact"], at["normal"], axis, at["lean"]) is not free, f"{tilt} deg"
-    assert form_blocks(name, tool, answer.setup, at["contact"], at["normal"], axes, at["lean"]) == [
-        not free for _, free in expected
-    ]
+    assert form_blocks(name, tool, answer.setup, at["contact"], at["normal"], axes, at["lean"]) == [not free for _, free in expected]
 
 
 def with_stickout(tool, stickout):
