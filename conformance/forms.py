@@ -1,31 +1,31 @@
 """Closed forms: the signed margin of a convex piece of a tool from a piece of material.
 
-Each form is a body of material. `gap(piece, tip, axis)` is its distance (mm) from the piece, below zero where they meet; the
-depth follows from the insets of the piece (`tool.margin`). The derivations:
+Each form is a body of material. `gap(piece, tip, axis)` is its distance (mm) from the piece, below zero where they meet; the depth follows from
+the insets of the piece (`tool.margin`). The derivations:
 
 *Separating planes.* Two convex bodies T and K are apart by the largest distance of two parallel planes between them:
-`gap = max over unit m of (min over T of m.x - max over K of m.x) = max over m of (-support_T(-m) - support_K(m))`. Only
-directions m that are outer normals of K somewhere count. A half-space has one such m; a wedge the arc between the normals of
-its two planes; a prism the arcs at each of its edges; a polyhedron the arcs at its edges and, at its vertices, the direction to
-the piece.
+`gap = max over unit m of (min over T of m.x - max over K of m.x) = max over m of (-support_T(-m) - support_K(m))`. Only directions m that are outer
+normals of K somewhere count. A half-space has one such m; a wedge the arc between the normals of its two planes; a prism the arcs at each
+of its edges; a polyhedron the normals of its faces, the arcs at its edges, and at each corner the direction to the piece.
 
-*Void ball.* Material outside a ball of radius `rb`: the tool has to stay inside. The farthest point of a frustum from the
-centre lies on one of its two circles, on the side away from the centre: `far = max over circles of hypot(h - hc, r + rc)`, and
-`gap = rb - far - rho`.
+*Void ball.* Material outside a ball of radius `rb`: the tool has to stay inside. The farthest point of a frustum from the centre lies on one of its
+two circles, on the side away from the centre: `far = max over circles of hypot(h - hc, r + rc)`, and `gap = rb - far - rho`.
 
 *Void cylinder.* Material outside a bore: the same with distances from a line, farthest on one of the two circles, by one angle.
 
-*Surface.* Material behind a parametrised surface: `gap = min over (u, v) of signed(S(u, v))`, by a grid and a local search that
-ends at 1e-9 mm. It is the definition of the margin itself, for a tool that does not lie in the material as a whole.
+*Surface.* Material behind a parametrised surface: `gap = min over (u, v) of signed(S(u, v))`, by a grid and a local search that ends at 1e-9 mm. It is the definition
+of the margin itself, for a tool that does not lie in the material as a whole.
 """
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Protocol
 
 import numpy as np
 
 from conformance.tool import Floats, Piece, local, margin
+
 
 #: How often a grid of angles shrinks to a quarter about its best.
 _ZOOMS = 11
@@ -73,8 +73,8 @@ class _Gapped:
 class Prism(_Gapped):
     """A convex prism along `direction` without end, rounded by `radius`; its outer normals go from angle `start` to `end` (rad).
 
-    `vertices (k, 3)` are points of its edges. Angles are in the plane across: 0 is `zero`, and they grow about `direction`. A
-    half-space has one vertex and `start == end`; a wedge one vertex and an arc; a slab two; a rod one, a radius and all angles.
+    `vertices (k, 3)` are points of its edges. Angles are in the plane across: 0 is `zero`, and they grow about `direction`. A half-space has one
+    vertex and `start == end`; a wedge one vertex and an arc; a slab two; a rod one, a radius and all angles.
     """
 
     name: str
@@ -131,8 +131,7 @@ def section(name: str, *points: tuple[float, float], radius: float = 0.0) -> Pri
 
 
 def _most(of: Callable[[Floats], Floats], start: float, end: float, count: int) -> Floats:
-    """Return the largest value (n,) over an interval: `of(angles (n, k))` on a grid, then on ever smaller grids about its
-    best."""
+    """Return the largest value (n,) over an interval: `of(angles (n, k))` on a grid, then on ever smaller grids about its best."""
     if end <= start:
         return of(np.full((count, 1), start))[:, 0]
     grid = np.linspace(start, end, max(9, int(np.ceil((end - start) / 0.05)) + 1))
@@ -159,12 +158,7 @@ class Hull(_Gapped):
     radius: float = 0.0
 
     def gap(self, piece: Piece, tip: Floats, axis: Floats) -> Floats:
-        """Return the largest distance between parallel planes: over the arc of normals at each edge, and from each vertex to
-        the piece.
-
-        The nearest point of the hull is in a face or on an edge, then the normal is on an arc, or it is a vertex, then it
-        points to the nearest point of the piece. Where they meet, no normal gives more than zero.
-        """
+        """Return the largest distance between parallel planes over the normals of faces, edges and corners."""
         corners = np.array(self.vertices, float)
         if len(corners) == 1:
             return piece.at(np.broadcast_to(corners[0], tip.shape), tip, axis) - self.radius
@@ -172,56 +166,42 @@ class Hull(_Gapped):
         def apart(m: Floats) -> Floats:
             return -_support(piece, -m, tip, axis) - np.max(m @ corners.T, axis=-1) - self.radius
 
-        first, across, turn = _edges(self.vertices)
-
-        def arcs(share: Floats) -> Floats:
-            angle = share.reshape(len(tip), len(turn), -1) * turn[:, None]
-            m = np.cos(angle)[..., None] * first[:, None] + np.sin(angle)[..., None] * across[:, None]
-            return apart(m.reshape(len(tip), -1, 3)).reshape(share.shape)
-
-        best = np.max(_most(arcs, 0.0, 1.0, len(tip) * len(turn)).reshape(len(tip), -1), axis=1, initial=-np.inf)
-        towards = np.stack([_away(piece, np.broadcast_to(corner, tip.shape), tip, axis) for corner in corners], axis=1)
-        return np.maximum(best, np.max(apart(towards), axis=1))
-
-    def height(self, points: Floats) -> Floats:
-        """Return how far points lie outside, mm: of a hull with flat faces the farthest plane's distance, less than the hull's
-        beyond its edges."""
-        if len(self.vertices) == 1 or self.radius > 0:
-            return super().height(points)
-        planes = _faces(self.vertices)
-        return np.max(points @ planes[:, :3].T + planes[:, 3], axis=-1)
-
-
-@cache
-def _faces(vertices: tuple[tuple[float, float, float], ...]) -> Floats:
-    """Return the planes (k, 4) of a hull's faces: outer normal and offset."""
-    from scipy.spatial import ConvexHull
-
-    return np.unique(ConvexHull(np.array(vertices, float)).equations.round(13), axis=0)
+        faces, first, second = _normals(self.vertices)
+        best = np.max(apart(np.broadcast_to(faces, (len(tip), *faces.shape))), axis=1)
+        slant = np.linalg.norm(first + second, axis=1, keepdims=True)
+        middle, across = (first + second) / slant, (second - first) / np.linalg.norm(second - first, axis=1, keepdims=True)
+        angle = np.arccos(np.clip(0.5 * slant, -1.0, 1.0))
+        centre, width = np.zeros((len(tip), len(first), 1)), 1.0
+        for _ in range(_ZOOMS):
+            share = np.clip(centre + width * np.linspace(-1, 1, 9), -1.0, 1.0)
+            turn = share * angle
+            m = np.cos(turn)[..., None] * middle[:, None] + np.sin(turn)[..., None] * across[:, None]
+            values = apart(m.reshape(len(tip), -1, 3)).reshape(share.shape)
+            centre = np.take_along_axis(share, np.argmax(values, axis=2)[..., None], 2)
+            best, width = np.maximum(best, np.max(values, axis=(1, 2))), 0.25 * width
+        # Of the directions about a corner, the one from the corner to the piece: the slope of the piece's distance.
+        steps = 1e-6 * np.eye(3)
+        at = lambda p: piece_at(piece, p, tip, axis)
+        m = np.stack([at(corners + e) - at(corners - e) for e in steps], axis=-1)
+        length = np.linalg.norm(m, axis=-1, keepdims=True)
+        m = np.where(length > 0, -m / np.where(length > 0, length, 1.0), faces[0])
+        return np.maximum(best, np.max(apart(m), axis=1))
 
 
-@cache
-def _edges(vertices: tuple[tuple[float, float, float], ...]) -> tuple[Floats, Floats, Floats]:
-    """Return for each edge of a hull the normal of one face, the unit vector across it towards the other face's normal, and the
-    angle between."""
+def piece_at(piece: Piece, points: Floats, tip: Floats, axis: Floats) -> Floats:
+    """Return the signed distance (n, k) of points (k, 3) from the piece of each posture."""
+    return _wide(piece).at(points, tip[:, None], axis[:, None])
+
+
+@lru_cache(maxsize=512)
+def _normals(vertices: tuple[tuple[float, float, float], ...]) -> tuple[Floats, Floats, Floats]:
+    """Return the outer normals of a polyhedron's faces, and for each of its edges the normals of the two faces."""
     from scipy.spatial import ConvexHull
 
     hull = ConvexHull(np.array(vertices, float))
-    pairs = [(i, j) for i, others in enumerate(hull.neighbors) for j in others if j > i]
-    a, b = (hull.equations[[pair[side] for pair in pairs], :3] for side in (0, 1))
-    across = b - np.sum(a * b, axis=1)[:, None] * a
-    width = np.linalg.norm(across, axis=1)
-    real = width > 1e-9
-    return a[real], across[real] / width[real, None], np.arctan2(width, np.sum(a * b, axis=1))[real]
-
-
-def _away(piece: Piece, points: Floats, tip: Floats, axis: Floats) -> Floats:
-    """Return the unit vectors (n, 3) from points to a piece: minus the slope of its distance. The error of the slope counts
-    squared."""
-    step = 1e-5 * np.eye(3)
-    slope = np.stack([piece.at(points + s, tip, axis) - piece.at(points - s, tip, axis) for s in step], axis=-1)
-    size = np.linalg.norm(slope, axis=-1, keepdims=True)
-    return np.where(size > 1e-9, -slope / np.where(size > 1e-9, size, 1.0), [0.0, 0.0, 1.0])
+    n = hull.equations[:, :3]
+    pairs = np.array([(i, j) for i, row in enumerate(hull.neighbors) for j in row if i < j and n[i] @ n[j] < 1 - 1e-12])
+    return np.unique(np.round(n, 15), axis=0), n[pairs[:, 0]], n[pairs[:, 1]]
 
 
 def box(name: str, low: tuple[float, float, float], high: tuple[float, float, float]) -> Hull:
@@ -282,8 +262,7 @@ class Bore(_Gapped):
 
 @dataclass(frozen=True)
 class Surface:
-    """Material behind a parametrised surface `at(u, v) -> (..., 3)` over `u` and `v` ranges; `across` (mm) is the pitch of the
-    grid.
+    """Material behind a parametrised surface `at(u, v) -> (..., 3)` over `u` and `v` ranges; `across` (mm) is the pitch of the grid.
 
     The tool must not lie in the material as a whole, for only the skin is looked at.
     """
