@@ -13,8 +13,8 @@ two circles, on the side away from the centre: `far = max over circles of hypot(
 
 *Void cylinder.* Material outside a bore: the same with distances from a line, farthest on one of the two circles, by one angle.
 
-*Surface.* Material behind a parametrised surface: `gap = min over (u, v) of signed(S(u, v))`, by a grid and a local search that ends at 1e-9 mm. It is the definition
-of the margin itself, for a tool that does not lie in the material as a whole.
+*Surface.* Material behind a parametrised surface: `gap = min over (u, v) of signed(S(u, v))`, by a grid and a local search that ends at 1e-9 mm.
+It is the definition of the margin itself, for a tool that does not lie in the material as a whole.
 """
 
 from collections.abc import Callable
@@ -25,7 +25,6 @@ from typing import Protocol
 import numpy as np
 
 from conformance.tool import Floats, Piece, local, margin
-
 
 #: How often a grid of angles shrinks to a quarter about its best.
 _ZOOMS = 11

@@ -5,6 +5,8 @@ import pytest
 from conformance.made import balls, cones, freeform, rods, rounds
 from conformance.tests.answers import wrong
 
+#: Points of the exact surface take minutes for all of them.
+pytestmark = pytest.mark.slow
 CASES = [(part, k) for family in (balls, cones, rounds, rods, freeform) for part in family.PARTS for k in range(len(part.answers))]
 
 

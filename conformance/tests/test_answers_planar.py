@@ -13,6 +13,8 @@ from conformance.made.check import exempt_faces, faces_of
 from conformance.made.part import TOUCH, blocked, frame, held
 from conformance.tool import Tool
 
+#: Points of the exact surface take minutes for all of them.
+pytestmark = pytest.mark.slow
 PARTS = {part.name: part for family in (walls, slots, holders, bodies, machines) for part in family.PARTS}
 CASES = [(name, i) for name, part in PARTS.items() for i in range(len(part.answers))]
 
