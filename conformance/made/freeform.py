@@ -136,8 +136,8 @@ TWIST = MadePart(
     """z = x y / c, c = 30, a B-spline of degree 1. Let the edge's point be contact - m R cos t f + R sin s w + m R sin t z, m = 1 - cos s, f the direction
     of the tilt, w across; x y is harmonic, so the edge decides for the whole flat. Tilt along a ruling: x y = -m R cos t R sin s, free when
     R cos t <= c sin t, up to where the side meets the twist (`_ruling_end`). Tilt up the valley, f = (1, 1): (a^2 - b^2) / 2 is largest at
-    the rear, m = 2: R cos(t)^2 <= c sin t; the side meets the rise at the tool's top, L sin(t)^2 = 2 c cos t. Tilt down, f = (1, -1): largest at m = 0: R <= c sin t, the local bound. A ball:
-    |x y| <= (x^2 + y^2) / 2, so r = c, and the diagonal needs it.""",
+    the rear, m = 2: R cos(t)^2 <= c sin t; the side meets the rise at the tool's top, L sin(t)^2 = 2 c cos t. Tilt down, f = (1, -1): largest at
+    m = 0: R <= c sin t, the local bound. A ball: |x y| <= (x^2 + y^2) / 2, so r = c, and the diagonal needs it.""",
     lambda: _twist().solid(60.0),
     _twist().bodies("twist", (65, 65), 60.0),
     _TOOLS,
