@@ -25,7 +25,7 @@ outside() {
 
 dev="" hosts=yes
 case "$*" in
-    "") extra="batch,build123d,cadquery,conformance,pictures" what="plan-cutters with CadQuery and build123d, 2.0 GB" ;;
+    "") extra="batch,build123d,cadquery,conformance,pictures" what="plan-cutters with CadQuery and build123d, 2.2 GB" ;;
     dev) extra="dev" dev=yes what="plan-cutters with all that tests and linters need, 2.8 GB" ;;
     alone) extra="batch,pictures" hosts="" what="plan-cutters alone, 0.8 GB" ;;
     *) say "unknown words $*: give dev or alone, or nothing" && exit 2 ;;
