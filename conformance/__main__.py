@@ -102,7 +102,9 @@ def run_command(
     if answers is not None and answers.suffix not in (".csv", ".parquet"):
         _refuse(f"--answers {answers.name}: give a .csv or a .parquet")
     count = len(suite.postures) if every else EACH if each is None else each
-    rows = suite.rows(max(1, count), set(part) if part else None)
+    # The default run leaves the twins out: it is a first look.
+    names = set(part) if part else None if every or each is not None else {n for n, p in suite.parts.items() if p.twin_of is None}
+    rows = suite.rows(max(1, count), names)
     some = Suite(suite.parts, suite.postures[rows])
     groups = sum(1 for _ in some.groups())
     columns = TextColumn("{task.description}"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn()

@@ -23,7 +23,7 @@ from conformance.suite import Part, Suite
 from conformance.tool import Tool
 
 #: Postures a part of the default run: what plan-cutters answers in about a minute over all made parts.
-EACH = 3
+EACH = 2
 #: Seconds that one part may take before its process is ended.
 PATIENCE = 1800.0
 

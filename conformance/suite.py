@@ -45,6 +45,7 @@ class Part:
     tools: Mapping[str, Tool]
     setups: Mapping[str, Held]
     answers: tuple[Mapping[str, Any], ...]
+    twin_of: str | None = None
 
 
 @dataclass(frozen=True)
@@ -118,7 +119,7 @@ def read(kind: str, folder: Path = DATA) -> Suite:
             for name, s in entry["setups"].items()
         }
         tools = {name: tool_of(name, tool) for name, tool in entry["tools"].items()}
-        parts[entry["name"]] = Part(entry["name"], entry["family"], entry["title"], path, tools, held, tuple(entry.get("answers", ())))
+        parts[entry["name"]] = Part(entry["name"], entry["family"], entry["title"], path, tools, held, tuple(entry.get("answers", ())), entry.get("twin_of"))
     return Suite(parts, Postures.read(folder / f"{kind}.parquet"))
 
 
