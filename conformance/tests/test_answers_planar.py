@@ -66,10 +66,10 @@ def is_blocked(name, tool, setup_name, contact, normal, axis, lean=None):
     for least, face, own in sorted(zip(quick, (*faces, *fixed), exempt, strict=True), key=lambda row: row[0]):
         if least < -DEPTH:
             return True
-        # No point of a face is farther from its next one than the pitch, so that no depth is possible here.
-        if least > (3 * PITCH if setup.table is not None else PITCH):
+        # No point is farther from the next one of the grid than half the diagonal of a cell: no depth is possible here.
+        if least > 0.75 * (3 * PITCH if setup.table is not None else PITCH):
             break
-        value = slow.least(face, tool, tip[0], axis[0])
+        value = slow.least(face, tool, tip[0], axis[0], rounds=24)
         if value < -DEPTH:
             return True
         assert own or value > -TOUCH, "neither safe nor blocked by more than the tolerance"
