@@ -84,7 +84,7 @@ def run_command(
     name: Annotated[str, typer.Option("--program", help="Which program; `programs` lists them.")],
     json_file: Annotated[Path | None, typer.Option("--json", help="Write the results here.")] = None,
     every: Annotated[bool, typer.Option("--all", help="All postures, in place of a few of each part.")] = False,
-    each: Annotated[int | None, typer.Option(help="How many postures of each part.", show_default="3")] = None,
+    each: Annotated[int | None, typer.Option(help="How many postures of each part.", show_default="2, twins left out")] = None,
     part: Annotated[list[str] | None, typer.Option(help="Only this part; may be given again.")] = None,
     kind: Kind = "made",
     data: Data = DATA,
