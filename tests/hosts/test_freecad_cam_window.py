@@ -30,7 +30,10 @@ def picture(buttons, name):
 
 def session():
     from freecad.plan_cutters import findings, model, objects, panel, runner, windows
-    import PathScripts.PathJob as jobs, PathScripts.PathToolBit as bits, PathScripts.PathToolController as controllers
+    try:
+        import Path.Main.Job as jobs, Path.Tool.Bit as bits, Path.Tool.Controller as controllers
+    except ImportError:  # before 0.21
+        import PathScripts.PathJob as jobs, PathScripts.PathToolBit as bits, PathScripts.PathToolController as controllers
     Gui.activateWorkbench("PlanCutters")
     document = App.newDocument("Work")
     block = document.addObject("Part::Feature", "Block")
@@ -140,12 +143,13 @@ def session():
         block.Placement = App.Placement(V(0, 0, number), App.Rotation())
         document.recompute()
         pump()
-    found["covered"].append(block.ViewObject.Visibility)
     verdict = next((each for each in document.Objects if getattr(each, "Verdict", "")), block)
     three.addSelection("Work", verdict.Name, "Face1", (2, 2, 20))
     three._map_failed("x")
     found["closed"] = [before, findings.LAST is None, faults, three._gone()]
     sys.excepthook = hook
+    objects.clear(document)
+    found["covered"].append(block.ViewObject.Visibility)
 
 QtCore.QTimer.singleShot(1000, work)
 """
