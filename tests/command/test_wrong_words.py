@@ -7,9 +7,9 @@ import sys
 import pytest
 
 from cad_io.whole import refusal
-from plan_cutters import Cutter, plan
+from plan_cutters import Cutter, plan, plan_many
 from plan_cutters.domain.fixture import no_format
-from plan_cutters.errors import CutterError
+from plan_cutters.errors import CutterError, OptionError
 from plan_cutters.options import Options
 from tests.support.commands import leftovers
 from tests.support.forked import ENV, run
@@ -130,10 +130,30 @@ def test_a_cutter_of_numbers_that_cannot_be_is_named():
     assert str(raised.value) == "cutter 'D0L80': radius must be a positive number of mm, not 0"
 
 
+def test_in_python_a_word_that_is_no_direction_says_what_is_one():
+    with pytest.raises(OptionError, match=r"setup 'W' is no direction, as \+z, -y or \(0, 0, 1\), a setup file, or auto"):
+        Options.of({"cutters": "R6L80", "setup": "W"})
+    with pytest.raises(OptionError, match=r"none.toml: cannot be read"):
+        Options.of({"cutters": "R6L80", "setup": "none.toml"})
+
+
+def test_no_parts_start_no_worker():
+    with pytest.raises(OptionError, match="parts: the list is empty"):
+        next(iter(plan_many([], cutters="R6L80")))
+
+
 def test_a_word_that_is_like_no_clamping_has_no_suggestion():
     assert no_format("jaws") == (
         "its name does not say its format: give STEP, IGES, BREP, STL, OBJ, PLY or GLB, or box:, cylinder:, table, vise or chuck"
     )
+
+
+def test_formats_are_a_list_or_the_text_of_one(tmp_path):
+    result = plan(GROOVE, cutters=["R3L40"], grid=3, area_budget=0)
+    with pytest.raises(OptionError, match="format 'jsn' is not built in"):
+        result.write(tmp_path / "out", formats="jsn")
+    result.write(tmp_path / "out", formats="json,csv")
+    assert leftovers(tmp_path / "out") == ["axes.csv", "plan.json", "process.toml"]
 
 
 def test_tilts_that_hold_no_posture_are_a_plan_without_a_machine():
