@@ -102,6 +102,7 @@ class VerdictCache:
     ) -> Verdicts:
         """Find the verdicts of a cutter; parameters and result as of `judge`. The work is that of the run that judged."""
         if rows is not None or self._unreachable:
+            self.judged += rows is None
             return self._otherwise(ready, cutter, rows, known, progress=progress, work=work)
         own = hashlib.sha256(self._digest(ready) + digest(replace(cutter, name=""))).hexdigest()
         name = digest(None if known is None or (known.verdict == UNJUDGED).all() else _stated(known)).hex()[:32]

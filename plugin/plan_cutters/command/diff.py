@@ -84,9 +84,9 @@ def command(request: DiffRequest) -> int:
     from plan_cutters.errors import OptionError, PlanError
 
     if request.junit is None:  # where there is one, it says so too
-        for each in (request.old, request.new):
-            if not os.path.exists(each):
-                raise PlanError("no such file or folder", file=each)
+        for path in (request.old, request.new):
+            if not os.path.exists(path):
+                raise PlanError("no such file or folder", file=path)
     from plan_cutters.comparison.cases import COMPARABLE, comparison_cases
     from plan_cutters.comparison.folders import compare_folders
     from plan_cutters.report.junit.cases import Case, check, write
