@@ -14,6 +14,25 @@ class FileError(Protocol):
     def __call__(self, cause: str, *, file: str) -> Exception: ...
 
 
+def refusal(folder: str | Path) -> str:
+    """Say why no file can be made in a folder, or in the nearest one above it that is there; empty where one can.
+
+    Rights alone do not say it: a file without a name is made, which leaves nothing.
+
+    >>> refusal("."), refusal(__file__)
+    ('', 'Not a directory')
+    """
+    import tempfile
+
+    wanted = Path(folder).absolute()
+    there = next(each for each in (wanted, *wanted.parents) if each.exists() or each == each.parent)
+    try:
+        with tempfile.TemporaryFile(dir=there):
+            return ""
+    except OSError as fault:
+        return fault.strerror or str(fault)
+
+
 @contextlib.contextmanager
 def whole(path: str | Path, error: FileError | None = None, named: Callable[[Path], None] = lambda _: None) -> Iterator[Path]:
     """Give a path in the same folder to write to; it is renamed to `path` when the block ends well, removed when it does not.

@@ -12,6 +12,8 @@ FOLDER = Path(__file__).parent / "plan_cutters"
 TEMPLATE = FOLDER / "translations" / "plan_cutters.ts"
 CONTEXT = "PlanCutters"
 MARKS = ("tr", "later")
+#: FreeCAD translates the names of menus and toolbars itself, in a context of its own.
+BARS, BARS_CONTEXT = ("Plan cutters", "&Plan cutters"), "Workbench"
 
 
 def texts(folder: Path = FOLDER) -> list[str]:
@@ -45,13 +47,14 @@ def written(marked: list[str], before: str = "", language: str = "") -> str:
             if answer is not None and answer.text:
                 done[message.findtext("source")] = answer.text
     root = ET.Element("TS", {"version": "2.1", **({"language": language} if language else {})})
-    context = ET.SubElement(root, "context")
-    ET.SubElement(context, "name").text = CONTEXT
-    for text in marked:
-        message = ET.SubElement(context, "message")
-        ET.SubElement(message, "source").text = text
-        answer = ET.SubElement(message, "translation", {} if text in done else {"type": "unfinished"})
-        answer.text = done.get(text)
+    for name, mine in ((CONTEXT, marked), (BARS_CONTEXT, [text for text in BARS if text in marked])):
+        context = ET.SubElement(root, "context")
+        ET.SubElement(context, "name").text = name
+        for text in mine:
+            message = ET.SubElement(context, "message")
+            ET.SubElement(message, "source").text = text
+            answer = ET.SubElement(message, "translation", {} if text in done else {"type": "unfinished"})
+            answer.text = done.get(text)
     ET.indent(root, " ")
     return '<?xml version="1.0" encoding="utf-8"?>\n<!DOCTYPE TS>\n' + ET.tostring(root, encoding="unicode") + "\n"
 

@@ -15,9 +15,11 @@ from typing import Any, NamedTuple
 from OCP.APIHeaderSection import APIHeaderSection_MakeHeader
 from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
+from OCP.BRepTools import BRepTools_Modifier
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
 from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
+from OCP.ShapeCustom import ShapeCustom, ShapeCustom_DirectModification
 from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Writer
 from OCP.STEPControl import STEPControl_AsIs
 from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
@@ -175,7 +177,7 @@ class _Document:
         self.layer_tool = XCAFDoc_DocumentTool.LayerTool_s(document.Main())
         self.style, self.layers, self.product, self.file = style, layers, product, file
         self.written = TopTools_IndexedMapOfShape()
-        self.faces = self.styles = 0
+        self.faces = self.styles = self.named = 0
 
     def fill(self, split: Split, tree: Sequence[Node]) -> None:
         tree = tree or [Node(self.product, "", TopLoc_Location(), faces=tuple(dict.fromkeys(p.face for p in split.pieces)))]
@@ -238,11 +240,19 @@ class _Document:
         others, shells = _parted(bodies, self.style)
         # A fresh compound without a location: in a located shape, or one that is itself a face, faces get no label.
         whole = compound([s.Moved(back) for s in (*others, *(shell.shape for shell in shells))])
-        copy = BRepBuilderAPI_Copy()
-        again = any(self.written.Contains(face) for face in _unplaced(whole))
-        if again:  # an instance of what is written already: its styles would go to those faces
+        images: list[Callable[[Any], Any]] = []
+        if any(self.written.Contains(face) for face in _unplaced(whole)):
+            # An instance of what is written already: its styles would go to those faces.
+            copy = BRepBuilderAPI_Copy()
             copy.Perform(whole, False, False)
             whole = copy.Shape()
+            images.append(copy.ModifiedShape)
+        if not ShapeCustom.DirectFaces_s(whole).IsSame(whole):
+            # STEP has no left-handed surfaces, as FreeCAD makes them: the kernel would replace them, and lose names on the way.
+            turned = BRepTools_Modifier(whole)
+            turned.Perform(ShapeCustom_DirectModification())
+            whole = turned.ModifiedShape(whole)
+            images.append(turned.ModifiedShape)
         for face in _unplaced(whole):
             self.written.Add(face)
         label = self.shapes.AddShape(whole, False)
@@ -250,7 +260,9 @@ class _Document:
 
         def dress(shape: Any, title: str, rgb: tuple[float, float, float] | None, face: int) -> Any:
             shape = shape.Moved(back)
-            sub = self.shapes.AddSubShape(label, copy.ModifiedShape(shape) if again else shape)
+            for image in images:
+                shape = image(shape)
+            sub = self.shapes.AddSubShape(label, shape)
             if sub.IsNull():
                 raise WriteError("the CAD kernel gives this face no label", file=self.file, face=f"F{face}")
             _name(sub, title)
@@ -265,6 +277,7 @@ class _Document:
                 dress(shell.shape, shell.title, shell.rgb, shell.face)
         for piece in _pieces(bodies):
             self.faces += _exact(piece.shape)
+            self.named += _exact(piece.shape) and bool(self.style(piece)[0])
             sub = dress(piece.shape, *self.style(piece)[:2], piece.face)
             for layer in self.layers.get(piece.face, ()):
                 self.layer_tool.SetLayer(sub, TCollection_ExtendedString(_ascii(layer)))
@@ -350,13 +363,16 @@ def _head(model: Any, product: str) -> None:
 
 
 def _recount(text: bytes, document: _Document, file: str) -> None:
-    """Count faces and styles in the written text: the kernel is known to lose some in silence."""
+    """Count faces, names and styles in the written text: the kernel is known to lose some in silence."""
     faces = len(re.findall(rb"=\s*ADVANCED_FACE\s*\(", text))
     styles = len(re.findall(rb"=\s*(?:OVER_RIDING_)?STYLED_ITEM\s*\(", text))
     if faces < document.faces or styles < document.styles:
         raise WriteError(
             f"of {document.faces} faces the CAD kernel wrote {faces}, of {document.styles} colours {styles}", file=file
         )
+    named = len(re.findall(rb"=\s*ADVANCED_FACE\s*\(\s*'[^']", text))
+    if named < document.named:
+        raise WriteError(f"of {document.named} names of faces the CAD kernel wrote {named}", file=file)
 
 
 def _ascii(name: str) -> str:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import FreeCAD as App
+import Part
 
 #: Directions from the spot to the eye, as heights over the surface (degrees); from the side one sees where the tool stands.
 _HEIGHTS = (35.0, 60.0, 85.0)
@@ -43,16 +44,28 @@ def directions(normal, axis=None, eye=None):
     return found
 
 
-def clear_of(mesh, point, candidates, skin):
-    """The first direction along which nothing of a mesh is between a point and the eye; the last one where there is none.
+def clear_of(mesh, point, candidates, skin, covered=lambda direction: False):
+    """The first direction along which nothing of a mesh is between a point and the eye, and nothing else covers it.
+
+    Where the rest covers it along all of them, the first one at which nothing of the mesh is; the last one where there is none.
 
     `skin` (mm): what lies nearer to the point than that is the surface itself.
     """
+    free = None
     for each in candidates:
         hits = mesh.foraminate(tuple(point), tuple(each)).values()
         if all((App.Vector(*hit) - point).dot(each) < skin for hit in hits):
-            return each
-    return candidates[-1]
+            if not covered(each):
+                return each
+            free = each if free is None else free
+    return candidates[-1] if free is None else free
+
+
+def covers(shape, point, direction, near) -> bool:
+    """Whether a shape is between a point and the eye, further away from the point than `near` (mm)."""
+    far = near + 2.0 * (shape.BoundBox.DiagonalLength + (shape.BoundBox.Center - point).Length)
+    line = Part.makeLine(point + direction * near, point + direction * far)
+    return float(line.distToShape(shape)[0]) < 1e-6
 
 
 def _numbers(*values):
@@ -119,12 +132,23 @@ class Seen:
                 pass
         return App.Vector(*spot.axis) if spot.axis else App.Vector(0, 0, 1)
 
-    def fly(self, view, spot, radius, length) -> None:
-        """Show a spot in a view, with room for a tool of some radius and stick-out (mm) above it."""
+    def fly(self, view, spot, radius, length, tool=None) -> bool:
+        """Show a spot in a view, with room for a tool of some radius and stick-out (mm) above it.
+
+        Whether the tool (a shape, None where none is shown) covers the spot from there: in a deep pocket the only way out is
+        that of the tool.
+        """
         point, normal = App.Vector(*spot.point), self.normal(spot)
         axis = App.Vector(*spot.axis) if spot.axis else normal
         width = min(max(12 * radius, self._size / 6, 1.6 * length), 1.5 * self._size)
         candidates = directions(normal, axis, view.getViewDirection() * -1)
-        chosen = clear_of(self._mesh, point, candidates, self._size / 200)
+
+        def covered(towards, radii) -> bool:
+            return tool is not None and covers(tool, point, towards, radii * radius)
+
+        # Nearer than its own diameter there are the flutes alone, which leave more to see than a holder.
+        chosen = clear_of(self._mesh, point, candidates, self._size / 200, lambda towards: covered(towards, 2.0))
         # The tool stands above the spot: so that goes below the middle.
         view.setCamera(placed(point + axis * (width / 4), chosen, axis, width, view.getCameraType() == "Perspective"))
+        # A ball end over the spot is passed within 1.15 radii by the lowest of the directions.
+        return covered(chosen, 1.2)

@@ -8,7 +8,7 @@ from typing import Any
 import FreeCAD as App
 import FreeCADGui as Gui
 
-from . import camera, model, objects, remembered, runner, steps, windows
+from . import camera, host, model, objects, remembered, runner, steps, windows
 from .windows import QtCore, QtGui
 from .words import fine, tr
 
@@ -231,7 +231,10 @@ class Findings(windows.Panel):
             self._told.setText(str(error))
             return
         entry = self.result.shown(spot.cutter)
-        self._seen.fly(view, spot, entry["radius"], entry["length"])
+        shown = objects.tool_of(self.group)
+        hidden = self._seen.fly(view, spot, entry["radius"], entry["length"], None if shown is None else shown.Shape)
+        if shown is not None:
+            host.see_through(shown, hidden)
 
     def _at(self, spot, words: str) -> None:
         """Say what is known at a spot or sample, and put the tool there."""

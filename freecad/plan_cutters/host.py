@@ -155,6 +155,13 @@ def paint(thing, colour: tuple[float, float, float], transparency: int = 0) -> N
         view.Transparency = transparency
 
 
+def see_through(thing, on: bool) -> None:
+    """Whether one sees through an object, where there is a window."""
+    view = getattr(thing, "ViewObject", None)
+    if view is not None and hasattr(view, "Transparency"):
+        view.Transparency = 70 if on else 0
+
+
 def paint_faces(thing, colours: list[tuple[float, float, float]]) -> None:
     """Give each face of an object its colour, where there is a window."""
     view = getattr(thing, "ViewObject", None)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import FreeCADGui as Gui
 
 from . import commands, icons, preferences, words
-from .words import tr
+from .words import later, tr
 
 words.load()
 
@@ -19,8 +19,9 @@ class PlanCutters(Gui.Workbench):
 
     def Initialize(self) -> None:
         """Called when the workbench is opened for the first time."""
-        self.appendToolbar(tr("Plan cutters"), commands.NAMES)
-        self.appendMenu(tr("&Plan cutters"), commands.NAMES)
+        # FreeCAD translates these itself; what is translated before, it shows without its accents.
+        self.appendToolbar(later("Plan cutters"), commands.NAMES)
+        self.appendMenu(later("&Plan cutters"), commands.NAMES)
 
     def ContextMenu(self, recipient: str) -> None:
         """Called where the right button opens a menu, in the view or in the tree."""

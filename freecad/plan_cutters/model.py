@@ -144,6 +144,23 @@ def body_of(job):
     return models[0]
 
 
+def copied_from(thing) -> list:
+    """The bodies of the document that a body is a copy of, as the model of a CAM job is, and that stand where it stands."""
+    found = []
+    for each in getattr(thing, "Objects", None) or ():
+        try:
+            mine, other = host.shape_of(thing).BoundBox, host.shape_of(each).BoundBox
+        except Exception:  # it has no shape
+            continue
+        if each.Document is thing.Document and max(map(abs, (a - b for a, b in zip(_ends(mine), _ends(other))))) < 1e-6:
+            found.append(each)
+    return found
+
+
+def _ends(box) -> list[float]:
+    return [getattr(box, f"{axis}{end}") for axis in "XYZ" for end in ("Min", "Max")]
+
+
 def _within(thing, path: str):
     """The object that a selection's path within a container ends at."""
     for name in filter(None, path.split(".")):

@@ -106,7 +106,7 @@ def show(document, result: results.Result, cutter: str = ""):
         for each in old:
             _taken_away(document, each)
         group = document.addObject("App::DocumentObjectGroup", "Plan")
-        group.Label = f"{thing.Label}: {entry['id']}"
+        group.Label = f"{thing.Label}: {entry['name'] or entry['id']}"
         asked = {**dataclasses.asdict(result.job), "fingerprints": result.fingerprints}
         _note(group, "String", JOB, json.dumps(asked), "What was asked")
         _note(group, "String", "Cutter", entry["id"], "The colours are about it")
@@ -114,6 +114,8 @@ def show(document, result: results.Result, cutter: str = ""):
         _note(group, "StringList", "Summary", result.summary(), "What the plan says")
         _note(group, "String", "OutOfDate", "", "Why the colours were dropped")
         _note(group, "Bool", "BodyWasVisible", seen)
+        same = [each for each in model.copied_from(thing) if host.visible(each)]
+        _note(group, "StringList", "AlsoHidden", [each.Name for each in same], "Bodies that would cover the colours")
         for word, name in FILES.items():
             if word in result.paths:
                 _note(group, "FileIncluded", name, result.paths[word], "A file of the plan")
@@ -129,7 +131,8 @@ def show(document, result: results.Result, cutter: str = ""):
                 )
             )
         operations.add(document, group, result)
-        host.visible(thing, False)
+        for each in (thing, *same):
+            host.visible(each, False)
     document.recompute()
     result.discard()
     return group
@@ -221,9 +224,18 @@ def _taken_away(document, group) -> None:
 
 
 def _shown_again(group) -> None:
-    if group.BodyWasVisible and not group.OutOfDate:
+    if group.OutOfDate:
+        return
+    for each in _also_hidden(group):
+        host.visible(each, True)
+    if group.BodyWasVisible:
         with contextlib.suppress(model.Refused):
             host.visible(body_of(group), True)
+
+
+def _also_hidden(group) -> list:
+    """Bodies beside the planned one that are hidden as long as the colours are shown."""
+    return [each for each in map(group.Document.getObject, getattr(group, "AlsoHidden", ())) if each is not None]
 
 
 def _within(group) -> list[str]:
@@ -266,7 +278,7 @@ def put_tool(group, spot: results.Spot | results.Sample):
             tr("no posture of {cutter} is known at {face}: there is no tool to show").format(cutter=spot.cutter, face=spot.face)
         )
     document = group.Document
-    found = next((each for each in group.Group if getattr(each, ROLE, "") == "tool"), None)
+    found = tool_of(group)
     with step(document, tr("Tool at a spot")):
         if found is None:
             found = document.addObject("Part::Feature", "Plan_tool")
@@ -278,7 +290,7 @@ def put_tool(group, spot: results.Spot | results.Sample):
             except ValueError as error:
                 raise model.Refused(str(error)) from None
             _note(found, "String", "Cutter", entry["id"])
-            found.Label = f"tool {entry['id']}"
+            found.Label = f"tool {entry['name'] or entry['id']}"
             counts = [len(solid.Faces) for solid in found.Shape.Solids]
             host.paint_faces(found, [tool.COLOURS[part] for part, count in zip(parts, counts) for _ in range(count)])
         if spot.tip is None:
@@ -288,6 +300,11 @@ def put_tool(group, spot: results.Spot | results.Sample):
         found.Placement = tool.placement(spot.tip, spot.axis)
         host.visible(found, True)
     return found
+
+
+def tool_of(group):
+    """The tool that a plan shows; None where it shows none."""
+    return next((each for each in group.Group if getattr(each, ROLE, "") == "tool"), None)
 
 
 def hide_tool(group) -> None:
@@ -311,7 +328,8 @@ def repaint(document) -> None:
                 host.paint(each, tuple(each.Colour[:3]))
         if not group.OutOfDate:
             with contextlib.suppress(model.Refused):
-                host.visible(body_of(group), False)
+                for each in (body_of(group), *_also_hidden(group)):
+                    host.visible(each, False)
 
 
 def active(document) -> object | None:

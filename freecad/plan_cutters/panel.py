@@ -84,6 +84,8 @@ class Panel(windows.Panel):
         if self._buttons is not None:
             plan = self._buttons.button(_PLAN)
             plan.setText(tr("Plan") if self._run is None else tr("Cancel"))
+            shown = QtGui.QStyle.SP_DialogApplyButton if self._run is None else QtGui.QStyle.SP_DialogCancelButton
+            plan.setIcon(plan.style().standardIcon(shown))
             plan.setEnabled(ready)
 
     def start(self) -> None:

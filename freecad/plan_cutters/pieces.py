@@ -23,7 +23,9 @@ def by_verdict(result: results.Result, shape, cutter: str) -> dict[str, tuple[li
     if rows is None:
         words = result.verdicts(cutter)
         rows = [(number, word, face) for number, (word, face) in enumerate(zip(words, shape.Faces), 1)]
-        host.say(tr("{cutter}: each face has the colour of the worst verdict on it").format(cutter=cutter))
+        entry = result.shown(cutter)
+        label = entry["name"] or entry["id"]
+        host.say(tr("{cutter}: each face has the colour of the worst verdict on it").format(cutter=label))
     found: dict[str, tuple[list, list[int]]] = {}
     for word in (*results.WORST_FIRST, *sorted({row[1] for row in rows} - set(results.WORST_FIRST))):
         mine = [(number, face) for number, each, face in rows if each == word]

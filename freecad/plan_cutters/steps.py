@@ -100,7 +100,9 @@ class StepsBox:
             if step.alone is None
             else tr("{area} are gone if it is left out and nothing is planned there.").format(area=area_of(step.alone))
         )
-        self.told.setText(" ".join(filter(None, (step.fault, gone))) or tr("Changed: judge again."))
+        # What the plan judged has an area, also where it does not say what is gone without it.
+        unknown = tr("Changed: judge again.") if step.area is None else ""
+        self.told.setText(" ".join(filter(None, (step.fault, gone))) or unknown)
 
     def _edit(self, item: Any, column: int) -> None:
         if _COLUMNS[column][1] and self._run is None:

@@ -12,8 +12,12 @@ from . import words as texts
 from .words import tr
 
 QtCore, QtGui = host.qt("QtCore"), host.qt("QtGui")
-#: How a field looks that has to be filled in; of the widget itself, not of what is in it.
-_MISSING = "QAbstractSpinBox, QComboBox { border: 2px solid #b34700; border-radius: 3px; padding: 2px }"
+#: How a field looks that has to be filled in; of the widget itself, not of what is in it. Beside a border of one's own Qt draws
+#: arrows as blank lines: they are away so long.
+_MISSING = (
+    "QAbstractSpinBox, QComboBox { border: 2px solid #b34700; border-radius: 3px; padding: 2px }"
+    "QAbstractSpinBox::up-button, QAbstractSpinBox::down-button { width: 0px; border: 0px }"
+)
 
 
 class Panel:

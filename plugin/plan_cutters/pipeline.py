@@ -117,6 +117,7 @@ def run(
     part: Any, options: Options, clock: Clock, *, read_timeout: float = TIMEOUT, at: At = lambda whose, face: None,
     compiling: Callable[[str], None] = lambda entry: None, excluded: Mapping[int, str] | None = None, judged: Judge = judge,
     stands: Callable[[Result], None] | None = None, folder: str = "", cache: StageCache | None = None,
+    remark: Callable[[Plan], Plan] | None = None,
 ) -> Result:  # fmt: skip
     """`plan` with its options gathered.
 
@@ -125,16 +126,17 @@ def run(
     to be worked on at all; `judged` gives the verdicts of each cutter in each setup, as `judge` does; `stands` is given a
     result as soon as the verdicts stand, and again after each stage that another one follows: its plan is whole, and says what it
     is without. `folder` is where files of setups that are proposed will be, as a command in it is to name them. `cache` keeps
-    what stages make of a part of a file.
+    what stages make of a part of a file. `remark` adds to each plan what its options do not say.
     """
     begun = partial(prepare, read_timeout=read_timeout, at=at, compiling=compiling, cache=cache)
     if cache is not None and judged is judge:
         judged = CachedJudge(judged)
-    describe: Callable[[Plan], Plan] = _as_it_is
+    describe = remark or _as_it_is
     if options.propose:
-        judged_part, describe = judged_proposed(
+        judged_part, proposed = judged_proposed(
             partial(begun, part, excluded=excluded), partial(_judge, begun, judged=judged), options, clock, folder
         )
+        describe = proposed if remark is None else lambda plan: remark(proposed(plan))
     else:
         judged_part = _judge(partial(begun, excluded=excluded), part, options, clock, judged=judged)
     return _completed(judged_part, clock, describe, compiling, stands)

@@ -360,4 +360,5 @@ class Result:
         """
         from plan_cutters.report import write_all
 
-        return write_all(self, Path(out), formats, step_schema=step_schema)
+        chosen = formats.split(",") if isinstance(formats, str) else formats
+        return write_all(self, Path(out), chosen, step_schema=step_schema)

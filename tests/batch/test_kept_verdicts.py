@@ -55,6 +55,22 @@ def test_the_same_plan_again_judges_nothing_and_is_the_same(tmp_path, where):
         assert all(result.here[cutter] == verdicts for cutter, verdicts in plain.here.items())
 
 
+def test_storage_that_cannot_be_reached_is_asked_and_reported_once(monkeypatch):
+    asked = []
+
+    def refused(self, *words):
+        asked.append(words)
+        raise PermissionError(13, "Access Denied")
+
+    for name in ("get", "put", "names"):
+        monkeypatch.setattr(kept_verdicts.Folder, name, refused)
+    result, judged, faults = planned("memory://nobody")
+    assert judged == ["R3L40", "R6L60"]
+    assert faults == ["--verdicts memory://nobody: cannot be read: Access Denied; verdicts are not stored"]
+    assert len(asked) == 1
+    assert told(result) == told(run(PART, Options.of(ASKED), Clock()))
+
+
 def test_another_cutter_is_judged_alone_and_a_part_too(tmp_path):
     planned(tmp_path)
     three = (*ASKED["cutters"], "R5L70")

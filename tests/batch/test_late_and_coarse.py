@@ -22,6 +22,7 @@ from plan_cutters.pipeline import run
 from plan_cutters.report.folder import Staging, write_unfinished
 from plan_cutters.scene.spacing import MOST
 from plan_cutters.workers.assignment import TIMED_OUT
+from tests.support.commands import in_lines
 from tests.support.places import ROOT
 
 GROOVE = str(ROOT / "samples/v_groove.step")
@@ -120,6 +121,11 @@ def test_a_density_that_asks_too_much_of_a_part_is_marked_in_a_batch_and_refused
     document = json.loads(out.get("groove-plan/plan.json", 1 << 24))
     # By default, what may lie between the samples is a doubt, as it is not where somebody said how densely to sample.
     assert document["effective"]["sampled_by"] == "default"
+    # The part's own plan and page say so, too, above the process.
+    note = f"C{row.coarser[1:]}."
+    assert dict(zip(document["note_codes"], document["notes"], strict=True))["coarser_than_requested"] == note
+    assert document["process"]["doubts"][0] == note
+    assert in_lines(" ".join(document["text"]["lines"])).startswith(note)
     page, _ = page_of([row])
     assert row.coarser in page
     kept = work.work(task_of(out, options)).row

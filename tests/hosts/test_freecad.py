@@ -108,6 +108,9 @@ def test_what_was_translated_is_kept_as_long_as_its_text_is_there(tmp_path):
     assert (answers["Plan"].text, answers["Plan"].get("type")) == ("Planen", None)
     assert (answers["New"].text, answers["New"].get("type")) == (None, "unfinished")
     assert set(answers) == {"Plan", "New"}
+    # FreeCAD translates the names of bars in a context of its own, and takes no accents otherwise.
+    bars = ET.fromstring(ours.TEMPLATE.read_text(encoding="utf-8")).findall("context")[1]
+    assert [each.text for each in bars.iter() if each.tag in ("name", "source")] == ["Workbench", "Plan cutters", "&Plan cutters"]
     (tmp_path / "a.py").write_text('tr(f"{count} faces")')
     with pytest.raises(ValueError, match="only a literal"):
         ours.texts(tmp_path)

@@ -5,6 +5,7 @@ import shutil
 import sys
 from types import ModuleType, SimpleNamespace
 
+import numpy as np
 import pytest
 
 from plan_cutters.library import read_library
@@ -42,6 +43,19 @@ def test_a_stick_out_shorter_than_the_flutes_is_asked_again(cam, monkeypatch):
     (line,) = cam.missing([bit(cam, "Mill10")], "none", 14.0).values()
     assert "shorter than the flutes of Mill10, 15 mm" in line
     assert cam.missing([bit(cam, "Mill10")], "none", 15.0) == {}
+
+
+@pytest.mark.parametrize(
+    ("covered", "chosen"), [((), 1), ((1,), 2), ((1, 2), 1)], ids=["nothing covers", "the next one", "all are covered"]
+)
+def test_the_eye_stands_where_neither_part_nor_tool_covers_the_spot(covered, chosen):
+    """Directions 0 and 3 end in the part; where the tool covers the others, one sees through the tool."""
+    eyes = [np.array([1.0, number, 0.0]) for number in range(4)]
+    walls = SimpleNamespace(foraminate=lambda point, eye: {0: (9.0, 9.0, 0.0)} if eye[1] in (0.0, 3.0) else {})
+    with imported("freecad.plan_cutters.camera") as camera:
+        camera.App.Vector = lambda *numbers: np.array(numbers)
+        found = camera.clear_of(walls, np.zeros(3), eyes, 0.1, lambda eye: eye[1] in covered)
+    assert found is eyes[chosen]
 
 
 @pytest.mark.parametrize(

@@ -17,9 +17,23 @@ import FreeCAD as App, Part
 import FreeCADGui as Gui
 V = App.Vector
 
+def arrow_width(field):
+    option, style = QtGui.QStyleOptionSpinBox(), QtGui.QStyle
+    field.initStyleOption(option)
+    return field.style().subControlRect(style.CC_SpinBox, option, style.SC_SpinBoxUp, field).width()
+
+def picture(buttons, name):
+    from freecad.plan_cutters import panel
+    icon = buttons.style().standardIcon(getattr(QtGui.QStyle, name))
+    image = lambda each: each.pixmap(16, 16).toImage()
+    return image(buttons.button(panel._PLAN).icon()) == image(icon)
+
 def session():
     from freecad.plan_cutters import findings, model, objects, panel, runner, windows
-    import PathScripts.PathJob as jobs, PathScripts.PathToolBit as bits, PathScripts.PathToolController as controllers
+    try:
+        import Path.Main.Job as jobs, Path.Tool.Bit as bits, Path.Tool.Controller as controllers
+    except ImportError:  # before 0.21
+        import PathScripts.PathJob as jobs, PathScripts.PathToolBit as bits, PathScripts.PathToolController as controllers
     Gui.activateWorkbench("PlanCutters")
     document = App.newDocument("Work")
     block = document.addObject("Part::Feature", "Block")
@@ -49,6 +63,11 @@ def session():
     plan = two._buttons.button(panel._PLAN)
     marked = lambda: [bool(each.property("missing")) for each in (two.tools._stick_out, two.tools._holder)]
     found["asked"] = [two.status.text(), plan.isEnabled(), marked()]
+    # FreeCAD's panel leaves 244 of a small screen, and takes 26 for itself.
+    pump()
+    found["wide"] = max(each.minimumSizeHint().width() for each in two.form)
+    arrows = lambda: arrow_width(two.tools._stick_out)
+    found["arrows"] = [arrows()]
     shot("asked.png")
     two.start()
     found["not started"] = [two._run is None, "--" in two.status.text()]
@@ -58,6 +77,8 @@ def session():
     found["short"] = [two.status.text(), plan.isEnabled(), marked()]
     two.tools._stick_out.setValue(40)
     found["whole"] = [two.status.text(), plan.isEnabled(), marked()]
+    pump()
+    found["arrows"].append(arrows())
     # Lengths in the user's units.
     field, rows = two.tools._stick_out, []
     line = field.findChild(QtGui.QLineEdit)
@@ -93,6 +114,7 @@ def session():
     two.start()
     run = two._run
     found["runs"] = run.state
+    found["sign"] = [two._buttons.button(panel._PLAN).text(), picture(two._buttons, "SP_DialogCancelButton")]
     Gui.Control.closeDialog()
     pump()
     Gui.Selection.clearSelection()
@@ -102,13 +124,18 @@ def session():
     found["closed while it planned"] = [run.state, two._run is None, os.path.exists(run.folder), len(objects.plans(document))]
     # The panel of a result.
     got = []
-    run = runner.Run(model.Job("Work", "Block", tools=model.Tools(specs=("D12L60F26",)),
+    run = runner.Run(model.Job("Work", "Clone", tools=model.Tools(specs=("D12L60F26",)),
                      options=("--faces", "all", "--grid", "4", "--area-budget", "0")), lambda *_: None, got.append, got.append)
     pump(lambda: bool(got), 90)
     faults = []
     hook, sys.excepthook = sys.excepthook, lambda kind, fault, where: faults.append(repr(fault))
+    block.ViewObject.Visibility = True
     three = findings.open_panel(objects.show(document, got[0]))
     pump()
+    # What the model is a copy of would cover the colours.
+    found["covered"] = [block.ViewObject.Visibility]
+    found["label"] = three.group.Label
+    found["steps"] = [[each.area, each.alone] for each in three.steps.steps], three.steps.told.text()
     Gui.Control.closeDialog()
     pump()
     before = findings.LAST is three
@@ -121,6 +148,8 @@ def session():
     three._map_failed("x")
     found["closed"] = [before, findings.LAST is None, faults, three._gone()]
     sys.excepthook = hook
+    objects.clear(document)
+    found["covered"].append(block.ViewObject.Visibility)
 
 QtCore.QTimer.singleShot(1000, work)
 """
@@ -157,8 +186,18 @@ def test_what_the_bits_lack_is_marked_before_anything_starts(window):
     words, ready, marked = window["short"]
     assert words.startswith("“Stick-out” is shorter than the flutes of Endmill, 30")
     assert (ready, marked) == (False, [True, False])
+    # Arrows of a marked field would be blank lines.
+    assert window["arrows"][0] == 0 < window["arrows"][1]
     assert window["whole"][1:] == [True, [False, False]]
     assert window["both"] == ["Short words are judged without tool bits and libraries: untick one or the other.", False]
+
+
+def test_the_panel_is_no_wider_than_a_small_screen_leaves_it(window):
+    assert window["wide"] <= 244 - 26
+
+
+def test_the_button_that_cancels_has_no_tick(window):
+    assert window["sign"] == ["Cancel", True]
 
 
 def test_a_length_is_typed_and_shown_in_the_users_units(window):
@@ -177,6 +216,18 @@ def test_a_job_fills_the_panel(window):
     # The stock is offered, and counts only when the user says so.
     assert (hidden, allowance, window["allowance"]) == (False, 0.0, 1.0)
     assert words.startswith("Stock of Job: 1")
+
+
+def test_the_body_that_the_model_of_a_job_copies_does_not_cover_the_colours(window):
+    assert window["covered"] == [False, True]
+    assert window["label"].startswith("Model-Block: ")
+
+
+def test_a_step_that_nobody_edited_is_not_called_changed(window):
+    (step,), told = window["steps"]
+    assert step[0] > 0.0
+    assert step[1] is None
+    assert told == ""
 
 
 def test_a_panel_that_another_command_closes_follows_nothing(window):

@@ -932,4 +932,15 @@
    <translation type="unfinished" />
   </message>
  </context>
+ <context>
+  <name>Workbench</name>
+  <message>
+   <source>Plan cutters</source>
+   <translation type="unfinished" />
+  </message>
+  <message>
+   <source>&amp;Plan cutters</source>
+   <translation type="unfinished" />
+  </message>
+ </context>
 </TS>

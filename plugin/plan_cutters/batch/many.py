@@ -100,6 +100,8 @@ def plan_many(
 
     if isinstance(parts, str | os.PathLike):
         raise OptionError("parts is one path: give a list of parts, or use the command `batch` for folders")
+    if isinstance(parts, Sequence) and not parts:
+        raise OptionError("parts: the list is empty")
     with noted() as files:
         base = Options.of({"jobs": 1, **options})
     settings = Settings(

@@ -72,18 +72,28 @@ def _of(word: str, out: str, manifest: Callable[[str], Sequence[Source | Fault]]
                 "no STEP, IGES or BREP file matches it",
             )
         if word.lower().endswith(MANIFESTS):
-            return manifest(word)
+            return _read(word, manifest)
         if fs.isdir(path):
             base = path.rstrip("/")
             own = _own(fs, out)
             files = [each for each in sorted(fs.find(path)) if _is_part(each) and not _ours(each[len(base) :])]
             files = [each for each in files if own is None or not each.startswith(f"{own}/")]
             return _listed(word, base, files, fs, "the folder holds no STEP, IGES or BREP file")
+        if not fs.exists(path):
+            raise PlanError(f"no such file{', folder or bucket' if '://' in word else ' or folder'}", file=word)
     except PlanError:
         raise
     except Exception as error:
         raise PlanError(cause(error, "read"), file=word) from None
     return [Source(PurePosixPath(path).stem, word)]
+
+
+def _read(word: str, manifest: Callable[[str], Sequence[Source | Fault]]) -> Sequence[Source | Fault]:
+    """The parts of a manifest or list; one that is wrong is a mistake of the command, not a part that cannot be read."""
+    try:
+        return manifest(word)
+    except PlanError as error:
+        return [Fault(word, word, str(error))]
 
 
 def _listed(word: str, base: str, files: Sequence[str], fs: Any, nothing: str) -> list[Source | Fault]:

@@ -20,7 +20,7 @@ from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import NO_REASON, REASONS, UNJUDGED, WORDS, Verdicts
 from plan_cutters.errors import PlanError
 from plan_cutters.files.digest import digest, sources
-from plan_cutters.files.folder import Folder
+from plan_cutters.files.folder import Folder, cause
 from plan_cutters.files.seal import stamp
 from plan_cutters.scene.ground import GroundDigests
 from plan_cutters.scene.preparation import Prepared
@@ -40,6 +40,8 @@ _ROOMS, _PACKAGES = ("domain", "kernels", "scene", "stages"), ("numba", "numpy",
 _SLACK = 1e-9
 #: Most bytes of an entry, some ten million samples.
 _MOST = 1 << 30
+#: What is said of an entry that its place refuses, and the verb of it.
+_DOING = {"cannot be read": "read", "cannot be written": "written"}
 #: The end of an entry's name.
 _SUFFIX = ".verdicts"
 
@@ -83,6 +85,8 @@ class VerdictCache:
             raise PlanError(f"--verdicts {error}") from None
         self._where, self._otherwise, self._key = where, otherwise, key
         self._grounds = GroundDigests()
+        #: Whether a place that is not on this machine has failed: it is not asked again.
+        self._unreachable = False
         self.found = self.judged = 0
         self.faults: list[str] = []
 
@@ -97,7 +101,8 @@ class VerdictCache:
         work: Work | None = None,
     ) -> Verdicts:
         """Find the verdicts of a cutter; parameters and result as of `judge`. The work is that of the run that judged."""
-        if rows is not None:
+        if rows is not None or self._unreachable:
+            self.judged += rows is None
             return self._otherwise(ready, cutter, rows, known, progress=progress, work=work)
         own = hashlib.sha256(self._digest(ready) + digest(replace(cutter, name=""))).hexdigest()
         name = digest(None if known is None or (known.verdict == UNJUDGED).all() else _stated(known)).hex()[:32]
@@ -129,6 +134,8 @@ class VerdictCache:
     def _entries(self, own: str, name: str) -> Iterator[str]:
         """Names of the entries of a cutter: the one that was found among the same cutters first."""
         yield name
+        if self._unreachable:
+            return
         try:
             files = self._folder.names(f"{own[:2]}/{own}")
         except Exception as error:
@@ -155,12 +162,19 @@ class VerdictCache:
             return None
 
     def _write(self, own: str, name: str, content: bytes) -> None:
+        if self._unreachable:
+            return
         try:
             self._folder.put(_place(own, name), content)
         except Exception as error:
             self._fault(own, "cannot be written", error)
 
     def _fault(self, own: str, what: str, error: BaseException) -> None:
+        if not self._folder.local and what in _DOING:
+            if not self._unreachable:
+                self.faults.append(f"--verdicts {self._where}: {cause(error, _DOING[what])}; verdicts are not stored")
+            self._unreachable = True
+            return
         why = " ".join(str(getattr(error, "strerror", None) or error).split())[:120] or type(error).__name__
         self.faults.append(f"{self._where}: stored verdicts {own[:12]}: {what} ({why})")
 

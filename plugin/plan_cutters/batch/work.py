@@ -18,8 +18,6 @@ from plan_cutters.batch.job import UNREADABLE, USAGE, Handed
 from plan_cutters.batch.job_input import JobInput, Offer
 from plan_cutters.batch.row import PartRow
 from plan_cutters.errors import PlanError
-from plan_cutters.options import Options
-from plan_cutters.plan_file.numbers import count, mm
 from plan_cutters.workers.assignment import INTERRUPTED, TIMED_OUT, Assignment
 from plan_cutters.workers.child import Child, compiler
 
@@ -332,8 +330,8 @@ def _late(task: Task, out: Path) -> str:
     from plan_cutters.report.to_json import unfinished
 
     missing = ended(out, f"not done within {task.timeout:g} s")
-    text = unfinished(out / PLAN) or f"without {', '.join(map(file_name, missing)) or 'all files'}"
-    return f"{_out_of_time(task)}. Late: the plan so far is there. {text}"
+    text = unfinished(out / PLAN) or (f"It is without {', '.join(map(file_name, missing))}." if missing else "")
+    return f"{_out_of_time(task)}. Late: the plan so far is there. {text}".rstrip()
 
 
 def _is_done(output: store.Store | None, task: Task, key: str) -> bool:
@@ -341,13 +339,10 @@ def _is_done(output: store.Store | None, task: Task, key: str) -> bool:
     return output is not None and cached(output, task.folder, key, task.name, task.file) is not None
 
 
-def coarser(options: Options, plan: "Plan") -> str | None:
+def coarser(plan: "Plan") -> str | None:
     """Say how a part was sampled more coarsely than requested, for that would have taken too many samples; else None."""
-    if plan.effective.sampled_by != "default" or (options.spacing is None and options.grid is None):
-        return None
-    wanted = f"--spacing {options.spacing:g}" if options.grid is None else f"--grid {options.grid}"
-    samples = f"{count(plan.samples.count, 'sample')}, up to {mm(plan.samples.max_gap_mm)} apart"
-    return f"coarser than requested: {wanted} would take too many samples here; judged at {samples}"
+    noted = dict(zip(plan.note_codes, plan.notes, strict=False)).get("coarser_than_requested")
+    return None if noted is None else f"{noted[:1].lower()}{noted[1:].removesuffix('.')}"
 
 
 def files_of(folder: Path) -> dict[str, Path]:
@@ -365,6 +360,6 @@ def _row(task: Task, content: bytes, key: str, code: int, seconds: float) -> Par
 
     plan = plan_of(content, PLAN)
     row = row_of(plan, name=task.name, file=task.file, code=code, key=key, folder=task.folder, seconds=seconds)
-    row = row.model_copy(update={"coarser": coarser(pickle.loads(task.handed.options), plan)})
+    row = row.model_copy(update={"coarser": coarser(plan)})
     missing = "; ".join(f"{name}: {why}" for name, why in plan.not_written.items())
     return row.model_copy(update={"error": f"not written: {missing}"}) if missing else row

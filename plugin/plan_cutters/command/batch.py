@@ -5,6 +5,7 @@ import os
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
@@ -111,6 +112,7 @@ def command(request: BatchRequest) -> int:
     from plan_cutters.report.junit.cases import check as check_junit
 
     check_junit(request.junit)
+    _seen_by_workers(request)
     if request.dry_run and request.junit is not None:
         raise OptionError("--dry-run plans nothing, and --junit is about what was planned: leave one of them out")
     fail_on = _fail_on(request.fail_on)
@@ -141,6 +143,24 @@ def command(request: BatchRequest) -> int:
 def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
     """Run the command."""
     run(command, name, args)
+
+
+def _seen_by_workers(request: BatchRequest) -> None:
+    """Refuse parts and an output that no worker could reach, before anything is begun."""
+    from plan_cutters.command.validation import scheduler, writable
+    from plan_cutters.errors import OptionError
+    from plan_cutters.files.folder import in_memory
+
+    for word in (*request.sources, request.out):
+        if in_memory(word):
+            raise OptionError(
+                "memory:// is the memory of one process, and each part has its own: give a folder, or a URL that all reach",
+                file=word,
+            )
+    if request.cluster is not None:
+        scheduler(request.cluster)
+    if "://" not in request.out and not request.dry_run:
+        writable(Path(os.path.expanduser(request.out)))
 
 
 def _fail_on(words: str | None) -> frozenset[str]:

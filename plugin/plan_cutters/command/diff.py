@@ -1,5 +1,6 @@
 """`plan-cutters diff`: what was lost and won between two plans, or two folders of them."""
 
+import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -79,9 +80,15 @@ def command(request: DiffRequest) -> int:
     OLD and NEW are plan.json files, the folders of two plans, or two folders of many plans, which are paired by name.
     A face whose number shifted is known again by its place, its surface or its neighbours; one that is not known again is told.
     """
+    from cad_io.whole import refusal
+    from plan_cutters.errors import OptionError, PlanError
+
+    if request.junit is None:  # where there is one, it says so too
+        for path in (request.old, request.new):
+            if not os.path.exists(path):
+                raise PlanError("no such file or folder", file=path)
     from plan_cutters.comparison.cases import COMPARABLE, comparison_cases
     from plan_cutters.comparison.folders import compare_folders
-    from plan_cutters.errors import OptionError, PlanError
     from plan_cutters.report.junit.cases import Case, check, write
 
     if request.as_json and request.as_markdown:
@@ -91,6 +98,8 @@ def command(request: DiffRequest) -> int:
         if word not in requested_words():
             raise OptionError(f"--despite {word!r} is not known; give some of {','.join(requested_words())}")
     check(request.junit)
+    if request.out and (why := refusal(request.out)):
+        raise OptionError(f"cannot write there ({why}); give another folder with -o", file=request.out)
     old, new = Path(request.old), Path(request.new)
     try:
         comparison = compare_folders(old, new, slack=request.slack / 100.0, despite=despite)

@@ -86,6 +86,7 @@ def command(request: MapRequest) -> int:
     ones apart.
     """
     from cad_io.read.sniff import kind
+    from cad_io.whole import refusal
     from plan_cutters.errors import OptionError
     from plan_cutters.report.formats import NO_PICTURES, draws_pictures
 
@@ -105,6 +106,8 @@ def command(request: MapRequest) -> int:
             raise OptionError(f"-o {out}: {NO_PICTURES}")
         if not out.absolute().parent.is_dir():
             raise OptionError("cannot be written: there is no such folder", file=str(out))
+        if why := refusal(out.absolute().parent):
+            raise OptionError(f"cannot be written: {why}", file=str(out))
     kind(part)
     options = _options(request)
     (cutter,), machine, placement = options.judged, options.machine, options.placement

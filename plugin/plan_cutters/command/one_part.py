@@ -82,7 +82,9 @@ def one_part(
                 if assignment().job is None:
                     raise
                 # One density for all parts of a batch asks too much of this one: its row says so (`batch.work.coarser`).
-                result = planned(default_density(options))
+                from plan_cutters.document.notes import noted_coarser
+
+                result = planned(default_density(options), remark=partial(noted_coarser, options))
         document = result.plan
         if out is None:
             watch.judged(document, code_of(document, request.fail_under))

@@ -8,7 +8,7 @@ import click
 from cad_io.units import UNITS
 from plan_cutters.command import values
 from plan_cutters.command.help_groups import heading
-from plan_cutters.command.values import Faces, File, Folder, Range, Setup, Words, fixtures_of_setups, named_setups
+from plan_cutters.command.values import Faces, File, Folder, Plans, Range, Setup, Words, fixtures_of_setups, named_setups
 from plan_cutters.domain.answer_kinds import KINDS
 from plan_cutters.report.folder import DEFAULT_FORMATS, FORMATS
 
@@ -258,7 +258,7 @@ _OPTIONS = (
     _operations(
         "--operations",
         brief="Plan fixed orientations (3+2) that finish it.",
-        type=click.Choice(["fewest", "fastest", "both"]),
+        type=Plans(["fewest", "fastest", "both"]),
         help="Plan operations with fixed orientations (3+2) that finish together all that is reached: the fewest, with a proof "
         "that there are no fewer, the fastest, or both.",
     ),
@@ -338,7 +338,7 @@ _OPTIONS = (
     _run(
         "--verdicts",
         type=Folder("DIR"),
-        help="Folder or URL (s3://..., memory://...) in which the verdicts of each cutter are stored: with another cutter, only "
+        help="Folder or URL (s3://...) in which the verdicts of each cutter are stored: with another cutter, only "
         "that one is judged.",
     ),
     _run(

@@ -60,6 +60,7 @@ def commit(name: str) -> str:
     try:
         return git("rev-parse", "--verify", "--quiet", f"{name}^{{commit}}").decode().strip()
     except PlanError:
+        git("rev-parse", "--git-dir")  # says so where there is no repository at all
         raise PlanError(f"commit {name!r} is not in this repository: fetch it (actions/checkout with fetch-depth: 0)") from None
 
 

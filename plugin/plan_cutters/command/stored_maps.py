@@ -1,7 +1,6 @@
 """`plan-cutters stored`: another machine or setup on posture maps that are stored; nothing is read but them, or searched."""
 
 import json
-import os
 from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
@@ -59,14 +58,13 @@ def command(request: StoredRequest) -> int:
     given stay as the maps were made; a question that the maps cannot answer is refused.
     """
     from cad_io.read.sniff import kind
-    from plan_cutters.command.validation import look_at
+    from plan_cutters.command.validation import look_at, maps_file
     from plan_cutters.errors import OptionError
     from plan_cutters.options import Options
 
     if request.json_out not in (None, "-"):
         raise OptionError("--json takes -, for standard output")
-    if not os.path.isfile(request.file):
-        raise OptionError("no such file, or it is no file", file=request.file)
+    maps_file(request.file)
     if request.part is not None:
         kind(request.part)
     requested = Options(**judging_options(request))

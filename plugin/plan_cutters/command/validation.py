@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cad_io.errors import CadIoError, ReadError
+from cad_io.whole import refusal
 from plan_cutters.command.entry import SUBCOMMANDS
 from plan_cutters.command.request import PlanningRequest, PlanRequest, planning_options
 
@@ -44,7 +45,7 @@ def check(request: PlanRequest) -> "tuple[Options, list[CadIoError]]":
         raise faults[0]
     if request.postures is None:
         for out in folders(request):
-            _writable(out)
+            writable(out)
     options = options_of(request)
     look_at(options)
     return options, faults
@@ -95,8 +96,12 @@ def _words(request: PlanRequest) -> None:
     _plans_nothing(request)
     if request.check_operations is None:
         refuse_unplanned_operations(request)
-    if request.postures is not None and not os.path.isfile(request.postures):
-        raise OptionError("no such file, or it is no file", file=request.postures)
+    if request.postures is not None:
+        maps_file(request.postures)
+    if request.check_operations is not None and not os.path.isfile(request.check_operations):
+        raise OptionError("no such file: give the plan.json of a plan of operations", file=request.check_operations)
+    if request.cluster is not None:
+        scheduler(request.cluster)
     if not 0.0 < request.read_timeout < math.inf:
         raise OptionError("--read-timeout must be a positive number of seconds")
     if request.verdicts_key is not None:
@@ -111,6 +116,39 @@ def _words(request: PlanRequest) -> None:
         raise OptionError("--timeout must be a positive number of seconds")
     if request.memory is not None and not LEAST_MEMORY <= request.memory * 1e9 < 1e18:
         raise OptionError("--memory must be at least 2 GB")
+
+
+def maps_file(file: str) -> None:
+    """Refuse what is no file of posture maps by its first bytes.
+
+    Raises
+    ------
+    OptionError
+    """
+    from plan_cutters.errors import OptionError
+
+    if not os.path.isfile(file):
+        raise OptionError("no such file, or it is no file", file=file)
+    try:
+        with open(file, "rb") as opened:
+            begins = opened.read(4)
+    except OSError as error:
+        raise OptionError(f"cannot be read: {error.strerror}", file=file) from None
+    if begins[:2] != b"PK":
+        raise OptionError("holds no posture maps: give the postures.npz that a plan writes with --posture-maps", file=file)
+
+
+def scheduler(address: str) -> None:
+    """Refuse what is neither a file nor an address.
+
+    Raises
+    ------
+    OptionError
+    """
+    from plan_cutters.errors import OptionError
+
+    if not os.path.isfile(address) and "://" not in address:
+        raise OptionError("no such file, and no address as tcp://HOST:8786", file=f"--cluster {address}")
 
 
 def _json_out(request: PlanRequest) -> None:
@@ -182,17 +220,20 @@ def _faults(parts: Sequence[str]) -> list[CadIoError]:
     return errors
 
 
-def _writable(out: Path) -> None:
-    """An error where a folder can surely not be written."""
+def writable(out: Path) -> None:
+    """An error where a folder can surely not be written.
+
+    Raises
+    ------
+    PlanError
+    """
     from plan_cutters.errors import PlanError
 
     if out.exists() and not out.is_dir():
         raise PlanError("the output must be a folder, this is a file; give another with -o", file=str(out))
     # What grows stands beside the folder, and then in it; folders that are not there are made.
-    there = next(folder for folder in out.absolute().parents if folder.exists() or folder == folder.parent)
-    for folder in (there, *([out] if out.exists() else [])):
-        if not folder.is_dir() or not os.access(folder, os.W_OK | os.X_OK):
-            why = "Permission denied" if folder.is_dir() else "Not a directory"
+    for folder in (out.absolute().parent, *([out] if out.exists() else [])):
+        if why := refusal(folder):
             raise PlanError(f"cannot write there ({why}); give another folder with -o", file=str(out))
 
 
@@ -213,7 +254,7 @@ def look_at(options: "Options") -> None:
 def _fixture(file: str) -> None:
     """An error for the file of a fixture that is missing, empty or of no format that fixtures have."""
     from cad_io.read.sniff import kind
-    from plan_cutters.domain.fixture import CAD, MESH
+    from plan_cutters.domain.fixture import CAD, MESH, no_format
 
     suffix = Path(file).suffix.lower()
     if suffix in CAD:
@@ -223,6 +264,8 @@ def _fixture(file: str) -> None:
             raise ReadError("no such file", file=file)
         if not os.path.isfile(file):
             raise ReadError("is not a file", file=file)
+    else:
+        raise ReadError(no_format(file), file=file)
 
 
 def options_of(request: PlanningRequest) -> "Options":

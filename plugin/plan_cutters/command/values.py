@@ -73,6 +73,13 @@ class Folder(Words):
         return [_FOLDER]
 
 
+class Plans(click.Choice[str]):
+    """Plans of operations by name; `all` are both, as other options have an `all`."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        return super().convert("both" if value == "all" else value, param, ctx)
+
+
 class Range(click.ParamType):
     """Two numbers of degrees, MIN:MAX."""
 

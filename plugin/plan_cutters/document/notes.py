@@ -46,6 +46,12 @@ def noted(plan: Plan, note: Note) -> Plan:
     return plan.model_copy(update={"notes": [*plan.notes, note.text], "note_codes": [*plan.note_codes, note.code]})
 
 
+def noted_coarser(options: Options, plan: Plan) -> Plan:
+    """The plan with a note that the density of samples in some options was not taken, for it asks too much of this part."""
+    wanted = f"--spacing {options.spacing:g}" if options.grid is None else f"--grid {options.grid}"
+    return noted(plan, notes.coarser_than_requested(wanted, plan.samples.count, plan.samples.max_gap_mm))
+
+
 def _of_samples(ready: Prepared) -> Iterator[Note]:
     samples = ready.samples
     yield notes.samples_apart(samples.max_gap)

@@ -158,7 +158,11 @@ class Cutter(Dimensions):
         'R6.35L76.2'
         """
         head, holder = parted(spec) if isinstance(spec, str) else (spec, None)
-        made = cls(**dimensions(head), holder=None if holder is None else Holder.parse(holder), name=str(spec).strip())
+        sizes, held = dimensions(head), None if holder is None else Holder.parse(holder)
+        try:
+            made = cls(**sizes, holder=held, name=spec.strip())
+        except CutterError as error:
+            raise type(error)(f"cutter {spec.strip()!r}: {error.cause.removeprefix('cutter ')}") from None
         return replace(made, name="") if made.id.lower() == made.name.lower() else made
 
     @classmethod

@@ -11,7 +11,7 @@ import numpy as np
 
 from cad_io.arrays import Floats
 from cad_io.units import UNITS
-from plan_cutters.domain.checks import name, number, numbers, shown
+from plan_cutters.domain.checks import did_you_mean, name, number, numbers, shown
 from plan_cutters.domain.clamping import CHUCK, FORMS, VISE, Clamping, Requested, requested
 from plan_cutters.errors import FixtureError
 
@@ -26,6 +26,20 @@ _FORM = "FILE[@x,y,z[,rx,ry,rz]][:UNIT], box:x,y,z, cylinder:r,h, table, table:h
 #: Lengths beyond this, mm, are rather a mistake.
 _FARTHEST = 1e6
 _NOWHERE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+
+
+def no_format(file: str) -> str:
+    """Say that the name of a file is of no format of fixtures, and what to give.
+
+    >>> no_format("visee")
+    'its name does not say its format; did you mean vise? Give STEP, IGES, BREP, STL, OBJ, PLY or GLB, or box:, cylinder:, \
+table, vise or chuck'
+    """
+    suffix = PurePath(file).suffix.lower()
+    what = f"{suffix!r} is no format of fixtures" if suffix else "its name does not say its format"
+    meant = "" if suffix else did_you_mean(file.partition(":")[0], WORDS)
+    begun = f"{what}{meant} Give" if meant else f"{what}: give"
+    return f"{begun} STEP, IGES, BREP, STL, OBJ, PLY or GLB, or box:, cylinder:, table, vise or chuck"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

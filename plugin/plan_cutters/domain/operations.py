@@ -32,7 +32,7 @@ IndexFrom = Literal["rates", "given", "assumed"]
 
 
 def operations_of(value: Any) -> str | None:
-    """One of WHICH, or None for no plan of operations.
+    """One of WHICH, or None for no plan of operations; `all` is `both`, as other options have an `all`.
 
     Raises
     ------
@@ -41,6 +41,8 @@ def operations_of(value: Any) -> str | None:
     """
     if value is None or value in WHICH:
         return value if value is None else str(value)
+    if value == "all":
+        return "both"
     raise OptionError(f"operations: {shown(value)} is none of {', '.join(WHICH)}")
 
 

@@ -21,6 +21,8 @@ FORMATS: tuple[Format[Reader], ...] = (
     Format("LinuxCNC configuration", (".ini",), linuxcnc.is_ini, linuxcnc.read_ini),
     Format("LinuxCNC configuration", (".ini",), linuxcnc.includes, linuxcnc.read_ini),
     Format("MTConnect probe", (".xml",), mtconnect.is_probe, mtconnect.read_probe),
+    # By its name alone, so that it is said where it is no TOML or what is missing.
+    Format("plan-cutters TOML", (".toml",), toml_in.is_named, toml_in.read_toml),
 )
 
 _TOML = "write the machine as TOML (docs/machines.md)"

@@ -124,6 +124,8 @@ def _setup(value: Any, placed: Placement | None) -> tuple[tuple[float, float, fl
     if isinstance(value, os.PathLike) or (isinstance(value, str) and along(value) is None):
         from plan_cutters.machines.setups import read_setup
 
+        if isinstance(value, str) and not value.lower().endswith(".toml") and not os.path.exists(value):
+            raise OptionError(f"setup {value!r} is no direction, as +z, -y or (0, 0, 1), a setup file, or auto")
         value = read_setup(value)
     if (plane := plane_of(value)) is not None:
         if placed is not None:

@@ -87,6 +87,11 @@ def is_toml(content: Content) -> bool:
     return content.head[:1] not in ("{", "<") and _LOOKS.search(content.text) is not None
 
 
+def is_named(content: Content) -> bool:
+    """A text whose file is called TOML, whatever it holds."""
+    return content.path.suffix.lower() == ".toml" and "\0" not in content.text
+
+
 def is_json(content: Content) -> bool:
     """JSON that names the format, or has a chain."""
     data = content.json

@@ -6,11 +6,12 @@ To add a note, add its code, its function here, and the call where it is found.
 from collections.abc import Sequence
 from typing import Literal, NamedTuple
 
-from plan_cutters.plan_file.numbers import angle, listed, mm
+from plan_cutters.plan_file.numbers import angle, count, listed, mm
 
 #: What a note is about. A text may be reworded; a code stays.
 NoteCode = Literal[
     "cutters_built_in", "no_holder", "tilts_not_searched", "all_length_cuts", "samples_apart", "samples_coarser", "samples_wide",
+    "coarser_than_requested",
     "not_sampled", "no_machine", "side_guessed", "side_by_setup", "tolerance_raised", "open_faces", "fixture", "fixture_stays",
     "fixture_not_cad", "faces_none_sculptured", "faces_ignored", "faces_clamped", "travel_not_judged", "travel_of_holder",
     "travel_first_setup", "faces_clamped_there", "setup_without_fixtures", "setup_proposed",
@@ -91,6 +92,15 @@ def samples_coarser(times: float, budget: int) -> Note:
         "samples_coarser",
         f"Samples are {times:.3g} times as far apart as curvature and the smallest cutter ask, for a default plan "
         f"takes about {budget:,}: --spacing asks for more, --faces for less.",
+    )
+
+
+def coarser_than_requested(wanted: str, samples: int, most_mm: float) -> Note:
+    """Of a part of a batch whose density is for all parts: what was requested as an option, and what was taken."""
+    return Note(
+        "coarser_than_requested",
+        f"Coarser than requested: {wanted} would take too many samples here; judged at {count(samples, 'sample')}, "
+        f"up to {mm(most_mm)} apart.",
     )
 
 

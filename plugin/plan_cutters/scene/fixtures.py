@@ -20,7 +20,7 @@ from cad_io.read.mesh import Mesh, is_mesh, read_mesh
 from cad_io.read.read import TIMEOUT
 from cad_io.tessellate.proxies import StandIn
 from plan_cutters.domain.clamping import Clamping
-from plan_cutters.domain.fixture import CAD, MESH, Fixture
+from plan_cutters.domain.fixture import CAD, MESH, Fixture, no_format
 from plan_cutters.domain.placement import axis_words, frame_of
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.plan_file.numbers import mm
@@ -85,10 +85,7 @@ def _read(fixture: Fixture, timeout: float) -> Part | Mesh:
     if suffix in MESH:
         return read_mesh(source, fixture.unit)
     if suffix not in CAD:
-        what = f"{suffix!r} is no format of fixtures" if suffix else "its name does not say its format"
-        raise ReadError(
-            f"{what}: give STEP, IGES, BREP, STL, OBJ, PLY or GLB, or box:, cylinder:, table, vise or chuck", file=source
-        )
+        raise ReadError(no_format(source), file=source)
     return read_part(source, unit=fixture.unit, timeout=timeout)
 
 

@@ -5,13 +5,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder
-from OCP.gp import gp_Trsf, gp_Vec
+from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt, gp_Trsf, gp_Vec
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
 from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
-from OCP.STEPCAFControl import STEPCAFControl_Reader
+from OCP.ShapeCustom import ShapeCustom
+from OCP.STEPCAFControl import STEPCAFControl_Reader, STEPCAFControl_Writer
 from OCP.TCollection import TCollection_ExtendedString
 from OCP.TDataStd import TDataStd_Name
 from OCP.TDF import TDF_Label, TDF_LabelSequence
@@ -36,6 +39,15 @@ COLOURS = {0: RED, 1: GREEN, -1: GREY}
 
 def style(piece):
     return Style(f"F{piece.face}_{'_'.join(['grey', 'red', 'green'][piece.label + 1 :][:1])}", COLOURS[piece.label])
+
+
+class Nameless(STEPCAFControl_Writer):
+    """A writer of the kernel that forgets the names of faces."""
+
+    def Write(self, name):
+        done, path = super().Write(name), Path(name)
+        path.write_bytes(re.sub(rb"(= ADVANCED_FACE)\('[^']*'", rb"\1(''", path.read_bytes()))
+        return done
 
 
 @pytest.fixture(scope="module")
@@ -276,6 +288,31 @@ def test_a_located_solid_and_a_single_face(tmp_path):
         write_step(found, tmp_path / "part.step", style, product="part")
         assert same(styled_faces(tmp_path / "part.step"), expected(found))
         assert same(read_back(tmp_path / "part.step")[1], expected(found))
+
+
+@pytest.mark.parametrize("kind", ["mirrored", "two", "pocket"])
+def test_left_handed_surfaces_keep_names_and_colours(tmp_path, kind):
+    """STEP has none: the kernel writes others in their place, and their neighbours, too. FreeCAD makes such bodies."""
+    solid = BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(30, 30, 10).Solid(), BRepPrimAPI_MakeCylinder(12, 6).Solid()).Shape()
+    mirror, move = gp_Trsf(), gp_Trsf()
+    mirror.SetMirror(gp_Ax2(gp_Pnt(), gp_Dir(1, 0, 0)))
+    move.SetTranslation(gp_Vec(100, 0, 0))
+    left = BRepBuilderAPI_Transform(solid, mirror, True).Shape()
+    assert not ShapeCustom.DirectFaces_s(left).IsSame(left)
+    pocket = BRepAlgoAPI_Cut(BRepPrimAPI_MakeBox(gp_Pnt(-50, -50, -5), gp_Pnt(50, 50, 5)).Solid(), left).Shape()
+    parts = {"mirrored": left, "two": compound([left, left.Located(TopLoc_Location(move))]), "pocket": pocket}
+    found = split(Part(parts[kind]), [])
+    write_step(found, tmp_path / "part.step", style, product="part")
+    assert same(styled_faces(tmp_path / "part.step"), expected(found))
+    shape, back = read_back(tmp_path / "part.step")
+    assert same(back, expected(found))
+    assert BRepCheck_Analyzer(shape).IsValid()
+
+
+def test_a_name_that_the_kernel_loses_is_a_fault(halves, tmp_path, monkeypatch):
+    monkeypatch.setattr("cad_io.write.step.STEPCAFControl_Writer", Nameless)
+    with pytest.raises(WriteError, match="names of faces the CAD kernel wrote 0"):
+        write_step(halves, tmp_path / "part.step", style, product="part")
 
 
 def test_names_become_ascii(tmp_path):

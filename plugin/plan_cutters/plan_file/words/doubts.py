@@ -24,7 +24,7 @@ def doubts(plan: Plan) -> list[str]:
     list of str
         Whole sentences.
     """
-    each = (_unfinished, _unit, _travel, _held, _unheld, _side, _sheets, _tolerance)
+    each = (_unfinished, _coarser, _unit, _travel, _held, _unheld, _side, _sheets, _tolerance)
     return [named(plan, line) for doubt in each for line in doubt(plan)]
 
 
@@ -35,6 +35,10 @@ def repeated_warnings(plan: Plan) -> set[str]:
 
 def _unfinished(plan: Plan) -> Iterator[str]:
     yield from (text for code, text in zip(plan.note_codes, plan.notes, strict=False) if code == "run_unfinished")
+
+
+def _coarser(plan: Plan) -> Iterator[str]:
+    yield from (text for code, text in zip(plan.note_codes, plan.notes, strict=False) if code == "coarser_than_requested")
 
 
 def _unit(plan: Plan) -> Iterator[str]:

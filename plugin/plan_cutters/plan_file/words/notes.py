@@ -12,7 +12,7 @@ from plan_cutters.plan_file.words.names import named
 
 #: Notes that say what the first lines say, or in other words; those of the area between samples, where it was looked at.
 _STATED_ABOVE: frozenset[NoteCode | None] = frozenset(
-    {"samples_apart", "area_proved", "area_left", "setup_proposed", "run_unfinished"}
+    {"samples_apart", "area_proved", "area_left", "setup_proposed", "run_unfinished", "coarser_than_requested"}
 )
 #: What stands for an obstacle that is not known.
 _STAND_IN = {
@@ -110,6 +110,8 @@ def setups(plan: Plan, best: CutterEntry) -> Iterator[Line]:
     yield Line(f"Beyond {here}: the axis limit loses {not_reached} of {samples.finished} samples for every cutter.")
     if plan.selected_for_setup:
         yield Line(named(plan, f"For {here}: {plan.selected_for_setup}, which leaves nothing else."), minor=True)
+    if not plan.setups:  # no machine: the range of tilts is the limit
+        return
     within = [(s, percent(s.share, some=bool(s.within), whole=s.within == samples.judged)) for s in plan.setups]
     now = [f"{axis_words(s.axis)} {share}" for s, share in within if s.reached is not None]
     others = ", ".join(f"{axis_words(s.axis)} {share}" for s, share in within if s.reached is None)

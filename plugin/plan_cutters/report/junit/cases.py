@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Literal, NamedTuple
 from xml.etree import ElementTree as ET
 
-from cad_io.whole import whole
+from cad_io.whole import refusal, whole
 from plan_cutters.errors import OptionError, PlanError
 
 #: What XML 1.0 cannot hold, not even as a reference: controls, halves of surrogate pairs and two that are no characters.
@@ -101,7 +101,7 @@ def check(path: str | None) -> None:
     Raises
     ------
     OptionError
-        It is no name of a file, or a folder.
+        It is no name of a file, a folder, or cannot be written.
     """
     if path is None:
         return
@@ -109,6 +109,8 @@ def check(path: str | None) -> None:
         raise OptionError("--junit: give the name of a file; standard output has the summary")
     if Path(path).is_dir():
         raise OptionError("--junit: is a folder; give the name of a file", file=path)
+    if why := refusal(Path(path).parent):
+        raise OptionError(f"--junit: cannot be written: {why}", file=path)
 
 
 def _text(text: str) -> str:
