@@ -37,7 +37,7 @@ from cad_io.errors import WriteError
 from cad_io.kernel import edges_of, explore, faces, shape_map, silence, translated
 from cad_io.kernel.assembly import Node
 from cad_io.kernel.bodies import placed
-from cad_io.kernel.components import compound, flat
+from cad_io.kernel.components import children, compound, flat
 from cad_io.split.pieces import Piece, Split
 from cad_io.whole import whole
 from cad_io.write.canonical import canonical
@@ -247,12 +247,8 @@ class _Document:
             copy.Perform(whole, False, False)
             whole = copy.Shape()
             images.append(copy.ModifiedShape)
-        if not ShapeCustom.DirectFaces_s(whole).IsSame(whole):
-            # STEP has no left-handed surfaces, as FreeCAD makes them: the kernel would replace them, and lose names on the way.
-            turned = BRepTools_Modifier(whole)
-            turned.Perform(ShapeCustom_DirectModification())
-            whole = turned.ModifiedShape(whole)
-            images.append(turned.ModifiedShape)
+        whole, direct = _right_handed(whole)
+        images.append(direct)
         for face in _unplaced(whole):
             self.written.Add(face)
         label = self.shapes.AddShape(whole, False)
@@ -342,6 +338,26 @@ def _exact(shape: Any) -> bool:
     """Whether a face, or any face of a shape, has a surface and a border: others are not written as advanced faces."""
     faces = (TopoDS.Face_s(face) for face in explore(shape, TopAbs_FACE))
     return any(BRep_Tool.Surface_s(face) is not None and edges_of(face) for face in faces)
+
+
+def _right_handed(whole: Any) -> tuple[Any, Callable[[Any], Any]]:
+    """Of a compound without a location: the same without left-handed surfaces, and what gives the image of a shape in it.
+
+    STEP has no such surfaces, which FreeCAD makes: the kernel would replace them, and lose names on the way.
+    """
+    # The kernel crashes on a face without a surface: members that hold one stay as they are.
+    members = [(m, all(BRep_Tool.Surface_s(face) is not None for face in faces(m))) for m in children(whole)]
+    exact = compound([m for m, turns in members if turns])
+    if ShapeCustom.DirectFaces_s(exact).IsSame(exact):
+        return whole, lambda shape: shape
+    turned = BRepTools_Modifier(exact)
+    turned.Perform(ShapeCustom_DirectModification())
+    inside = shape_map(exact, TopAbs_FACE), shape_map(exact, TopAbs_SHELL)
+
+    def image(shape: Any) -> Any:
+        return turned.ModifiedShape(shape) if any(shapes.Contains(shape) for shapes in inside) else shape
+
+    return compound([turned.ModifiedShape(m) if turns else m for m, turns in members]), image
 
 
 def _unplaced(shape: Any) -> Iterator[Any]:

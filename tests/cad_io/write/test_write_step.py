@@ -32,6 +32,7 @@ from cad_io.kernel.components import compound
 from cad_io.part import Part
 from cad_io.split.pieces import Split, split
 from cad_io.write import write_step
+from tests.support.cad_parts import ball, triangulated
 from tests.support.split_parts import GREEN, GREY, RED, block, labels, largest_bspline, patch
 
 COLOURS = {0: RED, 1: GREEN, -1: GREY}
@@ -307,6 +308,21 @@ def test_left_handed_surfaces_keep_names_and_colours(tmp_path, kind):
     shape, back = read_back(tmp_path / "part.step")
     assert same(back, expected(found))
     assert BRepCheck_Analyzer(shape).IsValid()
+
+
+@pytest.mark.parametrize("mirrored", [False, True])
+def test_a_body_of_triangles_beside_one_with_surfaces(tmp_path, mirrored):
+    """The kernel crashes where it looks for left-handed surfaces in a face that has no surface at all."""
+    solid, mirror = BRepPrimAPI_MakeCylinder(12, 6).Solid(), gp_Trsf()
+    mirror.SetMirror(gp_Ax2(gp_Pnt(), gp_Dir(1, 0, 0)))
+    beside = BRepBuilderAPI_Transform(solid, mirror, True).Shape() if mirrored else solid
+    assert ShapeCustom.DirectFaces_s(beside).IsSame(beside) != mirrored
+    found = split(Part(compound([beside, triangulated(ball(at=(50, 0, 0)))])), [])
+    write_step(found, tmp_path / "part.step", style, product="part")
+    text = (tmp_path / "part.step").read_text()
+    assert sorted(re.findall(r"ADVANCED_FACE\s*\('([^']*)'", text)) == ["F1_grey", "F2_grey", "F3_grey"]
+    back = read_part(tmp_path / "part.step").faces
+    assert [face.unjudged is None for face in back] == [True, True, True, False]
 
 
 def test_a_name_that_the_kernel_loses_is_a_fault(halves, tmp_path, monkeypatch):
