@@ -84,8 +84,8 @@ def test_a_word_with_its_holder_is_a_word():
 
 @pytest.mark.parametrize(
     ("word", "said"),
-    [("D12L80F90", "cutter D12L80F90"), ("D12L80HD8L30", "D12L80HD8L30"), ("R6L80F90", "cutter R6L80F90"),
-     ("D12L80Her16", "(F30S10)"), ("R6L80Her16", "(F30S5)")],
+    [("D12L80F90", "cutter 'D12L80F90': it is 80 mm long"), ("D12L80HD8L30", "D12L80HD8L30"),
+     ("R6L80F90", "cutter 'R6L80F90': it is 80 mm long"), ("D12L80Her16", "(F30S10)"), ("R6L80Her16", "(F30S5)")],
 )  # fmt: skip
 def test_what_cannot_exist_is_told_in_the_word_that_was_given(word, said):
     with pytest.raises(CutterError) as error:

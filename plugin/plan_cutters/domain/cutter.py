@@ -162,7 +162,8 @@ class Cutter(Dimensions):
         try:
             made = cls(**sizes, holder=held, name=spec.strip())
         except CutterError as error:
-            raise type(error)(f"cutter {spec.strip()!r}: {error.cause.removeprefix('cutter ')}") from None
+            cause = error.cause.removeprefix(f"cutter {spec.strip()}: ")
+            raise type(error)(f"cutter {spec.strip()!r}: {cause}") from None
         return replace(made, name="") if made.id.lower() == made.name.lower() else made
 
     @classmethod
