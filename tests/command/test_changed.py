@@ -16,7 +16,7 @@ from plan_cutters.command.annotations import annotations, requested
 from plan_cutters.command.changed import RULES, PartRequest, Row
 from plan_cutters.command.repository import Changed, changed, content
 from plan_cutters.errors import PlanError
-from plan_cutters.report.junit.cases import Case
+from plan_cutters.report.cases.case import Case
 from tests.support.forked import ENV
 from tests.support.junit import cases
 from tests.support.places import ROOT, real_file

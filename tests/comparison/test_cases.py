@@ -11,7 +11,7 @@ from plan_cutters.command.repository import Changed
 from plan_cutters.comparison.cases import comparison_cases
 from plan_cutters.comparison.folders import compare_folders
 from plan_cutters.comparison.plans import compare
-from plan_cutters.report.junit.cases import document
+from plan_cutters.report.cases.junit import document
 from plan_cutters.report.to_json import dumps
 from tests.support.forked import run
 from tests.support.junit import cases, outcomes

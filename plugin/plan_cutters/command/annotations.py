@@ -5,7 +5,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from plan_cutters.report.junit.cases import Case
+    from plan_cutters.report.cases.case import Case
 
 #: Words of `--annotations`: where none is given, the environment decides.
 KINDS = ("github", "none")

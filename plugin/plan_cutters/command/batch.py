@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from plan_cutters.batch.run import Terms
     from plan_cutters.batch.sources import Source
     from plan_cutters.batch.store import Store
+    from plan_cutters.report.cases.files import CaseFiles
 
 _SELF = "plan-cutters batch"
 #: Groups of options that a part of a manifest may have of its own.
@@ -56,6 +57,7 @@ _many = heading("Many parts")
     "quiet",
     out={"required": True, "help": "Folder or URL for the table of all parts, and the folder NAME-plan of each."},
     junit={"help": "Also write what became of each part as JUnit XML; a file on this machine."},
+    sarif={},
     formats={
         "help": "As of a single plan; json is always among them, for the table is made of it.  "
         f"[default: {','.join(DEFAULT_FORMATS)}, and png where the extra pictures is installed]"
@@ -109,17 +111,18 @@ def command(request: BatchRequest) -> int:
     from plan_cutters.batch.store import Store
     from plan_cutters.errors import OptionError
     from plan_cutters.files.seal import key_of
-    from plan_cutters.report.junit.cases import check as check_junit
 
-    check_junit(request.junit)
+    if (files := request.case_files) is not None:
+        files.check()
     _seen_by_workers(request)
-    if request.dry_run and request.junit is not None:
-        raise OptionError("--dry-run plans nothing, and --junit is about what was planned: leave one of them out")
+    if request.dry_run and files is not None:
+        word = "junit" if request.junit is not None else "sarif"
+        raise OptionError(f"--dry-run plans nothing, and --{word} is about what was planned: leave one of them out")
     fail_on = _fail_on(request.fail_on)
     parts = _parts(request)
     faults = [part.row for part in parts if isinstance(part, Fault)]
     if len(faults) == len(parts):
-        _report(request.junit, faults)
+        _report(files, faults)
         for row in faults:
             _progress_line(row.error or "")
         return max(_code(row, fail_on) for row in faults)
@@ -217,7 +220,7 @@ def _all(
     finally:
         board.close()
         out.end()
-    _report(request.junit, rows)
+    _report(request.case_files, rows)
     if not request.quiet:
         many = ", ".join(f"{totals[each]} {word}" for each, word in reversed(OUTCOMES.items()) if totals[each])
         terminal.show(f"{counted(totals.total(), 'part')}: {many}.", _where(out, PAGE))
@@ -232,14 +235,13 @@ def _where(out: "Store", page: str) -> str:
     return f"The table is {out.root_url}/{page}: copy the folder to this machine to open it, or give --out a folder."
 
 
-def _report(junit: str | None, rows: "Sequence[PartRow]") -> None:
+def _report(files: "CaseFiles | None", rows: "Sequence[PartRow]") -> None:
     """Write the test cases of the parts, where a file for them is named."""
-    if junit is None:
+    if files is None:
         return
     from plan_cutters.batch.cases import part_case
-    from plan_cutters.report.junit.cases import write
 
-    write(junit, _SELF, map(part_case, sorted(rows, key=lambda row: row.name)))
+    files.write(_SELF, map(part_case, sorted(rows, key=lambda row: row.name)))
 
 
 def _foreseen(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms") -> int:

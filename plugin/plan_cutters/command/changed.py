@@ -34,8 +34,8 @@ if TYPE_CHECKING:
 
 _SELF = "plan-cutters changed"
 #: Options of a plan that this command gives itself.
-_OURS = ("-o", "--out", "--formats", "--json", "--junit", "--quiet", "--postures", "--check-operations", "--help", "-h",
-         "--version")  # fmt: skip
+_OURS = ("-o", "--out", "--formats", "--json", "--junit", "--sarif", "--quiet", "--postures", "--check-operations", "--help",
+         "-h", "--version")  # fmt: skip
 _PLANNED = (0, 1, 4)
 
 _commits, _output, _rules = heading("Commits"), heading("Output"), heading("Rule")
@@ -132,7 +132,8 @@ class PartRequest:
     help="github: an ::error line for each part that fails, on standard error; none.  [default: github in a job of GitHub]",
 )
 @_output("--pictures-branch", metavar="NAME", help="Push pictures to this branch of origin and show them in the summary.")
-@options("debug", junit={"help": "Also write what became of each part as JUnit XML; what --fail-on lets pass is skipped."})
+@options("debug", junit={"help": "Also write what became of each part as JUnit XML; what --fail-on lets pass is skipped."},
+         sarif={})  # fmt: skip
 @takes(ChangedRequest)
 def command(request: ChangedRequest) -> int:
     """Find the parts (STEP, IGES, BREP) that changed since COMMIT, and show which faces and cutters were lost.
@@ -140,15 +141,15 @@ def command(request: ChangedRequest) -> int:
     Each part is planned as it was and as it is, with the same options: those after --. The summary is Markdown, on standard
     output and in the file that GITHUB_STEP_SUMMARY names.
     """
-    from plan_cutters.report.junit.cases import check, write
-
     for word in request.plan_options:
         if word.partition("=")[0] in _OURS or re.match("-o.", word):
             raise OptionError(f"{word} cannot stand after --: this command gives it itself")
     base = request.base or (f"origin/{ref}" if (ref := os.environ.get("GITHUB_BASE_REF")) else "")
     if not base:
         raise OptionError("compare with which commit? give --base, as --base origin/main")
-    check(request.junit)
+    files = request.case_files
+    if files is not None:
+        files.check()
     require_temporary()
     began, head, parts = changed(base, None if request.staged else request.head)
     out = Path(request.out)
@@ -166,8 +167,8 @@ def command(request: ChangedRequest) -> int:
     text, job = (_summary(rows, request.fail_on, failing, links, began, at) for at in ("", _artifacts()))
     _hand_on(rows, out, text, job, failing)
     cases = [(row.part.name, [*row_cases(row, request.fail_on)]) for row in rows]
-    if request.junit is not None:
-        write(request.junit, _SELF, [case for _, each in cases for case in each])
+    if files is not None:
+        files.write(_SELF, [case for _, each in cases for case in each])
     for line in annotations(cases) if requested(request.annotations) else ():
         error(line)
     for row in rows:

@@ -9,7 +9,7 @@ from plan_cutters.command.repository import Changed
 
 if TYPE_CHECKING:
     from plan_cutters.comparison.model import PlanDifference
-    from plan_cutters.report.junit.cases import Case
+    from plan_cutters.report.cases.case import Case
 
 #: Rules by which the command fails, each one stricter than the one before it.
 RULES = ("none", "lost", "unreachable", "not-comparable")
@@ -43,7 +43,7 @@ def row_cases(row: Row, rule: str) -> "Iterator[Case]":
     """The test cases of a part; what the rule lets pass is skipped, so that the report agrees with the exit code."""
     from plan_cutters.comparison.cases import difference_cases
     from plan_cutters.plan_file.numbers import listed
-    from plan_cutters.report.junit.cases import Case
+    from plan_cutters.report.cases.case import Case
 
     name, at = row.part.name, RULES.index(rule)
 

@@ -17,8 +17,8 @@ from cad_io.errors import CadIoError
 from plan_cutters.command import help_groups, terminal
 from plan_cutters.command.codes import CODES, USAGE, ended, guarded, interrupt, invoked, keep_interrupts
 from plan_cutters.command.entry import SUBCOMMANDS
-from plan_cutters.command.junit_file import JUnitFile
 from plan_cutters.command.option_groups import EXAMPLES, options
+from plan_cutters.command.part_cases import PartCases
 from plan_cutters.command.piped import spooled
 from plan_cutters.command.request import PlanRequest, takes
 from plan_cutters.command.values import File
@@ -57,7 +57,7 @@ def command(request: PlanRequest) -> int:
 
         return checked(parts[0], request.check_operations, requested, quiet=request.quiet, read_timeout=request.read_timeout)
     codes = []
-    junit = JUnitFile(request.junit, parts) if request.junit is not None else None
+    cases = _part_cases(request)
     outs = folders(request)
     since: float | None = began()
     done, excluded = assignment().done, assignment().excluded
@@ -65,12 +65,12 @@ def command(request: PlanRequest) -> int:
         if i < done:
             continue
         out = outs[i] if outs else None
-        code, line = guarded(partial(one_part, part, out, requested, request, since, excluded, junit), request.debug)
+        code, line = guarded(partial(one_part, part, out, requested, request, since, excluded, cases), request.debug)
         since, excluded = None, {}
         codes.append(code)
         report("done", str(code))
-        if line and junit is not None:
-            junit.failed(line, part)
+        if line and cases is not None:
+            cases.failed(line, part)
         if line:
             terminal.error(f"{part}: {line}" if len(parts) > 1 and not request.quiet else line)
         elif len(parts) > 1 and not request.quiet:
@@ -78,8 +78,8 @@ def command(request: PlanRequest) -> int:
         if code == INTERRUPTED:
             break
     if not is_child():
-        if junit is not None:
-            junit.write()
+        if cases is not None:
+            cases.write()
         terminal.all_shown()
     return max(codes)
 
@@ -108,6 +108,11 @@ def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
         sys.stdout.flush()
         sys.stderr.flush()
     os._exit(code)
+
+
+def _part_cases(request: PlanRequest) -> PartCases | None:
+    """What gathers test cases of the parts, where a file for them is requested."""
+    return None if (files := request.case_files) is None else PartCases(files, request.parts)
 
 
 def load() -> None:
@@ -146,8 +151,8 @@ def _watched(words: list[str], name: str) -> int:
     try:
         requested, faults = check(request)
     except CadIoError as unread:
-        if request.junit is not None:
-            JUnitFile(request.junit, request.parts).write(str(unread))
+        if (cases := _part_cases(request)) is not None:
+            cases.write(str(unread))
         raise
     if not can_supervise():
         if request.timeout is not None:
@@ -160,7 +165,7 @@ def _watched(words: list[str], name: str) -> int:
         terminal.error(f"plan-cutters: {fault}; the other parts are planned")
     memory = default_memory() if request.memory is None else int(request.memory * 1e9)
     display.stage("start")
-    display.junit = junit = JUnitFile(request.junit, request.parts) if request.junit is not None else None
+    display.part_cases = cases = _part_cases(request)
     try:
         code = supervised(
             words,
@@ -177,13 +182,13 @@ def _watched(words: list[str], name: str) -> int:
         display.clear()
         code = without_models(stopped, request)
     except Supervised as stopped:
-        if junit is not None:
-            junit.failed(str(stopped))
-            junit.write()
+        if cases is not None:
+            cases.failed(str(stopped))
+            cases.write()
         raise
     finally:
         display.clear()
-    if junit is not None:
-        junit.write("interrupted" if code == INTERRUPTED else "not planned")
+    if cases is not None:
+        cases.write("interrupted" if code == INTERRUPTED else "not planned")
     terminal.all_shown()
     return code

@@ -89,7 +89,8 @@ def command(request: DiffRequest) -> int:
                 raise PlanError("no such file or folder", file=path)
     from plan_cutters.comparison.cases import COMPARABLE, comparison_cases
     from plan_cutters.comparison.folders import compare_folders
-    from plan_cutters.report.junit.cases import Case, check, write
+    from plan_cutters.report.cases.case import Case
+    from plan_cutters.report.cases.files import CaseFiles
 
     if request.as_json and request.as_markdown:
         raise OptionError("--json and --markdown both write standard output: give one of them")
@@ -97,18 +98,20 @@ def command(request: DiffRequest) -> int:
     for word in despite:
         if word not in requested_words():
             raise OptionError(f"--despite {word!r} is not known; give some of {','.join(requested_words())}")
-    check(request.junit)
+    files = None if request.junit is None else CaseFiles(request.junit)
+    if files is not None:
+        files.check()
     if request.out and (why := refusal(request.out)):
         raise OptionError(f"cannot write there ({why}); give another folder with -o", file=request.out)
     old, new = Path(request.old), Path(request.new)
     try:
         comparison = compare_folders(old, new, slack=request.slack / 100.0, despite=despite)
     except PlanError as fault:
-        if request.junit is not None:
-            write(request.junit, _SELF, [Case(request.new, COMPARABLE, "error", "unread", str(fault))])
+        if files is not None:
+            files.write(_SELF, [Case(request.new, COMPARABLE, "error", "unread", str(fault))])
         raise
-    if request.junit is not None:
-        write(request.junit, _SELF, comparison_cases(comparison))
+    if files is not None:
+        files.write(_SELF, comparison_cases(comparison))
     made = _pages(old, new, comparison, Path(request.out)) if request.out else {}
     if request.as_json:
         hand_out(comparison.model_dump_json(indent=2) + "\n")

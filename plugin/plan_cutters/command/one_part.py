@@ -21,7 +21,7 @@ from plan_cutters.plan_file.words.names import called
 from plan_cutters.workers.assignment import INTERRUPTED, assignment, is_child, report, report_work
 
 if TYPE_CHECKING:
-    from plan_cutters.command.junit_file import JUnitFile
+    from plan_cutters.command.part_cases import PartCases
     from plan_cutters.command.request import PlanRequest
     from plan_cutters.options import Options
     from plan_cutters.plan_file.model import Plan
@@ -36,12 +36,12 @@ def one_part(
     request: "PlanRequest",
     began: float | None = None,
     omitted: Mapping[int, str] | None = None,
-    junit: "JUnitFile | None" = None,
+    part_cases: "PartCases | None" = None,
 ) -> tuple[int, str]:
     """Plan one part into a folder, None for none; exit code and a line about it.
 
     `began`: when the command did, for the first part (`time.monotonic`); `omitted`: why faces are not to be worked on, by number;
-    `junit`: takes the test cases of the plan, as soon as its verdicts stand.
+    `part_cases`: takes the test cases of the plan, as soon as its verdicts stand.
     """
     from plan_cutters.errors import TooManySamplesError
     from plan_cutters.report.folder import DEFAULT_FORMATS, Staging, ended, file_name, read_formats, write_all, write_unfinished
@@ -52,8 +52,8 @@ def one_part(
     report("part", part)
     staging = Staging(out, lambda folder: report("staging", str(folder))) if out else None
     watch = ProgressListener(out, options, request, began)
-    if junit is not None:
-        watch.judged = partial(junit.planned, part)
+    if part_cases is not None:
+        watch.judged = partial(part_cases.planned, part)
 
     def stands(result: "Result") -> None:
         if staging and write_unfinished(result, formats, staging, clock):

@@ -232,6 +232,7 @@ _OPTIONS = (
         help="Also write a report for continuous integration (JUnit XML): a test case for each face and cutter, of many parts "
         "for each part.",
     ),
+    _output("--sarif", type=File("FILE"), help="Also write what fails, or is not sure, as findings for code scanning (SARIF)."),
     _output(
         "--units",
         brief="Unit of lengths in the summary and on the page.",

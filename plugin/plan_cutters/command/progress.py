@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from plan_cutters.command import terminal
-from plan_cutters.command.junit_file import JUnitFile
+from plan_cutters.command.part_cases import PartCases
 from plan_cutters.domain.answer_kinds import KINDS
 from plan_cutters.files.terminal_text import clean
 from plan_cutters.plan_file.numbers import part_done
@@ -79,20 +79,20 @@ class Display:
         self.bar: Any = None
         self.task: Any = None
         #: Gathers what came of each part, where a report on them is requested.
-        self.junit: JUnitFile | None = None
+        self.part_cases: PartCases | None = None
 
     def begins(self, part: str) -> None:
         self.judged = {}
-        if self.junit is not None:
-            self.junit.part = part
+        if self.part_cases is not None:
+            self.part_cases.part = part
 
     def cases(self, text: str) -> None:
-        if self.junit is not None:
-            self.junit.handed(text)
+        if self.part_cases is not None:
+            self.part_cases.handed(text)
 
     def failed(self, line: str, part: str | None = None) -> None:
-        if self.junit is not None:
-            self.junit.failed(line, part)
+        if self.part_cases is not None:
+            self.part_cases.failed(line, part)
 
     def stage(self, name: str) -> None:
         self.name, self.share, self.doing = name, None, ""

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from plan_cutters.domain.holder import Holder
     from plan_cutters.library.records import Library
     from plan_cutters.option_types import PlanOptions
+    from plan_cutters.report.cases.files import CaseFiles
 
 #: A setup: a direction of the part, a setup file, or `auto`.
 Setup = tuple[float, ...] | str
@@ -114,7 +115,24 @@ class PlanningRequest(JudgingRequest):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class PlanRequest(PlanningRequest):
+class _Reported:
+    """Files of test cases."""
+
+    junit: str | None
+    sarif: str | None
+
+    @property
+    def case_files(self) -> "CaseFiles | None":
+        """Those that are requested, if any is."""
+        if self.junit is None and self.sarif is None:
+            return None
+        from plan_cutters.report.cases.files import CaseFiles
+
+        return CaseFiles(self.junit, self.sarif)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class PlanRequest(PlanningRequest, _Reported):
     """Plans of some parts: `plan-cutters`."""
 
     parts: tuple[str, ...]
@@ -123,7 +141,6 @@ class PlanRequest(PlanningRequest):
     process: str | None
     out: str | None
     json_out: str | None
-    junit: str | None
     verbose: bool
     verdicts: str | None
     fail_under: float | None
@@ -132,12 +149,11 @@ class PlanRequest(PlanningRequest):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class BatchRequest(PlanningRequest):
+class BatchRequest(PlanningRequest, _Reported):
     """Plans of many parts on workers: `plan-cutters batch`."""
 
     sources: tuple[str, ...]
     out: str
-    junit: str | None
     workers: int | None
     timeout_part: float | None
     limit_memory: float | None
@@ -205,7 +221,7 @@ class DiffRequest:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class ChangedRequest:
+class ChangedRequest(_Reported):
     """Parts that changed in a repository: `plan-cutters changed`."""
 
     #: Those of a plan, as words of its command line.
@@ -215,7 +231,6 @@ class ChangedRequest:
     staged: bool
     fail_on: str
     out: str
-    junit: str | None
     annotations: str | None
     cache: str | None
     pictures_branch: str | None

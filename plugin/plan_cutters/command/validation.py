@@ -85,10 +85,8 @@ def _words(request: PlanRequest) -> None:
     if request.formats is not None:
         read_formats(request.formats)
     _json_out(request)
-    if request.junit is not None:
-        from plan_cutters.report.junit.cases import check as check_junit
-
-        check_junit(request.junit)
+    if (files := request.case_files) is not None:
+        files.check()
     if request.out == "":
         raise OptionError("-o: the folder has no name")
     if "" in request.parts:
@@ -174,7 +172,9 @@ def _plans_nothing(request: PlanRequest) -> None:
         word = f"--{name.replace('_', '-')}"
         if any(str(each).lower() == "auto" for each in request.setup):
             raise OptionError(f"--setup auto plans what it proposes, and {word} plans nothing: name the setup")
-        planning = [each for each in ("cluster", "verdicts", "verdicts_key", "junit") if getattr(request, each) is not None]
+        planning = [
+            each for each in ("cluster", "verdicts", "verdicts_key", "junit", "sarif") if getattr(request, each) is not None
+        ]
         if planning:
             one = planning[0].replace("_", "-")
             raise OptionError(f"--{one} is about planning, and {word} plans nothing: leave one of them out")

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 from plan_cutters.comparison.model import Comparison, PlanDifference
 from plan_cutters.comparison.wording import CUTTERS, apart, called, cutter_rows, face_rows, headline
-from plan_cutters.report.junit.cases import Case
+from plan_cutters.report.cases.case import Case
 
 #: Name of the case that is about two plans as wholes.
 COMPARABLE = "comparable"

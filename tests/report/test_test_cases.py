@@ -8,8 +8,10 @@ from plan_cutters.command.codes import code_of
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.plan_file.model import MissingEntry
 from plan_cutters.plan_file.process import ProcessEntry, RemainingEntry
-from plan_cutters.report.junit.cases import Case, check, document, write
-from plan_cutters.report.junit.plan import PROCESS, plan_cases
+from plan_cutters.report.cases.case import Case
+from plan_cutters.report.cases.files import CaseFiles
+from plan_cutters.report.cases.junit import document
+from plan_cutters.report.cases.plan import PROCESS, plan_cases
 from tests.support.junit import cases, outcomes
 from tests.support.plan_files import SAMPLES, cutter, face, made, verdicts
 
@@ -117,7 +119,8 @@ def test_markup_is_escaped_and_what_xml_cannot_hold_is_replaced():
 
 def test_the_file_is_written_whole_or_not_at_all(tmp_path):
     path = tmp_path / "reports/junit.xml"
-    write(path, "s", [Case("a", "b")])
+    files = CaseFiles(str(path))
+    files.write("s", [Case("a", "b")])
     before = path.read_bytes()
     assert cases(before)[0].name == "b"
 
@@ -126,14 +129,20 @@ def test_the_file_is_written_whole_or_not_at_all(tmp_path):
         raise RuntimeError
 
     with pytest.raises(RuntimeError):
-        write(path, "s", broken())
+        files.write("s", broken())
     assert path.read_bytes() == before
     assert [each.name for each in path.parent.iterdir()] == ["junit.xml"]
     with pytest.raises(PlanError, match="cannot be written"):
-        write(path / "below.xml", "s", [])
+        CaseFiles(str(path / "below.xml")).write("s", [])
 
 
 @pytest.mark.parametrize("name", ["-", "", "."])
-def test_what_is_no_file_is_refused_before_the_work(name):
-    with pytest.raises(OptionError, match="--junit"):
-        check(name)
+@pytest.mark.parametrize("word", ["junit", "sarif"])
+def test_what_is_no_file_is_refused_before_the_work(word, name):
+    with pytest.raises(OptionError, match=f"--{word}"):
+        CaseFiles(**{word: name}).check()
+
+
+def test_two_forms_of_one_file_are_refused():
+    with pytest.raises(OptionError, match="name one file"):
+        CaseFiles("a", "./a").check()

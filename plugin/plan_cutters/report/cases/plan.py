@@ -12,7 +12,7 @@ from plan_cutters.plan_file.process import UNJUDGED_CAUSE
 from plan_cutters.plan_file.shares import FaceVerdicts, by_share, unreached
 from plan_cutters.plan_file.words.cutters import called, main_reason, reason
 from plan_cutters.plan_file.words.names import short_names
-from plan_cutters.report.junit.cases import Case, Outcome
+from plan_cutters.report.cases.case import Case, Outcome
 
 #: Name of the case that is about all steps together.
 PROCESS = "process"

@@ -1,4 +1,4 @@
-"""`--junit` of a plan: cases of each part come from the process that plans it, and the file is written when all have ended."""
+"""`--junit` and `--sarif` of a plan: cases of each part come from the process that plans it, and are written when all ended."""
 
 import json
 from collections.abc import Sequence
@@ -8,30 +8,32 @@ from plan_cutters.workers.assignment import is_child, report
 
 if TYPE_CHECKING:
     from plan_cutters.plan_file.model import Plan
-    from plan_cutters.report.junit.cases import Case
+    from plan_cutters.report.cases.case import Case
+    from plan_cutters.report.cases.files import CaseFiles
 
 _SUITE = "plan-cutters"
 
 
-class JUnitFile:
+class PartCases:
     """Gathers what came of each part.
 
     Parameters
     ----------
-    path : str
+    files : CaseFiles
+        Where they are written.
     parts : sequence of str
         All that were requested: one of which nothing is known when the file is written is an error.
     """
 
-    def __init__(self, path: str, parts: Sequence[str]) -> None:
-        self.path, self.parts = path, parts
+    def __init__(self, files: "CaseFiles", parts: Sequence[str]) -> None:
+        self.files, self.parts = files, parts
         self.part = ""
         self.cases: dict[str, list[Case]] = {}
         self.faults: dict[str, str] = {}
 
     def planned(self, part: str, plan: "Plan", code: int) -> None:
         """Take the cases of a plan, or hand them to the process that gathers them."""
-        from plan_cutters.report.junit.plan import plan_cases
+        from plan_cutters.report.cases.plan import plan_cases
 
         cases = plan_cases(plan, code, part)
         if is_child():
@@ -41,7 +43,7 @@ class JUnitFile:
 
     def handed(self, text: str) -> None:
         """Take the cases of the part that began last."""
-        from plan_cutters.report.junit.cases import Case
+        from plan_cutters.report.cases.case import Case
 
         self.cases[self.part] = [Case(*each) for each in json.loads(text)]
 
@@ -52,18 +54,18 @@ class JUnitFile:
         self.faults.setdefault(self.part if part is None else part, line.removeprefix("plan-cutters: "))
 
     def write(self, rest: str = "not planned") -> None:
-        """Write the file; `rest`: why parts of which nothing is known have no plan.
+        """Write the files; `rest`: why parts of which nothing is known have no plan.
 
         Raises
         ------
         PlanError
-            It cannot be written.
+            One cannot be written.
         """
-        from plan_cutters.report.junit.cases import Case, write
-        from plan_cutters.report.junit.plan import PROCESS
+        from plan_cutters.report.cases.case import Case
+        from plan_cutters.report.cases.plan import PROCESS
 
         cases: list[Case] = []
         for part in self.parts:
             fault = Case(part, PROCESS, "error", "not_planned", self.faults.get(part, rest))
             cases += self.cases.get(part, [fault])
-        write(self.path, _SUITE, cases)
+        self.files.write(_SUITE, cases)
