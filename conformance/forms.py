@@ -24,7 +24,7 @@ from typing import Protocol
 
 import numpy as np
 
-from conformance.tool import Floats, Piece, local, margin
+from conformance.tool import Floats, Piece, margin
 
 #: How often a grid of angles shrinks to a quarter about its best.
 _ZOOMS = 11
@@ -212,21 +212,6 @@ def box(name: str, low: tuple[float, float, float], high: tuple[float, float, fl
 def ball(name: str, centre: tuple[float, float, float], radius: float) -> Hull:
     """Return a ball of material."""
     return Hull(name, (centre,), radius)
-
-
-@dataclass(frozen=True)
-class VoidBall(_Gapped):
-    """The material outside a ball, a hollow that the tool works in."""
-
-    name: str
-    centre: tuple[float, float, float]
-    radius: float
-
-    def gap(self, piece: Piece, tip: Floats, axis: Floats) -> Floats:
-        """Return the radius less the farthest point of the piece."""
-        r, h = local(np.broadcast_to(np.array(self.centre, float), tip.shape), tip, axis)
-        far = np.maximum(np.hypot(h - piece.h0, r + piece.r0), np.hypot(h - piece.h1, r + piece.r1))
-        return self.radius - far - piece.rho
 
 
 @dataclass(frozen=True)

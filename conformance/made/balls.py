@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from conformance.forms import VoidBall, ball, box
-from conformance.made.part import Answer, MadePart, Setup, frame
-from conformance.made.patches import Inner, boxes_round, descent, inner, placed, revolved_arc, revolved_line, walls_of
+from conformance.forms import ball, box
+from conformance.made.part import Answer, MadePart, Setup, directions, frame
+from conformance.made.patches import Inner, boxes_round, descent, inner, placed, revolved_arc, revolved_line
 from conformance.tool import Floats, Tool
 
 _FLAT, _BALL, _BULL = Tool.flat(8.0, 40.0), Tool.ball(6.0, 40.0), Tool.flat(8.0, 40.0, corner=2.0)
@@ -152,48 +152,6 @@ SPHERE_POCKET = MadePart(
 )
 
 
-# A hollow ball without an opening: the tool works within it, as a probe or a short head does.
-_RV, _LV = 40.0, 50.0
-_SHORT = (Tool.flat(10.0, _LV), Tool.ball(8.0, _LV), Tool.flat(10.0, 40.0, corner=3.0))
-
-
-def _hollow_contacts(rng: np.random.Generator, n: int) -> tuple[Floats, Floats]:
-    normal = _directions(rng, n, -1.0, 1.0)
-    return -_RV * normal, normal
-
-
-HOLLOW_BALL = MadePart(
-    "hollow_ball",
-    "balls",
-    "Whole spherical bowl: a hollow ball in a block",
-    """The void is a whole ball of radius Rb = 40, and a tool of length L has to stay inside. A flat end at tilt t is free of its
-    own circle when sin t >= R / Rb. The rim of its top on the side of the contact is the end of a chord from the contact along the axis, and that
-    chord has length 2 Rb cos t: free when L <= 2 Rb cos t, whatever R. Both circles inside, so the cylinder is (the ball is convex).""",
-    lambda: _block(50.0, -50.0, 50.0).cut(_ball(_RV, 0.0)),
-    (VoidBall("hollow", (0.0, 0.0, 0.0), _RV), *walls_of(50.0)),
-    _SHORT,
-    _hollow_contacts,
-    answers=(
-        *(
-            Answer(
-                "free_tilts",
-                [[float(np.degrees(np.arcsin(5.0 / _RV))), float(np.degrees(np.arccos(_LV / (2 * _RV))))]],
-                "sin t = R / Rb; cos t = L / (2 Rb)",
-                tool=_SHORT[0].name,
-                given=placed((0.0, 0.0, -_RV), _UP, (x, y, 0.0)),
-            )
-            for x, y in ((1.0, 0.0), (0.0, -1.0))
-        ),
-        Answer(
-            "largest_radius",
-            _RV * float(np.sin(np.radians(20.0))),
-            "R = Rb sin t, t = 20 deg",
-            given=placed((0.0, 0.0, -_RV), _UP, axis=list(_at(20.0)[0]), end="flat", length=40.0),
-        ),
-    ),
-)
-
-
 # Two balls that overlap, with a sharp concave circle between them.
 _RT, _DT = 15.0, 22.0
 _CUT = float(np.arcsin(0.5 * _DT / _RT))
@@ -314,13 +272,15 @@ LENS = MadePart(
             2,
             "the poles have opposite normals; each cap's normals are within 37 deg of its pole's",
             tool=_BALL.name,
-            given={
-                "axes": [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]],
-                "places": [placed(_on(_RL, q, -_CL), _at(q)[0]) for q in (0.0, 20.0, 35.0)]
-                + [placed((p[0], 0.0, -p[2]), (n[0], 0.0, -n[2])) for p, n in ((_on(_RL, q, -_CL), _at(q)[0]) for q in (0.0, 20.0, 35.0))],
-            },
+            given=directions(
+                (_UP, (0.0, 0.0, -1.0)),
+                [(_on(_RL, q, -_CL), _at(q)[0]) for q in (0.0, 20.0, 35.0)]
+                + [((p[0], 0.0, -p[2]), (n[0], 0.0, -n[2])) for p, n in ((_on(_RL, q, -_CL), _at(q)[0]) for q in (0.0, 20.0, 35.0))],
+                89.0,
+                (0, 3),
+            ),
         ),
     ),
 )
 
-PARTS = (HEMISPHERE, SPHERE_POCKET, HOLLOW_BALL, TWO_BALLS, LENS)
+PARTS = (HEMISPHERE, SPHERE_POCKET, TWO_BALLS, LENS)

@@ -4,26 +4,14 @@ import numpy as np
 
 from conformance.forms import box, half_space
 from conformance.made.blocks import cuboid, extruded, on_lines, on_rectangles, prism, rectangle
-from conformance.made.part import Answer, MadePart, Setup
-from conformance.made.planar import along, at, ball_end_until, ball_from, ball_until, unit
+from conformance.made.part import Answer, MadePart, Setup, directions
+from conformance.made.planar import along, at, ball_end_until, ball_from, ball_until
 from conformance.tool import Floats, Tool
 
 _X, _Y, _Z = (1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)
 _BACK, _ASIDE, _DOWN = (-1.0, 0.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0)
 _FLAT, _BALL, _BULL = Tool.flat(8.0, 40.0), Tool.ball(6.0, 40.0), Tool.flat(8.0, 40.0, corner=1.5)
 Vector = tuple[float, float, float]
-
-
-def _directions(axes: tuple[Vector, ...], contacts: tuple[tuple[Vector, Vector], ...], most: float, apart: tuple[int, ...]) -> dict[str, object]:
-    """Return what a question about directions states: `axes` that do, `contacts` and their normals, the largest tilt (deg) from
-    the normal that counts, and which contacts, by their numbers, need a direction each: no direction serves two of them."""
-    return {
-        "axes": [unit(a) for a in axes],
-        "contacts": [[float(x) for x in c] for c, _ in contacts],
-        "normals": [unit(n) for _, n in contacts],
-        "max_tilt_deg": most,
-        "apart": list(apart),
-    }
 
 
 _BLOCK = ((-10.0, -10.0, 0.0), (10.0, 10.0, 30.0))
@@ -127,13 +115,13 @@ CUBE = MadePart(
     (_FLAT, _BALL, _BULL),
     on_rectangles(((10, -9, -9), (10, 9, 9), _X), ((-10, -9, -9), (-10, 9, 9), _BACK), ((-9, 10, -9), (9, 10, 9), _Y), ((-9, -9, 10), (9, 9, 10), _Z)),
     answers=(
-        Answer("orientations", 2, "opposite faces need a direction each", _FLAT.name, given=_directions(((1, 1, 1), (-1, -1, 1)), _FIVE, 89.0, (0, 1))),
+        Answer("orientations", 2, "opposite faces need a direction each", _FLAT.name, given=directions(((1, 1, 1), (-1, -1, 1)), _FIVE, 89.0, (0, 1))),
         Answer(
             "orientations",
             3,
             "3 cos(50)^2 > 1: two faces a direction at most",
             _BALL.name,
-            given=_directions(((1, 1, 0), (-1, -1, 0), (0, 0, 1)), _FIVE, 50.0, ()),
+            given=directions(((1, 1, 0), (-1, -1, 0), (0, 0, 1)), _FIVE, 50.0, ()),
         ),
     ),
 )
@@ -150,7 +138,7 @@ BOTH_SIDES = MadePart(
     (box("plate", *_SQUARE),),
     (_BALL, _FLAT, _BULL),
     on_rectangles(((-25, -25, 0), (25, 25, 0), _Z), ((-25, -25, -10), (25, 25, -10), _DOWN)),
-    answers=(Answer("orientations", 2, "opposite normals", _BALL.name, given=_directions((_Z, _DOWN), _SIDES, 89.0, (0, 1))),),
+    answers=(Answer("orientations", 2, "opposite normals", _BALL.name, given=directions((_Z, _DOWN), _SIDES, 89.0, (0, 1))),),
 )
 
 _ANGLES = np.radians([90.0, 210.0, 330.0])
@@ -180,7 +168,7 @@ THREE_SIDES = MadePart(
     _on_facets,
     answers=(
         Answer(
-            "orientations", 2, "the normals add up to zero", _BALL.name, given=_directions((tuple(-x for x in _FACETS[0][1]), _FACETS[0][1]), _FACETS, 89.0, ())
+            "orientations", 2, "the normals add up to zero", _BALL.name, given=directions((tuple(-x for x in _FACETS[0][1]), _FACETS[0][1]), _FACETS, 89.0, ())
         ),
     ),
 )
@@ -244,7 +232,7 @@ OPPOSED_SLOTS = MadePart(
             2,
             "the mouths are on opposite sides",
             _THIN.name,
-            given=_directions(((-np.sin(_PHI), 0.0, np.cos(_PHI)), (np.sin(_PHI), 0.0, np.cos(_PHI))), _BOTTOMS, 89.0, (0, 1)),
+            given=directions(((-np.sin(_PHI), 0.0, np.cos(_PHI)), (np.sin(_PHI), 0.0, np.cos(_PHI))), _BOTTOMS, 89.0, (0, 1)),
         ),
         Answer("free_tilts", [[ball_from(_NEAR, 2.0), ball_until(_AWAY, 2.0)]], "planar.ball_from, ball_until", _THIN.name, given=at(_BOTTOMS[1][0], _Z, _X)),
         Answer(

@@ -48,6 +48,21 @@ class Answer:
     given: dict[str, Any] = field(default_factory=dict)
 
 
+def directions(axes: Sequence[Sequence[float]], contacts: Sequence[tuple[Sequence[float], Sequence[float]]], most: float, apart: Sequence[int]) -> dict[str, Any]:
+    """Return the question of an answer about orientations: `axes` that do, `contacts` with their normals, the largest tilt (deg) from the normal that counts.
+
+    `apart` are the numbers of contacts that need a direction each, for none serves two of them.
+    """
+    unit = lambda v: [float(x) for x in np.array(v, float) / np.linalg.norm(v)]
+    return {
+        "axes": [unit(a) for a in axes],
+        "contacts": [[float(x) for x in c] for c, _ in contacts],
+        "normals": [unit(n) for _, n in contacts],
+        "max_tilt_deg": most,
+        "apart": list(apart),
+    }
+
+
 @dataclass(frozen=True)
 class MadePart:
     """A part with known answers.

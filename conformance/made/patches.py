@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from conformance.forms import Material, Prism, Surface, box, half_space
+from conformance.forms import Material, Surface, box
 from conformance.tool import Floats, Piece
 
 #: A full turn with some overlap (rad), so that no least distance lies at the seam.
@@ -45,12 +45,6 @@ class Inner:
     def height(self, points: Floats) -> Floats:
         """Return 1000: nothing lies on a skin of it."""
         return np.full(len(points), _NONE)
-
-
-def walls_of(half: float) -> tuple[Prism, ...]:
-    """Return what lies outside a cube: its sides seen from within, where each nearest point of a plane is on the side."""
-    at = [tuple(float(x) for x in side * half * np.eye(3)[k]) for k in range(3) for side in (-1, 1)]
-    return tuple(half_space(f"side {i}", p, tuple(-x for x in p)) for i, p in enumerate(at))
 
 
 def revolved_line(name: str, start: Flat, end: Flat, grid: tuple[int, int], turn: Flat = TURN) -> Surface:

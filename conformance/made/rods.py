@@ -136,7 +136,7 @@ TUBE = MadePart(
             2,
             "no point deeper than the stick-out is within reach of an end: 50 < 80; 47 >= 40",
             tool=_HELD.name,
-            given={"axes": [[0.0, 0.0, 1.0], [0.0, 0.0, -1.0]], "places": [placed((_RI, 0.0, z), (-1.0, 0.0, 0.0)) for z in (5.0, 39.0, 41.0, 75.0)]},
+            given=directions(((0.0, 0.0, 1.0), (0.0, 0.0, -1.0)), [((_RI, 0.0, z), (-1.0, 0.0, 0.0)) for z in (5.0, 39.0, 41.0, 75.0)], 90.0, (0, 3)),
         ),
     ),
 )

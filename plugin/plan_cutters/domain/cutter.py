@@ -162,7 +162,7 @@ class Cutter(Dimensions):
         try:
             made = cls(**sizes, holder=held, name=spec.strip())
         except CutterError as error:
-            cause = error.cause.removeprefix(f"cutter {spec.strip()}: ")
+            cause = error.cause.removeprefix("cutter ").removeprefix(f"{spec.strip()}: ")
             raise type(error)(f"cutter {spec.strip()!r}: {cause}") from None
         return replace(made, name="") if made.id.lower() == made.name.lower() else made
 
