@@ -96,7 +96,7 @@ APART = MadePart(
     answers=(
         Answer("free_tilts", [[ball_from((8.0, _GAP), 2.0), 90.0]], "planar.ball_from, upwards", _THIN.name, given=at((0, 0, 2), _X, _Z)),
         Answer("free_tilts", [[ball_from((12.0, _GAP), 2.0), 90.0]], "planar.ball_from, downwards", _THIN.name, given=at((0, 0, 2), _X, _DOWN)),
-        Answer("largest_radius", 0.5 * _GAP, "half the gap", _THIN.name, given=along((0, 0, 2), _X, _Z)),
+        Answer("largest_radius", 0.5 * _GAP, "half the gap", given=along((0, 0, 2), _X, _Z, ball=_THIN)),
     ),
 )
 

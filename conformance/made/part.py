@@ -1,6 +1,6 @@
 """A made part: its shape, its materials in closed form, its tools and setups, and what follows."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -48,7 +48,9 @@ class Answer:
     given: dict[str, Any] = field(default_factory=dict)
 
 
-def directions(axes: Sequence[Sequence[float]], contacts: Sequence[tuple[Sequence[float], Sequence[float]]], most: float, apart: Sequence[int]) -> dict[str, Any]:
+def directions(
+    axes: Sequence[Sequence[float]], contacts: Sequence[tuple[Sequence[float], Sequence[float]]], most: float, apart: Sequence[int]
+) -> dict[str, Any]:
     """Return the question of an answer about orientations: `axes` that do, `contacts` with their normals, the largest tilt (deg) from the normal that counts.
 
     `apart` are the numbers of contacts that need a direction each, for none serves two of them.

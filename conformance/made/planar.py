@@ -10,11 +10,14 @@ contact, so the front side is the ray from the contact along the axis, and the h
 t, sin t)`.
 """
 
+from typing import Any
+
 import numpy as np
 
-from conformance.tool import Vertex
+from conformance.tool import Tool, Vertex
 
 Corner = tuple[float, float]
+Vector = tuple[float, float, float]
 
 
 def ball_until(corner: Corner, radius: float) -> float:
@@ -92,16 +95,17 @@ def holder(stickout: float, radius: float, height: float = 10.0) -> tuple[Vertex
     return ((stickout, radius), (stickout + height, radius))
 
 
-def at(contact: tuple[float, float, float], normal: tuple[float, float, float], tilts_to: tuple[float, float, float]) -> dict[str, list[float]]:
+def at(contact: Vector, normal: Vector, tilts_to: Vector) -> dict[str, list[float]]:
     """Return what a question about tilts states: contact, normal and the direction that the axis tilts to, as a unit vector."""
     return {"contact": [float(x) for x in contact], "normal": unit(normal), "lean": unit(tilts_to)}
 
 
-def along(contact: tuple[float, float, float], normal: tuple[float, float, float], axis: tuple[float, float, float]) -> dict[str, list[float]]:
-    """Return what a question about a fixed axis states."""
-    return {"contact": [float(x) for x in contact], "normal": unit(normal), "axis": unit(axis)}
+def along(contact: Vector, normal: Vector, axis: Vector, ball: Tool | None = None) -> dict[str, Any]:
+    """Return what a question about a fixed axis states; with a ball end as long as `ball`, what one about its largest radius does."""
+    end = {} if ball is None else {"end": "ball", "length": ball.length}
+    return {"contact": [float(x) for x in contact], "normal": unit(normal), "axis": unit(axis), **end}
 
 
-def unit(v: tuple[float, float, float]) -> list[float]:
+def unit(v: Vector) -> list[float]:
     """Return a direction of length 1, as a list."""
     return [float(x) for x in np.array(v, float) / np.linalg.norm(v)]

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from conformance.forms import Prism, Surface, box
-from conformance.made.part import Answer, MadePart
+from conformance.made.part import Answer, MadePart, directions
 from conformance.made.patches import descent, inner, placed, revolved_line
 from conformance.tool import Floats, Tool
 

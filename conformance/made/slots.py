@@ -37,7 +37,7 @@ SLOT = MadePart(
         ),
         Answer("free_tilts", [[0.0, ball_until((_B, _H), 3.0)]], "planar.ball_until", _BALL.name, given=at((0, 0, 0), _Z, _X)),
         Answer("free_tilts", [[0.0, 90.0]], "along the slot: 2R < 12", _FLAT.name, given=at((0, 0, 0), _Z, _Y)),
-        Answer("largest_radius", (_B**2 + _H**2) / (2 * _H), "(b^2 + h^2) / 2h", _BALL.name, given=along((0, 0, 0), _Z, _Z)),
+        Answer("largest_radius", (_B**2 + _H**2) / (2 * _H), "(b^2 + h^2) / 2h", given=along((0, 0, 0), _Z, _Z, ball=_BALL)),
     ),
 )
 
@@ -135,7 +135,7 @@ DOVETAIL = MadePart(
             _FLAT.name,
             given=at((_FOOT + 9.0 * _UP[0], 0, 9.0 * _UP[2]), _IN, _UP),
         ),
-        Answer("largest_radius", float(5.0 * np.tan(_SIDE / 2)), "s tan(w / 2)", _BALL.name, given=along((_FOOT - 5.0, 0, 0), _Z, _UP)),
+        Answer("largest_radius", float(5.0 * np.tan(_SIDE / 2)), "s tan(w / 2)", given=along((_FOOT - 5.0, 0, 0), _Z, _UP, ball=_BALL)),
     ),
 )
 
@@ -165,7 +165,7 @@ THIN_GAP = MadePart(
     answers=(
         Answer("free_tilts", [[ball_from((5.0, _GAP), 2.0), 90.0]], "planar.ball_from", _THIN_BALL.name, given=at((-_GAP / 2, 0, 20), _X, _Z)),
         Answer("free_tilts", [[flat_from((5.0, _GAP), 1.5), 90.0]], "planar.flat_from", _THIN.name, given=at((-_GAP / 2, 0, 20), _X, _Z)),
-        Answer("largest_radius", 0.5 * _GAP, "half the gap", _THIN_BALL.name, given=along((-_GAP / 2, 0, 15), _X, _Z)),
+        Answer("largest_radius", 0.5 * _GAP, "half the gap", given=along((-_GAP / 2, 0, 15), _X, _Z, ball=_THIN_BALL)),
         Answer("least_stickout", _TALL, "the holder is above the plates", _HELD.name, given=along((0, 0, 0), _Z, _Z)),
     ),
 )
@@ -243,7 +243,7 @@ SHANK_IN_BORE = MadePart(
     answers=(
         Answer("free_tilts", [[0.0, end_until(_BORE, 37.0, 5.0)]], "planar.end_until of the shank", _IN_BORE.name, given=at((0, 0, 0), _Z, _X)),
         Answer("free_tilts", [[0.0, end_until(_BORE, 37.0, 3.0)]], "planar.end_until", _BALL.name, given=at((0, 0, 0), _Z, (3, 4, 0))),
-        Answer("largest_radius", _BORE - 3.0, "bore's radius less the distance from its axis", _BALL.name, given=along((3, 0, 0), _Z, _Z)),
+        Answer("largest_radius", _BORE - 3.0, "bore's radius less the distance from its axis", given=along((3, 0, 0), _Z, _Z, ball=_BALL)),
     ),
     axes=_steep,
 )
@@ -284,7 +284,7 @@ POCKET = MadePart(
         Answer("free_tilts", [[0.0, ball_until((_PY, _PZ), 3.0)]], "planar.ball_until", _DEEP_BALL.name, given=at((0, 0, 0), _Z, _Y)),
         Answer("free_tilts", [[0.0, _skew_until()]], "tan t = sqrt 2 tan q: slots._skew_until", _DEEP_BALL.name, given=at((0, 0, 0), _Z, (1, 1, 0))),
         Answer("least_stickout", _PZ, "the holder is above the pocket", _WIDE_HOLDER.name, given=along((0, 0, 0), _Z, _Z)),
-        Answer("largest_radius", min(_PX - 5.0, _PY - 9.0), "the nearest wall", _DEEP_BALL.name, given=along((5, 9, 0), _Z, _Z)),
+        Answer("largest_radius", min(_PX - 5.0, _PY - 9.0), "the nearest wall", given=along((5, 9, 0), _Z, _Z, ball=_DEEP_BALL)),
     ),
 )
 

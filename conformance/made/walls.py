@@ -97,7 +97,7 @@ CORNER_OF_THREE = MadePart(
     answers=(
         Answer("free_tilts", [[0.0, ball_end_until(12.0, 3.0, 40.0)]], "planar.ball_end_until", _BALL.name, given=at((12, 12, 0), _Z, _BACK)),
         Answer("free_tilts", [[0.0, _diagonal(12.0, 3.0, 40.0)]], "sin t = sqrt 2 sin q: walls._diagonal", _BALL.name, given=at((12, 12, 0), _Z, (-1, -1, 0))),
-        Answer("largest_radius", min(9.0, 12.0), "the nearer wall", _BALL.name, given=along((9, 12, 0), _Z, _Z)),
+        Answer("largest_radius", min(9.0, 12.0), "the nearer wall", given=along((9, 12, 0), _Z, _Z, ball=_BALL)),
     ),
 )
 
@@ -136,7 +136,7 @@ SHARP_V = MadePart(
     (_BALL, _FLAT, Tool.flat(6.0, 40.0, corner=1.0)),
     on_lines(((0, 0), (25 * _UP[0], 25 * _UP[1])), ((-25 * _UP[0], 25 * _UP[1]), (0, 0))),
     answers=(
-        Answer("largest_radius", float(10.0 * np.tan(_OPEN / 2)), "s tan(w / 2)", _BALL.name, given=along(_on_v(10.0), _V_NORMAL, _Z)),
+        Answer("largest_radius", float(10.0 * np.tan(_OPEN / 2)), "s tan(w / 2)", given=along(_on_v(10.0), _V_NORMAL, _Z, ball=_BALL)),
         Answer("free_tilts", [[0.0, _v_until(20.0, 3.0, 40.0)]], "walls._v_until", _BALL.name, given=at(_on_v(20.0), _V_NORMAL, _V_DOWN)),
         Answer(
             "free_tilts", [[0.0, 90.0]], "up the wall the axis goes away from the other", _BALL.name, given=at(_on_v(20.0), _V_NORMAL, (_UP[0], 0.0, _UP[1]))
@@ -171,7 +171,7 @@ RIB = MadePart(
         ),
         Answer("free_tilts", [[0.0, flat_until((8.0, _RIB))]], "atan(8 / 12); the heel, 9 mm, is before the wall", _NINE.name, given=at((10, 0, 0), _Z, _BACK)),
         Answer("free_tilts", [[0.0, ball_until((_ACROSS, _WALLS - _RIB), 3.0)]], "planar.ball_until", _BALL.name, given=at((0, 0, _RIB), _Z, _X)),
-        Answer("largest_radius", 0.5 * (_ACROSS - 2.0), "half the way from rib to wall", _BALL.name, given=along((11, 0, 0), _Z, _Z)),
+        Answer("largest_radius", 0.5 * (_ACROSS - 2.0), "half the way from rib to wall", given=along((11, 0, 0), _Z, _Z, ball=_BALL)),
     ),
 )
 
@@ -235,7 +235,7 @@ SHELF = MadePart(
             _LONG.name,
             given=along((-_INNER, 0, 0), _Z, (float(np.sin(np.radians(60.0))), 0.0, float(np.cos(np.radians(60.0))))),
         ),
-        Answer("largest_radius", 0.5 * _UNDER, "half the height under the shelf", _BALL.name, given=along((-_INNER, 0, 0), _Z, _X)),
+        Answer("largest_radius", 0.5 * _UNDER, "half the height under the shelf", given=along((-_INNER, 0, 0), _Z, _X, ball=_BALL)),
     ),
 )
 

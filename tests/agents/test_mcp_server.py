@@ -1,6 +1,7 @@
 """The server over standard input and output, with the SDK's own client: each tool, refusals, and a call that is cancelled."""
 
 import base64
+import contextlib
 import functools
 import json
 import os
@@ -392,16 +393,35 @@ def test_nothing_but_the_protocol_is_on_standard_output(tmp_path):
         assert json.loads(line)["jsonrpc"] == "2.0"
 
 
-def test_a_signal_ends_a_server_that_waits_for_its_client(tmp_path):
-    """The client holds standard input open, and says nothing."""
-    words = [sys.executable, "-m", "plan_cutters", "mcp", "--root", str(tmp_path)]
+@contextlib.contextmanager
+def greeted(root):
+    """A server of which nothing but the greeting was asked."""
+    words = [sys.executable, "-m", "plan_cutters", "mcp", "--root", str(root)]
     hello = {"jsonrpc": "2.0", "id": 1, "method": "initialize", "params": {
         "protocolVersion": "2025-06-18", "capabilities": {}, "clientInfo": {"name": "test", "version": "1"}}}  # fmt: skip
-    with subprocess.Popen(words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, env=ENV, text=True) as process:
+    pipe = subprocess.PIPE
+    with subprocess.Popen(words, stdin=pipe, stdout=pipe, stderr=pipe, env=ENV, text=True) as process:
         print(json.dumps(hello), file=process.stdin, flush=True)
         assert json.loads(process.stdout.readline())["result"]["serverInfo"]["name"] == "plan-cutters"
+        yield process
+
+
+def test_a_signal_ends_a_server_that_waits_for_its_client(tmp_path):
+    """The client holds standard input open, and says nothing."""
+    with greeted(tmp_path) as process:
         process.terminate()
         assert process.wait(30) == 130
+
+
+def test_a_client_that_is_killed_ends_the_server_without_a_word(tmp_path):
+    """Its end of standard output is closed, and an answer to its last question finds nobody."""
+    with greeted(tmp_path) as process:
+        process.stdout.close()
+        print(json.dumps({"jsonrpc": "2.0", "method": "notifications/initialized"}), file=process.stdin)
+        print(json.dumps({"jsonrpc": "2.0", "id": 2, "method": "tools/list"}), file=process.stdin, flush=True)
+        process.stdin.close()
+        assert process.wait(30) == 0
+        assert process.stderr.read() == ""
 
 
 def test_what_a_file_in_the_root_names_outside_says_nothing(server):

@@ -231,10 +231,14 @@ def serve(service: Service, interrupted: Callable[[], None]) -> None:
                 interrupted()
 
     async def main() -> None:
-        async with anyio.create_task_group() as tasks:
-            tasks.start_soon(listen)
-            async with stdio_server() as (read, write):
-                await server.run(read, write, server.create_initialization_options())
-            tasks.cancel_scope.cancel()
+        try:
+            async with anyio.create_task_group() as tasks:
+                tasks.start_soon(listen)
+                async with stdio_server() as (read, write):
+                    await server.run(read, write, server.create_initialization_options())
+                tasks.cancel_scope.cancel()
+        except* (BrokenPipeError, anyio.BrokenResourceError, anyio.ClosedResourceError):
+            # A client that was killed reads no answer: it is gone as if it had closed the connection.
+            await service.end()
 
     anyio.run(main)

@@ -64,7 +64,8 @@ _access, _limits = heading("Access"), heading("Limits of a call")
 def command(request: McpRequest) -> int:
     """Serve plan-cutters to agents over standard input and output, by the Model Context Protocol.
 
-    The tools are plan_part, posture_map, explain_sample, compare_cutters and render. Each call works in a process of its own.
+    The tools are plan_part, posture_map, explain_sample, compare_cutters, compare_plans, list_tools_and_machines and render. Each
+    call works in a process of its own.
     """
     from plan_cutters.errors import OptionError, extra_hint
 
