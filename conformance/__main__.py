@@ -183,17 +183,27 @@ def export(
 
 @app.command()
 def check(name: Annotated[str, typer.Argument(help="A made part.")], count: Annotated[int, typer.Option(help="Postures that are compared.")] = 24) -> None:
-    """Compare a made part's closed forms with points of its exact surface."""
-    from conformance.made.check import AGREE, differences
+    """Compare a made part's closed forms with points of its exact surface, and with bounds over it."""
+    from conformance.made.check import AGREE, differences, write_step
+    from conformance.made.confirm import contradictions
+    from conformance.made.part import postures
     from conformance.made.parts import PARTS
 
     if name not in PARTS:
         _refuse(f"no made part is called {name!r}: choose of {', '.join(PARTS)}")
-    bad = list(differences(PARTS[name], count=count))
-    for each in bad:
-        out.print(f"posture {each.row}: form {each.form:.6f} mm, points {each.twin:.6f} mm", highlight=False)
-    out.print(f"{name}: {len(bad)} of about {count} postures differ by more than {AGREE:g} mm", highlight=False)
-    if bad:
+    part, tell = PARTS[name], lambda line: out.print(line, highlight=False)
+    table = postures(part, count, seed=1)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"{name}.step"
+        write_step(part, path)
+        excluded = list(contradictions(part, table, path))
+    apart = list(differences(part, table))
+    for each in apart:
+        tell(f"posture {each.row}: form {each.form:.6f} mm, points {each.twin:.6f} mm")
+    for each in excluded:
+        tell(f"posture {each.row}: form {each.form:.6f} mm, bounds {each.low:.6f} to {each.high:.6f} mm")
+    tell(f"{name}: of {len(table)} postures points differ by more than {AGREE:g} mm in {len(apart)}, bounds exclude {len(excluded)}")
+    if apart or excluded:
         raise typer.Exit(1)
 
 

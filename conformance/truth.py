@@ -1,16 +1,19 @@
-"""The truth of postures that a program chose itself: closed forms where they hold, else points of the exact surface.
+"""The truth of postures that a program chose itself: closed forms where they hold, else bounds over the exact surface.
 
-The closed forms of a made part describe it wherever a tool reaches from one of its contacts. A claim anywhere else is
-judged by the slow twin: its margin is an upper bound, so it can prove a claim false and not prove it true.
+The closed forms of a made part describe it wherever a tool reaches from one of its contacts. A claim anywhere else is judged by branch
+and bound: it proves a claim false, or that nothing is deeper than the lower bound. How far a safe tool is from all else is not asked.
 """
 
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from conformance.exact import slow
-from conformance.made.part import FAR, TOUCH, held, judge
+from conformance.exact.bound import Tree, least, numbers, tree
+from conformance.exact.slow import read
+from conformance.made.confirm import cells_of
+from conformance.made.part import FAR, held, judge
 from conformance.made.parts import PARTS
 from conformance.posture import Postures
 from conformance.suite import Held
@@ -19,8 +22,6 @@ from conformance.tool import Floats, Tool
 #: Drawn contacts that show where the closed forms hold: a claim is there within this distance (mm) of one, its normal within this
 #: angle (rad).
 _DRAWN, _NEAR, _TURN = 4000, 1.0, 0.2
-#: The pitch (mm) of the twin's points.
-PITCH = 1.0
 
 
 def truth(part: str, tool: Tool, setup: str, postures: Postures, path: Path | None = None) -> tuple[Floats, Floats]:
@@ -39,12 +40,17 @@ def truth(part: str, tool: Tool, setup: str, postures: Postures, path: Path | No
             judged = judge(made, tool, made.setup(setup), postures.contact[rows], postures.axis[rows], postures.tip[rows])
             low[rows] = high[rows] = judged.margin
     if path is not None and not known.all():
-        faces = slow.faces(slow.read(path), PITCH)
+        shape, rows = _tree(path), numbers(tool)
+        none = np.zeros(int(shape.cells.face.max()) + 1, bool)
         for i in np.flatnonzero(~known):
-            high[i] = slow.margin(faces, [False] * len(faces), tool, postures.tip[i], postures.axis[i], TOUCH)
-            # What is touched at the contact counts as depth alone.
-            high[i] = FAR if high[i] > -TOUCH else high[i]
+            low[i], high[i], _ = least(shape, rows, postures.tip[i], postures.axis[i], none, enough=0.0)
+            high[i] = FAR if high[i] >= 0.0 else high[i]
     return low, high
+
+
+@lru_cache(maxsize=1)
+def _tree(path: Path) -> Tree:
+    return tree(cells_of(read(path)))
 
 
 def limits(setup: Held, axis: Floats) -> Floats:

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from conformance.made.check import write_step
+from conformance.made.confirm import confirmed
 from conformance.made.part import MadePart, postures
 from conformance.made.parts import PARTS
 from conformance.posture import Postures
@@ -25,11 +26,14 @@ def generate(folder: Path = DATA, each: int = EACH, tell: Callable[[str], None] 
         write_step(part, path)
         _without_date(path)
         # A twin is asked the same postures as its analytic form, so that the two can be compared row by row.
-        table = made[part.twin_of].renamed(part.name) if part.twin_of else postures(part, each)
+        if part.twin_of:
+            table, wrong = made[part.twin_of].renamed(part.name), 0
+        else:
+            table, wrong = confirmed(part, postures(part, each), path)
         made[part.name] = table
         tables.append(table)
         entries.append(_entry(part, path))
-        tell(f"{part.name}: {len(table)} postures, {(table.verdict == 'safe').sum()} safe")
+        tell(f"{part.name}: {len(table)} postures, {(table.verdict == 'safe').sum()} safe; bounds in place of the form: {wrong}")
     Postures.joined(tables).write(folder / "made.parquet")
     (folder / "made.json").write_text(document("made", entries), encoding="utf-8")
 

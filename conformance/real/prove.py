@@ -24,7 +24,7 @@ from OCP.TopTools import TopTools_IndexedDataMapOfShapeListOfShape
 from conformance.exact.bound import Tree, least, numbers, tree
 from conformance.exact.cells import cells
 from conformance.made.part import STEADY_DEG, frame, leaning
-from conformance.posture import Postures
+from conformance.posture import Postures, Words
 from conformance.tool import Floats, Tool
 
 #: The depth (mm) up to which a posture is called safe, and the distance up to which clearances are told.
@@ -168,9 +168,18 @@ def _of_tool(shape: Shape, name: str, tool: Tool, rng: np.random.Generator, coun
         low[kept],
         high[kept],
         np.full(n, np.nan),
-        word(""),
+        np.where(blocked[kept], reasons(shape, tool, tip[kept], axis[kept]), ""),
         word("bound"),
     )
+
+
+def reasons(shape: Shape, tool: Tool, tip: Floats, axis: Floats) -> Words:
+    """Return the part of the tool (n,) that the surface surely reaches deepest: `cutter`, `shank` or `holder`."""
+    rows, none = numbers(tool), np.zeros(len(shape.faces), bool)
+    high = np.array(
+        [[least(shape.tree, rows[k : k + 1], t, a, none, enough=0.0, deep=-DEEP)[1] for k in range(len(rows))] for t, a in zip(tip, axis, strict=True)]
+    )
+    return np.array([piece.part for piece in tool.pieces])[np.argmin(high.reshape(-1, len(rows)), axis=1)]
 
 
 def _drawn(rng: np.random.Generator, normal: Floats) -> Floats:

@@ -1,33 +1,40 @@
-"""Branch and bound against closed forms: what proves real parts has to agree where the answer is known."""
+"""The postures of the suite against branch and bound over the exact surface of the files: neither knows what the other does."""
 
 import numpy as np
 import pytest
 
-from conformance.exact.bound import least, numbers, tree
-from conformance.exact.cells import cells
-from conformance.exact.slow import read
+from conformance.made.confirm import confirmed, contradictions
+from conformance.made.parts import PARTS
+from conformance.suite import DATA
 from conformance.suite import read as suite
+from conformance.tests.test_answers import DAILY
 
-#: Parts whose materials are all on their skin, with planes, cylinders, cones, spheres, tori and B-splines among them.
-PARTS = ("plate_and_wall", "slot", "cone_pit", "sphere_pocket", "plate_and_wall_bspline", "cone_pit_bspline")
+#: A part in its B-spline form, too: cells of a net of poles.
+_NAMES = [*PARTS]
+_EVERY_RUN = {*sorted(DAILY)[::3], "cone_boss_bspline"}
 
 
-@pytest.mark.parametrize("name", PARTS)
-def test_bounds_hold_the_closed_form(name: str) -> None:
-    made = suite("made")
-    part = made.parts[name]
-    shape = tree(cells(read(part.path)))
-    none = np.zeros(int(shape.cells.face.max()) + 1, bool)
-    rows = np.flatnonzero((made.postures.part == name) & ~(made.postures.limit_deg < 0) & (made.postures.reason != "fixture"))[::4]
-    blocked = 0
-    for i in rows:
-        row = made.postures[i : i + 1]
-        low, high, _ = least(shape, numbers(part.tools[str(row.tool[0])]), row.tip[0], row.axis[0], none, enough=0.5)
-        if row.verdict[0] == "safe":
-            assert low >= -4e-3, (i, low, high)
-        elif row.high[0] > -0.5:
-            blocked += 1
-            assert low - 1e-6 <= row.low[0] <= high + 1e-6, (i, low, high, row.low[0])
-        else:
-            assert high < -0.2, (i, low, high)
-    assert blocked > 3
+def of(name):
+    table = suite("made").postures
+    return table[np.flatnonzero(table.part == name)]
+
+
+@pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in _EVERY_RUN else pytest.mark.slow) for n in _NAMES])
+def test_bounds_exclude_no_margin(name):
+    assert list(contradictions(PARTS[name], of(name), DATA / f"made/{name}.step")) == []
+
+
+def test_bounds_take_the_place_of_a_wrong_margin():
+    """Safe where there is a depth, too deep, and not deep enough."""
+    name = "three_sides"
+    table, path = of(name), DATA / f"made/{name}.step"
+    rows = np.flatnonzero((table.verdict == "blocked") & (table.low > -0.3))[:3]
+    true = table.low[rows]
+    for wrong in (1.0, -0.05, 0.01):
+        table.low[rows] = table.high[rows] = np.where(wrong > 0.5, wrong, true + wrong)
+        table.verdict[rows] = np.where(table.low[rows] > 0.5, "safe", "blocked")
+        mended, found = confirmed(PARTS[name], table, path)
+        assert found == len(rows)
+        assert (mended.verdict[rows] == "blocked").all()
+        assert ((mended.low[rows] <= true + 1e-6) & (true <= mended.high[rows] + 1e-6)).all()
+        assert (mended.proof[rows] == "bound").all()
