@@ -3,7 +3,7 @@
 import json
 import os
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from typing import Annotated, Any, NoReturn
 
@@ -50,7 +50,7 @@ def _suite(kind: str, data: Path, parts: list[str] | None = None) -> Suite:
         _refuse(f"the suite cannot be read: {error}")
     unknown = sorted(set(parts or ()) - set(suite.parts))
     if unknown:
-        _refuse(f"no part is called {unknown[0]!r}: choose of {', '.join(sorted(suite.parts))}")
+        _refuse(f"no part is called {unknown[0]!r}{_near(unknown[0], suite.parts)}; {kind}.json has {len(suite.parts)}, and a new part after `generate`")
     return suite
 
 
@@ -183,28 +183,55 @@ def export(
 
 @app.command()
 def check(name: Annotated[str, typer.Argument(help="A made part.")], count: Annotated[int, typer.Option(help="Postures that are compared.")] = 24) -> None:
-    """Compare a made part's closed forms with points of its exact surface, and with bounds over it."""
-    from conformance.made.check import AGREE, differences, write_step
+    """Compare a made part's closed forms and answers with points of its exact surface, and with bounds over it."""
+    from conformance.exact.slow import read as shape_of
+    from conformance.made.answers import doubts
+    from conformance.made.check import AGREE, differences, faults, write_step
     from conformance.made.confirm import contradictions
     from conformance.made.part import postures
     from conformance.made.parts import PARTS
 
     if name not in PARTS:
-        _refuse(f"no made part is called {name!r}: choose of {', '.join(PARTS)}")
-    part, tell = PARTS[name], lambda line: out.print(line, highlight=False)
+        _refuse(f"no made part is called {name!r}{_near(name, PARTS)}; a new one stands in PARTS at the end of its module in made/")
+    part, tell = PARTS[name], lambda line: out.print(line, highlight=False, markup=False, soft_wrap=True)
+    wrong = list(faults(part))
+    if wrong:
+        for line in wrong:
+            tell(line)
+        raise typer.Exit(1)
     table = postures(part, count, seed=1)
+
+    def row(k: int) -> str:
+        return f"posture {k}, {table.tool[k]} at {np.round(table.contact[k], 3)}, axis {np.round(table.axis[k], 4)}"
+
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / f"{name}.step"
         write_step(part, path)
+        err.print(f"bounds over the surface: {len(table)} postures, {len(part.answers)} answers")
         excluded = list(contradictions(part, table, path))
+        unsure = list(doubts(part, shape_of(path)))
+    err.print(f"points of the surface: {len(table)} postures, about a second each")
     apart = list(differences(part, table))
     for each in apart:
-        tell(f"posture {each.row}: form {each.form:.6f} mm, points {each.twin:.6f} mm")
+        tell(f"{row(each.row)}: form {each.form:.6f} mm, points {each.twin:.6f} mm")
     for each in excluded:
-        tell(f"posture {each.row}: form {each.form:.6f} mm, bounds {each.low:.6f} to {each.high:.6f} mm")
-    tell(f"{name}: of {len(table)} postures points differ by more than {AGREE:g} mm in {len(apart)}, bounds exclude {len(excluded)}")
-    if apart or excluded:
+        tell(f"{row(each.row)}: form {each.form:.6f} mm, bounds {each.low:.6f} to {each.high:.6f} mm")
+    for line in unsure:
+        tell(line)
+    tell(
+        f"{name}: of {len(table)} postures points differ by more than {AGREE:g} mm in {len(apart)}, and bounds exclude {len(excluded)}; "
+        f"of {len(part.answers)} answers bounds contradict {len({line.split(',')[0] for line in unsure})}"
+    )
+    if apart or excluded or unsure:
         raise typer.Exit(1)
+
+
+def _near(name: str, names: Iterable[str]) -> str:
+    """Return ": did you mean ..." where a name is nearly one of them."""
+    from difflib import get_close_matches
+
+    close = get_close_matches(name, list(names), 3, 0.5)
+    return f": did you mean {', '.join(close)}?" if close else ""
 
 
 @app.command()
@@ -231,12 +258,17 @@ def fetch(
 def generate(
     data: Annotated[Path, typer.Option(help="Where to.", show_default="the suite's own folder")] = DATA,
     each: Annotated[int | None, typer.Option(help="Postures of each part.", show_default="those of the suite")] = None,
+    only: Annotated[list[str] | None, typer.Option("--part", help="Only this part and its twin, the others stay; may be given again.")] = None,
 ) -> None:
     """Write the made half of the suite: STEP files, made.json, made.parquet."""
     from conformance.made.generate import EACH
     from conformance.made.generate import generate as write
+    from conformance.made.parts import PARTS
 
-    write(data, EACH if each is None else each, lambda line: out.print(line, highlight=False))
+    for name in only or ():
+        if name not in PARTS:
+            _refuse(f"no made part is called {name!r}{_near(name, PARTS)}")
+    write(data, EACH if each is None else each, lambda line: out.print(line, highlight=False), only or ())
 
 
 @app.command()

@@ -8,10 +8,8 @@ the insets of the piece (`tool.margin`). The derivations:
 normals of K somewhere count. A half-space has one such m; a wedge the arc between the normals of its two planes; a prism the arcs at each
 of its edges; a polyhedron the normals of its faces, the arcs at its edges, and at each corner the direction to the piece.
 
-*Void ball.* Material outside a ball of radius `rb`: the tool has to stay inside. The farthest point of a frustum from the centre lies on one of its
-two circles, on the side away from the centre: `far = max over circles of hypot(h - hc, r + rc)`, and `gap = rb - far - rho`.
-
-*Void cylinder.* Material outside a bore: the same with distances from a line, farthest on one of the two circles, by one angle.
+*Bore.* Material outside a round hole: the tool has to stay inside. The farthest point of a frustum from the hole's line lies on one of its two circles, and one
+angle finds it there: `gap = radius - far - rho`.
 
 *Surface.* Material behind a parametrised surface: `gap = min over (u, v) of signed(S(u, v))`, by a grid and a local search that ends at 1e-9 mm.
 It is the definition of the margin itself, for a tool that does not lie in the material as a whole.

@@ -131,7 +131,8 @@ def _section(kind: str, claims: bool, found: list[dict[str, Any]]) -> list[str]:
     for d in found:
         settings = ", ".join(f"{key} {value}" for key, value in d["settings"].items()) or "none"
         versions = ", ".join(f"{key} {value}" for key, value in d["versions"].items() if not value.startswith("not installed"))
-        lines.append(f"- {d['program']}: {settings}. Versions: {versions}.")
+        why = "; ".join(f"{reason} ({count})" for reason, count in d["why"].items())
+        lines.append(f"- {d['program']}: {settings}. Versions: {versions}." + (f" Undecided: {why}." if why else ""))
     return lines
 
 

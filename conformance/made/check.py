@@ -1,7 +1,6 @@
-"""A made part against the slow twin: what a new part has to pass.
+"""What a new part has to pass: contacts that are on its skin, and closed forms that agree with points of its exact surface.
 
-`python -m conformance check NAME` writes the part's STEP file aside, reads it back, and compares closed forms with points of
-the exact surface.
+`python -m conformance check NAME` writes the part's STEP file aside and reads it back; `confirm` and `answers` ask bounds over the surface.
 """
 
 import tempfile
@@ -12,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from conformance.exact import slow
+from conformance.forms import Surface
 from conformance.made.part import TOUCH, MadePart, held, postures
 from conformance.posture import Postures
 from conformance.tool import Floats
@@ -35,6 +35,29 @@ def write_step(part: MadePart, path: Path) -> None:
 
     shape = part.build()
     cq.exporters.export(shape if isinstance(shape, cq.Workplane) else cq.Workplane(obj=shape.val()), str(path))
+
+
+def faults(part: MadePart, count: int = 100) -> Iterator[str]:
+    """Yield a line for each thing that is wrong with drawn contacts: not on a material's skin, or a normal that is none or points into it.
+
+    A searched surface has no inside: of it only the distance is looked at.
+    """
+    points, normals = part.contacts(np.random.default_rng(0), count)
+    bad = ~np.isfinite(points).all(axis=1) | ~(np.abs(np.linalg.norm(normals, axis=1) - 1.0) < 1e-6)
+    if bad.any():
+        first = f"the first is {points[bad][0]}, {normals[bad][0]}"
+        yield f"contacts: {bad.sum()} of {len(points)} are not finite, or have a normal that is not of length 1; {first}"
+        points, normals = points[~bad], normals[~bad]
+    on = np.array([held(material, points) for material in part.materials])
+    away = ~on.any(axis=0)
+    if away.any():
+        yield f"contacts: {away.sum()} of {len(points)} lie on no material's skin; the first is {points[away][0]}"
+    solid = [k for k, material in enumerate(part.materials) if not isinstance(material, Surface)]
+    out = np.array([part.materials[k].height(points + 1e-3 * normals) > 0 for k in solid], bool).reshape(len(solid), len(points))
+    inwards = on[solid].any(axis=0) & ~(on[solid] & out).any(axis=0)
+    if inwards.any():
+        first = f"the first is {points[inwards][0]}, {normals[inwards][0]}"
+        yield f"contacts: {inwards.sum()} of {len(points)} have a normal that points into the material; {first}"
 
 
 def faces_of(part: MadePart, pitch: float = PITCH) -> list[slow.Face]:

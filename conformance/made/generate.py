@@ -1,27 +1,36 @@
 """Write the made half of the suite: STEP files, `made.json`, `made.parquet`."""
 
+import json
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from conformance.made.check import write_step
 from conformance.made.confirm import confirmed
 from conformance.made.part import MadePart, postures
 from conformance.made.parts import PARTS
 from conformance.posture import Postures
-from conformance.suite import DATA, document, setup_entry, sha256, tool_entry
+from conformance.suite import DATA, document, read, setup_entry, sha256, tool_entry
 
 #: Postures of each part.
 EACH = 150
 
 
-def generate(folder: Path = DATA, each: int = EACH, tell: Callable[[str], None] = lambda line: None) -> None:
-    """Write all made parts with their truths to a folder."""
+def generate(folder: Path = DATA, each: int = EACH, tell: Callable[[str], None] = lambda line: None, only: Collection[str] = ()) -> None:
+    """Write all made parts with their truths to a folder; of `only` some the twins, too, and what the folder has of the others stays."""
     (folder / "made").mkdir(parents=True, exist_ok=True)
-    entries, tables = [], []
-    made: dict[str, Postures] = {}
+    before = read("made", folder).postures if only else None
+    entries, made = {}, {}
+    if only:
+        entries = {entry["name"]: entry for entry in json.loads((folder / "made.json").read_text(encoding="utf-8"))["parts"]}
     for part in PARTS.values():
+        if before is not None and not {part.name, part.twin_of} & set(only):
+            if part.name in entries:
+                made[part.name] = before[np.flatnonzero(before.part == part.name)]
+            continue
         path = folder / "made" / f"{part.name}.step"
         write_step(part, path)
         _without_date(path)
@@ -30,12 +39,10 @@ def generate(folder: Path = DATA, each: int = EACH, tell: Callable[[str], None] 
             table, wrong = made[part.twin_of].renamed(part.name), 0
         else:
             table, wrong = confirmed(part, postures(part, each), path)
-        made[part.name] = table
-        tables.append(table)
-        entries.append(_entry(part, path))
+        made[part.name], entries[part.name] = table, _entry(part, path)
         tell(f"{part.name}: {len(table)} postures, {(table.verdict == 'safe').sum()} safe; bounds in place of the form: {wrong}")
-    Postures.joined(tables).write(folder / "made.parquet")
-    (folder / "made.json").write_text(document("made", entries), encoding="utf-8")
+    Postures.joined(made.values()).write(folder / "made.parquet")
+    (folder / "made.json").write_text(document("made", [entries[name] for name in made]), encoding="utf-8")
 
 
 def _entry(part: MadePart, path: Path) -> dict[str, Any]:

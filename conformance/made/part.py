@@ -10,7 +10,9 @@ from conformance.forms import Material
 from conformance.posture import Postures
 from conformance.tool import Floats, Tool
 
-#: A material whose skin is nearer than this (mm) to the contact is the one in contact; less depth than this in it is none.
+#: A material whose skin is nearer than this (mm) to the contact is the one in contact: a search on a surface ends some 10 nm beside its nearest point.
+SKIN = 5e-5
+#: Less depth (mm) than this in the material in contact is none.
 TOUCH = 1e-6
 #: A margin (mm) that stands for "nothing near".
 FAR = 1000.0
@@ -128,7 +130,7 @@ def judge(part: MadePart, tool: Tool, setup: Setup, contact: Floats, axis: Float
 
 def held(material: Material, contact: Floats) -> np.ndarray:
     """Whether the contacts (n, 3) lie on the skin of a material."""
-    return np.abs(material.height(contact)) < TOUCH
+    return np.abs(material.height(contact)) < SKIN
 
 
 def blocked(part: MadePart, tool: Tool, setup: Setup, holds: list[np.ndarray], axis: Floats, tip: Floats, *, contact_only: bool = False) -> np.ndarray:

@@ -20,7 +20,7 @@ class Program:
     name = "naive"
     libraries: tuple[str, ...] = ("cadquery-ocp", "cadquery-ocp-novtk", "numpy")
 
-    def __init__(self, pitch: float = 0.5, tolerance: float = 0.01) -> None:
+    def __init__(self, pitch: float = 1.0, tolerance: float = 0.01) -> None:
         self.settings: dict[str, Any] = {"pitch_mm": pitch, "tolerance_mm": tolerance, "edges": "not sampled", "table": "the tool's lowest point"}
         self.why: Counter[str] = Counter()
         self._points: dict[str, Floats] = {}
