@@ -13,8 +13,8 @@ from conformance.real.sources import Source, sources
 from conformance.suite import DATA, FETCHED, document, setup_entry, tool_entry
 from conformance.tool import Tool
 
-#: Postures of each part, and the seed.
-EACH, SEED = 4000, 0
+#: The seed of what is drawn.
+SEED = 0
 
 
 def tools(diameter: float) -> list[Tool]:
@@ -28,9 +28,9 @@ def tools(diameter: float) -> list[Tool]:
     ]
 
 
-def one(source: Source, folder: Path = FETCHED, each: int = EACH, tell: Callable[[str], None] = lambda line: None) -> Postures:
+def one(source: Source, folder: Path = FETCHED, tell: Callable[[str], None] = lambda line: None) -> Postures:
     """Return the proved postures of one part; an UnfitError says why there are none."""
-    return postures(ready(slow.read(folder / source.file)), source.name, tools(source.diameter), each, SEED, tell)
+    return postures(ready(slow.read(folder / source.file)), source.name, tools(source.diameter), source.postures, SEED, tell)
 
 
 def entry(source: Source) -> dict[str, Any]:
@@ -49,12 +49,12 @@ def entry(source: Source) -> dict[str, Any]:
     }
 
 
-def generate(folder: Path = DATA, fetched: Path = FETCHED, each: int = EACH, tell: Callable[[str], None] = lambda line: None) -> None:
+def generate(folder: Path = DATA, fetched: Path = FETCHED, tell: Callable[[str], None] = lambda line: None) -> None:
     """Write the real half; a part that is not fetched or unfit is told and left out."""
     entries, tables = [], []
     for source in sources():
         try:
-            tables.append(one(source, fetched, each, tell))
+            tables.append(one(source, fetched, tell))
             entries.append(entry(source))
         except (UnfitError, ValueError, OSError) as error:
             tell(f"{source.file}: {error}")

@@ -17,7 +17,7 @@ REMOTE = "https://github.com/{repo}.git"
 
 @dataclass(frozen=True)
 class Source:
-    """One file of a public repository: `diameter` (mm) is the size of the tools that ask about it."""
+    """One file of a public repository: `diameter` (mm) is the size of the tools that ask about it, `postures` how many are drawn."""
 
     name: str
     file: str
@@ -27,12 +27,13 @@ class Source:
     licence: str
     sha256: str
     diameter: float
+    postures: int
 
 
 def sources() -> list[Source]:
     """Return the list of real parts."""
     with LIST.open(encoding="utf-8", newline="") as file:
-        return [Source(**{**row, "diameter": float(row["diameter"])}) for row in csv.DictReader(file)]
+        return [Source(**{**row, "diameter": float(row["diameter"]), "postures": int(row["postures"])}) for row in csv.DictReader(file)]
 
 
 def fetch(

@@ -109,7 +109,7 @@ def test_the_page_of_results_has_each_program(small_folder: Path, tmp_path: Path
     assert call("table", tmp_path / "results.md", "--results", tmp_path)[0] == 0
     text = (tmp_path / "results.md").read_text()
     assert text.index("\n| naive ") < text.index("\n| undecided ")
-    assert "pitch_mm 0.5" in text
+    assert "pitch_mm 1.0" in text
     empty = tmp_path / "empty"
     empty.mkdir()
     assert call("table", tmp_path / "results.md", "--results", empty)[0] == 2

@@ -32,7 +32,7 @@ def source(tmp_path: Path) -> Source:
     commit = git("rev-parse", "HEAD")
     (home / "cad" / "a part.step").write_bytes(b"changed")
     git("commit", "--quiet", "-am", "two")
-    return Source("a_part", "a_part.step", "some/parts", "cad/a part.step", commit, "CC0", hashlib.sha256(b"ISO-10303-21;\r\n").hexdigest(), 4.0)
+    return Source("a_part", "a_part.step", "some/parts", "cad/a part.step", commit, "CC0", hashlib.sha256(b"ISO-10303-21;\r\n").hexdigest(), 4.0, 10)
 
 
 def test_the_commit_is_fetched_and_kept(tmp_path: Path, source: Source) -> None:

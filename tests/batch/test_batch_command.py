@@ -17,6 +17,7 @@ from plan_cutters.command.codes import guarded, invoked
 from tests.support.forked import ENV
 from tests.support.junit import cases
 from tests.support.places import ROOT
+from tests.support.sarif import findings
 
 GROOVE = (ROOT / "samples/v_groove.step").read_bytes()
 QUICK = ("--cutter", "R6L80", "--grid", "5", "--area-budget", "0", "--formats", "json")
@@ -77,8 +78,10 @@ def test_nothing_to_plan_is_one_line(batch, tmp_path):
 
 def test_parts_that_cannot_be_planned_are_errors_of_the_report(batch, tmp_path):
     (tmp_path / "all.toml").write_text("[[part]]\nfile='b.step'\ngrit=5\n")
-    assert batch("all.toml", "--out", "out", "--junit", "junit.xml", cwd=tmp_path).returncode == 2
+    assert batch("all.toml", "--out", "out", "--junit", "junit.xml", "--sarif", "all.sarif", cwd=tmp_path).returncode == 2
     (found,) = cases((tmp_path / "junit.xml").read_bytes())
+    (same,) = findings((tmp_path / "all.sarif").read_bytes())
+    assert (same.part, same.rule, same.level) == (found.part, found.kind, "warning")
     assert (found.name, found.outcome) == ("b", "error")
     assert "no option of a part is called grit" in found.message
     for words in (["--junit", "-"], ["--junit", "b.xml", "--dry-run"]):

@@ -20,6 +20,7 @@ from plan_cutters.report.cases.case import Case
 from tests.support.forked import ENV
 from tests.support.junit import cases
 from tests.support.places import ROOT, real_file
+from tests.support.sarif import findings
 
 ACTION = yaml.safe_load((ROOT / "action.yml").read_text(encoding="utf-8"))
 POINTER = "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 1\n"
@@ -126,6 +127,10 @@ def test_the_action_tells_what_a_branch_loses(repository, ran):
     reported = cases((temp / "plan-cutters-changed/junit.xml").read_bytes())
     assert {each.part for each in reported if each.outcome in ("failure", "error")} == {"large.STEP", "parts/slot.step"}
     assert {each.part for each in reported} == set(told)
+    assert {each.part for each in findings((temp / "plan-cutters-changed/plans.sarif").read_bytes())} == {
+        "large.STEP",
+        "parts/slot.step",
+    }
     marked = [line for line in done.stderr.splitlines() if line.startswith("::error ")]
     assert [line.partition(",")[0] for line in marked] == ["::error file=large.STEP", "::error file=parts/slot.step"]
     assert (temp / "plan-cutters-changed/after/sub/a name.step/review.html").is_file()
