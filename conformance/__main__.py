@@ -2,6 +2,7 @@
 
 import json
 import os
+import sys
 import tempfile
 from collections.abc import Callable, Iterable
 from pathlib import Path
@@ -74,6 +75,18 @@ def write_aside(path: Path, write: Callable[[Path], Any]) -> None:
         raise
 
 
+def _writable(*paths: Path | None) -> None:
+    """Refuse before the work what no file can be written to."""
+    for path in paths:
+        if path is None:
+            continue
+        if path.is_dir():
+            _refuse(f"{path}: is a folder; give the name of a file")
+        parent = next(p for p in path.absolute().parents if p.exists())
+        if not parent.is_dir() or not os.access(parent, os.W_OK):
+            _refuse(f"{path}: cannot be written there")
+
+
 def _write_json(path: Path, document: dict[str, Any]) -> None:
     text = json.dumps(document, indent=1, ensure_ascii=False, allow_nan=False) + "\n"
     write_aside(path, lambda aside: aside.write_text(text, encoding="utf-8"))
@@ -101,6 +114,7 @@ def run_command(
         _refuse(f"--each {each}: give at least 1")
     if answers is not None and answers.suffix not in (".csv", ".parquet"):
         _refuse(f"--answers {answers.name}: give a .csv or a .parquet")
+    _writable(json_file, answers)
     count = len(suite.postures) if every else EACH if each is None else each
     # The default run leaves the twins out: it is a first look.
     names = set(part) if part else None if every or each is not None else {n for n, p in suite.parts.items() if p.twin_of is None}
@@ -145,6 +159,7 @@ def score_command(
     suite = _suite(kind, data)
     if not file.is_file():
         _refuse(f"{file.name}: no such file")
+    _writable(json_file)
     try:
         rows, words = read_answers(file, len(suite.postures))
     except ValueError as error:
@@ -336,8 +351,12 @@ def _show(document: dict[str, Any]) -> None:
 
 
 def main() -> None:
-    """Run the command."""
-    app(prog_name="python -m conformance")
+    """Run the command; a file that cannot be read or written is one line."""
+    try:
+        app(prog_name="python -m conformance")
+    except OSError as error:
+        err.print(f"{error.filename or 'a file'}: {error.strerror or error}", style="red", markup=False, highlight=False, soft_wrap=True)
+        sys.exit(2)
 
 
 if __name__ == "__main__":

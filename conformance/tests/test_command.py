@@ -23,6 +23,8 @@ def call(*words: object) -> tuple[int, str, str]:
 
 @pytest.mark.parametrize(("words", "text"), [
     (("run", "--program", "nix"), "no program is called 'nix'"),
+    (("run", "--program", "undecided", "--json", "."), "is a folder; give the name of a file"),
+    (("check", "sloot"), "did you mean slot"),
     (("run", "--program", "undecided", "--part", "nix"), "no part is called 'nix'"),
     (("run", "--program", "undecided", "--kind", "nix"), "choose made or real"),
     (("run", "--program", "undecided", "--tolerance", "-1"), "between 0 and 10 mm"),
@@ -37,6 +39,13 @@ def test_what_cannot_be_done_is_one_line(small_folder: Path, words: tuple[str, .
     assert code == 2
     assert text in err
     assert err.count("\n") == 1
+
+
+def test_a_place_that_nothing_can_be_written_to_is_one_line(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
+    monkeypatch.setattr("sys.argv", ["conformance", "export", "/proc/x"])
+    with pytest.raises(SystemExit) as ended:
+        main()
+    assert (ended.value.code, capsys.readouterr().err) == (2, "/proc/x: No such file or directory\n")
 
 
 def test_a_suite_that_is_not_there_is_one_line(tmp_path: Path):
