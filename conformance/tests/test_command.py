@@ -9,7 +9,7 @@ import pytest
 pytest.importorskip("typer")
 from typer.testing import CliRunner
 
-from conformance.__main__ import app, write_aside
+from conformance.__main__ import app, main, write_aside
 from conformance.score import write_answers
 from conformance.suite import Suite
 
