@@ -13,8 +13,7 @@ from conformance.made.parts import PARTS
 
 NAMES = [name for name, part in PARTS.items() if part.twin_of is None]
 #: Asked in every run, a part of most families; the others take minutes.
-DAILY = {"shank_in_bore", "body_in_body", "closed_hollow", "plate_limit", "cube_five_faces", "three_sides", "opposed_slots",
-         "sphere_pocket", "lens", "two_balls", "tube", "cone_boss"}  # fmt: skip
+DAILY = {"body_in_body", "plate_limit", "three_sides", "opposed_slots", "sphere_pocket", "lens", "tube", "cone_boss"}
 
 
 def shape_of(part, folder):
@@ -38,7 +37,7 @@ def test_a_wrong_answer_is_seen(kind, tmp_path):
 
 
 def test_contacts_lie_on_a_skin_and_look_out_of_it():
-    assert [(name, line) for name, part in PARTS.items() for line in faults(part)] == []
+    assert [(name, line) for name in NAMES for line in faults(PARTS[name], 25)] == []
     part = PARTS["three_sides"]
     assert any("lie on no material" in line for line in faults(moved(part, lambda p, n: (p + 0.1 * n, n))))
     assert any("points into" in line for line in faults(moved(part, lambda p, n: (p, -n))))

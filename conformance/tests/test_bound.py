@@ -9,8 +9,7 @@ from conformance.suite import DATA
 from conformance.suite import read as suite
 from conformance.tests.test_answers import DAILY
 
-#: A part in its B-spline form, too: cells of a net of poles.
-_NAMES = [*PARTS]
+#: Asked in every run; one in its B-spline form, for cells of a net of poles.
 _EVERY_RUN = {*sorted(DAILY)[::3], "cone_boss_bspline"}
 
 
@@ -19,7 +18,7 @@ def of(name):
     return table[np.flatnonzero(table.part == name)]
 
 
-@pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in _EVERY_RUN else pytest.mark.slow) for n in _NAMES])
+@pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in _EVERY_RUN else pytest.mark.slow) for n in PARTS])
 def test_bounds_exclude_no_margin(name):
     assert list(contradictions(PARTS[name], of(name), DATA / f"made/{name}.step")) == []
 

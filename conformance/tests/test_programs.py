@@ -1,7 +1,6 @@
 """Adapters: each answers the small suite, none sees the truth, and their meshes lie within the tool."""
 
 import os
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,7 +11,7 @@ from conformance.programs.meshes import fixture_meshes, frames, outlines, segmen
 from conformance.programs.protocol import ANSWERS, BLOCKED, SAFE, Unavailable, below_table, beyond_limit, blind
 from conformance.run import run
 from conformance.score import Known, counts
-from conformance.suite import Held, Suite
+from conformance.suite import Held, Suite, read
 from conformance.tool import Tool
 
 TOOL = Tool.ball(8.0, 60.0, flutes=20.0, shank=6.0, holder=((60.0, 12.0), (80.0, 15.0), (80.0, 20.0), (120.0, 20.0)))
@@ -188,11 +187,13 @@ def test_claims_are_judged_by_form_and_by_bounds(small: Suite):
         np.testing.assert_allclose(low, small.postures.low[mine], atol=1e-9)
         np.testing.assert_allclose(high, low)
         break
-    tool = part.tools["flat_D16L90"]
-    one = small.postures[np.flatnonzero((small.postures.tool == tool.name) & (small.postures.low < -0.02) & (small.postures.low > -0.5))[:1]]
+    made = read("made")
+    part, table = made.parts["cone_boss"], made.postures
+    one = table[np.flatnonzero((table.part == part.name) & (table.low < -0.02) & (table.low > -0.5))[:1]]
     assert len(one) == 1
-    low, high = truth("no form", tool, "free", one, Path(part.path))
+    tool = part.tools[str(one.tool[0])]
+    low, high = truth("no form", tool, "free", one, part.path)
     assert low[0] - 1e-4 <= one.low[0] <= high[0] + 1e-4
     assert high[0] - low[0] < 5e-3
     away = type(one)(*(getattr(one, n) + 500.0 * one.axis if n in ("tip", "contact") else getattr(one, n) for n in one.__dataclass_fields__))
-    assert truth("no form", tool, "free", away, Path(part.path))[1][0] >= min(FAR, 100.0)
+    assert truth("no form", tool, "free", away, part.path)[1][0] >= min(FAR, 100.0)
