@@ -66,6 +66,6 @@ def _entry(part: MadePart, path: Path) -> dict[str, Any]:
 
 
 def _without_date(path: Path) -> None:
-    """Take the date out of a STEP file: the same part gives the same bytes."""
-    text = path.read_text(encoding="utf-8")
-    path.write_text(re.sub(r"'\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d'", "'2026-01-01T00:00:00'", text), encoding="utf-8")
+    """Take the date and the number of the export out of a STEP file: the same part gives the same bytes."""
+    text = re.sub(r"'\d{4}-\d\d-\d\dT\d\d:\d\d:\d\d'", "'2026-01-01T00:00:00'", path.read_text(encoding="utf-8"))
+    path.write_text(re.sub(r"'(Open CASCADE STEP translator \d+\.\d+)[ .\d]*'", r"'\1'", text), encoding="utf-8")
