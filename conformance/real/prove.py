@@ -2,7 +2,8 @@
 
 No closed form is known here: contacts and axes are drawn, a third is moved to the border by bisection, and each is kept only where the bounds decide it.
 `safe` means that no point of the surface can lie deeper than `SAFE` in the tool; `blocked` that a point of it surely lies in the tool.
-The clearance of a safe posture leaves out the face in contact and its neighbours. What the bounds do not decide is dropped and counted.
+The clearance of a safe posture leaves out the face in contact and its neighbours, but for shank and holder.
+What the bounds do not decide is dropped and counted.
 """
 
 from collections.abc import Callable
@@ -29,6 +30,8 @@ from conformance.tool import Floats, Tool
 
 #: The depth (mm) up to which a posture is called safe, and the distance up to which clearances are told.
 SAFE, REACH = 4e-3, 5.0
+#: How far (mm) the turn of a posture moves the end of a tool at least, where it is asked whether the posture is steady.
+SWAY = 0.02
 #: Depths beyond this (mm) are only proved to be beyond it.
 DEEP = 0.3
 
@@ -139,17 +142,12 @@ def _of_tool(shape: Shape, name: str, tool: Tool, rng: np.random.Generator, coun
     proved = bounds(shape, tool, face, tip, axis)
     blocked, safe = proved.high < 0, proved.low >= -SAFE
     blocked &= ~safe
-    # As with closed forms: a hair from entering the surface at its contact, the clearance of the rest says nothing.
     loose = np.flatnonzero(safe)
-    unsteady = np.zeros(len(axis), bool)
-    e1, e2 = frame(axis)
-    for turn in np.arange(4) * 0.5 * np.pi:
-        near = leaning(axis, np.cos(turn) * e1 + np.sin(turn) * e2, np.full(len(axis), np.radians(STEADY_DEG)))[loose]
-        where = tool.stands(contact[loose], normal[loose], near)
-        for k, i in enumerate(loose):
-            unsteady[i] |= least(shape.tree, numbers(tool), where[k], near[k], ~shape.joined[face[i]], enough=SAFE)[0] < -SAFE
+    proved.clear_low[loose], proved.clear_high[loose] = clearances(
+        shape, tool, contact[loose], normal[loose], axis[loose], proved.clear_low[loose], proved.clear_high[loose]
+    )
     radius = max(p.deepest for p in tool.pieces)
-    low = np.where(blocked, np.maximum(proved.low, -radius), np.where(unsteady, np.minimum(proved.clear_low, 0.0), proved.clear_low))
+    low = np.where(blocked, np.maximum(proved.low, -radius), proved.clear_low)
     high = np.where(blocked, proved.high, proved.clear_high)
     high = np.where(np.isfinite(high), high, 1000.0)
     kept = np.flatnonzero(blocked | safe)
@@ -171,6 +169,29 @@ def _of_tool(shape: Shape, name: str, tool: Tool, rng: np.random.Generator, coun
         np.where(blocked[kept], reasons(shape, tool, tip[kept], axis[kept]), ""),
         word("bound"),
     )
+
+
+def clearances(shape: Shape, tool: Tool, contact: Floats, normal: Floats, axis: Floats, low: Floats, high: Floats) -> tuple[Floats, Floats]:
+    """Return bounds of the clearance of safe postures: `low` and `high` of the faces not in contact, and what shank and holder have of all faces.
+
+    As with closed forms, a hair from entering the surface at its contact the clearance of the rest says nothing: there it is 0 at most.
+    """
+    low, high, none = low.copy(), high.copy(), np.zeros(len(shape.faces), bool)
+    tip = tool.stands(contact, normal, axis)
+    rows, aloof = numbers(tool), np.array([piece.part != "cutter" for piece in tool.pieces])
+    if aloof.any():
+        for i in range(len(tip)):
+            near = least(shape.tree, rows[aloof], tip[i], axis[i], none, enough=REACH)
+            low[i], high[i] = min(low[i], near[0]), min(high[i], near[1])
+    turn = np.full(len(axis), max(np.radians(STEADY_DEG), SWAY / tool.length))
+    e1, e2 = frame(axis)
+    for way in np.arange(4) * 0.5 * np.pi:
+        near_axis = leaning(axis, np.cos(way) * e1 + np.sin(way) * e2, turn)
+        where = tool.stands(contact, normal, near_axis)
+        for i in range(len(tip)):
+            if low[i] > 0.0 and least(shape.tree, rows, where[i], near_axis[i], none, enough=SAFE)[0] < -SAFE:
+                low[i] = 0.0
+    return low, high
 
 
 def reasons(shape: Shape, tool: Tool, tip: Floats, axis: Floats) -> Words:
