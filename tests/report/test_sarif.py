@@ -5,7 +5,7 @@ from hypothesis import strategies as st
 
 from plan_cutters.report.cases.case import Case
 from plan_cutters.report.cases.sarif import document
-from tests.report.test_test_cases import OUTCOMES, TEXT
+from tests.support.cases import OUTCOMES, TEXT
 from tests.support.sarif import findings
 
 

@@ -12,11 +12,10 @@ from plan_cutters.report.cases.case import Case
 from plan_cutters.report.cases.files import CaseFiles
 from plan_cutters.report.cases.junit import document
 from plan_cutters.report.cases.plan import PROCESS, plan_cases
+from tests.support.cases import OUTCOMES, TEXT
 from tests.support.junit import cases, outcomes
 from tests.support.plan_files import SAMPLES, cutter, face, made, verdicts
 
-TEXT = st.text(st.characters(codec=None), max_size=20)
-OUTCOMES = ["passed", "skipped", "failure", "error"]
 MISSING = MissingEntry(face="F9", entity=None, name="", why="lost in reading", stand_in="box")
 
 

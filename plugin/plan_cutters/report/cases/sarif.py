@@ -31,14 +31,14 @@ def document(name: str, cases: Iterable[Case]) -> bytes:
     >>> run["results"][0]["locations"][0]["physicalLocation"]["artifactLocation"]["uri"]
     'a%20b.step'
     """
-    found = [case for case in cases if case.outcome in _LEVELS]
-    kinds = list(dict.fromkeys(_kind(case) for case in found))
+    findings = [case for case in cases if case.outcome in _LEVELS]
+    kinds = list(dict.fromkeys(_kind(case) for case in findings))
     rules = [{"id": kind, "shortDescription": {"text": _named(kind)}} for kind in kinds]
     run = {
         "tool": {"driver": {"name": "plan-cutters", "version": __version__, "rules": rules}},
         "automationDetails": {"id": f"{written(name)}/"},
         "columnKind": "unicodeCodePoints",
-        "results": [_result(case, kinds.index(_kind(case))) for case in found],
+        "results": [_result(case, kinds.index(_kind(case))) for case in findings],
     }
     return json.dumps({"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]}, indent=2).encode() + b"\n"
 
