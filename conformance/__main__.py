@@ -202,7 +202,7 @@ def check(name: Annotated[str, typer.Argument(help="A made part.")], count: Anno
     from conformance.exact.slow import read as shape_of
     from conformance.made.answers import doubts
     from conformance.made.check import AGREE, differences, faults, write_step
-    from conformance.made.confirm import contradictions
+    from conformance.made.confirm import Around, contradictions
     from conformance.made.part import postures
     from conformance.made.parts import PARTS
 
@@ -223,8 +223,8 @@ def check(name: Annotated[str, typer.Argument(help="A made part.")], count: Anno
         path = Path(folder) / f"{name}.step"
         write_step(part, path)
         err.print(f"bounds over the surface: {len(table)} postures, {len(part.answers)} answers")
-        excluded = list(contradictions(part, table, path))
-        unsure = list(doubts(part, shape_of(path)))
+        around = Around(part, shape_of(path))
+        excluded, unsure = list(contradictions(around, table)), list(doubts(around))
     err.print(f"points of the surface: {len(table)} postures, about a second each")
     apart = list(differences(part, table))
     for each in apart:

@@ -41,9 +41,8 @@ def truth(part: str, tool: Tool, setup: str, postures: Postures, path: Path | No
             low[rows] = high[rows] = judged.margin
     if path is not None and not known.all():
         shape, rows = _tree(path), numbers(tool)
-        none = np.zeros(int(shape.cells.face.max()) + 1, bool)
         for i in np.flatnonzero(~known):
-            low[i], high[i], _ = least(shape, rows, postures.tip[i], postures.axis[i], none, enough=0.0)
+            low[i], high[i], _ = least(shape, rows, postures.tip[i], postures.axis[i], enough=0.0)
             high[i] = FAR if high[i] >= 0.0 else high[i]
     return low, high
 

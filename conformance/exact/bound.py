@@ -6,6 +6,7 @@ Nothing here knows closed forms or triangles: it is the second, independent proo
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numba
 import numpy as np
@@ -28,6 +29,11 @@ class Tree:
     nodes: Floats
     child: NDArray[np.int32]
     span: NDArray[np.int32]
+
+    @cached_property
+    def no_face(self) -> NDArray[np.bool_]:
+        """No face is exempt, as `least` takes it."""
+        return np.zeros(int(self.cells.face.max()) + 1, bool)
 
 
 def tree(cells: Cells) -> Tree:
@@ -219,14 +225,20 @@ def numbers(tool: Tool) -> Floats:
 
 
 def least(
-    shape: Tree, pieces: Floats, tip: Floats, axis: Floats, exempt: NDArray[np.bool_], enough: float = 5.0, deep: float = -np.inf
+    shape: Tree, pieces: Floats, tip: Floats, axis: Floats, exempt: NDArray[np.bool_] | None = None, enough: float = 5.0, deep: float = -np.inf
 ) -> tuple[float, float, int]:
     """Return bounds of the least signed distance (mm) of one posture's tool from all faces that are not exempt.
 
-    `pieces (k, 5)` as `numbers` gives them; `exempt (faces,)`. Distances beyond `enough` are not told apart: the lower bound is then `enough`. Depths beyond
-    `-deep` are not either: the lower bound is then -inf.
+    `pieces (k, 5)` as `numbers` gives them; `exempt (faces,)`, by default none. Distances beyond `enough` are not told apart: the lower bound is then `enough`.
+    Depths beyond `-deep` are not either: the lower bound is then -inf.
     """
     c = shape.cells
     work = np.empty((256, 4, 3))
+    exempt = shape.no_face if exempt is None else exempt
     low, high, boxes = _least(shape.nodes, shape.child, shape.span, c.corners, c.delta, c.face, c.whole, pieces, tip, axis, exempt, enough, deep, work)
     return float(low), float(high), int(boxes)
+
+
+def deepest(shape: Tree, pieces: Floats, tip: Floats, axis: Floats, deep: float = -np.inf) -> int:
+    """Return the number of the piece that the shape surely reaches deepest; depths beyond `-deep` are not told apart."""
+    return int(np.argmin([least(shape, pieces[k : k + 1], tip, axis, enough=0.0, deep=deep)[1] for k in range(len(pieces))]))

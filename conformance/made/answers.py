@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from conformance.exact.bound import Tree, least, numbers
+from conformance.exact.bound import least, numbers
 from conformance.forms import Surface
-from conformance.made.confirm import surroundings
-from conformance.made.part import Answer, MadePart, blocked, frame, held, leaning
+from conformance.made.confirm import Around
+from conformance.made.part import Answer, blocked, frame, held, leaning
 from conformance.tool import Floats, Tool
 
 #: Beside an end of an interval (deg), of a length (mm) and of a radius (share); a depth (mm) that the bounds surely tell from none.
@@ -24,10 +24,9 @@ Look = tuple[str, bool]
 class Asked:
     """A part that can be asked whether a tool is blocked, by bounds and by its closed forms."""
 
-    def __init__(self, part: MadePart, shape: Any) -> None:
-        self.part, self.shape = part, shape
-        self._around: dict[str, Tree] = {}
-        self.searched = any(isinstance(m, Surface) for m in part.materials)
+    def __init__(self, around: Around) -> None:
+        self.part, self.around = around.part, around
+        self.searched = any(isinstance(m, Surface) for m in around.part.materials)
 
     def bounds(self, tool: Tool, setup_name: str, contact: Any, normal: Any, axis: Any, lean: Any = None) -> bool | None:
         """Whether the bounds find material or a fixture in the tool, or the axis beyond the limit; None where they do not tell."""
@@ -37,11 +36,7 @@ class Asked:
         if setup.limit_deg is not None and np.degrees(np.arccos(np.clip(axis @ np.array(setup.axis), -1, 1))) > setup.limit_deg:
             return True
         tip = tool.stands(contact[None], normal[None], axis[None], frame(normal[None])[0] if lean is None else np.array(lean, float)[None])[0]
-        if setup_name not in self._around:
-            self._around[setup_name] = surroundings(self.shape, setup)
-        around = self._around[setup_name]
-        none = np.zeros(int(around.cells.face.max()) + 1, bool)
-        low, high, _ = least(around, numbers(tool), tip, axis, none, enough=0.0, deep=-SURE)
+        low, high, _ = least(self.around.of(setup_name), numbers(tool), tip, axis, enough=0.0, deep=-SURE)
         if high < 0.0 or (tool.corner == 0.0 and self._edge_enters(tool, tip, axis, contact)):
             return True
         return False if low >= -SURE else None
@@ -54,7 +49,7 @@ class Asked:
 
         x = (contact - tip) / np.linalg.norm(contact - tip)
         y = np.cross(axis, x)
-        inside = BRepClass3d_SolidClassifier(self.shape)
+        inside = BRepClass3d_SolidClassifier(self.around.shape)
         for turn in np.linspace(-0.3, 0.3, 61):
             inside.Perform(gp_Pnt(*(float(v) for v in tip + tool.flat_radius * (np.cos(turn) * x + np.sin(turn) * y))), 1e-7)
             if inside.State() == TopAbs_IN:
@@ -78,10 +73,10 @@ class Asked:
         return f"{what}: {'free' if free else 'blocked'}", right
 
 
-def doubts(part: MadePart, shape: Any) -> Iterator[str]:
-    """Yield a line for each look at an answer that is not as the answer has it; `shape` is the part as its STEP file has it."""
-    asked = Asked(part, shape)
-    for k, answer in enumerate(part.answers):
+def doubts(around: Around) -> Iterator[str]:
+    """Yield a line for each look at an answer that is not as the answer has it."""
+    asked = Asked(around)
+    for k, answer in enumerate(asked.part.answers):
         for what, right in _KINDS[answer.kind](asked, answer):
             if not right:
                 yield f"answer {k}, {answer.kind} = {answer.value} ({answer.formula}): expected at {what}"

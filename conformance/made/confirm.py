@@ -6,14 +6,12 @@ parametrised surface may miss some micrometres where the tool enters along a cre
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from conformance.exact.bound import Tree, least, numbers, tree
+from conformance.exact.bound import Tree, deepest, least, numbers, tree
 from conformance.exact.cells import Cells, UnfitError, cells
-from conformance.exact.slow import read
 from conformance.made.blocks import cuboid
 from conformance.made.part import MadePart, Setup
 from conformance.posture import Postures
@@ -36,13 +34,25 @@ class Contradiction:
     reason: str
 
 
-def surroundings(shape: Any, setup: Setup) -> Tree:
-    """Return the tree of a part's shape with the boxes and the table of a setup."""
-    solids = [shape, *(cuboid(*corners).val().wrapped for corners in setup.boxes)]
-    if setup.table is not None:
-        solids.append(cuboid((-_TABLE, -_TABLE, setup.table - _TABLE), (_TABLE, _TABLE, setup.table)).val().wrapped)
-    made = [cells_of(each) for each in solids]
-    return tree(Cells(*(np.concatenate([getattr(c, column) for c in made]) for column in ("corners", "delta", "face", "whole"))))
+class Around:
+    """A part's shape with the boxes and the table of each of its setups; a tree is made once, when it is first asked for."""
+
+    def __init__(self, part: MadePart, shape: Any) -> None:
+        self.part, self.shape = part, shape
+        self._trees: dict[str, Tree] = {}
+
+    def of(self, setup_name: str) -> Tree:
+        """Return the tree of a setup."""
+        if setup_name not in self._trees:
+            self._trees[setup_name] = self._made(self.part.setup(setup_name))
+        return self._trees[setup_name]
+
+    def _made(self, setup: Setup) -> Tree:
+        solids = [self.shape, *(cuboid(*corners).val().wrapped for corners in setup.boxes)]
+        if setup.table is not None:
+            solids.append(cuboid((-_TABLE, -_TABLE, setup.table - _TABLE), (_TABLE, _TABLE, setup.table)).val().wrapped)
+        made = [cells_of(each) for each in solids]
+        return tree(Cells(*(np.concatenate([getattr(c, column) for c in made]) for column in ("corners", "delta", "face", "whole"))))
 
 
 def cells_of(shape: Any) -> Cells:
@@ -55,26 +65,21 @@ def cells_of(shape: Any) -> Cells:
         return cells(BRepBuilderAPI_NurbsConvert(shape, True).Shape())
 
 
-def contradictions(part: MadePart, table: Postures, path: Path) -> Iterator[Contradiction]:
+def contradictions(around: Around, table: Postures) -> Iterator[Contradiction]:
     """Yield the rows of a part's table whose margins the bounds exclude; rows beyond the machine's limit are left out."""
-    shape = read(path)
-    for setup in part.setups:
-        around = surroundings(shape, setup)
-        none = np.zeros(int(around.cells.face.max()) + 1, bool)
-        for i in np.flatnonzero((table.setup == setup.name) & ~(table.limit_deg < 0)):
-            tool = part.tool(str(table.tool[i]))
-            rows, where = numbers(tool), (table.tip[i], table.axis[i], none)
-            low, high, _ = least(around, rows, *where, enough=0.0)
-            form = float(table.low[i])
-            wrong = high < -AGREE if table.verdict[i] == "safe" else form > high + AGREE or -DEEP < form < low - AGREE
-            if wrong:
-                deepest = int(np.argmin([least(around, rows[k : k + 1], *where, enough=0.0)[1] for k in range(len(rows))]))
-                yield Contradiction(int(i), form, low, high, tool.pieces[deepest].part)
+    for i in np.flatnonzero(~(table.limit_deg < 0)):
+        shape, tool = around.of(str(table.setup[i])), around.part.tool(str(table.tool[i]))
+        where = shape, numbers(tool), table.tip[i], table.axis[i]
+        low, high, _ = least(*where, enough=0.0)
+        form = float(table.low[i])
+        wrong = high < -AGREE if table.verdict[i] == "safe" else form > high + AGREE or -DEEP < form < low - AGREE
+        if wrong:
+            yield Contradiction(int(i), form, low, high, tool.pieces[deepest(*where)].part)
 
 
-def confirmed(part: MadePart, table: Postures, path: Path) -> tuple[Postures, int]:
+def confirmed(around: Around, table: Postures) -> tuple[Postures, int]:
     """Return the table with the bounds where they contradict the form, and how many those are; what they do not decide either is left out."""
-    found = list(contradictions(part, table, path))
+    found = list(contradictions(around, table))
     columns = {name: getattr(table, name).copy() for name in ("low", "high", "verdict", "reason", "proof")}
     kept = np.ones(len(table), bool)
     for each in found:

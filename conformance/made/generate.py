@@ -8,8 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from conformance.exact.slow import read as shape_of
 from conformance.made.check import write_step
-from conformance.made.confirm import confirmed
+from conformance.made.confirm import Around, confirmed
 from conformance.made.part import MadePart, postures
 from conformance.made.parts import PARTS
 from conformance.posture import Postures
@@ -38,7 +39,7 @@ def generate(folder: Path = DATA, each: int = EACH, tell: Callable[[str], None] 
         if part.twin_of:
             table, wrong = made[part.twin_of].renamed(part.name), 0
         else:
-            table, wrong = confirmed(part, postures(part, each), path)
+            table, wrong = confirmed(Around(part, shape_of(path)), postures(part, each))
         made[part.name], entries[part.name] = table, _entry(part, path)
         tell(f"{part.name}: {len(table)} postures, {(table.verdict == 'safe').sum()} safe; bounds in place of the form: {wrong}")
     Postures.joined(made.values()).write(folder / "made.parquet")

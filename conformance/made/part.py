@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from conformance.forms import Material
+from conformance.made.planar import unit
 from conformance.posture import Postures
 from conformance.tool import Floats, Tool
 
@@ -57,7 +58,6 @@ def directions(
 
     `apart` are the numbers of contacts that need a direction each, for none serves two of them.
     """
-    unit = lambda v: [float(x) for x in np.array(v, float) / np.linalg.norm(v)]
     return {
         "axes": [unit(a) for a in axes],
         "contacts": [[float(x) for x in c] for c, _ in contacts],

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from conformance.forms import Material, Surface, box
+from conformance.made.planar import unit
 from conformance.tool import Floats, Piece
 
 #: A full turn with some overlap (rad), so that no least distance lies at the seam.
@@ -118,7 +119,6 @@ def past_edge(across: float, up: float, radius: float) -> float:
 
 def placed(contact: Sequence[float], normal: Sequence[float], lean: Sequence[float] | None = None, **more: Any) -> dict[str, Any]:
     """Return where an answer holds: contact (mm), unit normal and the direction that the axis tilts to."""
-    unit = lambda v: [float(x) for x in np.array(v, float) / np.linalg.norm(v)]
     out = {"contact": [float(x) for x in contact], "normal": unit(normal), **more}
     return out if lean is None else {**out, "lean": unit(lean)}
 

@@ -10,6 +10,7 @@ contact, so the front side is the ray from the contact along the axis, and the h
 t, sin t)`.
 """
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -106,6 +107,6 @@ def along(contact: Vector, normal: Vector, axis: Vector, ball: Tool | None = Non
     return {"contact": [float(x) for x in contact], "normal": unit(normal), "axis": unit(axis), **end}
 
 
-def unit(v: Vector) -> list[float]:
+def unit(v: Sequence[float]) -> list[float]:
     """Return a direction of length 1, as a list."""
     return [float(x) for x in np.array(v, float) / np.linalg.norm(v)]

@@ -22,7 +22,7 @@ from OCP.TopExp import TopExp, TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedDataMapOfShapeListOfShape
 
-from conformance.exact.bound import Tree, least, numbers, tree
+from conformance.exact.bound import Tree, deepest, least, numbers, tree
 from conformance.exact.cells import cells
 from conformance.made.part import STEADY_DEG, frame, leaning
 from conformance.posture import Postures, Words
@@ -110,10 +110,10 @@ class Proved:
 
 def bounds(shape: Shape, tool: Tool, face: NDArray[np.int64], tip: Floats, axis: Floats, *, sign: bool = False) -> Proved:
     """Return the bounds of postures whose contacts lie on `face (n,)`; `sign` asks for no more than whether they are blocked."""
-    rows, none = numbers(tool), np.zeros(len(shape.faces), bool)
+    rows = numbers(tool)
     out = np.full((4, len(tip)), np.nan)
     for i in range(len(tip)):
-        out[:2, i] = least(shape.tree, rows, tip[i], axis[i], none, enough=SAFE, deep=-SAFE if sign else -DEEP)[:2]
+        out[:2, i] = least(shape.tree, rows, tip[i], axis[i], enough=SAFE, deep=-SAFE if sign else -DEEP)[:2]
         if not sign and out[0, i] >= -SAFE:
             out[2:, i] = least(shape.tree, rows, tip[i], axis[i], shape.joined[face[i]], enough=REACH)[:2]
     return Proved(*out)
@@ -176,12 +176,12 @@ def clearances(shape: Shape, tool: Tool, contact: Floats, normal: Floats, axis: 
 
     As with closed forms, a hair from entering the surface at its contact the clearance of the rest says nothing: there it is 0 at most.
     """
-    low, high, none = low.copy(), high.copy(), np.zeros(len(shape.faces), bool)
+    low, high = low.copy(), high.copy()
     tip = tool.stands(contact, normal, axis)
     rows, aloof = numbers(tool), np.array([piece.part != "cutter" for piece in tool.pieces])
     if aloof.any():
         for i in range(len(tip)):
-            near = least(shape.tree, rows[aloof], tip[i], axis[i], none, enough=REACH)
+            near = least(shape.tree, rows[aloof], tip[i], axis[i], enough=REACH)
             low[i], high[i] = min(low[i], near[0]), min(high[i], near[1])
     turn = np.full(len(axis), max(np.radians(STEADY_DEG), SWAY / tool.length))
     e1, e2 = frame(axis)
@@ -189,18 +189,15 @@ def clearances(shape: Shape, tool: Tool, contact: Floats, normal: Floats, axis: 
         near_axis = leaning(axis, np.cos(way) * e1 + np.sin(way) * e2, turn)
         where = tool.stands(contact, normal, near_axis)
         for i in range(len(tip)):
-            if low[i] > 0.0 and least(shape.tree, rows, where[i], near_axis[i], none, enough=SAFE)[0] < -SAFE:
+            if low[i] > 0.0 and least(shape.tree, rows, where[i], near_axis[i], enough=SAFE)[0] < -SAFE:
                 low[i] = 0.0
     return low, high
 
 
 def reasons(shape: Shape, tool: Tool, tip: Floats, axis: Floats) -> Words:
     """Return the part of the tool (n,) that the surface surely reaches deepest: `cutter`, `shank` or `holder`."""
-    rows, none = numbers(tool), np.zeros(len(shape.faces), bool)
-    high = np.array(
-        [[least(shape.tree, rows[k : k + 1], t, a, none, enough=0.0, deep=-DEEP)[1] for k in range(len(rows))] for t, a in zip(tip, axis, strict=True)]
-    )
-    return np.array([piece.part for piece in tool.pieces])[np.argmin(high.reshape(-1, len(rows)), axis=1)]
+    rows = numbers(tool)
+    return np.array([tool.pieces[deepest(shape.tree, rows, t, a, -DEEP)].part for t, a in zip(tip, axis, strict=True)], dtype="U7")
 
 
 def _drawn(rng: np.random.Generator, normal: Floats) -> Floats:

@@ -17,7 +17,7 @@ def small_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(generate, "PARTS", {"v_groove": PARTS["v_groove"]})
         # Bounds have tests of their own (`test_bound`), and take seconds.
-        patch.setattr(generate, "confirmed", lambda part, table, path: (table, 0))
+        patch.setattr(generate, "confirmed", lambda around, table: (table, 0))
         generate.generate(folder, 72)
     return folder
 

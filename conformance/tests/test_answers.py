@@ -9,22 +9,22 @@ import pytest
 from conformance.exact.slow import read
 from conformance.made.answers import doubts
 from conformance.made.check import faults, write_step
+from conformance.made.confirm import Around
 from conformance.made.parts import PARTS
+from conformance.tests.daily import DAILY
 
 NAMES = [name for name, part in PARTS.items() if part.twin_of is None]
-#: Asked in every run, a part of most families; the others take minutes.
-DAILY = {"body_in_body", "plate_limit", "three_sides", "opposed_slots", "sphere_pocket", "lens", "tube", "cone_boss"}
 
 
-def shape_of(part, folder):
+def around(part, folder):
     """The part as another program reads it, through STEP."""
     write_step(part, Path(folder) / f"{part.name}.step")
-    return read(Path(folder) / f"{part.name}.step")
+    return Around(part, read(Path(folder) / f"{part.name}.step"))
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in DAILY else pytest.mark.slow) for n in NAMES])
 def test_bounds_confirm_each_answer(name, tmp_path):
-    assert list(doubts(PARTS[name], shape_of(PARTS[name], tmp_path))) == []
+    assert list(doubts(around(PARTS[name], tmp_path))) == []
 
 
 @pytest.mark.parametrize("kind", ["free_tilts", "orientations"])
@@ -32,7 +32,7 @@ def test_a_wrong_answer_is_seen(kind, tmp_path):
     part = PARTS["plate_limit" if kind == "free_tilts" else "three_sides"]
     right = next(a for a in part.answers if a.kind == kind)
     wrong = [[low, high - 0.25] for low, high in right.value] if kind == "free_tilts" else right.value - 1
-    (line, *_) = doubts(replace(part, answers=(replace(right, value=wrong),)), shape_of(part, tmp_path))
+    (line, *_) = doubts(around(replace(part, answers=(replace(right, value=wrong),)), tmp_path))
     assert line.startswith(f"answer 0, {kind} = {wrong} ({right.formula}): expected")
 
 
