@@ -21,7 +21,8 @@ from plan_cutters.domain.fixture import TABLE
 from plan_cutters.domain.preference import group_of
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.errors import OptionError
-from plan_cutters.scene.conditions import Conditions, Context, contacts_of, search_postures
+from plan_cutters.scene.conditions import Conditions, Context, contacts_of
+from plan_cutters.scene.flats_and_flanks import search
 from plan_cutters.scene.holds import NothingToGripError
 from plan_cutters.scene.preparation import Axis, Prepared
 from plan_cutters.scene.surroundings import Surroundings
@@ -306,7 +307,7 @@ def _reached(ready: Prepared, rows: Rows, conditions: Conditions, *, usual: bool
         if len(open_rows) and conditions.judges(cutter):
             verdicts = blank(len(reached))
             context = Context.of(cutter, conditions)
-            search_postures(contacts_of(ready.samples), open_rows, context, verdicts, fixed=True, brief=True)
+            search(contacts_of(ready.samples), ready.samples.face, open_rows, context, verdicts, fixed=True, brief=True)
             reached |= verdicts.reached
             open_rows = open_rows[~verdicts.reached[open_rows]]
     return reached

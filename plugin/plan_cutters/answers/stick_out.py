@@ -87,7 +87,7 @@ def _limited(ready: Prepared, cutter: Cutter, search: "_Search", stick_out: Stic
         point = deepest_on(
             obstacles.tree.vertex[triangle],
             lambda at: outer_tool.depth(
-                at, ready.samples.point[row], normal, posture.tilt_direction[row], float(posture.tilt[row])
+                at, posture.contact(ready.samples.point)[row], normal, posture.tilt_direction[row], float(posture.tilt[row])
             ),
         )
     samples = ready.samples
@@ -149,8 +149,9 @@ class _Search:
         stick_out = np.full(len(posture.tilt), np.nan)
         triangle = np.full(len(posture.tilt), -1, np.int32)
         samples, tree = self.ready.samples, self.conditions.obstacles.tree
+        point = posture.contact(samples.point)
         in_chunks(
-            lambda piece: least_stick_outs(piece, samples.point, samples.normal, posture.tilt_direction, posture.tilt, self.whole,
+            lambda piece: least_stick_outs(piece, point, samples.normal, posture.tilt_direction, posture.tilt, self.whole,
                                            self.outline, self.floor if floor is None else floor, tree, stick_out, triangle),
             rows, self.conditions.jobs,
         )  # fmt: skip

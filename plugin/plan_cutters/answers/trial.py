@@ -16,7 +16,8 @@ from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.verdicts import ACCESSIBLE, CONVEX, FIXTURE, INACCESSIBLE, INSIDE, TOLERANCE, UNDECIDED, Verdicts, blank
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.plan_file.words.change_text import reasons, samples
-from plan_cutters.scene.conditions import Context, contacts_of, on_the_flat, search_postures
+from plan_cutters.scene.conditions import Context, contacts_of
+from plan_cutters.scene.flats_and_flanks import search
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.stages.judge import judge
 
@@ -93,8 +94,7 @@ def _look(ready: Prepared, cutter: Cutter, rows: Rows, *, brief: bool) -> Verdic
     verdicts.verdict[free] = ACCESSIBLE
     # Of the finished surface these lie within a fixture, or are held.
     within, held = ready.shut[rows] >= 0, ready.clamped[rows]
-    search_postures(contacts, np.flatnonzero(~free & ~within), context, verdicts, brief=brief)
-    on_the_flat(contacts, np.flatnonzero(verdicts.not_reached & ~within), context, verdicts)
+    search(contacts, ready.samples.face[rows], np.flatnonzero(~free & ~within), context, verdicts, brief=brief)
     verdicts.verdict[within], verdicts.reason[within] = INACCESSIBLE, np.where(held[within], FIXTURE, INSIDE)
     return verdicts.freeze()
 

@@ -22,6 +22,7 @@ from plan_cutters.errors import PlanError
 from plan_cutters.files.digest import digest, sources
 from plan_cutters.files.folder import Folder, cause
 from plan_cutters.files.seal import stamp
+from plan_cutters.kernels.codes import BEYOND
 from plan_cutters.scene.ground import GroundDigests
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.question import METHOD
@@ -29,10 +30,10 @@ from plan_cutters.scene.work import Work
 from plan_cutters.stages.judge import Judge, judge
 
 #: The first line of an entry.
-_MAGIC = b"plan-cutters verdicts 1\n"
+_MAGIC = b"plan-cutters verdicts 2\n"
 #: Columns as they are written, one after the other, by their types and numbers a sample.
 _COLUMNS = {"verdict": ("u1", ()), "axis": ("<f8", (3,)), "tilt_direction": ("<f8", (3,)), "tilt": ("<f8", ()),
-            "rotation": ("<i4", ()), "reason": ("u1", ())}  # fmt: skip
+            "rotation": ("<i4", ()), "shift": ("<f8", (3,)), "reason": ("u1", ())}  # fmt: skip
 _A_SAMPLE = sum(np.dtype(kind).itemsize * (shape or (1,))[0] for kind, shape in _COLUMNS.values())
 #: Rooms on whose sources verdicts depend, and the packages.
 _ROOMS, _PACKAGES = ("domain", "kernels", "scene", "stages"), ("numba", "numpy", "scipy")
@@ -249,7 +250,8 @@ def require_sound(verdicts: Verdicts, normal: Floats, postures: PostureRange) ->
         unit = ((np.abs(length - 1.0) <= _SLACK) | ((tilt[:, 0] == 0.0) & (length > 0.0) & (length < 1.0))) & (
             np.abs((across * normal).sum(axis=1)) <= _SLACK
         )
-        within = (tilt[:, 0] >= low - _SLACK) & (tilt[:, 0] <= high + _SLACK)
+        # A flank may lie along a surface that is not quite at its tilt.
+        within = (tilt[:, 0] >= low - _SLACK) & (tilt[:, 0] <= high + BEYOND) & np.isfinite(verdicts.shift[at]).all(axis=1)
     if not (stands.all() and unit.all() and within.all() and turned.all()):
         raise ValueError("it holds postures that there are not")
 

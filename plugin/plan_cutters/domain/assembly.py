@@ -28,7 +28,7 @@ from plan_cutters.domain.pieces import (
     sharpest,
     solid,
 )
-from plan_cutters.domain.shapes import MOST_PIECES, Mode, flute_length, modes, stages, top_flank_angle, top_radius
+from plan_cutters.domain.shapes import MOST_PIECES, Flank, Mode, flanks, flute_length, modes, rim_radius, stages, top_flank_angle
 from plan_cutters.errors import CutterError
 from plan_cutters.kernels.codes import (
     ARC,
@@ -39,9 +39,11 @@ from plan_cutters.kernels.codes import (
     HIGH,
     KIND,
     LOW,
+    OFFSET_OF,
     OVER_TIP,
     PART,
     RADIUS,
+    RISE,
     ROUND,
     SCALE,
     SLOPE,
@@ -67,6 +69,8 @@ class Assembly(Record):
         Distance from the contact, mm, within which an obstacle counts as rear gouging: the flutes' diameter.
     inner, end : float
         Heights over the tip, mm, of two points of the axis: one as deep in the cutter as any, and the highest.
+    flanks : tuple of Flank
+        The straight sides with which it touches.
     slack : float
         By how much a point may be farther from the tool, or less deep in it, than asked for and still count, mm.
     """
@@ -77,12 +81,27 @@ class Assembly(Record):
     inner: float
     end: float
     slack: float
+    flanks: tuple[Flank, ...] = ()
 
     @property
     def flat(self) -> float:
         """Radius of the flat of the tip, mm; 0 where the tip is round."""
-        upright = self.mode[self.mode[:, 2] <= 0.0]
-        return float(upright[0, 0]) if len(upright) else 0.0
+        return self.offset_at(0.0)
+
+    def offset_at(self, tilt: float) -> float:
+        """How far from the axis it touches at a tilt, rad: at 0 the radius of the flat of its tip, at pi that of its upper face,
+        mm; 0 where it touches at none or in the middle.
+        """
+        touching = self._touching(tilt)
+        return float(touching[0, OFFSET_OF]) if len(touching) else 0.0
+
+    def rise_at(self, tilt: float) -> float:
+        """Its radius of curvature where it touches at a tilt, rad, with the allowance, mm; 0 where it touches at none."""
+        touching = self._touching(tilt)
+        return float(touching[0, RISE]) if len(touching) else 0.0
+
+    def _touching(self, tilt: float) -> Floats:
+        return self.mode[(self.mode[:, TILT_FROM] <= tilt + HAIR) & (self.mode[:, TILT_TO] >= tilt - HAIR)]
 
     def only(self, part: int) -> "Assembly":
         """The pieces of one part alone."""
@@ -176,11 +195,11 @@ def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "outer"
             rows += alone(band)
     else:
         first = bands[0]
-        end, start = seam(top_radius(cutter), flutes, first.stage.radius, first.inset, top)
+        end, start = seam(rim_radius(cutter), flutes, first.stage.radius, first.inset, top)
         if cutter.shape == "lollipop":
             rows += opening(cutter, flutes, top)
         else:
-            rows += between(top_radius(cutter), top_flank_angle(cutter), first.stage.radius, first.flank_angle, top,
+            rows += between(rim_radius(cutter), top_flank_angle(cutter), first.stage.radius, first.flank_angle, top,
                             min(flutes, first.inset), FLUTES)  # fmt: skip
         if flutes < 0.0:
             end = max(end, top + flutes * min(0.0, math.sin(top_flank_angle(cutter))))
@@ -208,6 +227,7 @@ def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "outer"
         inner,
         min(highest, float(table[:, TOP].max(initial=0.0))),
         _slack(cutter, flutes, bands, kind),
+        flanks(cutter),
     )
 
 
@@ -265,7 +285,7 @@ def _slack(cutter: Cutter, inset: float, bands: list[Band], kind: Kind) -> float
     elif bands:
         # Sides that lean end at their seam's height though their normals there do not lie along it.
         most = max(most, inset * (1.0 - math.cos(top)))
-        if bands[0].stage.radius < top_radius(cutter):
+        if bands[0].stage.radius < rim_radius(cutter):
             # What runs down into the flutes holds what is neither near enough to it nor deep enough about its edge.
             most = max(most, 0.5 * (inset + min(0.0, bands[0].inset)))
         if cutter.shape == "lollipop":

@@ -38,6 +38,22 @@ class Mode(NamedTuple):
     high: float
 
 
+class Flank(NamedTuple):
+    """A straight side of the cutting edge: it touches at one tilt, anywhere along its length.
+
+    mode : int
+        In which its lower end touches, as `modes` counts them.
+    tilt : float
+        rad.
+    length : float
+        mm; 0 where nothing above it is narrower, so that no other place along it serves where its lower end does not.
+    """
+
+    mode: int
+    tilt: float
+    length: float
+
+
 def _neck_height(cutter: Dimensions) -> float:
     """Height over the tip at which a lollipop's ball meets its neck."""
     thin = cutter.shank_radius or 0.0
@@ -65,6 +81,14 @@ def top_radius(cutter: Dimensions) -> float:
     if cutter.shape == "barrel":
         return flank(cutter, top)
     return cutter.radius + flank_offset(cutter) + (top - cutter.corner_radius) * math.tan(cutter.taper)
+
+
+def rim_radius(cutter: Dimensions) -> float:
+    """Radius of the flutes where they end, mm, but for a form whose upper face leads back to its neck: that of the face's rim."""
+    if cutter.shape == "form":
+        top = cutter.outline[-1][1]
+        return max(r for r, h in cutter.outline if h == top)
+    return top_radius(cutter)
 
 
 def top_flank_angle(cutter: Dimensions) -> float:
@@ -145,6 +169,30 @@ def modes(cutter: Dimensions) -> tuple[Mode, ...]:
     if cutter.shape == "form":
         return _corners(cutter.outline)
     return (Mode(r - corner, corner, corner, 0.0, _RIGHT - cutter.taper),)
+
+
+def flanks(cutter: Dimensions) -> tuple[Flank, ...]:
+    """The straight sides with which a cutter can touch.
+
+    >>> from plan_cutters.domain.cutter import Cutter
+    >>> [round(each.length, 3) for each in flanks(Cutter.parse("D12L60F26N8x30S12"))], flanks(Cutter.parse("D12L60rc6"))[0].length
+    ([26.0], 0.0)
+    """
+    each = modes(cutter)
+    if cutter.shape == "form":
+        corners = [(mode.offset, mode.height) for mode in each]
+        edges = set(pairwise(cutter.outline))
+        return tuple(
+            Flank(i, mode.high, math.dist(a, b))
+            for i, (mode, a, b) in enumerate(zip(each, corners, [*corners[1:], (math.nan, math.nan)], strict=True))
+            if (a, b) in edges and mode.high < math.pi
+        )
+    if cutter.shape not in ("end", "lens"):
+        return ()
+    begins = lens_height(cutter) if cutter.shape == "lens" else cutter.corner_radius * (1.0 - math.sin(cutter.taper))
+    length = (flute_length(cutter) - begins) / math.cos(cutter.taper)
+    narrower = any(min(stage.radius, stage.upper_radius) < top_radius(cutter) - SAME for _, _, stage in stages(cutter))
+    return (Flank(len(each) - 1, each[-1].high, length if narrower else 0.0),) if length > SAME else ()
 
 
 def depth_along_normal(cutter: Dimensions) -> float:

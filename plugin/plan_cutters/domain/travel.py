@@ -19,6 +19,7 @@ from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement, frame_of
 from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.kernels.codes import BEYOND
 
 #: Positions this close to a limit are on it, mm: a tool axis is held up to an angle of `kinematics.PARALLEL`.
 ON_LIMIT = 1e-4
@@ -67,9 +68,10 @@ def unjudged(machine: Machine, placement: Placement | None) -> str | None:
 
 def tips(cutter: Cutter, point: Floats, normal: Floats, verdicts: Verdicts) -> Floats:
     """Tips (n, 3) of a cutter at the postures with which it touches points (n, 3) of surfaces with unit normals (n, 3)."""
-    result = np.full(point.shape, np.nan)
-    for mode in modes(cutter):
-        at = np.isnan(result[:, 0]) & (verdicts.tilt >= mode.low - 1e-9) & (verdicts.tilt <= mode.high + 1e-9)
+    result, point = np.full(point.shape, np.nan), verdicts.contact(point)
+    # A flank may lie along a surface that is not quite at its tilt.
+    for mode, off in ((mode, off) for off in (1e-9, BEYOND) for mode in modes(cutter)):
+        at = np.isnan(result[:, 0]) & (verdicts.tilt >= mode.low - off) & (verdicts.tilt <= mode.high + off)
         n, f, a, tilt = normal[at], verdicts.tilt_direction[at], verdicts.axis[at], verdicts.tilt[at, None]
         centre = point[at] + (mode.radius + (cutter.allowance or 0.0)) * n
         # Across the axis, towards the contact.

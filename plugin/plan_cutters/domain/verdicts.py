@@ -47,7 +47,7 @@ WORDS = {
 CONVEX, CONCAVE, SADDLE = 0, 1, 2
 
 Bytes = NDArray[np.uint8]
-_POSTURE = ("axis", "tilt_direction", "tilt", "rotation")
+_POSTURE = ("axis", "tilt_direction", "tilt", "rotation", "shift")
 _COLUMNS = ("verdict", *_POSTURE, "reason")
 
 
@@ -65,6 +65,7 @@ class _Columns(Record):
     tilt_direction: Floats
     tilt: Floats
     rotation: Ints
+    shift: Floats
     reason: Bytes
 
     @property
@@ -76,6 +77,10 @@ class _Columns(Record):
     def reached(self) -> NDArray[np.bool_]:
         """Samples (n,) at which a posture is known."""
         return self.interference_free | (self.verdict == ACCESSIBLE)
+
+    def contact(self, point: Floats) -> Floats:
+        """Where the tools touch (n, 3) as they are put down, from the samples' points (n, 3), mm."""
+        return point + self.shift
 
     @property
     def not_reached(self) -> NDArray[np.bool_]:
@@ -109,6 +114,10 @@ class Verdicts(_Columns):
         rad, nan where there is none.
     rotation : (n,) int32
         Index into the posture range's rotations, -1 where there is none.
+    shift : (n, 3) float
+        From the sample to the contact at which the tool is put down, mm. It is not 0 where a flank lies along the surface, and
+        touches it elsewhere than with its lower end, and where the flat of a tip lies on a face that is not quite square to the
+        axis (`scene.by_axis`).
     reason : (n,) uint8
         Index into REASONS where inaccessible or undecided, else NO_REASON.
     """
@@ -208,5 +217,6 @@ def blank(n: int) -> VerdictBuffer:
         tilt_direction=np.full((n, 3), np.nan),
         tilt=np.full(n, np.nan),
         rotation=np.full(n, -1, np.int32),
+        shift=np.zeros((n, 3)),
         reason=np.full(n, NO_REASON, np.uint8),
     )

@@ -132,6 +132,8 @@ def _posture(result: Result, cutter: Cutter, at: int | WitnessEntry) -> tuple[Fl
         tilt_direction, size = (own if tilt == 0.0 and np.isfinite(own).all() else samples.direction_max[row]), 1.0
     one = blank(1)
     one.axis[0], one.tilt_direction[0], one.tilt[0] = axis, tilt_direction / size, tilt
+    if not isinstance(at, WitnessEntry):
+        one.shift[0] = result.reaches[cutter.id].shift[row]
     tip = tips(cutter, samples.point[row : row + 1], normal[None], one.freeze())[0]
     if not np.isfinite(tip).all():
         raise OptionError(f"{cutter.id} cannot touch at a tilt of {np.degrees(tilt):.3g} deg: there is nothing to show")

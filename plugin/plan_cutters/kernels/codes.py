@@ -39,6 +39,8 @@ PARALLEL = 1e-6
 #: beyond which a posture is surely blocked: the ball is to be free of the skin that the contact lies on, and its radius more than
 #: sqrt(2).
 AWAY, BALL = 2.0, 1.5
+#: Surfaces that are farther off the tilt of a flank are never along it, rad.
+BEYOND = 0.1
 #: Angles this close to a limit are on it, rad.
 ON_LIMIT = 1e-9
 

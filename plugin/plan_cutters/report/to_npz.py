@@ -14,6 +14,9 @@ from plan_cutters.report.protocol import Judged
 def write_npz(result: Judged, _split: object, path: Path) -> None:
     """Write `samples.npz`: the samples, and per cutter verdict, axis, tilt_direction and reason with its id as suffix.
 
+    `shift_ID` goes from the samples to where the tool is put down: there where any is put down along a flank, or on a flat that is
+    not quite square.
+
     Over several setups what one or another reaches, with the posture of the first that does: `setup_ID` is its index into
     `setups`, -1 where none does, and `reached_in_ID` says which do. `inside_bodies`: what is no surface of the finished part;
     `exempt`, where some is: what is not required at sharp inside edges.
@@ -42,6 +45,8 @@ def write_npz(result: Judged, _split: object, path: Path) -> None:
         arrays[f"axis_{name}"] = verdicts.axis
         arrays[f"lean_{name}"] = verdicts.tilt_direction
         arrays[f"reason_{name}"] = verdicts.reason
+        if verdicts.shift.any():
+            arrays[f"shift_{name}"] = verdicts.shift
         if result.kinematics is not None:
             angles, taken = result.rotary(name)
             if name in result.travels:

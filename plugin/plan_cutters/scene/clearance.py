@@ -143,7 +143,7 @@ def _probed(
 
     made = grown(cutter, distance + conditions.obstacles.triangles.chord_error + _ROUNDING)
     # Arrays that may not be written are another type to the compiler: `probe` would be compiled once more for them.
-    postures = samples.point, samples.normal, verdicts.axis.copy(), verdicts.tilt_direction.copy()
+    postures = verdicts.contact(samples.point), samples.normal, verdicts.axis.copy(), verdicts.tilt_direction.copy()
     in_chunks(
         lambda piece: probe(piece, *postures, tool_of(made), conditions.obstacles.tree, triangle, which), rows, conditions.jobs
     )

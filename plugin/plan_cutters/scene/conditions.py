@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,16 +15,13 @@ from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.shapes import depth_along_normal
 from plan_cutters.domain.tolerance import depths
-from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INSIDE, NO_REASON, UNDECIDED, VerdictBuffer, blank
+from plan_cutters.domain.verdicts import VerdictBuffer, blank
 from plan_cutters.kernels.rows import Contacts, Ranges, Rotary, Tool, VerdictArrays
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.scene.threads import Progress, in_chunks
 from plan_cutters.scene.work import Work
 
-#: Ranges of rotations that are less than a whole turn by no more are one, rad. Places of the axis that are nearer than this to
-#: what is certainly in the way are none, mm: no machine holds them.
-_WHOLE, _NO_PLACE = 1e-9, 1e-3
 #: Where material over a contact proves that it is blocked: shares of the length that the tool holds of the normal, and no nearer
 #: than so many blocked depths, for there is the contact's own surface.
 _PROVED_AT, _CLEAR = np.array([1.0, 0.3, 0.1, 0.03]), 4.0
@@ -267,58 +263,13 @@ def search_postures(
         work.add(looked)
 
 
-def on_the_flat(contacts: Contacts, rows: NDArray[np.int64], context: Context, verdicts: VerdictBuffer) -> None:
-    """Let contacts without a posture (m,) be cut by the flat of the tip, where the tool can stand upright on it.
-
-    Its edge need not touch there: what the flat lies on is cut as well. Where that is not found, a contact is inaccessible only
-    if it is proved that there is no place for the axis.
-
-    Parameters
-    ----------
-    contacts : Contacts
-    rows : (m,) int64
-        Contacts for which `search_postures` has found no posture.
-    context : Context
-    verdicts : VerdictBuffer
-        Read and written.
-    """
-    conditions = context.conditions
-    first, last = conditions.postures.rotation
-    if last - first <= 2.0 * np.pi - _WHOLE or not len(rows):
-        # Rotations that are limited say which side of the bottom touches.
-        return
-    from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
-    from plan_cutters.kernels.search.upright import FORBIDDEN, PLACED, upright
-
-    rows = rows[conditions.upright(contacts.normal[rows]) & (verdicts.reason[rows] != INSIDE)]
-    n = len(contacts.normal)
-    possible, certain = conditions.obstacles.solids, conditions.surroundings.certain.solids
-    tilt_direction, state = np.full((n, 3), np.nan), np.full(n, FORBIDDEN, np.int8)
-
-    def tried(tool: Tool, solids: Any, within: float, apart: float, some: NDArray[np.int64]) -> None:
-        in_chunks(
-            lambda piece: upright(piece, contacts, tool, solids, within, apart, state, tilt_direction), some, conditions.jobs
-        )
-
-    tried(context.outer, possible, MAYBE_INSIDE, 0.0, rows)
-    free = rows[state[rows] == PLACED]
-    verdicts.verdict[free], verdicts.reason[free], verdicts.tilt[free] = ACCESSIBLE, NO_REASON, 0.0
-    verdicts.axis[free], verdicts.tilt_direction[free] = contacts.normal[free], tilt_direction[free]
-    turn = rotations_of(contacts.normal[free], contacts.direction_max[free], tilt_direction[free])
-    steps = len(conditions.postures.rotations)
-    verdicts.rotation[free] = np.rint(turn * (steps / (2.0 * np.pi))).astype(np.int32) % steps
-    rest = rows[(state[rows] != PLACED) & (verdicts.verdict[rows] == INACCESSIBLE)]
-    tried(context.inner, certain, SURELY_INSIDE, _NO_PLACE, rest)
-    verdicts.verdict[rest[state[rest] != FORBIDDEN]] = UNDECIDED
-
-
 def warm(contacts: Contacts, context: Context) -> None:
     """Load or compile every kernel, so that stage times are those of the work."""
     from plan_cutters.kernels.search import search, upright
 
     none, verdicts, conditions = np.zeros(0, np.int64), verdict_arrays_of(blank(0)), context.conditions
     solids = conditions.obstacles.solids
-    upright.upright(none, contacts, context.outer, solids, 0.0, 0.0, np.zeros(0, np.int8), np.zeros((0, 3)))
+    upright.upright(none, contacts, np.zeros((0, 3)), context.outer, solids, 0.0, 0.0, np.zeros(0, np.int8), np.zeros((0, 3)))
     search.dummy_clear(none, contacts, context.dummy, context.outer, solids, np.zeros(0, bool))
     search.search(
         none, contacts, conditions.ranges, context.outer, context.inner, solids, conditions.surroundings.certain.solids, verdicts

@@ -26,7 +26,7 @@ from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene
 
 #: Of the method: raised by one whenever the same question may get another verdict.
-METHOD = 3
+METHOD = 4
 
 #: Options that maps answer, whatever they were made with; of the last three, what lies within theirs. An option that stands in
 #: none of these sets asks for what maps do not hold: it is refused.

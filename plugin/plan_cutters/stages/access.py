@@ -20,7 +20,8 @@ from plan_cutters.domain.verdicts import (
     blank,
 )
 from plan_cutters.kernels.rows import Contacts
-from plan_cutters.scene.conditions import Context, contacts_of, on_the_flat, search_postures
+from plan_cutters.scene.conditions import Context, contacts_of
+from plan_cutters.scene.flats_and_flanks import search
 from plan_cutters.scene.threads import Progress, in_chunks
 from plan_cutters.scene.work import Work
 
@@ -84,23 +85,22 @@ def access(
         verdicts.take(follows, known)
         _first_reasons(contacts, np.flatnonzero(follows & (known.verdict == INACCESSIBLE)), context, verdicts.reason)
         wanted &= ~follows
-    search_postures(contacts, np.flatnonzero(wanted), context, verdicts, progress, fixed=True, work=work)
-    on_the_flat(contacts, np.flatnonzero(wanted & verdicts.not_reached), context, verdicts)
+    search(contacts, samples.face, np.flatnonzero(wanted), context, verdicts, progress, fixed=True, work=work)
     if conditions.surroundings.alone is not None:
         searched = wanted | (inside >= len(conditions.surroundings.bodies) if inside is not None else False)
         handed = judged & (verdicts.reason == FIXTURE)
         bare = context.under(replace(conditions, surroundings=conditions.surroundings.alone))
-        _for_fixtures(contacts, np.flatnonzero((searched & verdicts.not_reached) | handed), bare, verdicts)
+        _for_fixtures(samples, np.flatnonzero((searched & verdicts.not_reached) | handed), bare, verdicts)
     return verdicts.freeze()
 
 
-def _for_fixtures(contacts: Contacts, rows: NDArray[np.int64], bare: Context, verdicts: VerdictBuffer) -> None:
+def _for_fixtures(samples: SurfaceSamples, rows: NDArray[np.int64], bare: Context, verdicts: VerdictBuffer) -> None:
     """Of samples not reached, tell those that fixtures keep off from those that would not be reached without them, either."""
     rows = rows[~np.isin(verdicts.reason[rows], (AXIS_LIMIT, LOCAL_GOUGE))]
     if not len(rows):
         return
     result = blank(len(verdicts.verdict))
-    search_postures(contacts, rows, bare, result, fixed=True)
+    search(contacts_of(samples), samples.face, rows, bare, result, fixed=True)
     verdicts.reason[rows] = np.where(result.reached[rows], FIXTURE, result.reason[rows])
 
 

@@ -89,6 +89,8 @@ class JudgeOnce:
         samples, conditions = ready.samples, ready.conditions
         context = Context.of(cutter, conditions)
         rows = rest[(follows.verdict[rest] == UNJUDGED) & (result.verdict[copies.master[rest]] == ACCESSIBLE)]
+        # Along a flank a tool is put down elsewhere than at the sample: its copies are searched.
+        rows = rows[~result.shift[copies.master[rows]].any(axis=1)]
         if not len(rows) or not context.judges:
             return
         master = copies.master[rows]

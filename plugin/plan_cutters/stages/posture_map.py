@@ -18,7 +18,8 @@ from plan_cutters.domain.posture import tilt_direction
 from plan_cutters.domain.verdicts import ACCESSIBLE, blank
 from plan_cutters.errors import OptionError
 from plan_cutters.kernels.codes import FLUTES, HOLDER, NECK, SHANK, TILT_FROM, TILT_TO
-from plan_cutters.scene.conditions import Context, contacts_of, on_the_flat, tool_of
+from plan_cutters.scene.conditions import Context, contacts_of, tool_of
+from plan_cutters.scene.flats_and_flanks import on_the_flat
 from plan_cutters.scene.obstacles import Obstacles, halved
 
 #: Ends that move by no more, rad, have settled.

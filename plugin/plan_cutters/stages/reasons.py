@@ -28,7 +28,8 @@ from plan_cutters.domain.verdicts import (
     Verdicts,
     blank,
 )
-from plan_cutters.scene.conditions import Conditions, Context, contacts_of, search_postures
+from plan_cutters.scene.conditions import Conditions, Context, contacts_of
+from plan_cutters.scene.flats_and_flanks import search
 from plan_cutters.scene.threads import Progress
 
 _PARTS = tuple(REASONS.index(word) for word in ("neck", "shank", "holder"))
@@ -163,7 +164,7 @@ class Reasons:
         open_rows = rows[verdicts.verdict[rows] == UNJUDGED]
         if len(open_rows):
             context = Context.of(cutter, conditions)
-            search_postures(contacts_of(self.samples), open_rows, context, verdicts, fixed=True, brief=True)
+            search(contacts_of(self.samples), self.samples.face, open_rows, context, verdicts, fixed=True, brief=True)
         known[cutter] = verdicts.freeze()
         return known[cutter]
 

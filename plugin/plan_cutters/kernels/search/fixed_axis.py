@@ -13,7 +13,7 @@ from plan_cutters.kernels.linear.vectors import cross, dot
 from plan_cutters.kernels.material import MAYBE_INSIDE
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.search.place import inside, mode_at
-from plan_cutters.kernels.search.upright import PLACED, find_place, flat_workspace, place_to_direction
+from plan_cutters.kernels.search.upright import PLACED, across, find_place, flat_workspace, place_to_direction
 from plan_cutters.kernels.tool.apart import BODY
 from plan_cutters.kernels.tool.hit import scratch, stand, tree_hit
 
@@ -49,15 +49,15 @@ def _stands(row, axis, contacts, low, high, about, tool, solids, body, sides, wo
         mode = mode_at(tool, 0.0)
         most = tool.mode[mode, OFFSET_OF] if mode >= 0 else 0.0
         if most > 0.0:
-            _across(e1, axis, x)
-            result, hint = find_place(p, axis, x, tool, mode, most, solids, MAYBE_INSIDE, 0.0, flat, place)
+            across(e1, axis, x)
+            result, hint = find_place(p, axis, x, tool, mode, tool.mode[mode, RISE], most, solids, MAYBE_INSIDE, 0.0, flat, place)
             if result == PLACED:
                 place_to_direction(place, x, flat.y, most, direction)
                 return UPRIGHT, hint
     if away >= 0.0 and abs(tilt - _RIGHT) <= accuracy and low <= _RIGHT <= high:
         mode = mode_at(tool, _RIGHT)
         if mode >= 0:
-            _across(n, axis, x)
+            across(n, axis, x)
             cross(x, axis, t)
             for k in range(3):
                 f[k] = p[k] + away * x[k]
@@ -67,17 +67,6 @@ def _stands(row, axis, contacts, low, high, about, tool, solids, body, sides, wo
             if free:
                 return ALONG, hint
     return BLOCKED, hint
-
-
-@kernel
-def _across(direction, axis, out):
-    """Write the unit direction across an axis that is nearest to a direction."""
-    along = dot(axis, direction)
-    for k in range(3):
-        out[k] = direction[k] - along * axis[k]
-    length = np.sqrt(dot(out, out))
-    for k in range(3):
-        out[k] /= length
 
 
 @kernel

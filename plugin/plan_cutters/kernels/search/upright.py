@@ -13,7 +13,7 @@ import numpy as np
 
 from plan_cutters.kernels.codes import ARC, CYLINDER, HIGH, KIND, LOW, OFFSET_OF, RADIUS, RISE, ROUND, SLOPE
 from plan_cutters.kernels.jit import entry, kernel, maker
-from plan_cutters.kernels.linear.vectors import cross
+from plan_cutters.kernels.linear.vectors import cross, dot
 from plan_cutters.kernels.rows import Scratch
 from plan_cutters.kernels.search.place import inside, mode_at
 from plan_cutters.kernels.tool.apart import BODY, HALF, OFFSET, A, P, X, Y
@@ -272,7 +272,7 @@ def _best(flat):
 
 
 @kernel
-def find_place(p, axis, x, tool, mode, most, solids, within, apart, flat, place):
+def find_place(p, axis, x, tool, mode, rise, most, solids, within, apart, flat, place):
     """Look for a place at which a tool stands free, its bottom across the axis and a contact under the flat of its tip.
 
     Parameters
@@ -284,6 +284,8 @@ def find_place(p, axis, x, tool, mode, most, solids, within, apart, flat, place)
     tool : Tool
     mode : int
         In which it touches at tilt 0.
+    rise : float
+        Of the centre of the mode over the contact, along the axis, mm.
     most : float
         Radius of the flat, mm.
     solids : Solids
@@ -320,7 +322,7 @@ def find_place(p, axis, x, tool, mode, most, solids, within, apart, flat, place)
             return FORBIDDEN if proved else NONE, last
         u, v = flat.place[best, 0], flat.place[best, 1]
         for k in range(3):
-            body[P + k] = p[k] + tool.mode[mode, RISE] * axis[k] + u * x[k] + v * y[k]
+            body[P + k] = p[k] + rise * axis[k] + u * x[k] + v * y[k]
             body[A + k], body[X + k], body[Y + k] = axis[k], x[k], y[k]
         body[OFFSET], body[HALF] = 0.0, 0.0
         # Of what is in the way that which lies deep in the tool: it forbids most of the places about.
@@ -341,6 +343,17 @@ def find_place(p, axis, x, tool, mode, most, solids, within, apart, flat, place)
 
 
 @kernel
+def across(direction, axis, out):
+    """Write the unit direction across an axis that is nearest to a direction."""
+    along = dot(axis, direction)
+    for k in range(3):
+        out[k] = direction[k] - along * axis[k]
+    length = np.sqrt(dot(out, out))
+    for k in range(3):
+        out[k] /= length
+
+
+@kernel
 def place_to_direction(place, x, y, most, tilt_direction):
     """Write the way from the axis at a place to the contact: 1 long at the rim of the flat, and never nothing."""
     least = LEAST_SHARE * most
@@ -351,30 +364,35 @@ def place_to_direction(place, x, y, most, tilt_direction):
 
 
 @entry
-def upright(rows, contacts, tool, solids, within, apart, result, tilt_direction):
-    """Look at contacts, each for itself, for a place of a tool along the normal with the contact under the flat of its tip.
+def upright(rows, contacts, axis, tool, solids, within, apart, result, tilt_direction):
+    """Look at contacts, each for itself, for a place of a tool with an axis, the contact under the flat of its tip.
+
+    Or over its upper face, if it has one that cuts: where the axis goes into the material.
 
     Parameters
     ----------
     rows : (m,) int64
     contacts : Contacts
+    axis : (n, 3) float64
+        Unit tool axis, along the normal or against it, or nearly so.
     tool : Tool
     solids : Solids
     within, apart : float
         As for `find_place`.
     result : (n,) int8, written
-        PLACED, FORBIDDEN or NONE; FORBIDDEN too where the tip has no flat.
+        PLACED, FORBIDDEN or NONE; FORBIDDEN too where the tool has no such flat.
     tilt_direction : (n, 3) float64, written
         Where it is PLACED: the way from the axis to the contact, 1 at the rim of the flat.
     """
-    flat, place = flat_workspace(), np.empty(2)
-    mode = mode_at(tool, 0.0)
-    most = tool.mode[mode, OFFSET_OF] if mode >= 0 else 0.0
+    flat, place, x = flat_workspace(), np.empty(2), np.empty(3)
     for row in rows:
         result[row] = FORBIDDEN
-        if most <= 0.0:
+        along = dot(axis[row], contacts.normal[row])
+        mode = mode_at(tool, 0.0 if along > 0.0 else np.pi)
+        if mode < 0 or tool.mode[mode, OFFSET_OF] <= 0.0:
             continue
-        n, e1 = contacts.normal[row], contacts.direction_max[row]
-        result[row], _ = find_place(contacts.point[row], n, e1, tool, mode, most, solids, within, apart, flat, place)
+        most, rise = tool.mode[mode, OFFSET_OF], np.sign(along) * tool.mode[mode, RISE]
+        across(contacts.direction_max[row], axis[row], x)
+        result[row], _ = find_place(contacts.point[row], axis[row], x, tool, mode, rise, most, solids, within, apart, flat, place)
         if result[row] == PLACED:
-            place_to_direction(place, e1, flat.y, most, tilt_direction[row])
+            place_to_direction(place, x, flat.y, most, tilt_direction[row])

@@ -1,0 +1,317 @@
+"""Contacts that lie under a flat of the tool or along its flank, where the corner of its outline need not touch.
+
+A search puts the tool down with a corner of its outline at the contact. A flat that lies on a face, and a flank that lies along
+one, cut all that they lie on. The face may be off their direction: by the accuracy of the rotary axes, or by as much as all of
+what lies on the flat, or along the flank, stays within the tolerance. Wherever the tool is put down so, all of it is tested
+with the axis as it is given.
+"""
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats, Ints, rows_by_face
+from plan_cutters.domain.kinematics import Kinematics
+from plan_cutters.domain.shapes import Flank
+from plan_cutters.domain.verdicts import ACCESSIBLE, AXIS_LIMIT, INACCESSIBLE, INSIDE, NO_REASON, UNDECIDED, VerdictBuffer
+from plan_cutters.kernels.codes import BEYOND, PARALLEL
+from plan_cutters.kernels.rows import Contacts, Tool
+from plan_cutters.scene.conditions import Conditions, Context, rotations_of, search_postures
+from plan_cutters.scene.threads import Progress, in_chunks
+from plan_cutters.scene.work import Work
+
+Rows = NDArray[np.int64]
+#: Ranges of rotations that are less than a whole turn by no more are one; tilts this close to an end of a range are on it, rad.
+_WHOLE = 1e-9
+#: Places of the axis that are nearer than this to what is certainly in the way are none, mm: no machine holds them.
+_NO_PLACE = 1e-3
+#: Share of the chord error by which a flank is kept off a surface: a shank as wide, larger by all of it, still touches.
+_SHARE = 0.999
+
+
+def search(
+    contacts: Contacts, face: Ints, rows: Rows, context: Context, verdicts: VerdictBuffer, progress: Progress | None = None,
+    *, fixed: bool = False, work: Work | None = None, brief: bool = False,
+) -> None:  # fmt: skip
+    """Search a posture for contacts as `search_postures` does, and then with a flat or a flank of the tool on them.
+
+    Parameters
+    ----------
+    contacts : Contacts
+    face : (n,) int32
+        Numbers of the faces that they lie on.
+    rows, context, verdicts, progress, fixed, work, brief
+        As for `search_postures`.
+    """
+    search_postures(contacts, rows, context, verdicts, progress, fixed=fixed, work=work, brief=brief)
+    on_the_flat(contacts, rows[verdicts.not_reached[rows]], context, verdicts)
+    on_the_flank(contacts, face, rows[verdicts.not_reached[rows]], context, verdicts)
+
+
+def on_the_flat(contacts: Contacts, rows: Rows, context: Context, verdicts: VerdictBuffer) -> None:
+    """Let contacts without a posture (m,) be cut by a flat of the tool, below or above its flutes, that lies on them.
+
+    Its edge need not touch there: what the flat lies on is cut as well. Where that is not found, a contact is inaccessible only
+    if it is proved that there is no place for the axis.
+
+    Parameters
+    ----------
+    contacts : Contacts
+    rows : (m,) int64
+        Those for which `search_postures` has found no posture.
+    context : Context
+    verdicts : VerdictBuffer
+        Read and written.
+    """
+    conditions = context.conditions
+    if not _whole_turn(conditions):
+        # Rotations that are limited say which side of the flat touches.
+        return
+    rows = rows[verdicts.reason[rows] != INSIDE]
+    low, high = conditions.postures.tilt
+    for tilt in (0.0, math.pi):
+        flat = context.outer_tool.offset_at(tilt)
+        if flat > 0.0 and low - _WHOLE <= tilt <= high + _WHOLE and len(rows):
+            _on_flat(contacts, rows, math.cos(tilt), flat, context, verdicts)
+            rows = rows[verdicts.not_reached[rows]]
+
+
+def _on_flat(contacts: Contacts, rows: Rows, along: float, flat: float, context: Context, verdicts: VerdictBuffer) -> None:
+    """The same of the flat below, its axis `along` the normal (1), or above (-1)."""
+    from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
+    from plan_cutters.kernels.search.upright import FORBIDDEN, PLACED, upright
+
+    conditions, n = context.conditions, len(contacts.normal)
+    axis = np.full((n, 3), np.nan)
+    axis[rows] = along * contacts.normal[rows]
+    off = np.flatnonzero(~conditions.allows(axis[rows]))
+    axis[rows[off]] = _nearest(axis[rows[off]], conditions)
+    most = max(conditions.accuracy, _angle(2.0 * flat, conditions.tolerance))
+    near = _between(axis[rows], along * contacts.normal[rows]) <= most
+    rows = rows[near & conditions.allows(axis[rows])]
+    possible, certain = conditions.obstacles.solids, conditions.surroundings.certain.solids
+    way, state = np.full((n, 3), np.nan), np.full(n, FORBIDDEN, np.int8)
+
+    def tried(tool: Tool, solids: Any, within: float, apart: float, some: Rows) -> None:
+        in_chunks(lambda piece: upright(piece, contacts, axis, tool, solids, within, apart, state, way), some, conditions.jobs)
+
+    tried(context.outer, possible, MAYBE_INSIDE, 0.0, rows)
+    free = rows[state[rows] == PLACED]
+    normal, a = contacts.normal[free], axis[free]
+    square = (along > 0.0) & (a == normal).all(axis=1)
+    f = np.where(square[:, None], way[free], _tilt_direction(a, normal, contacts.direction_max[free]))
+    _take(free, a, f, contacts, context, verdicts)
+    verdicts.tilt[free[square]] = 0.0
+    # Elsewhere the tilt direction is that of the axis: it is put down at the contact from which it stands in the place.
+    tilt, other = verdicts.tilt[free, None], ~square[:, None]
+    rise = context.outer_tool.rise_at(0.0 if along > 0.0 else math.pi)
+    across = np.cos(tilt) * f - np.sin(tilt) * normal
+    shift = rise * (along * a - normal) + flat * (across - way[free])
+    verdicts.shift[free] = np.where(other, shift, 0.0)
+    rest = rows[(state[rows] != PLACED) & (verdicts.verdict[rows] == INACCESSIBLE)]
+    tried(context.inner, certain, SURELY_INSIDE, _NO_PLACE, rest)
+    verdicts.verdict[rest[state[rest] != FORBIDDEN]] = UNDECIDED
+
+
+def on_the_flank(contacts: Contacts, face: Ints, rows: Rows, context: Context, verdicts: VerdictBuffer) -> None:
+    """Let contacts without a posture (m,) be cut by a straight flank that lies along them, anywhere on its length.
+
+    Of a contact that only the axis limit seemed to lose, the reason becomes that of the flank.
+
+    Parameters
+    ----------
+    contacts : Contacts
+    face : (n,) int32
+        Numbers of the faces that they lie on.
+    rows : (m,) int64
+        Those for which neither `search_postures` nor `on_the_flat` has found a posture.
+    context : Context
+    verdicts : VerdictBuffer
+        Read and written.
+    """
+    conditions = context.conditions
+    rows = rows[verdicts.reason[rows] != INSIDE]
+    low, high = conditions.postures.tilt
+    for flank in context.outer_tool.flanks:
+        if not low - _WHOLE <= flank.tilt <= high + _WHOLE:
+            continue
+        for at, axis in _axes(contacts, face, rows, flank, conditions):
+            mine = verdicts.not_reached[at]
+            _on_flank(contacts, at[mine], axis[mine], flank, context, verdicts)
+        rows = rows[verdicts.not_reached[rows]]
+
+
+def _on_flank(
+    contacts: Contacts, rows: Rows, axis: Floats, flank: Flank, context: Context, verdicts: VerdictBuffer
+) -> None:  # fmt: skip
+    """The same with one axis (m, 3) at each."""
+    from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
+    from plan_cutters.kernels.search.flank import FREE, NONE, along_flank
+
+    conditions = context.conditions
+    state, reason = np.zeros(len(rows), np.int8), np.full(len(rows), NO_REASON, np.uint8)
+    shift = np.zeros((len(rows), 3))
+    away = np.array([0.0, _SHARE * conditions.obstacles.triangles.chord_error])
+
+    def tried(tool: Tool, solids: Any, within: float, some: Rows) -> None:
+        def piece(which: Rows) -> int:
+            at, result, moved, why = rows[which], np.zeros(len(which), np.int8), np.zeros((len(which), 3)), reason[which]
+            looked = along_flank(
+                at, axis[which], contacts, flank.mode, flank.length, away, tool, solids, within, result, moved, why
+            )
+            state[which], shift[which], reason[which] = result, moved, why
+            return int(looked)
+
+        in_chunks(piece, some, conditions.jobs)
+
+    tried(context.outer, conditions.obstacles.solids, MAYBE_INSIDE, np.arange(len(rows)))
+    free = state == FREE
+    at = rows[free]
+    f = _tilt_direction(axis[free], contacts.normal[at], contacts.direction_max[at])
+    _take(at, axis[free], f, contacts, context, verdicts)
+    verdicts.shift[at] = shift[free]
+    rest = np.flatnonzero(~free)
+    blocked = rest[verdicts.reason[rows[rest]] == AXIS_LIMIT]
+    verdicts.reason[rows[blocked]] = reason[blocked]
+    rest = rest[verdicts.verdict[rows[rest]] == INACCESSIBLE]
+    tried(context.inner, conditions.surroundings.certain.solids, SURELY_INSIDE, rest)
+    verdicts.verdict[rows[rest[state[rest] != NONE]]] = UNDECIDED
+
+
+def _take(rows: Rows, axis: Floats, f: Floats, contacts: Contacts, context: Context, verdicts: VerdictBuffer) -> None:
+    """Write postures with axes and tilt directions (m, 3)."""
+    normal = contacts.normal[rows]
+    verdicts.verdict[rows], verdicts.reason[rows] = ACCESSIBLE, NO_REASON
+    verdicts.axis[rows], verdicts.tilt_direction[rows], verdicts.tilt[rows] = axis, f, _between(axis, normal)
+    turn, steps = rotations_of(normal, contacts.direction_max[rows], f), len(context.conditions.ranges.rotation_cos)
+    verdicts.rotation[rows] = np.rint(turn * (steps / (2.0 * np.pi))).astype(np.int32) % steps
+
+
+def _axes(contacts: Contacts, face: Ints, rows: Rows, flank: Flank, conditions: Conditions) -> Iterator[tuple[Rows, Floats]]:
+    """Axes that the machine holds with a flank along samples: those of some rows, and an axis (3,) for each, in turn."""
+    normal = contacts.normal
+    for axis in _special(conditions):
+        off = _between(np.broadcast_to(axis, (len(rows), 3)), normal[rows]) - flank.tilt
+        at = rows[np.abs(off) <= np.where(_lies_along(contacts, face[rows], rows, axis, off, conditions), BEYOND, -1.0)]
+        yield _turned(at, np.broadcast_to(axis, (len(at), 3)), contacts, conditions)
+    if flank.length <= 0.0:
+        return
+    # Along a flank the tool slides: at every axis that holds it exactly, not only at those where its corner touched in vain.
+    cosine, sine = math.cos(flank.tilt), math.sin(flank.tilt)
+    kinematics = None if conditions.kinematics is None else conditions.kinematics.turning()[0]
+    if kinematics is not None and len(kinematics.direction) < 2:
+        for axes in _at_angle(normal[rows], cosine, kinematics):
+            yield _turned(rows, axes, contacts, conditions)
+        return
+    for turn in conditions.postures.rotations.tolist():
+        e1 = contacts.direction_max[rows]
+        f = math.cos(turn) * e1 + math.sin(turn) * np.cross(normal[rows], e1)
+        axes = cosine * normal[rows] + sine * f
+        held = conditions.allows(axes)
+        yield rows[held], axes[held]
+
+
+def _lies_along(
+    contacts: Contacts, face: Ints, rows: Rows, axis: Floats, off: Floats, conditions: Conditions
+) -> NDArray[np.bool_]:
+    """At which samples (m,) a flank lies along the face that is off its tilt by so much, rad: within the accuracy of the axes,
+    or because the face, from where it begins along the flank to where it ends, leaves it by no more than the tolerance.
+    """
+    from plan_cutters.kernels.linear.rulings import extents
+
+    lies = np.abs(off) <= conditions.accuracy
+    open_ = np.flatnonzero(~lies & (np.abs(off) <= BEYOND))
+    triangles = conditions.obstacles.triangles
+    by_face = rows_by_face(triangles.face) if len(open_) else {}
+    for number in np.unique(face[open_]).tolist():
+        mine = open_[face[open_] == number]
+        if number not in by_face:
+            continue
+        n = contacts.normal[rows[mine]]
+        ruling = axis - (n @ axis)[:, None] * n
+        ruling /= np.linalg.norm(ruling, axis=1)[:, None]
+        low, high = np.empty((2, len(mine)))
+        band = triangles.chord_error + conditions.tolerance
+        extents(contacts.point[rows[mine]], ruling, n, triangles.vertex[by_face[number]], band, low, high)
+        lies[mine] = (high - low) * np.sin(np.abs(off[mine])) <= conditions.tolerance
+    return lies
+
+
+def _special(conditions: Conditions) -> Floats:
+    """Tool axes (k, 3) along whose flanks surfaces may lie that are not quite at their tilt: that with all rotary axes at zero,
+    and, where fewer than two turn the tool, those that samples lean towards.
+    """
+    zero = conditions.setup if conditions.kinematics is None else conditions.kinematics.turning()[0].tool
+    axes = np.concatenate([zero[None], conditions.ranges.rotary.aim])
+    axes = axes[conditions.allows(axes)]
+    return axes[[i for i, axis in enumerate(axes) if not (np.abs(axes[:i] - axis).max(axis=1, initial=0.0) < PARALLEL).any()]]
+
+
+def _nearest(axis: Floats, conditions: Conditions) -> Floats:
+    """Of the tool axes that the machine holds, or may hold, those nearest to some axes (m, 3)."""
+    kinematics = conditions.kinematics
+    if kinematics is None:
+        return np.broadcast_to(conditions.setup, axis.shape)
+    kinematics, _ = kinematics.turning()
+    if len(kinematics.direction) != 1:
+        return np.broadcast_to(kinematics.tool, axis.shape)
+    direction = kinematics.direction[0]
+    along = float(kinematics.tool @ direction)
+    across = axis - (axis @ direction)[:, None] * direction
+    length = np.linalg.norm(across, axis=1)[:, None]
+    return np.where(length > PARALLEL, along * direction + math.sqrt(max(0.0, 1.0 - along**2)) * across / length, kinematics.tool)
+
+
+def _at_angle(normal: Floats, cosine: float, kinematics: Kinematics) -> Iterator[Floats]:
+    """Axes (m, 3) of a machine with one axis that turns the tool, or none, at an angle to normals (m, 3), by its cosine."""
+    if not len(kinematics.direction):
+        yield np.broadcast_to(kinematics.tool, normal.shape)
+        return
+    d = kinematics.direction[0]
+    along = float(kinematics.tool @ d)
+    u = kinematics.tool - along * d
+    v = np.cross(d, u)
+    middle, size = np.arctan2(normal @ v, normal @ u), np.hypot(normal @ u, normal @ v)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        half = np.arccos((cosine - along * (normal @ d)) / size)
+    for side in (-1.0, 1.0):
+        turn = (middle + side * half)[:, None]
+        yield along * d + np.cos(turn) * u + np.sin(turn) * v
+
+
+def _turned(rows: Rows, axis: Floats, contacts: Contacts, conditions: Conditions) -> tuple[Rows, Floats]:
+    """Those of some samples at which an axis (m, 3) is held, across the normal, and leans as the rotations requested let it."""
+    held = np.isfinite(axis).all(axis=1)
+    held[held] = conditions.allows(axis[held])
+    held[held] &= np.abs((axis[held] * contacts.normal[rows[held]]).sum(axis=1)) < math.cos(PARALLEL)
+    if not _whole_turn(conditions):
+        at, (first, last) = rows[held], conditions.postures.rotation
+        f = _tilt_direction(axis[held], contacts.normal[at], contacts.direction_max[at])
+        turn = rotations_of(contacts.normal[at], contacts.direction_max[at], f)
+        held[held] &= np.remainder(turn - first + _WHOLE, 2.0 * np.pi) <= last - first + 2.0 * _WHOLE
+    return rows[held], axis[held]
+
+
+def _whole_turn(conditions: Conditions) -> bool:
+    first, last = conditions.postures.rotation
+    return bool(last - first > 2.0 * np.pi - _WHOLE)
+
+
+def _angle(length: float, tolerance: float) -> float:
+    """By how much a line of a length, mm, may lean and stay within the tolerance, mm; rad, no more than `BEYOND`."""
+    return min(BEYOND, math.asin(min(1.0, tolerance / length)))
+
+
+def _between(axis: Floats, normal: Floats) -> Floats:
+    """Angles (m,) of unit vectors (m, 3), rad."""
+    return np.asarray(np.arctan2(np.linalg.norm(np.cross(axis, normal), axis=1), (axis * normal).sum(axis=1)))
+
+
+def _tilt_direction(axis: Floats, normal: Floats, otherwise: Floats) -> Floats:
+    """Unit directions (m, 3) in which axes lean from normals; `otherwise` where they do not."""
+    f = axis - (axis * normal).sum(axis=1)[:, None] * normal
+    length = np.linalg.norm(f, axis=1)[:, None]
+    return np.asarray(np.where(length > 1e-12, f / np.maximum(length, 1e-300), otherwise))
