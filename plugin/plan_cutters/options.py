@@ -5,7 +5,7 @@ import math
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal, Unpack
+from typing import TYPE_CHECKING, Any, Literal, Unpack, cast
 
 from cad_io.units import UNITS
 from plan_cutters.domain.answers import answers_of
@@ -20,6 +20,7 @@ from plan_cutters.domain.operations import operations_of
 from plan_cutters.domain.own_process import OwnProcess
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange
+from plan_cutters.domain.shapes import largest_tilt
 from plan_cutters.domain.spec import notation
 from plan_cutters.errors import OptionError
 from plan_cutters.library.presets import feed_of
@@ -113,7 +114,8 @@ class Options:
     spacing : float, optional
         Largest distance between samples. Neither: from curvature, smallest cutter and a budget.
     tilt, rotation : tuple of float
-        Posture range: tilts within 0 to pi/2, rotations from the direction of the largest curvature.
+        Posture range: tilts within 0 to pi, by default to pi/2 or as far as one of the cutters touches; rotations from the
+        direction of the largest curvature.
     rotation_step : float
     tolerance : float
         Gouge tolerance.
@@ -204,7 +206,7 @@ class Options:
     ignore: Any = ()
     grid: int | None = None
     spacing: float | None = None
-    tilt: tuple[float, float] = (0.0, math.pi / 2)
+    tilt: tuple[float, float] = cast("tuple[float, float]", None)
     rotation: tuple[float, float] = (0.0, 2 * math.pi)
     rotation_step: float = math.radians(10)
     tolerance: float = 0.01
@@ -316,6 +318,8 @@ class Options:
             take(spacing=number(self.spacing, "spacing"))
         if self.unit is not None and not isinstance(self.unit, str):
             raise OptionError(f"unit must be one of {', '.join(UNITS)}, not {shown(self.unit)}")
+        if self.tilt is None:
+            take(tilt=(0.0, largest_tilt(self.judged)))
         postures = self.postures
         take(tilt=postures.tilt, rotation=postures.rotation, rotation_step=postures.step)
 

@@ -17,6 +17,7 @@ from plan_cutters.domain.intervals import complement
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange, Range
+from plan_cutters.domain.shapes import largest_tilt
 from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.domain.tolerance import nominal_depth
 from plan_cutters.errors import OptionError
@@ -64,7 +65,7 @@ def posture_map(
     rotations : sequence of float
         rad, from the direction of the largest curvature; at most a full turn either way.
     tilt : tuple of float, optional
-        Range, rad, within 0 to pi. Default: 0 to pi/2.
+        Range, rad, within 0 to pi. Default: 0 to pi/2, or as far as the cutter touches.
     rotations_deg, tilt_deg : optional
         The same in degrees.
     machine : Machine or str, optional
@@ -100,6 +101,8 @@ def posture_map(
         raise OptionError("give rotations, in radians, or rotations_deg, in degrees")
     each = (wanted,) if isinstance(wanted, Real) else wanted
     turns = [radians(turn, "rotation", 2 * np.pi) for turn in numbers(each, "rotations")]
+    if tilt is None and tilt_deg is None:
+        tilt = (0.0, largest_tilt([cutter]))
     low, high = (PostureRange(tilt_deg=tilt_deg) if tilt is None else PostureRange(tilt=tilt, tilt_deg=tilt_deg)).tilt
     scene, x = _placed(part, scene, x)
     wanted = (part.asked if isinstance(part, Scene) else 0.01) if tolerance is None else number(tolerance, "tolerance")

@@ -252,6 +252,7 @@ class Postures(Entry):
     rotations: list[RotationRow]
     more_rotations: int = 0
     missing: int = Field(default=0, description="obstacles that are missing or guessed")
+    flank_axis: Vector | None = Field(default=None, description="tool axis with which the flank lies along the surface, free")
     under_flat_mm: Vector | None = Field(
         default=None, description="upright the tool is free with the point under its flat: from its axis to the point"
     )

@@ -11,10 +11,10 @@ from plan_cutters.plan_file.reasons import INTERVALS
 _DIGITS = 3
 
 
-def postures_of(output: bytes, tilt: tuple[float, float], most: int) -> Postures:
-    """The postures in the output of the command; `tilt`: what was searched, deg."""
+def postures_of(output: bytes, most: int) -> Postures:
+    """The postures in the output of the command."""
     answer = json.loads(output)
-    rows = answer["rotations"]
+    rows, tilt = answer["rotations"], answer["tilt_deg"]
     wide = max(1e-12, (tilt[1] - tilt[0]) * len(rows))
     forbidden = {word: sum(_width(row[word]) for row in rows) / wide for word in INTERVALS}
     gouge = sum(_below(row["local_gouge"], tilt) for row in rows) / wide
@@ -26,7 +26,7 @@ def postures_of(output: bytes, tilt: tuple[float, float], most: int) -> Postures
         free_share=min(1.0, sum(_width(row["free"]) for row in rows) / wide),
         undecided_share=min(1.0, sum(_width(row["undecided"]) for row in rows) / wide),
         forbidden=forbidden, rotations=rotations, more_rotations=more, missing=len(answer["missing"]),
-        under_flat_mm=answer["under_flat_mm"],
+        under_flat_mm=answer["under_flat_mm"], flank_axis=answer["flank_axis"],
     )  # fmt: skip
 
 

@@ -182,7 +182,7 @@ class MapQuestion(Conditions):
     point: Point
     within_mm: float = Field(default=1.0, gt=0.0, le=1000.0, description="how far the point may be from the surface")
     setup: Axis = Field(default="0,0,1", description="direction of the part along the spindle")
-    tilt_deg: tuple[float, float] = Field(default=(0.0, 90.0), description="tilts to search, from the normal")
+    tilt_deg: tuple[float, float] | None = Field(default=None, description="tilts to search, from the normal")
     rotation_step_deg: float = Field(default=10.0, ge=1.0, le=360.0, description="step between rotations")
     picture: bool = Field(default=False, description="also draw it: tilt against rotation")
 

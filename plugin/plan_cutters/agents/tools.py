@@ -200,7 +200,7 @@ async def posture_map(question: MapQuestion, call: Call) -> Reply:
     part, cutter = Path(question.part).name, json.loads(output)["cutter"]
 
     def make(most: int) -> Answer:
-        postures = postures_of(output, question.tilt_deg, most)
+        postures = postures_of(output, most)
         free = f"{percent(postures.free_share)} of the postures searched are free, {percent(postures.undecided_share)} undecided"
         text = f"{cutter} at ({', '.join(f'{x:.6g}' for x in postures.point)}) on {postures.face}: {free}."
         return MapAnswer(part=part, told=text, cutter=cutter, exit_code=code, postures=postures)
@@ -225,7 +225,7 @@ async def explain_sample(question: ExplainQuestion, call: Call) -> Reply:
         raise CallError("which place? give a face or a point")
 
     def make(most: int) -> Answer:
-        judged = None if postures is None else postures_of(postures, (0.0, 90.0), min(most, 12))
+        judged = None if postures is None else postures_of(postures, min(most, 12))
         return explained(plan, cutter, face, most, point=question.point, postures=judged, sample=sample)
 
     return fitting(make, call.permissions.limits.characters)

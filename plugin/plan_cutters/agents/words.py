@@ -57,11 +57,11 @@ class Permissions:
 
     def map(self, question: MapQuestion) -> list[str]:
         """Words for a posture map."""
-        low, high = question.tilt_deg
         at = ",".join(repr(x) for x in question.point)
-        return [self.file(question.part), *self.conditions(question), f"--at={at}", f"--within={question.within_mm!r}",
-                f"--cutter={question.cutter}", f"--setup={question.setup}", f"--tilt={low!r}:{high!r}",
-                f"--rotation-step={question.rotation_step_deg!r}"]  # fmt: skip
+        words = [self.file(question.part), *self.conditions(question), f"--at={at}", f"--within={question.within_mm!r}",
+                 f"--cutter={question.cutter}", f"--setup={question.setup}",
+                 f"--rotation-step={question.rotation_step_deg!r}"]  # fmt: skip
+        return words if question.tilt_deg is None else [*words, "--tilt={!r}:{!r}".format(*question.tilt_deg)]
 
     def _machine(self, text: str) -> str:
         from plan_cutters.domain.machine import builtin_machines

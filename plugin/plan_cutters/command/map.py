@@ -47,7 +47,7 @@ _point = heading("Point")
         (f"{_SELF} blade.step --at 12,3,4 --cutter R6L80 --machine trunnion-ac", "The tilts that a machine holds there:"),
     ),
     codes=(
-        ("0", "some tilt is free, or the tool upright with the point under its flat"),
+        ("0", "some tilt is free, or the tool with the point under its flat or along its flank"),
         ("1", "none is"),
         ("2", "wrong command line"),
         ("3", "the part cannot be read, or the point is on none of its faces"),
@@ -67,8 +67,8 @@ _point = heading("Point")
 @options(
     "holder", "machine", "fixture", "ignore", "flip", "unit", "allowance", "holder_clearance", "tilt", "rotation",
     "debug",
-    cutter={"multiple": False, "required": True, "type": Words("SPEC|NAME", cutter_ids),
-            "help": "D12L80, R6L80 and so on; with --cutters the id or the name of a tool there."},
+    cutter={"multiple": False, "default": None, "type": Words("SPEC|NAME", cutter_ids),
+            "help": "D12L80, R6L80 and so on; with --cutters the id or the name of a tool there, unless it holds one alone."},
     cutters={"multiple": False, "default": None, "help": "Tool library that the cutter is taken from."},
     setup={"multiple": False, "default": "0,0,1", "type": File("AXIS|FILE"),
            "help": "Direction of the part along the machine's spindle, +z, -y or x,y,z, or a setup file.  [default: 0,0,1]"},
@@ -146,7 +146,7 @@ def command(request: MapRequest) -> int:
     if outs:
         _draw(result, options.tilt, about, outs)
     if request.json_out == "-":
-        hand_out(json.dumps(_facts(result, f"F{face}", off, cutter, request), indent=2) + "\n")
+        hand_out(json.dumps(_facts(result, f"F{face}", off, cutter, request, options.tilt), indent=2) + "\n")
     elif not request.quiet:
         with paper(80) as console:
             _table(result, about, outs, console)
@@ -154,7 +154,7 @@ def command(request: MapRequest) -> int:
 
 
 def _code(result: "PostureMap") -> int:
-    if (result.lies_flat or any(len(each) for each in result.free)) and not result.missing:
+    if (result.lies_flat or result.lies_along or any(len(each) for each in result.free)) and not result.missing:
         return _FREE
     return _UNDECIDED if result.missing or any(len(each) for each in result.undecided) else _NONE
 
@@ -181,10 +181,13 @@ def _options(request: MapRequest) -> "Options":
     options = posture_options(request)
     if library:
         tools = read_tools((), (library,), request.holder, skip_bad=True)
-        cutters = tuple(each for each in tools.libraries[0] if request.cutter in (each.id, each.name))
+        cutters = tuple(each for each in tools.libraries[0] if request.cutter in (None, each.id, each.name))
         if len(cutters) != 1:
             many = "several tools are" if cutters else "no tool is"
-            raise OptionError(f"{many} called {request.cutter!r}: plan-cutters tools lists them", file=library)
+            told = "there: give one with --cutter" if request.cutter is None else f"called {request.cutter!r}"
+            raise OptionError(f"{many} {told}; plan-cutters tools lists them", file=library)
+    elif request.cutter is None:
+        raise OptionError("give the cutter: --cutter D12L80, or the --cutters of a library")
     else:
         tools = read_tools((request.cutter,), (), request.holder)
         cutters = tools.cutters
@@ -232,6 +235,8 @@ def _about(result: "PostureMap", face: str, off: float, cutter: "Cutter", reques
     if result.lies_flat:
         away = mm(math.hypot(*result.under_flat.tolist()))
         lines.append(f"Upright the tool is free with the point under its flat, {away} from its axis.")
+    if result.lies_along:
+        lines.append(f"With the axis ({_text(_round(result.flank_axis))}) the tool is free, its flank along the surface.")
     return lines
 
 
@@ -244,7 +249,9 @@ def _degrees(intervals: "Floats") -> list[list[float]]:
     return [[math.degrees(low), math.degrees(high)] for low, high in intervals.tolist()]
 
 
-def _facts(result: "PostureMap", face: str, off: float, cutter: "Cutter", request: MapRequest) -> dict[str, Any]:
+def _facts(
+    result: "PostureMap", face: str, off: float, cutter: "Cutter", request: MapRequest, searched: tuple[float, float]
+) -> dict[str, Any]:
     """The map as JSON has it; degrees and mm."""
     from plan_cutters.plan_file.reasons import INTERVALS
 
@@ -257,6 +264,8 @@ def _facts(result: "PostureMap", face: str, off: float, cutter: "Cutter", reques
         "curvature": result.curvature.tolist(), "cutter": cutter.id, "machine": request.machine,
         "setup": request.setup,
         "under_flat_mm": result.under_flat.tolist() if result.lies_flat else None,
+        "flank_axis": result.flank_axis.tolist() if result.lies_along else None,
+        "tilt_deg": [math.degrees(tilt) for tilt in searched],
         "tolerance_mm": result.tolerance, "certified": result.certified, "missing": list(result.missing),
         "rotations": [
             {"deg": math.degrees(turn), "local_gouge": none[i], **{w: _degrees(getattr(result, w)[i]) for w in words}}

@@ -177,7 +177,12 @@ _OPTIONS = (
         metavar="MM",
         help="Clearance that neck, shank and holder must keep.  [default: 0]",
     ),
-    _postures("--tilt", type=Range(), default="0:90", help="Tilts to search, degrees from the normal.  [default: 0:90]"),
+    _postures(
+        "--tilt",
+        type=Range(),
+        default=None,
+        help="Tilts to search, degrees from the normal.  [default: 0:90, or as far as a cutter touches]",
+    ),
     _postures(
         "--rotation",
         type=Range(),

@@ -51,7 +51,7 @@ class PostureRequest:
     tolerance: float
     allowance: float
     holder_clearance: float
-    tilt: Range
+    tilt: Range | None
     rotation: Range
     rotation_step: float
     quiet: bool
@@ -169,7 +169,7 @@ class MapRequest(PostureRequest):
     part: str
     at: str
     within: float
-    cutter: str
+    cutter: str | None
     #: The library that the cutter is of.
     cutters: str | None
     setup: str
@@ -306,7 +306,8 @@ def posture_options(request: PostureRequest) -> "PlanOptions":
     """The options among them that judge a posture, without the tools."""
     from plan_cutters.domain.posture import PostureRange
 
-    postures = PostureRange.degrees(request.tilt, request.rotation, request.rotation_step)
+    postures = PostureRange.degrees(request.tilt or (0.0, 90.0), request.rotation, request.rotation_step)
+    tilt: PlanOptions = {} if request.tilt is None else {"tilt": postures.tilt}
     return {
         "machine": request.machine,
         "fixtures": request.fixture,
@@ -316,7 +317,7 @@ def posture_options(request: PostureRequest) -> "PlanOptions":
         "tolerance": request.tolerance,
         "allowance": request.allowance,
         "holder_clearance": request.holder_clearance,
-        "tilt": postures.tilt,
+        **tilt,
         "rotation": postures.rotation,
         "rotation_step": postures.step,
     }

@@ -29,6 +29,7 @@ from plan_cutters.domain.pieces import (
     solid,
 )
 from plan_cutters.domain.shapes import MOST_PIECES, Flank, Mode, flanks, flute_length, modes, rim_radius, stages, top_flank_angle
+from plan_cutters.domain.verdicts import VerdictBuffer, Verdicts
 from plan_cutters.errors import CutterError
 from plan_cutters.kernels.codes import (
     ARC,
@@ -121,6 +122,12 @@ class Assembly(Record):
         cosine, sine = np.cos(tilt)[:, None], np.sin(tilt)[:, None]
         along = (self.inner - height) * (cosine * normal + sine * tilt_direction)
         return np.asarray(contact + rise * normal + along - offset * (cosine * tilt_direction - sine * normal))
+
+    def from_axis(self, point: Floats, normal: Floats, postures: Verdicts | VerdictBuffer) -> Floats:
+        """Shortest ways (n, 3) from its axis to points (n, 3) with unit normals (n, 3), at the postures that touch them, mm."""
+        on_axis = self.on_axis(postures.contact(point), normal, postures.tilt_direction, postures.tilt)
+        way = point - on_axis
+        return np.asarray(way - (way * postures.axis).sum(axis=1)[:, None] * postures.axis)
 
     def depth(self, points: Floats, contact: Floats, normal: Floats, tilt_direction: Floats, tilt: float) -> Floats:
         """Bound from below how deep points (n, 3) lie in the tool at a contact and posture; negative outside."""

@@ -1,6 +1,7 @@
 """Derive the shape from a cutter's dimensions: flutes, the segments above, the contacts; and check that it can exist."""
 
 import math
+from collections.abc import Iterable
 from itertools import pairwise
 from typing import Literal, NamedTuple
 
@@ -169,6 +170,11 @@ def modes(cutter: Dimensions) -> tuple[Mode, ...]:
     if cutter.shape == "form":
         return _corners(cutter.outline)
     return (Mode(r - corner, corner, corner, 0.0, _RIGHT - cutter.taper),)
+
+
+def largest_tilt(cutters: Iterable[Dimensions]) -> float:
+    """How far tilts are searched unless it is said, rad: to a right angle, or as far as any of some cutters touches."""
+    return max([_RIGHT, *(mode.high for cutter in cutters for mode in modes(cutter))])
 
 
 def flanks(cutter: Dimensions) -> tuple[Flank, ...]:

@@ -46,6 +46,11 @@ class MapOutput(Frozen):
     cutter: str
     machine: str
     setup: str
+    flank_axis: Vector | None = Field(
+        default=None,
+        description="tool axis with which it is free, its flank along the surface, where no tilt is free; null: none",
+    )
+    tilt_deg: tuple[float, float] | None = Field(default=None, description="tilts that were searched")
     under_flat_mm: Vector | None = Field(
         description="null, or the tool stands free upright with the point under the flat of its tip: from its axis to the point"
     )

@@ -14,8 +14,7 @@ from plan_cutters.report.protocol import Judged
 def write_npz(result: Judged, _split: object, path: Path) -> None:
     """Write `samples.npz`: the samples, and per cutter verdict, axis, tilt_direction and reason with its id as suffix.
 
-    `shift_ID` goes from the samples to where the tool is put down: there where any is put down along a flank, or on a flat that is
-    not quite square.
+    `shift_ID`, where a flank or a flat that is not quite square serves, goes from the samples to where the tool is put down.
 
     Over several setups what one or another reaches, with the posture of the first that does: `setup_ID` is its index into
     `setups`, -1 where none does, and `reached_in_ID` says which do. `inside_bodies`: what is no surface of the finished part;

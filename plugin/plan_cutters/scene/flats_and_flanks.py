@@ -284,14 +284,14 @@ def _at_angle(normal: Floats, cosine: float, kinematics: Kinematics) -> Iterator
 
 def _turned(rows: Rows, axis: Floats, contacts: Contacts, conditions: Conditions) -> tuple[Rows, Floats]:
     """Those of some samples at which an axis (m, 3) is held, across the normal, and leans as the rotations requested let it."""
-    held = np.isfinite(axis).all(axis=1)
-    held[held] = conditions.allows(axis[held])
-    held[held] &= np.abs((axis[held] * contacts.normal[rows[held]]).sum(axis=1)) < math.cos(PARALLEL)
+    known = np.isfinite(axis).all(axis=1)
+    rows, axis = rows[known], axis[known]
+    held = conditions.allows(axis) & (np.abs((axis * contacts.normal[rows]).sum(axis=1)) < math.cos(PARALLEL))
     if not _whole_turn(conditions):
-        at, (first, last) = rows[held], conditions.postures.rotation
-        f = _tilt_direction(axis[held], contacts.normal[at], contacts.direction_max[at])
-        turn = rotations_of(contacts.normal[at], contacts.direction_max[at], f)
-        held[held] &= np.remainder(turn - first + _WHOLE, 2.0 * np.pi) <= last - first + 2.0 * _WHOLE
+        first, last = conditions.postures.rotation
+        f = _tilt_direction(axis, contacts.normal[rows], contacts.direction_max[rows])
+        turn = rotations_of(contacts.normal[rows], contacts.direction_max[rows], f)
+        held &= np.remainder(turn - first + _WHOLE, 2.0 * np.pi) <= last - first + 2.0 * _WHOLE
     return rows[held], axis[held]
 
 

@@ -15,11 +15,11 @@ from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.degrees import Angle, in_radians
 from plan_cutters.domain.intervals import common, complement, join, without
 from plan_cutters.domain.posture import tilt_direction
-from plan_cutters.domain.verdicts import ACCESSIBLE, blank
+from plan_cutters.domain.verdicts import ACCESSIBLE, UNDECIDED, blank
 from plan_cutters.errors import OptionError
 from plan_cutters.kernels.codes import FLUTES, HOLDER, NECK, SHANK, TILT_FROM, TILT_TO
 from plan_cutters.scene.conditions import Context, contacts_of, tool_of
-from plan_cutters.scene.flats_and_flanks import on_the_flat
+from plan_cutters.scene.flats_and_flanks import on_the_flank, on_the_flat
 from plan_cutters.scene.obstacles import Obstacles, halved
 
 #: Ends that move by no more, rad, have settled.
@@ -61,6 +61,9 @@ class PostureMap(Record):
     under_flat : (3,) float
         Where the edge of a flat tip can touch at tilt 0 at none of the rotations, but the tool stands free upright with the point
         under its flat: from its axis to the point, mm. Else nan.
+    flank_axis : (3,) float
+        Where no tilt is free, and the point under no flat: a unit tool axis with which the tool stands free, its flank along the
+        surface, elsewhere than with its lower end or not quite at its tilt. Else nan.
     tolerance : float
         The gouge tolerance kept, mm; 0 for the nominal answer.
     certified : bool
@@ -88,6 +91,7 @@ class PostureMap(Record):
     axis_limit: tuple[Floats, ...]
     buried: tuple[Floats, ...]
     under_flat: Floats
+    flank_axis: Floats
     point: Floats
     normal: Floats
     direction_max: Floats
@@ -102,6 +106,11 @@ class PostureMap(Record):
     def lies_flat(self) -> bool:
         """Whether the tool stands free upright with the point under its flat."""
         return bool(np.isfinite(self.under_flat).all())
+
+    @property
+    def lies_along(self) -> bool:
+        """Whether the tool stands free with its flank along the surface, though no tilt is free."""
+        return bool(np.isfinite(self.flank_axis).all())
 
     def axis(self, i: int, tilt: float | None = None, *, tilt_deg: float | None = None) -> Floats:
         """Unit tool axis at `rotations[i]` and a tilt, rad or degrees, in part coordinates."""
@@ -181,10 +190,11 @@ def posture_map_of(contact: SurfaceSamples, rotations: Floats, context: Context,
         perhaps = open_tilts[within & ~sunk]
         undecided.append(unsure if not len(perhaps) else join(np.concatenate([unsure, perhaps])))
         assert set(intervals[:, 2]) <= {OPEN, FORBIDDEN, UNSURE}
+    under_flat, flank_axis = _lying(contact, free, context)
     return PostureMap(
         rotations=rotations, free=tuple(free), undecided=tuple(undecided), local_gouge=gouge[:, 0],
         local_gouge_most=gouge[:, 1], axis_limit=tuple(axis), no_contact=tuple(no_contact), buried=tuple(inside_bodies), point=p,
-        normal=n, under_flat=_under_flat(contact, free, context),
+        normal=n, under_flat=under_flat, flank_axis=flank_axis,
         **{word: tuple(each) for word, each in apart.items()},
         direction_max=e1, curvature=contact.curvature[0], tolerance=tolerance,
         certified=tolerance > 0 and not surroundings.doubtful, missing=surroundings.doubts,
@@ -192,14 +202,22 @@ def posture_map_of(contact: SurfaceSamples, rotations: Floats, context: Context,
     )  # fmt: skip
 
 
-def _under_flat(contact: SurfaceSamples, free: Sequence[Floats], context: Context) -> Floats:
-    """From the axis of a tool that stands free upright to a contact that lies under the flat of its tip; nan where none does."""
-    none, upright = np.full(3, np.nan), context.judges and context.conditions.postures.tilt[0] <= 0.0
-    if not (upright and context.outer_tool.flat > 0.0) or any(len(tilts) and tilts[0, 0] <= 0.0 for tilts in free):
-        return none
+def _lying(contact: SurfaceSamples, free: Sequence[Floats], context: Context) -> tuple[Floats, Floats]:
+    """What a search finds beside free tilts: from the axis of the tool to a contact that lies under a flat, mm, and the axis of a
+    tool whose flank lies along it; nan where there is none, or where it is not looked for.
+    """
+    none, nowhere, row = np.full(3, np.nan), not any(len(tilts) for tilts in free), np.zeros(1, np.int64)
+    upright = nowhere or not any(len(tilts) and tilts[0, 0] <= 0.0 for tilts in free)
+    if not (context.judges and upright):
+        return none, none
     verdicts = blank(1)
-    on_the_flat(contacts_of(contact), np.zeros(1, np.int64), context, verdicts)
-    return context.outer_tool.flat * verdicts.tilt_direction[0] if verdicts.verdict[0] == ACCESSIBLE else none
+    verdicts.verdict[0] = UNDECIDED
+    on_the_flat(contacts_of(contact), row, context, verdicts)
+    if verdicts.verdict[0] == ACCESSIBLE:
+        return context.outer_tool.from_axis(contact.point, contact.normal, verdicts)[0], none
+    if nowhere:
+        on_the_flank(contacts_of(contact), contact.face, row, context, verdicts)
+    return none, verdicts.axis[0]
 
 
 def _gouge_bounds(curvature: Floats, rotation: float, tool: Assembly) -> Floats:
