@@ -62,7 +62,7 @@ def test_a_place_is_found_just_where_there_is_one(name):
     for corner in scenes(150, 7):
         solids = Obstacles(Triangles(corner, np.ones(len(corner), np.int32), 0.0, ())).solids
         found, lean = np.empty(1, np.int8), np.full((1, 3), np.nan)
-        upright(np.zeros(1, np.int64), contact, tool, solids, 0.5, 0.0, found, lean)
+        upright(np.zeros(1, np.int64), contact, contact.normal, tool, solids, 0.5, 0.0, found, lean)
         if found[0] == PLACED:
             assert np.linalg.norm(lean) <= 1.0 + 1e-9
             assert free_at(lean, tool, solids).all()
@@ -79,7 +79,7 @@ def test_a_tip_without_a_flat_has_no_place_to_look_for():
     far = np.array([[[99.0, 0, 0], [99.0, 1, 0], [99.0, 0, 1]]])
     found = np.empty(1, np.int8)
     solids = Obstacles(Triangles(far, np.ones(1, np.int32), 0.0, ())).solids
-    upright(np.zeros(1, np.int64), contact, tool, solids, 0.5, 0.0, found, np.full((1, 3), np.nan))
+    upright(np.zeros(1, np.int64), contact, contact.normal, tool, solids, 0.5, 0.0, found, np.full((1, 3), np.nan))
     assert found[0] == FORBIDDEN
 
 
@@ -93,5 +93,5 @@ def test_what_is_no_number_is_in_the_way():
     broken[0, 1] = np.nan
     found = np.empty(1, np.int8)
     solids = solids._replace(tree=solids.tree._replace(vertex=broken))
-    upright(np.zeros(1, np.int64), contact, tool, solids, 0.5, 0.0, found, np.full((1, 3), np.nan))
+    upright(np.zeros(1, np.int64), contact, contact.normal, tool, solids, 0.5, 0.0, found, np.full((1, 3), np.nan))
     assert found[0] != PLACED

@@ -28,8 +28,9 @@ Rows = NDArray[np.int64]
 _WHOLE = 1e-9
 #: Places of the axis that are nearer than this to what is certainly in the way are none, mm: no machine holds them.
 _NO_PLACE = 1e-3
-#: Share of the chord error by which a flank is kept off a surface: a shank as wide, larger by all of it, still touches.
-_SHARE = 0.999
+#: Chord errors by which a flank is kept off a surface where it is not free on it: then a shank as wide, which may touch nothing,
+#: is as free of the surface as of its triangles. It is half of the tolerance at most.
+_AWAY = 2.0
 
 
 def search(
@@ -154,7 +155,7 @@ def _on_flank(
     conditions = context.conditions
     state, reason = np.zeros(len(rows), np.int8), np.full(len(rows), NO_REASON, np.uint8)
     shift = np.zeros((len(rows), 3))
-    away = np.array([0.0, _SHARE * conditions.obstacles.triangles.chord_error])
+    away = np.unique([0.0, _AWAY * conditions.obstacles.triangles.chord_error])
 
     def tried(tool: Tool, solids: Any, within: float, some: Rows) -> None:
         def piece(which: Rows) -> int:
@@ -262,7 +263,8 @@ def _nearest(axis: Floats, conditions: Conditions) -> Floats:
     along = float(kinematics.tool @ direction)
     across = axis - (axis @ direction)[:, None] * direction
     length = np.linalg.norm(across, axis=1)[:, None]
-    return np.where(length > PARALLEL, along * direction + math.sqrt(max(0.0, 1.0 - along**2)) * across / length, kinematics.tool)
+    unit = across / np.maximum(length, PARALLEL)
+    return np.where(length > PARALLEL, along * direction + math.sqrt(max(0.0, 1.0 - along**2)) * unit, kinematics.tool)
 
 
 def _at_angle(normal: Floats, cosine: float, kinematics: Kinematics) -> Iterator[Floats]:
