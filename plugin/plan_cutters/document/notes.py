@@ -62,6 +62,8 @@ def _of_samples(ready: Prepared) -> Iterator[Note]:
 def _of_sides(scene: Scene, options: Options, tolerance: float) -> Iterator[Note]:
     if not options.machine.limited:
         yield notes.no_machine()
+    if scene.part.encoding:
+        yield notes.names_decoded(scene.part.encoding)
     if not scene.orientation.confident:
         yield notes.side_guessed()
         if other := scene.turned_faces():

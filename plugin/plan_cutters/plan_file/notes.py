@@ -12,7 +12,8 @@ from plan_cutters.plan_file.numbers import angle, count, listed, mm
 NoteCode = Literal[
     "cutters_built_in", "no_holder", "tilts_not_searched", "all_length_cuts", "samples_apart", "samples_coarser", "samples_wide",
     "coarser_than_requested",
-    "not_sampled", "no_machine", "side_guessed", "side_by_setup", "tolerance_raised", "open_faces", "fixture", "fixture_stays",
+    "not_sampled", "no_machine", "side_guessed", "side_by_setup", "names_decoded",
+    "tolerance_raised", "open_faces", "fixture", "fixture_stays",
     "fixture_not_cad", "faces_none_sculptured", "faces_ignored", "faces_clamped", "travel_not_judged", "travel_of_holder",
     "travel_first_setup", "faces_clamped_there", "setup_without_fixtures", "setup_proposed",
     "stick_out_each_setup", "maps_first_setup",
@@ -143,6 +144,13 @@ def stick_out_each_setup() -> Note:
 
 def no_machine() -> Note:
     return Note("no_machine", "No machine was given: any tool axis counts as possible.")
+
+
+def names_decoded(encoding: str) -> Note:
+    return Note(
+        "names_decoded",
+        f"Names in the file are neither ASCII nor UTF-8, and the file does not say what they are: read as {encoding}.",
+    )
 
 
 def side_guessed() -> Note:
