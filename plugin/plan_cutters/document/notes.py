@@ -26,6 +26,7 @@ def notes_of(ready: Prepared, entries: Sequence[CutterEntry]) -> list[Note]:
     scene, options, surroundings = ready.scene, ready.options, ready.conditions.surroundings
     return [
         *_of_cutters(options, ready.cutters),
+        *_of_process(options),
         *_of_samples(ready),
         *_of_sides(scene, options, ready.conditions.tolerance),
         *_of_loose_faces(ready),
@@ -50,6 +51,11 @@ def noted_coarser(options: Options, plan: Plan) -> Plan:
     """The plan with a note that the density of samples in some options was not taken, for it asks too much of this part."""
     wanted = f"--spacing {options.spacing:g}" if options.grid is None else f"--grid {options.grid}"
     return noted(plan, notes.coarser_than_requested(wanted, plan.samples.count, plan.samples.max_gap_mm))
+
+
+def _of_process(options: Options) -> Iterator[Note]:
+    if options.process is not None and (rounded := options.process.rounded()):
+        yield notes.angles_rounded(rounded)
 
 
 def _of_samples(ready: Prepared) -> Iterator[Note]:
