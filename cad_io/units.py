@@ -26,7 +26,7 @@ def in_mm(unit: str) -> float:
 
 
 class UnitReading(NamedTuple):
-    """What a file says about its length unit, where that is in doubt.
+    """A reading of a length unit that is in doubt is a record of what the file says.
 
     Attributes
     ----------

@@ -82,10 +82,10 @@ def encoding_of(names: Sequence[bytes]) -> str:
     >>> encoding_of([])
     'utf-8'
     """
-    telling = [name for name in names if _HIGH.search(name)]
-    if all(map(is_plain, telling)):
+    high = [name for name in names if _HIGH.search(name)]
+    if all(map(is_plain, high)):
         return "utf-8"
-    return max(CANDIDATES, key=lambda each: sum(_plausible(name, each) for name in telling))
+    return max(CANDIDATES, key=lambda each: sum(_plausible(name, each) for name in high))
 
 
 def decoded(name: bytes, encoding: str) -> str:

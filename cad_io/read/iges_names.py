@@ -41,14 +41,14 @@ def add_names(reader: Any, result: Read, model: Model, directory: Sequence[bytes
     numbers = shape_map(result.shape, TopAbs_FACE)
     names: dict[int, bytes] = {}
 
-    def found(entity: Any, shape: Any) -> None:
+    def visit(entity: Any, shape: Any) -> None:
         # The kernel drops labels without a letter of ASCII.
         label = directory[2 * k - 1][56:64].strip() if 0 < 2 * (k := model.number(entity)) <= len(directory) else b""
         if (number := numbers.FindIndex(shape)) and (name := _bytes_of(entity) or label):
             names[number] = name
 
     for i in range(1, reader.NbRootsForTransfer() + 1):
-        _walk(reader.RootForTransfer(i), reader.Shape(i), found)
+        _walk(reader.RootForTransfer(i), reader.Shape(i), visit)
     encoding = encoding_of(list(names.values()))
     result.names.update({number: decoded(name, encoding) for number, name in names.items()})
     result.encoding = CALLED.get(encoding, "")

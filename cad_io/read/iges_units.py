@@ -81,18 +81,18 @@ def _scale(text: str, taken: str) -> tuple[float, tuple[UnitReading, ...]]:
 
 def _parameters(text: bytes) -> list[bytes]:
     """Parameters of a section in free format; strings in them are counted, and may hold the delimiters."""
-    delimiters, found, at = [b",", b";"], list[bytes](), 0
+    delimiters, values, at = [b",", b";"], list[bytes](), 0
     while at < len(text):
         value, after = b"", at
         if match := _HOLLERITH.match(text, at):
             after = match.end() + int(match[1][:9])
             value = text[match.end() : after]
-        if len(found) < len(delimiters) and len(value) == 1:
-            delimiters[len(found)] = value
+        if len(values) < len(delimiters) and len(value) == 1:
+            delimiters[len(values)] = value
         ends = [end for each in delimiters if (end := text.find(each, after)) >= 0]
         end = min(ends, default=len(text))
-        found.append(value if match else text[at:end])
+        values.append(value if match else text[at:end])
         if text[end : end + 1] == delimiters[1]:
             break
         at = end + 1
-    return found
+    return values

@@ -15,6 +15,7 @@ from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.verdicts import AXIS_LIMIT, REASONS, UNDECIDED
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
+from plan_cutters.plan_file.numbers import size
 from plan_cutters.plan_file.words.headline import headline
 from plan_cutters.plan_file.words.names import short_names
 from plan_cutters.stages import reasons as finding
@@ -197,7 +198,8 @@ def test_the_headline_is_that_of_the_union(capsys):
     assert not below.here["R3L30"].reached.any()
     summary(below.plan)
     said = " ".join("".join(capsys.readouterr()).split())
-    assert said.startswith("Take flat end D6 x 30. For the face asked for of the part (31.2 % of the area), in setup 0,0,-1:")
+    part = f"the part, {size(below.plan.part.size_mm)}"
+    assert said.startswith(f"Take flat end D6 x 30. For the face asked for of {part} (31.2 % of the area), in setup 0,0,-1:")
     names = short_names(both.plan)
-    assert headline(both.plan, names).about.startswith("For the part, in 2 setups: ")
+    assert headline(both.plan, names).about.startswith(f"For {part}, in 2 setups: ")
     assert headline(below.plan, names).why == "It reaches every sample there, and needs no other setup."

@@ -56,7 +56,7 @@ class SewingInfo(Frozen):
 
 
 class UnitEntry(Frozen):
-    """What the file says about its length unit or scale, where that is in doubt."""
+    """A statement of the file about its length unit or scale that is in doubt."""
 
     cause: Literal["disagree", "scale", "not_sure"] = Field(
         description="disagree: two units, the flag's is taken; scale: lengths are divided by the model space scale; not_sure: "
