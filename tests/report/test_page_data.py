@@ -162,7 +162,7 @@ def test_an_atlas_that_is_too_large_has_coarser_sheets_then_lists(monkeypatch):
 
 def test_what_is_not_finite_is_null():
     assert write.embedded({"a": [float("nan"), (1.5, float("-inf"))]}) == '{"a":[null,[1.5,null]]}'
-    assert write.embedded("</script>&\u2028") == '"\\u003c/script\\u003e\\u0026\\u2028"'
+    assert write.embedded("</script>&\u2028") == '"\\u003c/script\\u003e\\u0026\\\\u2028"'
 
 
 @pytest.fixture(scope="module")

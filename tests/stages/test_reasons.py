@@ -192,7 +192,7 @@ def test_the_headline_is_that_of_the_union(capsys):
     assert (both.selected, code_of(both.plan)) == ("R3L30", 0)
     summary(both.plan, verbose=True)
     said = " ".join("".join(capsys.readouterr()).split())
-    assert said.startswith("Take flat end D6 x 30. For the part, in 2 setups")
+    assert said.startswith(f"Take flat end D6 x 30. For the part, {size(both.plan.part.size_mm)}, in 2 setups")
     assert "over 2 setups" in said
     below = plan(top, setup=(0, 0, 1), other_setups=[(0, 0, -1)], **how | {"faces": "5"})
     assert not below.here["R3L30"].reached.any()
