@@ -136,7 +136,7 @@ def run_command(
         _write_json(json_file, document)
     if answers is not None and not ran.claims:
         write_aside(answers, lambda aside: write_answers(aside, rows, ran.answers))
-    _show(document)
+    _show(document, len(suite.postures))
 
 
 @app.command("score")
@@ -175,7 +175,7 @@ def score_command(
     document = Ran(name or file.stem, table, words).document(Suite(suite.parts, table), kind, not only_answered, rows, tolerance)
     if json_file is not None:
         _write_json(json_file, document)
-    _show(document)
+    _show(document, len(suite.postures))
 
 
 @app.command()
@@ -319,11 +319,13 @@ def table(
     out.print(str(file), highlight=False)
 
 
-def _show(document: dict[str, Any]) -> None:
-    """Show results as tables."""
+def _show(document: dict[str, Any], total: int) -> None:
+    """Show results as tables; where they are about a part of the postures, the title says of how many."""
     from conformance.page import CELLS, cells
 
     head = f"{document['program']}, {document['kind']} parts, tolerance {document['tolerance_mm']:g} mm, benchmark {VERSION}"
+    if document["postures"] < total:
+        head += f": {document['postures']:,} of {total:,} answered"
     shown = Table("family", *(title for title, _ in CELLS), title=head)
     for family, counted in document["families"].items():
         shown.add_row(family, *cells(counted))

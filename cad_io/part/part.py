@@ -29,9 +29,8 @@ from cad_io.part.boxes import box_of, face_box
 from cad_io.part.packing import PartContent, packed, unpacked
 from cad_io.part.sew import Sewn, edge_uses, neighbours, sew
 from cad_io.surface import Surface
+from cad_io.units import UnitReading, unit_doubt
 
-#: Sizes that are rather a wrong unit than a part, mm.
-LEAST_SIZE, MOST_SIZE = 1.0, 3000.0
 #: Beyond this, mm, a coordinate has too few digits left for any tolerance.
 FARTHEST = 1e9
 #: Edges that are looser than this share of the part's size are rather a fault of the file.
@@ -78,6 +77,10 @@ class Part:
     shape, file, sha256, unit, layers, tree, picked : as given
     references : tuple of (str, str or None)
         Files that the part's file refers to: the path from its folder and the SHA-256; None: it is not there.
+    unit_readings : tuple of UnitReading
+        What is doubtful of what the file says about its unit.
+    encoding : str
+        What the encoding of its names is called, where the file has an older one; else empty.
     aside : mapping
         By face number: why nothing more is to be asked of the kernel about this face. It is not judged. See `without`.
     lost : tuple of LostFace
@@ -119,6 +122,8 @@ class Part:
     ) -> None:
         self.shape, self.file, self.sha256, self.picked = shape, file, sha256, picked
         self.references: tuple[tuple[str, str | None], ...] = ()
+        self.unit_readings: tuple[UnitReading, ...] = ()
+        self.encoding = ""
         self.aside: Mapping[int, str] = {}
         self.unit = unit
         with translated("looking for faces", error=ReadError, file=file):
@@ -161,8 +166,9 @@ class Part:
     @classmethod
     def of(cls, content: PartContent) -> "Part":
         """Make a part from what a reader has found, by the names of the parameters, with its `references`."""
-        part = cls(**{name: value for name, value in content.items() if name != "references"})
-        part.references = content.get("references", ())
+        part = cls(**{name: value for name, value in content.items() if name not in ("references", "unit_readings", "encoding")})
+        part.references, part.unit_readings = content.get("references", ()), content.get("unit_readings", ())
+        part.encoding = content.get("encoding", "")
         return part
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -174,6 +180,7 @@ class Part:
             "shape": self.shape, "file": self.file, "sha256": self.sha256, "unit": self.unit, "names": self._names,
             "colours": self._colours, "layers": self.layers, "tree": self.tree, "warnings": self._said,
             "picked": self.picked, "lost": self.lost, "references": self.references,
+            "unit_readings": self.unit_readings, "encoding": self.encoding,
         }  # fmt: skip
 
     def __repr__(self) -> str:
@@ -228,7 +235,7 @@ class Part:
     @property
     def warnings(self) -> tuple[str, ...]:
         stopped = self.sewn.stopped if "sewn" in self.__dict__ else None
-        return (*self._said, *_size_warnings(self.size), *self._loose_warnings(), *_sewing_warnings(stopped))
+        return (*self._said, *filter(None, [self.unit_doubt]), *self._loose_warnings(), *_sewing_warnings(stopped))
 
     def face(self, number: int) -> TopoDS_Face:
         """The kernel's face of a number from 1."""
@@ -322,7 +329,7 @@ class Part:
     @property
     def unit_doubt(self) -> str:
         """Why the length unit is doubtful, as `warnings` has it; empty where it is not."""
-        return next(_size_warnings(self.size), "")
+        return unit_doubt(self.size, self.unit_readings)
 
     def _loose_warnings(self) -> Iterator[str]:
         if self.looseness > LOOSEST * max(self.size):
@@ -389,12 +396,3 @@ def _again(content: PartContent, excluded: Mapping[int, str]) -> Part:
 def _sewing_warnings(stopped: str | None) -> Iterator[str]:
     if stopped is not None:
         yield f"sewing was stopped: {stopped}; faces that may belong together stay apart, and their sides are guesses"
-
-
-def _size_warnings(size: tuple[float, float, float]) -> Iterator[str]:
-    largest = max(size)
-    if not LEAST_SIZE <= largest <= MOST_SIZE:
-        yield (
-            f"the part is {largest:.4g} mm long, outside {LEAST_SIZE:g} to {MOST_SIZE:g} mm: "
-            "if the length unit in the file is wrong, give the right one with --unit (unit= in Python)"
-        )

@@ -1,8 +1,9 @@
 """Read products, names, colours and layers of numbered faces from the kernel's document, in the same way for STEP and IGES."""
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import NamedTuple
 
 from OCP.Quantity import Quantity_Color, Quantity_TOC_sRGB
@@ -17,13 +18,16 @@ from OCP.XCAFDoc import XCAFDoc_ColorGen, XCAFDoc_ColorSurf, XCAFDoc_ColorTool, 
 from cad_io.arrays import LostFace
 from cad_io.kernel import explore, shape_map
 from cad_io.kernel.assembly import Node
+from cad_io.units import UnitReading
 
 Colour = tuple[float, float, float]
 
 
 @dataclass
 class Read:
-    """A reader returns this: one shape, its products, and by face number names, sRGB colours and layers."""
+    """A reader returns this: one shape, its products, and by face number names, sRGB colours and layers; the encoding of names,
+    where it is an older one.
+    """
 
     shape: TopoDS_Shape
     names: dict[int, str] = field(default_factory=dict)
@@ -32,11 +36,23 @@ class Read:
     tree: tuple[Node, ...] = ()
     warnings: list[str] = field(default_factory=list)
     lost: list[LostFace] = field(default_factory=list)
+    unit_readings: tuple[UnitReading, ...] = ()
+    encoding: str = ""
 
 
-def add_attributes(document: TDocStd_Document, result: Read) -> None:
+class DroppedNames(NamedTuple):
+    """Names that a document has not: of products by what stands there instead, of instances by both that stand there."""
+
+    products: Mapping[str, str] = MappingProxyType({})
+    instances: Mapping[tuple[str, str], str] = MappingProxyType({})
+
+
+_NONE_DROPPED = DroppedNames()
+
+
+def add_attributes(document: TDocStd_Document, result: Read, dropped: DroppedNames = _NONE_DROPPED) -> None:
     """Fill in the tree of products, names, colours and layers that a document has for the faces of its shape."""
-    _Walk(result).roots(roots(document))
+    _Walk(result, dropped).roots(roots(document))
 
 
 def roots(document: TDocStd_Document) -> TDF_LabelSequence:
@@ -86,9 +102,9 @@ class FaceMarks:
 class _Walk(FaceMarks):
     """Products, names, colours and layers of faces, gathered from the document: the innermost label that has one wins."""
 
-    def __init__(self, result: Read) -> None:
+    def __init__(self, result: Read, dropped: DroppedNames) -> None:
         super().__init__(result.shape)
-        self.result = result
+        self.result, self.dropped = result, dropped
         self.names, self.colours, self.layers = result.names, result.colours, result.layers
 
     def roots(self, labels: TDF_LabelSequence) -> None:
@@ -103,12 +119,14 @@ class _Walk(FaceMarks):
             product = TDF_Label()
             XCAFDoc_ShapeTool.GetReferredShape_s(label, product)
             label = product
+            instance = self.dropped.instances.get((instance, _name(label)), instance)
+        name = self.dropped.products.get(_name(label), _name(label))
         inherited = inherited.at(label)
         if XCAFDoc_ShapeTool.IsAssembly_s(label):
             inner = TDF_LabelSequence()
             XCAFDoc_ShapeTool.GetComponents_s(label, inner, False)
-            return Node(_name(label), instance, place, children=tuple(self.node(one, inherited) for one in each(inner)))
-        return Node(_name(label), instance, place, faces=tuple(self.take(self.leaf(label, inherited))))
+            return Node(name, instance, place, children=tuple(self.node(one, inherited) for one in each(inner)))
+        return Node(name, instance, place, faces=tuple(self.take(self.leaf(label, inherited))))
 
     def leaf(self, label: TDF_Label, inherited: "_Inherited") -> list[int]:
         """Paint the faces of a product; their numbers."""

@@ -8,6 +8,7 @@ from OCP.IGESCAFControl import IGESCAFControl_Reader
 from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
 from OCP.TDocStd import TDocStd_Document
 from OCP.TopAbs import TopAbs_FACE
+from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
 from cad_io.arrays import LostFace
 from cad_io.errors import ReadError
@@ -16,10 +17,11 @@ from cad_io.kernel.components import unwrapped
 from cad_io.read.document import Read, add_attributes
 from cad_io.read.faults import Model
 from cad_io.read.iges_names import add_names, any_names
+from cad_io.read.iges_units import FLAGS, IgesUnit, unit_of
 from cad_io.read.unread_iges import FACES, fell_apart, unread_of_iges
 
-#: The standard's numbers of units.
-_FLAGS = {"in": 1, "mm": 2, "ft": 4, "m": 6, "km": 7, "mil": 8, "um": 9, "cm": 10}
+#: Faults in the statement of the unit, which is read here.
+_OF_UNIT = re.compile(r"Global Section \(Parameter 1[345]\b")
 _COUNTS = re.compile(rb"S\s*(\d+)G\s*(\d+)D\s*(\d+)P\s*(\d+)")
 
 
@@ -41,10 +43,11 @@ class Loaded:
         self.reader.SetNameMode(False)
         if self.reader.ReadFile(file) != IFSelect_RetDone:
             raise ReadError("is not valid IGES: export it again", file=file)
-        if unit is not None:
-            _set_unit(self.reader, unit)
+        # Numbers as they stand are in the unit that a person gives.
+        self.unit = unit_of(self.sections[b"G"]) if unit is None else IgesUnit(unit, 1.0, ())
+        _set_unit(self.reader, self.unit.unit)
         self.model = Model(self.reader.WS())
-        self.faults = self.model.faults()
+        self.faults = [fault for fault in self.model.faults() if not _OF_UNIT.match(fault.text)]
         self.risky = bool(self.faults)
 
     def transfer(self) -> Read:
@@ -57,17 +60,19 @@ class Loaded:
         """
         text = f" ({self.faults[0].short}, {len(self.faults)} faults)" if self.faults else ""
         document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
+        # In metres: the kernel divides by it.
+        XCAFDoc_DocumentTool.SetLengthUnit_s(document, 1e-3 * self.unit.scale)
         self.reader.Transfer(document)
         shape = self.reader.OneShape()
         if shape.IsNull():
             raise ReadError(f"nothing in it could be read{text}: export it again, or as STEP", file=self.file)
-        result = Read(unwrapped(shape))
+        result = Read(unwrapped(shape), unit_readings=self.unit.readings)
         add_attributes(document, result)
         result.tree = ()  # its roots are surfaces rather than products
         # Two lines an entity: the first starts with its number.
         directory = self.sections[b"D"]
         if self.names and any_names(directory):
-            add_names(self.reader, result)
+            add_names(self.reader, result, self.model, directory)
         kinds = [line[:8].strip() for line in directory[::2]]
         written = sum(kind.isdigit() and int(kind) in FACES for kind in kinds)
         face_count = shape_map(shape, TopAbs_FACE).Extent()
@@ -98,6 +103,6 @@ class Loaded:
 def _set_unit(reader: IGESCAFControl_Reader, unit: str) -> None:
     model = reader.WS().Model()
     section = model.GlobalSection()
-    section.SetUnitFlag(_FLAGS[unit])
+    section.SetUnitFlag(next(flag for flag, name in FLAGS.items() if name == unit))
     section.SetUnitName(TCollection_HAsciiString(unit.upper()))
     model.SetGlobalSection(section)

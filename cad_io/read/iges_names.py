@@ -7,11 +7,14 @@ takes a walk through all entities for each. So entities and shapes are walked do
 from collections.abc import Callable, Sequence
 from typing import Any
 
+from OCP.TCollection import TCollection_ExtendedString
 from OCP.TopAbs import TopAbs_FACE
 
 from cad_io.kernel import shape_map
 from cad_io.kernel.components import children, unwrapped
 from cad_io.read.document import Read
+from cad_io.read.encodings import CALLED, decoded, encoding_of
+from cad_io.read.faults import Model
 
 #: Entity numbers of what holds others: group, solid, shell.
 _GROUP, _SOLID, _SHELL = 402, 186, 514
@@ -31,18 +34,24 @@ def any_names(directory: Sequence[bytes]) -> bool:
     return False
 
 
-def add_names(reader: Any, result: Read) -> None:
-    """Fill in the names of faces that a reader has transferred."""
+def add_names(reader: Any, result: Read, model: Model, directory: Sequence[bytes]) -> None:
+    """Fill in the names of faces that a reader has transferred; `directory`: lines of that section."""
     if reader.NbShapes() != reader.NbRootsForTransfer():
         return  # some were lost: no one knows which shape is which root's
     numbers = shape_map(result.shape, TopAbs_FACE)
+    names: dict[int, bytes] = {}
 
-    def found(entity: Any, shape: Any) -> None:
-        if (number := numbers.FindIndex(shape)) and (name := name_of(entity)):
-            result.names[number] = name
+    def visit(entity: Any, shape: Any) -> None:
+        # The kernel drops labels without a letter of ASCII.
+        label = directory[2 * k - 1][56:64].strip() if 0 < 2 * (k := model.number(entity)) <= len(directory) else b""
+        if (number := numbers.FindIndex(shape)) and (name := _bytes_of(entity) or label):
+            names[number] = name
 
     for i in range(1, reader.NbRootsForTransfer() + 1):
-        _walk(reader.RootForTransfer(i), reader.Shape(i), found)
+        _walk(reader.RootForTransfer(i), reader.Shape(i), visit)
+    encoding = encoding_of(list(names.values()))
+    result.names.update({number: decoded(name, encoding) for number, name in names.items()})
+    result.encoding = CALLED.get(encoding, "")
 
 
 def _walk(entity: Any, shape: Any, visit: Callable[[Any, Any], None]) -> None:
@@ -72,15 +81,19 @@ def _inside(entity: Any) -> list[Any]:
 
 
 def name_of(entity: Any) -> str:
-    """The long name where there is one, else the label of eight letters."""
+    """The name of one entity, in the encoding that it is most likely in."""
+    return decoded(name, encoding_of([name])) if (name := _bytes_of(entity)) else ""
+
+
+def _bytes_of(entity: Any) -> bytes:
+    """The long name where there is one, else the label of eight letters. IGES is ASCII, but not all programs know it."""
     for has, get in ((entity.HasName, entity.NameValue), (entity.HasShortLabel, entity.ShortLabel)):
-        try:
-            # A damaged file may say that there is a name and have none.
-            if has() and (text_handle := get()) is not None and (text := str(text_handle.ToCString()).strip()):
-                return text
-        except UnicodeDecodeError:  # IGES is ASCII: a name that is not has no meaning
-            continue
-    return ""
+        # A damaged file may say that there is a name and have none.
+        if has() and (text := get()) is not None:
+            letters = TCollection_ExtendedString(text.String(), False).ToExtString()
+            if name := str(letters).encode("latin-1").strip():
+                return name
+    return b""
 
 
 def _number(field: bytes) -> int:

@@ -162,6 +162,8 @@ def _content(read: Read, others: Referred | None = None) -> PartContent:
         "tree": read.tree,
         "warnings": tuple(read.warnings),
         "lost": tuple(read.lost),
+        "unit_readings": read.unit_readings,
+        "encoding": read.encoding,
     }
 
 

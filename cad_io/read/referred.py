@@ -110,7 +110,7 @@ def _alone(file: str, data: bytes, foreign: int, timeout: float) -> tuple[int, l
     def look() -> bytes:
         try:
             with translated("reading the file", error=ReadError, file=file):
-                loaded = Loaded(file, data, names=False, foreign=foreign)
+                loaded = Loaded(file, data, names=False, adopt=False, foreign=foreign)
                 read = loaded.transfer()
                 count = distinct_faces(read.shape) - foreign
                 return pickle.dumps((count, [(each.entity, each.name, each.why) for each in read.lost], loaded.risky))

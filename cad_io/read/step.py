@@ -5,20 +5,22 @@ without a message. So files that are known to hang are refused before the transf
 the process (`Loaded.risky`), and the result of each face is checked afterwards.
 """
 
+import io
 import os
 import re
 from collections import defaultdict
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import Any
 
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.Interface import Interface_Static
-from OCP.StepBasic import StepBasic_NamedUnit
+from OCP.StepBasic import StepBasic_NamedUnit, StepBasic_Product
 from OCP.STEPCAFControl import STEPCAFControl_Controller, STEPCAFControl_Reader
 from OCP.STEPConstruct import STEPConstruct_ExternRefs, STEPConstruct_UnitContext
 from OCP.StepData import StepData_Factors
 from OCP.StepGeom import StepGeom_CartesianPoint, StepGeom_Direction
-from OCP.StepRepr import StepRepr_ItemDefinedTransformation, StepRepr_RepresentationMap
+from OCP.StepRepr import StepRepr_ItemDefinedTransformation, StepRepr_NextAssemblyUsageOccurrence, StepRepr_RepresentationMap
 from OCP.StepShape import StepShape_TopologicalRepresentationItem
 from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
 from OCP.TDocStd import TDocStd_Document
@@ -33,12 +35,13 @@ from cad_io.arrays import LostFace
 from cad_io.errors import ReadError
 from cad_io.kernel import explore, faces
 from cad_io.kernel.components import as_one, unwrapped
-from cad_io.read.document import Read, add_attributes, each, roots
+from cad_io.read.document import DroppedNames, Read, add_attributes, each, roots
 from cad_io.read.face_comparison import open_border
 from cad_io.read.faults import Model, type_of
 from cad_io.read.references import names as referred_names
+from cad_io.read.step_text import adopted, readable
 from cad_io.read.unread_faces import UnreadFaces, is_face, is_whole, name_of, repair
-from cad_io.units import in_mm
+from cad_io.units import UNITS, UnitReading, in_mm
 
 #: Each a pattern that starts with plain text, which is searched for ten times as fast as alternatives.
 _FACES = [re.compile(rb"%s\s*\(" % kind) for kind in (b"ADVANCED_FACE", b"FACE_SURFACE")]
@@ -52,6 +55,7 @@ _HUGE = [re.compile(rb"%s\+?0*[1-9]\d\d" % letter) for letter in (b"E", b"e")]
 _BEFORE = tuple(b"%c" % byte for byte in b"0123456789.")
 #: What shapes are made of, or placed by.
 _SHAPES = (StepShape_TopologicalRepresentationItem, StepRepr_ItemDefinedTransformation, StepRepr_RepresentationMap)
+_ASCII = re.compile("[!-~]")
 _SUBSHAPES = "read.stepcaf.subshapes.name"
 #: Entities named in one warning.
 _MOST_NAMED = 3
@@ -75,6 +79,8 @@ class Loaded:
         Ask the kernel for names, colours and layers, on which it crashes in some faulty files.
     careful : bool
         Leave out every face that uses something faulty.
+    adopt : bool
+        Read solids to which no product leads, as where the file is read for itself.
     foreign : int
         Faces that come from files which this one refers to: they are none of its own.
 
@@ -90,10 +96,15 @@ class Loaded:
     """
 
     def __init__(
-        self, file: str, data: bytes, unit: str | None = None, *, names: bool = True, careful: bool = False, foreign: int = 0
-    ) -> None:
-        self.file, self.data, self.unit, self.names, self.careful = file, data, unit, names, careful
-        self.foreign = foreign
+        self, file: str, data: bytes, unit: str | None = None, *, names: bool = True, careful: bool = False, adopt: bool = True,
+        foreign: int = 0,
+    ) -> None:  # fmt: skip
+        self.file, self.unit, self.names, self.careful = file, unit, names, careful
+        self.foreign, self._written = foreign, data
+        self.data, self.encoding = readable(data)
+        self._adopted = adopted(self.data) if adopt and not foreign else None
+        if self._adopted:
+            self.data = self._adopted.data
         STEPCAFControl_Controller.Init_s()
         self.reader = STEPCAFControl_Reader()
         self.reader.SetColorMode(names)
@@ -104,7 +115,9 @@ class Loaded:
         Interface_Static.SetIVal_s(_SUBSHAPES, int(names))
         try:
             # Files that it refers to are looked for in its folder only where its path is whole, else where the process works.
-            status = self.reader.ReadFile(os.path.abspath(file))
+            path = os.path.abspath(file)
+            same = self.data is data
+            status = self.reader.ReadFile(path) if same else self.reader.ReadStream(path, io.BytesIO(self.data))
         finally:
             Interface_Static.SetIVal_s(_SUBSHAPES, before)
         if status != IFSelect_RetDone:
@@ -165,7 +178,8 @@ class Loaded:
         return result
 
     def _again(self, **how: bool) -> "Loaded":
-        return Loaded(self.file, self.data, self.unit, foreign=self.foreign, **how)
+        adopt = self._adopted is not None
+        return Loaded(self.file, self._written, self.unit, adopt=adopt, foreign=self.foreign, **how)
 
     def _refuse(self) -> None:
         """Points and directions that are no numbers, used by a shape: the transfer would take for ever, or a guess."""
@@ -217,9 +231,41 @@ class Loaded:
         shapes = [XCAFDoc_ShapeTool.GetShape_s(label) for label in each(roots(document))] if done else []
         if not any(any(explore(shape, TopAbs_FACE)) for shape in shapes):
             raise NothingError(f"{nothing}: export it as a solid or surface model", file=self.file)
-        result = Read(unwrapped(as_one(shapes)))
-        add_attributes(document, result)
+        result = Read(unwrapped(as_one(shapes)), encoding=self.encoding, unit_readings=tuple(self._unit_readings()))
+        add_attributes(document, result, self._dropped_names())
+        if self._adopted:
+            solids = self._adopted.solids
+            result.warnings.append(
+                f"no product leads to {', '.join(solids[:_MOST_NAMED])}{_more(len(solids) - _MOST_NAMED)}: an incomplete STEP, "
+                "whose solids were read all the same, without names and places of an assembly"
+            )
         return result
+
+    def _unit_readings(self) -> Iterator[UnitReading]:
+        """What is doubtful of what the file says about its unit."""
+        if self.unit is not None or self.foreign:
+            return
+        stated = self._adopted.unit if self._adopted else ""
+        if not stated and not all(word in self.data for word in (b"LENGTH_UNIT", b"GLOBAL_UNIT_ASSIGNED_CONTEXT")):
+            stated = "no unit is stated"
+        if stated:
+            factor = _length_unit(self.reader)
+            yield UnitReading("not_sure", stated, next((name for name, mm in UNITS.items() if mm == factor), f"{factor:g} mm"))
+
+    def _dropped_names(self) -> DroppedNames:
+        """Names without a letter of ASCII, of which the kernel shows the identifier."""
+        products: dict[str, set[str]] = defaultdict(set)
+        instances: dict[tuple[str, str], set[str]] = defaultdict(set)
+        if self.data.isascii() and b"\\X" not in self.data:
+            return DroppedNames()
+        for entity in self.model.entities.values():
+            with suppress(AttributeError, UnicodeDecodeError):  # of a damaged file
+                if isinstance(entity, StepBasic_Product):
+                    products[_shown(entity)].add(name_of(entity))
+                elif isinstance(entity, StepRepr_NextAssemblyUsageOccurrence):
+                    product = entity.RelatedProductDefinition().Formation().OfProduct()
+                    instances[_shown(entity), _shown(product)].add(name_of(entity))
+        return DroppedNames(_only(products), _only(instances))
 
     def _doubtful(self, shape: TopoDS_Shape) -> bool:
         """Whether the transfer doubted how faces fit together, or the border of a face, and one is open."""
@@ -282,6 +328,17 @@ class Loaded:
                 f"the file has faults {where} ({sum(map(len, texts.values()))}): "
                 f"{'; '.join(lines[:_MOST_NAMED])}{_more(len(lines) - _MOST_NAMED)}"
             )
+
+
+def _shown(entity: Any) -> str:
+    """The name of a product or of an instance as the kernel shows it."""
+    name = name_of(entity)
+    return name if _ASCII.search(name) else str(entity.Id().ToCString()).strip()
+
+
+def _only(names: dict[Any, set[str]]) -> dict[Any, str]:
+    """Names that are the only one for what is shown: none is better than a wrong one."""
+    return {shown: name for shown, each in names.items() if len(each) == 1 and (name := min(each)) and not _ASCII.search(name)}
 
 
 def _at(idents: list[str]) -> str:

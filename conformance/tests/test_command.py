@@ -89,6 +89,13 @@ def test_a_run_without_all_takes_a_few_of_each_part(small_folder: Path, tmp_path
     assert (document["postures"], document["all"]) == (5, False)
 
 
+def test_a_title_says_that_a_score_is_of_a_part(small: Suite, small_folder: Path, tmp_path: Path):
+    write_answers(tmp_path / "one.csv", np.array([0]), small.postures.verdict[:1])
+    code, out, _ = call("score", tmp_path / "one.csv", "--only-answered", "--data", small_folder)
+    assert code == 0
+    assert "1 of 72 answered" in " ".join(out.split())
+
+
 def test_a_perfect_file_scores_all_and_what_is_missing_counts_as_undecided(small: Suite, small_folder: Path, tmp_path: Path):
     rows = np.arange(len(small.postures))
     write_answers(tmp_path / "all.csv", rows, small.postures.verdict)
@@ -96,8 +103,9 @@ def test_a_perfect_file_scores_all_and_what_is_missing_counts_as_undecided(small
     made = {}
     for name, more in (("all", ()), ("half", ()), ("only", ("--only-answered",))):
         file = tmp_path / f"{'half' if name == 'only' else name}.csv"
-        code, _, err = call("score", file, "--data", small_folder, "--json", tmp_path / f"{name}.json", *more)
+        code, out, err = call("score", file, "--data", small_folder, "--json", tmp_path / f"{name}.json", *more)
         assert code == 0
+        assert ("36 of 72 answered" in " ".join(out.split())) == (name == "only")
         assert ("36 of 72 postures are not answered" in err) == (name == "half")
         made[name] = json.loads((tmp_path / f"{name}.json").read_text())
     assert (made["all"]["score"], made["only"]["score"]) == (1.0, 1.0)

@@ -22,7 +22,7 @@ from plan_cutters.agents.tools import fitting
 from plan_cutters.command import mcp as command
 from plan_cutters.plan_file.load import plan_of
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import percent
+from plan_cutters.plan_file.numbers import percent, size
 from tests.support import plan_files
 
 
@@ -190,7 +190,10 @@ def test_cutters_are_named_by_the_words_that_were_given():
     data["selected"] = "R1L80"
     plan = Plan.model_validate(data)
     found = planned(plan, 0, 9, {})
-    assert found.told.startswith("Take flat end D2 x 80.\nFor part.step: D2L80, judged without a holder, 80 mm up from its tip.")
+    said = (
+        f"Take flat end D2 x 80. For part.step, {size(plan.part.size_mm)}: D2L80, judged without a holder, 80 mm up from its tip."
+    )
+    assert " ".join(found.told.split()).startswith(said)
     assert [c.id for c in found.cutters] == ["R1L80", "R2L80"]
     # A change that could not be decided is no help.
     said = explained(plan, plan.cutters[1], "F1", 9)

@@ -171,7 +171,7 @@ def test_completion_knows_names_and_loads_no_kernel(tmp_path, words, offered):
 def test_the_first_line_says_which_cutter_to_take(capsys, planned):
     said = shown(capsys, planned, verbose=True)
     assert said.startswith("Take flat end D12 x 80.\nAn open shell: ")
-    assert "\nFor peaks_and_valleys.step: R6L80, " in said
+    assert "\nFor peaks_and_valleys.step, 28.67 x 111.5 x 58.51 mm: R6L80, " in said
     assert "without a holder" in in_lines(said)
     assert re.search(r"^> flat end D12 x 80 +yes ", said, re.MULTILINE)
     assert re.search(r"^  flat end D24 x 120 +no ", said, re.MULTILINE)
@@ -188,7 +188,9 @@ def test_what_is_served_between_samples_is_put_in_words(capsys, planned):
 
 def test_where_none_is_feasible_the_worst_faces_are_listed(capsys, failing):
     said = shown(capsys, failing, verbose=True)
-    assert in_lines(said).startswith("pocket_top.step on tilt:20, in 2 setups: 99.6 % of the 9,040 mm² to machine.")
+    assert in_lines(said).startswith(
+        "pocket_top.step, 60 x 40 x 24.51 mm, on tilt:20, in 2 setups: 99.6 % of the 9,040 mm² to machine."
+    )
     assert "--answers mend" in in_lines(said)
     assert "Each alone reaches: " in in_lines(shown(capsys, failing))
     head = next(i for i, line in enumerate(said.splitlines()) if line.startswith("Where "))

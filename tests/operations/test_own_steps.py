@@ -77,6 +77,16 @@ def test_an_orientation_that_the_machine_cannot_hold_is_said_with_one_that_does(
     assert right.plan.process.steps[0].area_mm2 == pytest.approx(1200.0)
 
 
+def test_angles_that_no_control_shows_are_noted_as_they_are_judged(block):
+    finer = {"cutter": FLAT, "angles": {"C": 37.123456789, "A": 120.0000001}, "faces": ["F6"]}
+    plain = {"cutter": BALL, "angles": {"C": 37.123, "A": -0.0}, "faces": ["F6"]}
+    result = judged(block, plain, finer)
+    noted = dict(zip(result.plan.note_codes, result.plan.notes, strict=True))
+    assert noted["angles_rounded"].endswith("judged is step 2 at C 37.123 A 120.")
+    assert result.plan.process.steps[1].angles_deg == {"C": 37.123, "A": 120.0}
+    assert "angles_rounded" not in judged(block, plain).plan.note_codes
+
+
 def test_a_step_that_leaves_some_of_its_faces_says_how_much_and_why(block):
     result = judged(block, {"cutter": FLAT, "angles": UP, "faces": ["F5", "F6"]})
     own = result.plan.process.steps[0].own

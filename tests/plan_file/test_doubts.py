@@ -133,3 +133,25 @@ def test_a_raised_tolerance_says_from_where_to_where(block):
 def test_older_plans_have_no_doubts_that_they_do_not_know(block):
     effective = block.plan.effective.model_copy(update={"tolerance_requested_mm": None})
     assert doubts(block.plan.model_copy(update={"process": None, "effective": effective})) == []
+
+
+@pytest.mark.parametrize(("size", "cutters", "said"), [
+    (4.0, ["D10L60"], "The part, 4 x 4 x 4 mm, is smaller than any cutter is wide: "),
+    (4.0, ["D10L60", "D3L60"], ""),
+    (600.0, ["D0.5L60"], "The part, 600 x 600 x 600 mm, is 1,200 times as long as the widest cutter is wide: "),
+    (600.0, ["D0.5L60", "D6L60"], ""),
+])  # fmt: skip
+def test_a_part_of_another_size_than_its_cutters_doubts_the_unit(size, cutters, said):
+    found = plan(box(size, size, size), cutters=cutters, **FEW | {"faces": "F6"}).plan.process.doubts
+    assert [line[: len(said)] for line in found] == ([said] if said else [])
+    assert all("--unit" in line for line in found)
+
+
+@pytest.mark.parametrize(("units", "size"), [("mm", "20 x 20 x 20 mm"), ("in", "0.7874 x 0.7874 x 0.7874 in")])
+@pytest.mark.parametrize("faces", ["F6", "all"])
+@pytest.mark.parametrize("cutter", ["D6L60", "D6L2"])
+def test_the_size_of_the_part_stands_in_the_line_that_names_it(units, size, faces, cutter):
+    result = plan(box(20, 20, 20), cutters=[cutter], units=units, machine="3-axis", **FEW | {"faces": faces})
+    text = text_of(result.plan)
+    assert f"art, {size}" in " ".join([text.headline, *(line.strip() for line in text.lines)])
+    assert f"art, {size}" in page(result).decode()

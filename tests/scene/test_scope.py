@@ -14,6 +14,7 @@ from cad_io import read_part
 from cad_io.kernel import shape_map
 from plan_cutters import Cutter, plan
 from plan_cutters.command.codes import FEASIBLE, NOT_ALL_JUDGED, code_of
+from plan_cutters.plan_file.numbers import size
 from plan_cutters.plan_file.words.names import short_names
 from plan_cutters.plan_file.words.scope import judged, not_judged, not_seen
 from plan_cutters.plan_file.words.story import story_of
@@ -151,7 +152,7 @@ def test_sculptured_faces_and_blends_are_judged_by_default(mixed):
 
 
 def test_the_first_words_say_what_was_judged(mixed):
-    assert judged(mixed).startswith("the free-form face and 2 fillets of the part (")
+    assert judged(mixed).startswith("the free-form face and 2 fillets of the part, 142 x 142 x 25.91 mm (")
     assert not_judged(mixed) == ["6 plane faces were not judged, only obstacles: --faces all."]
     story = story_of(mixed)
     assert "the free-form face and 2 fillets" in story.headline.title + story.headline.about
@@ -161,8 +162,8 @@ def test_the_first_words_say_what_was_judged(mixed):
 
 @pytest.mark.parametrize(
     ("faces", "said"),
-    [([1, 2, 3], "the 3 faces asked for of the part ("), ("F2", "the face asked for of the part ("), ("all", "the part"),
-     ("blends", "the 2 fillets of the part (")],
+    [([1, 2, 3], "the 3 faces asked for of the part, "), ("F2", "the face asked for of the part, "), ("all", "the part, "),
+     ("blends", "the 2 fillets of the part, ")],
 )  # fmt: skip
 def test_faces_that_were_asked_for_are_called_so(faces, said):
     found = plan(topped(), cutters=CUTTERS, grid=3, area_budget=0, faces=faces).plan
@@ -175,7 +176,7 @@ def test_where_nothing_is_sculptured_all_is_judged():
     found = plan(rounded(box(20, 20, 20), 4.0, [0]), cutters=CUTTERS, grid=3, area_budget=0).plan
     assert found.scope.judged == 7
     assert any("No face that can be judged is sculptured" in note for note in found.notes)
-    assert judged(found) == "the part"
+    assert judged(found) == f"the part, {size(found.part.size_mm)}"
 
 
 def test_what_lies_between_samples_that_are_far_apart_is_said_not_to_be_seen(monkeypatch):
@@ -205,6 +206,6 @@ def test_on_the_command_line(tmp_path):
     done = run(str(ROOT / "samples" / "pocket_top.step"), "--cutter", "R3L40", "--grid", "5", "-o", str(tmp_path),
                         "--formats", "json", "--area-budget", "0", cwd=tmp_path)  # fmt: skip
     said = in_lines(done.stdout)
-    assert "Take flat end D6 x 40. For the free-form face of pocket_top.step (27.9 % of the area)" in said
+    assert "Take flat end D6 x 40. For the free-form face of pocket_top.step, 60 x 40 x 24.51 mm (27.9 % of the area)" in said
     assert "5 plane faces were not judged, only obstacles: --faces all." in said
     assert json.loads((tmp_path / "plan.json").read_text())["scope"]["not_judged"] == 5

@@ -15,6 +15,7 @@ from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.verdicts import AXIS_LIMIT, REASONS, UNDECIDED
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
+from plan_cutters.plan_file.numbers import size
 from plan_cutters.plan_file.words.headline import headline
 from plan_cutters.plan_file.words.names import short_names
 from plan_cutters.stages import reasons as finding
@@ -191,13 +192,14 @@ def test_the_headline_is_that_of_the_union(capsys):
     assert (both.selected, code_of(both.plan)) == ("R3L30", 0)
     summary(both.plan, verbose=True)
     said = " ".join("".join(capsys.readouterr()).split())
-    assert said.startswith("Take flat end D6 x 30. For the part, in 2 setups")
+    assert said.startswith(f"Take flat end D6 x 30. For the part, {size(both.plan.part.size_mm)}, in 2 setups")
     assert "over 2 setups" in said
     below = plan(top, setup=(0, 0, 1), other_setups=[(0, 0, -1)], **how | {"faces": "5"})
     assert not below.here["R3L30"].reached.any()
     summary(below.plan)
     said = " ".join("".join(capsys.readouterr()).split())
-    assert said.startswith("Take flat end D6 x 30. For the face asked for of the part (31.2 % of the area), in setup 0,0,-1:")
+    part = f"the part, {size(below.plan.part.size_mm)}"
+    assert said.startswith(f"Take flat end D6 x 30. For the face asked for of {part} (31.2 % of the area), in setup 0,0,-1:")
     names = short_names(both.plan)
-    assert headline(both.plan, names).about.startswith("For the part, in 2 setups: ")
+    assert headline(both.plan, names).about.startswith(f"For {part}, in 2 setups: ")
     assert headline(below.plan, names).why == "It reaches every sample there, and needs no other setup."

@@ -21,7 +21,7 @@ from plan_cutters.plan_file.carrier import CarrierEntry
 from plan_cutters.plan_file.frozen import filled, posture, vector
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, MissingEntry, SegmentEntry, WitnessEntry
 from plan_cutters.plan_file.numbers import listed
-from plan_cutters.plan_file.part_info import OrientationInfo, PartInfo, Scope, SewingInfo
+from plan_cutters.plan_file.part_info import OrientationInfo, PartInfo, Scope, SewingInfo, UnitEntry
 from plan_cutters.scene.faces import Chosen
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.surroundings import Surroundings
@@ -161,6 +161,7 @@ def part_info(scene: Scene, surroundings: Surroundings) -> PartInfo:
         guessed_faces=[] if orientation.confident else opened,
         sheets_doubt=on_shell,
         unit_doubt=part.unit_doubt,
+        unit_readings=[filled(UnitEntry, each) for each in part.unit_readings],
     )
 
 

@@ -26,6 +26,7 @@ def notes_of(ready: Prepared, entries: Sequence[CutterEntry]) -> list[Note]:
     scene, options, surroundings = ready.scene, ready.options, ready.conditions.surroundings
     return [
         *_of_cutters(options, ready.cutters),
+        *_of_process(options),
         *_of_samples(ready),
         *_of_sides(scene, options, ready.conditions.tolerance),
         *_of_loose_faces(ready),
@@ -52,6 +53,11 @@ def noted_coarser(options: Options, plan: Plan) -> Plan:
     return noted(plan, notes.coarser_than_requested(wanted, plan.samples.count, plan.samples.max_gap_mm))
 
 
+def _of_process(options: Options) -> Iterator[Note]:
+    if options.process is not None and (rounded := options.process.rounded()):
+        yield notes.angles_rounded(rounded)
+
+
 def _of_samples(ready: Prepared) -> Iterator[Note]:
     samples = ready.samples
     yield notes.samples_apart(samples.max_gap)
@@ -62,6 +68,8 @@ def _of_samples(ready: Prepared) -> Iterator[Note]:
 def _of_sides(scene: Scene, options: Options, tolerance: float) -> Iterator[Note]:
     if not options.machine.limited:
         yield notes.no_machine()
+    if scene.part.encoding:
+        yield notes.names_decoded(scene.part.encoding)
     if not scene.orientation.confident:
         yield notes.side_guessed()
         if other := scene.turned_faces():

@@ -60,6 +60,10 @@ class Forbidden:
     faces: tuple[int, ...]
 
 
+#: Digits of an angle in degrees that a control shows: what it shows is judged.
+CONTROL_DIGITS = 3
+
+
 @dataclass(frozen=True, slots=True)
 class OwnProcess:
     """The steps in their order, and what is to be done with what they leave.
@@ -106,6 +110,13 @@ class OwnProcess:
                 raise OptionError(f"{self._where(step)}: angles: {written}; the rotary axes are {' and '.join(names)}")
         for number, each in enumerate(self.forbidden, 1):
             cutter_of(each.cutter, cutters, f"{self._named()}forbid {number}")
+
+    def rounded(self) -> dict[int, dict[str, float]]:
+        """Angles as a control shows them, deg, of the steps whose angles have more digits, by the number of the step."""
+        shown = {
+            step.number: {name: round(angle, CONTROL_DIGITS) + 0.0 for name, angle in step.angles or ()} for step in self.steps
+        }
+        return {step.number: shown[step.number] for step in self.steps if dict(step.angles or ()) != shown[step.number]}
 
     def check_faces(self, targets: Iterable[int]) -> None:
         """See to it that every face is one that is to be machined.

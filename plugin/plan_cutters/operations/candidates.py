@@ -12,10 +12,9 @@ from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.kinematics import Kinematics
+from plan_cutters.domain.own_process import CONTROL_DIGITS as DIGITS
 from plan_cutters.scene.conditions import Conditions
 
-#: Digits of an angle in degrees that a control shows.
-DIGITS = 3
 #: A direction is along a rotary axis where their cosine is less below 1 than this: 0.008 deg.
 _ALONG = 1e-8
 #: Sums of angles that differ by less are the same position, deg.

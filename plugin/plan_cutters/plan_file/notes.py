@@ -3,16 +3,17 @@
 To add a note, add its code, its function here, and the call where it is found.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Literal, NamedTuple
 
-from plan_cutters.plan_file.numbers import angle, count, listed, mm
+from plan_cutters.plan_file.numbers import angle, count, listed, mm, plainly
 
 #: What a note is about. A text may be reworded; a code stays.
 NoteCode = Literal[
     "cutters_built_in", "no_holder", "tilts_not_searched", "all_length_cuts", "samples_apart", "samples_coarser", "samples_wide",
     "coarser_than_requested",
-    "not_sampled", "no_machine", "side_guessed", "side_by_setup", "tolerance_raised", "open_faces", "fixture", "fixture_stays",
+    "not_sampled", "no_machine", "side_guessed", "side_by_setup", "names_decoded",
+    "angles_rounded", "tolerance_raised", "open_faces", "fixture", "fixture_stays",
     "fixture_not_cad", "faces_none_sculptured", "faces_ignored", "faces_clamped", "travel_not_judged", "travel_of_holder",
     "travel_first_setup", "faces_clamped_there", "setup_without_fixtures", "setup_proposed",
     "stick_out_each_setup", "maps_first_setup",
@@ -74,6 +75,15 @@ def tilts_not_searched(cutters: Sequence[str], most_deg: float) -> Note:
 
 def all_length_cuts() -> Note:
     return Note("all_length_cuts", "All of a cutter's length cuts, unless it says where its flutes end.")
+
+
+# Of the planner's own steps.
+
+
+def angles_rounded(steps: Mapping[int, Mapping[str, float]]) -> Note:
+    """`steps`: angles as they are judged, deg, by the number of the step in the file."""
+    each = [f"step {k} at {' '.join(f'{name} {plainly(a, 9)}' for name, a in angles.items())}" for k, angles in steps.items()]
+    return Note("angles_rounded", f"Angles in the process file have more digits than a control shows: judged is {listed(each)}.")
 
 
 # Of samples.
@@ -143,6 +153,13 @@ def stick_out_each_setup() -> Note:
 
 def no_machine() -> Note:
     return Note("no_machine", "No machine was given: any tool axis counts as possible.")
+
+
+def names_decoded(encoding: str) -> Note:
+    return Note(
+        "names_decoded",
+        f"Names in the file are neither ASCII nor UTF-8, and the file does not say what they are: read as {encoding}.",
+    )
 
 
 def side_guessed() -> Note:

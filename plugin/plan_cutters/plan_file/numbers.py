@@ -108,6 +108,16 @@ def mm(length: float | None, digits: int = 3) -> str:
     return f"{figure(reported(length)) if digits == 3 else plainly(reported(length), digits)} {unit()}"
 
 
+def size(lengths: Iterable[float], times: float = 1.0) -> str:
+    """Extents that are given in mm, or so many times them: four digits of each, and all before the point.
+
+    >>> size((40.0, 40.0, 20.0)), size((40.0, 40.0, 20.0), 25.4), size((12345.6, 0.05, 0.0))
+    ('40 x 40 x 20 mm', '1,016 x 1,016 x 508 mm', '12,346 x 0.05 x 0 mm')
+    """
+    each = [float(plainly(reported(times * length), 4)) for length in lengths]
+    return f"{' x '.join(f'{one:,.0f}' if abs(one) >= 1000.0 else plainly(one, 4) for one in each)} {unit()}"
+
+
 def reported(length: float) -> float:
     """A length, mm, in the unit of the words."""
     return length / INCH if in_inches() else length

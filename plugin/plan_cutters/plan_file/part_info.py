@@ -1,5 +1,7 @@
 """The part as the plan names it: its file, its faces in and out of scope, what is odd about it, and what stands beside it."""
 
+from typing import Literal
+
 from pydantic import Field
 
 from plan_cutters.plan_file.frozen import Frozen, Vector
@@ -53,6 +55,19 @@ class SewingInfo(Frozen):
     open_length_mm: float
 
 
+class UnitEntry(Frozen):
+    """A statement of the file about its length unit or scale that is in doubt."""
+
+    cause: Literal["disagree", "scale", "not_sure"] = Field(
+        description="disagree: two units, the flag's is taken; scale: lengths are divided by the model space scale; not_sure: "
+        "nothing that is known, or a part of it is not"
+    )
+    stated: str = Field(description="what it says")
+    taken: str = Field(description="unit")
+    unit: str = Field(description="that chooses the other reading, as --unit takes it; empty: none does")
+    times: float = Field(description="a length by the other reading, as a multiple of what was taken")
+
+
 class PartInfo(Frozen):
     file: str | None
     sha256: str | None
@@ -73,6 +88,7 @@ class PartInfo(Frozen):
         default="", description="the warning on those of them that lie on faces of solids; empty: none does"
     )
     unit_doubt: str = Field(default="", description="the warning that makes the length unit doubtful; empty where there is none")
+    unit_readings: list[UnitEntry] = Field(default=[], description="what is doubtful of what the file says about its unit")
 
 
 class Scope(Frozen):

@@ -12,19 +12,33 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
-_NO_TEXT = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\ud800-\udfff\ufffe\uffff]")
+from plan_cutters.files.terminal_text import clean
+
+_BETWEEN = re.compile("[^\t\n]+")
+_NO_TEXT = re.compile("[\ufffe\uffff]")
 
 
 def plain(value: Any) -> Any:
-    """A text in which a sign stands for each character that has no place in a page: controls, halves of surrogate pairs."""
+    r"""A text with what has no place in a page written out, as a terminal shows it: controls, halves of surrogate pairs.
+
+    >>> plain("rim\x07"), plain("a\nb"), plain("\uffff"), plain(1)
+    ('rim\\x07', 'a\nb', '\\uffff', 1)
+    """
     if not isinstance(value, str) or isinstance(value, Markup):
         return value
-    return _NO_TEXT.sub("\ufffd", value)
+    return _NO_TEXT.sub(_written_out, _BETWEEN.sub(lambda match: clean(match[0]), value))
+
+
+def _written_out(match: re.Match[str]) -> str:
+    return match[0].encode("unicode_escape").decode()
 
 
 def embedded(value: Any) -> str:
-    """JSON that may stand in a page: nothing in it ends the element or begins another one; null where a number is not finite."""
-    text = json.dumps(finite(value), ensure_ascii=True, separators=(",", ":"), allow_nan=False)
+    """JSON that may stand in a page: nothing in it ends the element or begins another one.
+
+    Texts are as by `plain`, and null stands where a number is not finite.
+    """
+    text = json.dumps(_texts(finite(value)), ensure_ascii=True, separators=(",", ":"), allow_nan=False)
     return re.sub("[<>&]", lambda match: f"\\u{ord(match[0]):04x}", text)
 
 
@@ -35,6 +49,13 @@ def finite(value: Any) -> Any:
     if isinstance(value, list | tuple):
         return [finite(each) for each in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
+
+
+def _texts(value: Any) -> Any:
+    """The value with its texts as by `plain`, those by which it is found, too."""
+    if isinstance(value, dict):
+        return {plain(key): _texts(each) for key, each in value.items()}
+    return [_texts(each) for each in value] if isinstance(value, list) else plain(value)
 
 
 def policy(script: str, style: str, images: str) -> str:

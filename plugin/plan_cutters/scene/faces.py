@@ -313,10 +313,11 @@ def _words(part: "Part", value: Any, option: str) -> list[str]:
 def _word(part: "Part", value: Any, option: str) -> str:
     """A choice as text: objects as the numbers of their faces."""
     from cad_io.errors import CadIoError
+    from cad_io.read.encodings import typed
     from cad_io.read.objects import face_numbers
 
     if isinstance(value, str):
-        return value
+        return typed(value, part.encoding) if part.encoding else value
     many = value if isinstance(value, Sequence) and not isinstance(value, bytes) else (value,)
     if many and all(isinstance(each, Integral) and not isinstance(each, bool) for each in many):
         return ",".join(f"F{n}" for n in sorted({int(n) for n in many}))

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import leaves
-from plan_cutters.plan_file.numbers import angle, capital, count, direction, figure, mm, percent, reported, unit
+from plan_cutters.plan_file.numbers import angle, capital, count, direction, mm, percent, size
 from plan_cutters.plan_file.shares import unreached
 from plan_cutters.plan_file.words.cutters import remaining_text
 from plan_cutters.plan_file.words.headline import area
@@ -29,7 +29,7 @@ def rendered(plan: Plan) -> str:
     """Say whose verdicts a drawing of the part shows, and under which conditions they were found."""
     taken = "is selected" if plan.selected else "is shown because it leaves the least area; none is selected"
     return (
-        f"This cutter {taken}. Part {_size(plan)}. Machine {plan.effective.machine}, setup axis "
+        f"This cutter {taken}. Part {size(plan.part.size_mm)}. Machine {plan.effective.machine}, setup axis "
         f"({direction(plan.effective.setup)}), gouge tolerance {mm(plan.effective.tolerance_mm)}, "
         f"{count(plan.samples.count, 'sample')}."
     )
@@ -69,7 +69,7 @@ def others(plan: Plan, *, every: bool = False) -> list[str]:
 def details(plan: Plan) -> Iterator[str]:
     """Give what is shown only to users who ask for all of it."""
     e = plan.effective
-    yield (f"Part: {_size(plan)}, {count(plan.part.solids, 'solid')}, SHA-256 {plan.part.sha256}.")
+    yield (f"Part: {size(plan.part.size_mm)}, {count(plan.part.solids, 'solid')}, SHA-256 {plan.part.sha256}.")
     yield named(plan, f"Choice: {plan.selection.why}; by {plan.selection.rule}.")
     yield (
         f"Samples: {plan.samples.convex} convex, {plan.samples.concave} concave, {plan.samples.saddle} saddle, "
@@ -86,10 +86,6 @@ def details(plan: Plan) -> Iterator[str]:
     yield f"Versions: {', '.join(f'{name} {number}' for name, number in plan.versions.items())}."
     slow = sorted(plan.run.seconds.items(), key=lambda item: -item[1])[:_STAGES]
     yield f"Seconds: {', '.join(f'{name} {seconds:.1f}' for name, seconds in slow)}."
-
-
-def _size(plan: Plan) -> str:
-    return f"{' x '.join(figure(reported(each)) for each in plan.part.size_mm)} {unit()}"
 
 
 def _turn(degrees: float) -> str:

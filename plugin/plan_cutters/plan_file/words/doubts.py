@@ -3,12 +3,16 @@
 from collections.abc import Iterator, Sequence
 
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import ROUNDING, consecutive, count, listed, mm, ranges
+from plan_cutters.plan_file.numbers import ROUNDING, consecutive, count, listed, mm, ranges, size
+from plan_cutters.plan_file.part_info import UnitEntry
 from plan_cutters.plan_file.words.names import named
 from plan_cutters.plan_file.words.scope import shown_cutter
 
 #: A tolerance that is this many times what was requested was raised; so many faces are named.
 _RAISED, _FACES = 1.001, 3
+#: A part this many times as long as its widest cutter has a wrong unit, rather than so small a cutter.
+_LONG = 1000.0
+_WRONG = "is its unit wrong? --unit gives the right one."
 
 
 def doubts(plan: Plan) -> list[str]:
@@ -42,8 +46,28 @@ def _coarser(plan: Plan) -> Iterator[str]:
 
 
 def _unit(plan: Plan) -> Iterator[str]:
-    if plan.part.unit_doubt:
-        yield f"The part is {mm(max(plan.part.size_mm))} long: if that is wrong, --unit gives the right unit."
+    longest = max(plan.part.size_mm)
+    widths = [2.0 * cutter.radius for cutter in plan.cutters]
+    if plan.part.unit_readings:
+        yield from (_reading(plan, each) for each in plan.part.unit_readings)
+    elif plan.part.unit_doubt:
+        yield f"The part is {mm(longest)} long: if that is wrong, --unit gives the right unit."
+    elif longest < min(widths):
+        yield f"The part, {size(plan.part.size_mm)}, is smaller than any cutter is wide: {_WRONG}"
+    elif longest > _LONG * max(widths):
+        wide = f"{longest / max(widths):,.0f} times as long as the widest cutter is wide"
+        yield f"The part, {size(plan.part.size_mm)}, is {wide}: {_WRONG}"
+
+
+def _reading(plan: Plan, each: UnitEntry) -> str:
+    """A doubt about what the file says of its unit: sizes by both readings, and how to choose."""
+    this, other = size(plan.part.size_mm), size(plan.part.size_mm, each.times)
+    choose = f": --unit {each.unit} takes the latter" if each.unit else ""
+    if each.cause == "disagree":
+        return f"The file states two units ({each.stated}): {this} by its flag, judged so, {other} by its name{choose}."
+    if each.cause == "scale":
+        return f"The file states a model space scale of {each.stated}: {this} by it, judged so, {other} without it{choose}."
+    return f"The file's unit is not sure ({each.stated}): judged in {each.taken}, {this}; --unit gives another one."
 
 
 def _travel(plan: Plan) -> Iterator[str]:

@@ -12,7 +12,7 @@ from plan_cutters.plan_file.numbers import capital, count, duration, listed, per
 from plan_cutters.plan_file.shares import reached_share
 from plan_cutters.plan_file.words.choice import comes_last, first_of
 from plan_cutters.plan_file.words.names import described
-from plan_cutters.plan_file.words.scope import judged
+from plan_cutters.plan_file.words.scope import judged, sized
 
 #: From this share on a process finishes the part but for some of it; below, it does not.
 _MOST = 0.5
@@ -74,13 +74,13 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
 def _stands(plan: Plan) -> str:
     """The part, on which machine, and on what it stands where that was proposed."""
     proposed = plan.setup_proposal.setups if plan.setup_proposal else []
-    machine = "" if plan.machine.name == "unlimited" else f" on {plan.machine.name}"
+    machine = "" if plan.machine.name == "unlimited" else f", on {plan.machine.name}"
+    part, setups = f"{sized(plan, plan.part.file or 'part')}{machine}", 1 + len(plan.effective.other_setups)
     if len(proposed) == 1 and proposed[0].clamping != "table":
-        return f"{plan.part.file or 'part'}{machine}, in a {proposed[0].clamping} on {listed(proposed[0].grips, 2)}"
+        return f"{part}, in a {proposed[0].clamping} on {listed(proposed[0].grips, 2)}"
     if len(proposed) == 1 and proposed[0].stands_on:
-        return f"{plan.part.file or 'part'}{machine}, stood on {listed(proposed[0].stands_on, 2)}"
-    setups = 1 + len(plan.effective.other_setups)
-    return f"{plan.part.file or 'part'}{machine}{f', in {setups} setups' if setups > 1 else ''}"
+        return f"{part}, stood on {listed(proposed[0].stands_on, 2)}"
+    return f"{part}{f', in {setups} setups' if setups > 1 else ''}"
 
 
 def _much(plan: Plan, share: float, *, finished: bool) -> str:

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import nearest
-from plan_cutters.plan_file.numbers import mm, percent
+from plan_cutters.plan_file.numbers import mm, percent, size
 from plan_cutters.plan_file.part_info import Scope
 
 #: Choices that name kinds of faces, not faces.
@@ -12,11 +12,16 @@ _BY_KIND = frozenset({"sculptured", "blends", "all"})
 
 
 def judged(plan: Plan) -> str:
-    """The part, or what of it was judged: `the 6 free-form faces and 12 fillets of part.step (23 % of the area)`."""
-    part, scope = plan.part.file or "the part", plan.scope
+    """The part with its size, or what of it was judged: `the 6 fillets of part.step, 40 x 40 x 20 mm (23 % of the area)`."""
+    part, scope = sized(plan, plan.part.file or "the part"), plan.scope
     if scope is None or not scope.not_judged:
         return part
     return f"{_requested(plan, scope)} of {part} ({_share(scope)} of the area)"
+
+
+def sized(plan: Plan, part: str) -> str:
+    """The name of the part, and its size, which shows a wrong unit at a glance."""
+    return f"{part}, {size(plan.part.size_mm)}"
 
 
 def headline_cutter(plan: Plan) -> CutterEntry:
