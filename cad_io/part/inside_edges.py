@@ -4,6 +4,7 @@ Edges, normals and curvatures are the kernel's. The border of a sheet, a seam, a
 and an outside edge are none.
 """
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,7 +63,7 @@ class InsideEdge(Record):
         return float(steps[self.sharp[:-1] & self.sharp[1:]].sum())
 
 
-def inside_edges(part: Part, orientation: Orientation) -> tuple[InsideEdge, ...]:
+def inside_edges(part: Part, orientation: Orientation, without: Collection[int] = ()) -> tuple[InsideEdge, ...]:
     """Find the sharp inside edges of a part, in the order of the kernel's edges.
 
     An edge that the kernel cannot evaluate on both of its faces is left out, as are faces that cannot be judged.
@@ -72,12 +73,15 @@ def inside_edges(part: Part, orientation: Orientation) -> tuple[InsideEdge, ...]
     part : Part
     orientation : Orientation
         The side of each face.
+    without : collection of int, optional
+        Face numbers that are left out, as if they were not there.
     """
     joined = part.sewn.faces
     edges: list[InsideEdge] = []
     shapes = [joined.get(info.number) or part.face(info.number) for info in part.faces]
     usable = [info.unjudged is None for info in part.faces]
-    for edge, users in edge_uses(shapes):
+    for edge, every in edge_uses(shapes):
+        users = [use for use in every if use[0] + 1 not in without]
         if len(users) != 2 or users[0][0] == users[1][0] or not all(usable[place] for place, _ in users):
             continue
         sides = [_side(part, edge, shapes[place], place, way, float(orientation.sign[place])) for place, way in users]

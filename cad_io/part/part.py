@@ -24,6 +24,7 @@ from cad_io.face.trim import Trim, trim_of
 from cad_io.files import fingerprint
 from cad_io.kernel import edges_of, explore, faces, is_kernel_error, shape_map, translated
 from cad_io.kernel.assembly import Node
+from cad_io.kernel.natural import ENDLESS, endless
 from cad_io.part.blends import Bare, blends
 from cad_io.part.boxes import box_of, face_box
 from cad_io.part.packing import PartContent, packed, unpacked
@@ -38,6 +39,8 @@ FARTHEST = 1e9
 LOOSEST = 0.1
 #: A face smaller than this share of the squared diagonal has no area.
 _LEAST_AREA = 1e-12
+#: A border that encloses more than its box does by more than this share runs round it more than once.
+_ROUNDED = 1e-3
 #: Why such a face is not judged.
 NO_AREA = "has no area"
 
@@ -133,12 +136,16 @@ class Part:
         self._measures: dict[int, Measure | None] = {}
         #: Face number -> triangles of the kernel's mesher, or why there are none; kept by `tessellate`, for it takes seconds.
         self.meshed: dict[int, tuple[Any, str]] = {}
+        #: Bodies and faces that lie where others lie; kept by `repeats.repeats`.
+        self.repeats: tuple[Any, ...] | None = None
         self.solids = shape_map(shape, TopAbs_SOLID).Extent()
         with translated("measuring the part", error=ReadError, file=file):
             boxes = np.array([face_box(face, tight=False) for face in self._faces])
             finite = np.isfinite(boxes).all(axis=(1, 2))
             self._centres = boxes.mean(axis=1)
             if not finite.any():
+                if endless(self._faces[0]):
+                    raise ReadError(f"F1 {ENDLESS}", file=file)
                 raise ReadError("no face has a finite size: nothing can be judged", file=file)
             farthest = float(np.abs(boxes[finite]).max())
             if farthest > FARTHEST:
@@ -152,7 +159,7 @@ class Part:
         self.lost = (
             *lost,
             *(
-                LostFace("", self._names.get(n, ""), "it has no finite size", n)
+                LostFace("", self._names.get(n, ""), f"it {ENDLESS if endless(self._faces[n - 1]) else 'has no finite size'}", n)
                 for n in (np.flatnonzero(~finite) + 1).tolist()
                 if n not in reported
             ),
@@ -368,14 +375,20 @@ class Part:
                 return "holds only triangles, no surface: export exact geometry (B-rep)", 0.0
             return "has no surface that can be evaluated", 0.0
         if not edges_of(self.face(number)):
-            return "has no edges", 0.0
+            return ENDLESS if endless(self.face(number)) else "has no edges", 0.0
         measured = self.measure(number)
         if measured is None:
             return "its edges have no finite curve on the surface", 0.0
         if not np.isfinite(measured.area):
             return "its surface cannot be evaluated everywhere", 0.0
-        if measured.area <= _LEAST_AREA * float(np.dot(self.size, self.size)):
-            return NO_AREA, measured.area
+        trim = self.trim(number)
+        if trim is not None and trim.closed and trim.uv_area > (1 + _ROUNDED) * trim.box_area:
+            return "its border runs round it more than once", 0.0
+        least = _LEAST_AREA * float(np.dot(self.size, self.size))
+        if measured.area < -least:
+            return "its border runs the wrong way round: its area would be negative", 0.0
+        if measured.area <= least:
+            return NO_AREA, max(measured.area, 0.0)
         return None, measured.area
 
 

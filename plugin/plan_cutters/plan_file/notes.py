@@ -17,6 +17,7 @@ NoteCode = Literal[
     "travel_first_setup", "faces_clamped_there", "setup_without_fixtures", "setup_proposed",
     "stick_out_each_setup", "maps_first_setup",
     "faces_loose", "area_not_looked_at", "area_proved", "area_left", "area_unknown", "maps_partial", "run_unfinished",
+    "repeated_body",
 ]  # fmt: skip
 
 
@@ -201,6 +202,24 @@ def faces_ignored(faces: Sequence[str]) -> Note:
         "faces_ignored",
         f"{_number(faces)} {_are(faces)} ignored, neither targets nor obstacles (nothing is checked against them): "
         f"{listed(faces)}.",
+    )
+
+
+def repeated_body(number: int, faces: str, stays: int, stays_faces: str) -> Note:
+    """A body of the part that lies where another one lies; number 0: a shell."""
+    name, other = (f"body {n}" if n else "a shell" for n in (number, stays))
+    return Note(
+        "repeated_body",
+        f"{name.capitalize()} ({faces}) is {other} ({stays_faces}) again, in the same place, and is left out; to leave out "
+        f"the other one: --ignore {stays_faces}.",
+    )
+
+
+def repeated_faces(faces: str, stay: str, count_: int) -> Note:
+    return Note(
+        "repeated_body",
+        f"{faces} {'is' if count_ == 1 else 'are'} {stay} again, in the same place, and left out; to leave out the "
+        f"{'other one' if count_ == 1 else 'others'}: --ignore {stay}.",
     )
 
 

@@ -24,7 +24,7 @@ def doubts(plan: Plan) -> list[str]:
     list of str
         Whole sentences.
     """
-    each = (_unfinished, _coarser, _unit, _travel, _held, _unheld, _side, _sheets, _tolerance)
+    each = (_unfinished, _coarser, _repeated, _unit, _travel, _held, _unheld, _side, _sheets, _tolerance)
     return [named(plan, line) for doubt in each for line in doubt(plan)]
 
 
@@ -39,6 +39,10 @@ def _unfinished(plan: Plan) -> Iterator[str]:
 
 def _coarser(plan: Plan) -> Iterator[str]:
     yield from (text for code, text in zip(plan.note_codes, plan.notes, strict=False) if code == "coarser_than_requested")
+
+
+def _repeated(plan: Plan) -> Iterator[str]:
+    yield from (text for code, text in zip(plan.note_codes, plan.notes, strict=False) if code == "repeated_body")
 
 
 def _unit(plan: Plan) -> Iterator[str]:
