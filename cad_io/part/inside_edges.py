@@ -101,6 +101,29 @@ def inside_edges(part: Part, orientation: Orientation, without: Collection[int] 
     return tuple(edges)
 
 
+def folded_faces(part: Part, numbers: Collection[int]) -> dict[int, int]:
+    """Which of some faces fold back onto a neighbour, each with that: both go the same way from all of an edge between them.
+
+    A smooth surface goes on beyond an edge. One that turns back there bounds a body of no thickness: it is the other part of its
+    whole surface than was meant.
+    """
+    joined = part.sewn.faces
+    shapes = [joined.get(info.number) or part.face(info.number) for info in part.faces]
+    result: dict[int, int] = {}
+    for edge, users in edge_uses(shapes) if numbers else ():
+        places = [place for place, _ in users]
+        mine = next((n for n in numbers if n - 1 in places), None)
+        if mine is None or len(set(places)) != 2 or len(users) != 2:
+            continue
+        sides = [_side(part, edge, shapes[place], place, way, 1.0) for place, way in users]
+        if all(side is not None for side in sides):
+            (_, _, one, _), (_, _, other, _) = sides  # type: ignore[misc]
+            same = (one * other).sum(axis=1)
+            if np.isfinite(same).any() and np.nanmin(same) > np.cos(SMOOTH):
+                result.setdefault(mine, next(place + 1 for place in places if place != mine - 1))
+    return result
+
+
 def _side(
     part: Part, edge: TopoDS_Edge, shape: object, place: int, way: int, sign: float
 ) -> tuple[Floats, Floats, Floats, Floats] | None:

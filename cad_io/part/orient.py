@@ -92,7 +92,7 @@ def _orient_solid(part: Part, members: Sequence[tuple[int, TopoDS_Face]], sign: 
     notes.append("faces of solids as the solid says")
     if not closed:
         notes.append("a solid is not closed, so its side is a guess")
-    elif part.aside.keys() & set((index + 1).tolist()):
+    elif part.unmeasured & set((index + 1).tolist()):
         notes.append("a face of a solid was not measured, so its side is a guess")
     return closed and enclosed != 0
 
@@ -193,8 +193,8 @@ def joined_faces(shapes: Sequence[TopoDS_Face]) -> list[Joined]:
 
 def volume(part: Part, index: Sequence[int] | NDArray[np.int_], sign: Floats, cap: Floats | None = None) -> float:
     """Signed volume of a closed set of faces, mm3, openings closed by a cap (t, 3, 3); 0 if there is none to speak of, or a
-    face is set aside: without it, even the sign would be a guess."""
-    if part.aside.keys() & {int(i) + 1 for i in index}:
+    face is not measured: without it, even the sign would be a guess."""
+    if part.unmeasured & {int(i) + 1 for i in index}:
         return 0.0
     measures = [part.measure(int(i) + 1) for i in index]
     flux = sum(s * m.flux for s, m in zip(sign, measures, strict=True) if m and np.isfinite(m.flux))

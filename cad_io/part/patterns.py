@@ -20,7 +20,8 @@ from scipy.spatial import cKDTree
 from cad_io.arrays import Floats, Record
 from cad_io.part.equal_faces import FaceShape, axis_of, equal, face_shape
 from cad_io.part.motion import Motion
-from cad_io.part.part import NO_AREA, Part
+from cad_io.part.part import Part
+from cad_io.part.unjudged import NO_AREA
 
 Kind = Literal["rotation", "mirror", "shift"]
 Which = NDArray[np.int64]

@@ -58,7 +58,11 @@ def left_out(part: Part, ignored: Collection[int] = ()) -> dict[int, int]:
         whole = [faces for faces in each.faces if not set(faces) & set(ignored)]
         if whole:
             result |= {
-                n: stays for faces in each.faces if faces != whole[0] for n, stays in zip(faces, whole[0], strict=True) if n != stays
+                n: stays
+                for faces in each.faces
+                if faces != whole[0]
+                for n, stays in zip(faces, whole[0], strict=True)
+                if n != stays
             }
     # Where a face that stands for another is left out itself, what stands for that.
     for number, stays in result.items():

@@ -62,7 +62,12 @@ def uniform(surface: Surface, trim: Trim, count: int) -> Lines:
 
 
 def spaced(
-    surface: Surface, trim: Trim, spacing: float, more: tuple[float, float] = (1.0, 1.0), finer: int = 1, most: float = _MOST_NODES
+    surface: Surface,
+    trim: Trim,
+    spacing: float,
+    more: tuple[float, float] = (1.0, 1.0),
+    finer: int = 1,
+    most: float = _MOST_NODES,
 ) -> Lines:
     """Lines over the trim's box so that neighbours are at most `spacing` mm apart, `more` and `finer` times as many if asked.
 

@@ -126,20 +126,19 @@ def _repeated(part: "Part", left_out: Mapping[int, int]) -> Iterator[Note]:
 
     out = set(left_out)
     for each in repeats(part):
-        these = [(body, faces) for body, faces in zip(each.bodies, each.faces, strict=False) if out.issuperset(faces)]
-        stays = next(((body, faces) for body, faces in zip(each.bodies, each.faces, strict=False) if (body, faces) not in these), None)
-        if not these or stays is None:
+        bodies = [*zip(each.bodies, each.faces, strict=False)]
+        these = [(body, faces) for body, faces in bodies if out.issuperset(faces)]
+        if not these or len(these) == len(bodies):
             continue
+        stays, own = next(one for one in bodies if one not in these)
         for body, faces in these:
-            yield notes.repeated_body(body, ranges(faces), stays[0], ranges(stays[1]))
+            yield notes.repeated_body(body, ranges(faces), stays, ranges(own))
         out -= {n for _, faces in these for n in faces}
     if out:
         yield notes.repeated_faces(ranges(out), ranges({left_out[n] for n in out}), len(out))
 
 
-def clamped_faces(
-    part: "Part", placed: Placement | None, left_out: Mapping[int, int] = MappingProxyType({})
-) -> frozenset[int]:
+def clamped_faces(part: "Part", placed: Placement | None, left_out: Mapping[int, int] = MappingProxyType({})) -> frozenset[int]:
     """Numbers of the faces that are held in a setup; of what is `left_out`, those that stand for it.
 
     Raises
