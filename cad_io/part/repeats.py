@@ -41,13 +41,13 @@ class Repeat:
 
 
 def repeats(part: Part) -> tuple[Repeat, ...]:
-    """Find what a part has more than once in one place; found once."""
+    """Find what a part has more than once in one place; it is looked for once."""
     if part.repeats is None:
-        part.repeats = tuple(_found(part))
+        part.repeats = tuple(_each(part))
     return part.repeats
 
 
-def left_out(part: Part, ignored: Collection[int] = ()) -> dict[int, int]:
+def repeated_faces(part: Part, ignored: Collection[int] = ()) -> dict[int, int]:
     """Which faces repeat others and are left out, each with the face that stands for it.
 
     Of what lies in one place that stays of which no face is ignored, the first one; where some of each is ignored, all stay as
@@ -77,7 +77,7 @@ def doubled(part: Part) -> Mapping[int, int]:
     return {faces[0]: nth for each in repeats(part) if not each.bodies for nth, faces in enumerate(each.faces) if nth}
 
 
-def _found(part: Part) -> Iterator[Repeat]:
+def _each(part: Part) -> Iterator[Repeat]:
     compared = _Compared(part)
     if not compared.near:
         return

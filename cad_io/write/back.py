@@ -22,7 +22,7 @@ _SAME = 0.01
 
 
 def changed_by_step(part: Part) -> Mapping[int, float]:
-    """Faces whose area is another one once they were written as STEP and read again, with that area, mm2; found once.
+    """Faces whose area is another one once they were written as STEP and read again, with that area, mm2; it is looked for once.
 
     Only surfaces of revolution and tori are looked at: planes, quadrics and splines come back as they are. A face that does not
     come back at all has the area 0.
@@ -39,10 +39,10 @@ def _changed(part: Part) -> dict[int, float]:
     if not numbers:
         return {}
     try:
-        found = json.loads(limited(lambda: json.dumps(_areas(part, numbers)).encode(), _SECONDS + _A_FACE * len(numbers)))
+        areas = json.loads(limited(lambda: json.dumps(_areas(part, numbers)).encode(), _SECONDS + _A_FACE * len(numbers)))
     except (TimeLimit, ChildDied):
         return {}
-    return {n: there for n, (here, there) in zip(numbers, found, strict=True) if abs(there - here) > _SAME * here}
+    return {n: there for n, (here, there) in zip(numbers, areas, strict=True) if abs(there - here) > _SAME * here}
 
 
 def _doubtful(part: Part, number: int) -> bool:

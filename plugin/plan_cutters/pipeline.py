@@ -304,7 +304,7 @@ def prepare(
             scene.read_fixtures(read_timeout)
     with clock.stage("sample"):
         first, *others = places(options)
-        chosen = choose(whole, options.faces, scene.ignored, scene.ignore, first, others, scene.left_out)
+        chosen = choose(whole, options.faces, scene.ignored, scene.ignore, first, others, scene.repeated)
         if any(each.to_place for each in fixtures_of(options)):
             scene = scene.for_targets(chosen.targets)
         cutters = tuple(wanted(options.judged, free_form=chosen.free_form))

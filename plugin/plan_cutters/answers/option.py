@@ -83,7 +83,7 @@ def _pinned(ready: Prepared, faces: Sequence[int]) -> list[str]:
         words = ["--setup", ",".join(f"{each:.12g}" for each in ready.scene.setup), *fixtures]
     scene = ready.scene
     selected = select_faces(
-        part.faces, ready.chosen.asked, tree=part.tree, ignored=scene.ignored, blends=part.blends, left_out=scene.left_out
+        part.faces, ready.chosen.asked, tree=part.tree, ignored=scene.ignored, blends=part.blends, repeated=scene.repeated
     )
     return words if tuple(selected) == tuple(faces) else [*words, "--faces", ranges(faces)]
 

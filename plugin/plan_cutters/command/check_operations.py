@@ -74,7 +74,7 @@ def question_of(
         The plan is of another part or of other options, or has no operations.
     """
     from cad_io.part.orient import orient
-    from cad_io.part.repeats import left_out
+    from cad_io.part.repeats import repeated_faces
     from plan_cutters.checker.question import Question
     from plan_cutters.errors import OptionError
     from plan_cutters.scene.faces import ignored_faces, ignored_words
@@ -87,7 +87,7 @@ def question_of(
     sign = orient(part, options.setup, options.flip).sign
     return Question(
         part, _axes(options.machine), {name: _sizes(cutter) for name, cutter in cutters.items()}, setups,
-        ignored | left_out(part, ignored).keys(), sign, tolerance, document, arrays["operations.npz"],
+        ignored | repeated_faces(part, ignored).keys(), sign, tolerance, document, arrays["operations.npz"],
         arrays["samples.npz"],
     )  # fmt: skip
 

@@ -207,7 +207,7 @@ def folds_back(face: str, area_mm2: float, neighbour: str, option: str) -> Note:
 
 def changed_by_step(face: str, here_mm2: float, there_mm2: float) -> Note:
     """A face of a shape comes back from STEP with another area."""
-    back = f"comes back with {area(there_mm2)} for {area(here_mm2)}" if there_mm2 > 0.0 else f"({area(here_mm2)}) is lost"
+    back = f"comes back with {area(there_mm2)} for {area(here_mm2)}" if there_mm2 > 0.0 else f"({area(here_mm2)}) is missing"
     return Note(
         "changed_by_step",
         f"Written as STEP and read again, {face} {back}: its surface of revolution crosses its axis. This plan is of the shape "

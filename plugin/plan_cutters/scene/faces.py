@@ -56,7 +56,7 @@ class Chosen:
         Faces of the part that are fillets and rounds, whether chosen or not.
     free_form : float
         Share of the targets' area that is bent in both directions (`preference.free_form_share`).
-    left_out : mapping of int to int
+    repeated : mapping of int to int
         Ignored faces that lie where others lie: which face stands for each.
     """
 
@@ -67,7 +67,7 @@ class Chosen:
     notes: tuple[Note, ...]
     blends: frozenset[int] = frozenset()
     free_form: float = 0.0
-    left_out: Mapping[int, int] = field(default_factory=dict)
+    repeated: Mapping[int, int] = field(default_factory=dict)
 
 
 def choose(
@@ -77,7 +77,7 @@ def choose(
     ignore: tuple[str, ...],
     placed: Placement | None = None,
     others: Sequence[Placement | None] = (),
-    left_out: Mapping[int, int] = MappingProxyType({}),
+    repeated: Mapping[int, int] = MappingProxyType({}),
 ) -> Chosen:
     """Target and ignored faces of a part.
 
@@ -94,7 +94,7 @@ def choose(
         Its clamped faces stay targets: they are left for another setup, and named.
     others : sequence of (Placement or None)
         Of other setups: only what is clamped in all of them, too, is left.
-    left_out : mapping of int to int
+    repeated : mapping of int to int
         Faces, ignored too, that lie where others lie: which face stands for each.
 
     Raises
@@ -103,28 +103,28 @@ def choose(
         A choice has no meaning, a face is requested by its number and ignored, or every target is clamped in all setups.
     """
     requested = _word(part, part.picked or DEFAULT if faces is None else faces, "--faces")
-    targets = select_faces(part.faces, requested, tree=part.tree, ignored=ignored, blends=part.blends, left_out=left_out)
+    targets = select_faces(part.faces, requested, tree=part.tree, ignored=ignored, blends=part.blends, repeated=repeated)
     remarks = []
     if _finished(requested) and _none_sculptured(part.faces[n - 1] for n in targets):
         remarks.append(notes.faces_none_sculptured(len(targets)))
-    if named := set(ignored) - left_out.keys():
+    if named := set(ignored) - repeated.keys():
         remarks.append(notes.faces_ignored([f"F{n}" for n in sorted(named)]))
-    remarks += _repeated(part, left_out)
-    held = clamped_faces(part, placed, left_out).intersection(*[clamped_faces(part, each, left_out) for each in others])
+    remarks += _repeated(part, repeated)
+    held = clamped_faces(part, placed, repeated).intersection(*[clamped_faces(part, each, repeated) for each in others])
     if placed is not None and held:
         if held.issuperset(targets):
             raise OptionError(f"{placed.where} {_brief(', '.join(placed.clamped))} leaves no target face")
         if clamped := [f"F{n}" for n in targets if n in held]:
             remarks.append(notes.faces_clamped(clamped))
     share = free_form_share((part.faces[n - 1].shape, part.faces[n - 1].area) for n in targets)
-    return Chosen(targets, tuple(sorted(ignored)), requested, ignore, tuple(remarks), part.blends, share, dict(left_out))
+    return Chosen(targets, tuple(sorted(ignored)), requested, ignore, tuple(remarks), part.blends, share, dict(repeated))
 
 
-def _repeated(part: "Part", left_out: Mapping[int, int]) -> Iterator[Note]:
+def _repeated(part: "Part", repeated: Mapping[int, int]) -> Iterator[Note]:
     """What is left out because it lies where others of the part lie: bodies, then faces of none of these."""
     from cad_io.part.repeats import repeats
 
-    out = set(left_out)
+    out = set(repeated)
     for each in repeats(part):
         bodies = [*zip(each.bodies, each.faces, strict=False)]
         these = [(body, faces) for body, faces in bodies if out.issuperset(faces)]
@@ -135,11 +135,11 @@ def _repeated(part: "Part", left_out: Mapping[int, int]) -> Iterator[Note]:
             yield notes.repeated_body(body, ranges(faces), stays, ranges(own))
         out -= {n for _, faces in these for n in faces}
     if out:
-        yield notes.repeated_faces(ranges(out), ranges({left_out[n] for n in out}), len(out))
+        yield notes.repeated_faces(ranges(out), ranges({repeated[n] for n in out}), len(out))
 
 
-def clamped_faces(part: "Part", placed: Placement | None, left_out: Mapping[int, int] = MappingProxyType({})) -> frozenset[int]:
-    """Numbers of the faces that are held in a setup; of what is `left_out`, those that stand for it.
+def clamped_faces(part: "Part", placed: Placement | None, repeated: Mapping[int, int] = MappingProxyType({})) -> frozenset[int]:
+    """Numbers of the faces that are held in a setup; of what is `repeated`, those that stand for it.
 
     Raises
     ------
@@ -149,7 +149,7 @@ def clamped_faces(part: "Part", placed: Placement | None, left_out: Mapping[int,
     if placed is None:
         return frozenset()
     words = (_selected(part.faces, text, part.tree, placed.where, part.blends) for text in placed.clamped)
-    return frozenset(left_out.get(n, n) for n in set[int]().union(*words))
+    return frozenset(repeated.get(n, n) for n in set[int]().union(*words))
 
 
 def ignored_words(part: "Part", ignore: Any) -> tuple[str, ...]:
@@ -183,7 +183,7 @@ def select_faces(
     tree: "Sequence[Node]" = (),
     ignored: Iterable[int] = (),
     blends: Collection[int] = (),
-    left_out: Mapping[int, int] = MappingProxyType({}),
+    repeated: Mapping[int, int] = MappingProxyType({}),
 ) -> tuple[int, ...]:
     """Numbers of the target faces, ascending.
 
@@ -201,7 +201,7 @@ def select_faces(
         Faces that cannot be targets.
     blends : collection of int
         Numbers of the faces that are fillets and rounds.
-    left_out : mapping of int to int
+    repeated : mapping of int to int
         Faces that lie where others lie, and which one is taken for each.
 
     Raises
@@ -215,7 +215,7 @@ def select_faces(
     if _finished(text) and _none_sculptured(remaining):
         chosen = [f.number for f in remaining]
     else:
-        selected = {left_out.get(n, n) for n in _selected(faces, text, tree, "--faces", blends)}
+        selected = {repeated.get(n, n) for n in _selected(faces, text, tree, "--faces", blends)}
         both = out & selected
         if both and _NUMBERS.fullmatch(text.strip()):
             raise OptionError(f"--faces {_brief(text)}: F{min(both)} is ignored (--ignore): it cannot be a target")

@@ -9,7 +9,7 @@ import numpy as np
 from cad_io import Orientation, Part, read_part
 from cad_io.arrays import Record
 from cad_io.part.orient import orient
-from cad_io.part.repeats import left_out, repeats
+from cad_io.part.repeats import repeated_faces, repeats
 from cad_io.tessellate.triangles import At
 from plan_cutters.domain.checks import flag, number
 from plan_cutters.domain.clamping import Clamping
@@ -61,8 +61,8 @@ class Scene(Record):
     ignore : tuple of str
         The words for faces that are neither targets nor obstacles.
     ignored : tuple of int
-        Their numbers, ascending, and those of `left_out`.
-    left_out : mapping of int to int
+        Their numbers, ascending, and those of `repeated`.
+    repeated : mapping of int to int
         Faces of bodies that are there more than once in one place: by number, which face stands for it.
     asked : float
         The gouge tolerance that was requested, mm.
@@ -81,7 +81,7 @@ class Scene(Record):
     asked: float
     fixtures: tuple[Fixture, ...] = ()
     targets: tuple[int, ...] = ()
-    left_out: Mapping[int, int] = field(default_factory=dict)
+    repeated: Mapping[int, int] = field(default_factory=dict)
     _memory: _Memory = field(default_factory=_Memory, init=False, compare=False)
 
     @classmethod
@@ -135,9 +135,9 @@ class Scene(Record):
         whole = part if isinstance(part, Part) else read_part(part)
         words = ignored_words(whole, result["ignore"])
         requested = ignored_faces(whole, words)
-        again = left_out(whole, requested)
+        again = repeated_faces(whole, requested)
         ignored, orientation = tuple(sorted({*requested, *again})), orient(whole, towards=setup, flip=flip)
-        return cls(whole, orientation, setup, flip, words, ignored, tolerance, fixtures, left_out=again)
+        return cls(whole, orientation, setup, flip, words, ignored, tolerance, fixtures, repeated=again)
 
     def clamped(self, fixtures: Any) -> "Scene":
         """The same part with other fixtures, given as in `Options`: it is not tessellated again."""

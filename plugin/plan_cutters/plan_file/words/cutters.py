@@ -94,8 +94,8 @@ def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:
 
 def _hint(plan: Plan, c: CutterEntry, main: Reason) -> str:
     """The thing to try first; nothing where all that lies inside material is the wall of a closed void."""
-    lost = {face for face, each in c.faces.items() if each.area_share.lost_by.get("buried")}
-    return "" if main.code == "buried" and lost <= set(plan.part.void_faces) else main.hint
+    enclosed = {face for face, each in c.faces.items() if each.area_share.lost_by.get("buried")}
+    return "" if main.code == "buried" and enclosed <= set(plan.part.void_faces) else main.hint
 
 
 def main_reason(share: AreaShare) -> str:

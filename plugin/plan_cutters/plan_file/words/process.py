@@ -191,7 +191,7 @@ def _needs(plan: Plan, entry: RemainingEntry) -> str:
     if entry.cause == "buried" and (shut := [face for face in entry.faces if face in plan.part.void_faces]):
         if len(shut) == len(entry.faces):
             return CLOSED_VOID
-        return f"{CLOSED_VOID} at {listed(shut, _FACES)}; elsewhere {REASONS[entry.cause].hint}"
+        return f"{CLOSED_VOID} at {listed(shut, _FACES)}; for the rest {REASONS[entry.cause].hint}"
     if entry.cause == UNJUDGED_CAUSE:
         return next((face.unjudged for face in plan.faces if face.id in faces and face.unjudged), "") or ""
     return REASONS[entry.cause].hint if entry.cause in REASONS else ""
