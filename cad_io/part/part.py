@@ -133,7 +133,7 @@ class Part:
         self._measures: dict[int, Measure | None] = {}
         #: Face number -> triangles of the kernel's mesher, or why there are none; kept by `tessellate`, for it takes seconds.
         self.meshed: dict[int, tuple[Any, str]] = {}
-        #: What lies where others lie, and other areas that faces come back with from STEP, mm2; kept by `repeats` and `write.back`.
+        #: What lies where others lie, and areas that faces come back with from STEP, mm2; kept by `repeats` and `write.back`.
         self.repeats: tuple[Any, ...] | None = None
         self.changed_by_step: Mapping[int, float] | None = None
         self.solids = shape_map(shape, TopAbs_SOLID).Extent()
