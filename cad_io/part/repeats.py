@@ -18,8 +18,9 @@ from cad_io.part.motion import Motion
 from cad_io.part.part import Part
 from cad_io.part.patterns import EXACT
 
-#: Middles of boxes, and roots of areas, of faces that may be one differ by less than this share of the part's size.
-_NEAR = 1e-3
+#: Middles of boxes, and roots of areas, of faces that may be one differ by less than this share of the part's size: the smaller
+#: ones for parts of which too many faces lie so near.
+_NEAR = (1e-3, 1e-4, 1e-5)
 #: Pairs of faces that are looked at, at most, to a face.
 _MOST_PAIRS = 50
 
@@ -141,9 +142,8 @@ class _Compared:
         feature = np.array([[*(part.centre(f.number) or ()), np.sqrt(f.area)] for f in usable]).reshape(-1, 4)
         if len(usable) < 2 or not np.isfinite(feature).all():
             return
-        tree, near = cKDTree(feature), _NEAR * self.size
-        if tree.count_neighbors(tree, near) > (1 + 2 * _MOST_PAIRS) * len(usable):
-            return
+        tree, most = cKDTree(feature), (1 + 2 * _MOST_PAIRS) * len(usable)
+        near = next((each * self.size for each in _NEAR if tree.count_neighbors(tree, each * self.size) <= most), 0.0)
         for i, j in sorted(tree.query_pairs(near)):
             a, b = usable[i].number, usable[j].number
             self.near.setdefault(a, []).append(b)
