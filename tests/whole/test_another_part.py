@@ -11,6 +11,7 @@ from cad_io.kernel import explore
 from plan_cutters import plan
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.plan_file.words.text import text_of
+from plan_cutters.report.models import shown_pieces, split_result
 from plan_cutters.report.page.write import page
 from tests.support.cad_parts import ball, box, compound, cut, drilled, rod
 from tests.support.places import real_file
@@ -159,3 +160,11 @@ def test_no_area_or_share_of_a_broken_screw_is_negative_and_samples_are_bounded_
         assert math.isfinite(number), where
         if where.endswith(("_mm2", "share")) or "share." in where:
             assert number >= 0.0, where
+
+
+def test_models_show_one_of_two_faces_in_a_place_and_step_keeps_both(once_and_twice):
+    result = once_and_twice[1]
+    split = split_result(result)
+    assert {piece.face for piece in split.pieces} == set(range(1, 15))
+    assert {piece.face for piece in shown_pieces(result, split).pieces} == set(range(1, 8))
+    assert shown_pieces(once_and_twice[0], split) is split
