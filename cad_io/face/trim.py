@@ -62,6 +62,12 @@ class Trim(Record):
         p, q = self.segments[:, 0], self.segments[:, 1]
         return abs(0.5 * float((p[:, 0] * q[:, 1] - p[:, 1] * q[:, 0]).sum()))
 
+    @property
+    def box_area(self) -> float:
+        """Area of `box`."""
+        u0, u1, v0, v1 = self.box
+        return (u1 - u0) * (v1 - v0)
+
     def inside_grid(self, u: Floats, v: Floats, *, border: bool = True) -> Bools:
         """Which nodes of the grid of increasing lines u (nu,) and v (nv,) lie in the face: (nu, nv).
 

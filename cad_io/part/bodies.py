@@ -110,7 +110,7 @@ def _body(
     `solid`: the file calls them one. `touching`: they are open only where other faces meet them at their edges.
     """
     index = [n - 1 for n in numbers]
-    measured = [part.measure(n) for n in numbers]
+    measured = [None if n in part.unmeasured else part.measure(n) for n in numbers]
     known = all(m is not None and np.isfinite(m.flux) for m in measured)
     if known and _boundless(shapes, sign):
         outward = -sign if volume(part, index, sign.astype(float)) < 0 else sign

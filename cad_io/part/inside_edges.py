@@ -4,6 +4,7 @@ Edges, normals and curvatures are the kernel's. The border of a sheet, a seam, a
 and an outside edge are none.
 """
 
+from collections.abc import Collection
 from dataclasses import dataclass
 
 import numpy as np
@@ -62,7 +63,7 @@ class InsideEdge(Record):
         return float(steps[self.sharp[:-1] & self.sharp[1:]].sum())
 
 
-def inside_edges(part: Part, orientation: Orientation) -> tuple[InsideEdge, ...]:
+def inside_edges(part: Part, orientation: Orientation, without: Collection[int] = ()) -> tuple[InsideEdge, ...]:
     """Find the sharp inside edges of a part, in the order of the kernel's edges.
 
     An edge that the kernel cannot evaluate on both of its faces is left out, as are faces that cannot be judged.
@@ -72,12 +73,15 @@ def inside_edges(part: Part, orientation: Orientation) -> tuple[InsideEdge, ...]
     part : Part
     orientation : Orientation
         The side of each face.
+    without : collection of int, optional
+        Face numbers that are left out, as if they were not there.
     """
     joined = part.sewn.faces
     edges: list[InsideEdge] = []
     shapes = [joined.get(info.number) or part.face(info.number) for info in part.faces]
     usable = [info.unjudged is None for info in part.faces]
-    for edge, users in edge_uses(shapes):
+    for edge, every in edge_uses(shapes):
+        users = [use for use in every if use[0] + 1 not in without]
         if len(users) != 2 or users[0][0] == users[1][0] or not all(usable[place] for place, _ in users):
             continue
         sides = [_side(part, edge, shapes[place], place, way, float(orientation.sign[place])) for place, way in users]
@@ -95,6 +99,29 @@ def inside_edges(part: Part, orientation: Orientation) -> tuple[InsideEdge, ...]
             numbers = (users[0][0] + 1, users[1][0] + 1)
             edges.append(InsideEdge(numbers, point[known], normal[:, known], inward[:, known], bend[:, known], sharp[known]))
     return tuple(edges)
+
+
+def folded_faces(part: Part, numbers: Collection[int]) -> dict[int, int]:
+    """Which of some faces fold back onto a neighbour, each with that: both go the same way from all of an edge between them.
+
+    A smooth surface goes on beyond an edge. One that turns back there bounds a body of no thickness: it is the other part of its
+    whole surface than was meant.
+    """
+    joined = part.sewn.faces
+    shapes = [joined.get(info.number) or part.face(info.number) for info in part.faces]
+    result: dict[int, int] = {}
+    for edge, users in edge_uses(shapes) if numbers else ():
+        places = [place for place, _ in users]
+        mine = next((n for n in numbers if n - 1 in places), None)
+        if mine is None or len(set(places)) != 2 or len(users) != 2:
+            continue
+        sides = [_side(part, edge, shapes[place], place, way, 1.0) for place, way in users]
+        if all(side is not None for side in sides):
+            (_, _, one, _), (_, _, other, _) = sides  # type: ignore[misc]
+            same = (one * other).sum(axis=1)
+            if np.isfinite(same).any() and np.nanmin(same) > np.cos(SMOOTH):
+                result.setdefault(mine, next(place + 1 for place in places if place != mine - 1))
+    return result
 
 
 def _side(

@@ -17,6 +17,7 @@ from cad_io.arrays import Floats, Orientation
 from cad_io.kernel import explore, shape_map
 from cad_io.part.cap import cap_of, flux_of
 from cad_io.part.part import Part
+from cad_io.part.repeats import doubled
 from cad_io.part.sew import edge_uses
 
 #: Below this, the mean normal says little about the side.
@@ -48,13 +49,19 @@ def orient(part: Part, towards: tuple[float, float, float] = (0.0, 0.0, 1.0), fl
     notes: list[str] = []
     confident = True
     numbers = shape_map(part.shape, TopAbs_FACE)
+    again = doubled(part)
     for solid in part.solid_shapes():
         members = [(numbers.FindIndex(f), TopoDS.Face_s(f)) for f in explore(solid, TopAbs_FACE)]
         members = [(n - 1, f) for n, f in members if n and sign[n - 1] == 0]
-        confident &= _orient_solid(part, members, sign, notes)
+        confident &= _orient_solid(part, [each for each in members if each[0] + 1 not in again], sign, notes)
+        for i, face in members:
+            sign[i] = sign[i] or (-1.0 if face.Orientation() == TopAbs_REVERSED else 1.0)
     rest = [i for i in range(count) if sign[i] == 0]
-    if rest:
-        confident &= _orient_rest(part, rest, sign, notes, np.asarray(towards, float), flip)
+    # What lies where others lie would be joined with them: each time by itself.
+    for nth in sorted({again.get(i + 1, 0) for i in rest}):
+        these = [i for i in rest if again.get(i + 1, 0) == nth]
+        sure = _orient_rest(part, these, sign, notes, np.asarray(towards, float), flip)
+        confident &= sure or nth > 0
     return Orientation(sign, "; ".join(dict.fromkeys(notes)), confident)
 
 
@@ -85,7 +92,7 @@ def _orient_solid(part: Part, members: Sequence[tuple[int, TopoDS_Face]], sign: 
     notes.append("faces of solids as the solid says")
     if not closed:
         notes.append("a solid is not closed, so its side is a guess")
-    elif part.aside.keys() & set((index + 1).tolist()):
+    elif part.unmeasured & set((index + 1).tolist()):
         notes.append("a face of a solid was not measured, so its side is a guess")
     return closed and enclosed != 0
 
@@ -186,8 +193,8 @@ def joined_faces(shapes: Sequence[TopoDS_Face]) -> list[Joined]:
 
 def volume(part: Part, index: Sequence[int] | NDArray[np.int_], sign: Floats, cap: Floats | None = None) -> float:
     """Signed volume of a closed set of faces, mm3, openings closed by a cap (t, 3, 3); 0 if there is none to speak of, or a
-    face is set aside: without it, even the sign would be a guess."""
-    if part.aside.keys() & {int(i) + 1 for i in index}:
+    face is not measured: without it, even the sign would be a guess."""
+    if part.unmeasured & {int(i) + 1 for i in index}:
         return 0.0
     measures = [part.measure(int(i) + 1) for i in index]
     flux = sum(s * m.flux for s, m in zip(sign, measures, strict=True) if m and np.isfinite(m.flux))

@@ -8,8 +8,8 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from OCP.BRep import BRep_Tool
 from OCP.BRepAdaptor import BRepAdaptor_Surface
+from OCP.GeomAbs import GeomAbs_OtherSurface
 from OCP.ShapeAnalysis import ShapeAnalysis_ShapeTolerance
 from OCP.TopAbs import TopAbs_SOLID
 from OCP.TopLoc import TopLoc_Location
@@ -24,10 +24,12 @@ from cad_io.face.trim import Trim, trim_of
 from cad_io.files import fingerprint
 from cad_io.kernel import edges_of, explore, faces, is_kernel_error, shape_map, translated
 from cad_io.kernel.assembly import Node
+from cad_io.kernel.natural import ENDLESS, endless
 from cad_io.part.blends import Bare, blends
 from cad_io.part.boxes import box_of, face_box
 from cad_io.part.packing import PartContent, packed, unpacked
 from cad_io.part.sew import Sewn, edge_uses, neighbours, sew
+from cad_io.part.unjudged import NO_AREA, UNMEASURED, why_unjudged
 from cad_io.surface import Surface
 from cad_io.units import UnitReading, unit_doubt
 
@@ -37,8 +39,6 @@ FARTHEST = 1e9
 LOOSEST = 0.1
 #: A face smaller than this share of the squared diagonal has no area.
 _LEAST_AREA = 1e-12
-#: Why such a face is not judged.
-NO_AREA = "has no area"
 
 _KINDS = {
     "Plane": "plane", "Cylinder": "cylinder", "Cone": "cone", "Sphere": "sphere", "Torus": "torus",
@@ -138,13 +138,17 @@ class Part:
         self._measures: dict[int, Measure | None] = {}
         #: Face number -> triangles of the kernel's mesher, or why there are none; kept by `tessellate`, for it takes seconds.
         self.meshed: dict[int, tuple[Any, str]] = {}
+        #: What lies where others lie, and areas that faces come back with from STEP, mm2; kept by `repeats` and `write.back`.
+        self.repeats: tuple[Any, ...] | None = None
+        self.changed_by_step: Mapping[int, float] | None = None
         self.solids = shape_map(shape, TopAbs_SOLID).Extent()
         with translated("measuring the part", error=ReadError, file=file):
             boxes = np.array([face_box(face, tight=False) for face in self._faces])
             finite = np.isfinite(boxes).all(axis=(1, 2))
             self._centres = boxes.mean(axis=1)
             if not finite.any():
-                raise ReadError("no face has a finite size: nothing can be judged", file=file)
+                whole = "no face has a finite size: nothing can be judged"
+                raise ReadError(f"F1 {ENDLESS}" if endless(self._faces[0]) else whole, file=file)
             farthest = float(np.abs(boxes[finite]).max())
             if farthest > FARTHEST:
                 raise ReadError(
@@ -157,7 +161,7 @@ class Part:
         self.lost = (
             *lost,
             *(
-                LostFace("", self._names.get(n, ""), "it has no finite size", n)
+                LostFace("", self._names.get(n, ""), f"it {ENDLESS if endless(self._faces[n - 1]) else 'has no finite size'}", n)
                 for n in (np.flatnonzero(~finite) + 1).tolist()
                 if n not in reported
             ),
@@ -297,6 +301,11 @@ class Part:
         return bool(uses) and all(len(users) % 2 == 0 for _, users in uses)
 
     @cached_property
+    def unmeasured(self) -> frozenset[int]:
+        """Numbers of the faces of which neither the area nor what they enclose is to be believed."""
+        return frozenset({*self.aside, *(f.number for f in self.faces if f.unjudged in UNMEASURED)})
+
+    @cached_property
     def sewn(self) -> Sewn:
         with translated("joining faces", file=self.file):
             return sew(self.shape, self._faces, float(np.linalg.norm(self.size)))
@@ -352,7 +361,7 @@ class Part:
             kind = str(self.adaptor(number).GetType()).rsplit("GeomAbs_", 1)[-1]
             surface = _KINDS.get(kind, "other")
             shape = surface if surface in SIMPLE_KINDS else "sculptured"
-            reason, area = self._judgeable(number, surface)
+            reason, area = self._judgeable(number)
             trim = self.trim(number)
             carrier = stored_carrier(surface, self.adaptor(number))
             if reason is None and shape == "sculptured" and trim:
@@ -368,22 +377,13 @@ class Part:
             reason, area = f"is not as it was written in the file: {altered}", 0.0
         return FaceInfo(number, name, surface, shape, area, colour, reason, carrier)
 
-    def _judgeable(self, number: int, surface: str) -> tuple[str | None, float]:
-        """Why the face cannot be judged (None if it can), and its area."""
-        if surface == "other":
-            if BRep_Tool.Triangulation_s(self.face(number), TopLoc_Location()) is not None:
-                return "holds only triangles, no surface: export exact geometry (B-rep)", 0.0
-            return "has no surface that can be evaluated", 0.0
-        if not edges_of(self.face(number)):
-            return "has no edges", 0.0
-        measured = self.measure(number)
-        if measured is None:
-            return "its edges have no finite curve on the surface", 0.0
-        if not np.isfinite(measured.area):
-            return "its surface cannot be evaluated everywhere", 0.0
-        if measured.area <= _LEAST_AREA * float(np.dot(self.size, self.size)):
-            return NO_AREA, measured.area
-        return None, measured.area
+    def _judgeable(self, number: int) -> tuple[str | None, float]:
+        """Why the face cannot be judged (None if it can), and its area, mm2: 0 where that is not to be believed."""
+        readable = bool(edges_of(self.face(number))) and self.surface(number).adaptor.GetType() != GeomAbs_OtherSurface
+        trim, measured = (self.trim(number), self.measure(number)) if readable else (None, None)
+        least = _LEAST_AREA * float(np.dot(self.size, self.size))
+        reason = why_unjudged(self.face(number), self.surface(number), trim, measured, least)
+        return reason, max(measured.area, 0.0) if measured is not None and reason in (None, NO_AREA) else 0.0
 
 
 def _again(content: PartContent, excluded: Mapping[int, str]) -> Part:

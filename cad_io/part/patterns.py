@@ -6,7 +6,7 @@ A motion of the whole part keeps the middle of all borders and their second mome
 """
 
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -20,7 +20,8 @@ from scipy.spatial import cKDTree
 from cad_io.arrays import Floats, Record
 from cad_io.part.equal_faces import FaceShape, axis_of, equal, face_shape
 from cad_io.part.motion import Motion
-from cad_io.part.part import NO_AREA, Part
+from cad_io.part.part import Part
+from cad_io.part.unjudged import NO_AREA
 
 Kind = Literal["rotation", "mirror", "shift"]
 Which = NDArray[np.int64]
@@ -107,14 +108,14 @@ class _Faces:
         return equal(self.shape[one], self.shape[other], motion, self.tolerance)
 
 
-def patterns(part: Part, at: Callable[[int], None] = lambda face: None) -> tuple[Pattern, ...]:
+def patterns(part: Part, at: Callable[[int], None] = lambda face: None, without: Collection[int] = ()) -> tuple[Pattern, ...]:
     """The patterns of a part: first those that carry all of it onto itself, then those of some faces.
 
-    `at` is told which face is looked at.
+    `at` is told which face is looked at; `without` are numbers of faces that are left out, as if they were not there.
 
     No face is in two patterns of some faces. Where nothing is alike, it takes a few ms.
     """
-    faces = _faces_of(part, at)
+    faces = _faces_of(part, at, without)
     if faces is None or not any(True for _ in faces.classes()):
         return ()
     whole = [*_whole(faces)] if faces.whole else []
@@ -123,9 +124,10 @@ def patterns(part: Part, at: Callable[[int], None] = lambda face: None) -> tuple
     return (*whole, *_of_some(faces, taken))
 
 
-def _faces_of(part: Part, at: Callable[[int], None]) -> _Faces | None:
+def _faces_of(part: Part, at: Callable[[int], None], without: Collection[int]) -> _Faces | None:
     size = float(np.linalg.norm(part.size))
-    judged = [f for f in part.faces if f.unjudged is None]
+    there = [f for f in part.faces if f.number not in without]
+    judged = [f for f in there if f.unjudged is None]
     if not 1 < len(judged) <= _MOST_FACES or not np.isfinite(size):
         return None
     shapes = list[FaceShape]()
@@ -138,7 +140,7 @@ def _faces_of(part: Part, at: Callable[[int], None]) -> _Faces | None:
         shape = face_shape(face.number, face.surface, side, part.surface(face.number), trim, measured, size)
         if shape is not None:
             shapes.append(shape)
-    whole = not part.lost and not part.aside and len(shapes) == sum(f.unjudged != NO_AREA for f in part.faces)
+    whole = not part.lost and not part.aside and len(shapes) == sum(f.unjudged != NO_AREA for f in there)
     centre = np.array([each.centre for each in shapes]).reshape(-1, 3)
     return _Faces(shapes, _classes(shapes, size), centre, size, whole, [0])
 

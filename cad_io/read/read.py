@@ -20,6 +20,7 @@ from cad_io.files import checksum, checksums
 from cad_io.kernel import explore, faces, silence, translated
 from cad_io.kernel.assembly import Node
 from cad_io.kernel.components import unwrapped
+from cad_io.kernel.natural import ENDLESS, bound_naturally, endless
 from cad_io.part import Part
 from cad_io.read import iges, step
 from cad_io.read.document import Read
@@ -109,6 +110,7 @@ def _find(source: Any, unit: str | None, timeout: float) -> PartContent:
     if isinstance(source, str | os.PathLike):
         return _read_file(os.fspath(source), unit, timeout)
     shape = from_object(source)
+    bound_naturally(shape["shape"])
     tree = tuple(_scaled_node(node, unit) for node in shape["tree"])
     return shape | {"shape": _scaled(shape["shape"], unit), "tree": tree}
 
@@ -118,7 +120,9 @@ def _read_file(file: str, unit: str | None, timeout: float) -> PartContent:
     known: PartContent = {"file": file, "sha256": checksum(data)}
     if kind not in _LOADERS:
         with translated("reading the file", error=ReadError, file=file):
-            return known | _content(Read(_scaled(_read_brep(file, kind), unit)))
+            whole = _read_brep(file, kind)
+            bound_naturally(whole)
+            return known | _content(Read(_scaled(whole, unit)))
     loader, others = partial(_LOADERS[kind], file, data, unit), Referred()
     if kind == "step" and names(data):
         if unit is not None:
@@ -151,9 +155,10 @@ def _transferred(load_again: Callable[[], Loaded], others: Referred) -> PartCont
 
 def _content(read: Read, others: Referred | None = None) -> PartContent:
     read.lost += [] if others is None else others.lost
-    edgeless = [n for n, face in enumerate(faces(read.shape), 1) if next(explore(face, TopAbs_EDGE), None) is None]
     reported = {each.face for each in read.lost}
-    read.lost += [LostFace("", read.names.get(n, ""), "it has no edges", n) for n in edgeless if n not in reported]
+    for n, face in enumerate(faces(read.shape), 1):
+        if n not in reported and next(explore(face, TopAbs_EDGE), None) is None:
+            read.lost.append(LostFace("", read.names.get(n, ""), f"it {ENDLESS if endless(face) else 'has no edges'}", n))
     return {
         "shape": read.shape,
         "names": read.names,

@@ -61,10 +61,18 @@ def uniform(surface: Surface, trim: Trim, count: int) -> Lines:
     return Lines(u.lines(share), v.lines(share), u.closed, v.closed, (u.low, u.high, v.low, v.high))
 
 
-def spaced(surface: Surface, trim: Trim, spacing: float, more: tuple[float, float] = (1.0, 1.0), finer: int = 1) -> Lines:
+def spaced(
+    surface: Surface,
+    trim: Trim,
+    spacing: float,
+    more: tuple[float, float] = (1.0, 1.0),
+    finer: int = 1,
+    most: float = _MOST_NODES,
+) -> Lines:
     """Lines over the trim's box so that neighbours are at most `spacing` mm apart, `more` and `finer` times as many if asked.
 
-    Lines are laid by the largest speed across them, so the gap holds everywhere as far as the probes saw.
+    Lines are laid by the largest speed across them, so the gap holds everywhere as far as the probes saw, unless they would have
+    more than `most` nodes.
     """
     u, v = _ranges(surface, trim, trim.box)
     share_u, share_v = _probes(surface, 0, (u.low, u.high)), _probes(surface, 1, (v.low, v.high))
@@ -78,7 +86,7 @@ def spaced(surface: Surface, trim: Trim, spacing: float, more: tuple[float, floa
     gaps = finer * np.array([max(np.ceil(more[k] * lengths[k][-1] / spacing), _LEAST_LINES - 1) for k in (0, 1)])
     closed = np.array([u.closed, v.closed])
     gaps = np.where(closed, np.maximum(gaps, _LEAST_LINES), gaps)
-    gaps = np.maximum(gaps / max(1.0, np.sqrt(gaps.prod() / _MOST_NODES)), 2).astype(int)
+    gaps = np.maximum(gaps / max(1.0, np.sqrt(gaps.prod() / min(most, _MOST_NODES))), 2).astype(int)
     shares = [
         np.interp(np.linspace(0.0, length[-1], gap + 1), length, share)
         for length, gap, share in zip(lengths, gaps, (share_u, share_v), strict=True)
@@ -144,4 +152,5 @@ def _shifted(low: float, high: float, trim_low: float, trim_high: float, period:
 
 
 def _whole(span: float, first: float, last: float) -> bool:
-    return span >= (last - first) * (1 - _SAME)
+    # A border that runs on beyond a whole turn has ends that are no neighbours.
+    return abs(span - (last - first)) <= _SAME * (last - first)

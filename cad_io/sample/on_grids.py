@@ -29,6 +29,7 @@ _CORRECTIONS = 4  # of a spacing that the probes underrated
 _HALVINGS = 12  # of cells at the border that leave the face too far from its samples
 _MOST_MORE, _FEW_SAMPLES = 4, 2000  # so many times as many samples, or so many, are taken for that
 _NODES = 40_000  # of a grid for that, whether in the face or not
+_MOST_OF_AREA = 50.0  # samples to a square of the spacing that a face of its area may have, beside the few
 _FEW = 100  # samples: a face with fewer may be too thin for grids
 _LEAST_SAMPLES = 4  # of a face, as far as its grid can be finer
 _NEIGHBOURS = 2  # middles of triangles that each is linked with
@@ -136,15 +137,25 @@ def _uniform(part: Part, number: int, trim: Trim, grid: int | None) -> _FaceSamp
 
 
 def _spaced(part: Part, number: int, trim: Trim, step: float) -> _FaceSamples | None:
-    """Samples on lines so near that grid neighbours are at most a step apart, on more where few hit the face."""
+    """Samples on lines so near that grid neighbours are at most a step apart, on more where few hit the face.
+
+    Of a damaged border, or an uneven surface, grids would take any number of them: the area of the face bounds it.
+    """
     surface, samples = part.surface(number), None
-    more = np.ones(2)
+    most, more = max(_MOST_OF_AREA * part.faces[number - 1].area / step / step, _FEW_SAMPLES), np.ones(2)
+    # Where the border does not close, the kernel is asked about each node.
+    nodes = np.inf if trim.closed else max(most, _NODES)
     for doubling in range(_DOUBLINGS + 1):
         for _ in range(_CORRECTIONS):
-            lines = spaced(surface, trim, step, (float(more[0]), float(more[1])), 2**doubling)
+            lines = spaced(surface, trim, step, (float(more[0]), float(more[1])), 2**doubling, nodes)
             inside = trim.inside_grid(lines.u, lines.v)
             if not inside.any():
                 break
+            if inside.sum() > most:
+                if samples is not None:
+                    return samples
+                nodes = 0.9 * most * inside.size / inside.sum()
+                continue
             samples = _on_grid(part, number, trim, lines, inside)
             worst = _widest(samples, lines) / step
             if (worst <= 1 + 1e-9).all():

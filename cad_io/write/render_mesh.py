@@ -1,6 +1,6 @@
 """Faces as triangles to look at, with exact normals and surface parameters."""
 
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -51,7 +51,9 @@ class RenderMesh(NamedTuple):
     missing: tuple[int, ...]
 
 
-def render_mesh(part: Part, sides: Sequence[float] | Floats, *, most: int, deflection: float | None = None) -> RenderMesh:
+def render_mesh(
+    part: Part, sides: Sequence[float] | Floats, *, most: int, deflection: float | None = None, without: Collection[int] = ()
+) -> RenderMesh:
     """Mesh all faces of a part to be looked at; the part itself stays without a mesh.
 
     Coarse triangles are cut where they lie farthest from the surface, until they are near enough or there are as many as are
@@ -66,6 +68,8 @@ def render_mesh(part: Part, sides: Sequence[float] | Floats, *, most: int, defle
         Triangles to have at most, but for those to begin with: where there would be more, the chord error grows.
     deflection : float, optional
         The chord error to begin with, mm; default FINE times the part's diagonal.
+    without : collection of int
+        Numbers of faces that are not shown.
 
     Raises
     ------
@@ -74,7 +78,7 @@ def render_mesh(part: Part, sides: Sequence[float] | Floats, *, most: int, defle
     """
     with translated("meshing", error=WriteError, file=part.file):
         wanted = FINE * diagonal(part.shape) if deflection is None else deflection
-        numbers = [f.number for f in part.faces]
+        numbers = [f.number for f in part.faces if f.number not in without]
         begun, _ = starts(part, numbers, _begun(part, numbers, wanted, most), again=True)
         nets = {number: Net.of(part.surface(number), start) for number, start in begun.items()}
         off = cut(list(nets.values()), wanted, ANGLE, most)
@@ -91,7 +95,7 @@ def render_mesh(part: Part, sides: Sequence[float] | Floats, *, most: int, defle
                 )
     if not meshes:
         raise WriteError("the CAD kernel made no triangle of the part", file=part.file)
-    return RenderMesh(meshes, periods, max(wanted, off), tuple(f.number for f in part.faces if f.number not in meshes))
+    return RenderMesh(meshes, periods, max(wanted, off), tuple(n for n in numbers if n not in meshes))
 
 
 def _begun(part: Part, numbers: Sequence[int], wanted: float, most: int) -> float:

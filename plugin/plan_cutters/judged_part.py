@@ -117,7 +117,7 @@ class JudgedPart:
                 over, which = over_setups([mine, *(verdicts_there[cutter.id] for _, verdicts_there in other_setups)])
                 by_cutter[cutter] = reasons.of(cutter, over, part_of(tell, k, len(here))), which
             wanted = any(may_be_at_edge(explained.verdicts, cutter) for cutter, (explained, _) in by_cutter.items())
-            edges = inside_edges(ready.scene.part, ready.scene.orientation) if wanted else ()
+            edges = inside_edges(ready.scene.part, ready.scene.orientation, ready.scene.doubles) if wanted else ()
         at_edges = {cutter: strips(samples, explained.verdicts, cutter, edges) for cutter, (explained, _) in by_cutter.items()}
         reaches = {c: for_another_setup(ready, with_sharp_edges(by_cutter[c][0].verdicts, each)) for c, each in at_edges.items()}
         ready = replace(ready, exempt=exempt(reaches, ready.inside_bodies) if ready.options.sharp_edges == "left" else None)

@@ -304,7 +304,7 @@ def prepare(
             scene.read_fixtures(read_timeout)
     with clock.stage("sample"):
         first, *others = places(options)
-        chosen = choose(whole, options.faces, scene.ignored, scene.ignore, first, others)
+        chosen = choose(whole, options.faces, scene.ignored, scene.ignore, first, others, scene.repeated)
         if any(each.to_place for each in fixtures_of(options)):
             scene = scene.for_targets(chosen.targets)
         cutters = tuple(wanted(options.judged, free_form=chosen.free_form))
@@ -372,7 +372,10 @@ def prepare(
         )
     if options.patterns:
         with clock.stage("patterns"):
-            ready = with_copies(ready, stages.cached("patterns", whole.key, lambda: patterns(whole, partial(at, "kernel"))))
+            doubles = scene.doubles
+            key = (whole.key, doubles)
+            equal = stages.cached("patterns", key, lambda: patterns(whole, partial(at, "kernel"), doubles))
+            ready = with_copies(ready, equal)
     if not ready.finished.any():
         raise UnjudgeableError(
             "every target sample lies inside another body of the part, so there is no surface to finish: leave a body out with "

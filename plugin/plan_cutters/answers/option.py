@@ -81,7 +81,10 @@ def _pinned(ready: Prepared, faces: Sequence[int]) -> list[str]:
     if not words:
         fixtures = [word for each in ready.options.fixtures for word in ("--fixture", each.text)]
         words = ["--setup", ",".join(f"{each:.12g}" for each in ready.scene.setup), *fixtures]
-    selected = select_faces(part.faces, ready.chosen.asked, tree=part.tree, ignored=ready.scene.ignored, blends=part.blends)
+    scene = ready.scene
+    selected = select_faces(
+        part.faces, ready.chosen.asked, tree=part.tree, ignored=scene.ignored, blends=part.blends, repeated=scene.repeated
+    )
     return words if tuple(selected) == tuple(faces) else [*words, "--faces", ranges(faces)]
 
 

@@ -68,6 +68,7 @@ class Patterns:
         ]
         named = {number for copy in copies for number in copy}
         if entry["whole"]:
+            named |= self.question.ignored
             left = [f.number for f in self.question.part.faces if f.unjudged is None and f.number not in named]
             pairs += [(number, number, motions[0]) for number in left]
         chosen = self.rng.permutation(len(pairs))[:_MOST].tolist()

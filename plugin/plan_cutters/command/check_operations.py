@@ -74,6 +74,7 @@ def question_of(
         The plan is of another part or of other options, or has no operations.
     """
     from cad_io.part.orient import orient
+    from cad_io.part.repeats import repeated_faces
     from plan_cutters.checker.question import Question
     from plan_cutters.errors import OptionError
     from plan_cutters.scene.faces import ignored_faces, ignored_words
@@ -82,10 +83,11 @@ def question_of(
         raise OptionError("the plan has no operations: make it with --operations")
     cutters, setups = {cutter.id: cutter for cutter in options.judged}, _setups(part, options, document)
     tolerance = _fits(part, options, document, [*cutters], setups)
+    ignored = ignored_faces(part, ignored_words(part, options.ignore))
     sign = orient(part, options.setup, options.flip).sign
     return Question(
         part, _axes(options.machine), {name: _sizes(cutter) for name, cutter in cutters.items()}, setups,
-        ignored_faces(part, ignored_words(part, options.ignore)), sign, tolerance, document, arrays["operations.npz"],
+        ignored | repeated_faces(part, ignored).keys(), sign, tolerance, document, arrays["operations.npz"],
         arrays["samples.npz"],
     )  # fmt: skip
 

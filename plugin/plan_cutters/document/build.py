@@ -131,7 +131,7 @@ def part_info(scene: Scene, surroundings: Surroundings) -> PartInfo:
     part, orientation = scene.part, scene.orientation
     warnings = list(part.warnings)
     # Without the faces that are left out on purpose there are openings, too.
-    for body in () if scene.ignored else (body for body in surroundings.bodies if not body.closed):
+    for body in () if set(scene.ignored) - scene.repeated.keys() else (body for body in surroundings.bodies if not body.closed):
         warnings.append(
             f"{listed([f'F{number}' for number in body.faces])} enclose a body with openings: what lies within it is "
             "not known for sure; a face or an edge may be missing"
@@ -193,6 +193,7 @@ def face_entries(
         bad = samples.unjudged[mine]
         bad = bad[bad >= 0]
         reason = face.unjudged or empty.get(face.number)
+        again = choice.repeated.get(face.number)
         if reason is None and len(bad):
             reason = f"{len(bad)} samples: " + "; ".join(samples.reasons[i] for i in np.unique(bad))
         result.append(
@@ -210,7 +211,7 @@ def face_entries(
                 samples=len(mine),
                 gap_mm=gaps.get(face.number),
                 chord_error_mm=errors.get(face.number),
-                unjudged=reason if face.number in chosen else face.unjudged,
+                unjudged=f"is F{again} again" if again else reason if face.number in chosen else face.unjudged,
             )
         )
     return result

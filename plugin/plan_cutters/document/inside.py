@@ -10,6 +10,7 @@ from plan_cutters.document.shares import covered
 from plan_cutters.plan_file.inside import CoveringBody, InsideEntry, SheetsEntry
 from plan_cutters.plan_file.shares import FaceVerdicts
 from plan_cutters.scene.covering import coverings, numbers, sheets
+from plan_cutters.scene.inside_material import voids
 from plan_cutters.scene.preparation import Prepared
 
 
@@ -47,6 +48,15 @@ def inside_entry(ready: Prepared, faces: Mapping[str, FaceVerdicts]) -> InsideEn
     if len(lying):
         on_bodies = SheetsEntry(faces=on(lying), samples=len(lying), area_mm2=of(lying), option=f"--ignore {numbers(names)}")
     return InsideEntry(samples=int(inside.sum()), area_mm2=area, share=share, bodies=bodies, sheets=on_bodies)
+
+
+def void_faces(ready: Prepared) -> list[str]:
+    """Ids of the faces whose samples inside material all lie in a closed void: no body that could be absent is around them."""
+    bodies = ready.conditions.surroundings.bodies
+    hollow, within = np.array([*voids(bodies, ready.scene.orientation), False]), ready.inside >= 0
+    in_void = within & hollow[np.minimum(ready.inside, len(bodies))]
+    shut, others = np.unique(ready.samples.face[in_void]), np.unique(ready.samples.face[within & ~in_void])
+    return [f"F{number}" for number in np.setdiff1d(shut, others).tolist()]
 
 
 def _follows_from(ready: Prepared) -> tuple[object, ...]:

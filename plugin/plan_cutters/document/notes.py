@@ -5,6 +5,9 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from cad_io import Part
+from cad_io.part.inside_edges import folded_faces
+from cad_io.part.unjudged import CROSSES
+from cad_io.write.back import changed_by_step
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import axis_words
@@ -14,6 +17,7 @@ from plan_cutters.options import Options
 from plan_cutters.plan_file import notes
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.notes import Note
+from plan_cutters.plan_file.numbers import ranges
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.setups import notes_of_setups
@@ -30,6 +34,7 @@ def notes_of(ready: Prepared, entries: Sequence[CutterEntry]) -> list[Note]:
         *_of_samples(ready),
         *_of_sides(scene, options, ready.conditions.tolerance),
         *_of_loose_faces(ready),
+        *_of_surfaces(scene),
         *_of_obstacles(scene.part, surroundings),
         *_of_fixtures(surroundings.fixtures, options.shared_fixtures, several=bool(options.other_setups)),
         *_of_other_fixtures(ready),
@@ -109,6 +114,22 @@ def _of_cutters(options: Options, cutters: Sequence[Cutter]) -> Iterator[Note]:
         yield notes.tilts_not_searched(beyond, float(np.degrees(most)))
     if cutters and all(c.holder is None and not c.stages for c in cutters):
         yield notes.all_length_cuts()
+
+
+def _of_surfaces(scene: Scene) -> Iterator[Note]:
+    """Name surfaces of revolution that cross their axis: they are, or would come back from STEP as, others than were made."""
+    part, ignored = scene.part, set(scene.ignored)
+    faces = [f for f in part.faces if f.number not in ignored]
+    if crossing := [f.number for f in faces if f.unjudged == CROSSES]:
+        measured = [part.measure(n) for n in crossing]
+        area = sum(each.area for each in measured if each is not None)
+        yield notes.crosses_itself([f"F{n}" for n in crossing], CROSSES, area, f"--ignore {ranges(crossing)}")
+    turned = [f.number for f in faces if f.surface == "revolution" and f.unjudged is None]
+    for n, neighbour in sorted(folded_faces(part, turned).items()):
+        yield notes.folds_back(f"F{n}", part.faces[n - 1].area, f"F{neighbour}", f"--ignore F{n}")
+    for n, there in changed_by_step(part).items():
+        if n not in ignored:
+            yield notes.changed_by_step(f"F{n}", part.faces[n - 1].area, there)
 
 
 def _of_obstacles(part: Part, surroundings: Surroundings) -> Iterator[Note]:

@@ -11,7 +11,7 @@ from plan_cutters.document.answers import least_set_entry, radius_entry, stick_o
 from plan_cutters.document.build import degrees, face_entries, missing_entries, part_info, scope_of, versions
 from plan_cutters.document.effective import effective
 from plan_cutters.document.fixtures import fixture_entries
-from plan_cutters.document.inside import inside_entry
+from plan_cutters.document.inside import inside_entry, void_faces
 from plan_cutters.document.libraries import library_entry, source_entry
 from plan_cutters.document.notes import notes_of
 from plan_cutters.document.operations_entry import operations_entry
@@ -62,7 +62,7 @@ def plan_of(
     operations = _operations(ready, answers, over)
     return Plan(
         process=process_entry(ready, entries, answers, over, operations),
-        part=part_info(scene, surroundings),
+        part=part_info(scene, surroundings).model_copy(update={"void_faces": void_faces(ready)}),
         effective=effective(ready),
         versions=versions(),
         samples=SampleCounts(

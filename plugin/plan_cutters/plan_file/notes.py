@@ -6,7 +6,7 @@ To add a note, add its code, its function here, and the call where it is found.
 from collections.abc import Mapping, Sequence
 from typing import Literal, NamedTuple
 
-from plan_cutters.plan_file.numbers import angle, count, listed, mm, plainly
+from plan_cutters.plan_file.numbers import angle, area, count, listed, mm, plainly
 
 #: What a note is about. A text may be reworded; a code stays.
 NoteCode = Literal[
@@ -18,6 +18,7 @@ NoteCode = Literal[
     "travel_first_setup", "faces_clamped_there", "setup_without_fixtures", "setup_proposed",
     "stick_out_each_setup", "maps_first_setup",
     "faces_loose", "area_not_looked_at", "area_proved", "area_left", "area_unknown", "maps_partial", "run_unfinished",
+    "repeated_body", "crosses_itself", "folds_back", "changed_by_step",
 ]  # fmt: skip
 
 
@@ -203,6 +204,34 @@ def all_faces_open() -> Note:
     return Note("open_faces", "No face encloses material: only the surfaces are in the way, not what may lie behind them.")
 
 
+def crosses_itself(faces: Sequence[str], why: str, areas_mm2: float, option: str) -> Note:
+    """Faces that run through themselves, why, and the area that they have so."""
+    which, them = (f"{faces[0]} {why}", "it") if len(faces) == 1 else (f"Each of {listed(faces)} {why}", "them")
+    return Note(
+        "crosses_itself",
+        f"{which}, with {area(areas_mm2)}: STEP makes such faces larger than they were, and no verdict is about {them}. Give the "
+        f"shape in Python or as BREP, or leave {them} out: {option}.",
+    )
+
+
+def folds_back(face: str, area_mm2: float, neighbour: str, option: str) -> Note:
+    return Note(
+        "folds_back",
+        f"{face} folds back onto {neighbour}, with {area(area_mm2)}: a surface of revolution that crosses its axis comes back "
+        f"from STEP as the rest of what was made. Give the shape in Python or as BREP, or leave it out: {option}.",
+    )
+
+
+def changed_by_step(face: str, here_mm2: float, there_mm2: float) -> Note:
+    """A face of a shape comes back from STEP with another area."""
+    back = f"comes back with {area(there_mm2)} for {area(here_mm2)}" if there_mm2 > 0.0 else f"({area(here_mm2)}) is missing"
+    return Note(
+        "changed_by_step",
+        f"Written as STEP and read again, {face} {back}: its surface of revolution crosses its axis. This plan is of the shape "
+        "as it was given; its STEP models, and any other STEP of it, show another part.",
+    )
+
+
 # Of targets.
 
 
@@ -218,6 +247,24 @@ def faces_ignored(faces: Sequence[str]) -> Note:
         "faces_ignored",
         f"{_number(faces)} {_are(faces)} ignored, neither targets nor obstacles (nothing is checked against them): "
         f"{listed(faces)}.",
+    )
+
+
+def repeated_body(number: int, faces: str, stays: int, stays_faces: str) -> Note:
+    """A body of the part that lies where another one lies; number 0: a shell."""
+    name, other = (f"body {n}" if n else "a shell" for n in (number, stays))
+    return Note(
+        "repeated_body",
+        f"{name.capitalize()} ({faces}) is {other} ({stays_faces}) again, in the same place, and is left out; to leave out "
+        f"the other one: --ignore {stays_faces}.",
+    )
+
+
+def repeated_faces(faces: str, stay: str, count_: int) -> Note:
+    return Note(
+        "repeated_body",
+        f"{faces} {'is' if count_ == 1 else 'are'} {stay} again, in the same place, and left out; to leave out the "
+        f"{'other one' if count_ == 1 else 'others'}: --ignore {stay}.",
     )
 
 

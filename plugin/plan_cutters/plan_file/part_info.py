@@ -87,6 +87,9 @@ class PartInfo(Frozen):
     sheets_doubt: str = Field(
         default="", description="the warning on those of them that lie on faces of solids; empty: none does"
     )
+    void_faces: list[str] = Field(
+        default=[], description="in a closed void of a body, as far as they were judged: no cutter gets in, whatever it is"
+    )
     unit_doubt: str = Field(default="", description="the warning that makes the length unit doubtful; empty where there is none")
     unit_readings: list[UnitEntry] = Field(default=[], description="what is doubtful of what the file says about its unit")
 

@@ -56,6 +56,8 @@ _ROWS = (
            "another setup, or a clamping that leaves it free", "#88CCEE", "lines", "--"),
 )  # fmt: skip
 REASONS = {each.code: each for each in _ROWS}
+#: What is said instead of the hint where what is around a surface is the body itself.
+CLOSED_VOID = "closed void: no cutter gets in"
 #: What a cutter gouges or meets, from its lower end up, and all that forbids tilts in the map of a point: where several forbid
 #: one, the first counts.
 MET = ("local_gouge", "rear_gouge", "collision", "neck", "shank", "holder")

@@ -5,6 +5,7 @@ They show one cutter: the selected one or, where none is feasible, the one that 
 
 from collections import Counter, defaultdict
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -202,6 +203,12 @@ def fixture_meshes(result: Judged) -> list[Drawn]:
     ]
 
 
+def shown_pieces(result: Judged, split: Any) -> Any:
+    """A split part without faces in whose place others are shown."""
+    doubles = set(result.scene.doubles)
+    return replace(split, pieces=tuple(piece for piece in split.pieces if piece.face not in doubles)) if doubles else split
+
+
 def write_glb(result: Judged, split: Any, path: Path, *, merged: bool = False) -> None:
     """Write `annotated.glb`: face numbers, verdicts and reasons in `extras`."""
     shown = next(c for c in result.plan.cutters if c.id == result.shown)
@@ -223,7 +230,7 @@ def write_glb(result: Judged, split: Any, path: Path, *, merged: bool = False) -
         }
 
     write_gltf(
-        split,
+        shown_pieces(result, split),
         path,
         styles(result),
         extras=extras,

@@ -17,7 +17,7 @@ from cad_io.write.gltf import Other as Drawn
 from plan_cutters.document.fixtures import fixture_entry
 from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry
 from plan_cutters.plan_file.palette import LABELS, MEANING, parts, rgb
-from plan_cutters.report.models import face_facts, face_labels, fixture_meshes, verdict_labels, write_styled_step
+from plan_cutters.report.models import face_facts, face_labels, fixture_meshes, shown_pieces, verdict_labels, write_styled_step
 from plan_cutters.report.protocol import Judged
 
 
@@ -69,7 +69,9 @@ def write_operations_glb(result: Judged, split: Any, path: Path, *, number: int 
         known = operation.model_dump(mode="json", include={"mode", "cutter", "setup", "axis", "angles_deg", "seconds"})
         return {"face": f"F{piece.face}", "plan": plan.name, "operation": operation.id, **known}
 
-    write_gltf(split, path, _styles(result, plan), extras=extras, piece_extras=facts, others=_fixtures(result))
+    write_gltf(
+        shown_pieces(result, split), path, _styles(result, plan), extras=extras, piece_extras=facts, others=_fixtures(result)
+    )
 
 
 def write_fastest_step(result: Judged, split: Any, path: Path, *, schema: str = "ap242") -> None:

@@ -94,7 +94,7 @@ def keeps(ready: Prepared, conditions: Conditions, motion: Motion, patterns: tup
     surroundings = conditions.surroundings
     if surroundings.missing or surroundings.lost or surroundings.loose or surroundings.doubtful:
         return False
-    ignored = set(ready.scene.ignored)
+    ignored = set(ready.scene.ignored).difference(ready.scene.doubles)
     if ignored and not any(motion is m and {image[f] for f in ignored if f in image} == ignored
                            for each in patterns for m, image in zip(each.motions, each.images, strict=True)):  # fmt: skip
         return False

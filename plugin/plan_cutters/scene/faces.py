@@ -1,9 +1,10 @@
 """Which faces are to be machined and which are left out: the words of `--faces` and `--ignore`, and objects of CAD hosts."""
 
 import re
-from collections.abc import Collection, Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from numbers import Integral
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from cad_io.arrays import FaceInfo
@@ -13,7 +14,7 @@ from plan_cutters.domain.preference import free_form_share
 from plan_cutters.errors import OptionError
 from plan_cutters.plan_file import notes
 from plan_cutters.plan_file.notes import Note
-from plan_cutters.plan_file.numbers import listed
+from plan_cutters.plan_file.numbers import listed, ranges
 
 if TYPE_CHECKING:
     from cad_io import Part
@@ -55,6 +56,8 @@ class Chosen:
         Faces of the part that are fillets and rounds, whether chosen or not.
     free_form : float
         Share of the targets' area that is bent in both directions (`preference.free_form_share`).
+    repeated : mapping of int to int
+        Ignored faces that lie where others lie: which face stands for each.
     """
 
     targets: tuple[int, ...]
@@ -64,6 +67,7 @@ class Chosen:
     notes: tuple[Note, ...]
     blends: frozenset[int] = frozenset()
     free_form: float = 0.0
+    repeated: Mapping[int, int] = field(default_factory=dict)
 
 
 def choose(
@@ -73,6 +77,7 @@ def choose(
     ignore: tuple[str, ...],
     placed: Placement | None = None,
     others: Sequence[Placement | None] = (),
+    repeated: Mapping[int, int] = MappingProxyType({}),
 ) -> Chosen:
     """Target and ignored faces of a part.
 
@@ -89,6 +94,8 @@ def choose(
         Its clamped faces stay targets: they are left for another setup, and named.
     others : sequence of (Placement or None)
         Of other setups: only what is clamped in all of them, too, is left.
+    repeated : mapping of int to int
+        Faces, ignored too, that lie where others lie: which face stands for each.
 
     Raises
     ------
@@ -96,24 +103,43 @@ def choose(
         A choice has no meaning, a face is requested by its number and ignored, or every target is clamped in all setups.
     """
     requested = _word(part, part.picked or DEFAULT if faces is None else faces, "--faces")
-    targets = select_faces(part.faces, requested, tree=part.tree, ignored=ignored, blends=part.blends)
+    targets = select_faces(part.faces, requested, tree=part.tree, ignored=ignored, blends=part.blends, repeated=repeated)
     remarks = []
     if _finished(requested) and _none_sculptured(part.faces[n - 1] for n in targets):
         remarks.append(notes.faces_none_sculptured(len(targets)))
-    if ignored:
-        remarks.append(notes.faces_ignored([f"F{n}" for n in sorted(ignored)]))
-    held = clamped_faces(part, placed).intersection(*[clamped_faces(part, each) for each in others])
+    if named := set(ignored) - repeated.keys():
+        remarks.append(notes.faces_ignored([f"F{n}" for n in sorted(named)]))
+    remarks += _repeated(part, repeated)
+    held = clamped_faces(part, placed, repeated).intersection(*[clamped_faces(part, each, repeated) for each in others])
     if placed is not None and held:
         if held.issuperset(targets):
             raise OptionError(f"{placed.where} {_brief(', '.join(placed.clamped))} leaves no target face")
         if clamped := [f"F{n}" for n in targets if n in held]:
             remarks.append(notes.faces_clamped(clamped))
     share = free_form_share((part.faces[n - 1].shape, part.faces[n - 1].area) for n in targets)
-    return Chosen(targets, tuple(sorted(ignored)), requested, ignore, tuple(remarks), part.blends, share)
+    return Chosen(targets, tuple(sorted(ignored)), requested, ignore, tuple(remarks), part.blends, share, dict(repeated))
 
 
-def clamped_faces(part: "Part", placed: Placement | None) -> frozenset[int]:
-    """Numbers of the faces that are held in a setup.
+def _repeated(part: "Part", repeated: Mapping[int, int]) -> Iterator[Note]:
+    """What is left out because it lies where others of the part lie: bodies, then faces of none of these."""
+    from cad_io.part.repeats import repeats
+
+    out = set(repeated)
+    for each in repeats(part):
+        bodies = [*zip(each.bodies, each.faces, strict=False)]
+        these = [(body, faces) for body, faces in bodies if out.issuperset(faces)]
+        if not these or len(these) == len(bodies):
+            continue
+        stays, own = next(one for one in bodies if one not in these)
+        for body, faces in these:
+            yield notes.repeated_body(body, ranges(faces), stays, ranges(own))
+        out -= {n for _, faces in these for n in faces}
+    if out:
+        yield notes.repeated_faces(ranges(out), ranges({repeated[n] for n in out}), len(out))
+
+
+def clamped_faces(part: "Part", placed: Placement | None, repeated: Mapping[int, int] = MappingProxyType({})) -> frozenset[int]:
+    """Numbers of the faces that are held in a setup; of what is `repeated`, those that stand for it.
 
     Raises
     ------
@@ -123,7 +149,7 @@ def clamped_faces(part: "Part", placed: Placement | None) -> frozenset[int]:
     if placed is None:
         return frozenset()
     words = (_selected(part.faces, text, part.tree, placed.where, part.blends) for text in placed.clamped)
-    return frozenset().union(*words)
+    return frozenset(repeated.get(n, n) for n in set[int]().union(*words))
 
 
 def ignored_words(part: "Part", ignore: Any) -> tuple[str, ...]:
@@ -157,6 +183,7 @@ def select_faces(
     tree: "Sequence[Node]" = (),
     ignored: Iterable[int] = (),
     blends: Collection[int] = (),
+    repeated: Mapping[int, int] = MappingProxyType({}),
 ) -> tuple[int, ...]:
     """Numbers of the target faces, ascending.
 
@@ -174,6 +201,8 @@ def select_faces(
         Faces that cannot be targets.
     blends : collection of int
         Numbers of the faces that are fillets and rounds.
+    repeated : mapping of int to int
+        Faces that lie where others lie, and which one is taken for each.
 
     Raises
     ------
@@ -186,7 +215,7 @@ def select_faces(
     if _finished(text) and _none_sculptured(remaining):
         chosen = [f.number for f in remaining]
     else:
-        selected = _selected(faces, text, tree, "--faces", blends)
+        selected = {repeated.get(n, n) for n in _selected(faces, text, tree, "--faces", blends)}
         both = out & selected
         if both and _NUMBERS.fullmatch(text.strip()):
             raise OptionError(f"--faces {_brief(text)}: F{min(both)} is ignored (--ignore): it cannot be a target")

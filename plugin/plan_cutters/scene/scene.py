@@ -1,6 +1,6 @@
 """A part as it stands to be judged: its faces' sides, what is in the way, and the tolerance that can be kept."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Unpack, get_type_hints
 
@@ -9,6 +9,7 @@ import numpy as np
 from cad_io import Orientation, Part, read_part
 from cad_io.arrays import Record
 from cad_io.part.orient import orient
+from cad_io.part.repeats import repeated_faces, repeats
 from cad_io.tessellate.triangles import At
 from plan_cutters.domain.checks import flag, number
 from plan_cutters.domain.clamping import Clamping
@@ -60,7 +61,9 @@ class Scene(Record):
     ignore : tuple of str
         The words for faces that are neither targets nor obstacles.
     ignored : tuple of int
-        Their numbers, ascending.
+        Their numbers, ascending, and those of `repeated`.
+    repeated : mapping of int to int
+        Faces of bodies that are there more than once in one place: by number, which face stands for it.
     asked : float
         The gouge tolerance that was requested, mm.
     fixtures : tuple of Fixture
@@ -78,6 +81,7 @@ class Scene(Record):
     asked: float
     fixtures: tuple[Fixture, ...] = ()
     targets: tuple[int, ...] = ()
+    repeated: Mapping[int, int] = field(default_factory=dict)
     _memory: _Memory = field(default_factory=_Memory, init=False, compare=False)
 
     @classmethod
@@ -130,8 +134,10 @@ class Scene(Record):
             return part.clamped(fixtures) if "fixtures" in options else part
         whole = part if isinstance(part, Part) else read_part(part)
         words = ignored_words(whole, result["ignore"])
-        ignored = tuple(sorted(ignored_faces(whole, words)))
-        return cls(whole, orient(whole, towards=setup, flip=flip), setup, flip, words, ignored, tolerance, fixtures)
+        requested = ignored_faces(whole, words)
+        again = repeated_faces(whole, requested)
+        ignored, orientation = tuple(sorted({*requested, *again})), orient(whole, towards=setup, flip=flip)
+        return cls(whole, orientation, setup, flip, words, ignored, tolerance, fixtures, repeated=again)
 
     def clamped(self, fixtures: Any) -> "Scene":
         """The same part with other fixtures, given as in `Options`: it is not tessellated again."""
@@ -149,6 +155,21 @@ class Scene(Record):
         scene = replace(self, **changes)
         scene._memory.sources, scene._memory.alone = self._memory.sources, self._memory.alone
         return scene
+
+    @property
+    def doubles(self) -> tuple[int, ...]:
+        """Ignored faces, ascending, in whose place other faces stand: without them the part is the same."""
+        out = set(self.ignored)
+        return tuple(
+            sorted(
+                n
+                for each in repeats(self.part)
+                if any(out.isdisjoint(faces) for faces in each.faces)
+                for faces in each.faces
+                for n in faces
+                if n in out
+            )
+        )
 
     def turned_faces(self) -> tuple[str, ...]:
         """List the faces whose side is a guess towards the setup axis, and would be the other with the part's own Z as setup."""

@@ -80,7 +80,7 @@ def with_setups(ready: Prepared, conditions: list[Conditions]) -> Prepared:
 def _samples_of(ready: Prepared, place: Placement | None, conditions: Conditions) -> NDArray[np.bool_]:
     """Samples (n,) of the faces that a setup clamps, or with which the part rests in a vise or chuck."""
     rests_on = [number for each in conditions.surroundings.fixtures if each.hold is not None for number in each.hold.rests_on]
-    return np.isin(ready.samples.face, sorted({*clamped_faces(ready.scene.part, place), *rests_on}))
+    return np.isin(ready.samples.face, sorted({*clamped_faces(ready.scene.part, place, ready.scene.repeated), *rests_on}))
 
 
 def stood_on(ready: Prepared) -> NDArray[np.bool_]:
@@ -110,7 +110,7 @@ def notes_of_setups(ready: Prepared) -> Iterator[Note]:
         return
     axes = (ready.scene.setup, *ready.options.other_setups)
     for axis, place, conditions in zip(axes, places(ready.options), ready.setups, strict=True):
-        held = sorted(clamped_faces(ready.scene.part, place) & set(ready.chosen.targets))
+        held = sorted(clamped_faces(ready.scene.part, place, ready.scene.repeated) & set(ready.chosen.targets))
         if held:
             yield notes.faces_clamped_there([f"F{number}" for number in held], axis_words(axis))
         if not conditions.surroundings.fixtures:

@@ -10,6 +10,7 @@ from cad_io import Part
 from cad_io.arrays import Floats, LostFace, Record, Triangles, rows_by_face
 from cad_io.part.bodies import Body, bodies
 from cad_io.part.boxes import face_box
+from cad_io.part.unjudged import CROSSES
 from cad_io.read.mesh import Mesh
 from cad_io.tessellate import tessellate
 from cad_io.tessellate.proxies import StandIn, StandIns, stand_ins
@@ -18,6 +19,7 @@ from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.tolerance import effective_tolerance
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.files.stage_cache import NO_CACHE, NoStageCache, StageCache
+from plan_cutters.plan_file.numbers import ranges
 from plan_cutters.scene.holds import Hold
 from plan_cutters.scene.obstacles import Obstacles, weights
 from plan_cutters.scene.thickened import boxed, thickened
@@ -180,6 +182,11 @@ def surroundings(
     triangles = tessellate(part, chord, faces=faces, jobs=jobs, at=at)
     if not len(triangles):
         causes = "; ".join(sorted({why for _, why in triangles.missing}))
+        turned = [f.number for f in part.faces if f.unjudged == CROSSES and f.number not in ignored]
+        if turned:
+            which = f"{ranges(turned)} {CROSSES}"
+            remedy = "STEP makes such faces larger than they were, so give the shape in Python or as BREP"
+            raise UnjudgeableError(f"{which}, and no other face can be in the way: {remedy}", file=part.file)
         raise UnjudgeableError(f"no face has triangles that could be in the way: {causes or 'all are left out'}", file=part.file)
     result = bodies(part, without=ignored)
     loose = dict(triangles.loose)

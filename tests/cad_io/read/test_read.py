@@ -11,7 +11,7 @@ from OCP.BRep import BRep_Builder
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace
 from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism, BRepPrimAPI_MakeRevol
 from OCP.BRepTools import BRepTools
-from OCP.Geom import Geom_BSplineCurve, Geom_SphericalSurface
+from OCP.Geom import Geom_BSplineCurve, Geom_CylindricalSurface
 from OCP.gp import gp_Ax1, gp_Ax3, gp_Dir, gp_Pnt, gp_Vec
 from OCP.IGESControl import IGESControl_Writer
 from OCP.Interface import Interface_Static
@@ -266,11 +266,11 @@ def test_faces_that_cannot_be_judged_say_why():
     builder = BRep_Builder()
     bare, edgeless = TopoDS_Face(), TopoDS_Face()
     builder.MakeFace(bare)
-    builder.MakeFace(edgeless, Geom_SphericalSurface(gp_Ax3(), 3.0), TopLoc_Location(), 1e-6)
+    builder.MakeFace(edgeless, Geom_CylindricalSurface(gp_Ax3(), 3.0), TopLoc_Location(), 1e-6)
     part = read_part(compound(box(), bare, edgeless))
     assert [f.unjudged for f in part.faces[:6]] == [None] * 6
     assert all(f.unjudged for f in part.faces[6:])
-    assert part.faces[7].unjudged == "has no edges"
+    assert part.faces[7].unjudged == "has no edges and no end: bound it"
 
 
 # --- bad input -------------------------------------------------------------------------------------------------------
@@ -410,7 +410,7 @@ def test_sniffing_skips_comments_before_the_keyword():
 def test_trimmed_planes_without_size_are_not_parts():
     from OCP.gp import gp_Pln
 
-    fails(BRepBuilderAPI_MakeFace(gp_Pln()).Face(), "finite size|no surface")
+    fails(BRepBuilderAPI_MakeFace(gp_Pln()).Face(), "has no edges and no end|no surface")
 
 
 @pytest.mark.parametrize(("written", "told"), [("Blade", "Blade"), ("NONE", ""), ("=>[0:1:1:2]", ""), ("=>[a]", "=>[a]")])

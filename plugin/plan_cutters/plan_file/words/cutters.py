@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan, WitnessEntry
 from plan_cutters.plan_file.numbers import angle, capital, figure, listed, mm, percent, place, reported, unit
-from plan_cutters.plan_file.reasons import REASONS
+from plan_cutters.plan_file.reasons import REASONS, Reason
 from plan_cutters.plan_file.shares import VERDICTS, AreaShare, part_of, reached, unreached
 from plan_cutters.plan_file.words.headline import area, between, every
 from plan_cutters.plan_file.words.names import described, named
@@ -81,7 +81,7 @@ def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:
         reached=reached(c, c.area_share),
         shares={word: part_of(c, c.area_share, [word]) for word in VERDICTS},
         reason=main.name if main else "",
-        hint=main.hint if main else "",
+        hint=_hint(plan, c, main) if main else "",
         besides=_besides(c),
         sentence=loss or _reaches(plan, c, name),
         next=_next(plan, c),
@@ -90,6 +90,12 @@ def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:
         faces=tuple(faces),
         failing=failing,
     )
+
+
+def _hint(plan: Plan, c: CutterEntry, main: Reason) -> str:
+    """The thing to try first; nothing where all that lies inside material is the wall of a closed void."""
+    enclosed = {face for face, each in c.faces.items() if each.area_share.lost_by.get("buried")}
+    return "" if main.code == "buried" and enclosed <= set(plan.part.void_faces) else main.hint
 
 
 def main_reason(share: AreaShare) -> str:

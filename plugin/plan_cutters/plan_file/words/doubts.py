@@ -28,7 +28,7 @@ def doubts(plan: Plan) -> list[str]:
     list of str
         Whole sentences.
     """
-    each = (_unfinished, _coarser, _unit, _travel, _held, _unheld, _side, _sheets, _tolerance)
+    each = (_unfinished, _coarser, _surfaces, _unit, _travel, _held, _unheld, _side, _sheets, _tolerance)
     return [named(plan, line) for doubt in each for line in doubt(plan)]
 
 
@@ -43,6 +43,12 @@ def _unfinished(plan: Plan) -> Iterator[str]:
 
 def _coarser(plan: Plan) -> Iterator[str]:
     yield from (text for code, text in zip(plan.note_codes, plan.notes, strict=False) if code == "coarser_than_requested")
+
+
+def _surfaces(plan: Plan) -> Iterator[str]:
+    """What is there twice, and what is not the surface that was made."""
+    noted = [*zip(plan.note_codes, plan.notes, strict=False)]
+    yield from (text for code, text in noted if code in ("repeated_body", "crosses_itself", "folds_back", "changed_by_step"))
 
 
 def _unit(plan: Plan) -> Iterator[str]:

@@ -9,7 +9,7 @@ from plan_cutters.domain.answer_kinds import WORTH
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.numbers import area, count, duration, listed, mm, percent, place
 from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, NextEntry, ProcessEntry, ProcessStep, RemainingEntry
-from plan_cutters.plan_file.reasons import REASONS
+from plan_cutters.plan_file.reasons import CLOSED_VOID, REASONS
 from plan_cutters.plan_file.words.doubts import doubts
 from plan_cutters.plan_file.words.names import named
 from plan_cutters.plan_file.words.next_steps import is_excluded
@@ -110,9 +110,9 @@ def with_process_words(plan: Plan) -> Plan:
         step if step.own is None else step.model_copy(update={"own": step.own.model_copy(update={"text": fault(k, step)})})
         for k, step in enumerate(plan.process.steps, 1)
     ]
-    update = {"steps": steps, "left": needed, "next": list(_next_entries(plan)), "doubts": doubts(plan)}
-    process = plan.process.model_copy(update=update)
-    return plan.model_copy(update={"process": process})
+    process = plan.process.model_copy(update={"steps": steps, "left": needed, "doubts": doubts(plan)})
+    plan = plan.model_copy(update={"process": process})
+    return plan.model_copy(update={"process": process.model_copy(update={"next": list(_next_entries(plan))})})
 
 
 def cause_text(cause: str) -> str:
@@ -188,6 +188,10 @@ def _needs(plan: Plan, entry: RemainingEntry) -> str:
         least = min(radii, key=lambda each: each.radius_mm)
         fits = f"D{least.fits_mm:g} fits" if least.fits_mm else "no usual size fits"
         return f"the inside radius of {least.face} is {mm(least.radius_mm)}, {fits}"
+    if entry.cause == "buried" and (shut := [face for face in entry.faces if face in plan.part.void_faces]):
+        if len(shut) == len(entry.faces):
+            return CLOSED_VOID
+        return f"{CLOSED_VOID} at {listed(shut, _FACES)}; for the rest {REASONS[entry.cause].hint}"
     if entry.cause == UNJUDGED_CAUSE:
         return next((face.unjudged for face in plan.faces if face.id in faces and face.unjudged), "") or ""
     return REASONS[entry.cause].hint if entry.cause in REASONS else ""
@@ -196,7 +200,7 @@ def _needs(plan: Plan, entry: RemainingEntry) -> str:
 def _next_entries(plan: Plan) -> Iterator[NextEntry]:
     """The best next steps of the cutter that the plan shows, or the answer to ask for."""
     process = plan.process
-    if process is None or process.finished:
+    if process is None or all(each.cause == UNJUDGED_CAUSE or each.needs == CLOSED_VOID for each in process.left):
         return
     entry, left = shown_cutter(plan), 1.0 - process.finished_share
     if entry.mend is not None:

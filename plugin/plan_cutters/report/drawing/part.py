@@ -22,6 +22,7 @@ from plan_cutters.plan_file.words.details import rendered
 from plan_cutters.plan_file.words.names import short_names
 from plan_cutters.report.drawing.sheet import DPI, Look, figure, fitting, legend, printable, save, standard, write
 from plan_cutters.report.drawing.view import Body, View, averaged, borders, fitted, frame_towards, view
+from plan_cutters.report.models import shown_pieces
 from plan_cutters.report.protocol import Judged
 
 #: Inches: the sheet, and each view.
@@ -58,7 +59,7 @@ def write_png(result: Judged, split: Any, path: Path) -> None:
     shows. The same result gives the same bytes.
     """
     with translated("meshing", error=WriteError, file=str(path)):
-        meshes = [(piece, mesh) for piece, mesh in meshes_of(split) if mesh is not None]
+        meshes = [(piece, mesh) for piece, mesh in meshes_of(shown_pieces(result, split)) if mesh is not None]
     if not meshes:
         raise WriteError("the CAD kernel made no triangle of the part", file=str(path))
     mixed = LABELS.index("mixed")

@@ -92,7 +92,9 @@ def page(
         UTF-8; the same for the same plan.
     """
     chord = _chord(result.plan, triangles)
-    faces = render_mesh(result.part, result.scene.orientation.sign, most=triangles, deflection=chord)
+    # Of two faces in one place the one that was judged is shown.
+    scene = result.scene
+    faces = render_mesh(result.part, scene.orientation.sign, most=triangles, deflection=chord, without=scene.doubles)
     atlas = atlas_of(result.samples)
     surface = surface_of(result, faces, atlas)
     box = box_of(surface, result.samples)
