@@ -10,6 +10,7 @@ from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters.plan_file.shares import VERDICTS, AreaShare, part_of, reached, unreached
 from plan_cutters.plan_file.words.headline import area, between, every
 from plan_cutters.plan_file.words.names import described, named
+from plan_cutters.plan_file.words.needs import first_tries
 from plan_cutters.plan_file.words.next_steps import cures, first_step, step_text
 
 #: Faces that are named on which a cutter leaves something.
@@ -81,7 +82,7 @@ def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:
         reached=reached(c, c.area_share),
         shares={word: part_of(c, c.area_share, [word]) for word in VERDICTS},
         reason=main.name if main else "",
-        hint=main.hint if main else "",
+        hint=first_tries(main.code, c.mend) if main else "",
         besides=_besides(c),
         sentence=loss or _reaches(plan, c, name),
         next=_next(plan, c),
