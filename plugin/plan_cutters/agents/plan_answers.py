@@ -194,10 +194,10 @@ def _of_point(postures: Postures | None, sample: Sample | None) -> Iterator[str]
         )
 
 
-def _reason(code: str, share: float, mend: MendEntry | None = None) -> Reason:
+def _reason(code: str, share: float, what_if: MendEntry | None = None) -> Reason:
     known = REASONS.get(code)
     return Reason(
-        code=code, name=reason(code), meaning=known.sentence if known else "", try_first=first_tries(code, mend), share=share
+        code=code, name=reason(code), meaning=known.sentence if known else "", try_first=first_tries(code, what_if), share=share
     )
 
 

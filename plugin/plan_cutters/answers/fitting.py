@@ -49,7 +49,7 @@ def fitting(ready: Prepared, cutter: Cutter, rows: Rows, area: Floats) -> tuple[
     bare = (replace(made, length=cutter.length, flutes=None, neck=None, shank_radius=None) for made in smaller(cutter, MOST))
     sizes = [made for made in bare if conditions.judges(made)]
 
-    # Of each sample the largest size that is known to reach it, and the smallest that is known not to: each is taken to reach what
+    # Of each sample the largest size that is known to reach it, and the smallest that does not: each is taken to reach what
     # those before it reach, as round and flat ends of one length do but for what their holders meet.
     reaches, fails = np.full(len(few), len(sizes)), np.full(len(few), -1)
 

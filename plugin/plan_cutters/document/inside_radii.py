@@ -9,9 +9,9 @@ from plan_cutters.domain.verdicts import LOCAL_GOUGE, REAR_GOUGE, Verdicts
 from plan_cutters.plan_file.inside_radii import InsideRadiusEntry
 from plan_cutters.scene.preparation import Prepared
 
-#: A face of which less is lost is named only where no face loses more, mm2.
+#: A face of which less is gouged is named only where there is no other, mm2.
 _NAMED = 1.0
-#: Of the area that is lost, the share that has the radius that is told, or a larger one: one bad place does not speak for all.
+#: Of the area that is gouged, the share that has the radius that is told, or a larger one: one bad place does not speak for all.
 _MOST = 0.9
 #: Nearer to its apex than this share of its reach, the border of a cone is there.
 _AT_APEX = 1e-6
@@ -28,17 +28,17 @@ def inside_radius_entries(ready: Prepared, cutter: Cutter, verdicts: Verdicts) -
         return []
     entries = []
     for number, rows in samples.by_face().items():
-        lost = rows[gouged[rows]]
-        if not len(lost) or ends_in_a_point(ready, number, lost):
+        mine = rows[gouged[rows]]
+        if not len(mine) or ends_in_a_point(ready, number, mine):
             continue
-        inside = _inside_radius(ready, lost)
+        inside = _inside_radius(ready, mine)
         if 0.0 < inside < radius * (1.0 - 1e-6):
             entries.append(
                 InsideRadiusEntry(
                     face=f"F{number}",
                     radius_mm=inside,
                     cutter_radius_mm=radius,
-                    area_mm2=float(np.nansum(samples.area[lost])),
+                    area_mm2=float(np.nansum(samples.area[mine])),
                     fits_mm=largest_fitting(inside, cutter.allowance or 0.0),
                 )
             )
@@ -46,13 +46,13 @@ def inside_radius_entries(ready: Prepared, cutter: Cutter, verdicts: Verdicts) -
     return sorted(named, key=lambda each: (each.radius_mm, each.face))
 
 
-def _inside_radius(ready: Prepared, lost: NDArray[np.int64]) -> float:
+def _inside_radius(ready: Prepared, mine: NDArray[np.int64]) -> float:
     """Inside radius that most of the area of some samples (m,) of a face has, or a larger one, mm, by the kernel's curvature.
 
     Infinite where that does not bend inwards.
     """
-    bends = ready.samples.curvature[lost, 0]
-    area = np.where(np.isfinite(ready.samples.area[lost]), ready.samples.area[lost], 0.0).clip(min=0.0)
+    bends = ready.samples.curvature[mine, 0]
+    area = np.where(np.isfinite(ready.samples.area[mine]), ready.samples.area[mine], 0.0).clip(min=0.0)
     known = np.isfinite(bends)
     bends, area = bends[known], area[known] if area[known].sum() > 0.0 else np.ones(int(known.sum()))
     if not len(bends):

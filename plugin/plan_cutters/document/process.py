@@ -81,9 +81,9 @@ def process_entry(
                   seconds=None, clearance_mm=None)
             for setup, cutter, mine in runs
         ]  # fmt: skip
-    mend = answers.mends.get(shown)
+    what_if = answers.mends.get(shown)
     left = remaining(
-        ready, done, reasons(entries, over, steps, done), area, requested, () if mend is None else mend.steps, fitting
+        ready, done, reasons(entries, over, steps, done), area, requested, () if what_if is None else what_if.steps, fitting
     )
     finished = float(area[done].sum())
     share = exact(finished / max(1e-300, requested), some=bool(done.any()), whole=not left)

@@ -1,4 +1,4 @@
-"""What a process leaves becomes entries of the plan file here, by cause, with what is known to help there."""
+"""Make what a process leaves entries of the plan file, by cause, with what is known to help there."""
 
 from collections.abc import Sequence
 from typing import NamedTuple
@@ -61,7 +61,7 @@ def remaining(
     ready: Prepared, done: NDArray[np.bool_], why: Reasons, area: Floats, requested: float, steps: Sequence[Step] = (),
     fitting: Fitting | None = None,
 ) -> list[RemainingEntry]:  # fmt: skip
-    """What is left by cause, the largest area first.
+    """List what is left by cause, the largest area first.
 
     Parameters
     ----------

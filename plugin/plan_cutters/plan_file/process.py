@@ -50,8 +50,8 @@ class RemainingEntry(Frozen):
     place_mm: Vector | None = Field(description="a sample in the middle of it, on the first of the faces")
     fits: list[FitEntry] | None = Field(
         default=None,
-        description="where the flutes gouge or meet the part: the largest usual size that reaches most of it, and one that reaches more; empty where "
-        "none reaches any; null where that was not judged",
+        description="where flutes gouge or meet the part: the largest usual size that reaches most of it, and one that reaches "
+        "more; empty where none reaches any; null where that was not judged",
     )
     points: PointsEntry | None = Field(default=None, description="null where there are none")
     helped: list[HelpEntry] = Field(default=[], description="the most first")

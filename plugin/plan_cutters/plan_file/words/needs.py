@@ -19,7 +19,7 @@ _ALIKE = 0.05
 
 
 def needs(plan: Plan, entry: RemainingEntry) -> str:
-    """What would help against a cause, in a clause; empty where nothing is known."""
+    """Say what would help against a cause, in a clause; empty where nothing is known."""
     if entry.cause == "sharp_edge" and plan.sharp_edges:
         return f"the model has no fillet there, and the cutter leaves one of R{plan.sharp_edges[0].radius_mm:.4g}"
     if entry.cause == UNJUDGED_CAUSE:
@@ -27,11 +27,11 @@ def needs(plan: Plan, entry: RemainingEntry) -> str:
         return next((face.unjudged for face in plan.faces if face.id in faces and face.unjudged), "") or ""
     if entry.cause not in REASONS:
         return ""
-    mend = shown_cutter(plan).mend
-    hint = first_tries(entry.cause, mend)
-    if mend is not None and (best := _best(entry, mend)) is not None:
-        what = re.sub(r" \([^()]*\)|,? for the rest$", "", mend.steps[best.step].why)
-        first, share = f"{what} {'may finish' if mend.unsure else 'finishes'} {_share(best.share)} of it", best.share
+    what_if = shown_cutter(plan).mend
+    hint = first_tries(entry.cause, what_if)
+    if what_if is not None and (best := _best(entry, what_if)) is not None:
+        what = re.sub(r" \([^()]*\)|,? for the rest$", "", what_if.steps[best.step].why)
+        first, share = f"{what} {'may finish' if what_if.unsure else 'finishes'} {_share(best.share)} of it", best.share
     elif hint and entry.fits is not None:
         # What was judged says more than a hint; a size that reaches next to nothing is none that fits.
         first = _sizes(entry.fits)
@@ -42,25 +42,27 @@ def needs(plan: Plan, entry: RemainingEntry) -> str:
     return "; ".join(filter(None, (first or ("" if points else "no usual size fits"), points)))
 
 
-def _best(entry: RemainingEntry, mend: MendEntry) -> HelpEntry | None:
+def _best(entry: RemainingEntry, what_if: MendEntry) -> HelpEntry | None:
     """The step that does most of an area, one of fewer changes where that does hardly less; None where none does much."""
-    known = [each for each in entry.helped if each.step < len(mend.steps) and each.share >= _HELPS]
+    known = [each for each in entry.helped if each.step < len(what_if.steps) and each.share >= _HELPS]
     enough = [each for each in known if each.share >= known[0].share - _ALIKE]
-    return min(enough, key=lambda each: (len(mend.steps[each.step].changes), -each.share, each.step), default=None)
+    return min(enough, key=lambda each: (len(what_if.steps[each.step].changes), -each.share, each.step), default=None)
 
 
-def first_tries(cause: str, mend: MendEntry | None) -> str:
-    """What to try first against a cause, but for what an answer found to be of no use; empty where that is all of it."""
+def first_tries(cause: str, what_if: MendEntry | None) -> str:
+    """Say what to try first against a cause, but for what an answer found to be of no use; empty where that is all of it."""
     if cause not in REASONS:
         return ""
-    return ", or ".join(words for words, means in REASONS[cause].tries if not (means and all(_refuted(mend, m) for m in means)))
+    return ", or ".join(
+        words for words, means in REASONS[cause].tries if not (means and all(_refuted(what_if, m) for m in means))
+    )
 
 
-def _refuted(mend: MendEntry | None, means: str) -> bool:
+def _refuted(what_if: MendEntry | None, means: str) -> bool:
     """Whether a change was looked for, and neither finishes nor is a step."""
-    if mend is None or not mend.steps or any(change.thing == means for step in mend.steps for change in step.changes):
+    if what_if is None or not what_if.steps or any(change.thing == means for step in what_if.steps for change in step.changes):
         return False
-    return all(change.helps is False for change in mend.changes if change.thing == means)
+    return all(change.helps is False for change in what_if.changes if change.thing == means)
 
 
 def _sizes(fits: list[FitEntry]) -> str:
