@@ -5,7 +5,7 @@ import re
 
 from plan_cutters.plan_file.answers import MendEntry
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import listed, percent
+from plan_cutters.plan_file.numbers import listed, percent, reported
 from plan_cutters.plan_file.process import UNJUDGED_CAUSE, FitEntry, HelpEntry, RemainingEntry
 from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters.plan_file.words.scope import shown_cutter
@@ -21,7 +21,7 @@ _ALIKE = 0.05
 def needs(plan: Plan, entry: RemainingEntry) -> str:
     """Say what would help against a cause, in a clause; empty where nothing is known."""
     if entry.cause == "sharp_edge" and plan.sharp_edges:
-        return f"the model has no fillet there, and the cutter leaves one of R{plan.sharp_edges[0].radius_mm:.4g}"
+        return f"the model has no fillet there, and the cutter leaves one of R{reported(plan.sharp_edges[0].radius_mm):.4g}"
     if entry.cause == UNJUDGED_CAUSE:
         faces = set(entry.faces)
         return next((face.unjudged for face in plan.faces if face.id in faces and face.unjudged), "") or ""
