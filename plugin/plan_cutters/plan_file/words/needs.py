@@ -3,6 +3,7 @@
 import math
 import re
 
+from plan_cutters.domain.change import THINGS
 from plan_cutters.plan_file.answers import MendEntry
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.numbers import listed, percent, reported
@@ -62,7 +63,8 @@ def _refuted(what_if: MendEntry | None, means: str) -> bool:
     """Whether a change was looked for, and neither finishes nor is a step."""
     if what_if is None or not what_if.steps or any(change.thing == means for step in what_if.steps for change in step.changes):
         return False
-    return all(change.helps is False for change in what_if.changes if change.thing == means)
+    changes = [change for change in what_if.changes if change.thing == means]
+    return (bool(changes) or means not in THINGS) and all(change.helps is False for change in changes)
 
 
 def _sizes(fits: list[FitEntry]) -> str:
