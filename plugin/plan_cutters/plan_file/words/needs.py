@@ -44,10 +44,14 @@ def needs(plan: Plan, entry: RemainingEntry) -> str:
 
 
 def _best(entry: RemainingEntry, what_if: MendEntry) -> HelpEntry | None:
-    """The step that does most of an area, one of fewer changes where that does hardly less; None where none does much."""
+    """The step that does most of an area; where others do hardly less, one on the same machine, of fewer changes."""
     known = [each for each in entry.helped if each.step < len(what_if.steps) and each.share >= _HELPS]
-    enough = [each for each in known if each.share >= known[0].share - _ALIKE]
-    return min(enough, key=lambda each: (len(what_if.steps[each.step].changes), -each.share, each.step), default=None)
+
+    def effort(each: HelpEntry) -> tuple[bool, int, float, int]:
+        things = [change.thing for change in what_if.steps[each.step].changes]
+        return "tilt_limit" in things, len(things), -each.share, each.step
+
+    return min((each for each in known if each.share >= known[0].share - _ALIKE), key=effort, default=None)
 
 
 def first_tries(cause: str, what_if: MendEntry | None) -> str:
