@@ -15,7 +15,7 @@ from plan_cutters.domain.standard_tools import MOST, smaller
 from plan_cutters.scene.preparation import Prepared
 
 #: Samples on which sizes are compared, at most.
-_LOOKED_AT = 256
+_LOOKED_AT = 128
 #: What a second size reaches more than the first one, at least, a share of the area.
 _MORE = 0.1
 
