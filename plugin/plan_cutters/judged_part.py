@@ -8,8 +8,9 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Ints
+from cad_io.arrays import Floats, Ints
 from cad_io.part.inside_edges import inside_edges
+from plan_cutters.answers.fitting import fitting
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.inside_radii import inside_radius_entries
@@ -20,7 +21,9 @@ from plan_cutters.document.setup_table import setup_table
 from plan_cutters.document.sharp_edges import sharp_edge_entries
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.fillet import Fit
 from plan_cutters.domain.over_setups import over_setups
+from plan_cutters.domain.spec import notation
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import CONVEX, Verdicts
 from plan_cutters.files.stage_cache import NO_CACHE
@@ -218,8 +221,17 @@ def assembled(part: JudgedPart, clock: Clock, answers: Answers, between: Mapping
         tool, its = next((cutter, each) for cutter, each in judged.items() if cutter.id == shown)
         radii, table = inside_radius_entries(ready, tool, its.verdicts), setup_table(ready, within, over)
         equal = pattern_entries(ready.patterns, part.carried)
-        document = plan_of(ready, entries, selected, chosen, part.started, answers, over, table, its.strips, radii, equal)
+        document = plan_of(ready, entries, selected, chosen, part.started, answers, over, table, its.strips, radii, equal,
+                           partial(_fitting, ready))  # fmt: skip
     return Result(clock.stamp(with_text(document)), ready, over, part.travels, answers)
+
+
+def _fitting(ready: Prepared, cutter: Cutter, rows: NDArray[np.int64], area: Floats) -> tuple[Fit, ...] | None:
+    """Usual sizes that reach most of some samples that a cutter gouges."""
+    follows_from = _grounds(ready), ready.scene.part.key, replace(cutter, name=""), rows, area[rows]
+    # A name says whether it was given in inches.
+    inches = notation(cutter.name).inches
+    return ready.cache.cached("fits", (*follows_from, inches), partial(fitting, ready, cutter, rows, area))
 
 
 def _grounds(ready: Prepared) -> list[bytes]:

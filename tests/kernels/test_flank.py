@@ -13,6 +13,7 @@ from plan_cutters.kernels.search.search import probe
 from plan_cutters.scene.conditions import tool_of
 from plan_cutters.scene.obstacles import Obstacles
 
+UP = np.array([[0.0, 0.0, 1.0]])
 CUTTERS = {
     "necked": Cutter.parse("D12L60F20N7x25S12"),
     "slot": Cutter(
@@ -47,8 +48,9 @@ def solved(corner, cutter, away=(0.0,)):
     tool = tool_of(assembly(cutter, 0.0, 0.0))
     solids = Obstacles(Triangles(corner, np.ones(len(corner), np.int32), 0.0, ())).solids
     state, shift, reason = np.zeros(1, np.int8), np.zeros((1, 3)), np.zeros(1, np.uint8)
-    along_flank(np.zeros(1, np.int64), np.array([[0.0, 0.0, 1.0]]), contact, flank.mode, flank.length, np.array(away), tool, solids,
-                0.5, state, shift, reason)  # fmt: skip
+    along_flank(
+        np.zeros(1, np.int64), UP, contact, flank.mode, flank.length, np.array(away), tool, solids, 0.5, state, shift, reason
+    )
     return int(state[0]), shift[0], contact, flank, tool, solids
 
 
@@ -86,7 +88,8 @@ def test_what_keeps_off_the_surface_may_serve():
     corner = np.array([[[0.05, -40.0, -99.0], [0.05, 40.0, -99.0], [0.05, 0.0, 99.0]]])
     assert solved(corner, CUTTERS["necked"])[0] == NONE
     state, shift, contact, *_ = solved(corner, CUTTERS["necked"], (0.0, 0.1))
-    assert state == FREE and shift @ contact.normal[0] == pytest.approx(0.1)
+    assert state == FREE
+    assert shift @ contact.normal[0] == pytest.approx(0.1)
 
 
 def test_what_is_no_number_is_in_the_way():
@@ -96,7 +99,7 @@ def test_what_is_no_number_is_in_the_way():
     broken = solids.tree.vertex.copy()
     broken[0, 1] = np.nan
     state = np.zeros(1, np.int8)
-    along_flank(np.zeros(1, np.int64), np.array([[0.0, 0.0, 1.0]]), contact, flank.mode, flank.length, np.zeros(1),
-                tool_of(assembly(CUTTERS["slot"], 0.0, 0.0)), solids._replace(tree=solids.tree._replace(vertex=broken)), 0.5, state,
+    tool, solids = tool_of(assembly(CUTTERS["slot"], 0.0, 0.0)), solids._replace(tree=solids.tree._replace(vertex=broken))
+    along_flank(np.zeros(1, np.int64), UP, contact, flank.mode, flank.length, np.zeros(1), tool, solids, 0.5, state,
                 np.zeros((1, 3)), np.zeros(1, np.uint8))  # fmt: skip
     assert state[0] in (NONE, UNKNOWN)

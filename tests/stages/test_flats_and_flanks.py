@@ -71,7 +71,8 @@ def test_it_is_the_flank_that_is_in_the_way_not_the_axis_limit():
     # At the ends of the groove another axis would reach what is under the ledge.
     under &= np.abs(result.samples.point[:, 1] + 0.5 * LENGTH) < 5.0
     found = verdicts(result)
-    assert under.any() and not found.reached[under].any()
+    assert under.any()
+    assert not found.reached[under].any()
     assert AXIS_LIMIT not in found.reason[under], [REASONS[k] for k in np.unique(found.reason[under])]
 
 
@@ -91,14 +92,16 @@ def test_no_wall_is_cut_deeper_than_the_tolerance_and_none_keeps_more(height, sh
 def test_a_machine_with_more_axes_reaches_no_less(share):
     part = leaning(share * limit(8.0), 8.0)
     few, more, most = (verdicts(judged(part, machine=machine)).reached for machine in MACHINES)
-    assert not (few & ~more).any() and not (more & ~most).any()
+    assert not (few & ~more).any()
+    assert not (more & ~most).any()
 
 
 def test_the_accuracy_of_the_axes_makes_walls():
     """30 mm high, off by 0.03 deg: the flank cuts the upper part of it within the tolerance."""
     part = leaning(0.03, 20.0)
     reached = [verdicts(judged(part, axis_accuracy_deg=deg)).reached[within_groove(judged(part))].mean() for deg in (0.01, 0.05)]
-    assert reached[0] == 0.0 and 0.5 < reached[1] < 1.0
+    assert reached[0] == 0.0
+    assert 0.5 < reached[1] < 1.0
 
 
 @pytest.mark.parametrize("machine", ["3-axis", "trunnion-ac"])
@@ -107,16 +110,19 @@ def test_a_t_slot_is_finished_by_its_cutter(machine):
     samples, found = result.samples, verdicts(result)
     inside = (np.abs(samples.point[:, 0]) < 10.1) & (samples.point[:, 2] > 4.9) & (samples.point[:, 2] < 11.6)
     ceiling = inside & (samples.normal[:, 2] < -0.5)
-    assert ceiling.sum() > 20 and found.reached[inside].all()
+    assert ceiling.sum() > 20
+    assert found.reached[inside].all()
     # Upright: tip no lower than the floor, the upper face no higher than the ceiling, each sample at the flutes.
     tip = tips(SLOT, samples.point, samples.normal, found)
     # Not past the ends of the groove.
     rows = np.flatnonzero(inside & (found.axis[:, 2] > 1.0 - 1e-12) & (np.abs(tip[:, 1] + 0.5 * LENGTH) < 0.5 * LENGTH - 8.0))
     tip = tip[rows]
-    assert (tip[:, 2] >= 5.0 - TOLERANCE).all() and (tip[:, 2] + 4.0 <= 11.5 + TOLERANCE).all()
+    assert (tip[:, 2] >= 5.0 - TOLERANCE).all()
+    assert (tip[:, 2] + 4.0 <= 11.5 + TOLERANCE).all()
     assert (np.abs(tip[:, 0]) + 8.0 <= 10.0 + TOLERANCE).all()
     height = samples.point[rows, 2] - tip[:, 2]
-    assert (height >= -TOLERANCE).all() and (height <= 4.0 + TOLERANCE).all()
+    assert (height >= -TOLERANCE).all()
+    assert (height <= 4.0 + TOLERANCE).all()
     if machine == "3-axis":
         # Not with the ends of the flutes alone.
         walls = rows[np.abs(samples.normal[rows, 0]) > 0.5]
@@ -130,7 +136,8 @@ def test_a_ceiling_is_reached_whichever_way_its_cutter_must_stand():
     ceiling = np.flatnonzero((samples.normal[:, 2] < -0.5) & (samples.point[:, 2] > 1.0))
     assert found.reached[ceiling].all()
     away = np.hypot(*(tips(SLOT, samples.point, samples.normal, found)[ceiling] - samples.point[ceiling])[:, :2].T)
-    assert (away <= 8.0 + 1e-9).all() and (away >= 3.0).all()
+    assert (away <= 8.0 + 1e-9).all()
+    assert (away >= 3.0).all()
 
 
 def test_tilts_are_searched_as_far_as_a_cutter_touches():

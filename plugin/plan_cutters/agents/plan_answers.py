@@ -28,7 +28,7 @@ from plan_cutters.agents.answers import (
 )
 from plan_cutters.agents.limits import CallError
 from plan_cutters.agents.step_answers import stepped
-from plan_cutters.plan_file.answers import StepEntry
+from plan_cutters.plan_file.answers import MendEntry, StepEntry
 from plan_cutters.plan_file.model import CutterEntry, Plan, WitnessEntry
 from plan_cutters.plan_file.nearest import leaves
 from plan_cutters.plan_file.reasons import REASONS
@@ -36,6 +36,7 @@ from plan_cutters.plan_file.shares import FaceVerdicts, by_share
 from plan_cutters.plan_file.words.cutters import main_reason, reason
 from plan_cutters.plan_file.words.face import face_text, helping, in_the_way, posture_text, sample_text
 from plan_cutters.plan_file.words.names import named
+from plan_cutters.plan_file.words.needs import first_tries
 from plan_cutters.plan_file.words.story import shown
 from plan_cutters.plan_file.words.text import text_of
 
@@ -171,7 +172,7 @@ def explained(
         reached=False if counts.blocked else None if unsure else True, lost_share=counts.area_share.not_reached,
         counts={"reached": counts.reached, "inaccessible": counts.blocked, "undecided": counts.undecided,
                 "unjudged": counts.unjudged, "inside_bodies": counts.inside_bodies},
-        reasons=[_reason(code, part) for code, part in by_share(counts.area_share.lost_by)], help_is_about=about,
+        reasons=[_reason(code, part, cutter.mend) for code, part in by_share(counts.area_share.lost_by)], help_is_about=about,
         no_help=unhelped, postures=postures, sample=sample, **cut,
     )  # fmt: skip
 
@@ -193,10 +194,10 @@ def _of_point(postures: Postures | None, sample: Sample | None) -> Iterator[str]
         )
 
 
-def _reason(code: str, share: float) -> Reason:
+def _reason(code: str, share: float, what_if: MendEntry | None = None) -> Reason:
     known = REASONS.get(code)
     return Reason(
-        code=code, name=reason(code), meaning=known.sentence if known else "", try_first=known.hint if known else "", share=share
+        code=code, name=reason(code), meaning=known.sentence if known else "", try_first=first_tries(code, what_if), share=share
     )
 
 

@@ -220,10 +220,10 @@ def _step(base: tuple[Prepared, Cutter, State], finished: Finished, open_rows: R
         conditions=after.ready.conditions,
         tolerance=after.ready.scene.asked if after.ready.scene.asked != ready.scene.asked else None,
     )
-    freed = len(np.setdiff1d(open_rows, rows, assume_unique=True))
+    freed = np.setdiff1d(open_rows, rows, assume_unique=True)
     return Step(
-        candidate.moves, finished.of_rows(open_rows), finished.of_rows(rows), freed, len(rows), after.cutters, after.axes, result,
-        tuple(patches(ready.samples, finished, rows)[:_REMAINS]),
+        candidate.moves, finished.of_rows(open_rows), finished.of_rows(rows), len(freed), len(rows), after.cutters, after.axes,
+        result, tuple(patches(ready.samples, finished, rows)[:_REMAINS]), freed,
     )  # fmt: skip
 
 

@@ -3,46 +3,76 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.face.curvature import curvature
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fillet import largest_fitting, least_radius
 from plan_cutters.domain.verdicts import LOCAL_GOUGE, REAR_GOUGE, Verdicts
 from plan_cutters.plan_file.inside_radii import InsideRadiusEntry
 from plan_cutters.scene.preparation import Prepared
 
+#: A face of which less is gouged is named only where there is no other, mm2.
+_NAMED = 1.0
+#: Of the area that is gouged, the share that has the radius that is told, or a larger one: one bad place does not speak for all.
+_MOST = 0.9
+#: Nearer to its apex than this share of its reach, the border of a cone is there.
+_AT_APEX = 1e-6
+
 
 def inside_radius_entries(ready: Prepared, cutter: Cutter, verdicts: Verdicts) -> list[InsideRadiusEntry]:
-    """List the faces on which gouging stops a cutter, and whose smallest inside radius is below its own; smallest first."""
+    """List the faces on which gouging stops a cutter, and whose inside radius is below its own; the smallest first.
+
+    The point of a cone has no radius, and stands in no entry.
+    """
     samples, radius = ready.samples, least_radius(cutter)
     gouged = verdicts.not_reached & np.isin(verdicts.reason, (LOCAL_GOUGE, REAR_GOUGE)) & ready.finished
     if radius is None or not gouged.any():
         return []
     entries = []
     for number, rows in samples.by_face().items():
-        if not gouged[rows].any():
+        mine = rows[gouged[rows]]
+        if not len(mine) or ends_in_a_point(ready, number, mine):
             continue
-        smallest = _smallest_inside_radius(ready, number, rows)
-        if smallest < radius * (1.0 - 1e-6):
+        inside = _inside_radius(ready, mine)
+        if 0.0 < inside < radius * (1.0 - 1e-6):
             entries.append(
                 InsideRadiusEntry(
                     face=f"F{number}",
-                    radius_mm=smallest,
+                    radius_mm=inside,
                     cutter_radius_mm=radius,
-                    area_mm2=float(np.nansum(samples.area[rows[gouged[rows]]])),
-                    fits_mm=largest_fitting(smallest, cutter.allowance or 0.0),
+                    area_mm2=float(np.nansum(samples.area[mine])),
+                    fits_mm=largest_fitting(inside, cutter.allowance or 0.0),
                 )
             )
-    return sorted(entries, key=lambda each: (each.radius_mm, each.face))
+    named = [each for each in entries if each.area_mm2 >= _NAMED] or entries
+    return sorted(named, key=lambda each: (each.radius_mm, each.face))
 
 
-def _smallest_inside_radius(ready: Prepared, number: int, rows: NDArray[np.int64]) -> float:
-    """Smallest inside radius of a face, mm, by the kernel's curvature at its samples and border; infinite where it has none."""
-    part, most = ready.scene.part, ready.samples.curvature[rows, 0]
+def _inside_radius(ready: Prepared, mine: NDArray[np.int64]) -> float:
+    """Inside radius that most of the area of some samples (m,) of a face has, or a larger one, mm, by the kernel's curvature.
+
+    Infinite where that does not bend inwards.
+    """
+    bends = ready.samples.curvature[mine, 0]
+    area = np.where(np.isfinite(ready.samples.area[mine]), ready.samples.area[mine], 0.0).clip(min=0.0)
+    known = np.isfinite(bends)
+    bends, area = bends[known], area[known] if area[known].sum() > 0.0 else np.ones(int(known.sum()))
+    if not len(bends):
+        return float("inf")
+    order = np.argsort(bends, kind="stable")
+    share = np.cumsum(area[order])
+    # What rounding adds up must not move it past a sample.
+    most = float(bends[order[np.searchsorted(share, share[-1] * (_MOST - 1e-12))]])
+    return 1.0 / most if most > 0.0 else float("inf")
+
+
+def ends_in_a_point(ready: Prepared, number: int, rows: NDArray[np.int64]) -> bool:
+    """Whether a face is the inside of a cone that goes as far as its apex, as a drill leaves it; `rows` are samples of it."""
+    part = ready.scene.part
+    info = part.faces[number - 1]
+    if info.shape != "cone" or info.carrier is None or not (ready.samples.curvature[rows, 0] > 0.0).any():
+        return False
     trim = part.trim(number)
-    if trim is not None:
-        u, v = trim.segments[:, 0].T
-        sign = float(ready.scene.orientation.sign[number - 1])
-        border = curvature(part.surface(number).second(u.copy(), v.copy()), sign, float(np.linalg.norm(part.size)))
-        most = np.concatenate([most, border.curvature[:, 0]])
-    most = most[np.isfinite(most)]
-    return 1.0 / float(most.max()) if len(most) and most.max() > 0.0 else float("inf")
+    if trim is None or not len(trim.segments):
+        return False
+    u, v = trim.segments[:, 0].T
+    away = np.linalg.norm(part.surface(number).second(u.copy(), v.copy())[:, 0] - np.array(info.carrier.point), axis=1)
+    return bool(away.min() <= _AT_APEX * away.max())

@@ -20,6 +20,7 @@ from plan_cutters.document.process import process_entry
 from plan_cutters.document.shares import counts
 from plan_cutters.document.travel import linear_entries, travel_entry
 from plan_cutters.domain.answers import Answers
+from plan_cutters.domain.fillet import Fitting
 from plan_cutters.domain.lengths import reporting
 from plan_cutters.domain.over_setups import positions
 from plan_cutters.domain.travel import Travel
@@ -52,6 +53,7 @@ def plan_of(
     sharp_edges: Sequence[SharpEdgeEntry] = (),
     inside_radii: Sequence[InsideRadiusEntry] = (),
     patterns: Sequence[PatternEntry] = (),
+    fitting: Fitting | None = None,
 ) -> Plan:
     """The plan of a part from the entries of its cutters, and what was answered after them."""
     scene, options, choice, samples = ready.scene, ready.options, ready.chosen, ready.samples
@@ -59,9 +61,9 @@ def plan_of(
     faces = face_entries(part, samples, choice, dict(surroundings.certain.triangles.errors), scene.orientation)
     remarks = notes_of(ready, entries)
     absent = {*(() if _anything_held(ready) else ("fixture",)), *(() if ready.inside_bodies.any() else ("inside_bodies",))}
-    operations = _operations(ready, answers, over)
+    operations, shown = _operations(ready, answers, over), selected or nearest(entries).id
     return Plan(
-        process=process_entry(ready, entries, answers, over, operations),
+        process=process_entry(ready, entries, answers, over, operations, shown, fitting),
         part=part_info(scene, surroundings).model_copy(update={"void_faces": void_faces(ready)}),
         effective=effective(ready),
         versions=versions(),
@@ -87,7 +89,7 @@ def plan_of(
         libraries=[library_entry(library) for library in options.libraries],
         cutters=list(entries),
         selected=selected,
-        shown=selected or nearest(entries).id,
+        shown=shown,
         selection=selection,
         selected_over_setups=None if surroundings.doubtful else next((e.id for e in entries if e.lost_in_all == 0), None),
         selected_for_setup=None if selected else for_setup(entries),

@@ -6,11 +6,13 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, Ints
+from cad_io.arrays import Floats
 from plan_cutters.document.over_setups import OverSetups
+from plan_cutters.document.remaining import faces_of, reasons, remaining, remaining_entry
 from plan_cutters.document.repeats import repeats
 from plan_cutters.document.shares import sample_areas
 from plan_cutters.domain.answers import Answers
+from plan_cutters.domain.fillet import Fitting
 from plan_cutters.domain.operations import OperationPlan, Operations
 from plan_cutters.domain.own_results import OwnResult
 from plan_cutters.domain.verdicts import NO_REASON, REASONS, SHARP_EDGE
@@ -22,7 +24,6 @@ from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry
 from plan_cutters.plan_file.process import (
     NOT_PLANNED,
     OTHER_ORIENTATION,
-    UNJUDGED_CAUSE,
     NearestEntry,
     OwnStepEntry,
     ProcessEntry,
@@ -41,8 +42,9 @@ _BELOW = -0.01
 
 
 def process_entry(
-    ready: Prepared, entries: Sequence[CutterEntry], answers: Answers, over: OverSetups, operations: OperationsEntry | None
-) -> ProcessEntry:
+    ready: Prepared, entries: Sequence[CutterEntry], answers: Answers, over: OverSetups, operations: OperationsEntry | None,
+    shown: str, fitting: Fitting | None = None,
+) -> ProcessEntry:  # fmt: skip
     """Put together what the given cutters, setups and operations finish.
 
     Parameters
@@ -55,6 +57,10 @@ def process_entry(
     over : OverSetups
     operations : OperationsEntry, optional
         As it is in the plan file.
+    shown : str
+        Id of the cutter that the plan shows: its next steps are told.
+    fitting : callable, optional
+        Finds the usual sizes that fit where cutters gouge.
     """
     sampled, not_sampled = sample_areas(entries[0].faces, ready.samples, ready.scene.part)
     area = np.where(ready.not_required, 0.0, sampled)
@@ -75,11 +81,14 @@ def process_entry(
                   seconds=None, clearance_mm=None)
             for setup, cutter, mine in runs
         ]  # fmt: skip
-    remaining = _remaining(ready, done, _reasons(entries, over, steps, done), area, requested)
+    what_if = answers.mends.get(shown)
+    left = remaining(
+        ready, done, reasons(entries, over, steps, done), area, requested, () if what_if is None else what_if.steps, fitting
+    )
     finished = float(area[done].sum())
-    share = exact(finished / max(1e-300, requested), some=bool(done.any()), whole=not remaining)
+    share = exact(finished / max(1e-300, requested), some=bool(done.any()), whole=not left)
     return ProcessEntry(
-        steps=steps, plan=name, finished_share=share, finished_mm2=finished, asked_mm2=requested, left=remaining, seconds=seconds,
+        steps=steps, plan=name, finished_share=share, finished_mm2=finished, asked_mm2=requested, left=left, seconds=seconds,
         setup_seconds=clamping, exempt=_exempt(ready, sampled, requested),
     )  # fmt: skip
 
@@ -88,7 +97,7 @@ def _exempt(ready: Prepared, sampled: Floats, requested: float) -> RemainingEntr
     """What is not required at sharp inside edges; None where that is nothing."""
     if ready.exempt is None or not ready.exempt.any():
         return None
-    return _remaining_entry(ready, REASONS[SHARP_EDGE], ready.exempt, np.where(ready.inside_bodies, 0.0, sampled), requested)
+    return remaining_entry(ready, REASONS[SHARP_EDGE], ready.exempt, np.where(ready.inside_bodies, 0.0, sampled), requested)
 
 
 def _preferred(plans: Sequence[OperationPlan], entries: Sequence[OperationPlanEntry]) -> tuple[OperationPlan, OperationPlanEntry]:
@@ -180,7 +189,7 @@ def _own_entry(
         cause = np.where(verdicts.reached, _OTHER, verdicts.reason.astype(np.int32))
         for code in np.unique(cause[missed]).tolist():
             word = OTHER_ORIENTATION if code == _OTHER else REASONS[code] if code != NO_REASON else NOT_PLANNED
-            leaves.append(_remaining_entry(ready, word, missed & (cause == code), area, requested))
+            leaves.append(remaining_entry(ready, word, missed & (cause == code), area, requested))
     near = outcome.nearest
     nearest_ = None if near is None else NearestEntry(
         angles_deg=dict(zip(names, near.angle.tolist(), strict=True)), axis=vector(near.axis),
@@ -247,54 +256,6 @@ def _step(
     axes = over.each()[setup][1][cutter].axis[mine] if axis is None else np.tile(axis, (int(mine.sum()), 1))
     below = axes @ ready.setups[setup].setup < _BELOW
     return ProcessStep(
-        faces=_faces(ready, mine, area), area_mm2=size, share=min(1.0, size / max(1e-300, requested)), setup=setup, cutter=cutter,
-        axis=axis, below_mm2=float(area[mine][below].sum()), **fields,
+        faces=faces_of(ready, mine, area), area_mm2=size, share=min(1.0, size / max(1e-300, requested)), setup=setup,
+        cutter=cutter, axis=axis, below_mm2=float(area[mine][below].sum()), **fields,
     )  # fmt: skip
-
-
-def _faces(ready: Prepared, mine: NDArray[np.bool_], area: Floats) -> list[str]:
-    """Ids of the faces of some samples (n,), the one with the most of their area first."""
-    face = ready.samples.face[mine]
-    size = np.bincount(face, area[mine])
-    return [f"F{number}" for number in sorted(np.unique(face).tolist(), key=lambda number: (-size[number], number))]
-
-
-def _reasons(entries: Sequence[CutterEntry], over: OverSetups, steps: Sequence[ProcessStep], done: NDArray[np.bool_]) -> Ints:
-    """Why each sample (n,) is left: by the finest cutter of the process that has a reason, else by any."""
-    used = {each.cutter for each in steps}
-    finest_first = sorted(entries, key=lambda e: (e.id not in used, e.radius, e.corner_radius))
-    reason = np.full(len(done), NO_REASON, np.int32)
-    for entry in finest_first:
-        verdicts = over.reaches[entry.id]
-        open_ = ~done & (reason == NO_REASON) & verdicts.not_reached
-        reason[open_] = verdicts.reason[open_]
-    return reason
-
-
-def _remaining(ready: Prepared, done: NDArray[np.bool_], reason: Ints, area: Floats, requested: float) -> list[RemainingEntry]:
-    """What is left by cause, the largest area first."""
-    samples, entries = ready.samples, list[RemainingEntry]()
-    for code in np.unique(reason[ready.finished & ~done]).tolist():
-        mine = ready.finished & ~done & (reason == code)
-        cause = REASONS[code] if code != NO_REASON else NOT_PLANNED
-        entries.append(_remaining_entry(ready, cause, mine, area, requested))
-    unjudged = samples.unjudged >= 0
-    if unjudged.any() or samples.empty:
-        entry = _remaining_entry(ready, UNJUDGED_CAUSE, unjudged, area, requested)
-        missing = sum(ready.scene.part.faces[number - 1].area for number, _ in samples.empty)
-        size = entry.area_mm2 + (missing if np.isfinite(missing) else 0.0)
-        faces = list(dict.fromkeys([*entry.faces, *(f"F{number}" for number, _ in samples.empty)]))
-        share = min(1.0, size / max(1e-300, requested))
-        entries.append(entry.model_copy(update={"area_mm2": size, "share": share, "faces": faces}))
-    return sorted(entries, key=lambda each: (-each.area_mm2, each.cause))
-
-
-def _remaining_entry(ready: Prepared, cause: str, mine: NDArray[np.bool_], area: Floats, requested: float) -> RemainingEntry:
-    samples, size = ready.samples, float(area[mine].sum())
-    faces, place = _faces(ready, mine, area), None
-    if faces:
-        rows = np.flatnonzero(mine & (samples.face == int(faces[0][1:])))
-        middle = samples.point[rows].mean(axis=0)
-        place = vector(samples.point[rows[np.linalg.norm(samples.point[rows] - middle, axis=1).argmin()]])
-    share = min(1.0, size / max(1e-300, requested))
-    return RemainingEntry(cause=cause, area_mm2=size, share=share, samples=int(mine.sum()), faces=faces, place_mm=place)

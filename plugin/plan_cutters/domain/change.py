@@ -4,6 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+import numpy as np
+from numpy.typing import NDArray
+
 from plan_cutters.domain.area import Patch
 from plan_cutters.domain.cutter import Cutter
 
@@ -118,6 +121,8 @@ class Step:
         where no option says it.
     remains : tuple of Patch
         The largest areas that are still not reached.
+    freed : (m,) int64
+        The samples that it frees.
     """
 
     moves: tuple[Move, ...]
@@ -129,6 +134,7 @@ class Step:
     setups: tuple[tuple[float, float, float], ...]
     option: str | None
     remains: tuple[Patch, ...]
+    freed: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, np.int64), compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

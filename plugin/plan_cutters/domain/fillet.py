@@ -1,10 +1,28 @@
 """Which fillet does a cutter leave beside a sharp inside edge, and which cutters fit into one?"""
 
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.standard_tools import METRIC
 
 #: What the kernel's curvature is off by, as a share.
 _ROUNDING = 1e-6
+
+
+class Fit(NamedTuple):
+    """A cutter of a usual size reaches this share of an area, 0 to 1."""
+
+    cutter: Cutter
+    share: float
+
+
+#: Which usual sizes in place of a cutter reach some samples (m,), by the areas of all samples (n,); None where that is not known.
+Fitting = Callable[[Cutter, NDArray[np.int64], Floats], tuple[Fit, ...] | None]
 
 
 def largest_fitting(radius: float, allowance: float = 0.0) -> float | None:

@@ -12,6 +12,30 @@ UNJUDGED_CAUSE, NOT_PLANNED = "unjudged", "not_planned"
 OTHER_ORIENTATION = "orientation"
 
 
+class FitEntry(Frozen):
+    """A smaller cutter of a usual size reaches this much of an area: judged as long and in the same holder as the one before."""
+
+    cutter: str = Field(description="its specification")
+    kind: str = Field(description="flat end, ball end or bull nose")
+    size: str = Field(description="as it is typed: D3, D2 rc0.5, D0.125in")
+    diameter_mm: float
+    share: float = Field(description="of the area that is left for this cause, 0 to 1")
+
+
+class PointsEntry(Frozen):
+    """Inside cones that end in a point, as a drill leaves them: no end of a cutter fits there."""
+
+    faces: list[str] = Field(description="the one with the most of it first")
+    share: float = Field(description="of the area that is left for this cause, 0 to 1")
+
+
+class HelpEntry(Frozen):
+    """A step of an answer (`mend.steps` of the cutter `shown`) finishes this much of an area."""
+
+    step: int = Field(description="its place in the list, from 0")
+    share: float = Field(description="of the area that is left for this cause, 0 to 1")
+
+
 class RemainingEntry(Frozen):
     """An area that no step finishes, for one cause."""
 
@@ -24,6 +48,13 @@ class RemainingEntry(Frozen):
     samples: int = Field(description="0 for faces without samples")
     faces: list[str] = Field(description="the one with the most of it first")
     place_mm: Vector | None = Field(description="a sample in the middle of it, on the first of the faces")
+    fits: list[FitEntry] | None = Field(
+        default=None,
+        description="where flutes gouge or meet the part: the largest usual size that reaches most of it, and one that reaches "
+        "more; empty where none reaches any; null where that was not judged",
+    )
+    points: PointsEntry | None = Field(default=None, description="null where there are none")
+    helped: list[HelpEntry] = Field(default=[], description="the most first")
     needs: str = Field(default="", description="what would help, in words")
 
 

@@ -10,50 +10,60 @@ from typing import NamedTuple
 class Reason(NamedTuple):
     """A reason has words, a hint, a colour and patterns; the samples for which it holds are not stored here.
 
-    `name` is a label, `noun` stands after "lost to", `hint` is the thing to try first (it is not computed). `colour` is sRGB;
-    `pattern`, on the page, and `hatch`, on sheets as matplotlib writes it, show the same without colour.
+    `name` is a label, `noun` stands after "lost to", `tries` are the things to try first (they are not computed), each with the
+    changes of an answer (`domain.change.MEANS`) that are this: none where no answer tries it. `colour` is sRGB; `pattern`, on the
+    page, and `hatch`, on sheets as matplotlib writes it, show the same without colour.
     """
 
     code: str
     name: str
     noun: str
     sentence: str
-    hint: str
+    tries: tuple[tuple[str, tuple[str, ...]], ...]
     colour: str
     pattern: str
     hatch: str
 
+    @property
+    def hint(self) -> str:
+        """All that is to be tried first, in a clause."""
+        return ", or ".join(words for words, _ in self.tries)
+
+
+_SMALLER = (("a smaller radius or corner radius", ("radius", "corner_radius", "cutter")),)
+_ANOTHER_SETUP = ("another setup", ("setup", "second_setup"))
+_LONGER = ("a longer stick-out", ("stick_out",))
 
 _ROWS = (
     Reason("axis_limit", "axis limit", "the limits of axis and tilt",
            "A posture would serve, but the machine cannot hold it as the part is set up.",
-           "another setup, or a machine that tilts further", "#9A9A9A", "lines", "--"),
+           (_ANOTHER_SETUP, ("a machine that tilts further", ("tilt_limit",))), "#9A9A9A", "lines", "--"),
     Reason("local_gouge", "local gouge", "local gouge", "The surface curves more than the cutter, right at the contact.",
-           "a smaller radius or corner radius", "#E69F00", "hatch", "//"),
+           _SMALLER, "#E69F00", "hatch", "//"),
     Reason("rear_gouge", "rear gouge", "rear gouge", "The flutes cut into the part within a cutter's diameter of the contact.",
-           "a smaller radius or corner radius", "#D55E00", "back", "\\\\"),
-    Reason("collision", "flute collision", "collision", "The flutes meet the part farther away.", "a thinner cutter",
-           "#CC79A7", "cross", "xx"),
+           _SMALLER, "#D55E00", "back", "\\\\"),
+    Reason("collision", "flute collision", "collision", "The flutes meet the part farther away.",
+           (("a thinner cutter", ("radius", "cutter")),), "#CC79A7", "cross", "xx"),
     Reason("buried", "inside material", "a body around them",
            "The surface lies under or within a body, so nothing can be machined there.",
-           "--ignore, if that body is not there when the part is machined", "#5C3A21", "cross", "**"),
+           (("--ignore, if that body is not there when the part is machined", ()),), "#5C3A21", "cross", "**"),
     Reason("tolerance", "tolerance", "the tolerance",
            "The tolerance is no smaller than the cutter's own features, or triangles cannot follow the face closely enough.",
-           "a smaller --tolerance", "#B8A94A", "dots", ".."),
-    Reason("neck", "neck collision", "the neck", "The neck is in the way, the flutes are not.", "a thinner or longer neck",
-           "#882255", "bars", "||"),
+           (("a smaller --tolerance", ("tolerance",)),), "#B8A94A", "dots", ".."),
+    Reason("neck", "neck collision", "the neck", "The neck is in the way, the flutes are not.",
+           (("a thinner or longer neck", ()),), "#882255", "bars", "||"),
     Reason("shank", "shank collision", "the shank", "The shank is in the way, the flutes are not.",
-           "a thinner shank or a longer stick-out", "#0072B2", "bars", "++"),
+           (("a thinner shank", ()), _LONGER), "#0072B2", "bars", "++"),
     Reason("holder", "holder collision", "the holder", "The holder is in the way, the flutes are not.",
-           "a longer stick-out or a slimmer holder", "#332288", "hatch", "oo"),
+           (_LONGER, ("a slimmer holder", ("holder",))), "#332288", "hatch", "oo"),
     Reason("fixture", "fixture", "the fixtures", "Without the fixtures the sample would be reached.",
-           "another place for the fixture", "#117733", "lines", "--"),
+           (("another place for the fixture", ()),), "#117733", "lines", "--"),
     Reason("sharp_edge", "sharp inside edge", "sharp inside edges",
            "Two faces meet without a fillet, and the cutter leaves one of its own radius there.",
-           "a fillet in the model, or a smaller radius or corner radius", "#44AA99", "dots", ".."),
+           (("a fillet in the model", ()), *_SMALLER), "#44AA99", "dots", ".."),
     Reason("another_setup", "for another setup", "what was proposed to hold the part",
            "The face stands on a table that was proposed, or a vise or chuck grips it; it is left for another setup.",
-           "another setup, or a clamping that leaves it free", "#88CCEE", "lines", "--"),
+           (_ANOTHER_SETUP, ("a clamping that leaves it free", ())), "#88CCEE", "lines", "--"),
 )  # fmt: skip
 REASONS = {each.code: each for each in _ROWS}
 #: What is said instead of the hint where what is around a surface is the body itself.
@@ -64,7 +74,8 @@ MET = ("local_gouge", "rear_gouge", "collision", "neck", "shank", "holder")
 CAUSES = ("axis_limit", *MET, "buried")
 #: Why a posture map has nothing at a tilt where nothing is in the way: that is no reason for a sample.
 NO_CONTACT = Reason(
-    "no_contact", "no contact", "no contact", "The cutter does not touch at this tilt.", "another tilt", "#E5E5E5", "plain", "."
-)
+    "no_contact", "no contact", "no contact", "The cutter does not touch at this tilt.", (("another tilt", ()),), "#E5E5E5",
+    "plain", "."
+)  # fmt: skip
 #: Those whose tilts a map of a point lists as intervals: local gouge is a least and a largest tilt.
 INTERVALS = (*(cause for cause in CAUSES if cause != "local_gouge"), NO_CONTACT.code)

@@ -16,6 +16,7 @@ from plan_cutters.domain.verdicts import REASONS
 from plan_cutters.plan_file.numbers import angle, listed, mm, percent
 from plan_cutters.plan_file.numbers import area as size
 from plan_cutters.plan_file.reasons import REASONS as WORDS
+from plan_cutters.plan_file.words.names import kind
 
 Range = tuple[float, float]
 
@@ -56,10 +57,18 @@ def tool(cutter: Cutter) -> str:
     ('a ball end D4 held 20 mm out', 'a bull nose R2 rc0.5 held 40 mm out (10 D, more than the usual 5 D)')
     """
     how = notation(cutter.name)
-    kind = "flat end" if not cutter.corner_radius else "ball end" if cutter.corner_radius == cutter.radius else "bull nose"
-    corner = f" rc{how.length(cutter.corner_radius)}" if kind == "bull nose" else ""
-    size = f"{how.by}{how.across(cutter.radius)}"
-    return f"a {kind} {size}{corner} held {how.mm(cutter.length)} out{_ratio(slenderness(cutter))}"
+    return f"a {kind(cutter)} {typed_size(cutter)} held {how.mm(cutter.length)} out{_ratio(slenderness(cutter))}"
+
+
+def typed_size(cutter: Cutter) -> str:
+    """The size of an end mill as it is typed, with the corner of a bull nose.
+
+    >>> typed_size(Cutter.parse("D4L20rc2")), typed_size(Cutter.parse("R2L40rc0.5"))
+    ('D4', 'R2 rc0.5')
+    """
+    how = notation(cutter.name)
+    corner = f" rc{how.length(cutter.corner_radius)}" if kind(cutter) == "bull nose" else ""
+    return f"{how.by}{how.across(cutter.radius)}{corner}"
 
 
 def _ratio(ratio: float) -> str:

@@ -10,6 +10,7 @@ from plan_cutters.plan_file.reasons import REASONS, Reason
 from plan_cutters.plan_file.shares import VERDICTS, AreaShare, part_of, reached, unreached
 from plan_cutters.plan_file.words.headline import area, between, every
 from plan_cutters.plan_file.words.names import described, named
+from plan_cutters.plan_file.words.needs import first_tries
 from plan_cutters.plan_file.words.next_steps import cures, first_step, step_text
 
 #: Faces that are named on which a cutter leaves something.
@@ -95,7 +96,7 @@ def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:
 def _hint(plan: Plan, c: CutterEntry, main: Reason) -> str:
     """The thing to try first; nothing where all that lies inside material is the wall of a closed void."""
     enclosed = {face for face, each in c.faces.items() if each.area_share.lost_by.get("buried")}
-    return "" if main.code == "buried" and enclosed <= set(plan.part.void_faces) else main.hint
+    return "" if main.code == "buried" and enclosed <= set(plan.part.void_faces) else first_tries(main.code, c.mend)
 
 
 def main_reason(share: AreaShare) -> str:

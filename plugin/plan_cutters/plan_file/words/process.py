@@ -6,12 +6,14 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from plan_cutters.domain.answer_kinds import WORTH
+from plan_cutters.plan_file.answers import StepEntry
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.numbers import area, count, duration, listed, mm, percent, place
-from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, NextEntry, ProcessEntry, ProcessStep, RemainingEntry
+from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, NextEntry, ProcessEntry, ProcessStep
 from plan_cutters.plan_file.reasons import CLOSED_VOID, REASONS
 from plan_cutters.plan_file.words.doubts import doubts
 from plan_cutters.plan_file.words.names import named
+from plan_cutters.plan_file.words.needs import needs
 from plan_cutters.plan_file.words.next_steps import is_excluded
 from plan_cutters.plan_file.words.own_steps import angles_text, fault, own_steps
 from plan_cutters.plan_file.words.scope import shown_cutter
@@ -20,6 +22,10 @@ from plan_cutters.plan_file.words.scope import shown_cutter
 WIDTH, _STEPS, _CAUSES, _FACES, _NEXT = 80, 9, 4, 3, 2
 #: Shares are sums of areas: a gain that is less than it should be by this is that.
 _ROUNDING = 1e-6
+#: Changes that come beside what there is, and take nothing away.
+_ADDED = {"cutter", "radius", "corner_radius", "second_setup"}
+#: Up to this share what is left comes after the next step.
+_LITTLE = 0.005
 #: A clearance that is told as that or more, mm.
 _FAR = 100.0
 _STRATEGIES = {"point": "", "floor": "floor", "wall": "wall", "mixed": ""}
@@ -51,13 +57,14 @@ class StepRow:
 @dataclass(frozen=True, slots=True)
 class ProcessStory:
     """A process in words: rows of steps and how many more there are, sentences on the planner's own steps and on what is left,
-    next steps, and clearance.
+    next steps, and clearance. The first `much` of those on what is left are of more than a little.
     """
 
     rows: tuple[StepRow, ...]
     more: str
     own: tuple[str, ...]
     remaining: tuple[str, ...]
+    much: int
     next: tuple[str, ...]
     clearance: str
 
@@ -96,6 +103,7 @@ def process_story(plan: Plan, names: Mapping[str, str]) -> ProcessStory | None:
         more=more,
         own=tuple(own_steps(process)),
         remaining=tuple(_remaining(process, plan)),
+        much=sum(each.share >= _LITTLE for each in process.left[:_CAUSES]),
         next=tuple(named(plan, _next(each)) for each in process.next[:_NEXT]),
         clearance=_clearance(process),
     )
@@ -105,7 +113,7 @@ def with_process_words(plan: Plan) -> Plan:
     """The plan with the words of its process made anew: of steps, of what each area that is left needs, and what to do next."""
     if plan.process is None:
         return plan
-    needed = [each.model_copy(update={"needs": _needs(plan, each)}) for each in plan.process.left]
+    needed = [each.model_copy(update={"needs": needs(plan, each)}) for each in plan.process.left]
     steps = [
         step if step.own is None else step.model_copy(update={"own": step.own.model_copy(update={"text": fault(k, step)})})
         for k, step in enumerate(plan.process.steps, 1)
@@ -178,39 +186,34 @@ def _remaining(process: ProcessEntry, plan: Plan) -> Iterator[str]:
         yield f"Not required (--sharp-edges left): {area(process.exempt.area_mm2)} at sharp inside edges of {where}."
 
 
-def _needs(plan: Plan, entry: RemainingEntry) -> str:
-    """What would help against a cause, by what the plan knows of its place."""
-    faces = set(entry.faces)
-    if entry.cause == "sharp_edge" and plan.sharp_edges:
-        return f"the model has no fillet there, and the cutter leaves one of R{plan.sharp_edges[0].radius_mm:.4g}"
-    radii = [each for each in plan.inside_radii if each.face in faces]
-    if entry.cause in ("local_gouge", "rear_gouge") and radii:
-        least = min(radii, key=lambda each: each.radius_mm)
-        fits = f"D{least.fits_mm:g} fits" if least.fits_mm else "no usual size fits"
-        return f"the inside radius of {least.face} is {mm(least.radius_mm)}, {fits}"
-    if entry.cause == "buried" and (shut := [face for face in entry.faces if face in plan.part.void_faces]):
-        if len(shut) == len(entry.faces):
-            return CLOSED_VOID
-        return f"{CLOSED_VOID} at {listed(shut, _FACES)}; for the rest {REASONS[entry.cause].hint}"
-    if entry.cause == UNJUDGED_CAUSE:
-        return next((face.unjudged for face in plan.faces if face.id in faces and face.unjudged), "") or ""
-    return REASONS[entry.cause].hint if entry.cause in REASONS else ""
-
-
 def _next_entries(plan: Plan) -> Iterator[NextEntry]:
     """The best next steps of the cutter that the plan shows, or the answer to ask for."""
     process = plan.process
     if process is None or all(each.cause == UNJUDGED_CAUSE or each.needs == CLOSED_VOID for each in process.left):
         return
-    entry, left = shown_cutter(plan), 1.0 - process.finished_share
-    if entry.mend is not None:
-        for step in entry.mend.steps:
-            # The process has the other cutters and setups already that the shown cutter alone would need.
-            if not is_excluded(step) and (step.lost_after is None or left - step.lost_after >= WORTH - _ROUNDING):
-                argv = shlex.split(step.option) if step.option else []
-                yield NextEntry(words=step.why, argv=argv, left_share=step.lost_after)
+    what_if, left = shown_cutter(plan).mend, 1.0 - process.finished_share
+    if what_if is not None:
+        reported = list[tuple[set[str], float]]()
+        # What changes less comes first where it does as much.
+        after = {k: _after(process, k, step) for k, step in enumerate(what_if.steps) if not is_excluded(step)}
+        for k in after:
+            things = {change.thing for change in what_if.steps[k].changes}
+            fewer = [(each, after[j]) for j in after if (each := {c.thing for c in what_if.steps[j].changes}) < things]
+            alike = any(each <= things and then - after[k] < WORTH for each, then in (*reported, *fewer))
+            if left - after[k] >= WORTH - _ROUNDING and not alike:
+                reported.append((things, after[k]))
+                option = what_if.steps[k].option
+                yield NextEntry(words=what_if.steps[k].why, argv=shlex.split(option) if option else [], left_share=after[k])
     elif "mend" not in plan.effective.answers:
         yield NextEntry(words="ask what would help", argv=["--answers", "mend"], left_share=None)
+
+
+def _after(process: ProcessEntry, number: int, step: StepEntry) -> float:
+    """What the process leaves with a step: it keeps its own cutters and setups where the step takes none away."""
+    if not all(change.thing in _ADDED for change in step.changes):
+        return step.lost_after
+    gained = sum(each.share * helped.share for each in process.left for helped in each.helped if helped.step == number)
+    return min(step.lost_after, max(0.0, 1.0 - process.finished_share - gained))
 
 
 def _next(each: NextEntry) -> str:

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import area, count
+from plan_cutters.plan_file.numbers import area, count, reported
 
 #: Pairs of faces that are named.
 _PAIRS = 3
@@ -19,5 +19,5 @@ def sharp_edges(plan: Plan, names: Mapping[str, str]) -> Iterator[str]:
     others = f" and at {count(more, 'more pair')} of faces" if more else ""
     yield (
         f"The model has sharp inside edges where {', '.join(pairs)}{others}: {names[plan.shown]} leaves a fillet of "
-        f"R{edges[0].radius_mm:.4g} there, {area(sum(each.area_mm2 for each in edges))}."
+        f"R{reported(edges[0].radius_mm):.4g} there, {area(sum(each.area_mm2 for each in edges))}."
     )

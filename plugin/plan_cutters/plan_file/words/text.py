@@ -17,6 +17,8 @@ from plan_cutters.plan_file.words.undecided import undecided
 MOST = 22
 #: Doubts, and cutters, that are named.
 _DOUBTS, _CUTTERS = 4, 6
+#: Lines on an area that is left.
+_LEFT = 3
 #: Lines on what each cutter reaches by itself.
 _ALONE = 3
 
@@ -52,8 +54,9 @@ def process_lines(plan: Plan, story: Story, most: int) -> list[str]:
         [*wrapped(inside, 6), *wrapped(_doubts(plan, story), 1)[:_DOUBTS], *wrapped([judged] if judged else [], 3)],
         wrapped([in_summary(plan)] if process and in_summary(plan) else [], 2),
         process.table() if process else [],
-        wrapped([*shortened(process.own), *process.remaining], 2) if process else [],
+        wrapped([*shortened(process.own), *process.remaining[: process.much]], _LEFT) if process else [],
         wrapped(list(process.next), 3) if process else [],
+        wrapped(list(process.remaining[process.much :]), _LEFT) if process else [],
         wrapped(_unsure(plan, story), 2),
         wrapped([process.clearance] if process and process.clearance else [], 1),
         wrapped(_alone(story), _ALONE),
