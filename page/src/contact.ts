@@ -26,7 +26,8 @@ export function place(cutter: Cutter, sample: Sample, posture: Posture): Placed 
   const sine = Math.sin(posture.tilt * RAD);
   const axis = mixed(sample.normal, cosine, lean, sine);
   const outward = mixed(lean, cosine, sample.normal, -sine);
-  const centre = plus(sample.point, sample.normal, mode.radius + cutter.allowance_mm);
+  const contact = posture.shift ? plus(sample.point, posture.shift, 1) : sample.point;
+  const centre = plus(contact, sample.normal, mode.radius + cutter.allowance_mm);
   return { tip: plus(plus(centre, outward, -mode.offset * (posture.share ?? 1)), axis, -mode.height), axis };
 }
 

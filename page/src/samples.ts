@@ -21,6 +21,8 @@ export interface Posture {
   rotation: number;
   /** Upright, how far the contact is from the axis, as a share of the radius of the flat tip; not given: at its rim. */
   share?: number;
+  /** From the sample to where the tool is put down, mm: where a flank, or a flat that is not quite square, lies on the face. */
+  shift?: Vec;
 }
 
 /** Shares are stored in so many parts. */
@@ -126,7 +128,14 @@ export class Samples {
     const tilt = this.arrays.get(`tilt.${cutter}`).values[row];
     if (tilt === 65535) return null;
     const posture = { tilt: tilt / 100, rotation: turned(this.arrays.get(`lean.${cutter}`).values[row] / 100) };
-    return tilt === 0 ? { ...posture, ...shareOf(this.arrays, `share.${cutter}`, row) } : posture;
+    if (tilt === 0) return { ...posture, ...shareOf(this.arrays, `share.${cutter}`, row) };
+    return { ...posture, ...this.shiftOf(`shift.${cutter}`, row) };
+  }
+
+  private shiftOf(name: string, row: number): { shift?: Vec } {
+    if (!this.arrays.has(name)) return {};
+    const { rows, values } = this.arrays.get(name);
+    return { shift: [values[row], values[rows + row], values[2 * rows + row]] };
   }
 
   /** The lean direction at a rotation, degrees. */

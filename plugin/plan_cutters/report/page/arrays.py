@@ -56,8 +56,10 @@ def posture_arrays(result: Judged, name: str) -> Arrays:
     """The postures found for a cutter."""
     tilt, tilt_direction = tilt_and_direction(result.samples, result.reaches[name])
     arrays = {f"tilt.{name}": Stored.of(tilt), f"lean.{name}": Stored.of(tilt_direction)}
-    share = shares(result.reaches[name].tilt_direction)
-    return arrays if share is None else arrays | {f"share.{name}": Stored.of(share)}
+    share, shift = shares(result.reaches[name].tilt_direction), result.reaches[name].shift
+    if share is not None:
+        arrays[f"share.{name}"] = Stored.of(share)
+    return arrays | {f"shift.{name}": Stored.of(halves(shift))} if shift.any() else arrays
 
 
 def scalar_arrays(result: Judged) -> tuple[Arrays, list[dict[str, Any]]]:
