@@ -96,7 +96,8 @@ class JudgedPart:
     carried : (m, 3) int64
         Of each motion of the whole part, as `JudgeOnce.carried` counts.
     unexplained : tuple of str
-        Ids of the cutters whose reasons were not looked for: they are those that the search of postures found.
+        Ids of the cutters whose reasons were not looked for: they are those that the search of postures found. Of a cutter
+        that reaches all there are none.
     """
 
     ready: Prepared
@@ -120,13 +121,19 @@ class JudgedPart:
         """
         samples, convex, surroundings = ready.samples, ready.surface_class == CONVEX, ready.conditions.surroundings
         reasons = Reasons(samples, ready.setups, ready.somewhere, ready.machinable)
-        unexplained = tuple(cutter.id for cutter in here if cutter not in by_cutter and not explain)
+        unexplained: tuple[str, ...] = ()
         with clock.stage("reasons", shown=explain) as tell:
             for k, (cutter, mine) in enumerate(here.items()):
                 if cutter in by_cutter:
                     continue
                 over, which = over_setups([mine, *(verdicts_there[cutter.id] for _, verdicts_there in other_setups)])
-                found = reasons.of(cutter, over, part_of(tell, k, len(here))) if explain else Explained.as_found(over)
+                if explain:
+                    found = reasons.of(cutter, over, part_of(tell, k, len(here)))
+                else:
+                    found, unexplained = (
+                        Explained.as_found(over),
+                        (*unexplained, *([cutter.id] if over.not_reached.any() else [])),
+                    )
                 by_cutter[cutter] = found, which
             wanted = any(may_be_at_edge(explained.verdicts, cutter) for cutter, (explained, _) in by_cutter.items())
             edges = inside_edges(ready.scene.part, ready.scene.orientation) if wanted else ()

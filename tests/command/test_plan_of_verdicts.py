@@ -123,10 +123,14 @@ def test_where_the_kernel_does_not_come_back_the_plan_is_left_and_told(tmp_path,
 def test_an_interrupt_before_the_reasons_leaves_the_verdicts(tmp_path, monkeypatch):
     """The cutter whose reasons were not looked for is named."""
     monkeypatch.setattr(Reasons, "of", interrupted)
-    done = run(*WORDS, "-o", "out", cwd=tmp_path)
-    told(done, 130, "the reasons of ", *STAGES["area"][1])
-    assert "interrupted while finding the reasons" in done.stderr
-    unfinished(tmp_path / "out", *STAGES["area"][1], alone=False)
+    done = run(*WORDS, "--machine", "tilt:10", "-o", "out", cwd=tmp_path)
+    assert done.returncode == 130
+    assert "the reasons of R6L80, --answers mend and --operations fewest. What it names in their place" in done.stderr
+    assert "interrupted while finding the reasons" in in_lines(done.stdout)
+    whole = plan_of((tmp_path / "out" / "plan.json").read_bytes(), "plan.json")
+    assert whole.cutters[0].inaccessible > 0
+    assert sum(whole.cutters[0].by_reason.values()) == whole.cutters[0].inaccessible + whole.cutters[0].undecided
+    assert leftovers(tmp_path / "out") == WRITTEN
 
 
 def test_an_interrupt_before_the_verdicts_leaves_nothing(tmp_path, monkeypatch):
