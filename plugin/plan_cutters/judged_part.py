@@ -98,6 +98,8 @@ class JudgedPart:
     unexplained : tuple of str
         Ids of the cutters whose reasons were not looked for: they are those that the search of postures found. Of a cutter
         that reaches all there are none.
+    witnessed : bool
+        Whether each cutter has its witnesses.
     """
 
     ready: Prepared
@@ -108,6 +110,7 @@ class JudgedPart:
     started: datetime.datetime
     carried: NDArray[np.int64]
     unexplained: tuple[str, ...] = ()
+    witnessed: bool = True
 
     @classmethod
     def of(
@@ -117,7 +120,8 @@ class JudgedPart:
     ) -> "JudgedPart":  # fmt: skip
         """Combine the verdicts of each cutter over all setups, find the reasons and what is not required, and make its line.
 
-        `by_cutter` takes the reasons of each cutter as they are found; without `explain`, those that are there have to do.
+        `by_cutter` takes the reasons of each cutter as they are found; without `explain`, those that are there have to do, and no
+        witnesses are looked for.
         """
         samples, convex, surroundings = ready.samples, ready.surface_class == CONVEX, ready.conditions.surroundings
         reasons = Reasons(samples, ready.setups, ready.somewhere, ready.machinable)
@@ -145,10 +149,14 @@ class JudgedPart:
             at_edge, verdicts = at_edges[cutter], reaches[cutter]
             with clock.stage(cutter.id, shown=False):
                 context, part = Context.of(cutter, ready.conditions), ready.scene.part
-                witness_list = ready.cache.cached(
-                    "witnesses",
-                    (grounds.of(ready) if ready.cache is not NO_CACHE else b"", part.key, replace(cutter, name=""), verdicts),
-                    partial(witnesses, samples, verdicts, context, inside=ready.shut, part=part),
+                witness_list = (
+                    []
+                    if not explain
+                    else ready.cache.cached(
+                        "witnesses",
+                        (grounds.of(ready) if ready.cache is not NO_CACHE else b"", part.key, replace(cutter, name=""), verdicts),
+                        partial(witnesses, samples, verdicts, context, inside=ready.shut, part=part),
+                    )
                 )
                 marched = march_differs(samples, convex, ready.region, mine.interference_free)
                 entry = cutter_entry(
@@ -158,7 +166,7 @@ class JudgedPart:
                 fillets = sharp_edge_entries(edges, at_edge, samples, cutter)
                 judged[cutter] = JudgedCutter(verdicts, which, mine if other_setups else verdicts, entry, fillets)
         moved = travels(ready.options, samples, {cutter: each.here for cutter, each in judged.items()})
-        return cls(ready, judged, other_setups, moved, searched, started, carried, unexplained)
+        return cls(ready, judged, other_setups, moved, searched, started, carried, unexplained, explain)
 
     @property
     def here(self) -> dict[Cutter, Verdicts]:

@@ -94,6 +94,7 @@ class Standing:
         options = part.ready.options
         each = later_stages(
             reasons=part.unexplained,
+            witnesses=not part.witnessed,
             area=part.looks_between and not self._looked,
             answers=options.answers if self._unanswered is None else self._unanswered,
             operations=None if self._planned else options.operations,

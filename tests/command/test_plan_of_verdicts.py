@@ -125,11 +125,12 @@ def test_an_interrupt_before_the_reasons_leaves_the_verdicts(tmp_path, monkeypat
     monkeypatch.setattr(Reasons, "of", interrupted)
     done = run(*WORDS, "--machine", "tilt:10", "-o", "out", cwd=tmp_path)
     assert done.returncode == 130
-    assert "the reasons of R6L80, --answers mend and --operations fewest. What it names in their place" in done.stderr
+    assert "the reasons of R6L80, witnesses, --answers mend and --operations fewest. What it names in their place" in done.stderr
     assert "interrupted while finding the reasons" in in_lines(done.stdout)
     whole = plan_of((tmp_path / "out" / "plan.json").read_bytes(), "plan.json")
     assert whole.cutters[0].inaccessible > 0
     assert sum(whole.cutters[0].by_reason.values()) == whole.cutters[0].inaccessible + whole.cutters[0].undecided
+    assert whole.cutters[0].witnesses == []
     assert leftovers(tmp_path / "out") == WRITTEN
 
 

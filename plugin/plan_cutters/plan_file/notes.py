@@ -31,17 +31,19 @@ class Note(NamedTuple):
 
 
 def later_stages(
-    *, area: bool, answers: Sequence[str], operations: str | None, maps: bool, process: bool = False, reasons: Sequence[str] = ()
-) -> tuple[str, ...]:
+    *, area: bool, answers: Sequence[str], operations: str | None, maps: bool, process: bool = False,
+    reasons: Sequence[str] = (), witnesses: bool = False,
+) -> tuple[str, ...]:  # fmt: skip
     """Name what follows the verdicts, in its order, by its options; empty for what was not requested.
 
-    `reasons`: the cutters whose reasons are not found.
+    `reasons`: the cutters whose reasons are not found; `witnesses`: theirs, and those of all others, are not either.
 
     >>> later_stages(area=True, answers=(), operations="fewest", maps=False)
-    ('', 'the proof between the samples', '', '--operations fewest', '')
+    ('', '', 'the proof between the samples', '', '--operations fewest', '')
     """
     return (
         f"the reasons of {listed(reasons)}" if reasons else "",
+        "witnesses" if witnesses else "",
         "the proof between the samples" if area else "",
         f"--answers {','.join(answers)}" if answers else "",
         "your steps (--process)" if process else f"--operations {operations}" if operations is not None else "",
