@@ -132,13 +132,10 @@ class JudgedPart:
                     continue
                 over, which = over_setups([mine, *(verdicts_there[cutter.id] for _, verdicts_there in other_setups)])
                 if explain:
-                    found = reasons.of(cutter, over, part_of(tell, k, len(here)))
-                else:
-                    found, unexplained = (
-                        Explained.as_found(over),
-                        (*unexplained, *([cutter.id] if over.not_reached.any() else [])),
-                    )
-                by_cutter[cutter] = found, which
+                    by_cutter[cutter] = reasons.of(cutter, over, part_of(tell, k, len(here))), which
+                    continue
+                by_cutter[cutter] = Explained.of_search(over), which
+                unexplained += (cutter.id,) if over.not_reached.any() else ()
             wanted = any(may_be_at_edge(explained.verdicts, cutter) for cutter, (explained, _) in by_cutter.items())
             edges = inside_edges(ready.scene.part, ready.scene.orientation) if wanted else ()
         at_edges = {cutter: strips(samples, explained.verdicts, cutter, edges) for cutter, (explained, _) in by_cutter.items()}

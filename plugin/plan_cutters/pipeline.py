@@ -32,6 +32,7 @@ from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.files.stage_cache import NO_CACHE, StageCache
+from plan_cutters.interim import Describe, Interim
 from plan_cutters.judged_part import ExplainedIn, JudgedPart, assembled
 from plan_cutters.option_types import PlanOptions
 from plan_cutters.options import Options
@@ -57,7 +58,6 @@ from plan_cutters.stages.judge import Judge, judge
 from plan_cutters.stages.judge_once import JudgeOnce
 from plan_cutters.stages.other_setups import in_setup
 from plan_cutters.stages.posture_maps import posture_maps
-from plan_cutters.standing import Describe, Standing
 
 #: Faces from which on they are sampled in a copy of the process, and the processor time that it may take, s.
 _MANY_FACES, _SAMPLING = 12, 60.0
@@ -117,13 +117,13 @@ def plan(
 def run(
     part: Any, options: Options, clock: Clock, *, read_timeout: float = TIMEOUT, at: At = lambda whose, face: None,
     compiling: Callable[[str], None] = lambda entry: None, excluded: Mapping[int, str] | None = None, judged: Judge = judge,
-    standing: Standing | None = None, folder: str = "", cache: StageCache | None = None, remark: Describe | None = None,
+    interim: Interim | None = None, folder: str = "", cache: StageCache | None = None, remark: Describe | None = None,
 ) -> Result:  # fmt: skip
     """`plan` with its options gathered.
 
     `read_timeout` is the most seconds that a faulty file may take to read; `at` is told whose work goes on at which face;
     `compiling` waits for the machine code of an entry that is made meanwhile; `excluded` says by number why faces are not
-    to be worked on at all; `judged` gives the verdicts of each cutter in each setup, as `judge` does; `standing` keeps what is
+    to be worked on at all; `judged` gives the verdicts of each cutter in each setup, as `judge` does; `interim` keeps what is
     found, from the moment on at which the verdicts stand. `folder` is where files of setups that are proposed will be, as a
     command in it is to name them. `cache` keeps what stages make of a part of a file. `remark` adds to each plan what its
     options do not say.
@@ -131,21 +131,21 @@ def run(
     begun = partial(prepare, read_timeout=read_timeout, at=at, compiling=compiling, cache=cache)
     if cache is not None and judged is judge:
         judged = CachedJudge(judged)
-    standing, describe = standing or Standing(clock), remark or _as_it_is
+    interim, describe = interim or Interim(clock), remark or _as_it_is
 
     def remarked(part: JudgedPart, proposed: Describe) -> tuple[JudgedPart, Describe]:
         return part, proposed if remark is None else lambda plan: remark(proposed(plan))
 
     if options.propose:
         prepared, judging = partial(begun, part, excluded=excluded), partial(_judge, begun, judged=judged)
-        found = judged_proposed(
-            prepared, judging, options, clock, folder, lambda made: standing.verdicts(lambda: remarked(*made()))
+        proposal = judged_proposed(
+            prepared, judging, options, clock, folder, lambda made: interim.verdicts(lambda: remarked(*made()))
         )
-        judged_part, describe = remarked(*found)
+        judged_part, describe = remarked(*proposal)
     else:
         begun, alone = partial(begun, excluded=excluded), describe
-        judged_part = _judge(begun, part, options, clock, lambda made: standing.verdicts(lambda: (made(), alone)), judged=judged)
-    return _completed(judged_part, clock, describe, compiling, standing)
+        judged_part = _judge(begun, part, options, clock, lambda made: interim.verdicts(lambda: (made(), alone)), judged=judged)
+    return _completed(judged_part, clock, describe, compiling, interim)
 
 
 def _as_it_is(plan: Plan) -> Plan:
@@ -175,23 +175,21 @@ def _judge(
     return of_verdicts(reasons)
 
 
-def _completed(
-    part: JudgedPart, clock: Clock, describe: Describe, compiling: Callable[[str], None], standing: Standing
-) -> Result:
+def _completed(part: JudgedPart, clock: Clock, describe: Describe, compiling: Callable[[str], None], interim: Interim) -> Result:
     """Do what follows the verdicts, stage by stage; `describe` adds to each plan how its setups were found."""
     options, least = part.ready.options, least_set(part.ready, part.here, part.other_setups)
-    standing.judged(part, describe, Answers(least_set=least))
-    standing.looked(part.between(clock, compiling))
+    interim.judged(part, describe, Answers(least_set=least))
+    interim.looked(part.between(clock, compiling))
     job = partial(_operations, part, least)
     # Answers and operations need nothing of each other, and neither keeps all threads at work.
     both = options.jobs > 1 and options.operations is not None and bool(options.answers)
     planned = Gauge()
     with SideProcess(partial(job, Clock(lambda _, *counts: planned.tell(*counts))), _PLANNING, worth=both) as side:
         try:
-            ask(part.ready, part.here, clock.stage, part.other_setups, least=least, answered=standing.answered)
+            ask(part.ready, part.here, clock.stage, part.other_setups, least=least, answered=interim.answered)
         except KeyboardInterrupt:
             if (planned_by_now := side.ended()) is not None:
-                standing.planned(planned_by_now[0])
+                interim.planned(planned_by_now[0])
             raise
         if side.works:
             with clock.stage("operations") as tell:
@@ -202,8 +200,8 @@ def _completed(
             clock.boxes |= boxes
         else:
             operations, *_ = job(clock)
-        standing.planned(operations)
-    result = assembled(part, clock, standing.answers, standing.between)
+        interim.planned(operations)
+    result = assembled(part, clock, interim.answers, interim.between)
     if options.posture_maps:
         result = _mapped(result, part, clock, compiling)
     if describe is not _as_it_is:

@@ -18,10 +18,10 @@ from plan_cutters.command import batch as of_many
 from plan_cutters.command.codes import guarded, invoked
 from plan_cutters.document.clock import Clock
 from plan_cutters.errors import TooManySamplesError
+from plan_cutters.interim import Interim
 from plan_cutters.pipeline import run
 from plan_cutters.report.folder import Staging, write_unfinished
 from plan_cutters.scene.spacing import MOST
-from plan_cutters.standing import Standing
 from plan_cutters.workers.assignment import TIMED_OUT
 from tests.support.commands import in_lines
 from tests.support.places import ROOT
@@ -54,7 +54,7 @@ def task_of(out, options=QUICK, **more):
 def late(task, content, folder):
     """The command for one part, ended when the plan of its verdicts was safe."""
     safe = []
-    run(GROOVE, Options(**QUICK, jobs=1, answers=["stick-out"]), Clock(), standing=Standing(Clock(), safe.append))
+    run(GROOVE, Options(**QUICK, jobs=1, answers=["stick-out"]), Clock(), interim=Interim(Clock(), safe.append))
     with Staging(folder / "out") as staging:
         assert write_unfinished(safe[0], ("json", "html"), staging, Clock())
     return TIMED_OUT, work._out_of_time(task)

@@ -15,6 +15,7 @@ from plan_cutters.answers import ask
 from plan_cutters.command import retry
 from plan_cutters.comparison.plans import compare
 from plan_cutters.document.clock import Clock
+from plan_cutters.interim import Interim
 from plan_cutters.judged_part import JudgedPart
 from plan_cutters.operations import planning
 from plan_cutters.options import Options
@@ -24,7 +25,6 @@ from plan_cutters.report import models
 from plan_cutters.report.to_json import dumps
 from plan_cutters.stages.judge_once import JudgeOnce
 from plan_cutters.stages.reasons import Reasons
-from plan_cutters.standing import Standing
 from plan_cutters.workers import supervise
 from plan_cutters.workers.assignment import TIMED_OUT
 from plan_cutters.workers.errors import OutOfTime
@@ -285,7 +285,7 @@ def stages():
     options = Options(cutters=("R6L80",), grid=3, area_budget=50, answers="mend", operations="fewest", posture_maps=True)
     before = []
     return (
-        run_stages(PART, options, Clock(), standing=Standing(Clock(), lambda result: before.append(result.plan))),
+        run_stages(PART, options, Clock(), interim=Interim(Clock(), lambda result: before.append(result.plan))),
         before,
         run_stages(PART, options, Clock()),
     )
@@ -307,7 +307,7 @@ def test_each_plan_that_stands_is_without_less(stages):
 def test_a_plan_that_nothing_follows_is_written_once():
     before = []
     options = Options(cutters=("R6L80",), grid=3, area_budget=0)
-    run_stages(PART, options, Clock(), standing=Standing(Clock(), lambda result: before.append(result.plan)))
+    run_stages(PART, options, Clock(), interim=Interim(Clock(), lambda result: before.append(result.plan)))
     assert before == []
 
 

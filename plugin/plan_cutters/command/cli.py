@@ -112,10 +112,10 @@ def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
     os._exit(code)
 
 
-def _shown(request: PlanRequest, out: Path, told: bool) -> None:
+def _shown(request: PlanRequest, out: Path, summarised: bool) -> None:
     from plan_cutters.command.partial_plan import show_plan
 
-    show_plan(out, request, told=told)
+    show_plan(out, request, summarised=summarised)
 
 
 def _part_cases(request: PlanRequest) -> PartCases | None:

@@ -67,18 +67,18 @@ def one_part(
         import plan_cutters.report.models  # noqa: F401  all that takes time to load is loaded in the stage `start`
         from plan_cutters.document.clock import Clock
         from plan_cutters.files.stage_cache import StageCache, settle
+        from plan_cutters.interim import Interim
         from plan_cutters.pipeline import run
-        from plan_cutters.standing import Standing
 
         gc.freeze()
         gc.enable()
         clock = Clock(watch.tell, began=began)
-        standing = Standing(clock, stands if staging else None, lambda: report("stands", ""))
+        interim = Interim(clock, stands if staging else None, lambda: report("stands", ""))
         handed = job_input().part
         source = pickle.loads(handed) if handed else part
         with _judging(request) as judged:
             planned = partial(run, source, clock=clock, read_timeout=request.read_timeout, at=report_work, compiling=compiling,
-                              excluded=omitted, judged=judged, standing=standing,
+                              excluded=omitted, judged=judged, interim=interim,
                               folder=_folder(out), cache=StageCache.of_user() if request.cache else None)  # fmt: skip
             try:
                 result = planned(options)
@@ -90,7 +90,7 @@ def one_part(
 
                 result = planned(default_density(options), remark=partial(noted_coarser, options))
             except (Exception, KeyboardInterrupt) as error:
-                if not is_interrupt(error) or (stood := standing.interrupted(watch.tell.work)) is None:
+                if not is_interrupt(error) or (stood := interim.interrupted(watch.tell.work)) is None:
                     raise
                 result = stood
                 interrupts.append(signal.SIGINT)
@@ -120,9 +120,11 @@ def one_part(
             staging.discard()
     if not interrupts:
         settle()  # this process ends without waiting for its threads
-    if request.json_out == "-" and not (interrupts and out and is_child()):
+    # Of an interrupted run, who watches it tells the rest.
+    tells = not (interrupts and out and is_child())
+    if request.json_out == "-" and tells:
         terminal.hand_out(dumps(document))
-    if not request.quiet:
+    if not request.quiet and tells:
         _tells(request)(
             *(others(document, every=True) if request.verbose else []), *written(document, out, formats, verbose=request.verbose)
         )
@@ -205,7 +207,7 @@ class ProgressListener:
         self.end()
         if not self.request.quiet:
             summary(plan, verbose=self.request.verbose, tells=_tells(self.request))
-        report("told", "")
+        report("summarised", "")
 
     def stands(self) -> None:
         """A plan is in the output that is without what was requested besides: no exit code of a plan stands for that."""

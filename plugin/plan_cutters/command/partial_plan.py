@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 def without_models(stopped: Unfinished, request: "PlanRequest") -> int:
     """The plan was safe when the process that made it was ended: say what is missing; its exit code stands."""
     line = remaining_text(stopped.out, str(stopped))
-    show_plan(stopped.out, request, told=stopped.told)
+    show_plan(stopped.out, request, summarised=stopped.summarised)
     terminal.error(f"plan-cutters: {line}")
     remaining = request.parts[stopped.parts :]
     if remaining and stopped.code != INTERRUPTED:
@@ -24,18 +24,25 @@ def without_models(stopped: Unfinished, request: "PlanRequest") -> int:
     return stopped.code
 
 
-def show_plan(out: Path, request: "PlanRequest", *, told: bool) -> None:
-    """Show the plan of a run that was ended: its summary, unless that was told already, and itself where that is requested."""
+def show_plan(out: Path, request: "PlanRequest", *, summarised: bool) -> None:
+    """Show the plan of a run that was ended: its summary, unless that was shown already, its files, and itself where that is
+    requested.
+    """
     from plan_cutters.report import PLAN
 
     path = out / PLAN
     if not path.is_file():
         return
-    if not told and not request.quiet:
-        from plan_cutters.command.summary import summary
+    if not request.quiet:
+        from plan_cutters.command.summary import summary, written
         from plan_cutters.plan_file.load import load_plan
+        from plan_cutters.report.folder import DEFAULT_FORMATS, read_formats
 
-        summary(load_plan(path), verbose=request.verbose, tells=terminal.say if request.json_out == "-" else terminal.show)
+        plan, tells = load_plan(path), terminal.say if request.json_out == "-" else terminal.show
+        if not summarised:
+            summary(plan, verbose=request.verbose, tells=tells)
+        formats = DEFAULT_FORMATS if request.formats is None else read_formats(request.formats)
+        tells(*written(plan, out, formats, verbose=request.verbose))
     if request.json_out == "-":
         terminal.hand_out(path.read_text(encoding="utf-8"))
 

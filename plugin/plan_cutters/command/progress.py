@@ -50,7 +50,7 @@ _OFTEN = 0.1
 
 
 def work_of(stage: str) -> str:
-    """What the work of a stage is called.
+    """Name the work of a stage.
 
     >>> work_of("operations"), work_of("R6L80")
     ('planning the operations', 'judging the cutters')
@@ -134,7 +134,7 @@ class Display:
         terminal.give(text)
 
     def interrupted(self) -> None:
-        """What is asked to end has something to write first."""
+        """Say that what is to end writes something first."""
         self.clear()
         if not self.quiet:
             terminal.error("plan-cutters: what stands is written now, in at most 10 s; a second interrupt ends it at once")

@@ -19,7 +19,7 @@ MOST = 5
 
 def supervised(
     words: Sequence[str], *, parts: Sequence[str], read_timeout: float, memory: int, timeout: float = math.inf, since: float,
-    display: Display | None = None, shows: Callable[[Path, bool], None] = lambda out, told: None,
+    display: Display | None = None, shows: Callable[[Path, bool], None] = lambda out, summarised: None,
 ) -> int:  # fmt: skip
     """`supervise`, again and again without the face at which it ended, or without the part that took too long.
 
@@ -51,7 +51,7 @@ def supervised(
                 return code
             line = _failure_text(stopped.out, timeout)
             if stopped.out is not None:
-                shows(stopped.out, stopped.told)
+                shows(stopped.out, stopped.summarised)
             terminal.error(f"plan-cutters: {parts[done]}: {line}")
             if display is not None:
                 display.failed(f"{parts[done]}: {line}", parts[done])

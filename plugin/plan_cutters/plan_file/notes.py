@@ -52,7 +52,7 @@ def later_stages(
 
 
 def run_unfinished(absent: Sequence[str], work: str = "", *, unexplained: bool = False) -> Note:
-    """What a plan is without; `work`: what the run was doing when it was interrupted; `unexplained`: reasons are missing.
+    """Say what a plan is without; `work`: what the run was doing when it was interrupted; `unexplained`: reasons are missing.
 
     >>> run_unfinished(["--answers mend", "--operations fewest"], "planning the operations").text
     'The run was interrupted while planning the operations: this plan is without --answers mend and --operations fewest.'

@@ -134,16 +134,9 @@ class ProgressListener(Protocol):
 
 
 def write_all(
-    result: Judged,
-    out: Path,
-    formats: Sequence[str],
-    staging: Staging | None = None,
-    *,
-    step_schema: str = "ap242",
-    listener: ProgressListener | None = None,
-    clock: "Clock | None" = None,
-    hurried: bool = False,
-) -> "Plan":
+    result: Judged, out: Path, formats: Sequence[str], staging: Staging | None = None, *, step_schema: str = "ap242",
+    listener: ProgressListener | None = None, clock: "Clock | None" = None, hurried: bool = False,
+) -> "Plan":  # fmt: skip
     """Write the formats asked for into the folder `out`, each file whole or not at all.
 
     The arrays and the plan come first; the plan is replaced as each other file is added. What fails or ends the process in

@@ -50,7 +50,7 @@ class Explained:
     besides: NDArray[np.uint8]
 
     @classmethod
-    def as_found(cls, verdicts: Verdicts) -> "Explained":
+    def of_search(cls, verdicts: Verdicts) -> "Explained":
         """With the reasons that the search of postures found: what forbids most tilts."""
         return cls(verdicts, np.full(len(verdicts.verdict), NO_REASON, np.uint8))
 

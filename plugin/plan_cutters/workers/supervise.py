@@ -96,11 +96,11 @@ def supervise(
     watch = _Watch(read_timeout, display, began=since)
     child: Worker | None = None
     signals: list[int] = []
-    asked, late, told = 0.0, False, False
+    ending, late, announced = 0.0, False, False
 
     def ask(child: Worker) -> None:
-        nonlocal asked
-        asked = time.monotonic()
+        nonlocal ending
+        ending = time.monotonic()
         child.process.send_signal(signal.SIGINT)
         # The system's timer, for this process may be waiting for its reader just now.
         signal.setitimer(signal.ITIMER_REAL, GRACE)
@@ -108,13 +108,13 @@ def supervise(
     def stop(number: int, _: object) -> None:
         # Ask once; a child that has not begun, or is asked again, has nothing to tidy that this process does not.
         signals.append(number)
-        if child is not None and (asked or watch.stage == "start"):
+        if child is not None and (ending or watch.stage == "start"):
             child.kill()
         elif child is not None:
             ask(child)
 
     def waited(*_: object) -> None:
-        rest = asked + WRITING - time.monotonic()
+        rest = ending + WRITING - time.monotonic()
         if watch.stands and rest > 0.0:
             signal.setitimer(signal.ITIMER_REAL, rest)
         elif child is not None:
@@ -133,13 +133,13 @@ def supervise(
             watch.listen(0.2)
             if watch.over:  # neither the child nor a copy of it holds the other end: it has ended, or is about to
                 child.ended(0.2)
-            if not asked and time.monotonic() - watch.began > timeout:
+            if not ending and time.monotonic() - watch.began > timeout:
                 if not watch.stands:
                     raise OutOfTime(watch.dones, watch.code, watch.safe and watch.safe[1])
                 late = True
                 ask(child)
-            if asked and watch.stands and not told:
-                told = True
+            if ending and watch.stands and not announced:
+                announced = True
                 if display is not None:
                     display.interrupted()
             if watch.late():
@@ -158,7 +158,7 @@ def supervise(
             signal.signal(number, handler)
     code = child.process.returncode
     if late and not signals:
-        raise OutOfTime(watch.dones, watch.code, watch.safe and watch.safe[1], watch.told)
+        raise OutOfTime(watch.dones, watch.code, watch.safe and watch.safe[1], watch.summarised)
     if code == INTERRUPTED and watch.safe is not None:
         raise watch.ended("interrupted", "", interrupted=True)
     if code >= 0:
@@ -206,7 +206,7 @@ class _Watch:
         self.parts, self.dones, self.code = 0, 0, 0
         self.over = False
         self.safe: tuple[int, Path] | None = None
-        self.stands = self.told = False
+        self.stands = self.summarised = False
 
     def listen(self, seconds: float) -> None:
         while select.select([self.pipe], [], [], seconds)[0]:
@@ -224,8 +224,8 @@ class _Watch:
                     self.work, self.spent = text, _processor(self.child)
                 elif word == "part":
                     self.part, self.parts, self.safe = text, self.parts + 1, None
-                    self.stands = self.told = False
-                elif word in ("stands", "told"):
+                    self.stands = self.summarised = False
+                elif word in ("stands", "summarised"):
                     setattr(self, word, True)
                 elif word == "safe":
                     code, _, folder = text.partition(" ")
@@ -286,7 +286,7 @@ class _Watch:
         if self.safe is None:
             return Supervised(f"{self.part}: {what}; {advice}")
         code, out = self.safe
-        return Unfinished(what, INTERRUPTED if interrupted else max(self.code, code), out, self.parts, self.told)
+        return Unfinished(what, INTERRUPTED if interrupted else max(self.code, code), out, self.parts, self.summarised)
 
     def clear(self) -> None:
         """Take away what the child had begun to write and not given to the output."""

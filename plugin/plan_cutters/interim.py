@@ -1,4 +1,4 @@
-"""What stands of a plan while its run goes on: a result of it can be made at any moment, and says what it is without."""
+"""An interim plan can be made at any moment once verdicts stand, while the run goes on, and says what it is without."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -16,8 +16,8 @@ from plan_cutters.result import Result
 Describe = Callable[[Plan], Plan]
 
 
-class Standing:
-    """The verdicts of a part, and what was found besides.
+class Interim:
+    """An interim holds the verdicts of a part, and what was found besides.
 
     Parameters
     ----------
