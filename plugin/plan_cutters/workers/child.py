@@ -11,7 +11,6 @@ from typing import Any
 
 from plan_cutters.workers.assignment import VARIABLE, Assignment, assignment, began, is_child
 
-
 #: Seconds after which a child that was asked to end is asked again.
 _TWICE = 0.5
 
