@@ -179,6 +179,14 @@ class SideProcess(Generic[Done]):
         """Whether there is a copy: then this process should do something else before it asks for the result."""
         return self._copy is not None
 
+    def ended(self) -> Done | None:
+        """Return the result if the call has ended in the copy; None otherwise: nothing is waited for, and nothing done here."""
+        if self._copy is not None and self._copy.speaks:
+            with contextlib.suppress(TimeoutError):
+                for answer in self._copy.answers():
+                    return cast(Done, answer)
+        return None
+
     def result(self, here: Callable[[], Done] | None = None, waiting: Callable[[], None] | None = None) -> Done:
         """Return the result of the call.
 

@@ -95,6 +95,13 @@ class Copy:
         """Whether it was ended for its processor time."""
         return os.WIFSIGNALED(self.status) and os.WTERMSIG(self.status) in (signal.SIGPROF, signal.SIGXCPU)
 
+    @property
+    def speaks(self) -> bool:
+        """Whether it has said something that is not read, or has ended."""
+        ready = select.poll()
+        ready.register(self._end, select.POLLIN)
+        return bool(ready.poll(0))
+
     def parts(self, late: Callable[[], float] | None = None) -> Iterator[bytes]:
         """Yield all that it says, as it comes, until its side closes; `late` gives the seconds to wait before it is asked again.
 

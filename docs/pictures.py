@@ -79,7 +79,7 @@ def _page(page: Path, picture: Path) -> None:
         tab = browser.new_page(viewport={"width": 1366, "height": 768})
         tab.goto(page.as_uri())
         tab.wait_for_timeout(2000)
-        tab.locator("#cutters tr[data-cutter]").first.click()
+        tab.locator("#cutters tr[data-cutter]").filter(has_text="rear gouge").first.click()
         tab.wait_for_timeout(500)
         tab.keyboard.press("n")
         tab.wait_for_timeout(2500)

@@ -40,7 +40,7 @@ from plan_cutters.scene.threads import Progress, part_of
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.between import in_each
 from plan_cutters.stages.decompose import march_differs
-from plan_cutters.stages.reasons import Reasons
+from plan_cutters.stages.reasons import Explained, Reasons
 from plan_cutters.stages.setups import within_limits
 from plan_cutters.stages.sharp_edges import exempt, may_be_at_edge, strips, with_sharp_edges
 from plan_cutters.stages.travel import travels
@@ -49,6 +49,9 @@ from plan_cutters.stages.witness import witnesses
 #: The work between samples: this share of what came before, and so many boxes in any case, fewer among more than so many
 #: triangles, where each takes longer. What came before: boxes of searches, and what a triangle and a sample take until judged.
 _WORK_SHARE, _WORK_LEAST, _FEW, _TRIANGLE, _SAMPLE = 1 / 3, 2.5e7, 2e5, 15.0, 90.0
+
+#: The reasons of a cutter over all setups, and the setup that serves each sample.
+ExplainedIn = tuple[Explained, Ints]
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,6 +98,11 @@ class JudgedPart:
         When the work began.
     carried : (m, 3) int64
         Of each motion of the whole part, as `JudgeOnce.carried` counts.
+    unexplained : tuple of str
+        Ids of the cutters whose reasons were not looked for: they are those that the search of postures found. Of a cutter
+        that reaches all there are none.
+    witnessed : bool
+        Whether each cutter has its witnesses.
     """
 
     ready: Prepared
@@ -104,21 +112,33 @@ class JudgedPart:
     searched: Work
     started: datetime.datetime
     carried: NDArray[np.int64]
+    unexplained: tuple[str, ...] = ()
+    witnessed: bool = True
 
     @classmethod
     def of(
         cls, ready: Prepared, here: Mapping[Cutter, Verdicts], other_setups: Sequence[OtherSetup],
         seconds: Mapping[Cutter, float], clock: Clock, searched: Work, started: datetime.datetime,
-        carried: NDArray[np.int64],
+        carried: NDArray[np.int64], by_cutter: "dict[Cutter, ExplainedIn]", *, explain: bool = True,
     ) -> "JudgedPart":  # fmt: skip
-        """Combine the verdicts of each cutter over all setups, find the reasons and what is not required, and make its line."""
+        """Combine the verdicts of each cutter over all setups, find the reasons and what is not required, and make its line.
+
+        `by_cutter` takes the reasons of each cutter as they are found; without `explain`, those that are there have to do, and no
+        witnesses are looked for.
+        """
         samples, convex, surroundings = ready.samples, ready.surface_class == CONVEX, ready.conditions.surroundings
         reasons = Reasons(samples, ready.setups, ready.somewhere, ready.machinable)
-        by_cutter = {}
-        with clock.stage("reasons") as tell:
+        unexplained: tuple[str, ...] = ()
+        with clock.stage("reasons", shown=explain) as tell:
             for k, (cutter, mine) in enumerate(here.items()):
+                if cutter in by_cutter:
+                    continue
                 over, which = over_setups([mine, *(verdicts_there[cutter.id] for _, verdicts_there in other_setups)])
-                by_cutter[cutter] = reasons.of(cutter, over, part_of(tell, k, len(here))), which
+                if explain:
+                    by_cutter[cutter] = reasons.of(cutter, over, part_of(tell, k, len(here))), which
+                    continue
+                by_cutter[cutter] = Explained.of_search(over), which
+                unexplained += (cutter.id,) if over.not_reached.any() else ()
             wanted = any(may_be_at_edge(explained.verdicts, cutter) for cutter, (explained, _) in by_cutter.items())
             edges = inside_edges(ready.scene.part, ready.scene.orientation, ready.scene.doubles) if wanted else ()
         at_edges = {cutter: strips(samples, explained.verdicts, cutter, edges) for cutter, (explained, _) in by_cutter.items()}
@@ -129,10 +149,14 @@ class JudgedPart:
             at_edge, verdicts = at_edges[cutter], reaches[cutter]
             with clock.stage(cutter.id, shown=False):
                 context, part = Context.of(cutter, ready.conditions), ready.scene.part
-                witness_list = ready.cache.cached(
-                    "witnesses",
-                    (grounds.of(ready) if ready.cache is not NO_CACHE else b"", part.key, replace(cutter, name=""), verdicts),
-                    partial(witnesses, samples, verdicts, context, inside=ready.shut, part=part),
+                witness_list = (
+                    []
+                    if not explain
+                    else ready.cache.cached(
+                        "witnesses",
+                        (grounds.of(ready) if ready.cache is not NO_CACHE else b"", part.key, replace(cutter, name=""), verdicts),
+                        partial(witnesses, samples, verdicts, context, inside=ready.shut, part=part),
+                    )
                 )
                 marched = march_differs(samples, convex, ready.region, mine.interference_free)
                 entry = cutter_entry(
@@ -142,7 +166,7 @@ class JudgedPart:
                 fillets = sharp_edge_entries(edges, at_edge, samples, cutter)
                 judged[cutter] = JudgedCutter(verdicts, which, mine if other_setups else verdicts, entry, fillets)
         moved = travels(ready.options, samples, {cutter: each.here for cutter, each in judged.items()})
-        return cls(ready, judged, other_setups, moved, searched, started, carried)
+        return cls(ready, judged, other_setups, moved, searched, started, carried, unexplained, explain)
 
     @property
     def here(self) -> dict[Cutter, Verdicts]:

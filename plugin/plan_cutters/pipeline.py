@@ -32,13 +32,14 @@ from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.files.stage_cache import NO_CACHE, StageCache
-from plan_cutters.judged_part import JudgedPart, assembled
+from plan_cutters.interim import Describe, Interim
+from plan_cutters.judged_part import ExplainedIn, JudgedPart, assembled
 from plan_cutters.option_types import PlanOptions
 from plan_cutters.options import Options
-from plan_cutters.plan_file.model import AreaEntry, Plan
-from plan_cutters.plan_file.notes import later_stages, maps_partial, run_unfinished
+from plan_cutters.plan_file.model import Plan
+from plan_cutters.plan_file.notes import maps_partial
 from plan_cutters.plan_file.words.text import with_text
-from plan_cutters.proposal import judged_proposed
+from plan_cutters.proposal import Stand, judged_proposed
 from plan_cutters.result import Result
 from plan_cutters.scene.conditions import Context, contacts_of, warm
 from plan_cutters.scene.copied import with_copies
@@ -116,38 +117,45 @@ def plan(
 def run(
     part: Any, options: Options, clock: Clock, *, read_timeout: float = TIMEOUT, at: At = lambda whose, face: None,
     compiling: Callable[[str], None] = lambda entry: None, excluded: Mapping[int, str] | None = None, judged: Judge = judge,
-    stands: Callable[[Result], None] | None = None, folder: str = "", cache: StageCache | None = None,
-    remark: Callable[[Plan], Plan] | None = None,
+    interim: Interim | None = None, folder: str = "", cache: StageCache | None = None, remark: Describe | None = None,
 ) -> Result:  # fmt: skip
     """`plan` with its options gathered.
 
     `read_timeout` is the most seconds that a faulty file may take to read; `at` is told whose work goes on at which face;
     `compiling` waits for the machine code of an entry that is made meanwhile; `excluded` says by number why faces are not
-    to be worked on at all; `judged` gives the verdicts of each cutter in each setup, as `judge` does; `stands` is given a
-    result as soon as the verdicts stand, and again after each stage that another one follows: its plan is whole, and says what it
-    is without. `folder` is where files of setups that are proposed will be, as a command in it is to name them. `cache` keeps
-    what stages make of a part of a file. `remark` adds to each plan what its options do not say.
+    to be worked on at all; `judged` gives the verdicts of each cutter in each setup, as `judge` does; `interim` keeps what is
+    found, from the moment on at which the verdicts stand. `folder` is where files of setups that are proposed will be, as a
+    command in it is to name them. `cache` keeps what stages make of a part of a file. `remark` adds to each plan what its
+    options do not say.
     """
     begun = partial(prepare, read_timeout=read_timeout, at=at, compiling=compiling, cache=cache)
     if cache is not None and judged is judge:
         judged = CachedJudge(judged)
-    describe = remark or _as_it_is
+    interim, describe = interim or Interim(clock), remark or _as_it_is
+
+    def remarked(part: JudgedPart, proposed: Describe) -> tuple[JudgedPart, Describe]:
+        return part, proposed if remark is None else lambda plan: remark(proposed(plan))
+
     if options.propose:
-        judged_part, proposed = judged_proposed(
-            partial(begun, part, excluded=excluded), partial(_judge, begun, judged=judged), options, clock, folder
+        prepared, judging = partial(begun, part, excluded=excluded), partial(_judge, begun, judged=judged)
+        proposal = judged_proposed(
+            prepared, judging, options, clock, folder, lambda made: interim.verdicts(lambda: remarked(*made()))
         )
-        describe = proposed if remark is None else lambda plan: remark(proposed(plan))
+        judged_part, describe = remarked(*proposal)
     else:
-        judged_part = _judge(partial(begun, excluded=excluded), part, options, clock, judged=judged)
-    return _completed(judged_part, clock, describe, compiling, stands)
+        begun, alone = partial(begun, excluded=excluded), describe
+        judged_part = _judge(begun, part, options, clock, lambda made: interim.verdicts(lambda: (made(), alone)), judged=judged)
+    return _completed(judged_part, clock, describe, compiling, interim)
 
 
 def _as_it_is(plan: Plan) -> Plan:
     return plan
 
 
-def _judge(begun: Callable[..., Prepared], part: Any, options: Options, clock: Clock, *, judged: Judge) -> JudgedPart:
-    """Judge all cutters in all setups."""
+def _judge(
+    begun: Callable[..., Prepared], part: Any, options: Options, clock: Clock, stand: Stand[JudgedPart], *, judged: Judge
+) -> JudgedPart:
+    """Judge all cutters in all setups; `stand` is told how the part is made of the verdicts alone, as soon as there are all."""
     started = datetime.datetime.now(datetime.UTC)
     ready = begun(part, options, clock)
     here: dict[Cutter, Verdicts] = {}
@@ -161,40 +169,28 @@ def _judge(begun: Callable[..., Prepared], part: Any, options: Options, clock: C
             here[cutter] = judged(ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell, work=searched)
             seconds[cutter] = time.perf_counter() - began
     others = _in_other_setups(ready, here, clock, judged) if options.other_setups else []
-    return JudgedPart.of(ready, here, others, seconds, clock, searched, started, once.carried)
+    of_verdicts = partial(JudgedPart.of, ready, here, others, seconds, clock, searched, started, once.carried)
+    reasons: dict[Cutter, ExplainedIn] = {}
+    stand(lambda: of_verdicts(dict(reasons), explain=False))
+    return of_verdicts(reasons)
 
 
-def _completed(
-    part: JudgedPart,
-    clock: Clock,
-    describe: Callable[[Plan], Plan],
-    compiling: Callable[[str], None],
-    stands: Callable[[Result], None] | None,
-) -> Result:
+def _completed(part: JudgedPart, clock: Clock, describe: Describe, compiling: Callable[[str], None], interim: Interim) -> Result:
     """Do what follows the verdicts, stage by stage; `describe` adds to each plan how its setups were found."""
-    options = part.ready.options
-    answers, between = Answers(least_set=least_set(part.ready, part.here, part.other_setups)), dict[str, AreaEntry]()
-    later = later_stages(area=part.looks_between, answers=options.answers, operations=options.operations,
-                         maps=options.posture_maps, process=options.process is not None)  # fmt: skip
-
-    def done(number: int) -> None:
-        """So many of the later stages are done: let the plan stand if that is news, and some follow."""
-        news, absent = not number or later[number - 1], [each for each in later[number:] if each]
-        if stands is not None and news and absent:
-            result = assembled(part, clock, answers, between)
-            document = describe(noted(result.plan, run_unfinished(absent)))
-            stands(replace(result, plan=clock.stamp(with_text(document))))
-
-    done(0)
-    between = part.between(clock, compiling)
-    done(1)
-    job = partial(_operations, part, answers.least_set)
+    options, least = part.ready.options, least_set(part.ready, part.here, part.other_setups)
+    interim.judged(part, describe, Answers(least_set=least))
+    interim.looked(part.between(clock, compiling))
+    job = partial(_operations, part, least)
     # Answers and operations need nothing of each other, and neither keeps all threads at work.
     both = options.jobs > 1 and options.operations is not None and bool(options.answers)
     planned = Gauge()
     with SideProcess(partial(job, Clock(lambda _, *counts: planned.tell(*counts))), _PLANNING, worth=both) as side:
-        answers = ask(part.ready, part.here, clock.stage, part.other_setups, least=answers.least_set)
-        done(2)
+        try:
+            ask(part.ready, part.here, clock.stage, part.other_setups, least=least, answered=interim.answered)
+        except KeyboardInterrupt:
+            if (planned_by_now := side.ended()) is not None:
+                interim.planned(planned_by_now[0])
+            raise
         if side.works:
             with clock.stage("operations") as tell:
                 operations, seconds, boxes = side.result(
@@ -204,9 +200,8 @@ def _completed(
             clock.boxes |= boxes
         else:
             operations, *_ = job(clock)
-        answers = replace(answers, operations=operations)
-    done(3)
-    result = assembled(part, clock, answers, between)
+        interim.planned(operations)
+    result = assembled(part, clock, interim.answers, interim.between)
     if options.posture_maps:
         result = _mapped(result, part, clock, compiling)
     if describe is not _as_it_is:

@@ -4,6 +4,7 @@ promised."""
 from collections.abc import Callable, Collection
 from dataclasses import replace
 from functools import partial
+from typing import TypeVar
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -31,26 +32,32 @@ from plan_cutters.scene.scene import Scene
 _TRIES, _ENOUGH = 3, 0.99
 #: Shares of area that differ by less are equal.
 _ROUNDING = 1e-9
+Made = TypeVar("Made")
+#: Told what makes something of verdicts, as soon as these stand.
+Stand = Callable[[Callable[[], Made]], None]
 
 
 def judged_proposed(
     prepare: Callable[[Options, Clock], Prepared],
-    judge: Callable[[Scene, Options, Clock], JudgedPart],
+    judge: Callable[[Scene, Options, Clock, Stand[JudgedPart]], JudgedPart],
     options: Options,
     clock: Clock,
     folder: str = "",
+    stand: Stand[tuple[JudgedPart, Callable[[Plan], Plan]]] = lambda made: None,
 ) -> tuple[JudgedPart, Callable[[Plan], Plan]]:
     """Propose setups, the fewest of up to three that serve nearly all, and judge them.
 
     Parameters
     ----------
     prepare, judge : callable
-        Read and sample a part under options; judge a scene under options.
+        Read and sample a part under options; judge a scene under options, and tell how its part is made of the verdicts alone.
     options : Options
         With `propose`.
     clock : Clock
     folder : str
         Where the setups will be written; empty where they will not be.
+    stand : callable, optional
+        Called with what gives such a pair of the verdicts alone, as soon as those of the first proposal stand.
 
     Returns
     -------
@@ -79,14 +86,18 @@ def judged_proposed(
         promised = np.logical_or.reduce([ranking.served(k) for k in chosen]) if chosen else np.zeros(0, bool)
         if not promised.any():
             break
+        proposed = partial(_proposed, ranking=ranking, chosen=chosen, tried=tried)
         try:
-            part = judge(ready.scene.turned_to(_axis(ranking, chosen[0])), _options(unproposed, ranking, chosen, folder), clock)
+            part = judge(
+                ready.scene.turned_to(_axis(ranking, chosen[0])),
+                _options(unproposed, ranking, chosen, folder),
+                clock,
+                partial(_stand, stand, proposed) if best is None else lambda made: None,
+            )
         except PlanError as error:
             why, failed = error.cause, failed | {chosen[0]}
             continue
-        reached_share, held_share, worst = _compared(part, ranking, chosen)
-        left = _in_other_setups(part, ranking, chosen)
-        describe = partial(_described, ranking=ranking, chosen=chosen, left=left, shares=(reached_share, held_share, tried))
+        (reached_share, held_share, worst), describe = proposed(part)
         if held_share >= _ENOUGH:
             return part, describe
         if best is None or reached_share > best[0]:
@@ -102,6 +113,31 @@ def judged_proposed(
         f"setup auto: {_among(words)}, no cutter reaches any of {len(ranking.rows)} samples in the "
         f"{len(ranking.held)} best directions; name a setup with its fixtures"
     )
+
+
+def _proposed(
+    part: JudgedPart, ranking: Ranking, chosen: tuple[int, ...], tried: int
+) -> tuple[tuple[float, float, int], Callable[[Plan], Plan]]:
+    """What a part in proposed setups reaches, as `_compared`, and what gives its plan with the proposal."""
+    reached_share, held_share, worst = _compared(part, ranking, chosen)
+    left = _in_other_setups(part, ranking, chosen)
+    shares = reached_share, held_share, tried
+    describe = partial(_described, ranking=ranking, chosen=chosen, left=left, shares=shares)
+    return (reached_share, held_share, worst), describe
+
+
+def _stand(
+    stand: Stand[tuple[JudgedPart, Callable[[Plan], Plan]]],
+    proposed: Callable[[JudgedPart], tuple[object, Callable[[Plan], Plan]]],
+    made: Callable[[], JudgedPart],
+) -> None:
+    """Tell how the verdicts of proposed setups become a part, and how its plan is described."""
+
+    def pair() -> tuple[JudgedPart, Callable[[Plan], Plan]]:
+        part = made()
+        return part, proposed(part)[1]
+
+    stand(pair)
 
 
 def _words(options: Options) -> tuple[str, ...]:

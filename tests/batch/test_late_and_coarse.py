@@ -18,6 +18,7 @@ from plan_cutters.command import batch as of_many
 from plan_cutters.command.codes import guarded, invoked
 from plan_cutters.document.clock import Clock
 from plan_cutters.errors import TooManySamplesError
+from plan_cutters.interim import Interim
 from plan_cutters.pipeline import run
 from plan_cutters.report.folder import Staging, write_unfinished
 from plan_cutters.scene.spacing import MOST
@@ -53,7 +54,7 @@ def task_of(out, options=QUICK, **more):
 def late(task, content, folder):
     """The command for one part, ended when the plan of its verdicts was safe."""
     safe = []
-    run(GROOVE, Options(**QUICK, jobs=1, answers=["stick-out"]), Clock(), stands=safe.append)
+    run(GROOVE, Options(**QUICK, jobs=1, answers=["stick-out"]), Clock(), interim=Interim(Clock(), safe.append))
     with Staging(folder / "out") as staging:
         assert write_unfinished(safe[0], ("json", "html"), staging, Clock())
     return TIMED_OUT, work._out_of_time(task)
@@ -74,7 +75,7 @@ def test_a_part_that_is_late_has_the_plan_so_far_and_is_tried_again(out, tmp_pat
     document = json.loads((tmp_path / "out/groove-plan/plan.json").read_text())
     assert document["not_written"] == {"html": "not done within 240 s"}
     notes = dict(zip(document["note_codes"], document["notes"], strict=True))
-    assert row.error.endswith(notes["run_unfinished"])
+    assert row.error.endswith(f"{notes['run_unfinished']} It is without review.html.")
     # The page leads to it, and no tool is counted for it.
     page, summary = page_of([row])
     assert 'href="./groove-plan/plan.json"' in page

@@ -344,7 +344,7 @@ def test_an_interrupt_while_splitting_leaves_the_plan(tmp_path):
     assert "Traceback" not in rest
     assert "interrupted" in rest
     assert "out" in rest.strip().splitlines()[-1]
-    assert set(read(tmp_path / "out")["not_written"].values()) == {"interrupted"}
+    assert set(read(tmp_path / "out")["not_written"].values()) <= {"interrupted"}
     check_files(tmp_path / "out")
     assert [p.name for p in tmp_path.iterdir()] == ["out"]
 

@@ -15,15 +15,20 @@ from plan_cutters.answers import ask
 from plan_cutters.command import retry
 from plan_cutters.comparison.plans import compare
 from plan_cutters.document.clock import Clock
+from plan_cutters.interim import Interim
 from plan_cutters.judged_part import JudgedPart
 from plan_cutters.operations import planning
 from plan_cutters.options import Options
 from plan_cutters.pipeline import run as run_stages
 from plan_cutters.plan_file.load import plan_of
+from plan_cutters.report import models
 from plan_cutters.report.to_json import dumps
+from plan_cutters.stages.judge_once import JudgeOnce
+from plan_cutters.stages.reasons import Reasons
+from plan_cutters.workers import supervise
 from plan_cutters.workers.assignment import TIMED_OUT
 from plan_cutters.workers.errors import OutOfTime
-from tests.support.commands import leftovers
+from tests.support.commands import in_lines, leftovers
 from tests.support.forked import run
 from tests.support.places import SAMPLES
 
@@ -52,6 +57,7 @@ def interrupted(*_, **__):
 
 def interrupted_in_c(*_, **__):
     """The same while one call does not come back, as of the CAD kernel: the worker is killed."""
+    signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
     os.kill(os.getppid(), signal.SIGINT)
     any(itertools.repeat(False))
 
@@ -60,9 +66,13 @@ def out_of_memory(*_, **__):
     raise MemoryError
 
 
-def unfinished(folder, *absent):
+#: What is written of verdicts by default.
+WRITTEN = ["annotated.glb", "annotated.step", "plan.json", "process.toml", "review.html", "samples.npz"]
+
+
+def unfinished(folder, *absent, alone=True):
     """The plan of a folder, alone there: it is one, and says once, in front, what it is without."""
-    assert leftovers(folder) == ["plan.json"]
+    assert leftovers(folder) == (["plan.json"] if alone else WRITTEN)
     whole = plan_of((folder / "plan.json").read_bytes(), "plan.json")
     (text,) = [text for code, text in zip(whole.note_codes, whole.notes, strict=True) if code == "run_unfinished"]
     every = (BETWEEN, ANSWERS, OPERATIONS)
@@ -71,39 +81,157 @@ def unfinished(folder, *absent):
     assert " ".join(line.strip() for line in whole.text.lines[:3]).startswith(text)
     assert (BETWEEN in absent) == (whole.cutters[0].area is None)
     assert whole.operations is None
-    assert whole.files == {}
+    assert sorted(entry.name for entry in whole.files.values()) == sorted({*leftovers(folder)} - {"plan.json"})
     return whole
 
 
-@pytest.mark.parametrize("stage", STAGES)
-@pytest.mark.parametrize("ended", [interrupted, interrupted_in_c], ids=["asked", "killed"])
-def test_an_interrupt_leaves_the_plan_of_the_verdicts(tmp_path, monkeypatch, stage, ended):
-    where, absent = STAGES[stage]
-    monkeypatch.setattr(*where, ended)
-    done = run(*WORDS, "-o", "out", cwd=tmp_path)
-    assert (done.returncode, done.stdout) == (130, "")
+def told(done, code, *absent):
+    """The last line of a command that was ended: it says where the plan is, and what that is without, as the summary does."""
+    assert done.returncode == code
+    assert done.stdout.startswith("Take flat end D12 x 80.\nThe run was ")
+    assert all(each in in_lines(done.stdout) for each in absent)
     last = done.stderr.splitlines()[-1]
-    assert last.startswith("plan-cutters: interrupted; the plan of the verdicts is in ")
-    assert "out/plan.json. " in last
+    assert "the plan of the verdicts is in " in last
+    assert "out/plan.json. The run was " in last
     assert all(each in last for each in absent)
+    return last
+
+
+@pytest.mark.parametrize("stage", STAGES)
+def test_an_interrupt_leaves_page_samples_and_models_of_the_verdicts(tmp_path, monkeypatch, stage):
+    where, absent = STAGES[stage]
+    monkeypatch.setattr(*where, interrupted)
+    last = told(run(*WORDS, "-o", "out", cwd=tmp_path), 130, *absent)
+    assert last.startswith("plan-cutters: interrupted; ")
+    assert "The run was interrupted while " in last
     assert leftovers(tmp_path) == ["out"]
-    whole = unfinished(tmp_path / "out", *absent)
-    assert set(whole.not_written.values()) == {"interrupted"}
+    assert unfinished(tmp_path / "out", *absent, alone=False).not_written == {}
+
+
+@pytest.mark.parametrize("stage", ["area", "answers"])
+def test_where_the_kernel_does_not_come_back_the_plan_is_left_and_told(tmp_path, monkeypatch, stage):
+    """The worker is killed: what it had written stands, the summary is shown of that, and the files that lack are named."""
+    where, absent = STAGES[stage]
+    monkeypatch.setattr(*where, interrupted_in_c)
+    monkeypatch.setattr(supervise, "WRITING", 0.5)
+    last = told(run(*WORDS, "-o", "out", cwd=tmp_path), 130, *absent)
+    assert "There was no time to write review.html, annotated.step, annotated.glb, samples.npz: " in last
+    assert leftovers(tmp_path) == ["out"]
+    assert set(unfinished(tmp_path / "out", *absent).not_written.values()) == {"interrupted"}
+
+
+def test_an_interrupt_before_the_reasons_leaves_the_verdicts(tmp_path, monkeypatch):
+    """The cutter whose reasons were not looked for is named."""
+    monkeypatch.setattr(Reasons, "of", interrupted)
+    done = run(*WORDS, "--machine", "tilt:10", "-o", "out", cwd=tmp_path)
+    assert done.returncode == 130
+    assert "the reasons of R6L80, witnesses, --answers mend and --operations fewest. What it names in their place" in done.stderr
+    assert "interrupted while finding the reasons" in in_lines(done.stdout)
+    whole = plan_of((tmp_path / "out" / "plan.json").read_bytes(), "plan.json")
+    assert whole.cutters[0].inaccessible > 0
+    assert sum(whole.cutters[0].by_reason.values()) == whole.cutters[0].inaccessible + whole.cutters[0].undecided
+    assert whole.cutters[0].witnesses == []
+    assert leftovers(tmp_path / "out") == WRITTEN
+
+
+def test_an_interrupt_before_the_verdicts_leaves_nothing(tmp_path, monkeypatch):
+    monkeypatch.setattr(JudgeOnce, "__call__", interrupted)
+    done = run(*WORDS, "-o", "out", cwd=tmp_path)
+    assert (done.returncode, done.stdout, done.stderr.splitlines()[-1]) == (
+        130,
+        "",
+        "plan-cutters: interrupted; no file is half-written",
+    )
+    assert leftovers(tmp_path) == []
+
+
+def test_answers_that_are_found_stay(tmp_path, monkeypatch):
+    """Of three questions the first one is answered."""
+    monkeypatch.setattr(ask, "radius_in_any", interrupted)
+    done = run(*WORDS, "--answers", "stick-out,radius", "-o", "out", cwd=tmp_path)
+    told(done, 130, "--answers radius,mend")
+    whole = plan_of((tmp_path / "out" / "plan.json").read_bytes(), "plan.json")
+    assert whole.cutters[0].least_stick_out is not None
+    assert "stick-out" not in next(
+        text for code, text in zip(whole.note_codes, whole.notes, strict=True) if code == "run_unfinished"
+    )
+
+
+def test_operations_that_are_planned_meanwhile_stay(tmp_path, monkeypatch):
+    def late(*_, **__):
+        time.sleep(3.0)
+        interrupted()
+
+    monkeypatch.setattr(ask, "nearest", late)
+    done = run(*WORDS, "--jobs", "2", "-o", "out", cwd=tmp_path)
+    told(done, 130, "--answers mend")
+    assert "--operations" not in done.stderr.splitlines()[-1]
+    assert plan_of((tmp_path / "out" / "plan.json").read_bytes(), "plan.json").operations is not None
+    assert {"operations.step", "operations.csv"} <= {*leftovers(tmp_path / "out")}
+
+
+def test_an_interrupt_of_the_writing_waits_for_the_files(tmp_path, monkeypatch):
+    """All is found by then, and the files become whole; the exit code says that it was interrupted."""
+    real = models.split_result
+
+    def split(result):
+        os.kill(os.getppid(), signal.SIGINT)
+        time.sleep(0.5)
+        return real(result)
+
+    monkeypatch.setattr(models, "split_result", split)
+    done = run(PART, "--cutter", "R6L80", "--grid", "3", "--area-budget", "0", "-o", "out", cwd=tmp_path)
+    assert done.returncode == 130
+    assert done.stdout.startswith("Take flat end D12 x 80.\n")
+    assert done.stderr.splitlines()[-1].startswith("plan-cutters: interrupted; its plan is in ")
+    assert leftovers(tmp_path / "out") == WRITTEN
+
+
+def test_a_second_interrupt_ends_it_at_once(tmp_path, monkeypatch):
+    """Nothing is half-written: what became whole is there, and the plan says what is not."""
+
+    def twice(*_, **__):
+        os.kill(os.getppid(), signal.SIGINT)
+        time.sleep(60)
+
+    monkeypatch.setattr(*STAGES["answers"][0], interrupted)
+    monkeypatch.setattr(models, "split_result", twice)
+    began = time.monotonic()
+    done = run(*WORDS, "-o", "out", cwd=tmp_path)
+    assert time.monotonic() - began < 30
+    last = told(done, 130, ANSWERS, OPERATIONS)
+    assert "There was no time to write annotated.glb, annotated.step: " in last
+    assert leftovers(tmp_path / "out") == ["plan.json", "process.toml", "review.html", "samples.npz"]
+
+
+def test_a_plan_without_a_folder_is_told_and_handed_out(tmp_path, monkeypatch):
+    monkeypatch.setattr(*STAGES["answers"][0], interrupted)
+    done = run(*WORDS, "--json", "-", cwd=tmp_path)
+    assert done.returncode == 130
+    whole = plan_of(done.stdout.encode(), "plan.json")
+    assert "run_unfinished" in whole.note_codes
+    assert leftovers(tmp_path) == []
+
+
+def test_a_proposal_that_is_interrupted_keeps_its_setups(tmp_path, monkeypatch):
+    monkeypatch.setattr(Reasons, "of", interrupted)
+    done = run(SAMPLES / "pocket_top.step", "--cutter", "R2L30", "--grid", "3", "--area-budget", "0", "--setup", "auto",
+               "-o", "out", cwd=tmp_path)  # fmt: skip
+    assert done.returncode == 130
+    whole = plan_of((tmp_path / "out" / "plan.json").read_bytes(), "plan.json")
+    assert whole.setup_proposal is not None
+    assert {"setup-1.toml", "review.html"} <= {*leftovers(tmp_path / "out")}
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("stage", ["answers", "operations"])
-def test_a_time_limit_leaves_it(tmp_path, monkeypatch, stage):
-    where, absent = STAGES[stage]
+def test_a_time_limit_leaves_them_too(tmp_path, monkeypatch):
+    where, absent = STAGES["operations"]
     monkeypatch.setattr(*where, lambda *_, **__: time.sleep(60))
     done = run(*WORDS, "-o", "out", "--timeout", "8", cwd=tmp_path)
-    assert done.returncode == TIMED_OUT
-    last = done.stderr.splitlines()[-1]
+    last = told(done, TIMED_OUT, *absent)
     assert "v_groove.step: not done within 8 s: " in last
-    assert "out/plan.json. " in last
-    assert all(each in last for each in absent)
     assert leftovers(tmp_path) == ["out"]
-    assert set(unfinished(tmp_path / "out", *absent).not_written.values()) == {"not done within 8 s"}
+    assert unfinished(tmp_path / "out", *absent, alone=False).not_written == {}
 
 
 def test_what_a_part_that_is_left_says_of_its_plan(tmp_path, monkeypatch, capsys):
@@ -116,7 +244,7 @@ def test_what_a_part_that_is_left_says_of_its_plan(tmp_path, monkeypatch, capsys
     monkeypatch.setattr(retry, "supervise", late)
     assert retry.supervised((), parts=("a.step",), read_timeout=9.0, memory=1, timeout=9.0, since=3.0) == TIMED_OUT
     said = capsys.readouterr().err
-    assert f"the plan of the verdicts is in {tmp_path / 'out' / 'plan.json'}. The run was not done: " in said
+    assert f"the plan of the verdicts is in {tmp_path / 'out' / 'plan.json'}. The run was interrupted while " in said
 
 
 def test_a_stage_that_fails_leaves_it_and_the_error_is_the_last_line(tmp_path, monkeypatch):
@@ -133,15 +261,15 @@ def test_files_of_an_earlier_run_do_not_stand_beside_it(tmp_path, monkeypatch):
     plan(PART, cutters="R2L30", grid=3, area_budget=0).write(tmp_path / "out", ("json", "npz"))
     monkeypatch.setattr(*STAGES["answers"][0], interrupted)
     run(*WORDS, "-o", "out", cwd=tmp_path)
-    assert unfinished(tmp_path / "out", ANSWERS, OPERATIONS).cutters[0].id == "R6L80"
+    assert unfinished(tmp_path / "out", ANSWERS, OPERATIONS, alone=False).cutters[0].id == "R6L80"
 
 
-def test_without_a_plan_among_the_formats_nothing_is_left(tmp_path, monkeypatch):
+def test_without_a_plan_among_the_formats_the_others_are_written(tmp_path, monkeypatch):
     monkeypatch.setattr(*STAGES["answers"][0], interrupted)
     done = run(*WORDS, "-o", "out", "--formats", "npz", cwd=tmp_path)
     assert done.returncode == 130
-    assert done.stderr.splitlines()[-1] == "plan-cutters: interrupted; no file is half-written"
-    assert leftovers(tmp_path) == []
+    assert done.stderr.splitlines()[-1] == f"plan-cutters: interrupted; what stands is in {tmp_path / 'out'}"
+    assert "samples.npz" in leftovers(tmp_path / "out")
 
 
 def scrubbed(document):
@@ -157,7 +285,7 @@ def stages():
     options = Options(cutters=("R6L80",), grid=3, area_budget=50, answers="mend", operations="fewest", posture_maps=True)
     before = []
     return (
-        run_stages(PART, options, Clock(), stands=lambda result: before.append(result.plan)),
+        run_stages(PART, options, Clock(), interim=Interim(Clock(), lambda result: before.append(result.plan))),
         before,
         run_stages(PART, options, Clock()),
     )
@@ -178,9 +306,8 @@ def test_each_plan_that_stands_is_without_less(stages):
 
 def test_a_plan_that_nothing_follows_is_written_once():
     before = []
-    run_stages(
-        PART, Options(cutters=("R6L80",), grid=3, area_budget=0), Clock(), stands=lambda result: before.append(result.plan)
-    )
+    options = Options(cutters=("R6L80",), grid=3, area_budget=0)
+    run_stages(PART, options, Clock(), interim=Interim(Clock(), lambda result: before.append(result.plan)))
     assert before == []
 
 

@@ -332,3 +332,10 @@ def test_maps_made_by_hand_say_nothing_of_their_question():
     with pytest.raises(OptionError, match="another part"):
         maps().asked(PART)
     assert Cutter.parse("R1L9").id == maps().cutter
+
+
+def test_maps_of_another_program_are_refused():
+    """Its verdicts may differ: nobody has to remember to say so."""
+    for method in (3, "0" * 64, None):
+        with pytest.raises(OptionError, match="another version"):
+            question.refuse_others({"method": method, "part": "x"}, Options(cutters=CUTTER), (), CUTTER)

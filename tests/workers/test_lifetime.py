@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from plan_cutters.workers import supervise
+from plan_cutters.workers.child import Child
 from tests.support.commands import leftovers
 from tests.support.forked import ENV
 from tests.support.places import SAMPLES
@@ -47,7 +49,8 @@ def patch(module):
     module.Clock.stage = stage
 
 class Finder:
-    after = {"plan_cutters.document.clock": patch, "plan_cutters.point": lambda _: trap("map"),
+    after = {"plan_cutters.workers.supervise": lambda module: setattr(module, "WRITING", float(os.environ["WRITING"])),
+             "plan_cutters.document.clock": patch, "plan_cutters.point": lambda _: trap("map"),
              "plan_cutters.scene.conditions":
                  lambda _: "plan_cutters.command.background_compile" in sys.orig_argv and trap("ahead"),
              "plan_cutters.command.tools": lambda _: trap("tools"), "plan_cutters.command.machines": lambda _: trap("machines")}
@@ -77,12 +80,13 @@ LATE = ("area", "html", "split", "step")
 class Run:
     """A command that is stuck somewhere, and all processes that belong to it."""
 
-    def __init__(self, folder, where, *, words=WORDS, command=("-m", "plan_cutters"), wrapped=()):
+    def __init__(self, folder, where, *, words=WORDS, command=("-m", "plan_cutters"), wrapped=(), writing=0.5):
         hooks = folder / "hooks"
         hooks.mkdir()
         (hooks / "sitecustomize.py").write_text(STUCK)
         self.sign, self.folder = hooks / "stuck", folder
-        environment = ENV | {"STUCK": where, "STUCK_SIGN": str(self.sign), "MARK": str(folder)}
+        environment = ENV | {"STUCK": where, "STUCK_SIGN": str(self.sign), "MARK": str(folder),
+                             "WRITING": str(writing)}  # fmt: skip
         environment["PYTHONPATH"] = f"{hooks}{os.pathsep}{ENV['PYTHONPATH']}"
         self.process = subprocess.Popen(
             [*wrapped, sys.executable, *command, *words], cwd=folder, env=environment, stderr=subprocess.PIPE, text=True,
@@ -149,7 +153,8 @@ def test_a_command_that_is_ended_leaves_nothing_running(tmp_path, number, where)
         run.until_stuck()
         assert len(run.alive()) >= (3 if "copy" in where else 2)  # and copies that make the page or the GLB
         run.process.send_signal(number)
-        run.gone_within(SOON)
+        # Where a plan is there, its summary is shown when the worker is gone.
+        run.gone_within(SOON if where.partition(":")[0] in EARLY else 4 * SOON)
         _, said = run.process.communicate(timeout=5)
     assert "Traceback" not in said
     stage, late = where.partition(":")[0], where.partition(":")[0] in LATE
@@ -188,8 +193,31 @@ def test_the_other_commands_end_too(tmp_path, command, number):
     assert leftovers(tmp_path, "hooks") == []
 
 
+@pytest.mark.slow
+def test_what_hangs_where_verdicts_stand_is_given_time_and_no_more(tmp_path):
+    with Run(tmp_path, "area:", writing=supervise.WRITING) as run:
+        run.until_stuck()
+        run.process.send_signal(signal.SIGINT)
+        run.gone_within(10.0 + SOON)
+        _, said = run.process.communicate(timeout=5)
+    assert "There was no time to write " in said.splitlines()[-1]
+
+
+def test_who_gives_up_on_a_command_waits_for_no_files(tmp_path):
+    """A batch or an agent ends a command in order, and nobody reads what it would still write."""
+    with Run(tmp_path, "area:", writing=60.0) as run:
+        run.until_stuck()
+        command = Child.__new__(Child)
+        command.process, command._session = run.process, True
+        began = time.monotonic()
+        command.end(20.0)
+        assert time.monotonic() - began < 10
+        run.gone_within(SOON)
+    assert leftovers(tmp_path, "hooks") == ["out"]
+
+
 def test_asked_twice_it_ends_at_once(tmp_path):
-    with Run(tmp_path, "step:") as run:
+    with Run(tmp_path, "step:", writing=60.0) as run:
         run.until_stuck()
         for _ in range(2):
             run.process.send_signal(signal.SIGINT)

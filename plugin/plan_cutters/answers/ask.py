@@ -19,6 +19,7 @@ from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.lengths import reporting
 from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.radius_map import RadiusMap
+from plan_cutters.domain.stick_out import StickOut
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress, part_of
@@ -41,6 +42,7 @@ def ask(
     other_setups: OtherSetups = (),
     *,
     least: LeastSet | None = None,
+    answered: Callable[[Answers, Sequence[str]], None] = lambda answers, unanswered: None,
 ) -> Answers:
     """Answer what is asked.
 
@@ -55,12 +57,26 @@ def ask(
         Of each other setup its axis, and what each cutter reaches there by its id.
     least : LeastSet, optional
         The fewest runs, as they are known already: one of the answers.
+    answered : callable, optional
+        Called with the answers so far and the words of those that are missing, whenever one is found.
     """
     requested = ready.options.answers
     setups = {c: [reaches[c], *(there[c.id] for _, there in other_setups)] for c in reaches}
     together = {cutter: over_setups(each) for cutter, each in setups.items()}
-    stick_outs, mends = {}, {}
+    stick_outs, mends = dict[str, StickOut](), dict[str, WhatIfAnswer]()
     radius_maps: list[RadiusMap] = []
+    near: list[Cutter] = []
+    failing: list[Cutter] = []
+    unanswered = tuple(requested)
+
+    def so_far(*done: str) -> Answers:
+        nonlocal unanswered
+        unanswered = tuple(word for word in unanswered if word not in done)
+        rest = tuple(cutter.id for cutter in failing if cutter not in near)
+        answers = Answers(dict(stick_outs), tuple(radius_maps), dict(mends), rest, least)
+        answered(answers, unanswered)
+        return answers
+
     if "stick-out" in requested or "stick-out-map" in requested:
         step = STEP if "stick-out-map" in requested else None
         with stage("stick-out") as tell:
@@ -69,14 +85,15 @@ def ask(
                 stick_outs[cutter.id] = stick_out_in_each(
                     ready, cutter, setups[cutter], together[cutter][1], step=step, progress=mine
                 )
+                so_far()
+        so_far("stick-out", "stick-out-map")
     if "radius" in requested:
         with stage("radius") as tell:
             ratio = ready.options.length_over_radius
             radius_maps = [
                 radius_in_any(ready, shape, ratio=ratio, progress=part_of(tell, k, 2)) for k, shape in enumerate(_ENDS)
             ]
-    near: list[Cutter] = []
-    failing: list[Cutter] = []
+        so_far("radius")
     if "mend" in requested or "mend-all" in requested:
         failing = nearest(ready, reaches, other_setups)
         near = failing if "mend-all" in requested else failing[:NEAREST]
@@ -84,8 +101,8 @@ def ask(
             for k, cutter in enumerate(near):
                 over = together[cutter][0]
                 mends[cutter.id] = _what_if(ready, cutter, over, reaches, other_setups, part_of(tell, k, len(near)))
-    rest = tuple(cutter.id for cutter in failing if cutter not in near)
-    return Answers(stick_outs, tuple(radius_maps), mends, rest, least)
+                so_far()
+    return so_far(*unanswered)
 
 
 def _what_if(

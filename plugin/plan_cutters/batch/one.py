@@ -35,7 +35,7 @@ def plan(
     client : distributed.Client, optional
         Of a Dask cluster, whose workers judge the samples of a large part. The result is the same, bit for bit.
     verdicts : str, optional
-        Folder or URL in which the verdicts of each cutter are kept (`batch.verdicts.Kept`).
+        Folder or URL in which the verdicts of each cutter are kept (`batch.verdicts.VerdictCache`).
     verdicts_key : path, optional
         File with a key (`files.seal`): what nobody with this key wrote there is not taken.
     cache : bool

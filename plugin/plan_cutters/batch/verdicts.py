@@ -25,7 +25,6 @@ from plan_cutters.files.seal import stamp
 from plan_cutters.kernels.codes import BEYOND
 from plan_cutters.scene.ground import GroundDigests
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.scene.question import METHOD
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.judge import Judge, judge
 
@@ -264,7 +263,7 @@ def made_by() -> str:
     home = Path(str(plan_cutters.__file__)).parent
     digest = sources(*(home / folder for folder in _ROOMS))
     packages = " ".join(f"{name} {metadata.version(name)}" for name in _PACKAGES)
-    return f"plan-cutters {plan_cutters.__version__}, method {METHOD}, sources {digest}, {packages}"
+    return f"plan-cutters {plan_cutters.__version__}, sources {digest}, {packages}"
 
 
 def _place(own: str, name: str) -> str:

@@ -19,7 +19,8 @@ from plan_cutters.batch.job_input import JobInput, Offer
 from plan_cutters.batch.row import PartRow
 from plan_cutters.errors import PlanError
 from plan_cutters.workers.assignment import INTERRUPTED, TIMED_OUT, Assignment
-from plan_cutters.workers.child import Child, compiler
+from plan_cutters.workers.child import Child, can_supervise, compiler
+from plan_cutters.workers.supervise import WRITING
 
 if TYPE_CHECKING:
     from plan_cutters.plan_file.model import Plan
@@ -294,13 +295,20 @@ def planned(task: Task, content: Content, folder: Path) -> tuple[int, str]:
     if task.store is not None:
         # A cutter that joins later is judged alone: the verdicts of the others are there.
         words += ["--verdicts", f"{task.store.rstrip('/')}/{VERDICTS}"]
+    limit = float("inf")
+    if task.timeout:
+        limit = task.timeout
+        if can_supervise():
+            # The command ends itself in time, and writes what stands by then.
+            words += ["--timeout", repr(task.timeout)]
+            limit += WRITING + _GRACE
     wanted = _wanted()
     with open(folder / ".said", "wb") as log:
         knows = Assignment(parent=os.getpid(), job=str(folder / ".handed"))
         child = Child(words, knows, cwd=folder, stdin=subprocess.DEVNULL, stdout=log, stderr=log)
     shared = False
     try:
-        ends = time.monotonic() + (task.timeout or float("inf"))
+        ends = time.monotonic() + limit
         while (code := child.ended(_LOOK)) is None:
             if time.monotonic() > ends:
                 return TIMED_OUT, _out_of_time(task)
@@ -313,6 +321,8 @@ def planned(task: Task, content: Content, folder: Path) -> tuple[int, str]:
         child.end(_GRACE)
     log_lines = (folder / ".said").read_text(encoding="utf-8", errors="replace").strip().splitlines()
     line = log_lines[-1] if log_lines else ""
+    if code == TIMED_OUT:
+        return TIMED_OUT, _out_of_time(task)
     if code < 0:
         return UNREADABLE, f"{task.file}: the process was killed ({signal.Signals(-code).name}): out of memory, perhaps"
     line = line.removeprefix("plan-cutters: ")
@@ -327,10 +337,11 @@ def _out_of_time(task: Task) -> str:
 def _late(task: Task, out: Path) -> str:
     """Say in a plan that was safe before its part ran out of time what it is without; the line about the part."""
     from plan_cutters.report.folder import ended, file_name
-    from plan_cutters.report.to_json import unfinished
+    from plan_cutters.report.to_json import not_written, unfinished
 
-    missing = ended(out, f"not done within {task.timeout:g} s")
-    text = unfinished(out / PLAN) or (f"It is without {', '.join(map(file_name, missing))}." if missing else "")
+    ended(out, f"not done within {task.timeout:g} s")
+    missing = ", ".join(map(file_name, not_written(out / PLAN)))
+    text = " ".join(filter(None, (unfinished(out / PLAN), f"It is without {missing}." if missing else "")))
     return f"{_out_of_time(task)}. Late: the plan so far is there. {text}".rstrip()
 
 

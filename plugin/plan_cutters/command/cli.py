@@ -9,6 +9,7 @@ import sys
 from collections.abc import Sequence
 from functools import partial
 from importlib import import_module
+from pathlib import Path
 from typing import NoReturn
 
 import click
@@ -68,7 +69,8 @@ def command(request: PlanRequest) -> int:
         code, line = guarded(partial(one_part, part, out, requested, request, since, excluded, cases), request.debug)
         since, excluded = None, {}
         codes.append(code)
-        report("done", str(code))
+        if code != INTERRUPTED:
+            report("done", str(code))
         if line and cases is not None:
             cases.failed(line, part)
         if line:
@@ -108,6 +110,12 @@ def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
         sys.stdout.flush()
         sys.stderr.flush()
     os._exit(code)
+
+
+def _shown(request: PlanRequest, out: Path, summarised: bool) -> None:
+    from plan_cutters.command.partial_plan import show_plan
+
+    show_plan(out, request, summarised=summarised)
 
 
 def _part_cases(request: PlanRequest) -> PartCases | None:
@@ -175,6 +183,7 @@ def _watched(words: list[str], name: str) -> int:
             display=display,
             timeout=math.inf if request.timeout is None else request.timeout,
             since=began(),
+            shows=partial(_shown, request),
         )
     except Unfinished as stopped:
         from plan_cutters.command.partial_plan import without_models

@@ -6,7 +6,7 @@ import signal
 import sys
 import threading
 import traceback
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING, NoReturn
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 FEASIBLE, NONE_FEASIBLE, USAGE, UNREADABLE, NOT_ALL_JUDGED = 0, 1, 2, 3, 4
 #: The codes as help lists them.
-ENDED = ("130", "interrupted; nothing is half-written")
+ENDED = ("130", "interrupted; nothing is half-written, and what stands by then is written")
 CODES = (
     ("0", "what was given (cutters, setups, operations) finishes every judged sample together, or what --fail-under asks"),
     ("1", "it does not; the plan says where and why"),
@@ -32,7 +32,7 @@ CODES = (
         "it would finish all that could be judged, but something could not, obstacles are missing, or samples are farther "
         "apart than its radius and nobody asked for that",
     ),
-    ("124", "a part was not done within --timeout; nothing is half-written"),
+    ("124", "a part was not done within --timeout; nothing is half-written, and what stands by then is written"),
     ENDED,
 )
 #: Standard output was closed by its reader: as a shell counts the signal that ends other programs then.
@@ -66,6 +66,39 @@ def interrupt(number: int, _: object) -> NoReturn:
     raise KeyboardInterrupt
 
 
+def is_interrupt(error: BaseException) -> bool:
+    """Whether an error is an interrupt, or may come of one."""
+    return bool(_interrupts) or isinstance(error, KeyboardInterrupt)
+
+
+@contextlib.contextmanager
+def held_interrupts(came: list[int]) -> Iterator[None]:
+    """Let the first interrupt wait for the end of the block, for files there become whole; the second one is raised.
+
+    Parameters
+    ----------
+    came : list of int
+        Interrupts that came by now; that which comes is added.
+    """
+
+    def hold(number: int, frame: object) -> None:
+        if came:
+            interrupt(number, frame)
+        came.append(number)
+
+    before = {number: signal.signal(number, hold) for number in (signal.SIGINT, signal.SIGTERM) if caught(number)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def caught(number: int) -> bool:
+    """Whether this process catches a signal, in Python."""
+    return callable(signal.getsignal(number))
+
+
 def keep_interrupts() -> None:
     """Take an interrupt again that came where none can be raised, as while the process copies itself for the kernel."""
     before, me = sys.unraisablehook, threading.get_ident()
@@ -90,7 +123,7 @@ def guarded(work: Callable[[], tuple[int, str]], debug: bool) -> tuple[int, str]
         if debug:
             terminal.emit(traceback.format_exc())
         match error:
-            case _ if _interrupts or isinstance(error, KeyboardInterrupt):
+            case _ if is_interrupt(error):
                 return INTERRUPTED, "plan-cutters: interrupted; no file is half-written"
             case terminal.ReaderGone():
                 return READER_GONE, ""

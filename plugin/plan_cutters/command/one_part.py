@@ -2,6 +2,7 @@
 
 import gc
 import pickle
+import signal
 import time
 import traceback
 from collections.abc import Callable, Iterator, Mapping
@@ -12,8 +13,8 @@ from typing import TYPE_CHECKING
 
 from plan_cutters.batch.job_input import default_density, job_input
 from plan_cutters.command import terminal
-from plan_cutters.command.codes import UNREADABLE, code_of
-from plan_cutters.command.partial_plan import verdicts_text
+from plan_cutters.command.codes import UNREADABLE, code_of, held_interrupts, is_interrupt
+from plan_cutters.command.partial_plan import remaining_text, verdicts_text
 from plan_cutters.command.progress import Display, Teller
 from plan_cutters.command.summary import summary, written
 from plan_cutters.plan_file.words.details import others
@@ -44,7 +45,7 @@ def one_part(
     `part_cases`: takes the test cases of the plan, as soon as its verdicts stand.
     """
     from plan_cutters.errors import TooManySamplesError
-    from plan_cutters.report.folder import DEFAULT_FORMATS, Staging, ended, file_name, read_formats, write_all, write_unfinished
+    from plan_cutters.report.folder import DEFAULT_FORMATS, Staging, file_name, read_formats, write_all, write_unfinished
     from plan_cutters.report.to_json import dumps
 
     formats = DEFAULT_FORMATS if request.formats is None else read_formats(request.formats)
@@ -59,22 +60,25 @@ def one_part(
         if staging and write_unfinished(result, formats, staging, clock):
             watch.stands()
 
+    interrupts: list[int] = []
     try:
         watch.tell("start", 0, 1)
         compiling = _compiling(options, request.quiet)
         import plan_cutters.report.models  # noqa: F401  all that takes time to load is loaded in the stage `start`
         from plan_cutters.document.clock import Clock
         from plan_cutters.files.stage_cache import StageCache, settle
+        from plan_cutters.interim import Interim
         from plan_cutters.pipeline import run
 
         gc.freeze()
         gc.enable()
         clock = Clock(watch.tell, began=began)
+        interim = Interim(clock, stands if staging else None, lambda: report("stands", ""))
         handed = job_input().part
         source = pickle.loads(handed) if handed else part
         with _judging(request) as judged:
             planned = partial(run, source, clock=clock, read_timeout=request.read_timeout, at=report_work, compiling=compiling,
-                              excluded=omitted, judged=judged, stands=stands if staging else None,
+                              excluded=omitted, judged=judged, interim=interim,
                               folder=_folder(out), cache=StageCache.of_user() if request.cache else None)  # fmt: skip
             try:
                 result = planned(options)
@@ -85,20 +89,26 @@ def one_part(
                 from plan_cutters.document.notes import noted_coarser
 
                 result = planned(default_density(options), remark=partial(noted_coarser, options))
+            except (Exception, KeyboardInterrupt) as error:
+                if not is_interrupt(error) or (stood := interim.interrupted(watch.tell.work)) is None:
+                    raise
+                result = stood
+                interrupts.append(signal.SIGINT)
+                watch.judged = lambda plan, code: None  # a report on this part says that it was interrupted
         document = result.plan
         if out is None:
             watch.judged(document, code_of(document, request.fail_under))
             watch.summarise(document)
         else:
             watch.tell("files", 0, 1)
-            document = write_all(result, out, formats, staging, step_schema=request.step_schema, listener=watch, clock=clock)
+            with held_interrupts(interrupts):
+                document = write_all(result, out, formats, staging, step_schema=request.step_schema, listener=watch, clock=clock,
+                                     hurried=bool(interrupts))  # fmt: skip
     except KeyboardInterrupt:
         if staging is None or out is None or not staging.stands:
             raise
         staging.discard()
-        ended(out, "interrupted")
-        what = verdicts_text(out) or f"the plan is in {out}, not all models are"
-        return INTERRUPTED, f"plan-cutters: interrupted; {what}"
+        return _interrupted(out)
     except Exception:
         if staging and out and staging.stands and (what := verdicts_text(out)):
             watch.end()
@@ -108,17 +118,26 @@ def one_part(
         watch.end()
         if staging:
             staging.discard()
-    # This process ends without waiting for its threads.
-    settle()
-    if request.json_out == "-":
+    if not interrupts:
+        settle()  # this process ends without waiting for its threads
+    # Of an interrupted run, who watches it tells the rest.
+    tells = not (interrupts and out and is_child())
+    if request.json_out == "-" and tells:
         terminal.hand_out(dumps(document))
-    if not request.quiet:
+    if not request.quiet and tells:
         _tells(request)(
             *(others(document, every=True) if request.verbose else []), *written(document, out, formats, verbose=request.verbose)
         )
     for name, why in document.not_written.items():
         terminal.error(f"plan-cutters: {file_name(name)} was not written: {why}")
-    return code_of(document, request.fail_under), ""
+    return _interrupted(out) if interrupts else (code_of(document, request.fail_under), "")
+
+
+def _interrupted(out: Path | None) -> tuple[int, str]:
+    """The end of a part that was interrupted once verdicts stood: who watches this process says where its plan is."""
+    if out is None:
+        return INTERRUPTED, "plan-cutters: interrupted; the plan says what it is without"
+    return INTERRUPTED, "" if is_child() else f"plan-cutters: {remaining_text(out, 'interrupted')}"
 
 
 def _folder(out: Path | None) -> str:
@@ -188,6 +207,7 @@ class ProgressListener:
         self.end()
         if not self.request.quiet:
             summary(plan, verbose=self.request.verbose, tells=_tells(self.request))
+        report("summarised", "")
 
     def stands(self) -> None:
         """A plan is in the output that is without what was requested besides: no exit code of a plan stands for that."""

@@ -263,10 +263,11 @@ _OPTIONS = (
     ),
     _operations(
         "--operations",
-        brief="Plan fixed orientations (3+2) that finish it.",
+        brief="Plan fixed orientations (3+2): two rotary axes.",
         type=Plans(["fewest", "fastest", "both"]),
         help="Plan operations with fixed orientations (3+2) that finish together all that is reached: the fewest, with a proof "
-        "that there are no fewer, the fastest, or both.",
+        "that there are no fewer, the fastest, or both. The machine has two rotary axes, or none is named. Only finishing is "
+        "planned.",
     ),
     _operations(
         "--feed",

@@ -49,6 +49,15 @@ _KNOWN, _SHARE = 2.0, 0.02
 _OFTEN = 0.1
 
 
+def work_of(stage: str) -> str:
+    """Name the work of a stage.
+
+    >>> work_of("operations"), work_of("R6L80")
+    ('planning the operations', 'judging the cutters')
+    """
+    return _WORDS.get(stage, "judging the cutters")
+
+
 class Display:
     """Shows what is told.
 
@@ -99,7 +108,7 @@ class Display:
         if name not in _WORDS:
             self.judged.setdefault(name)
             self.share = (len(self.judged) - 1) / max(self.cutters, len(self.judged))
-        words, before = _WORDS.get(name, "judging the cutters"), self.words
+        words, before = work_of(name), self.words
         self.since = self.since if words == before else time.monotonic()
         self.words = words
         self._show(words != before)
@@ -123,6 +132,12 @@ class Display:
     def show(self, text: str) -> None:
         self.clear()
         terminal.give(text)
+
+    def interrupted(self) -> None:
+        """Say that what is to end writes something first."""
+        self.clear()
+        if not self.quiet:
+            terminal.error("plan-cutters: what stands is written now, in at most 10 s; a second interrupt ends it at once")
 
     def tick(self) -> None:
         self._show(False)
@@ -195,9 +210,12 @@ class Teller:
     def __init__(self, display: Display | None) -> None:
         self.display = display
         self.told = 0.0
+        #: What goes on.
+        self.work = ""
 
     def __call__(self, stage: str, done: int, total: int) -> None:
         if done == 0:
+            self.work = work_of(stage)
             report("stage", stage)
             if self.display is not None:
                 self.display.stage(stage)

@@ -4,7 +4,7 @@ A part that takes longer than it may is left, and the next one is planned.
 """
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from plan_cutters.command import terminal
@@ -19,11 +19,12 @@ MOST = 5
 
 def supervised(
     words: Sequence[str], *, parts: Sequence[str], read_timeout: float, memory: int, timeout: float = math.inf, since: float,
-    display: Display | None = None,
+    display: Display | None = None, shows: Callable[[Path, bool], None] = lambda out, summarised: None,
 ) -> int:  # fmt: skip
     """`supervise`, again and again without the face at which it ended, or without the part that took too long.
 
-    `since`: when the first of the parts began; all else as there.
+    `since`: when the first of the parts began; `shows`: called with the output of a plan whose part is left, and whether its
+    summary was shown; all else as there.
     """
     done, code = 0, 0
     began: float | None = since
@@ -49,6 +50,8 @@ def supervised(
             if done == len(parts):  # all of them are, and only the end was slow
                 return code
             line = _failure_text(stopped.out, timeout)
+            if stopped.out is not None:
+                shows(stopped.out, stopped.summarised)
             terminal.error(f"plan-cutters: {parts[done]}: {line}")
             if display is not None:
                 display.failed(f"{parts[done]}: {line}", parts[done])
@@ -64,11 +67,11 @@ def _failure_text(out: Path | None, timeout: float) -> str:
     advice = "sample more coarsely (--spacing), or give more time (--timeout)"
     if out is None:
         return f"{why}: {advice}"
-    from plan_cutters.command.partial_plan import verdicts_text
+    from plan_cutters.command.partial_plan import not_in_time, verdicts_text
     from plan_cutters.report import file_name
     from plan_cutters.report.folder import ended
 
-    missing = ", ".join(map(file_name, ended(out, why))) or "a model"
+    missing = ", ".join(map(file_name, ended(out, why)))
     if text := verdicts_text(out):
-        return f"{why}: {advice}; {text}"
-    return f"{why}: the plan is in {out}, without {missing}; {advice}"
+        return f"{why}: {advice}; {text}{not_in_time(missing)}"
+    return f"{why}: the plan is in {out}{f', without {missing}' if missing else ''}; {advice}"

@@ -1,7 +1,7 @@
 """The tolerance rule: what a gouge tolerance and the chord error of triangles let be called safe, and prove to be blocked.
 
 Every point of the surface has a point of the triangles within their chord error, and the reverse. All that judges takes its
-depths from here; a change of the rule is a new `METHOD` of `scene.question`.
+depths from here.
 """
 
 #: Share of the tolerance that the obstacles' chord error may take, and what is asked of the tessellation.

@@ -3,8 +3,8 @@
 At a contact the gap between the tool and the surface is, to second order, a quadratic form `D = S_tool - S_surface` in the
 tangent plane. Its inverse gives the width of a pass in the feed direction d, with e at right angles to d, as
 `2 sqrt(2 h e D^-1 e)`: the pass is widest where e is the eigenvector of the largest eigenvalue of `D^-1`
-(`docs/operations.md`, lemma 6). Where that is wider than a quarter of the tool's radius the second order is not enough, and
-the section across the feed is taken: a circle on a circle for a ball, an ellipse for a flat end, a line parallel to an
+(`docs/operations_proof.md`, lemma O6). Where that is wider than a quarter of the tool's radius the second order is not enough,
+and the section across the feed is taken: a circle on a circle for a ball, an ellipse for a flat end, a line parallel to an
 ellipse for a bull nose on a plane. For a bull nose on a curved surface, and for a flat end there, the ellipse with the same
 second order stands for the section.
 """

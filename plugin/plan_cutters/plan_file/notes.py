@@ -33,14 +33,19 @@ class Note(NamedTuple):
 
 
 def later_stages(
-    *, area: bool, answers: Sequence[str], operations: str | None, maps: bool, process: bool = False
-) -> tuple[str, str, str, str]:
-    """Name the stages that follow the verdicts, in their order, by their options; empty for one that was not requested.
+    *, area: bool, answers: Sequence[str], operations: str | None, maps: bool, process: bool = False,
+    reasons: Sequence[str] = (), witnesses: bool = False,
+) -> tuple[str, ...]:  # fmt: skip
+    """Name what follows the verdicts, in its order, by its options; empty for what was not requested.
+
+    `reasons`: the cutters whose reasons are not found; `witnesses`: theirs, and those of all others, are not either.
 
     >>> later_stages(area=True, answers=(), operations="fewest", maps=False)
-    ('the proof between the samples', '', '--operations fewest', '')
+    ('', '', 'the proof between the samples', '', '--operations fewest', '')
     """
     return (
+        f"the reasons of {listed(reasons)}" if reasons else "",
+        "witnesses" if witnesses else "",
         "the proof between the samples" if area else "",
         f"--answers {','.join(answers)}" if answers else "",
         "your steps (--process)" if process else f"--operations {operations}" if operations is not None else "",
@@ -48,9 +53,16 @@ def later_stages(
     )
 
 
-def run_unfinished(absent: Sequence[str]) -> Note:
+def run_unfinished(absent: Sequence[str], work: str = "", *, unexplained: bool = False) -> Note:
+    """Say what a plan is without; `work`: what the run was doing when it was interrupted; `unexplained`: reasons are missing.
+
+    >>> run_unfinished(["--answers mend", "--operations fewest"], "planning the operations").text
+    'The run was interrupted while planning the operations: this plan is without --answers mend and --operations fewest.'
+    """
     without = " and ".join(filter(None, (", ".join(absent[:-1]), absent[-1])))
-    return Note("run_unfinished", f"The run was not done: this plan is without {without}.")
+    how = f"was interrupted while {work}" if work else "was not done"
+    instead = " What it names in their place forbids most tilts, and need not be what helps." if unexplained else ""
+    return Note("run_unfinished", f"The run {how}: this plan is without {without}.{instead}")
 
 
 # Of cutters.

@@ -134,15 +134,9 @@ class ProgressListener(Protocol):
 
 
 def write_all(
-    result: Judged,
-    out: Path,
-    formats: Sequence[str],
-    staging: Staging | None = None,
-    *,
-    step_schema: str = "ap242",
-    listener: ProgressListener | None = None,
-    clock: "Clock | None" = None,
-) -> "Plan":
+    result: Judged, out: Path, formats: Sequence[str], staging: Staging | None = None, *, step_schema: str = "ap242",
+    listener: ProgressListener | None = None, clock: "Clock | None" = None, hurried: bool = False,
+) -> "Plan":  # fmt: skip
     """Write the formats asked for into the folder `out`, each file whole or not at all.
 
     The arrays and the plan come first; the plan is replaced as each other file is added. What fails or ends the process in
@@ -161,6 +155,8 @@ def write_all(
     listener : Onlooker, optional
     clock : Clock, optional
         The one that ran while the plan was made; default one that goes on from there.
+    hurried : bool
+        One file after the other, for this may be ended at any moment.
 
     Returns
     -------
@@ -189,7 +185,9 @@ def write_all(
     wanted = with_operations(formats, plans)
     later = [name for name in LATER if name in wanted]
     with staging or Staging(out) as staging:
-        making = Making(result, staging.folder, step_schema, clock, listener.begins if listener else lambda what: None)
+        making = Making(
+            result, staging.folder, step_schema, clock, listener.begins if listener else lambda what: None, alone=hurried
+        )
         stays = {"process": _STAYS} if result.ready.options.process is None and _edited(result, out) else {}
         written = _Written(result.plan, staging, clock, out, dict.fromkeys(later, PENDING) | stays, as_json="json" in formats)
         try:

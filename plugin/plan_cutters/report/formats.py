@@ -78,6 +78,8 @@ class Making:
     clock : Clock
     begins : callable
         Told what is begun: `split`, or a format.
+    alone : bool
+        Make no file beside another one.
 
     Attributes
     ----------
@@ -85,11 +87,13 @@ class Making:
         The part with its faces split, once that is done: along the verdicts (None), or the operations of a plan.
     """
 
-    def __init__(self, result: Judged, folder: Path, schema: str, clock: "Clock", begins: Callable[[str], None]) -> None:
+    def __init__(
+        self, result: Judged, folder: Path, schema: str, clock: "Clock", begins: Callable[[str], None], *, alone: bool = False
+    ) -> None:
         self.splits: dict[int | None, Any] = {}
         self._result, self._folder, self._schema, self._clock, self._begins = result, folder, schema, clock, begins
         self._errors: dict[int | None, Exception] = {}
-        self._several = result.ready.options.jobs > 1
+        self._several = result.ready.options.jobs > 1 and not alone
 
     def file(self, name: str, split: Any = None) -> "FileEntry":
         """Make the file of a format."""

@@ -72,6 +72,14 @@ def unfinished(path: Path) -> str:
         return ""
 
 
+def not_written(path: Path) -> tuple[str, ...]:
+    """The formats that a plan file says were not written; none where there is no plan."""
+    try:
+        return tuple(json.loads(path.read_text(encoding="utf-8"))["not_written"])
+    except (OSError, ValueError, LookupError, TypeError):
+        return ()
+
+
 def explain(path: Path, cause: str) -> tuple[str, ...]:
     """Say in a plan file why its pending files were never written; their formats."""
     try:

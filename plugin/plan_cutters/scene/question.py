@@ -21,12 +21,10 @@ from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.placement import Placement, axis_words
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.errors import OptionError
+from plan_cutters.files.stage_cache import made_by
 from plan_cutters.options import Options
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene
-
-#: Of the method: raised by one whenever the same question may get another verdict.
-METHOD = 4
 
 #: Options that maps answer, whatever they were made with; of the last three, what lies within theirs. An option that stands in
 #: none of these sets asks for what maps do not hold: it is refused.
@@ -53,7 +51,8 @@ def question(ready: Prepared, cutter: Cutter) -> dict[str, Any]:
     options, scene, chosen, surroundings = ready.options, ready.scene, ready.chosen, ready.conditions.surroundings
     part = scene.part
     return {
-        "method": METHOD,
+        # Another program may answer the same question otherwise.
+        "method": made_by().hex(),
         "part": part.fingerprint,
         "unit": part.unit,
         "faces": chosen.asked,
@@ -106,8 +105,8 @@ def refuse_others(about: Mapping[str, Any], options: Options, stated: Collection
     """
     if not about:
         raise OptionError(_UNSAID)
-    if about.get("method") != METHOD:
-        raise OptionError("these maps were made by an earlier version, whose verdicts may differ: plan again")
+    if about.get("method") != made_by().hex():
+        raise OptionError("these maps were made by another version, whose verdicts may differ: plan again")
     if options.propose:
         raise OptionError("posture maps do not answer the setup auto: leave it out, or plan the part with it")
     try:

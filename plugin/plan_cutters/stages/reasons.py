@@ -50,6 +50,11 @@ class Explained:
     verdicts: Verdicts
     besides: NDArray[np.uint8]
 
+    @classmethod
+    def of_search(cls, verdicts: Verdicts) -> "Explained":
+        """With the reasons that the search of postures found: what forbids most tilts."""
+        return cls(verdicts, np.full(len(verdicts.verdict), NO_REASON, np.uint8))
+
 
 @dataclass(slots=True)
 class Reasons:

@@ -76,10 +76,12 @@ def is_child() -> bool:
 
 def report(word: str, text: str) -> None:
     """Tell the parent, if there is one: `part FILE`, `staging FOLDER`, `stage NAME`, `detail TEXT`, `at DONE TOTAL`,
-    `work WHOSE FACE`, `say TEXT`, `show TEXT`, `cases JSON`, `failed TEXT`, `safe CODE FOLDER`, `done CODE`.
+    `work WHOSE FACE`, `say TEXT`, `show TEXT`, `cases JSON`, `failed TEXT`, `stands`, `safe CODE FOLDER`,
+    `summarised`, `done CODE`.
 
     `cases`: of this part, for a report; `failed`: why there are none; `say`: for people; `show`: for them, on standard output;
-    `safe`: the plan of this part is in the folder, models follow; `done`: so are they.
+    `stands`: verdicts of this part stand, so that an interrupt has something to write; `safe`: the plan of this part is in the
+    folder, models follow; `summarised`: its summary was shown; `done`: all is done.
     """
     pipe = assignment().report
     if pipe is None:

@@ -11,6 +11,9 @@ from typing import Any
 
 from plan_cutters.workers.assignment import VARIABLE, Assignment, assignment, began, is_child
 
+#: Seconds after which a child that was asked to end is asked again.
+_TWICE = 0.5
+
 
 def can_supervise() -> bool:
     """Whether this system lets one process hand a pipe to another and end it with all its copies (not Windows)."""
@@ -61,10 +64,15 @@ class Child:
             os.killpg(self.process.pid, signal.SIGKILL)
 
     def end(self, grace: float = 0.0) -> None:
-        """Leave nothing of it running: it is asked first where it has some seconds to end in order, then killed."""
+        """Leave nothing of it running: it is asked first where it has some seconds to end in order, then killed.
+
+        It is asked twice: a command that has something to write ends at once then.
+        """
         if grace and self.process.poll() is None:
             self.process.terminate()
-            self.ended(grace)
+            if self.ended(min(grace, _TWICE)) is None:
+                self.process.terminate()
+                self.ended(grace)
         self.kill()
         self.process.wait()
 

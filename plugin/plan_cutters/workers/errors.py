@@ -39,11 +39,13 @@ class OutOfTime(Supervised):
         Parts that were done, and the exit code that these ask for.
     out : Path, optional
         The output where the plan was in it already, so that only models are missing.
+    summarised : bool
+        Whether its summary was shown.
     """
 
-    def __init__(self, before: int, code: int, out: Path | None) -> None:
+    def __init__(self, before: int, code: int, out: Path | None, summarised: bool = False) -> None:
         super().__init__("not done in time")
-        self.before, self.code, self.out = before, code, out
+        self.before, self.code, self.out, self.summarised = before, code, out, summarised
 
 
 class Unfinished(Supervised):
@@ -57,8 +59,10 @@ class Unfinished(Supervised):
         The output.
     parts : int
         Parts that were begun.
+    summarised : bool
+        Whether the summary of the plan was shown.
     """
 
-    def __init__(self, text: str, code: int, out: Path, parts: int) -> None:
+    def __init__(self, text: str, code: int, out: Path, parts: int, summarised: bool = False) -> None:
         super().__init__(text)
-        self.code, self.out, self.parts = code, out, parts
+        self.code, self.out, self.parts, self.summarised = code, out, parts, summarised

@@ -33,10 +33,13 @@ class Display(Protocol):
     def tick(self) -> None: ...
     def cases(self, text: str) -> None: ...
     def failed(self, line: str) -> None: ...
+    def interrupted(self) -> None: ...
 
 
 #: Seconds that an interrupted child has to end in order; it has not if the kernel does not come back to it.
 GRACE = 0.25
+#: Seconds that it has where verdicts stand, to write what there is of a plan, its page, samples and models.
+WRITING = 9.0
 #: Stages in which the kernel works on what the file says, and how many times the limit of reading each may take.
 LIMITED = {"read": 1.0, "measure": 5.0, "sew": 5.0, "orient": 5.0, "fixtures": 5.0, "sample": 5.0, "tessellate": 5.0,
            "write": 5.0}  # fmt: skip
@@ -58,7 +61,8 @@ def supervise(
 ) -> int:  # fmt: skip
     """Run a command in a child.
 
-    An interrupt, a request to end or a closed terminal ends it within GRACE, whatever it is doing.
+    An interrupt, a request to end or a closed terminal ends it within GRACE, whatever it is doing; where verdicts stand, within
+    WRITING, in which it writes them, and a second one ends it at once. So does the end of `timeout`.
 
     Parameters
     ----------
@@ -92,19 +96,32 @@ def supervise(
     watch = _Watch(read_timeout, display, began=since)
     child: Worker | None = None
     signals: list[int] = []
+    ending, late, announced = 0.0, False, False
+
+    def ask(child: Worker) -> None:
+        nonlocal ending
+        ending = time.monotonic()
+        child.process.send_signal(signal.SIGINT)
+        # The system's timer, for this process may be waiting for its reader just now.
+        signal.setitimer(signal.ITIMER_REAL, GRACE)
 
     def stop(number: int, _: object) -> None:
         # Ask once; a child that has not begun, or is asked again, has nothing to tidy that this process does not.
         signals.append(number)
-        if child is not None and (len(signals) > 1 or watch.stage == "start"):
+        if child is not None and (ending or watch.stage == "start"):
             child.kill()
         elif child is not None:
-            child.process.send_signal(signal.SIGINT)
-            # The system's timer, for this process may be waiting for its reader just now.
-            signal.setitimer(signal.ITIMER_REAL, GRACE)
+            ask(child)
+
+    def waited(*_: object) -> None:
+        rest = ending + WRITING - time.monotonic()
+        if watch.stands and rest > 0.0:
+            signal.setitimer(signal.ITIMER_REAL, rest)
+        elif child is not None:
+            child.kill()
 
     previous = {number: signal.signal(number, stop) for number in _stopping()}
-    previous[signal.SIGALRM] = signal.signal(signal.SIGALRM, lambda *_: None if child is None else child.kill())
+    previous[signal.SIGALRM] = signal.signal(signal.SIGALRM, waited)
     try:
         again = done or excluded
         child = (None if again else early(words)) or Worker(words, name, memory, done=done, excluded=excluded)
@@ -116,8 +133,15 @@ def supervise(
             watch.listen(0.2)
             if watch.over:  # neither the child nor a copy of it holds the other end: it has ended, or is about to
                 child.ended(0.2)
-            if time.monotonic() - watch.began > timeout:
-                raise OutOfTime(watch.dones, watch.code, watch.safe and watch.safe[1])
+            if not ending and time.monotonic() - watch.began > timeout:
+                if not watch.stands:
+                    raise OutOfTime(watch.dones, watch.code, watch.safe and watch.safe[1])
+                late = True
+                ask(child)
+            if ending and watch.stands and not announced:
+                announced = True
+                if display is not None:
+                    display.interrupted()
             if watch.late():
                 raise watch.ended(*watch.verdict())
             if display is not None:
@@ -133,6 +157,10 @@ def supervise(
         for number, handler in previous.items():
             signal.signal(number, handler)
     code = child.process.returncode
+    if late and not signals:
+        raise OutOfTime(watch.dones, watch.code, watch.safe and watch.safe[1], watch.summarised)
+    if code == INTERRUPTED and watch.safe is not None:
+        raise watch.ended("interrupted", "", interrupted=True)
     if code >= 0:
         return code
     # Whoever ends all processes of a service, as its manager does, ends the child at the same time.
@@ -178,6 +206,7 @@ class _Watch:
         self.parts, self.dones, self.code = 0, 0, 0
         self.over = False
         self.safe: tuple[int, Path] | None = None
+        self.stands = self.summarised = False
 
     def listen(self, seconds: float) -> None:
         while select.select([self.pipe], [], [], seconds)[0]:
@@ -195,11 +224,14 @@ class _Watch:
                     self.work, self.spent = text, _processor(self.child)
                 elif word == "part":
                     self.part, self.parts, self.safe = text, self.parts + 1, None
+                    self.stands = self.summarised = False
+                elif word in ("stands", "summarised"):
+                    setattr(self, word, True)
                 elif word == "safe":
                     code, _, folder = text.partition(" ")
                     self.safe = int(code), Path(folder)
                 elif word == "done":
-                    self.code, self.safe = max(self.code, int(text)), None
+                    self.code, self.safe, self.stands = max(self.code, int(text)), None, False
                     self.dones, self.began = self.dones + 1, time.monotonic()
                 elif word == "staging":
                     self.staging.add(text)
@@ -254,7 +286,7 @@ class _Watch:
         if self.safe is None:
             return Supervised(f"{self.part}: {what}; {advice}")
         code, out = self.safe
-        return Unfinished(what, INTERRUPTED if interrupted else max(self.code, code), out, self.parts)
+        return Unfinished(what, INTERRUPTED if interrupted else max(self.code, code), out, self.parts, self.summarised)
 
     def clear(self) -> None:
         """Take away what the child had begun to write and not given to the output."""

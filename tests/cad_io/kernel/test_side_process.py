@@ -221,3 +221,24 @@ def test_no_pipe_is_left_where_there_is_no_room_for_a_copy(monkeypatch):
     with SideProcess(os.getpid, 5.0) as copy:
         assert copy.result() == os.getpid()
     assert os.listdir("/proc/self/fd") == before
+
+
+def test_whether_it_has_ended_is_asked_without_waiting_or_working_here():
+    here = os.getpid()
+
+    def crash():
+        assert os.getpid() != here, "the call was made here"
+        os._exit(3)
+
+    with SideProcess(lambda: time.sleep(60), 60.0) as slow:
+        assert slow.ended() is None
+    with SideProcess(lambda: "done", 60.0) as quick:
+        until = time.monotonic() + 30
+        while (answer := quick.ended()) is None and time.monotonic() < until:
+            time.sleep(0.01)
+        assert answer == "done"
+    with SideProcess(crash, 60.0) as crashed:
+        time.sleep(0.5)
+        assert crashed.ended() is None
+    with SideProcess(crash, 60.0, worth=False) as none:
+        assert none.ended() is None

@@ -1,0 +1,110 @@
+"""An interim plan can be made at any moment once verdicts stand, while the run goes on, and says what it is without."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from plan_cutters.document.clock import Clock
+from plan_cutters.document.notes import noted
+from plan_cutters.domain.answers import Answers
+from plan_cutters.domain.operations import Operations
+from plan_cutters.judged_part import JudgedPart, assembled
+from plan_cutters.plan_file.model import AreaEntry, Plan
+from plan_cutters.plan_file.notes import later_stages, run_unfinished
+from plan_cutters.plan_file.words.text import with_text
+from plan_cutters.result import Result
+
+Describe = Callable[[Plan], Plan]
+
+
+class Interim:
+    """An interim holds the verdicts of a part, and what was found besides.
+
+    Parameters
+    ----------
+    clock : Clock
+        Its seconds are those of the results.
+    stands : callable, optional
+        Given a result as soon as all verdicts have their reasons, and after each stage that another one follows.
+    begins : callable, optional
+        Called once, as soon as the verdicts stand: from then on `interrupted` has a result.
+
+    Attributes
+    ----------
+    answers : Answers
+    between : dict
+        Of `JudgedPart.between`.
+    """
+
+    def __init__(
+        self, clock: Clock, stands: Callable[[Result], None] | None = None, begins: Callable[[], None] | None = None
+    ) -> None:
+        self.answers, self.between = Answers(), dict[str, AreaEntry]()
+        self._clock, self._stands, self._begins = clock, stands, begins
+        self._made: Callable[[], tuple[JudgedPart, Describe]] | None = None
+        self._unanswered: Sequence[str] | None = None
+        self._looked = self._planned = False
+        self._absent: list[str] | None = None
+
+    def verdicts(self, made: Callable[[], tuple[JudgedPart, Describe]]) -> None:
+        """The verdicts stand: what makes the part of them, with the reasons that were found by then, and describes its plan."""
+        begins, self._begins = self._begins, None
+        self._made = made
+        if begins is not None:
+            begins()
+
+    def judged(self, part: JudgedPart, describe: Describe, answers: Answers) -> None:
+        """The part is judged, with all reasons."""
+        self.answers = answers
+        self.verdicts(lambda: (part, describe))
+        self._tell()
+
+    def looked(self, between: dict[str, AreaEntry]) -> None:
+        """The area between the samples was looked at."""
+        self.between, self._looked = between, True
+        self._tell()
+
+    def answered(self, answers: Answers, unanswered: Sequence[str] = ()) -> None:
+        """Some questions are answered; the words of those that are not, or not for all cutters."""
+        self.answers, self._unanswered = answers, unanswered
+        self._tell()
+
+    def planned(self, operations: Operations | None) -> None:
+        """The operations are planned."""
+        self.answers, self._planned = replace(self.answers, operations=operations), True
+        self._tell()
+
+    def interrupted(self, work: str) -> Result | None:
+        """The result of what stands, if verdicts do; `work`: what was going on, as `planning the operations`."""
+        if self._made is None:
+            return None
+        part, describe = self._made()
+        return self._result(part, describe, self._missing(part), work)
+
+    def _tell(self) -> None:
+        """Let a result stand if that is news, and something follows."""
+        if self._stands is None or self._made is None:
+            return
+        part, describe = self._made()
+        absent = self._missing(part)
+        if absent and absent != self._absent:
+            self._absent = absent
+            self._stands(self._result(part, describe, absent))
+
+    def _missing(self, part: JudgedPart) -> list[str]:
+        options = part.ready.options
+        each = later_stages(
+            reasons=part.unexplained,
+            witnesses=not part.witnessed,
+            area=part.looks_between and not self._looked,
+            answers=options.answers if self._unanswered is None else self._unanswered,
+            operations=None if self._planned else options.operations,
+            maps=options.posture_maps,
+            process=options.process is not None and not self._planned,
+        )
+        return [name for name in each if name]
+
+    def _result(self, part: JudgedPart, describe: Describe, absent: Sequence[str], work: str = "") -> Result:
+        result = assembled(part, self._clock, self.answers, self.between)
+        note = run_unfinished(absent, work, unexplained=bool(part.unexplained)) if absent else None
+        document = result.plan if note is None else noted(result.plan, note)
+        return replace(result, plan=self._clock.stamp(with_text(describe(document))))
