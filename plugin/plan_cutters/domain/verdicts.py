@@ -117,7 +117,7 @@ class Verdicts(_Columns):
     shift : (n, 3) float
         From the sample to the contact at which the tool is put down, mm. It is not 0 where a flank lies along the surface, and
         touches it elsewhere than with its lower end, and where the flat of a tip lies on a face that is not quite square to the
-        axis (`scene.by_axis`).
+        axis (`scene.flats_and_flanks`).
     reason : (n,) uint8
         Index into REASONS where inaccessible or undecided, else NO_REASON.
     """
