@@ -46,16 +46,16 @@ def orient(part: Part, towards: tuple[float, float, float] = (0.0, 0.0, 1.0), fl
     count = len(part.faces)
     sign = np.zeros(count)
     notes: list[str] = []
-    confident = True
+    guessed: list[int] = []
     numbers = shape_map(part.shape, TopAbs_FACE)
     for solid in part.solid_shapes():
         members = [(numbers.FindIndex(f), TopoDS.Face_s(f)) for f in explore(solid, TopAbs_FACE)]
         members = [(n - 1, f) for n, f in members if n and sign[n - 1] == 0]
-        confident &= _orient_solid(part, members, sign, notes)
+        if not _orient_solid(part, members, sign, notes):
+            guessed += [n + 1 for n, _ in members]
     rest = [i for i in range(count) if sign[i] == 0]
-    if rest:
-        confident &= _orient_rest(part, rest, sign, notes, np.asarray(towards, float), flip)
-    return Orientation(sign, "; ".join(dict.fromkeys(notes)), confident)
+    sure = not rest or _orient_rest(part, rest, sign, notes, np.asarray(towards, float), flip)
+    return Orientation(sign, "; ".join(dict.fromkeys(notes)), sure and not guessed, tuple(sorted(guessed)))
 
 
 def _orient_solid(part: Part, members: Sequence[tuple[int, TopoDS_Face]], sign: Floats, notes: list[str]) -> bool:
@@ -87,6 +87,8 @@ def _orient_solid(part: Part, members: Sequence[tuple[int, TopoDS_Face]], sign: 
         notes.append("a solid is not closed, so its side is a guess")
     elif part.aside.keys() & set((index + 1).tolist()):
         notes.append("a face of a solid was not measured, so its side is a guess")
+    elif not enclosed:
+        notes.append("a solid encloses no volume that tells its side, so it is a guess")
     return closed and enclosed != 0
 
 

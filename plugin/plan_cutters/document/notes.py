@@ -63,7 +63,7 @@ def _of_sides(scene: Scene, options: Options, tolerance: float) -> Iterator[Note
     if not options.machine.limited:
         yield notes.no_machine()
     if not scene.orientation.confident:
-        yield notes.side_guessed()
+        yield notes.side_guessed(loose=bool(scene.part.sewn.faces))
         if other := scene.turned_faces():
             yield notes.side_by_setup(other)
     if tolerance > 1.001 * scene.asked:

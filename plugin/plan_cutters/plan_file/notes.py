@@ -145,8 +145,9 @@ def no_machine() -> Note:
     return Note("no_machine", "No machine was given: any tool axis counts as possible.")
 
 
-def side_guessed() -> Note:
-    return Note("side_guessed", "Which side is material is a guess; --flip machines the other side.")
+def side_guessed(*, loose: bool) -> Note:
+    """`loose`: there are faces in no solid, which alone can be turned."""
+    return Note("side_guessed", f"Which side is material is a guess{'; --flip machines the other side' if loose else ''}.")
 
 
 def side_by_setup(faces: Sequence[str]) -> Note:
