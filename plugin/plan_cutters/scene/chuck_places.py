@@ -34,7 +34,7 @@ def chuck_places(part: Workpiece, requested: Requested) -> tuple[list[Place], li
     places, refused = list[Place](), list[Refused]()
     short = f"no outside cylinder along it reaches all round in the lowest {mm(requested.grip)} of the part"
     for wall, centre, radius in _upright_cylinders(part):
-        found, why = list[Place](), short
+        result, why = list[Place](), short
         if 2.0 * radius > largest_gripped():
             why = f"the cylinder is {mm(2.0 * radius)} wide, and chucks grip up to {mm(largest_gripped())}"
         for above, reach in stands(wall.low, requested.grip) if 2.0 * radius <= largest_gripped() else ():
@@ -42,9 +42,9 @@ def chuck_places(part: Workpiece, requested: Requested) -> tuple[list[Place], li
             if requested.sizes is not None:
                 chuck = Chuck(int(requested.sizes[0]), requested.sizes[1], reach, 2.0 * radius)
             if reach < chuck.height and above <= chuck.height - reach:
-                found += _about(part, chuck, wall, centre, above)
-        places += found
-        if not found:
+                result += _about(part, chuck, wall, centre, above)
+        places += result
+        if not result:
             refused.append(Refused((wall.low > 0.5 * requested.grip, -area_of(wall.vertex)), why))
     return places, refused if places or refused else [Refused((True, 0.0), short)]
 

@@ -1,4 +1,4 @@
-"""What of a part lies at the jaws of a vise or chuck in its place: what rests on their ledges, and which bodies they hold."""
+"""Find what of a part lies at the jaws of a vise or chuck in its place: what rests on their ledges, which bodies they hold."""
 
 from collections.abc import Iterator, Sequence
 
@@ -14,8 +14,8 @@ _UP = np.array([0.0, 0.0, 1.0])
 
 
 def at_jaws(clamping: Clamping, vertex: Floats, face: Ints, low: float, high: float) -> Iterator[tuple[Ints, Floats]]:
-    """What of triangles lies between the jaws, before each of them and between two heights: their faces, and how far each reaches
-    towards it.
+    """Cut triangles to what lies between the jaws, before each of them and between two heights: their faces, and how far each of
+    them reaches towards it.
 
     Parameters
     ----------

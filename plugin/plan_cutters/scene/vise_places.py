@@ -42,9 +42,9 @@ def vise_places(part: Workpiece, requested: Requested) -> tuple[list[Place], lis
             x = one.normal - other.normal
             x = x / np.linalg.norm(x)
             if float((one.vertex @ x).max() - (other.vertex @ x).min()) > 0.0:
-                found, why = _between(part, requested, one, other, x)
-                places += found
-                if not found:
+                result, why = _between(part, requested, one, other, x)
+                places += result
+                if not result:
                     low, size = max(one.low, other.low), min(area_of(one.vertex), area_of(other.vertex))
                     refused.append(Refused((low > 0.5 * requested.grip, -size), why))
     if not places and not refused:
@@ -84,8 +84,8 @@ def _between(part: Workpiece, requested: Requested, one: Wall, other: Wall, x: F
     """Places of a vise on two walls: in the middle of what its jaws can touch, and at both ends of that; or why there is none."""
     places, why = list[Place](), ""
     for above, reach in stands(max(one.low, other.low), requested.grip):
-        found, refused = _at(part, requested, (one, other), x, above, reach)
-        places, why = places + found, why or refused
+        result, refused = _at(part, requested, (one, other), x, above, reach)
+        places, why = places + result, why or refused
     return places, why
 
 
@@ -95,22 +95,22 @@ def _at(
     """The same where the part rests at a height over its lowest point, and the jaws reach so far above that."""
     grip, y = requested.grip, np.array([-x[1], x[0], 0.0])
     names = " and ".join(listed([f"F{n}" for n in wall.faces], 2) for wall in walls)
-    aside = f"no two opposite plane faces lie side by side in the {mm(grip)} that the jaws grip"
+    apart = f"no two opposite plane faces lie side by side in the {mm(grip)} that the jaws grip"
     strips = [clipped(each.vertex, each.face, np.array([0.0, 0.0, 1.0]), above, above + reach) for each in walls]
     if not all(len(vertex) for vertex, _ in strips):
-        return [], aside
+        return [], apart
     along = [(float((vertex @ y).min()), float((vertex @ y).max())) for vertex, _ in strips]
     start, end = max(low for low, _ in along), min(high for _, high in along)
     right, left = float((strips[0][0] @ x).max()), float((strips[1][0] @ x).min())
     if not end - start > part.flat:
-        return [], aside
+        return [], apart
     vise, widest = _vise(replace(requested, grip=reach), right - left, float(np.ptp(part.outline @ y)), above)
     if vise is None:
         wide = f"{names} are {mm(right - left)} apart, and the vise opens to {mm(widest)}"
         return [], wide if right - left > widest else f"{names} begin too high above its lowest point for the jaws"
     half, size = 0.5 * vise.width, min(area_of(each.vertex) for each in walls)
     tall = float(part.vertex[..., 2].max())
-    places, why = list[Place](), aside
+    places, why = list[Place](), apart
     middles = [0.5 * (start + end), *([start + half, end - half] if end - start > vise.width else [])]
     for middle in middles:
         touched = [clipped(vertex, face, y, middle - half, middle + half) for vertex, face in strips]
