@@ -106,9 +106,8 @@ def _side(plan: Plan) -> Iterator[str]:
     elif turned:
         yield f"Which side of {listed(turned, _FACES)} is material is a guess; --flip takes the other one."
     solid = [name for name in part.guessed_faces if name not in turned]
-    if solid or not (part.orientation.confident or turned):
-        which = f"of {listed(solid, _FACES)} " if solid else ""
-        yield f"Which side {which}is material is a guess: a solid that is open or crosses itself does not tell it."
+    if solid:
+        yield f"Which side of {listed(solid, _FACES)} is material is a guess: a solid that is open or crosses itself does not tell it."
 
 
 def _sheets(plan: Plan) -> Iterator[str]:
