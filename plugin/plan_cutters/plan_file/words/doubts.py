@@ -107,7 +107,8 @@ def _side(plan: Plan) -> Iterator[str]:
         yield f"Which side of {listed(turned, _FACES)} is material is a guess; --flip takes the other one."
     solid = [name for name in part.guessed_faces if name not in turned]
     if solid:
-        yield f"Which side of {listed(solid, _FACES)} is material is a guess: a solid that is open or crosses itself does not tell it."
+        faces = listed(solid, _FACES)
+        yield f"Which side of {faces} is material is a guess: a solid that is open or crosses itself does not tell it."
 
 
 def _sheets(plan: Plan) -> Iterator[str]:
