@@ -20,7 +20,7 @@ class Record:
     """Base of frozen records of arrays: equal if all their numbers are (nan to nan), and printed by shape, not in full.
 
     >>> Orientation(np.ones(3), "a guess", False)
-    Orientation(sign=float64 (3,), method='a guess', confident=False)
+    Orientation(sign=float64 (3,), method='a guess', confident=False, guessed=())
     >>> Orientation(np.ones(3), "a guess", False) == Orientation(np.ones(2), "a guess", False)
     False
     """
@@ -183,11 +183,14 @@ class Orientation(Record):
         How it was found, for people.
     confident : bool
         False where it is a guess.
+    guessed : tuple of int
+        Numbers of the faces of solids whose side is a guess: nothing that is requested turns them.
     """
 
     sign: Floats
     method: str
     confident: bool
+    guessed: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

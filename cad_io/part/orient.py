@@ -47,22 +47,23 @@ def orient(part: Part, towards: tuple[float, float, float] = (0.0, 0.0, 1.0), fl
     count = len(part.faces)
     sign = np.zeros(count)
     notes: list[str] = []
-    confident = True
+    guessed: list[int] = []
     numbers = shape_map(part.shape, TopAbs_FACE)
     again = doubled(part)
     for solid in part.solid_shapes():
         members = [(numbers.FindIndex(f), TopoDS.Face_s(f)) for f in explore(solid, TopAbs_FACE)]
         members = [(n - 1, f) for n, f in members if n and sign[n - 1] == 0]
-        confident &= _orient_solid(part, [each for each in members if each[0] + 1 not in again], sign, notes)
+        if not _orient_solid(part, [each for each in members if each[0] + 1 not in again], sign, notes):
+            guessed += [n + 1 for n, _ in members]
         for i, face in members:
             sign[i] = sign[i] or (-1.0 if face.Orientation() == TopAbs_REVERSED else 1.0)
     rest = [i for i in range(count) if sign[i] == 0]
+    sure = True
     # What lies where others lie would be joined with them: each time by itself.
     for nth in sorted({again.get(i + 1, 0) for i in rest}):
         these = [i for i in rest if again.get(i + 1, 0) == nth]
-        sure = _orient_rest(part, these, sign, notes, np.asarray(towards, float), flip)
-        confident &= sure or nth > 0
-    return Orientation(sign, "; ".join(dict.fromkeys(notes)), confident)
+        sure = (_orient_rest(part, these, sign, notes, np.asarray(towards, float), flip) or nth > 0) and sure
+    return Orientation(sign, "; ".join(dict.fromkeys(notes)), sure and not guessed, tuple(sorted(guessed)))
 
 
 def _orient_solid(part: Part, members: Sequence[tuple[int, TopoDS_Face]], sign: Floats, notes: list[str]) -> bool:
@@ -94,6 +95,8 @@ def _orient_solid(part: Part, members: Sequence[tuple[int, TopoDS_Face]], sign: 
         notes.append("a solid is not closed, so its side is a guess")
     elif part.unmeasured & set((index + 1).tolist()):
         notes.append("a face of a solid was not measured, so its side is a guess")
+    elif not enclosed:
+        notes.append("a solid encloses no volume that tells its side, so it is a guess")
     return closed and enclosed != 0
 
 

@@ -1,9 +1,13 @@
 """What changes what one does stands above the process, a line each; where nothing is doubtful there is no line."""
 
 import pytest
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
-from OCP.gp import gp_Dir, gp_Pln, gp_Pnt
+from OCP.BRep import BRep_Builder
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakePolygon, BRepBuilderAPI_MakeSolid
+from OCP.BRepPrimAPI import BRepPrimAPI_MakePrism
+from OCP.gp import gp_Dir, gp_Pln, gp_Pnt, gp_Vec
+from OCP.TopoDS import TopoDS_Shell
 
+from cad_io.kernel import faces
 from plan_cutters import Machine, plan
 from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.placement import Placement
@@ -63,6 +67,34 @@ def test_faces_without_a_solid_are_no_sheets_but_their_side_is_a_guess():
     (line,) = plan(sheet(), cutters=["D6L60"], **FEW).plan.process.doubts
     assert "a guess" in line
     assert "--flip" in line
+
+
+def test_a_solid_that_crosses_itself_tells_no_side_and_no_option_does():
+    wire = BRepBuilderAPI_MakePolygon()
+    for x, y in ((0, 0), (40, 30), (40, 0), (0, 30)):
+        wire.Add(gp_Pnt(x, y, 0))
+    wire.Close()
+    outline = BRepBuilderAPI_MakeFace(wire.Wire(), True).Face()
+    result = plan(BRepPrimAPI_MakePrism(outline, gp_Vec(0, 0, 10)).Shape(), cutters=["D6L60"], **FEW).plan
+    assert not result.part.orientation.confident
+    (line,) = result.process.doubts
+    assert "material is a guess" in line
+    assert "--flip" not in line
+    assert line[:40] in " ".join(text_of(result).lines[:3])
+    assert "--flip" not in result.notes[result.note_codes.index("side_guessed")]
+
+
+def test_an_open_solid_tells_no_side_beside_a_sheet_that_can_be_turned():
+    shell = TopoDS_Shell()
+    BRep_Builder().MakeShell(shell)
+    for face in list(faces(box(20, 20, 20)))[:5]:
+        BRep_Builder().Add(shell, face)
+    solid = BRepBuilderAPI_MakeSolid(shell).Solid()
+    (line,) = plan(solid, cutters=["D6L60"], **FEW).plan.process.doubts
+    assert "F1, F2, F3 and 2 more is material is a guess" in line
+    assert "--flip" not in line
+    both = plan(compound(solid, sheet(40.0)), cutters=["D6L60"], **FEW).plan.process.doubts
+    assert [("F6 is" in line, "--flip" in line) for line in both[:2]] == [(True, True), (False, False)]
 
 
 @pytest.mark.parametrize(("long", "short"), [(120.0, 20.0), (100.0, 0.0)])

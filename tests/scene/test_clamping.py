@@ -5,7 +5,7 @@ import math
 import cadquery as cq
 import numpy as np
 import pytest
-from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut, BRepAlgoAPI_Fuse
 from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
 
 from cad_io import read_part
@@ -13,7 +13,8 @@ from plan_cutters import Scene, plan, posture_map
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.verdicts import ANOTHER_SETUP
 from plan_cutters.errors import FixtureError, OptionError
-from tests.support.cad_parts import ball, box, moved, real, rod
+from plan_cutters.plan_file.words.text import text_of
+from tests.support.cad_parts import ball, box, compound, moved, real, rod
 
 UP, DOWN = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
 HOW = {"faces": "all", "area_budget": 0, "machine": "tilt:110", "cutters": "D4L60", "spacing": 1.5}
@@ -146,13 +147,114 @@ def test_the_longer_faces_of_a_block_are_gripped_where_jaws_are_narrower_than_bo
     assert hold_of(box(50, 80, 40), "vise").fixture.clamping.gap == pytest.approx(50.0)
 
 
+def pocketed(x, y, z):
+    """A plate with a pocket, between whose walls and the plate's own is material."""
+    return BRepAlgoAPI_Cut(box(x, y, z), box(60, 50, z, at=(x / 2, y / 2, z - 10))).Shape()
+
+
+def legged(leg=2.0, at=(0.0, 0.0, 0.0)):
+    """A block 50 x 30 x 20 on two legs of its length at its ends."""
+    x, y, z = at
+    feet = [box(leg, 30, 10, at=(x + left, y, z)) for left in (0.0, 50.0 - leg)]
+    return BRepAlgoAPI_Fuse(BRepAlgoAPI_Fuse(box(50, 30, 20, at=(x, y, z + 10)), feet[0]).Shape(), feet[1]).Shape()
+
+
+@pytest.mark.parametrize("leg", [2.0, 8.0, 12.0])
+@pytest.mark.parametrize("at", [(0.0, 0.0, 0.0), (-300.0, 41.0, 7.0)])
+def test_of_places_that_hide_as_much_the_one_about_the_parts_middle_is_taken(leg, at):
+    """Both legs, and the block between their outer faces, touch and hide as much."""
+    hold = hold_of(legged(leg, at), "vise")
+    assert hold.fixture.clamping.gap == pytest.approx(50.0)
+    assert hold.fixture.placement[0] == pytest.approx(at[0] + 25.0)
+    assert len(hold.rests_on) == 2
+
+
+def test_a_thin_leg_is_gripped_only_where_nothing_else_can_be():
+    """Faces to machine are hidden rather than 50 mm held by 2 mm; a vise that opens no farther has no choice."""
+    part = read_part(legged())
+    outer = hold_of(part, "vise").grips
+    assert hold_of(part, "vise", targets=outer[:1]).grips == outer
+    alone = hold_of(part, "vise:46x25x20:3")
+    assert alone.fixture.clamping.gap == pytest.approx(2.0)
+    # The other leg is 46 mm from any ledge.
+    assert len(alone.rests_on) == 1
+
+
+def test_a_chuck_grips_the_hub_rather_than_a_foot():
+    """Three feet and a hub of one diameter under a disk touch and hide as much."""
+    disk = rod(60, 10, at=(0, 0, 15))
+    for k in range(3):
+        foot = rod(8, 15, at=(45 * math.cos(2 * k), 45 * math.sin(2 * k), 0))
+        disk = BRepAlgoAPI_Fuse(disk, foot).Shape()
+    hold = hold_of(BRepAlgoAPI_Fuse(disk, rod(8, 15)).Shape(), "chuck:3x15:3")
+    assert hold.fixture.placement[:2] == pytest.approx((0.0, 0.0), abs=1e-6)
+    assert len(hold.rests_on) == 1
+
+
+def test_what_hangs_between_the_jaws_is_not_rested_on():
+    """Three feet: the one in the middle, as low as the others, is over the gap between the jaws."""
+    block = box(60, 100, 20, at=(0, 0, 8))
+    for left in (0, 25, 50):
+        block = BRepAlgoAPI_Fuse(block, box(10, 100, 8, at=(left, 0, 0))).Shape()
+    part = read_part(block)
+    hold = hold_of(part, "vise:46x25x65:3")
+    assert hold.fixture.clamping.gap == pytest.approx(60.0)
+    assert sorted(part.centre(number)[0] for number in hold.rests_on) == pytest.approx([5.0, 55.0])
+
+
+def unheld(part, word="vise", setup=UP):
+    scene = Scene.of(part, fixtures=word, setup=setup)
+    (placed,) = scene.surround().fixtures
+    again = Scene.of(part, fixtures=placed.fixture.text, setup=setup).surround().fixtures[0]
+    assert again.unheld == placed.unheld, "by its numbers it holds what it held"
+    return placed
+
+
+def test_a_body_that_no_jaw_grips_is_told():
+    """A block and a loose one beside it, of which the larger is gripped: nothing of the other is said to rest in the vise."""
+    result = plan(compound(box(50, 30, 20), box(10, 10, 10, at=(60, 10, 0))), fixtures="vise", **HOW)
+    (entry,) = result.plan.fixtures
+    assert entry.unheld == ["F7"]
+    assert entry.grips == ["F3", "F4"]
+    assert "the part rests on F5;" in entry.notes[0]
+    assert result.plan.process.doubts == ["The jaws of the vise do not hold the body of F7."]
+    assert "do not hold the body of F7" in " ".join(text_of(result.plan).lines[:3])
+
+
+def test_no_body_is_held_across_a_gap():
+    part = compound(box(20, 30, 20), box(20, 24, 20, at=(40, 3, 0)))
+    vise = "vise:46x25x65:3:{}@{},15,0"
+    assert unheld(part, vise.format(60, 30)).unheld == (1, 7)
+    assert unheld(part, vise.format(20, 10)).unheld == (7,)
+
+
+@pytest.mark.parametrize(
+    ("shape", "faces"),
+    [
+        (lambda: box(40, 30, 20), 0),
+        # Both halves have both jaws on them, or lie one against the other between the jaws.
+        (lambda: compound(box(20, 30, 20), box(20, 30, 20, at=(22, 0, 0))), 0),
+        (lambda: compound(box(20, 30, 20), box(20, 24, 20, at=(20, 3, 0))), 0),
+        # A void is no body, and what lies in it cannot be gripped.
+        (lambda: BRepAlgoAPI_Cut(box(40, 30, 20), ball(4, at=(20, 15, 10))).Shape(), 0),
+        (lambda: compound(BRepAlgoAPI_Cut(box(40, 30, 20), ball(4, at=(20, 15, 10))).Shape(), ball(2, at=(20, 15, 10))), 1),
+        (lambda: compound(box(40, 30, 20), box(4, 4, 4, at=(20, 15, 20))), 1),
+    ],
+)
+def test_bodies_that_are_held_have_both_jaws_on_them_or_lie_between_them(shape, faces):
+    placed = unheld(shape(), "vise:46x25x65:3")
+    assert len(placed.unheld) == faces
+
+
 @pytest.mark.parametrize(
     ("shape", "word", "why"),
     [
         (lambda: ball(), "vise", "no two opposite plane faces stand along it"),
         (lambda: rod(), "vise", "no two opposite plane faces stand along it"),
-        (lambda: box(60, 40, 30), "vise:10x10x20", "the nearest parallel faces are 40 mm apart, and the vise opens to 20 mm"),
-        (lambda: box(600, 400, 300), "vise", "the nearest parallel faces are 400 mm apart, and the vise opens to 355 mm"),
+        (lambda: box(60, 40, 30), "vise:10x10x20", " are 40 mm apart, and the vise opens to 20 mm"),
+        (lambda: box(600, 400, 300), "vise", " are 400 mm apart, and the vise opens to 355 mm"),
+        (lambda: pocketed(600, 400, 30), "vise", " are 400 mm apart, and the vise opens to 355 mm"),
+        (lambda: compound(rod(300, 6), rod(10, 20, at=(0, 0, 6))), "chuck", "the cylinder is 600 mm wide"),
         (lambda: box(4, 4, 200), "vise", "the part stands 200 mm high, and jaws touch no more than 4 mm"),
         (lambda: box(60, 40, 30), "chuck", "no outside cylinder along it reaches all round"),
         (lambda: rod(300, 50), "chuck", "the cylinder is 600 mm wide"),
@@ -168,8 +270,6 @@ def test_where_nothing_can_be_gripped_one_line_says_why_and_what_to_try(shape, w
 
 def test_pockets_and_bores_are_not_gripped():
     """Faces that look at each other, and an inside cylinder, are no outside."""
-    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
-
     frame = BRepAlgoAPI_Cut(rod(40, 20), box(30, 30, 40, at=(-15, -15, -10))).Shape()
     with pytest.raises(FixtureError, match="nothing to grip"):
         hold_of(frame, "vise")

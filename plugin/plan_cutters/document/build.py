@@ -147,6 +147,8 @@ def part_info(scene: Scene, surroundings: Surroundings) -> PartInfo:
     opened = _open_faces(scene, surroundings)
     # Faces of a broken solid are none: they are its skin.
     loose = [name for name in opened if int(name[1:]) in part.sewn.faces] if part.solids else []
+    excluded = {face.number for face in part.faces if face.unjudged} | set(scene.ignored)
+    of_solids = [name for n in orientation.guessed if n not in excluded and (name := f"F{n}") not in opened]
     return PartInfo(
         file=Path(part.file).name if part.file else None,
         sha256=part.sha256,
@@ -158,7 +160,7 @@ def part_info(scene: Scene, surroundings: Surroundings) -> PartInfo:
         sewing=_sewing(part),
         warnings=warnings,
         loose_faces=loose,
-        guessed_faces=[] if orientation.confident else opened,
+        guessed_faces=[] if orientation.confident else [*opened, *of_solids],
         sheets_doubt=on_shell,
         unit_doubt=part.unit_doubt,
         unit_readings=[filled(UnitEntry, each) for each in part.unit_readings],

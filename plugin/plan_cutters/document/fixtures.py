@@ -52,5 +52,6 @@ def fixture_entry(placed: PlacedFixture) -> FixtureEntry:
         notes=list(placed.notes),
         clamping=fixture.text if fixture.clamping is not None else None,
         grips=[] if placed.hold is None else [f"F{number}" for number in placed.hold.grips],
+        unheld=[f"F{number}" for number in placed.unheld],
         hidden_mm2=None if placed.hold is None else placed.hold.hidden,
     )

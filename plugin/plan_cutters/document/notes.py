@@ -76,7 +76,7 @@ def _of_sides(scene: Scene, options: Options, tolerance: float) -> Iterator[Note
     if scene.part.encoding:
         yield notes.names_decoded(scene.part.encoding)
     if not scene.orientation.confident:
-        yield notes.side_guessed()
+        yield notes.side_guessed(loose=bool(scene.part.sewn.faces))
         if other := scene.turned_faces():
             yield notes.side_by_setup(other)
     if tolerance > 1.001 * scene.asked:

@@ -108,6 +108,16 @@ class Vise:
         assert self.gap is not None, "a vise has jaws where it was placed"
         return min(self.grip, _LEDGE_SHARE * self.gap)
 
+    @property
+    def turns(self) -> tuple[float, ...]:
+        """Directions in which its jaws stand, rad from its x axis."""
+        return (0.0, math.pi)
+
+    @property
+    def half_width(self) -> float:
+        """Half of how wide a jaw is, mm."""
+        return 0.5 * self.width
+
     def solids(self, arc_error: float, *, shown: bool = False) -> tuple[Solid, ...]:
         """Jaws, body, riser, and the table that it stands on; `shown`: of the table, what is drawn."""
         assert self.gap is not None, "a vise has bodies where it was placed"
@@ -167,6 +177,16 @@ class Chuck:
         assert self.diameter is not None, "a chuck has jaws where it was placed"
         return min(self.grip, _LEDGE_SHARE * 0.5 * self.diameter)
 
+    @property
+    def turns(self) -> tuple[float, ...]:
+        """Directions in which its jaws stand, rad from its x axis."""
+        return tuple(2.0 * math.pi * k / self.jaws for k in range(self.jaws))
+
+    @property
+    def half_width(self) -> float:
+        """Half of how wide a jaw is where it grips, mm."""
+        return 0.5 * (self.diameter or 0.0) * math.sin(self.half_angle)
+
     def sides(self, arc_error: float) -> int:
         """Chords of a jaw's bore, so that none is farther from the arc than an error, mm, as far as that takes not too many."""
         assert self.diameter is not None, "a chuck has jaws where it was placed"
@@ -187,7 +207,7 @@ class Chuck:
         down = foot - _RISER_HIGH
         jaws = [
             self._jaw(turn, low_radius, radius + _DEEP * size, low, high, arc_error)
-            for turn in (2.0 * math.pi * k / self.jaws for k in range(self.jaws))
+            for turn in self.turns
             for low_radius, low, high in ((radius, 0.0, self.grip), (radius - self.ledge, body, 0.0))
         ]
         below = (Disc(0.5 * size, foot, body), Disc(0.5 * _FOOT * size, down, foot))

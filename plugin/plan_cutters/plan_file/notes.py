@@ -175,8 +175,9 @@ def names_decoded(encoding: str) -> Note:
     )
 
 
-def side_guessed() -> Note:
-    return Note("side_guessed", "Which side is material is a guess; --flip machines the other side.")
+def side_guessed(*, loose: bool) -> Note:
+    """`loose`: there are faces in no solid, which alone can be turned."""
+    return Note("side_guessed", f"Which side is material is a guess{'; --flip machines the other side' if loose else ''}.")
 
 
 def side_by_setup(faces: Sequence[str]) -> Note:

@@ -33,6 +33,9 @@ class FixtureEntry(Frozen):
         default=None, description="of a built-in vise or chuck: its word with all numbers and its place, as --fixture takes it"
     )
     grips: list[str] = Field(default=[], description="faces that its jaws touch, where it was placed for the setup")
+    unheld: list[str] = Field(
+        default=[], description="of a vise or chuck: bodies of the part that its jaws do not hold, each by its first face"
+    )
     hidden_mm2: float | None = Field(
         default=None, description="area of the faces to machine that its jaws touch; null: it was not placed for the setup"
     )
@@ -82,7 +85,9 @@ class PartInfo(Frozen):
         default=[], description="in no closed body, where there are solids: rather construction sheets and reference planes"
     )
     guessed_faces: list[str] = Field(
-        default=[], description="in no closed body, so that which side of them is material is a guess; empty where it is sure"
+        default=[],
+        description="in no closed body, or of a solid that encloses nothing, so that which side of them is material is a guess; "
+        "empty where it is sure",
     )
     sheets_doubt: str = Field(
         default="", description="the warning on those of them that lie on faces of solids; empty: none does"

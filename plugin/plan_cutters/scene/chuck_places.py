@@ -8,7 +8,20 @@ import numpy as np
 from cad_io.arrays import Floats, rows_by_face
 from plan_cutters.domain.clamping import Chuck, Requested, chuck_about, largest_gripped
 from plan_cutters.plan_file.numbers import mm
-from plan_cutters.scene.workpiece import PARALLEL, TOGETHER, Place, Wall, Workpiece, clipped, merged, stands, wall_of
+from plan_cutters.scene.gripped import on_ledges
+from plan_cutters.scene.workpiece import (
+    PARALLEL,
+    TOGETHER,
+    Place,
+    Refused,
+    Wall,
+    Workpiece,
+    area_of,
+    clipped,
+    merged,
+    stands,
+    wall_of,
+)
 
 #: Jaws of a chuck are turned by so many degrees to find their best place; what they touch is told apart by one degree.
 _TURN, _BINS = 5, 360
@@ -16,29 +29,24 @@ _TURN, _BINS = 5, 360
 _ARC = 20
 
 
-def chuck_places(part: Workpiece, requested: Requested) -> tuple[list[Place], str]:
-    """Where a chuck may grip, and why it may not if there is no such place."""
-    places, wide = list[Place](), list[float]()
+def chuck_places(part: Workpiece, requested: Requested) -> tuple[list[Place], list[Refused]]:
+    """Where a chuck may grip, and why it may not where a cylinder is no such place."""
+    places, refused = list[Place](), list[Refused]()
+    short = f"no outside cylinder along it reaches all round in the lowest {mm(requested.grip)} of the part"
     for wall, centre, radius in _upright_cylinders(part):
+        result, why = list[Place](), short
         if 2.0 * radius > largest_gripped():
-            wide.append(2.0 * radius)
-            continue
-        for above, reach in stands(wall.low, requested.grip):
+            why = f"the cylinder is {mm(2.0 * radius)} wide, and chucks grip up to {mm(largest_gripped())}"
+        for above, reach in stands(wall.low, requested.grip) if 2.0 * radius <= largest_gripped() else ():
             chuck = chuck_about(2.0 * radius, reach)
             if requested.sizes is not None:
                 chuck = Chuck(int(requested.sizes[0]), requested.sizes[1], reach, 2.0 * radius)
-            if reach < chuck.height and above <= chuck.height - reach and _supported(part, chuck, centre, above):
-                places += _about(part, chuck, wall, centre, above)
-    if wide and not places:
-        return places, f"the cylinder is {mm(min(wide))} wide, and chucks grip up to {mm(largest_gripped())}"
-    return places, f"no outside cylinder along it reaches all round in the lowest {mm(requested.grip)} of the part"
-
-
-def _supported(part: Workpiece, chuck: Chuck, centre: Floats, above: float) -> bool:
-    """Whether something of a part that does not hang between the jaws lies on their ledges."""
-    corner = part.vertex.reshape(-1, 3)
-    away = np.linalg.norm((corner - centre)[corner[:, 2] <= part.flat][:, :2], axis=1)
-    return above > 0.0 or bool((away >= 0.5 * (chuck.diameter or 0.0) - chuck.ledge - part.flat).any())
+            if reach < chuck.height and above <= chuck.height - reach:
+                result += _about(part, chuck, wall, centre, above)
+        places += result
+        if not result:
+            refused.append(Refused((wall.low > 0.5 * requested.grip, -area_of(wall.vertex)), why))
+    return places, refused if places or refused else [Refused((True, 0.0), short)]
 
 
 def _upright_cylinders(part: Workpiece) -> list[tuple[Wall, Floats, float]]:
@@ -95,6 +103,7 @@ def _about(part: Workpiece, chuck: Chuck, wall: Wall, centre: Floats, above: flo
         return
     touched = _degrees_of(vertex, centre)
     hidden = _degrees_of(vertex[np.isin(face, list(part.targets))], centre)
+    grips = tuple(int(n) for n in np.unique(face))
     first = wall.vertex[0, 0] - centre
     start, half = math.degrees(math.atan2(first[1], first[0])), math.degrees(chuck.half_angle)
     degree = math.radians(1.0) * 0.5 * chuck.diameter * chuck.grip
@@ -106,7 +115,13 @@ def _about(part: Workpiece, chuck: Chuck, wall: Wall, centre: Floats, above: flo
         mine = np.concatenate(bins)
         x = np.array([math.cos(math.radians(at[0])), math.sin(math.radians(at[0])), 0.0])
         shown = sum(2.0 * half / len(each) * float(hidden[each].sum()) for each in bins) * degree
-        yield Place(chuck, x, centre + np.array([0.0, 0.0, above]), wall.faces, float(touched[mine].sum()) * degree, shown, above)
+        place = Place(
+            chuck, x, centre + np.array([0.0, 0.0, above]), grips, float(touched[mine].sum()) * degree, shown, above,
+            area_of(wall.vertex), float(np.linalg.norm((centre - part.middle)[:2])),
+            float(np.linalg.norm((part.outline - centre)[:, :2], axis=1).max()),
+        )  # fmt: skip
+        if above > 0.0 or on_ledges(chuck, place.own(part.vertex[part.lowest_rows]), part.face[part.lowest_rows], part.flat):
+            yield place
 
 
 def _degrees_of(vertex: Floats, centre: Floats) -> Floats:

@@ -12,16 +12,17 @@ from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.plan_file.numbers import area, listed, mm
 from plan_cutters.scene.chuck_places import chuck_places
+from plan_cutters.scene.gripped import held_bodies, on_ledges
 from plan_cutters.scene.holds import Hold, NothingToGripError
 from plan_cutters.scene.vise_places import vise_places
-from plan_cutters.scene.workpiece import Place, Workpiece
+from plan_cutters.scene.workpiece import Place, Refused, Workpiece
 
 #: Shares of the target area that jaws hide are equal if they differ by less; places that are searched for overlaps, at most.
 _EVEN, _TRIED = 0.05, 12
 Overlaps = Callable[[Fixture, Clamping], bool]
 
 
-def held(fixture: Fixture, part: Workpiece, plainly: Overlaps, overlaps: Overlaps) -> Hold:
+def held(fixture: Fixture, part: Workpiece, plainly: Overlaps, overlaps: Overlaps, slack: float = 0.0) -> Hold:
     """Place a vise or chuck.
 
     Parameters
@@ -31,6 +32,8 @@ def held(fixture: Fixture, part: Workpiece, plainly: Overlaps, overlaps: Overlap
     part : Workpiece
     plainly, overlaps : callable
         Whether a fixture in its place, a vise or chuck, stands in the part: where that is seen at once, and by a search.
+    slack : float, optional
+        How far the part's triangles may be off, mm.
 
     Raises
     ------
@@ -39,20 +42,28 @@ def held(fixture: Fixture, part: Workpiece, plainly: Overlaps, overlaps: Overlap
     """
     requested = fixture.grips
     assert requested is not None, "only a vise or chuck is placed"
-    places, why = vise_places(part, requested) if requested.kind == VISE else chuck_places(part, requested)
+    places, refused = vise_places(part, requested) if requested.kind == VISE else chuck_places(part, requested)
     least, step = min((each.hidden for each in places), default=0.0), _EVEN * max(1e-300, part.area)
-    # Of even ones on the longer faces, which are nearer to each other.
-    places.sort(key=lambda each: (int((each.hidden - least) / step), -round(each.firm, 6), each.above, each.apart, each.grips))
+    # Of even ones about the middle of the part, then on the larger faces.
+    places.sort(
+        key=lambda each: (each.thin, int((each.hidden - least) / step), -round(each.firm, 6), each.above, round(each.off, 6),
+                          -round(each.size, 6), each.apart,
+                          each.grips)
+    )  # fmt: skip
     searched = 0
     for place in places:
-        placed = _fixture(fixture, part, place)
+        placed, names = _fixture(fixture, part, place), listed([f"F{n}" for n in place.grips], 4)
         if searched == _TRIED or plainly(placed, place.clamping):
+            refused.append(Refused(place.rank, f"something of the part is in the way of the jaws at {names}"))
+            continue
+        if len(part.bodies) > 1 and not held_bodies(place.clamping, place.own(part.vertex), part.face, part.bodies, slack):
+            refused.append(Refused(place.rank, f"{names} are of bodies with a gap between them"))
             continue
         if not overlaps(placed, place.clamping):
             return _hold(requested, placed, part, place)
+        refused.append(Refused(place.rank, f"something of the part is in the way of the jaws at {names}"))
         searched += 1
-    if places:
-        why = "something of the part is in the way of the jaws wherever they could grip"
+    why = min(refused, key=lambda each: each.rank).why
     error = NothingToGripError(
         f"{fixture}: nothing to grip with the setup axis {axis_words(part.frame[2].tolist())}: {why}; try another setup, "
         f"--fixture {'chuck' if requested.kind == VISE else 'vise'} or table, or a file of your own fixture"
@@ -82,7 +93,7 @@ def _angles(axes: Floats) -> Floats:
 
 
 def _hold(requested: Requested, fixture: Fixture, part: Workpiece, place: Place) -> Hold:
-    clamping, names, rests = place.clamping, [f"F{n}" for n in place.grips], part.rests_on(place.above)
+    clamping, names, rests = place.clamping, [f"F{n}" for n in place.grips], _rests_on(part, place)
     size = "" if requested.sizes is not None else ", the smallest usual size that takes the part"
     above = f", from {mm(place.above)} above its lowest point" if place.above > 0.0 else ""
     on = f"; the part rests on {listed([f'F{n}' for n in rests])}" if rests else ""
@@ -92,6 +103,12 @@ def _hold(requested: Requested, fixture: Fixture, part: Workpiece, place: Place)
     what, across = _called(clamping)
     words = f"{what}{size}; it grips {listed(names)}, {across}{above}; the jaws reach {mm(clamping.grip)} above where it rests"
     return Hold(fixture, place.grips, rests, place.hidden, f"{words}{on}; {left}")
+
+
+def _rests_on(part: Workpiece, place: Place) -> tuple[int, ...]:
+    """Numbers of the planar faces with which a part rests on the ledges of the jaws at a place."""
+    level = part.level(place.above)
+    return tuple(sorted(on_ledges(place.clamping, place.own(part.vertex[level]), part.face[level], part.flat)))
 
 
 def _called(clamping: Clamping) -> tuple[str, str]:

@@ -24,6 +24,7 @@ from plan_cutters.domain.fixture import CAD, MESH, Fixture, no_format
 from plan_cutters.domain.placement import axis_words, frame_of
 from plan_cutters.errors import UnjudgeableError
 from plan_cutters.plan_file.numbers import mm
+from plan_cutters.scene.gripped import material_bodies, unheld_bodies
 from plan_cutters.scene.holds import Hold
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.solids import box, cylinder, sides_of, triangles_of
@@ -98,6 +99,7 @@ def joined(
     own: Sequence[Fixture] = (),
     own_setup: Sequence[float] = (0.0, 0.0, 1.0),
     hold: Callable[[Fixture, Sequence[float]], Hold] | None = None,
+    sign: Floats | None = None,
 ) -> Surroundings:
     """Add the fixtures to the surroundings of a part.
 
@@ -116,6 +118,8 @@ def joined(
         More fixtures, whose tables lie across another unit setup axis.
     hold : callable, optional
         Places a vise or chuck for a unit setup axis. None: there is none to be placed.
+    sign : (faces,) float, optional
+        Side of each face of the part that is out of the material. None: nobody asks which bodies a vise or chuck holds.
 
     Raises
     ------
@@ -139,6 +143,9 @@ def joined(
         in_place = _placed(-number, packable(fixture, cache), body, read(fixture, cache), shown, across)
         if held is not None:
             in_place = replace(in_place, notes=(*in_place.notes, held.words), requested=requested, hold=held)
+        if clamping is not None and sign is not None and len(parts := material_bodies(surroundings.bodies, sign)) > 1:
+            known = surroundings.certain if len(surroundings.certain.triangles) else surroundings.possible
+            in_place = replace(in_place, unheld=unheld_bodies(clamping, fixture, known.triangles, parts))
         placed_fixtures.append(in_place)
         bodies.append(body)
     possible = _together(surroundings.possible, placed_fixtures, [body.possible for body in bodies], near)

@@ -1,6 +1,7 @@
 """Does a fixture stand in the part? They may touch; what is deeper than triangles and tolerance can be off is a mistake."""
 
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
@@ -67,14 +68,30 @@ def overlap(part: Obstacles, fixture: Obstacles, tolerance: float) -> Overlap | 
     tolerance : float
         Depth that is no fault, mm, beside the chord errors of both.
     """
+    deep, pairs = _compared(part, fixture, tolerance)
+    overlaps = [_deepest(points, other, deep) for points, other in pairs]
+    return max((each for each in overlaps if each is not None), key=lambda each: each.depth, default=None)
+
+
+def overlaps(part: Obstacles, fixture: Obstacles, tolerance: float) -> bool:
+    """Whether there is an overlap: of many points a few are looked at first, and its depth is not found."""
+    deep, pairs = _compared(part, fixture, tolerance)
+    each = [(points[:: 1 + len(points) // _FEW], points, other) for points, other in pairs]
+    return any(len(_within(few, deep, other)) for few, _, other in each) or any(
+        len(_within(points, deep, other)) for _, points, other in each
+    )
+
+
+def _compared(part: Obstacles, fixture: Obstacles, tolerance: float) -> tuple[float, list[tuple[Floats, Obstacles]]]:
+    """Depth that is no fault, mm, and points of each of two with the other in which they are searched; none where these are
+    apart."""
     deep = tolerance + part.triangles.chord_error + fixture.triangles.chord_error
     ends = [(o.triangles.vertex.min(axis=(0, 1)), o.triangles.vertex.max(axis=(0, 1))) for o in (part, fixture)]
     low, high = np.max([a for a, _ in ends], axis=0), np.min([b for _, b in ends], axis=0)
     if (high - low < 0).any():
-        return None
+        return deep, []
     apart = max(_APART * float(np.linalg.norm(high - low)), deep)
-    overlaps = [_deepest(_points(one, low, high, apart), other, deep) for one, other in ((fixture, part), (part, fixture))]
-    return max((each for each in overlaps if each is not None), key=lambda each: each.depth, default=None)
+    return deep, [(_points(one, low, high, apart), other) for one, other in ((fixture, part), (part, fixture))]
 
 
 def _points(obstacles: Obstacles, low: Floats, high: Floats, apart: float) -> Floats:
@@ -86,17 +103,8 @@ def _points(obstacles: Obstacles, low: Floats, high: Floats, apart: float) -> Fl
 
 def _deepest(points: Floats, solid: Obstacles, least: float) -> Overlap | None:
     """The point (of n, 3) that is deepest in what obstacles enclose; None if none is deeper than a least depth, mm."""
-    from plan_cutters.kernels.material import far_inside
-
-    def within(points: Floats, clear: float) -> Floats:
-        inside = np.zeros(len(points), bool)
-        if len(points):
-            far_inside(points, clear, solid.solids, inside)
-        return np.ascontiguousarray(points[inside])
-
-    if not solid.weight.any():
-        return None
-    remaining, low, point = within(np.ascontiguousarray(points), least), least, None
+    within = partial(_within, solid=solid)
+    remaining, low, point = within(points, least), least, None
     while len(remaining):
         # Of some, the deepest; then only what is deeper.
         few = remaining[:: 1 + len(remaining) // _FEW]
@@ -110,3 +118,14 @@ def _deepest(points: Floats, solid: Obstacles, least: float) -> Overlap | None:
         point = few[0]
         remaining, low = within(remaining, high), high
     return None if point is None else Overlap(low, point)
+
+
+def _within(points: Floats, clear: float, solid: Obstacles) -> Floats:
+    """Those of some points (n, 3) that are deeper in what obstacles enclose than a length, mm."""
+    from plan_cutters.kernels.material import far_inside
+
+    points = np.ascontiguousarray(points)
+    inside = np.zeros(len(points), bool)
+    if len(points) and solid.weight.any():
+        far_inside(points, clear, solid.solids, inside)
+    return np.ascontiguousarray(points[inside])

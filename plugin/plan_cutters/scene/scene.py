@@ -26,8 +26,9 @@ from plan_cutters.options import MOST_TOLERANCE, Options
 from plan_cutters.scene.clamping import Workpiece, held
 from plan_cutters.scene.faces import ignored_faces, ignored_words
 from plan_cutters.scene.fixtures import FixtureCache, body_near, joined, packable, read
+from plan_cutters.scene.gripped import material_bodies
 from plan_cutters.scene.holds import Hold
-from plan_cutters.scene.overlap import overlap, refuse_overlaps
+from plan_cutters.scene.overlap import overlaps, refuse_overlaps
 from plan_cutters.scene.solids import entered
 from plan_cutters.scene.surroundings import Surroundings, surroundings
 
@@ -236,7 +237,9 @@ class Scene(Record):
                     # What is missing may be so for a limit of time.
                     lambda made: not made.missing,
                 )
-            obstacles = joined(memory.alone, self.fixtures, chord, memory.sources, self.setup, hold=self.hold)
+            obstacles = joined(
+                memory.alone, self.fixtures, chord, memory.sources, self.setup, hold=self.hold, sign=self.orientation.sign
+            )
             refuse_overlaps(obstacles, obstacles.tolerance(self.asked))
             memory.around = obstacles
         return memory.around
@@ -262,7 +265,15 @@ class Scene(Record):
         if alone is None or (mine == self.fixtures and not (setup != self.setup and any(f.follows_setup for f in own))):
             return self.surround()
         surroundings = joined(
-            alone, mine[: len(shared)], chord, memory.sources, self.setup, mine[len(shared) :], setup, hold=self.hold
+            alone,
+            mine[: len(shared)],
+            chord,
+            memory.sources,
+            self.setup,
+            mine[len(shared) :],
+            setup,
+            hold=self.hold,
+            sign=self.orientation.sign,
         )
         refuse_overlaps(surroundings, surroundings.tolerance(self.asked))
         return surroundings
@@ -285,7 +296,9 @@ class Scene(Record):
         memory, chord = self._memory, CHORD_REQUESTED * self.asked
         if memory.alone is None:
             memory.alone = surroundings(self.part, chord, ignored=self.ignored)
-        return joined(memory.alone, Fixture.each_of(word), chord, memory.sources, setup, hold=self.hold)
+        return joined(
+            memory.alone, Fixture.each_of(word), chord, memory.sources, setup, hold=self.hold, sign=self.orientation.sign
+        )
 
     def hold(self, fixture: Fixture, setup: Sequence[float]) -> Hold:
         """Place a vise or chuck for a unit setup axis; `surround` must have been called.
@@ -305,8 +318,9 @@ class Scene(Record):
             planes = [face.number for face in self.part.faces if face.shape == "plane"]
             own = triangles.face > 0
             piece = Workpiece.of(
-                triangles.vertex[own], triangles.face[own], self.orientation.sign, planes, self.targets, tuple(setup)
-            )
+                triangles.vertex[own], triangles.face[own], self.orientation.sign, planes, self.targets, tuple(setup),
+                material_bodies(alone.bodies, self.orientation.sign),
+            )  # fmt: skip
             chord = CHORD_REQUESTED * self.asked
             # What the full search would find as well, for most places where the part is in the way, at once.
             corner, edge = triangles.vertex[own], np.roll(triangles.vertex[own], -1, axis=1)
@@ -316,10 +330,10 @@ class Scene(Record):
             def plainly(placed: Fixture, clamping: Clamping) -> bool:
                 return entered(clamping, (points - placed.shift) @ placed.rotation, deep)
 
-            def overlaps(placed: Fixture, clamping: Clamping) -> bool:
-                return overlap(alone.certain, body_near(clamping, placed, chord, alone.certain), tolerance) is not None
+            def searched(placed: Fixture, clamping: Clamping) -> bool:
+                return overlaps(alone.certain, body_near(clamping, placed, chord, alone.certain), tolerance)
 
-            memory.holds[key] = held(fixture, piece, plainly, overlaps)
+            memory.holds[key] = held(fixture, piece, plainly, searched, triangles.chord_error)
         return memory.holds[key]
 
     def surround_closer(self, chord: float) -> Surroundings:
@@ -327,4 +341,4 @@ class Scene(Record):
         alone, memory = surroundings(self.part, chord, ignored=self.ignored), self._memory
         # A vise stays where it is, however close triangles are.
         memory.alone = alone if memory.alone is None else memory.alone
-        return joined(alone, self.fixtures, chord, memory.sources, self.setup, hold=self.hold)
+        return joined(alone, self.fixtures, chord, memory.sources, self.setup, hold=self.hold, sign=self.orientation.sign)

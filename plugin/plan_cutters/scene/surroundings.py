@@ -53,6 +53,8 @@ class PlacedFixture(Record):
         What was requested where it was placed for the setup; None: `fixture` itself.
     hold : Hold, optional
         What it grips, where it was placed for the setup.
+    unheld : tuple of int
+        Of a vise or chuck: bodies of the part that its jaws do not hold, each by its first face.
     """
 
     number: int
@@ -65,6 +67,7 @@ class PlacedFixture(Record):
     shown: Floats
     requested: Fixture | None = None
     hold: Hold | None = None
+    unheld: tuple[int, ...] = ()
 
     @property
     def name(self) -> str:

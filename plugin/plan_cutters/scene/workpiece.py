@@ -5,8 +5,12 @@ All is looked at in a frame of the setup: z along the setup axis, counted from t
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import ConvexHull, QhullError
 
 from cad_io.arrays import Floats, Ints, Record
 from plan_cutters.domain.clamping import Clamping
@@ -16,6 +20,8 @@ from plan_cutters.domain.placement import frame_of
 PARALLEL = float(np.sin(np.radians(0.1)))
 #: Faces are in one plane, or on one cylinder, if they are no farther apart than this, mm.
 TOGETHER = 0.01
+#: What stands out of jaws sideways by more than so many times what is between them is held last.
+_OUT = 6.0
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -40,6 +46,8 @@ class Workpiece(Record):
         Faces to machine.
     flat : float
         Heights that differ by less are one, mm.
+    bodies : tuple of frozenset of int
+        The faces of each body that is material.
     """
 
     frame: Floats
@@ -50,15 +58,23 @@ class Workpiece(Record):
     planes: frozenset[int]
     targets: frozenset[int]
     flat: float
+    bodies: tuple[frozenset[int], ...] = ()
 
     @classmethod
     def of(
-        cls, vertex: Floats, face: Ints, sign: Floats, planes: Collection[int], targets: Collection[int], setup: Sequence[float]
+        cls,
+        vertex: Floats,
+        face: Ints,
+        sign: Floats,
+        planes: Collection[int],
+        targets: Collection[int],
+        setup: Sequence[float],
+        bodies: Sequence[frozenset[int]] = (),
     ) -> "Workpiece":
         """A part's triangles (n, 3, 3) of faces (n,) in a setup; `sign` (faces,): side of each face that is out of the material.
 
         Without targets, all faces are.
-        """
+        """  # fmt: skip
         frame = frame_of(np.asarray(setup, float))
         local = vertex @ frame.T
         lowest = float(local[..., 2].min())
@@ -66,7 +82,7 @@ class Workpiece(Record):
         normal = np.cross(local[:, 1] - local[:, 0], local[:, 2] - local[:, 0]) * sign[face - 1][:, None]
         flat = 1e-6 * float(np.linalg.norm(np.ptp(vertex, axis=(0, 1)))) + 1e-6
         wanted = frozenset(targets) or frozenset(np.unique(face).tolist())
-        return cls(frame, lowest, local, normal, face, frozenset(planes), wanted, flat)
+        return cls(frame, lowest, local, normal, face, frozenset(planes), wanted, flat, tuple(bodies))
 
     @property
     def area(self) -> float:
@@ -74,10 +90,31 @@ class Workpiece(Record):
         mine = np.isin(self.face, list(self.targets))
         return 0.5 * float(np.linalg.norm(self.normal[mine], axis=1).sum())
 
-    def rests_on(self, height: float) -> tuple[int, ...]:
-        """Numbers of the planar faces that look down at a height."""
-        low = (self.vertex[..., 2] <= height + self.flat).all(axis=1) & (self.vertex[..., 2] >= height - self.flat).all(axis=1)
-        return tuple(int(n) for n in np.unique(self.face[low & (self.normal[:, 2] < 0.0)]) if int(n) in self.planes)
+    @cached_property
+    def middle(self) -> Floats:
+        """The middle of its surface, seen from above (3,), with z = 0."""
+        size = np.linalg.norm(self.normal, axis=1)
+        return np.asarray((size @ self.vertex.mean(axis=1)) / max(1e-300, float(size.sum())) * [1.0, 1.0, 0.0])
+
+    @cached_property
+    def outline(self) -> Floats:
+        """The corners (k, 3) that are outermost seen from above, with z = 0."""
+        corner = self.vertex.reshape(-1, 3) * [1.0, 1.0, 0.0]
+        try:
+            return np.asarray(corner[ConvexHull(corner[:, :2]).vertices])
+        except QhullError:
+            return corner
+
+    @cached_property
+    def lowest_rows(self) -> NDArray[np.int64]:
+        """Rows of the triangles that touch its lowest point's height."""
+        return np.flatnonzero(self.vertex[..., 2].min(axis=1) <= self.flat)
+
+    def level(self, height: float) -> NDArray[np.bool_]:
+        """Its triangles (n,) that look down at a height, of planar faces."""
+        z = self.vertex[..., 2]
+        level = (np.abs(z - height) <= self.flat).all(axis=1) & (self.normal[:, 2] < 0.0)
+        return level & np.isin(self.face, list(self.planes))
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -107,6 +144,12 @@ class Place:
         Area that they touch, of a vise on the side where that is less; and of the targets on all sides, mm2.
     above : float
         Height of what it rests on over the part's lowest point, mm.
+    size : float
+        Area of what could be gripped if jaws were as large, on the side where that is less, mm2.
+    off : float
+        How far its middle is from the middle of the part, seen from above, mm.
+    farthest : float
+        How far the part reaches from its middle across the jaws, mm.
     """
 
     clamping: Clamping
@@ -116,6 +159,24 @@ class Place:
     touched: float
     hidden: float
     above: float
+    size: float
+    off: float
+    farthest: float
+
+    @property
+    def rank(self) -> tuple[bool, float]:
+        """Its place among all that could be gripped, the best ones first: those that begin at the bottom, the largest of them."""
+        return self.above > 0.0, -self.size
+
+    @property
+    def thin(self) -> bool:
+        """Whether what it grips is too thin for what stands out of the jaws."""
+        return self.farthest - 0.5 * self.apart > _OUT * self.apart
+
+    def own(self, vertex: Floats) -> Floats:
+        """Triangles (n, 3, 3) of the setup's frame in that of the vise or chuck."""
+        y = np.array([-self.x[1], self.x[0], 0.0])
+        return (vertex - self.origin) @ np.stack([self.x, y, [0.0, 0.0, 1.0]], axis=1)
 
     @property
     def apart(self) -> float:
@@ -126,6 +187,13 @@ class Place:
     def firm(self) -> float:
         """How well it holds, by what its jaws touch: half as much where something of the part hangs below them."""
         return self.touched if self.above == 0.0 else 0.5 * self.touched
+
+
+class Refused(NamedTuple):
+    """Why something is not gripped, with its rank among all that could be (`Place.rank`)."""
+
+    rank: tuple[bool, float]
+    why: str
 
 
 def wall_of(faces: Sequence[int], vertex: Floats, face: Ints, normal: Floats) -> Wall:

@@ -28,7 +28,7 @@ def doubts(plan: Plan) -> list[str]:
     list of str
         Whole sentences.
     """
-    each = (_unfinished, _coarser, _surfaces, _unit, _travel, _held, _unheld, _side, _sheets, _tolerance)
+    each = (_unfinished, _coarser, _surfaces, _unit, _travel, _held, _bodies, _unheld, _side, _sheets, _tolerance)
     return [named(plan, line) for doubt in each for line in doubt(plan)]
 
 
@@ -109,6 +109,16 @@ def _held(plan: Plan) -> Iterator[str]:
     yield f"No fixture was given{where}: {which} from below{' in part' if partly else ''}."
 
 
+def _bodies(plan: Plan) -> Iterator[str]:
+    """Bodies of the part that a vise or chuck does not hold."""
+    several = len({setup for fixture in plan.fixtures for setup in fixture.setups}) > 1
+    for fixture in plan.fixtures:
+        if fixture.unheld:
+            kind, bodies = (fixture.clamping or fixture.name).partition(":")[0], "body" if len(fixture.unheld) == 1 else "bodies"
+            where = f" in setup {fixture.setups[0] + 1}" if several else ""
+            yield f"The jaws of the {kind} do not hold the {bodies} of {listed(fixture.unheld, _FACES)}{where}."
+
+
 def _unheld(plan: Plan) -> Iterator[str]:
     """Tools of a library that do not fit their holders."""
     tools = [(tool.name or tool.place, tool.why) for library in plan.libraries for tool in library.unused if tool.unheld]
@@ -118,11 +128,17 @@ def _unheld(plan: Plan) -> Iterator[str]:
 
 
 def _side(plan: Plan) -> Iterator[str]:
-    faces = plan.part.guessed_faces
-    if faces and len(faces) >= sum(not face.ignored for face in plan.faces):
+    part = plan.part
+    # The option turns what stands in no solid.
+    turned = [name for name in part.guessed_faces if not part.solids or name in part.loose_faces]
+    if turned and len(turned) >= sum(not face.ignored for face in plan.faces):
         yield "An open shell: which side is material is a guess; --flip takes the other one."
-    elif faces:
-        yield f"Which side of {listed(faces, _FACES)} is material is a guess; --flip takes the other one."
+    elif turned:
+        yield f"Which side of {listed(turned, _FACES)} is material is a guess; --flip takes the other one."
+    solid = [name for name in part.guessed_faces if name not in turned]
+    if solid:
+        faces = listed(solid, _FACES)
+        yield f"Which side of {faces} is material is a guess: a solid that is open or crosses itself does not tell it."
 
 
 def _sheets(plan: Plan) -> Iterator[str]:
