@@ -173,7 +173,11 @@ def _on_flank(
     at = rows[free]
     f = _tilt_direction(axis[free], contacts.normal[at], contacts.direction_max[at])
     _take(at, axis[free], f, contacts, context, verdicts)
-    verdicts.shift[at] = shift[free]
+    # It was put down in the mode of the flank's lower end: off its tilt, postures are in that of the other end.
+    tool, normal, tilt = context.outer_tool, contacts.normal[at], verdicts.tilt[at, None]
+    offset, rise, _, _, height = (tool.mode[flank.mode] - tool.mode[tool.at(verdicts.tilt[at])]).T[:, :, None]
+    across = np.cos(tilt) * f - np.sin(tilt) * normal
+    verdicts.shift[at] = shift[free] + rise * normal - offset * across - height * axis[free]
     rest = np.flatnonzero(~free)
     blocked = rest[verdicts.reason[rows[rest]] == AXIS_LIMIT]
     verdicts.reason[rows[blocked]] = reason[blocked]

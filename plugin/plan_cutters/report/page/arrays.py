@@ -1,15 +1,17 @@
 """The arrays of the review page, each under its name; `docs/review_page_data.md` says what is in them."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
+from plan_cutters.domain.travel import tips
 from plan_cutters.plan_file.numbers import mm
 from plan_cutters.report.page.atlas import Atlas
 from plan_cutters.report.page.encode import COARSE, FINE, Stored, halves, octahedral, placed, turned, unfolded
-from plan_cutters.report.page.facts import shares, tilt_and_direction
+from plan_cutters.report.page.facts import NO_TILT, shares, tilt_and_direction
 from plan_cutters.report.page.stored_maps import stored
 from plan_cutters.report.page.surface import Surface
 from plan_cutters.report.protocol import Judged
@@ -56,10 +58,22 @@ def posture_arrays(result: Judged, name: str) -> Arrays:
     """The postures found for a cutter."""
     tilt, tilt_direction = tilt_and_direction(result.samples, result.reaches[name])
     arrays = {f"tilt.{name}": Stored.of(tilt), f"lean.{name}": Stored.of(tilt_direction)}
-    share, shift = shares(result.reaches[name].tilt_direction), result.reaches[name].shift
+    share = shares(result.reaches[name].tilt_direction)
     if share is not None:
         arrays[f"share.{name}"] = Stored.of(share)
-    return arrays | {f"shift.{name}": Stored.of(halves(shift))} if shift.any() else arrays
+    if result.reaches[name].shift.any():
+        arrays[f"shift.{name}"] = Stored.of(halves(_shift(result, name, tilt)))
+    return arrays
+
+
+def _shift(result: Judged, name: str, tilt: NDArray[np.uint16]) -> Floats:
+    """Shifts (n, 3) of the postures as the page has them: at rounded tilts another end of a flank may be that which touches."""
+    samples, found, cutter = result.samples, result.reaches[name], result.judged(name)
+    rounded = np.where(tilt == NO_TILT, np.nan, np.radians(0.01 * tilt))
+    stated = replace(found, tilt=rounded, shift=np.zeros_like(found.shift))
+    away = tips(cutter, samples.point, samples.normal, found) - tips(cutter, samples.point, samples.normal, stated)
+    moved = np.asarray(found.shift.any(axis=1))
+    return np.where(moved[:, None], away, 0.0)
 
 
 def scalar_arrays(result: Judged) -> tuple[Arrays, list[dict[str, Any]]]:
