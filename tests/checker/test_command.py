@@ -1,13 +1,11 @@
 """`--check-operations`: exit codes, plans of another part or of other options, files that are broken."""
 
 import json
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from plan_cutters import Options
-from plan_cutters.checker.check import check
 from plan_cutters.command.check_operations import question_of
 from plan_cutters.errors import OptionError
 from tests.support.forked import run
@@ -80,13 +78,3 @@ def test_a_plan_without_operations_is_refused(written):
     document["operations"] = None
     with pytest.raises(OptionError, match="no operations"):
         question_of(written.part, Options(**WORDS), document, arrays)
-
-
-def test_a_tolerance_that_is_coarser_than_wanted_is_named(written):
-    """Loose triangles make a plan keep a coarser tolerance; a forger may claim that, so the answer says it."""
-    document, arrays = written.copies()
-    document["effective"]["tolerance_mm"], document["effective"]["chord_error_mm"] = 0.04, 0.01
-    question = replace(question_of(written.part, Options(**WORDS), document, arrays), asked=0.01)
-    assert question.tolerance == 0.04
-    lines = check(question, seconds=0.0).lines
-    assert any(line.startswith("not checked: Whether the part allows no better tolerance than the 0.04 mm") for line in lines)

@@ -2,14 +2,17 @@
 
 import copy
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 
 from cad_io import read_part
 from plan_cutters import Options, plan
+from plan_cutters.checker.check import on_paper
+from plan_cutters.checker.findings import Answer
 from plan_cutters.checker.question import Question
-from plan_cutters.command.check_operations import question_of
+from plan_cutters.command.check_operations import question_of, stated_by
 from tests.support.places import ROOT
 
 PART = str(ROOT / "samples/pocket_top.step")
@@ -35,8 +38,8 @@ class Written:
         for name in FILES:
             with np.load(folder / name) as archive:
                 self.arrays[name] = {each: archive[each] for each in archive.files}
-        self.part = read_part(part)
-        self._of = question_of(self.part, Options(**(words or WORDS)), self.document, self.arrays)
+        self.part, self.options = read_part(part), Options(**(words or WORDS))
+        self._of = question_of(self.part, self.options, self.document, self.arrays)
 
     def copies(self) -> tuple[dict, dict]:
         """plan.json and the arrays, to be altered."""
@@ -50,3 +53,19 @@ class Written:
             self.part, self._of.machine, self._of.tools, self._of.setups, self._of.ignored, self._of.sign, self._of.tolerance,
             self.document if document is None else document, arrays["operations.npz"], arrays["samples.npz"],
         )  # fmt: skip
+
+    def asked(self, document: dict | None = None, arrays: dict | None = None) -> Question:
+        """The question as `--check-operations` puts it.
+
+        Raises
+        ------
+        OptionError
+            The plan is of other options.
+        """
+        said = (self.document if document is None else document), (self.arrays if arrays is None else arrays)
+        question = question_of(self.part, self.options, *said)
+        return stated_by(replace(question, asked=self.options.tolerance), self.options)
+
+    def read(self, document: dict | None = None, arrays: dict | None = None) -> Answer:
+        """What is found of it without putting a tool down, but for its operations."""
+        return on_paper(self.asked(document, arrays))

@@ -3,12 +3,15 @@
 import math
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
+from cad_io.kernel import first_derivatives
+from cad_io.kernel.inside import within
 from plan_cutters.checker.clash import FREE, MET, OPEN, Clock, lowest, met, nearest
 from plan_cutters.checker.fixtures import PlacedFixture, rotation_of
 from plan_cutters.checker.places import Places, across, reach_at
@@ -22,6 +25,8 @@ Rows = NDArray[np.int64]
 _GRAIN, _DEEP, _NEAR = 0.05, 0.25, 0.6
 #: Places of an upright tool that are tried at a contact, and the accuracy of the axes where none is written, deg.
 _TRIED, _ACCURACY = 120, 0.05
+#: How far from a place in the material the next one is tried, as a share of the flat.
+_STEP = 0.1
 _END = 1e-9
 
 
@@ -77,7 +82,8 @@ class Bench:
     @property
     def grain(self) -> float:
         """Give the depth beyond what is allowed that may be missed, mm."""
-        return _GRAIN * self.question.tolerance
+        wanted, limit = self.question.asked, self.question.tolerance
+        return _GRAIN * (min(wanted, limit) if wanted > 0.0 else limit)
 
     def stands(
         self, setup: int, tool: Tool, rows: Rows, axis: Floats, tilt_direction: Floats, clock: Clock, *, surely: bool = True,
@@ -93,8 +99,11 @@ class Bench:
     def looked(
         self, setup: int, tool: Tool, rows: Rows, axis: Floats, tilt_direction: Floats, clock: Clock, *, surely: bool = True,
         tell: Callable[[int], None] = lambda done: None, contact: tuple[Floats, Floats] | None = None,
+        tolerance: float | None = None,
     ) -> tuple[NDArray[np.int8], list[str]]:  # fmt: skip
-        """The same, with words for the first few that are not free; `contact`: points and normals in the place of samples."""
+        """The same, with words for the first few that are not free; `contact`: points and normals in the place of samples,
+        `tolerance`: another one than the plan keeps, mm.
+        """
         words = list[str]()
         verdict = np.full(len(rows), MET, np.int8)
         contact = self._at(rows) if contact is None else contact
@@ -109,14 +118,42 @@ class Bench:
                 f"sample {rows[bad[0]]}: the tool cannot touch there at that tilt, the face is clamped, or a fixture is there"
             )
         mine = np.flatnonzero(able)
-        limits = self._limits(tool, surely=surely)
+        limits = self._limits(tool, surely=surely, tolerance=tolerance)
         hits = met(self.cells, self.root[setup], tool, tip[mine], axis[mine], limits, self.grain, clock, tell)
         verdict[mine] = hits.verdict
+        inside = mine[(hits.verdict == FREE) & self.at_border[rows[mine]]]
+        inside = inside[self._in_material(tool, tip[inside], axis[inside])]
+        verdict[inside] = MET
+        words += [f"sample {rows[k]}: the tool stands wholly within the material" for k in inside[:1].tolist()]
         for k in np.flatnonzero(hits.verdict == MET)[:3].tolist():
             solid = tool.solids[hits.solid[k]]
             where = self.cells.sources[self.cells.source[hits.cell[k]]].name
             words.append(f"sample {rows[mine[k]]}: {where} is {hits.depth[k]:.4g} mm deep in the {solid.part}")
         return verdict, words
+
+    @cached_property
+    def at_border(self) -> NDArray[np.bool_]:
+        """Samples (n,) at the border of their faces, or off them: only there a tool in the material may meet nothing.
+
+        Elsewhere it touches the outer side of the surface, and lies within only if it crosses that.
+        """
+        samples, part, close = self.question.samples, self.question.part, np.ones(len(self.point), bool)
+        for number in np.unique(samples["face"]).tolist() if "uv" in samples else ():
+            mine, trim = np.flatnonzero(samples["face"] == number), part.trim(number)
+            if trim is None:
+                continue
+            uv = samples["uv"][mine]
+            d = np.linalg.norm(first_derivatives(part.adaptor(number), *uv.T)[:, 1:], axis=2)
+            by = 2.0 * self.question.tolerance / np.maximum(d, 1e-9 * d.max(initial=1e-300))
+            ways = [np.array(way) for way in ((1, 0), (-1, 0), (0, 1), (0, -1), (1, 1), (1, -1), (-1, 1), (-1, -1))]
+            close[mine] = ~np.logical_and.reduce([trim.inside(*(uv + by * way).T) for way in ways])
+        return close
+
+    def _in_material(self, tool: Tool, tip: Floats, axis: Floats) -> NDArray[np.bool_]:
+        """Which tools (m,) that meet nothing stand in the material, by a point on their axes in the flutes."""
+        if self.question.ignored or not len(tip):
+            return np.zeros(len(tip), bool)
+        return within(self.question.part.solid_shapes(), tip + 0.5 * tool.solids[0].high * axis)
 
     def _at(self, rows: Rows) -> tuple[Floats, Floats]:
         return self.point[rows], self.normal[rows]
@@ -124,9 +161,29 @@ class Bench:
     def _tips(self, tool: Tool, contact: tuple[Floats, Floats], axis: Floats, tilt_direction: Floats) -> Floats:
         return tool.tips(*contact, axis, tilt_direction, self.accuracy, self.question.tolerance)
 
-    def _limits(self, tool: Tool, *, surely: bool) -> tuple[float, float]:
+    def _limits(self, tool: Tool, *, surely: bool, tolerance: float | None = None) -> tuple[float, float]:
         flutes, rest = (1.0, 0.0) if surely else (_DEEP, -_NEAR)
-        return flutes * self.question.tolerance - tool.allowance, rest * self.question.tolerance - tool.clearance
+        limit = self.question.tolerance if tolerance is None else tolerance
+        return flutes * limit - tool.allowance, rest * limit - tool.clearance
+
+    def put_down(
+        self, setup: int, tool: Tool, rows: Rows, axis: Floats, tilt_direction: Floats, clock: Clock,
+        contact: tuple[Floats, Floats] | None = None,
+    ) -> tuple[NDArray[np.int8], int, list[str]]:  # fmt: skip
+        """Verdicts on a tool at samples (m,) by the tolerance that was wanted, and words for the first few that are not free.
+
+        What is free by the tolerance that the plan keeps alone is `OPEN`; how many these are is told as well.
+        """
+        wanted, place = self.question.asked, (setup, tool)
+        strict = wanted if 0.0 < wanted < self.question.tolerance else None
+        verdict, words = self.looked(*place, rows, axis, tilt_direction, clock, contact=contact, tolerance=strict)
+        deep = np.flatnonzero(verdict == MET)
+        if strict is None or not len(deep):
+            return verdict, 0, words
+        at = None if contact is None else (contact[0][deep], contact[1][deep])
+        again, words = self.looked(*place, rows[deep], axis[deep], tilt_direction[deep], clock, contact=at)
+        verdict[deep] = np.where(again == FREE, OPEN, again)
+        return verdict, int((again == FREE).sum()), words
 
     def serves(self, setup: int, tool: Tool, rows: Rows, axis: Floats, clock: Clock, *, surely: bool) -> NDArray[np.int8]:
         """The same for a fixed axis at samples (m,), (m, 3): where it is the normal with the contact anywhere under the flat of
@@ -138,7 +195,9 @@ class Bench:
             return verdict
         cosine = (self.normal[rows] * axis).sum(axis=1)
         sine = np.linalg.norm(np.cross(self.normal[rows], axis), axis=1)
-        walls = np.flatnonzero((verdict != FREE) & (np.abs(cosine) <= math.sin(self.accuracy)))
+        # A search may refuse flutes that leave the wall by more than its triangles are sure of.
+        most = math.sin(self.accuracy) if surely else min(math.sin(self.accuracy), _DEEP * self.question.tolerance / tool.high)
+        walls = np.flatnonzero((verdict != FREE) & (np.abs(cosine) <= most))
         if len(walls):
             verdict[walls] = self.stands(setup, tool, rows[walls], axis[walls], 2.0 * axis[walls], clock, surely=surely)
         upright = np.flatnonzero((verdict != FREE) & (np.arctan2(sine, cosine) <= self.accuracy))
@@ -174,6 +233,10 @@ class Bench:
                 if hits.verdict[i] == FREE:
                     held = any(each.holds(tip[i : i + 1] + tool.high * axis[k])[0] for each in self.standing[setup])
                     verdict[k] = MET if held else FREE
+                    if not held and self.at_border[some[i]] and self._in_material(tool, tip[i : i + 1], axis[k : k + 1])[0]:
+                        # Another place may be out of the material.
+                        verdict[k] = OPEN
+                        places[k].forbid(place[i], _STEP * tool.flat)
                 elif hits.verdict[i] == MET:
                     solid = tool.solids[hits.solid[i]]
                     limit = limits[0] if solid.part == "flutes" else limits[1]

@@ -6,14 +6,18 @@ holds, and how much of it was looked at; what no statement covers is listed as u
 
 import time
 from collections.abc import Callable, Iterable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from plan_cutters.checker.bench import Bench
 from plan_cutters.checker.clash import Clock
+from plan_cutters.checker.document import Document
 from plan_cutters.checker.expected import Reckoned
 from plan_cutters.checker.findings import Answer, Finding
+from plan_cutters.checker.holding import faults as not_held
+from plan_cutters.checker.holding import resting
 from plan_cutters.checker.leaves import Compared, compared
 from plan_cutters.checker.moving import ill_formed
 from plan_cutters.checker.paper import Paper
@@ -21,11 +25,12 @@ from plan_cutters.checker.patterns import Patterns
 from plan_cutters.checker.question import Question
 from plan_cutters.checker.reading import faults
 from plan_cutters.checker.trials import Trials
+from plan_cutters.checker.verdicts import postures
 from plan_cutters.errors import OptionError
 
 #: Seconds that a check takes at most unless another time is set, and the share of them by which each of its parts must be done.
 SECONDS = 60.0
-_PARTS = {"placed": 0.35, "weights": 0.65, "covered": 0.8, "alone": 0.9, "clearance": 1.0}
+_PARTS = {"placed": 0.35, "weights": 0.6, "covered": 0.75, "alone": 0.85, "verdicts": 0.9, "clearance": 1.0}
 
 
 def check(question: Question, *, seconds: float = SECONDS, tell: Callable[[str], None] = lambda doing: None) -> Answer:
@@ -61,25 +66,38 @@ def _answer(question: Question, seconds: float, tell: Callable[[str], None]) -> 
     start, rng, reckoned = time.monotonic(), np.random.default_rng(0), Reckoned(question)
     findings = [*Paper(question, reckoned, rng).findings(), *Patterns(question).findings()]
     findings += ill_formed(question, reckoned)
-    entry = reckoned.entry()
-    first = _compared(question, findings, entry)
+    findings += (Finding(False, f"{each}.") for each in not_held(question))
+    question = resting(question)
+    written, entry = on_paper(question, reckoned), reckoned.entry()
+    first = _compared(question, [*findings, *written.findings], entry, written.others)
     if not first.holds:
         last = Finding(None, "No tool was put down: what is written contradicts itself, or the part, already.")
-        return Answer((*first.findings, last), first.entries)
+        return replace(first, findings=(*first.findings, last))
     bench = Bench(question, tell)
-    trials = Trials(question, reckoned, bench, rng, lambda part: Clock(start + seconds * _PARTS[part]), tell)
-    findings += trials.findings(entry)
-    return _compared(question, findings, entry)
+    clock = {part: Clock(start + seconds * share) for part, share in _PARTS.items()}
+    findings += Trials(question, reckoned, bench, rng, clock.__getitem__, tell).findings(entry)
+    # With draws of its own: those of the other checks stay as they are.
+    findings += postures(question, reckoned, bench, np.random.default_rng(0), clock["verdicts"])
+    return _compared(question, [*findings, *written.findings], entry, written.others)
 
 
-def _compared(question: Question, findings: Iterable[Finding], entry: dict[str, Any]) -> Answer:
+def on_paper(question: Question, reckoned: Reckoned | None = None) -> Answer:
+    """The part of a check that is about all of plan.json but its operations: no tool is put down."""
+    document = Document(question, Reckoned(question) if reckoned is None else reckoned)
+    findings, others = [*document.findings()], document.entries()
+    unknown = [f"{path} is an entry that this checker does not know." for path in others.unknown]
+    findings += (Finding(False, words) for words in (*unknown, *(f"{line}." for line in others.differ)))
+    return Answer(tuple(findings), Compared(), others, question.asked)
+
+
+def _compared(question: Question, findings: Iterable[Finding], entry: dict[str, Any], others: Compared) -> Answer:
     """The findings, with those of the entries of plan.json."""
     entries = compared(entry, question.document["operations"])
     unknown = [f"operations.{path} is an entry that this checker does not know." for path in entries.unknown]
     wrong = [Finding(False, words) for words in (*unknown, *(f"operations.{line}." for line in entries.differ))]
     right = Finding(
         True,
-        f"{len(entries.agree)} numbers and words of the plan follow from its samples and labels, "
-        f"{len(entries.unchecked)} are not checked.",
+        f"{len(entries.agree) + len(others.agree)} numbers and words of the plan follow from its samples and labels, "
+        f"{len(entries.unchecked) + len(others.unchecked)} are not checked.",
     )
-    return Answer((*findings, *(wrong or [right])), entries)
+    return Answer((*findings, *(wrong or [right])), entries, others, question.asked)

@@ -189,7 +189,8 @@ class Reckoned:
             "bound_seconds": Loose(0.0, math.inf),
             "at_best_seconds": Loose(0.0, math.inf),
             "samples": Loose(0, len(self.area)),
-            "candidates": Loose(0, math.inf if self.without_fewest else len(self.question.operations["candidate_cutter"])),
+            # Where it has more than the fewest are chosen from, these are not written.
+            "candidates": Loose(0, math.inf),
         }
         if seconds is None or not isinstance(bound, float | int):
             return fastest | {"gap": None}

@@ -2,12 +2,13 @@
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 #: Objects whose keys are names that a plan makes: they stand as * in the paths below.
-_NAMED = ("split", "takes_mm2", "feed_mm_min", "reason_counts", "angles_deg", "other_angles_deg")
+_NAMED = ("split", "takes_mm2", "feed_mm_min", "reason_counts", "angles_deg", "other_angles_deg", "by_reason", "lost_by",
+          "undecided_by_reason", "axis_limit_with", "repeat_deg", "cutters", "verdicts", "shares")  # fmt: skip
 #: What is not checked, and why; a path that is here may be checked where more is known.
 UNCHECKED = {
     "plans[].ratio_at_most": "it rests on a bound of the fastest plan",
@@ -101,6 +102,15 @@ class Compared:
     differ: list[str] = field(default_factory=list)
     unchecked: list[str] = field(default_factory=list)
     unknown: list[str] = field(default_factory=list)
+    listed: Mapping[str, str] = field(default_factory=lambda: UNCHECKED)
+
+    def why(self, path: str) -> str | None:
+        """Why a leaf is not checked; None where that is not listed."""
+        plain = pattern(path)
+        if plain in self.listed:
+            return self.listed[plain]
+        under = (f"{plain[:k]}**" for k in range(len(plain), 0, -1))
+        return next((self.listed[each] for each in under if each in self.listed), None)
 
 
 def pattern(path: str) -> str:
@@ -125,9 +135,9 @@ def leaves(value: Any, path: str = "") -> Iterator[tuple[str, Any]]:
         yield path, value
 
 
-def compared(expected: Any, actual: Any) -> Compared:
-    """Compare what is expected, as far as it is known, with what is there."""
-    comparison = Compared()
+def compared(expected: Any, actual: Any, listed: Mapping[str, str] = UNCHECKED) -> Compared:
+    """Compare what is expected, as far as it is known, with what is there; `listed`: what may be unchecked, and why."""
+    comparison = Compared(listed=listed)
     _compare(expected, actual, "", comparison)
     return comparison
 
@@ -160,8 +170,8 @@ def _compare(expected: Any, actual: Any, path: str, comparison: Compared) -> Non
 def _unchecked(value: Any, path: str, comparison: Compared) -> None:
     for leaf, each in leaves(value, path):
         plain = pattern(leaf)
-        empty = isinstance(each, dict | list) and any(known.startswith((f"{plain}[", f"{plain}.")) for known in UNCHECKED)
-        (comparison.unchecked if plain in UNCHECKED or empty else comparison.unknown).append(leaf)
+        empty = isinstance(each, dict | list) and any(known.startswith((f"{plain}[", f"{plain}.")) for known in comparison.listed)
+        (comparison.unchecked if empty or comparison.why(leaf) else comparison.unknown).append(leaf)
 
 
 def _same(expected: Any, actual: Any) -> bool:

@@ -43,23 +43,24 @@ def ill_formed(question: Question, reckoned: Reckoned) -> Iterator[Finding]:
 def put_down(question: Question, reckoned: Reckoned, bench: Bench, rng: np.random.Generator, clock: Clock) -> Iterator[Finding]:
     """Each simultaneous operation, put down at the samples of its proved pieces with the axes that are proposed there."""
     for k, plan in enumerate(question.document["operations"]["plans"]):
-        tested, wrong, open_, words = 0, 0, 0, list[str]()
+        tested, wrong, open_, beyond, words = 0, 0, 0, 0, list[str]()
         for each, rows in _proved(plan, reckoned, k, rng):
             axis = reckoned.array(k, "moving_axis")[rows]
             tool, tilted = bench.tools[each["cutter"]], bench.own_tilt_direction(rows, axis)
-            verdicts, more = bench.looked(each["setup"], tool, rows, axis, tilted, clock)
+            verdicts, some, more = bench.put_down(each["setup"], tool, rows, axis, tilted, clock)
             wrong, open_ = wrong + int((verdicts == MET).sum()), open_ + int((verdicts == OPEN).sum())
-            tested += int((verdicts != OPEN).sum())
+            tested, beyond = tested + int((verdicts != OPEN).sum()), beyond + some
             words += [f"{each['id']}, {one}" for one in more]
         if not tested and not open_:
             continue
         late = f" of {tested + open_} (taken by seed 0)" if open_ else ""
         text = f" {'; '.join(words[:3])}." if words else ""
         yield Finding(
-            None if not tested else wrong == 0,
+            None if not tested or (beyond and not wrong) else wrong == 0,
             f"The {plan['name']} plan: tools were put down with the axes for simultaneous motion at {tested} samples{late}; "
             f"at {wrong} the tool is too deep in something, or cannot stand. Between samples the plan alone proves them.{text}",
-        )
+            open_, beyond, tested + open_,
+        )  # fmt: skip
 
 
 def _proved(

@@ -63,7 +63,7 @@ class Patterns:
         motions = _motions(entry)
         pairs = [
             (one, other, m)
-            for copy, m in zip(copies[1:], motions, strict=True)
+            for copy, m in zip(copies[1:], motions if copies else [], strict=True)
             for one, other in zip(copies[0], copy, strict=True)
         ]
         named = {number for copy in copies for number in copy}

@@ -84,6 +84,42 @@ class Body:
 
 
 @dataclass(frozen=True, slots=True)
+class Grip:
+    """Jaws whose place a plan states, in their own frame: z up, what they hold rests at z = 0.
+
+    Attributes
+    ----------
+    setup : int
+    name : str
+    body : Body
+        Its `placement` is that of the frame.
+    jaws : int
+        2: a vise that closes along x, of a `width` along y; else those of a chuck, the first along x.
+    width : float
+        Of a vise's jaws, mm; of a chuck, half the angle that a jaw takes, rad.
+    grip, below : float
+        How far jaws reach over what the part rests on, and down to the body, mm.
+    apart : float
+        Distance of a vise's jaws, or diameter of the bore of a chuck's, mm.
+    ledge : float
+        How far inward the jaws support the part, mm.
+    faces : tuple of str
+        That the plan says to be gripped.
+    """
+
+    setup: int
+    name: str
+    body: Body
+    jaws: int
+    width: float
+    grip: float
+    below: float
+    apart: float
+    ledge: float
+    faces: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class Setup:
     """How the part stands: its directions along the machine's Z and X, its point at the machine's zero, and what holds it."""
 
@@ -119,6 +155,14 @@ class Question:
         By file: the SHA-256 that plan.json states, and the file's own.
     asked : float
         Gouge tolerance that the user wants, mm; 0: any.
+    grips : tuple of Grip
+        Vises and chucks of which the plan alone says where they stand.
+    names : mapping
+        By id: the names of a cutter and of its holder; empty: not known.
+    stated : mapping
+        What entries of plan.json must be by the user's own command, and by the program's words for the plan's own numbers.
+    odd : str
+        What of plan.json no plan of this version has; empty: nothing.
     """
 
     part: Part
@@ -133,6 +177,10 @@ class Question:
     samples: Mapping[str, NDArray[Any]]
     checksums: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     asked: float = 0.0
+    grips: tuple[Grip, ...] = ()
+    names: Mapping[str, tuple[str, str]] = field(default_factory=dict)
+    stated: Mapping[str, Any] = field(default_factory=dict)
+    odd: str = ""
 
 
 def frame_of(setup: Setup) -> Floats:

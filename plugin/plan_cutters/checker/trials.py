@@ -63,9 +63,6 @@ class Trials:
     def findings(self, entry: dict[str, Any]) -> Iterator[Finding]:
         """All of them; what plan.json must say, as far as it follows from them, is put into `entry`."""
         question = self.question
-        if 0.0 < question.asked < question.tolerance:
-            words = f"the {question.tolerance:g} mm that the plan keeps, where {question.asked:g} mm were wanted,"
-            yield Finding(None, f"Whether the part allows no better tolerance than {words} is not looked at.")
         if self.bench.unread:
             yield Finding(None, f"Nothing is known of what {', '.join(self.bench.unread)} are in the way of.")
         if self.bench.hollow:
@@ -83,7 +80,7 @@ class Trials:
         clock = self.clock("placed")
         for k, plan in enumerate(self.plans):
             label, tilt_direction, words = (self.reckoned.array(k, "operation"), self.reckoned.array(k, "lean"), list[str]())
-            tested, wrong, open_, wrong_tilts = 0, 0, 0, 0
+            tested, wrong, open_, beyond, wrong_tilts = 0, 0, 0, 0, 0
             for i, each in enumerate(plan["operations"]):
                 self.tell(f"{plan['name']}: putting {each['id']} down ({i + 1} of {len(plan['operations'])})")
                 # In a drawn order, so that what there was no time for is no part of the surface.
@@ -94,19 +91,22 @@ class Trials:
                 at = contacts_at(self.question, self.reckoned, k, each, there, axis)
                 wrong_tilts += self._other_tilt_directions(tool, there, axis, tilt_direction[there], at)
                 contact = at.point, at.normal
-                verdicts, more = self.bench.looked(setup, tool, there, axis, at.tilt_direction, clock, contact=contact)
+                verdicts, some, more = self.bench.put_down(setup, tool, there, axis, at.tilt_direction, clock, contact)
                 wrong, open_ = wrong + int((verdicts == MET).sum()), open_ + int((verdicts == OPEN).sum())
-                tested += int((verdicts != OPEN).sum())
+                tested, beyond = tested + int((verdicts != OPEN).sum()), beyond + some
                 words += [f"{each['id']}, {one}" for one in more]
             text = f" {wrong_tilts} have another tilt direction than their axis has." if wrong_tilts else ""
             text += f" {'; '.join(words[:3])}." if words else ""
-            late = f" of {tested + open_} (taken by seed 0)" if open_ else ""
+            every = tested + open_
+            late = f" of {every} (taken by seed 0)" if open_ > beyond else f" of {every}" if beyond else ""
+            text += f" At {beyond} more it is deeper than the {self.question.asked:g} mm that were wanted." if beyond else ""
             holds = wrong == 0 and wrong_tilts == 0
             yield Finding(
-                None if holds and not tested and open_ else holds,
+                None if holds and (beyond or (open_ and not tested)) else holds,
                 f"The {plan['name']} plan: its operations were put down at {tested} samples{late}; at {wrong} the tool "
                 f"is too deep in something, or cannot stand.{text}",
-            )
+                open_, beyond, every,
+            )  # fmt: skip
 
     def _axes(self, each: dict[str, Any], rows: Rows) -> tuple[Floats, Rows]:
         """The axes of an operation at some of its samples, and which these are: all, unless an axis is not written."""

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from cad_io import Part
-    from plan_cutters.checker.question import Body, MachineAxes, Question, Setup, ToolSizes
+    from plan_cutters.checker.question import Body, Grip, MachineAxes, Question, Setup, ToolSizes
     from plan_cutters.domain.cutter import Cutter
     from plan_cutters.domain.fixture import Fixture
     from plan_cutters.domain.machine import Machine
@@ -31,7 +31,7 @@ _BORE = 1e-3
 
 
 def checked(part: str, file: str, options: "Options", *, quiet: bool, read_timeout: float) -> int:
-    """Check the operations of a plan.json; 0: all that was checked holds, 1: not all.
+    """Check the operations of a plan.json; 0: all that was checked holds, 1: not all, or not by the tolerance that is wanted.
 
     Raises
     ------
@@ -50,6 +50,7 @@ def checked(part: str, file: str, options: "Options", *, quiet: bool, read_timeo
         read = read_part(part, unit=options.unit, timeout=read_timeout)
         question = question_of(read, options, document, arrays)
         question = replace(question, checksums=checksums, asked=options.tolerance)
+        question = stated_by(question, options)
         answer = check(question, tell=progress.detail)
     except OptionError as error:
         raise OptionError(error.cause, file=file) from None
@@ -60,7 +61,7 @@ def checked(part: str, file: str, options: "Options", *, quiet: bool, read_timeo
             display.clear()
     if not quiet:
         terminal.show(*answer.lines)
-    return 0 if answer.holds else 1
+    return 0 if answer.holds and not answer.beyond else 1
 
 
 def question_of(
@@ -81,45 +82,157 @@ def question_of(
 
     if not isinstance(document.get("operations"), dict):
         raise OptionError("the plan has no operations: make it with --operations")
-    cutters, setups = {cutter.id: cutter for cutter in options.judged}, _setups(part, options, document)
+    cutters, (setups, grips) = {cutter.id: cutter for cutter in options.judged}, _setups(part, options, document)
     tolerance = _fits(part, options, document, [*cutters], setups)
     ignored = ignored_faces(part, ignored_words(part, options.ignore))
     sign = orient(part, options.setup, options.flip).sign
     return Question(
         part, _axes(options.machine), {name: _sizes(cutter) for name, cutter in cutters.items()}, setups,
         ignored | repeated_faces(part, ignored).keys(), sign, tolerance, document, arrays["operations.npz"],
-        arrays["samples.npz"],
+        arrays["samples.npz"], grips=grips,
     )  # fmt: skip
+
+
+def stated_by(question: "Question", options: "Options") -> "Question":
+    """The question with what plan.json must say by the user's own command, and by the program's words for the plan's numbers.
+
+    Raises
+    ------
+    OptionError
+        The command says otherwise.
+    """
+    from plan_cutters.domain.verdicts import REASONS
+    from plan_cutters.errors import PlanError
+    from plan_cutters.plan_file.load import plan_of
+    from plan_cutters.plan_file.reasons import REASONS as WORDS
+    from plan_cutters.plan_file.words.text import with_text
+
+    names = {each.id: (each.name, each.holder.name if each.holder else "") for each in options.judged}
+    stated: dict[str, Any] = {
+        "format": "plan-cutters-plan",
+        "units": {"length": "mm", "angle": "deg"},
+        "reasons": list(REASONS),
+        "reason_words": {code: WORDS[code].name for code in REASONS},
+        "machine": {"name": options.machine.name, "notes": list(options.machine.notes)},
+        "effective": _effective(question, options),
+    }
+    try:
+        made = with_text(plan_of(json.dumps(question.document), "plan.json")).model_dump(mode="json")
+    except (PlanError, LookupError, ArithmeticError, ValueError) as error:
+        return replace(question, names=names, stated=stated, odd=getattr(error, "cause", None) or str(error))
+    stated["text"], process = made["text"], made["process"]
+    if process is not None:
+        own = [{} if each["own"] is None else {"own": {"text": each["own"]["text"]}} for each in process["steps"]]
+        left = [{"needs": each["needs"]} for each in process["left"]]
+        stated["process"] = {"next": process["next"], "doubts": process["doubts"], "left": left, "steps": own}
+    return replace(question, names=names, stated=stated)
+
+
+#: Options that are compared in another way, or that follow from the part; those that a command may leave out all the same.
+_OTHER = ("cutters", "cutter_source", "fixtures", "setup", "placement", "other_setups", "other_placements", "ignore", "process",
+          "spacing_mm", "sampled_by", "tolerance_mm", "local_tolerance", "chord_error_mm", "chord_measured_share",
+          "obstacle_triangles", "area_budget", "tilt_deg", "rotation_deg", "rotation_step_deg", "propose")  # fmt: skip
+_SAFETY = ("tolerance_requested_mm", "axis_accuracy_deg")
+
+
+def _effective(question: "Question", options: "Options") -> dict[str, Any]:
+    """The options in force as far as the command says them: one that it leaves out, and the plan does not, is not checked."""
+    from plan_cutters.document.effective import as_requested
+    from plan_cutters.domain.operations import INDEX_TIME
+    from plan_cutters.errors import OptionError
+    from plan_cutters.options import Options
+    from plan_cutters.plan_file.effective import Effective
+    from plan_cutters.scene.faces import choose, ignored_words
+
+    def every(those: Options) -> dict[str, Any]:
+        made = {
+            "units": those.reported_unit, "holder": None if those.holder is None else those.holder.id,
+            "machine": those.machine.name, "faces": those.faces, "tolerance_requested_mm": those.tolerance,
+            "axis_accuracy_deg": math.degrees(those.accuracy),
+            "index_time_s": INDEX_TIME if those.index_time is None else those.index_time,
+        }  # fmt: skip
+        names = [name for name in Effective.model_fields if name not in _OTHER and name != "target_faces"]
+        return json.loads(json.dumps({n: made[n] if n in made else as_requested(those, n) for n in names}, default=str))
+
+    written, mine, usual, stated = question.document["effective"], every(options), every(Options()), dict[str, Any]()
+    for name, value in mine.items():
+        same = _same(written.get(name), value)
+        if same:
+            stated[name] = written.get(name)
+        elif name in _SAFETY and written.get(name) is None:
+            continue
+        elif name in _SAFETY or not _same(value, usual[name]):
+            words = f"{name}: {_short(written.get(name))} in the plan, {_short(value)} here"
+            raise OptionError(f"the plan of operations does not fit: {words}")
+    ignore = ignored_words(question.part, options.ignore)
+    chosen = choose(question.part, written["faces"], question.ignored, ignore)
+    # These were compared already, for the plan fits.
+    fits = ("cutters", "setup", "other_setups", "tilt_deg", "rotation_deg", "tolerance_mm")
+    stated |= {name: written[name] for name in fits}
+    return stated | {"target_faces": [f"F{n}" for n in chosen.targets], "ignore": list(ignore)}
+
+
+def _same(one: Any, other: Any) -> bool:
+    if isinstance(one, float | int) and isinstance(other, float | int):
+        return math.isclose(one, other, rel_tol=1e-9, abs_tol=1e-12)
+    return bool(one == other)
 
 
 def _places(options: "Options") -> "tuple[Placement | None, ...]":
     return options.placement, *(options.other_placements or (None,) * len(options.other_setups))
 
 
-def _where(fixture: "Fixture", setup: int, document: Mapping[str, Any]) -> "Fixture":
-    """A vise or chuck that was placed for a setup, where the plan says that it stands."""
+def _where(fixture: "Fixture", setup: int, document: Mapping[str, Any]) -> "tuple[Fixture, tuple[str, ...]]":
+    """A vise or chuck that was placed for a setup, where the plan says that it stands, and which faces it says to be gripped."""
     from plan_cutters.domain.fixture import Fixture
     from plan_cutters.errors import OptionError
 
-    if not fixture.to_place:
-        return fixture
     for entry in document["fixtures"]:
         if entry["name"] == f"fixture:{fixture.name}" and setup in entry.get("setups", [0]) and entry.get("clamping"):
-            return replace(Fixture.parse(entry["clamping"]), name=fixture.name)
+            return replace(Fixture.parse(entry["clamping"]), name=fixture.name), tuple(entry.get("grips", []))
     raise OptionError(f"the plan of operations does not fit: it does not say where {fixture} stands; plan again")
 
 
-def _setups(part: "Part", options: "Options", document: Mapping[str, Any]) -> "tuple[Setup, ...]":
+def _grip(wanted: "Fixture", placed: "Fixture", faces: tuple[str, ...], setup: int) -> "Grip":
+    """A vise or chuck that was to be placed, for the checker to see whether it holds the part.
+
+    Raises
+    ------
+    OptionError
+        It is another one than the user asked for.
+    """
+    from plan_cutters.checker.question import Grip
+    from plan_cutters.domain.clamping import Chuck, Vise
+    from plan_cutters.errors import OptionError
+
+    clamping, sizes = placed.clamping, wanted.grips
+    same = placed.kind == wanted.kind and clamping is not None and not placed.to_place
+    if not same or clamping is None or (sizes and sizes.sizes and clamping.numbers[: len(sizes.sizes)] != sizes.sizes):
+        raise OptionError(f"the plan of operations does not fit: {placed} stands where {wanted} was requested; plan again")
+    body, base = _bodies(placed)[0], clamping.height - clamping.grip
+    jaws, width = (2, clamping.width) if isinstance(clamping, Vise) else (0, 0.0)
+    if isinstance(clamping, Chuck):
+        jaws, width = clamping.jaws, clamping.half_angle
+    body = replace(body, placement=placed.placement)
+    return Grip(setup, placed.name, body, jaws, width, clamping.grip, base, clamping.numbers[-1], clamping.ledge, faces)
+
+
+def _setups(part: "Part", options: "Options", document: Mapping[str, Any]) -> "tuple[tuple[Setup, ...], tuple[Grip, ...]]":
+    """The setups, and the vises and chucks in them of which the plan alone says where they stand."""
     from plan_cutters.checker.question import Setup
     from plan_cutters.scene.faces import clamped_faces
 
-    setups = []
+    setups, grips = [], list[Any]()
     for s, (axis, place) in enumerate(zip((options.setup, *options.other_setups), _places(options), strict=True)):
         x, origin, own = (None, None, ()) if place is None else (place.x, place.origin, place.fixtures)
-        fixtures = [_where(each, s, document) for each in (options.fixtures if s == 0 else (*options.shared_fixtures, *own))]
+        fixtures = []
+        for wanted in options.fixtures if s == 0 else (*options.shared_fixtures, *own):
+            placed, faces = _where(wanted, s, document) if wanted.to_place else (wanted, ())
+            fixtures.append(placed)
+            grips += [_grip(wanted, placed, faces, s)] if wanted.to_place else []
         z = (float(axis[0]), float(axis[1]), float(axis[2]))
         setups.append(Setup(z, x, origin, tuple(body for each in fixtures for body in _bodies(each)), clamped_faces(part, place)))
-    return tuple(setups)
+    return tuple(setups), tuple(grips)
 
 
 def _axes(machine: "Machine") -> "MachineAxes":

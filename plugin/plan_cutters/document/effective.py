@@ -45,7 +45,7 @@ def effective(ready: Prepared) -> Effective:
         "axis_accuracy_deg": float(np.degrees(options.accuracy)),
         "index_time_s": INDEX_TIME if options.index_time is None else options.index_time,
     }
-    return Effective(**{name: _as_requested(options, name) for name in Effective.model_fields if name not in made}, **made)
+    return Effective(**{name: as_requested(options, name) for name in Effective.model_fields if name not in made}, **made)
 
 
 def _local(ready: Prepared) -> list[LocalTolerance]:
@@ -78,7 +78,7 @@ def _process(ready: Prepared) -> dict[str, Any] | None:
     return replace(process, steps=steps, forbidden=forbidden).written()
 
 
-def _as_requested(options: Options, name: str) -> Any:
+def as_requested(options: Options, name: str) -> Any:
     """The option of an entry's name."""
     value = getattr(options, re.sub("_(mm|deg|s|mm_min)$", "", name))
     if value is None or not name.endswith("_deg"):

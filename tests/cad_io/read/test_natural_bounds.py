@@ -45,7 +45,9 @@ def test_it_is_all_of_its_surface(tmp_path, make, area):
 
 
 @pytest.mark.parametrize(
-    "surface", [Geom_Plane(PLACE), Geom_CylindricalSurface(PLACE, 4.0), Geom_ConicalSurface(PLACE, 0.4, 4.0)], ids=str
+    "surface",
+    [Geom_Plane(PLACE), Geom_CylindricalSurface(PLACE, 4.0), Geom_ConicalSurface(PLACE, 0.4, 4.0)],
+    ids=["plane", "cylinder", "cone"],
 )
 def test_what_has_no_end_is_named(tmp_path, surface):
     file = tmp_path / "bare.brep"
