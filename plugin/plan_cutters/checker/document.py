@@ -19,8 +19,9 @@ from plan_cutters.checker.verdicts import COUNTS, chosen, cutters, without_postu
 #: more is known.
 UNCHECKED = {
     **dict.fromkeys(
-        ("text.**", "process.next**", "process.doubts**", "process.left[].needs", "process.exempt.needs"),
-        "the words were not made again",
+        ("text.**", "process.next**", "process.doubts**", "process.left[].needs", "process.exempt.needs",
+         "process.left[].fits**", "process.left[].points**", "process.left[].helped**"),
+        "the words, and what they advise, were not made again",
     ),
     **dict.fromkeys(("process.steps[].own**", "process.steps[].take"), "what other orientations would do is not looked for"),
     **dict.fromkeys(

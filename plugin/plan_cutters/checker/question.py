@@ -182,6 +182,11 @@ class Question:
     stated: Mapping[str, Any] = field(default_factory=dict)
     odd: str = ""
 
+    def shift(self, name: str) -> Floats:
+        """From samples to where a cutter is put down with the postures of its verdicts, (n, 3), mm."""
+        shift = self.samples.get(f"shift_{name}")
+        return np.zeros((len(self.samples["point"]), 3)) if shift is None else shift
+
 
 def frame_of(setup: Setup) -> Floats:
     """The machine's X, Y and Z (3, 3), as rows, in the part's coordinates at zero angles."""

@@ -34,6 +34,8 @@ class Contacts:
 def contacts_at(question: Question, reckoned: Reckoned, k: int, each: Mapping[str, Any], rows: Rows, axis: Floats) -> Contacts:
     """Where the tool of an operation of plan k touches as it cuts samples (m,), with axes (m, 3): on walls as is written."""
     point, normal = question.samples["point"][rows].copy(), question.samples["normal"][rows].copy()
+    if each["mode"] != "fixed":
+        point += question.shift(each["cutter"])[rows]
     tilt_direction = reckoned.array(k, "lean")[rows].copy()
     mine = reckoned.array(k, "strategy")[rows] == WALL
     point[mine] = reckoned.array(k, "contact")[rows[mine]]

@@ -18,6 +18,8 @@ from plan_cutters.checker.question import ToolSizes
 _DOWN, _OUT = -math.pi / 2, 0.0
 #: Angles within this of the end of an arc are on it, rad.
 _HAIR = 1e-9
+#: Surfaces that are farther off the tilts at which a tool touches are not along its flank, rad.
+_OFF = 0.1
 #: Tilts up to which any side of the bottom may touch, rad; sines below which an axis is the normal; directions that are one.
 FLAT, _UPRIGHT, _SAME = 1e-4, 1e-12, 1e-6
 
@@ -176,13 +178,17 @@ class Tool:
             # A direction that is one within rounding touches with the rim.
             rim = np.abs(size - 1.0) <= _SAME
             outward = np.where(upright[:, None], sideways / np.where(rim, size, 1.0)[:, None], outward)
+            # Under a ceiling the axis points from the contact the other way round.
+            below = (cosine < 0.0) & (sine < _UPRIGHT)
+            outward = np.where(below[:, None], -sideways / size[:, None], outward)
         wrong = (upright & ((size > 1.0 + _SAME) | ((size < 1.0 - _SAME) & (self.flat == 0.0)))) | ~np.isfinite(size)
         contact = np.where(along[:, None], contact - keep * outward, contact)
         normal = np.where(upright[:, None], axis, np.where(along[:, None], -outward, normal))
         tilt = np.select([upright, along], [0.0, 0.5 * math.pi], tilt)
         tips, open_rows = np.full(contact.shape, np.nan), ~wrong
-        for arc in self.contacts:
-            mine = open_rows & (tilt + _DOWN >= arc.first - _HAIR) & (tilt + _DOWN <= arc.last + _HAIR)
+        # A flank may lie along a surface that is not quite at its tilt.
+        for arc, off in ((arc, off) for off in (_HAIR, _OFF) for arc in self.contacts):
+            mine = open_rows & (tilt + _DOWN >= arc.first - off) & (tilt + _DOWN <= arc.last + off)
             centre = contact[mine] + (arc.radius + self.allowance) * normal[mine]
             tips[mine] = centre - arc.q * outward[mine] - arc.h * axis[mine]
             open_rows &= ~mine

@@ -154,7 +154,8 @@ def postures(question: Question, reckoned: Reckoned, bench: Bench, rng: np.rando
                 met += len(mine)
                 continue
             able = held(question.machine, question.setups[s], axis[mine])
-            verdicts, some, _ = bench.put_down(s, bench.tools[name], mine, axis[mine], tilt_direction[mine], clock)
+            contact = bench.point[mine] + question.shift(name)[mine], bench.normal[mine]
+            verdicts, some, _ = bench.put_down(s, bench.tools[name], mine, axis[mine], tilt_direction[mine], clock, contact)
             verdicts[~able] = MET
             met, open_ = met + int((verdicts == MET).sum()), open_ + int((verdicts == OPEN).sum())
             tested, beyond = tested + int((verdicts != OPEN).sum()), beyond + some
