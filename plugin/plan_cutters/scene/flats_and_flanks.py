@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats, Ints, rows_by_face
+from cad_io.arrays import Floats, Ints
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.domain.shapes import Flank
 from plan_cutters.domain.verdicts import ACCESSIBLE, AXIS_LIMIT, INACCESSIBLE, INSIDE, NO_REASON, UNDECIDED, VerdictBuffer
@@ -28,6 +28,8 @@ Rows = NDArray[np.int64]
 _WHOLE = 1e-9
 #: Places of the axis that are nearer than this to what is certainly in the way are none, mm: no machine holds them.
 _NO_PLACE = 1e-3
+#: Curvatures of a plane at most, 1/mm.
+_PLANE = 1e-9
 #: Chord errors by which a flank is kept off a surface where it is not free on it: then a shank as wide, which may touch nothing,
 #: is as free of the surface as of its triangles. It is half of the tolerance at most.
 _AWAY = 2.0
@@ -198,9 +200,15 @@ def _take(rows: Rows, axis: Floats, f: Floats, contacts: Contacts, context: Cont
 def _axes(contacts: Contacts, face: Ints, rows: Rows, flank: Flank, conditions: Conditions) -> Iterator[tuple[Rows, Floats]]:
     """Axes that the machine holds with a flank along samples: those of some rows, and an axis (3,) for each, in turn."""
     normal = contacts.normal
-    for axis in _special(conditions):
+    plane = (np.abs(contacts.curvature[rows]) <= _PLANE).all(axis=1)
+    for k, axis in enumerate(_special(conditions)):
         off = _between(np.broadcast_to(axis, (len(rows), 3)), normal[rows]) - flank.tilt
-        at = rows[np.abs(off) <= np.where(_lies_along(contacts, face[rows], rows, axis, off, conditions), BEYOND, -1.0)]
+        may = np.abs(off) <= BEYOND
+        if k:
+            # Up to the flank's own tilt its lower end was tried there; free-form faces hold some of these axes exactly.
+            may &= (off > _WHOLE) & (plane | (off <= conditions.accuracy))
+        at, off = rows[may], off[may]
+        at = at[_lies_along(contacts, face[at], at, axis, off, conditions)]
         yield _turned(at, np.broadcast_to(axis, (len(at), 3)), contacts, conditions)
     if flank.length <= 0.0:
         return
@@ -228,26 +236,25 @@ def _lies_along(
     from plan_cutters.kernels.linear.rulings import extents
 
     lies = np.abs(off) <= conditions.accuracy
-    open_ = np.flatnonzero(~lies & (np.abs(off) <= BEYOND))
+    open_ = np.flatnonzero(~lies)
     triangles = conditions.obstacles.triangles
-    by_face = rows_by_face(triangles.face) if len(open_) else {}
     for number in np.unique(face[open_]).tolist():
-        mine = open_[face[open_] == number]
-        if number not in by_face:
+        mine, own = open_[face[open_] == number], conditions.obstacles.rows_of([number])
+        if not len(own):
             continue
         n = contacts.normal[rows[mine]]
         ruling = axis - (n @ axis)[:, None] * n
         ruling /= np.linalg.norm(ruling, axis=1)[:, None]
         low, high = np.empty((2, len(mine)))
         band = triangles.chord_error + conditions.tolerance
-        extents(contacts.point[rows[mine]], ruling, n, triangles.vertex[by_face[number]], band, low, high)
+        extents(contacts.point[rows[mine]], ruling, n, triangles.vertex[own], band, low, high)
         lies[mine] = (high - low) * np.sin(np.abs(off[mine])) <= conditions.tolerance
     return lies
 
 
 def _special(conditions: Conditions) -> Floats:
-    """Tool axes (k, 3) along whose flanks surfaces may lie that are not quite at their tilt: that with all rotary axes at zero,
-    and, where fewer than two turn the tool, those that samples lean towards.
+    """Tool axes (k, 3) along whose flanks surfaces may lie that are not quite at their tilt: that with all rotary axes at zero
+    first, and, where fewer than two turn the tool, those that samples lean towards.
     """
     zero = conditions.setup if conditions.kinematics is None else conditions.kinematics.turning()[0].tool
     axes = np.concatenate([zero[None], conditions.ranges.rotary.aim])
