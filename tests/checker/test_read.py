@@ -239,6 +239,15 @@ class TestTheGrip:
         assert held.asked().grips
         assert not [*faults(held.asked())]
 
+    def test_rounds_that_run_out_into_what_is_gripped_are_not_gripped(self, tmp_path):
+        import cadquery
+
+        path, options = str(tmp_path / "round.step"), {**HELD, "grid": 3}
+        block = cadquery.Workplane().box(40, 30, 15, centered=(True, True, False)).edges("|Z").fillet(3)
+        cadquery.exporters.export(block, path)
+        plan(path, operations="fastest", feed=1000, area_budget=0, **options).write(tmp_path, ["json", "npz"])
+        assert not [*faults(Written(tmp_path, path, options).asked())]
+
     @pytest.mark.parametrize("by", [(0.0, 0.0, -300.0), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (0.0, 0.5, 0.0), (80.0, 0.0, 0.0)])
     def test_a_vise_that_stands_elsewhere_is_found(self, held, by):
         """The place of a plan is not believed, whatever it says to be gripped."""
