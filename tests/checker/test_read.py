@@ -234,6 +234,23 @@ def test_a_tool_that_stands_wholly_within_the_material_is_not_free(tmp_path):
         assert (bench.stands(0, tool, rows, way, way, Clock(math.inf)) == verdict).all()
 
 
+def test_a_cutter_that_joins_an_orientation_is_no_further_one(tmp_path):
+    """The large cutter stands on the top of a plate where the small one cuts a slot."""
+    import cadquery
+
+    path, options = str(tmp_path / "plate.step"), {**HELD, "cutters": ["D10L40F20S10", "D3L30F8S3"], "holder": None, "grid": 3}
+    del options["fixtures"]
+    plate = cadquery.Workplane().box(30, 20, 6, centered=(True, True, False)).faces(">Z").workplane().rect(24, 3.2).cutBlind(-2)
+    cadquery.exporters.export(plate, path)
+    plan(path, operations="both", feed=1000, area_budget=0, **options).write(tmp_path, ["json", "npz"])
+    joined = Written(tmp_path, path, options)
+    operations = joined.document["operations"]
+    fixed = [each for each in operations["plans"][0]["operations"] if each["mode"] == "fixed"]
+    assert len(fixed) > operations["fewest"]["found"]
+    wrong = [each.words for each in check(joined.asked(), seconds=0.0).findings if each.holds is False]
+    assert not wrong
+
+
 class TestTheGrip:
     def test_the_vise_that_was_placed_holds_the_part(self, held):
         assert held.asked().grips
