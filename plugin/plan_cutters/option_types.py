@@ -59,7 +59,7 @@ class PlanOptions(SceneOptions, total=False):
     faces: Any
     grid: int | None
     spacing: float | None
-    tilt: Range
+    tilt: Range | None
     rotation: Range
     rotation_step: float
     tilt_deg: Range | None

@@ -114,8 +114,7 @@ class Options:
     spacing : float, optional
         Largest distance between samples. Neither: from curvature, smallest cutter and a budget.
     tilt, rotation : tuple of float
-        Posture range: tilts within 0 to pi, by default to pi/2 or as far as one of the cutters touches; rotations from the
-        direction of the largest curvature.
+        Tilts within 0 to pi, by default to pi/2 or as far as a cutter touches; rotations from the direction of largest curvature.
     rotation_step : float
     tolerance : float
         Gouge tolerance.
@@ -257,6 +256,7 @@ class Options:
         for cutter in self.judged:
             if not cutter.large_enough(self.tolerance):
                 raise OptionError(f"tolerance {self.tolerance:g} mm is too coarse for cutter {cutter.typed}")
+        object.__setattr__(self, "tilt", self.tilt or (0.0, largest_tilt(self.judged)))
 
     def _check_numbers(self) -> None:
         """Every number within its limits."""
@@ -288,10 +288,9 @@ class Options:
                             propose=flag(self.propose, "propose")))  # fmt: skip
         take(tolerance=number(self.tolerance, "tolerance"))
         take(jobs=cores() if self.jobs is None else whole(self.jobs, "jobs"))
-        if self.area_budget is not None:
-            take(area_budget=whole(self.area_budget, "area budget"))
-        if self.map_budget is not None:
-            take(map_budget=whole(self.map_budget, "map budget"))
+        for word in ("area_budget", "map_budget", "most_operations", "grid"):
+            if getattr(self, word) is not None:
+                take(**{word: whole(getattr(self, word), word.replace("_", " "))})
         take(flip=flag(self.flip, "flip"), posture_maps=flag(self.posture_maps, "posture_maps"))
         take(patterns=flag(self.patterns, "patterns"))
         take(answers=answers_of(self.answers), operations=operations_of(self.operations))
@@ -300,8 +299,6 @@ class Options:
         if self.units not in (None, "mm", "in"):
             raise OptionError(f"units: {shown(self.units)} is none of mm, in")
         take(process=process_requested(self.process))
-        if self.most_operations is not None:
-            take(most_operations=whole(self.most_operations, "most operations"))
         take(max_orientations=whole(self.max_orientations, "max orientations"))
         for word in _RECKONED:
             if getattr(self, word) is not None:
@@ -312,16 +309,12 @@ class Options:
         take(holder=None if self.holder is None else Holder.of(self.holder))
         choice(self.faces, "faces")
         choice(self.ignore, "ignore")
-        if self.grid is not None:
-            take(grid=whole(self.grid, "grid"))
         if self.spacing is not None:
             take(spacing=number(self.spacing, "spacing"))
         if self.unit is not None and not isinstance(self.unit, str):
             raise OptionError(f"unit must be one of {', '.join(UNITS)}, not {shown(self.unit)}")
-        if self.tilt is None:
-            take(tilt=(0.0, largest_tilt(self.judged)))
         postures = self.postures
-        take(tilt=postures.tilt, rotation=postures.rotation, rotation_step=postures.step)
+        take(tilt=self.tilt and postures.tilt, rotation=postures.rotation, rotation_step=postures.step)
 
     @property
     def accuracy(self) -> float:
@@ -363,7 +356,7 @@ class Options:
     @property
     def postures(self) -> PostureRange:
         """The posture range to search."""
-        return PostureRange(self.tilt, self.rotation, self.rotation_step)
+        return PostureRange(self.tilt or PostureRange().tilt, self.rotation, self.rotation_step)
 
     @property
     def judged(self) -> tuple[Cutter, ...]:

@@ -396,9 +396,11 @@ def test_each_change_holds_on_the_samples(name, cutter, machine):
 
 
 def test_it_asks_for_no_more_searches_than_a_few_plans(monkeypatch):
-    count, real = [], trial.search_postures
+    count, real = [], flats_and_flanks.search_postures
     monkeypatch.setattr(
-        trial, "search_postures", lambda c, rows, *more, **words: count.append(len(rows)) or real(c, rows, *more, **words)
+        flats_and_flanks,
+        "search_postures",
+        lambda c, rows, *more, **words: count.append(len(rows)) or real(c, rows, *more, **words),
     )
     part = shapes.shell(shapes.Patch.random(np.random.default_rng(2), height=10.0).face())
     cutter = Cutter.flat(radius=2.5, length=9, flutes=6.0, shank_radius=2.5, holder="R14L60")

@@ -189,7 +189,7 @@ def test_an_entry_reads_as_it_was_written_and_no_byte_of_it_can_change(data, n):
     random = np.random.default_rng(n)
     verdicts = Verdicts(
         random.choice(list(WORDS), n).astype(np.uint8), random.normal(size=(n, 3)), np.full((n, 3), np.nan),
-        np.full(n, -0.0), random.integers(-1, 9, n, np.int32), np.zeros(n, np.uint8),
+        np.full(n, -0.0), random.integers(-1, 9, n, np.int32), random.normal(size=(n, 3)), np.zeros(n, np.uint8),
     )  # fmt: skip
     entry = packed(verdicts, 12, "key")
     found, looked = unpacked(entry, n, "key")

@@ -236,7 +236,7 @@ FINE = {
         "cutters": "None, no list", "machine": "None", "faces": "None", "ignore": "None, no list", "grid": "None, three",
         "spacing": "None, three, a half", "rotation_step": "three, a half", "jobs": "None, three", "flip": "True",
         "area_budget": "None, three", "posture_maps": "True", "map_budget": "None, three",
-        "unit": "None", "progress": "None, function",
+        "unit": "None", "progress": "None, function", "tilt": "None",
     },
     "posture_map": {
         "rotations": "three, a half, minus one, no list, number in list", "machine": "None", "flip": "True",
@@ -255,7 +255,7 @@ FINE = {
     "PostureRange": {"tilt": "", "rotation": "", "step": "three, a half"},
     "Options": {
         "cutters": "None, no list", "machine": "None", "setup": "", "grid": "None, three", "spacing": "None, three, a half",
-        "tilt": "", "rotation": "", "rotation_step": "three, a half", "tolerance": "", "jobs": "None, three", "flip": "True",
+        "tilt": "None", "rotation": "", "rotation_step": "three, a half", "tolerance": "", "jobs": "None, three", "flip": "True",
         "area_budget": "None, three", "posture_maps": "True", "map_budget": "None, three",
         "allowance": "three, a half", "holder_clearance": "three, a half",
         "holder": "None",
@@ -263,7 +263,7 @@ FINE = {
     },
 }  # fmt: skip
 PARAMETERS = [
-    *(("plan", word) for word in [*FINE["plan"], "part", "setup", "tilt", "rotation", "tolerance"]),
+    *(("plan", word) for word in [*FINE["plan"], "part", "setup", "rotation", "tolerance"]),
     *(("posture_map", word) for word in [*FINE["posture_map"], "part", "point", "cutter", "setup"]),
     *(("read_part", word) for word in [*FINE["read_part"], "source"]),
     *((call, word) for call in ("Cutter", "Machine", "PostureRange", "Options") for word in FINE[call]),

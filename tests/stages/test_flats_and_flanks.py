@@ -96,6 +96,20 @@ def test_a_machine_with_more_axes_reaches_no_less(share):
     assert not (more & ~most).any()
 
 
+@pytest.mark.parametrize(("share", "reached"), [(0.9, True), (1.1, False)])
+def test_along_short_flutes_lies_as_much_of_a_wall_as_they_are_long(share, reached):
+    """And no machine of fewer axes reaches a strip of it that one of more does not."""
+    part = leaning(share * limit(4.0), 8.0)
+    each = [judged(part, Cutter.parse("D8L40F4N6x20S6"), machine, axis_accuracy_deg=0.01) for machine in MACHINES]
+    found = [verdicts(one).reached for one in each]
+    walls = within_groove(each[0]) & (np.abs(each[0].samples.point[:, 1] + 0.5 * LENGTH) < 5.0)
+    walls &= (each[0].samples.point[:, 2] < TOP - 1.0) & (each[0].samples.point[:, 2] > TOP - 7.0)
+    assert walls.any()
+    assert (found[0][walls] == reached).all()
+    assert not (found[0] & ~found[1]).any()
+    assert not (found[1] & ~found[2]).any()
+
+
 def test_the_accuracy_of_the_axes_makes_walls():
     """30 mm high, off by 0.03 deg: the flank cuts the upper part of it within the tolerance."""
     part = leaning(0.03, 20.0)

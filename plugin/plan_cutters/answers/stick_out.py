@@ -16,7 +16,7 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.stick_out import StickOut, floor_of, held, outline
 from plan_cutters.domain.verdicts import ACCESSIBLE, VerdictBuffer, Verdicts, blank
 from plan_cutters.kernels.rows import Contacts, Tool
-from plan_cutters.scene.conditions import Context, contacts_of, rotations_of, verdict_arrays_of
+from plan_cutters.scene.conditions import Context, contacts_of, laid_tool_of, rotations_of, verdict_arrays_of
 from plan_cutters.scene.deepest import deepest_on
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import CHUNK, in_chunks
@@ -115,7 +115,7 @@ class _Search:
         self.contacts: Contacts = contacts_of(ready.samples)
         self.floor = min(cutter.length, floor_of(cutter, conditions.tolerance))
         context = Context.of(cutter, conditions)
-        self.outline, self.whole = outline(context.outer_tool, cutter.length), context.outer
+        self.outline, self.whole = outline(context.outer_tool, cutter.length), laid_tool_of(context.outer_tool)
         self.found = blank(len(ready.samples))
         self.found.take(slice(None), verdicts)
         self._spare = BEYOND + context.outer_tool.slack

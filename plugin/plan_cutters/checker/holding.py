@@ -23,7 +23,9 @@ def faults(question: Question) -> Iterator[str]:
     """List what is wrong with where the part is held, a line each."""
     for grip in question.grips:
         points = {f.number: _local(question, grip, f.number) for f in question.part.faces if question.part.trim(f.number)}
-        touched = {number: _touched(grip, *pair) for number, pair in points.items()}
+        # A round that runs out into what is gripped touches a jaw along a line, which holds nothing.
+        held = "plane" if grip.jaws == 2 else "cylinder"
+        touched = {n: _touched(grip, *pair) for n, pair in points.items() if question.part.faces[n - 1].shape == held}
         touching = {number for number, jaws in touched.items() if jaws}
         stated = {int(name[1:]) for name in grip.faces if name[1:].isdecimal()}
         where = f"{grip.name} in setup {grip.setup + 1}"

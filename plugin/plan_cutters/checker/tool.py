@@ -122,6 +122,8 @@ class Tool:
         mm.
     radius, high, wide : float
         Of the flutes; height and radius of all, mm.
+    straight : bool
+        Whether above its last contact its side is straight.
     """
 
     id: str
@@ -132,6 +134,7 @@ class Tool:
     radius: float
     high: float
     wide: float
+    straight: bool = False
 
     def above(self, height: float) -> tuple[Solid, ...]:
         """Give what is above a height over the tip: flutes cut off there, and all other sections."""
@@ -187,7 +190,7 @@ class Tool:
         tilt = np.select([upright, along], [0.0, 0.5 * math.pi], tilt)
         tips, open_rows = np.full(contact.shape, np.nan), ~wrong
         # A flank may lie along a surface that is not quite at its tilt.
-        for arc, off in ((arc, off) for off in (_HAIR, _OFF) for arc in self.contacts):
+        for arc, off in ((arc, off) for off in ((_HAIR, _OFF) if self.straight else (_HAIR,)) for arc in self.contacts):
             mine = open_rows & (tilt + _DOWN >= arc.first - off) & (tilt + _DOWN <= arc.last + off)
             centre = contact[mine] + (arc.radius + self.allowance) * normal[mine]
             tips[mine] = centre - arc.q * outward[mine] - arc.h * axis[mine]
@@ -295,7 +298,7 @@ def tool_of(sizes: ToolSizes) -> Tool:
     ]  # fmt: skip
     solids = (*cutting, *above)
     return Tool(sizes.id, solids, contacts, sizes.allowance, sizes.clearance, r, max(each.high for each in solids),
-                max(each.wide for each in solids))  # fmt: skip
+                max(each.wide for each in solids), sizes.shape in ("end", "lens"))  # fmt: skip
 
 
 def _hull(outline: tuple[tuple[float, float], ...]) -> tuple[Arc, ...]:

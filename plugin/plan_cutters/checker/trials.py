@@ -181,8 +181,10 @@ class Trials:
             return
         fewest = next((plan for plan in self.plans if plan["name"] == "fewest"), None)
         used = [] if fewest is None else [each for each in fewest["operations"] if each["mode"] == "fixed"]
-        if len(used) > few["found"]:
-            yield Finding(False, f"The fewest operations are {few['found']} by the plan, and there are {len(used)}.")
+        # Other cutters may join where the part stands anyway.
+        stands = {(each["setup"], *each["axis"]) for each in used}
+        if len(stands) > few["found"]:
+            yield Finding(False, f"The fewest orientations are {few['found']} by the plan, and there are {len(stands)}.")
         if fewest is not None and len(used) == len(fewest["operations"]) and len(used) < few["at_least"]:
             words = f"At least {few['at_least']} orientations are needed by the plan, and it finishes all with {len(used)}."
             yield Finding(False, words)

@@ -184,8 +184,8 @@ def _options(request: MapRequest) -> "Options":
         cutters = tuple(each for each in tools.libraries[0] if request.cutter in (None, each.id, each.name))
         if len(cutters) != 1:
             many = "several tools are" if cutters else "no tool is"
-            told = "there: give one with --cutter" if request.cutter is None else f"called {request.cutter!r}"
-            raise OptionError(f"{many} {told}; plan-cutters tools lists them", file=library)
+            which = "there: give one with --cutter" if request.cutter is None else f"called {request.cutter!r}"
+            raise OptionError(f"{many} {which}; plan-cutters tools lists them", file=library)
     elif request.cutter is None:
         raise OptionError("give the cutter: --cutter D12L80, or the --cutters of a library")
     else:

@@ -177,12 +177,7 @@ _OPTIONS = (
         metavar="MM",
         help="Clearance that neck, shank and holder must keep.  [default: 0]",
     ),
-    _postures(
-        "--tilt",
-        type=Range(),
-        default=None,
-        help="Tilts to search, degrees from the normal.  [default: 0:90, or as far as a cutter touches]",
-    ),
+    _postures("--tilt", type=Range(), help="Tilts to search, deg from the normal.  [default: 0:90, or as far as cutters touch]"),
     _postures(
         "--rotation",
         type=Range(),

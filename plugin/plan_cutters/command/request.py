@@ -307,7 +307,6 @@ def posture_options(request: PostureRequest) -> "PlanOptions":
     from plan_cutters.domain.posture import PostureRange
 
     postures = PostureRange.degrees(request.tilt or (0.0, 90.0), request.rotation, request.rotation_step)
-    tilt: PlanOptions = {} if request.tilt is None else {"tilt": postures.tilt}
     return {
         "machine": request.machine,
         "fixtures": request.fixture,
@@ -317,7 +316,7 @@ def posture_options(request: PostureRequest) -> "PlanOptions":
         "tolerance": request.tolerance,
         "allowance": request.allowance,
         "holder_clearance": request.holder_clearance,
-        **tilt,
+        "tilt": postures.tilt if request.tilt else None,
         "rotation": postures.rotation,
         "rotation_step": postures.step,
     }

@@ -17,7 +17,7 @@ from plan_cutters.domain.clearance import grown, rungs
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.kernels.codes import PART
-from plan_cutters.scene.conditions import Conditions, tool_of
+from plan_cutters.scene.conditions import Conditions, laid_tool_of
 from plan_cutters.scene.threads import in_chunks
 
 #: Added to the chord error, mm, for rounding.
@@ -145,6 +145,8 @@ def _probed(
     # Arrays that may not be written are another type to the compiler: `probe` would be compiled once more for them.
     postures = verdicts.contact(samples.point), samples.normal, verdicts.axis.copy(), verdicts.tilt_direction.copy()
     in_chunks(
-        lambda piece: probe(piece, *postures, tool_of(made), conditions.obstacles.tree, triangle, which), rows, conditions.jobs
+        lambda piece: probe(piece, *postures, laid_tool_of(made), conditions.obstacles.tree, triangle, which),
+        rows,
+        conditions.jobs,
     )
     return made

@@ -16,6 +16,7 @@ from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.shapes import depth_along_normal
 from plan_cutters.domain.tolerance import depths
 from plan_cutters.domain.verdicts import VerdictBuffer, blank
+from plan_cutters.kernels.codes import BEYOND, TILT_TO
 from plan_cutters.kernels.rows import Contacts, Ranges, Rotary, Tool, VerdictArrays
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
@@ -197,6 +198,14 @@ def tools(cutter: Cutter, tolerance: float, error: float) -> tuple[Assembly, Ass
 def tool_of(made: Assembly) -> Tool:
     """An assembly as kernels take it."""
     return Tool(made.piece, made.mode, made.reach, made.inner, made.end)
+
+
+def laid_tool_of(made: Assembly) -> Tool:
+    """The same for postures that are known: a straight side may lie along a surface that is not quite at its tilt."""
+    mode = made.mode.copy()
+    if any(flank.mode == len(mode) - 1 for flank in made.flanks):
+        mode[-1, TILT_TO] += BEYOND
+    return tool_of(made)._replace(mode=mode)
 
 
 def verdict_arrays_of(verdicts: VerdictBuffer) -> VerdictArrays:

@@ -208,7 +208,7 @@ def _axes(contacts: Contacts, face: Ints, rows: Rows, flank: Flank, conditions: 
             # Up to the flank's own tilt its lower end was tried there; free-form faces hold some of these axes exactly.
             may &= (off > _WHOLE) & (plane | (off <= conditions.accuracy))
         at, off = rows[may], off[may]
-        at = at[_lies_along(contacts, face[at], at, axis, off, conditions)]
+        at = at[_lies_along(contacts, face[at], at, axis, off, flank, conditions)]
         yield _turned(at, np.broadcast_to(axis, (len(at), 3)), contacts, conditions)
     if flank.length <= 0.0:
         return
@@ -228,10 +228,11 @@ def _axes(contacts: Contacts, face: Ints, rows: Rows, flank: Flank, conditions: 
 
 
 def _lies_along(
-    contacts: Contacts, face: Ints, rows: Rows, axis: Floats, off: Floats, conditions: Conditions
+    contacts: Contacts, face: Ints, rows: Rows, axis: Floats, off: Floats, flank: Flank, conditions: Conditions
 ) -> NDArray[np.bool_]:
     """At which samples (m,) a flank lies along the face that is off its tilt by so much, rad: within the accuracy of the axes,
-    or because the face, from where it begins along the flank to where it ends, leaves it by no more than the tolerance.
+    or because the face, from where it begins along the flank to where it ends, leaves it by no more than the tolerance. Of a
+    face that is higher than flutes under a narrower neck, as much lies along them as they are long.
     """
     from plan_cutters.kernels.linear.rulings import extents
 
@@ -248,7 +249,8 @@ def _lies_along(
         low, high = np.empty((2, len(mine)))
         band = triangles.chord_error + conditions.tolerance
         extents(contacts.point[rows[mine]], ruling, n, triangles.vertex[own], band, low, high)
-        lies[mine] = (high - low) * np.sin(np.abs(off[mine])) <= conditions.tolerance
+        long = np.minimum(high - low, flank.length or np.inf)
+        lies[mine] = long * np.sin(np.abs(off[mine])) <= conditions.tolerance
     return lies
 
 
@@ -281,7 +283,8 @@ def _nearest(axis: Floats, conditions: Conditions) -> Floats:
 def _at_angle(normal: Floats, cosine: float, kinematics: Kinematics) -> Iterator[Floats]:
     """Axes (m, 3) of a machine with one axis that turns the tool, or none, at an angle to normals (m, 3), by its cosine."""
     if not len(kinematics.direction):
-        yield np.broadcast_to(kinematics.tool, normal.shape)
+        at = np.abs(normal @ kinematics.tool - cosine) <= PARALLEL
+        yield np.where(at[:, None], kinematics.tool, np.nan)
         return
     d = kinematics.direction[0]
     along = float(kinematics.tool @ d)

@@ -325,11 +325,11 @@ def test_a_spring_is_meshed_in_seconds(tmp_path, monkeypatch):
     assert farthest(part, triangles) <= triangles.chord_error + ROUNDING
 
 
-def test_a_face_without_a_border_is_left_to_the_mesher():
+def test_a_face_without_a_border_has_that_of_its_surface():
     bare = TopoDS.Face_s(patch().EmptyCopied())
     BRep_Builder().NaturalRestriction(bare, False)
     part = read_part(compound(box(), bare))
-    assert start.own_start(part, 7, 0.1) is None
+    assert start.own_start(part, 7, 0.1) is not None
 
 
 @pytest.mark.parametrize("corners", [

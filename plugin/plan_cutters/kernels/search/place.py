@@ -7,7 +7,6 @@ import numpy as np
 from plan_cutters.kernels.codes import (
     AXIS_LIMIT,
     BALL,
-    BEYOND,
     BY_HOLDER,
     BY_NECK,
     BY_SHANK,
@@ -123,21 +122,6 @@ def mode_at(tool, tilt):
         if tool.mode[mode, TILT_FROM] - _ROUNDING <= tilt <= tool.mode[mode, TILT_TO] + _ROUNDING:
             return mode
     return -1
-
-
-@kernel
-def mode_near(tool, tilt):
-    """The mode in which a tool touches at a tilt, or at one no more than `BEYOND` away, -1 for none: a flank may lie along a
-    surface that is not quite at its tilt.
-    """
-    best, least = mode_at(tool, tilt), BEYOND
-    if best >= 0:
-        return best
-    for mode in range(len(tool.mode)):
-        away = max(tool.mode[mode, TILT_FROM] - tilt, tilt - tool.mode[mode, TILT_TO])
-        if away <= least:
-            best, least = mode, away
-    return best
 
 
 @kernel

@@ -10,7 +10,7 @@ from plan_cutters.kernels.jit import entry
 from plan_cutters.kernels.linear.vectors import cross, dot
 from plan_cutters.kernels.material import MAYBE_INSIDE
 from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.search.place import inside, mode_near, straightened
+from plan_cutters.kernels.search.place import inside, mode_at, straightened
 from plan_cutters.kernels.tool.apart import BODY
 from plan_cutters.kernels.tool.hit import scratch, stand, tree_hit
 
@@ -45,7 +45,7 @@ def free(rows, point, normal, axis, tilt_direction, tool, solids, stands):
         n, share = normal[row], straightened(tilt_direction[row], f)
         cross(n, f, t)
         cosine, sine = dot(axis[row], n), dot(axis[row], f)
-        mode = mode_near(tool, np.arctan2(sine, cosine))
+        mode = mode_at(tool, np.arctan2(sine, cosine))
         if mode < 0:
             continue
         stand(body, Frame(point[row], n, f, t), cosine, sine, share * tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])

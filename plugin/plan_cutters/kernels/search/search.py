@@ -41,7 +41,7 @@ from plan_cutters.kernels.search.place import (
     clip_straight,
     inside,
     lies_within,
-    mode_near,
+    mode_at,
     permitted,
     search_workspace,
     straight,
@@ -355,7 +355,7 @@ def probe(rows, point, normal, axis, tilt_direction, tool, tree, triangle, which
         n, share = normal[row], straightened(tilt_direction[row], f)
         cross(n, f, t)
         cosine, sine = dot(axis[row], n), dot(axis[row], f)
-        mode = mode_near(tool, np.arctan2(sine, cosine))
+        mode = mode_at(tool, np.arctan2(sine, cosine))
         if mode < 0:
             triangle[row], which[row] = -2, -2
             continue

@@ -12,7 +12,7 @@ from plan_cutters.kernels.codes import OFFSET_OF, OVER_TIP, RISE
 from plan_cutters.kernels.jit import entry, kernel
 from plan_cutters.kernels.linear.vectors import cross
 from plan_cutters.kernels.rows import Frame
-from plan_cutters.kernels.search.place import mode_near, straightened
+from plan_cutters.kernels.search.place import mode_at, straightened
 from plan_cutters.kernels.tool.apart import BODY, OFFSET, A, P, X, Y, half_width
 from plan_cutters.kernels.tool.hit import into_frame, scratch, stand
 
@@ -194,7 +194,7 @@ def least_stick_outs(rows, point, normal, tilt_direction, tilt, tool, outline, f
     for row in rows:
         n, share = normal[row], straightened(tilt_direction[row], f)
         cross(n, f, t)
-        mode = max(0, mode_near(tool, tilt[row]))
+        mode = max(0, mode_at(tool, tilt[row]))
         over = tool.mode[mode, OVER_TIP]
         stand(body, Frame(point[row], n, f, t), np.cos(tilt[row]), np.sin(tilt[row]),
               share * tool.mode[mode, OFFSET_OF], tool.mode[mode, RISE])  # fmt: skip

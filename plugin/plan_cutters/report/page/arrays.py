@@ -68,11 +68,11 @@ def posture_arrays(result: Judged, name: str) -> Arrays:
 
 def _shift(result: Judged, name: str, tilt: NDArray[np.uint16]) -> Floats:
     """Shifts (n, 3) of the postures as the page has them: at rounded tilts another end of a flank may be that which touches."""
-    samples, found, cutter = result.samples, result.reaches[name], result.judged(name)
+    samples, verdicts, cutter = result.samples, result.reaches[name], result.judged(name)
     rounded = np.where(tilt == NO_TILT, np.nan, np.radians(0.01 * tilt))
-    stated = replace(found, tilt=rounded, shift=np.zeros_like(found.shift))
-    away = tips(cutter, samples.point, samples.normal, found) - tips(cutter, samples.point, samples.normal, stated)
-    moved = np.asarray(found.shift.any(axis=1))
+    stated = replace(verdicts, tilt=rounded, shift=np.zeros_like(verdicts.shift))
+    away = tips(cutter, samples.point, samples.normal, verdicts) - tips(cutter, samples.point, samples.normal, stated)
+    moved = np.asarray(verdicts.shift.any(axis=1))
     return np.where(moved[:, None], away, 0.0)
 
 

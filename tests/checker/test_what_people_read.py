@@ -234,10 +234,36 @@ def test_a_tool_that_stands_wholly_within_the_material_is_not_free(tmp_path):
         assert (bench.stands(0, tool, rows, way, way, Clock(math.inf)) == verdict).all()
 
 
+def test_a_cutter_that_joins_an_orientation_is_no_further_one(tmp_path):
+    """The large cutter stands on the top of a plate where the small one cuts a slot."""
+    import cadquery
+
+    path, options = str(tmp_path / "plate.step"), {**HELD, "cutters": ["D10L40F20S10", "D3L30F8S3"], "holder": None, "grid": 3}
+    del options["fixtures"]
+    plate = cadquery.Workplane().box(30, 20, 6, centered=(True, True, False)).faces(">Z").workplane().rect(24, 3.2).cutBlind(-2)
+    cadquery.exporters.export(plate, path)
+    plan(path, operations="both", feed=1000, area_budget=0, **options).write(tmp_path, ["json", "npz"])
+    joined = Written(tmp_path, path, options)
+    operations = joined.document["operations"]
+    fixed = [each for each in operations["plans"][0]["operations"] if each["mode"] == "fixed"]
+    assert len(fixed) > operations["fewest"]["found"]
+    wrong = [each.words for each in check(joined.asked(), seconds=0.0).findings if each.holds is False]
+    assert not wrong
+
+
 class TestTheGrip:
     def test_the_vise_that_was_placed_holds_the_part(self, held):
         assert held.asked().grips
         assert not [*faults(held.asked())]
+
+    def test_rounds_that_run_out_into_what_is_gripped_are_not_gripped(self, tmp_path):
+        import cadquery
+
+        path, options = str(tmp_path / "round.step"), {**HELD, "grid": 3}
+        block = cadquery.Workplane().box(40, 30, 15, centered=(True, True, False)).edges("|Z").fillet(3)
+        cadquery.exporters.export(block, path)
+        plan(path, operations="fastest", feed=1000, area_budget=0, **options).write(tmp_path, ["json", "npz"])
+        assert not [*faults(Written(tmp_path, path, options).asked())]
 
     @pytest.mark.parametrize("by", [(0.0, 0.0, -300.0), (0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (0.0, 0.5, 0.0), (80.0, 0.0, 0.0)])
     def test_a_vise_that_stands_elsewhere_is_found(self, held, by):
