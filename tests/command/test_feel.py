@@ -375,6 +375,17 @@ def test_plain_progress_is_a_line_now_and_then(capsys, monkeypatch):
     assert "(39 of 40)" in said[-1] or "(3" in said[-1]
 
 
+def test_work_that_stands_still_has_no_rest(monkeypatch):
+    """What is left is reckoned from the share: one that does not grow would say the same second for a minute."""
+    now = 0.0
+    monkeypatch.setattr(time, "monotonic", lambda: now)
+    display = Display(True, 1, 0.0)
+    display.stage("reasons")
+    for now, done in ((4.0, 96), (13.0, 96), (15.0, 96), (60.0, 96), (61.0, 98)):
+        display.at(done, 100)
+        assert bool(display.rest) == (now not in (15.0, 60.0))
+
+
 def test_nothing_is_shown_where_it_is_quiet(capsys):
     display = Display(True, 1, 0.0)
     display.stage("read")

@@ -45,6 +45,8 @@ _WORDS = {
 _AGAIN = 5.0
 #: Seconds of a stage, and the share of it that is done, from which on the rest is estimated.
 _KNOWN, _SHARE = 2.0, 0.02
+#: Seconds without a change of the share from which on it is no measure of the rest.
+_STILL = 10.0
 #: Seconds between two words of how much of a stage is done.
 _OFTEN = 0.1
 
@@ -84,7 +86,7 @@ class Display:
         self.judged: dict[str, None] = {}
         self.name = "start"
         self.share: float | None = None
-        self.since = began
+        self.since = self.moved = began
         self.bar: Any = None
         self.task: Any = None
         #: Gathers what came of each part, where a report on them is requested.
@@ -115,9 +117,10 @@ class Display:
 
     def at(self, done: int, total: int) -> None:
         if total > 1:
-            self.share = done / total
+            before, self.share = self.share, done / total
             if self.name not in _WORDS:
                 self.share = (len(self.judged) - 1 + self.share) / max(self.cutters, len(self.judged))
+            self.moved = self.moved if self.share == before else time.monotonic()
         self.tick()
 
     def detail(self, text: str) -> None:
@@ -160,9 +163,10 @@ class Display:
 
     @property
     def rest(self) -> str:
-        """How long this stage will take, about, from the share of its counted work that is done."""
-        passed = time.monotonic() - self.since
-        if self.share is None or self.share < _SHARE or passed < _KNOWN:
+        """How long this stage will take, about, from the share of its counted work that is done; not where that stands still."""
+        now = time.monotonic()
+        passed = now - self.since
+        if self.share is None or self.share < _SHARE or passed < _KNOWN or now - self.moved > _STILL:
             return ""
         return f", about {max(1, round(passed * (1.0 - self.share) / self.share))} s left"
 

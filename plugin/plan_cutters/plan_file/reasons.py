@@ -63,7 +63,7 @@ _ROWS = (
            (("a fillet in the model", ()), *_SMALLER), "#44AA99", "dots", ".."),
     Reason("another_setup", "for another setup", "what was proposed to hold the part",
            "The face stands on a table that was proposed, or a vise or chuck grips it; it is left for another setup.",
-           (_ANOTHER_SETUP, ("a clamping that leaves it free", ())), "#88CCEE", "lines", "--"),
+           (("a clamping that leaves the face free", _ANOTHER_SETUP[1]),), "#88CCEE", "lines", "--"),
 )  # fmt: skip
 REASONS = {each.code: each for each in _ROWS}
 #: What is said instead of the hint where what is around a surface is the body itself.

@@ -189,8 +189,8 @@ def surroundings(
         if turned:
             which = f"{ranges(turned)} {CROSSES}"
             remedy = "STEP makes such faces larger than they were, so give the shape in Python or as BREP"
-            raise UnjudgeableError(f"{which}, and no other face can be in the way: {remedy}", file=part.file)
-        raise UnjudgeableError(f"no face has triangles that could be in the way: {causes or 'all are left out'}", file=part.file)
+            raise UnjudgeableError(f"{which}, and no other face is left: {remedy}", file=part.file)
+        raise UnjudgeableError(f"no face can be read: {causes}" if causes else "all faces are left out", file=part.file)
     result = bodies(part, without=ignored)
     loose = dict(triangles.loose)
     close = triangles.without(loose)

@@ -60,7 +60,6 @@ class CutterStory:
     shares: dict[str, str]
     reason: str
     hint: str
-    besides: str
     sentence: str
     next: str
     left: str
@@ -83,7 +82,6 @@ def cutter_story(plan: Plan, c: CutterEntry, name: str) -> CutterStory:
         shares={word: part_of(c, c.area_share, [word]) for word in VERDICTS},
         reason=main.name if main else "",
         hint=_hint(plan, c, main) if main else "",
-        besides=_besides(c),
         sentence=loss or _reaches(plan, c, name),
         next=_next(plan, c),
         left=loss,

@@ -78,7 +78,7 @@ def details(plan: Plan) -> Iterator[str]:
     yield (
         f"Searched: tilts {angle(e.tilt_deg[0])} to {angle(e.tilt_deg[1])}, rotations {_turn(e.rotation_deg[0])} to "
         f"{_turn(e.rotation_deg[1])} every {angle(e.rotation_step_deg)}; tolerance {mm(e.tolerance_mm)}, of which "
-        f"{mm(e.chord_error_mm)} for {e.obstacle_triangles} obstacle triangles."
+        f"{mm(e.chord_error_mm)} for {e.obstacle_triangles:,} obstacle triangles."
     )
     for c in plan.cutters:
         if c.area:

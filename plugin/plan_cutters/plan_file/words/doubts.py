@@ -59,10 +59,10 @@ def _unit(plan: Plan) -> Iterator[str]:
     elif plan.part.unit_doubt:
         yield f"The part is {mm(longest)} long: if that is wrong, --unit gives the right unit."
     elif longest < min(widths):
-        yield f"The part, {size(plan.part.size_mm)}, is smaller than any cutter is wide: {_WRONG}"
+        yield f"The part is smaller than any cutter is wide: {_WRONG}"
     elif longest > _LONG * max(widths):
         wide = f"{longest / max(widths):,.0f} times as long as the widest cutter is wide"
-        yield f"The part, {size(plan.part.size_mm)}, is {wide}: {_WRONG}"
+        yield f"The part is {wide}: {_WRONG}"
 
 
 def _reading(plan: Plan, each: UnitEntry) -> str:
@@ -73,7 +73,7 @@ def _reading(plan: Plan, each: UnitEntry) -> str:
         return f"The file states two units ({each.stated}): {this} by its flag, judged so, {other} by its name{choose}."
     if each.cause == "scale":
         return f"The file states a model space scale of {each.stated}: {this} by it, judged so, {other} without it{choose}."
-    return f"The file's unit is not sure ({each.stated}): judged in {each.taken}, {this}; --unit gives another one."
+    return f"The file's unit is not sure ({each.stated}): it is taken in {each.taken}; --unit gives another one."
 
 
 def _travel(plan: Plan) -> Iterator[str]:
@@ -106,7 +106,7 @@ def _held(plan: Plan) -> Iterator[str]:
     which = f"step {below[0]} comes" if len(below) == 1 else f"steps {_runs(below)} come"
     setups = {step.setup for step in steps}
     where = f" in setup {setups.pop() + 1}" if holds and len(setups) == 1 else ""
-    yield f"No fixture was given{where}: {which} from below{' in part' if partly else ''}."
+    yield f"No fixture was given{where}: {which} {'partly ' if partly else ''}from below."
 
 
 def _bodies(plan: Plan) -> Iterator[str]:

@@ -12,7 +12,7 @@ from plan_cutters.plan_file.numbers import capital, count, duration, listed, per
 from plan_cutters.plan_file.shares import reached_share
 from plan_cutters.plan_file.words.choice import comes_last, first_of
 from plan_cutters.plan_file.words.names import described
-from plan_cutters.plan_file.words.scope import judged, sized
+from plan_cutters.plan_file.words.scope import judged, requested, sized
 
 #: From this share on a process finishes the part but for some of it; below, it does not.
 _MOST = 0.5
@@ -57,7 +57,7 @@ def headline(plan: Plan, names: Mapping[str, str]) -> Headline:
     finished = process.finished if process else not best.not_reached
     share = process.finished_share if process else reached_share(best, best.area_share) or 0.0
     title = f"{_stands(plan)}: {_much(plan, share, finished=finished)}"
-    about = "" if plan.scope is None or not plan.scope.not_judged else f"Judged: {part}."
+    about = "" if plan.scope is None or not plan.scope.not_judged else f"Judged: {requested(plan)}."
     if len(used := {step.cutter for step in process.steps} if process else {best.id}) == 1:
         (only,) = used
         about = " ".join(filter(None, (about, f"{capital(names[only])}: {described(entries[only], names[only])}.")))

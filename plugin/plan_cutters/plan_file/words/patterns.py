@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator
 
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import ranges
+from plan_cutters.plan_file.numbers import count, ranges
 from plan_cutters.plan_file.patterns import PatternEntry
 
 #: Copies from which on a pattern stands in the summary; faces that are named; patterns that are listed.
@@ -14,8 +14,8 @@ _COPIES, _NAMED, _LISTED = 3, 24, 3
 def patterns(plan: Plan) -> Iterator[str]:
     """Sentences on the patterns of a plan, those with most faces first."""
     largest = sorted(plan.patterns, key=lambda each: (not each.whole, -sum(map(len, each.faces))))[:_LISTED]
-    for each in largest:
-        yield _sentence(each)
+    # The same faces may be equal in two mirrors.
+    yield from dict.fromkeys(map(_sentence, largest))
     if len(plan.patterns) > len(largest):
         yield f"{len(plan.patterns) - len(largest)} more patterns of equal faces are in plan.json."
 
@@ -57,5 +57,5 @@ def _sentence(each: PatternEntry) -> str:
 
 def _judged(each: PatternEntry) -> str:
     if each.moved or each.followed:
-        return ": judged once" + (f", verified at {each.verified} samples" if each.verified else "")
+        return ": judged once" + (f", verified at {count(each.verified, 'sample')}" if each.verified else "")
     return ""

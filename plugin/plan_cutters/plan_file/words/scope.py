@@ -19,6 +19,11 @@ def judged(plan: Plan) -> str:
     return f"{_requested(plan, scope)} of {part} ({_share(scope)} of the area)"
 
 
+def requested(plan: Plan) -> str:
+    """Name what of the part was judged, below a line with its name: `the 6 fillets (23 % of the area)`."""
+    return f"{_requested(plan, plan.scope)} ({_share(plan.scope)} of the area)" if plan.scope else "the part"
+
+
 def sized(plan: Plan, part: str) -> str:
     """The name of the part, and its size, which shows a wrong unit at a glance."""
     return f"{part}, {size(plan.part.size_mm)}"

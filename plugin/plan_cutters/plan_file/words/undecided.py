@@ -77,4 +77,7 @@ def _causes(plan: Plan, entry: CutterEntry) -> Iterator[str]:
     elif loose or missing:
         yield f"What is left is too narrow for the tolerance; {finer} looks more closely."
     else:
-        yield f"The cutter there is within the tolerance, {mm(tolerance)}, of what is free; {finer} looks more closely."
+        yield (
+            f"The cutter is so near to an obstacle there that the tolerance, {mm(tolerance)}, does not decide; {finer} looks "
+            "more closely."
+        )
