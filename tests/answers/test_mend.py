@@ -9,7 +9,6 @@ import pytest
 
 from cad_io import read_part
 from plan_cutters import Cutter, Options, Scene, plan
-from plan_cutters.answers import trial
 from plan_cutters.answers.mend import mend
 from plan_cutters.answers.trial import Case, Trials, batches
 from plan_cutters.answers.what_if import none, search
@@ -19,6 +18,7 @@ from plan_cutters.domain.change import THINGS
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.standard_tools import CORNERS, METRIC, MOST, USUAL, slenderness, smaller
 from plan_cutters.pipeline import prepare
+from plan_cutters.scene import flats_and_flanks
 from plan_cutters.stages.judge import judge
 from tests.support import shapes
 from tests.support.bodies import lidded, stacked

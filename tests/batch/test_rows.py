@@ -260,13 +260,6 @@ def test_a_scheduler_that_is_killed_while_blocks_are_on_it_is_one_line(ready, tm
 
 
 def test_the_columns_of_verdicts_are_all_handed_back():
-    assert [each.name for each in fields(Verdicts)] == [
-        "verdict",
-        "axis",
-        "tilt_direction",
-        "tilt",
-        "rotation",
-        "shift",
-        "reason",
-    ]
+    columns = ["verdict", "axis", "tilt_direction", "tilt", "rotation", "shift", "reason"]
+    assert [each.name for each in fields(Verdicts)] == columns
     assert Cutter.parse("R6L80") == pickle.loads(pickle.dumps(Cutter.parse("R6L80")))
