@@ -100,13 +100,26 @@ def gouges(reference, tilt, towards, curvature, size):
     kff, ktt, kft = curvature
     tip, frame = reference.frame(np.zeros(3), np.eye(3)[2], np.eye(3)[0], tilt, towards)
     h = 1e-4 * size
+
+    def depth(x, y):
+        points = np.stack([x, y, 0.5 * (kff * x * x + ktt * y * y) + kft * x * y], 1)
+        local = (points - tip) @ frame.T
+        return reference.flutes.depth(np.hypot(local[:, 0], local[:, 1]), local[:, 2])
+
     turn = np.linspace(0, math.pi, 181)
-    back = np.linspace(-1, 1, 401) * h * h * (2 / size + 2 * abs(kft) + 2 * max(abs(kff), abs(ktt))) / max(math.sin(tilt), 0.05)
-    x = np.concatenate([h * np.cos(turn), back, back])
-    y = np.concatenate([h * np.sin(turn), np.full(401, h), np.full(401, -h)])
-    points = np.stack([x, y, 0.5 * (kff * x * x + ktt * y * y) + kft * x * y], 1)
-    local = (points - tip) @ frame.T
-    return reference.flutes.depth(np.hypot(local[:, 0], local[:, 1]), local[:, 2]).max() / (h * h)
+    deepest = depth(h * np.cos(turn), h * np.sin(turn)).max()
+    reach = h * h * (2 / size + 2 * abs(kft) + 2 * max(abs(kff), abs(ktt))) / max(math.sin(tilt), 0.05)
+    for y in (h, -h):
+        # At y beside the contact a sharp edge of a tool that leans by T rises by sin T / R y^2 / 2, and a surface by k y^2 / 2.
+        # It is in the tool between faces (k - sin T / R) (cot T + tan T) y^2 / 2 apart, which 401 points may all miss: go closer
+        # to the best. There it is (k - sin T / R) y^2 / (2 (sin T + cos T)) deep, at least 0.35 of the margin.
+        x, wide = np.zeros(1), reach
+        for count in (401, 41, 41):
+            along = x + wide * np.linspace(-1, 1, count)
+            found = depth(along, np.full(count, y))
+            x, wide = along[[found.argmax()]], 3 * wide / count
+            deepest = max(deepest, found.max())
+    return deepest / (h * h)
 
 
 @pytest.mark.parametrize("kind", ["flat", "bull", "ball", "taper bull", "lollipop", "barrel", "oval", "lens"])

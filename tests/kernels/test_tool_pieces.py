@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from plan_cutters import Cutter
+from plan_cutters import Cutter, CutterError
 from plan_cutters.domain import pieces as domain
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.kernels.jit import kernel
@@ -13,7 +13,7 @@ from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.tool import apart, hit
 from plan_cutters.scene.conditions import tool_of
 from tests.support.reference import random_frame
-from tests.support.tool_reference import KINDS, Reference, in_row, random_cutter
+from tests.support.tool_reference import KINDS, Reference, end_of, in_row, random_cutter
 
 #: mm to which exact pieces agree.
 EXACT = 1e-9
@@ -197,6 +197,114 @@ def test_pieces_hold_what_counts_and_no_more(kind, sort):
     rng = np.random.default_rng([KINDS.index(kind), sort == "outer"])
     hits, misses = check(rng, kind, sort, 12, 400)
     assert min(hits, misses) > 400
+
+
+def about_corners(rng, cutter, flutes, rest, n=2000):
+    """Points about corners of a cutter's outlines, as far off as its pieces are moved: by how much each is held, by how much each
+    counts, and what the pieces may hold too much, mm; None where there are no pieces.
+    """
+    reference, made = Reference(cutter), assembly(cutter, flutes, rest)
+    if not made.piece.shape[1]:
+        return None
+    inset, above = flutes - (cutter.allowance or 0.0), rest - (cutter.clearance or 0.0)
+    outlines = [each for each in (reference.flutes, reference.whole, reference.above) if each is not None]
+    corners = np.array([end_of(element) for outline in outlines for element in outline.elements])
+    corner = corners[rng.integers(len(corners), size=n)]
+    away, turn = rng.choice(np.abs([inset, above]), n) * rng.uniform(0, 2, n), rng.uniform(0, 2 * math.pi, n)
+    q, w = np.abs(corner[:, 0] + away * np.cos(turn)), corner[:, 1] + away * np.sin(turn)
+    rows, height = made.piece[0].copy(), made.mode[0, 4]
+    rows[:, [domain.LOW, domain.HIGH]] += height
+    rows[rows[:, domain.KIND] == domain.ARC, domain.SLOPE] += height
+    return np.max([in_row(row, q, w) for row in rows], axis=0), reference.over(q, w, inset, above), made.slack
+
+
+def depths(rng):
+    error = float(10.0 ** rng.uniform(-3, -1.5))
+    return (4 * error, -error) if rng.random() < 0.7 else (0.2, 0.2)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_about_corners_nothing_is_missed_and_no_more_is_held_than_is_stated(kind):
+    rng = np.random.default_rng([KINDS.index(kind), 3])
+    for _ in range(40):
+        flutes, rest = depths(rng)
+        cutter = random_cutter(rng, kind, loose=flutes != rest)
+        if (found := about_corners(rng, cutter, flutes, rest)) is not None:
+            held, over, slack = found
+            assert not ((held < -EXACT) & (over > 10 * EXACT)).any(), cutter
+            assert over[held > 0.0].min(initial=0.0) > -slack - 10 * EXACT, (cutter, flutes, rest)
+
+
+def random_form(rng, convex):
+    """A form with sides of all lengths that lean in and out, pointed tips, flats, steps; a convex one with stock now and then."""
+    while True:
+        n = rng.integers(2, 7)
+        if convex:
+            lean = np.sort(rng.uniform(-1.4, 1.4, n))[::-1]
+            length = rng.choice([0.05, 0.5, 2.0], n) * rng.uniform(0.5, 1.5, n)
+            out, up = length * np.sin(lean), length * np.cos(lean)
+        else:
+            out, up = (rng.choice([0.0, 0.05, 0.5, 2.0], n) * rng.uniform(least, 1.5, n) for least in (-1.2, 0.5))
+        q = rng.choice([0.0, 1.0, 2.0]) + np.concatenate([[0.0], np.cumsum(out)])
+        points = [(0.0, 0.0), *zip(q.tolist(), [0.0, *np.cumsum(up).tolist()], strict=True)]
+        points = [point for i, point in enumerate(points) if i == 0 or point != points[i - 1]]
+        more = {"shank_radius": float(rng.uniform(0.3, 1.3) * points[-1][0])} if rng.random() < 0.5 else {}
+        if convex and rng.random() < 0.3:
+            more["allowance"] = 0.3
+        if q.min() >= 0.0 and points[-1][1] > 0.0 and points[-1][0] > 0.05:
+            try:
+                return Cutter.form(points, length=points[-1][1] + float(rng.uniform(2, 20)), **more)
+            except CutterError:
+                continue
+
+
+@pytest.mark.parametrize("convex", [True, False], ids=["convex", "re-entrant"])
+def test_about_corners_of_any_form_nothing_is_missed(convex):
+    """Between sides of any leans, below a shank that stands on a side that leans in, and at a pointed tip with stock."""
+    rng = np.random.default_rng(convex)
+    for _ in range(100):
+        flutes, rest = depths(rng)
+        cutter = random_form(rng, convex)
+        if (found := about_corners(rng, cutter, flutes, rest)) is not None:
+            held, over, slack = found
+            assert not ((held < -EXACT) & (over > 10 * EXACT)).any(), (cutter, flutes, rest)
+            if convex:
+                assert over[held > 0.0].min(initial=0.0) > -slack - 10 * EXACT, (cutter, flutes, rest)
+
+
+def test_a_dovetail_under_a_shank_of_its_own_width_misses_nothing_in_the_corner():
+    """What lies a hair deeper than the depth from the corner, towards the axis, whatever the side leans by."""
+    depth, grown = 0.02, 0.001
+    for lean in (5, 15, 30, 45, 60):
+        cutter = Cutter.flat(radius=20, length=40, taper=-math.radians(lean), flutes=8)
+        reference, made = Reference(cutter), assembly(cutter, depth, -grown)
+        turn = np.radians(np.linspace(0, lean, 200))
+        q, w = reference.top_radius - depth * 1.001 * np.cos(turn), reference.top - depth * 1.001 * np.sin(turn)
+        assert (reference.over(q, w, depth, -grown) > 0.0).all()
+        rows = made.piece[0].copy()
+        rows[:, [domain.LOW, domain.HIGH]] += made.mode[0, 4]
+        assert (np.max([in_row(row, q, w) for row in rows], axis=0) > 0.0).all(), lean
+
+
+@pytest.mark.parametrize("lean", [0, 10])
+@pytest.mark.parametrize("grown", [0.001, 0.005, 0.02, 0.1])
+def test_what_a_narrow_shank_holds_in_the_flutes_is_no_farther_off_than_is_stated(grown, lean):
+    """Beside the shank, as far as it is grown, where what lies in the flutes is as far from deep enough as from the shank."""
+    depth = 0.02
+    cutter = Cutter.flat(radius=6, length=40, flutes=20, shank_radius=4, taper=math.radians(lean))
+    reference, made = Reference(cutter), assembly(cutter, depth, -grown)
+    below = np.linspace(0.0, depth, 500)
+    over = reference.over(np.full(500, 4.0 + grown), 20.0 - below, depth, -grown).min()
+    assert over == pytest.approx(-(depth**2) / (2.0 * (depth + grown)), abs=1e-4)
+    assert over > -made.slack - 10 * EXACT
+
+
+@pytest.mark.parametrize(("flutes", "length"), [(11.77, 46.96), (9.62, 30.77), (6.26, 27.26)])
+def test_round_edges_do_not_hang_on_rounding(flutes, length):
+    """A nose that narrows upwards, with a clearance, wherever its height rounds: its pieces hold what is near enough, no more."""
+    cutter = Cutter.flat(radius=4.5, length=length, shank_radius=2.3, flutes=flutes, holder="R10:8L6+R16L9", clearance=0.5)
+    held, over, _ = about_corners(np.random.default_rng(0), cutter, 0.01, -0.002, 20_000)
+    assert over[held > 0.0].min() > -0.03
 
 
 @pytest.mark.slow

@@ -7,6 +7,7 @@ proofs. Heights are over the tip.
 
 import math
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,9 +23,10 @@ from plan_cutters.domain.pieces import (
     among,
     between,
     flute_rows,
+    kink,
+    least_depth,
     opening,
     seam,
-    share,
     sharpest,
     solid,
 )
@@ -208,6 +210,8 @@ def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "outer"
         else:
             rows += between(rim_radius(cutter), top_flank_angle(cutter), first.stage.radius, first.flank_angle, top,
                             min(flutes, first.inset), FLUTES)  # fmt: skip
+            if first.inset <= 0.0 and end >= top:
+                rows += kink(min(rim_radius(cutter), first.stage.radius), top_flank_angle(cutter), top, flutes, FLUTES)
         if flutes < 0.0:
             end = max(end, top + flutes * min(0.0, math.sin(top_flank_angle(cutter))))
         rows += flute_rows(cutter, flutes, end, kind)
@@ -265,6 +269,22 @@ def _inner(cutter: Cutter, bands: list[Band]) -> tuple[float, float]:
     return deepest.low + 0.5 * deepest.stage.length, bands[-1].high
 
 
+def _run_down(inset: float, band: Band, top: float) -> float:
+    """How far from what counts a point is that a narrower band holds where it runs down into flutes that lean by `top`, mm.
+
+    At t below their end, and q - r beyond the radius r of the band, which is grown by g, it is t deep, or less next to their
+    side, and hypot(q - r, t) from the band. The least of both is largest where `inset` - t = hypot(q - r, t) - g at the
+    widest q (`docs/tools.md`).
+    """
+    if inset <= 0.0:
+        return 0.0
+    grown, slope = max(0.0, -band.inset), band.stage.slope
+    wide = grown * (math.hypot(1.0, slope) + abs(slope))
+    below = (inset**2 - grown**2 + wide**2) / (2.0 * (inset + grown))
+    beside = inset * (1.0 + math.sin(top)) - (inset + grown - wide) * math.cos(top)
+    return min(math.hypot(wide, inset) - grown, max(below, beside))
+
+
 def _slack(cutter: Cutter, inset: float, bands: list[Band], kind: Kind) -> float:
     """How far at most a point is from what counts though a cover piece holds it, mm."""
     if kind == "inner":
@@ -278,13 +298,13 @@ def _slack(cutter: Cutter, inset: float, bands: list[Band], kind: Kind) -> float
             half = 0.25 * math.pi + 0.5 * abs(band.flank_angle)
             most = max(most, -band.inset * (1.0 / math.cos(half) - 1.0))
     if cutter.shape == "form":
-        for i in range(len(cutter.outline) - 1):
-            most = max(most, inset * (1.0 - share(cutter.outline, i)), sharpest(cutter.outline, i, inset))
-            stage = cutter.outline[i : i + 2]
-            if inset < 0.0 and stage[1][1] > stage[0][1]:
+        for i, ((r0, w0), (r1, w1)) in enumerate(pairwise(cutter.outline)):
+            if inset < 0.0:
+                most = max(most, sharpest(cutter.outline, i, inset))
+            if w1 > w0:
                 # Grown sides end at the heights of their corners.
-                flank_angle = math.atan2(stage[1][0] - stage[0][0], stage[1][1] - stage[0][1])
-                most = max(most, -inset * (1.0 / math.cos(flank_angle) - 1.0))
+                grown = -inset * (math.hypot(1.0, (r1 - r0) / (w1 - w0)) - 1.0)
+                most = max(most, inset - least_depth(cutter.outline, i, inset) if inset > 0.0 else grown)
     top = abs(top_flank_angle(cutter))
     if inset < 0.0:
         # Grown flutes have square upper edges.
@@ -293,8 +313,7 @@ def _slack(cutter: Cutter, inset: float, bands: list[Band], kind: Kind) -> float
         # Sides that lean end at their seam's height though their normals there do not lie along it.
         most = max(most, inset * (1.0 - math.cos(top)))
         if bands[0].stage.radius < rim_radius(cutter):
-            # What runs down into the flutes holds what is neither near enough to it nor deep enough about its edge.
-            most = max(most, 0.5 * (inset + min(0.0, bands[0].inset)))
+            most = max(most, _run_down(inset, bands[0], top))
         if cutter.shape == "lollipop":
             most = max(most, inset)
     for flank_angle, depth in (

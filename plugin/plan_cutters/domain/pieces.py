@@ -5,6 +5,7 @@ Heights are over the tip; `docs/tools.md` has the proofs.
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Literal
 
 from plan_cutters.domain.dimensions import Dimensions
@@ -122,6 +123,17 @@ def between(
     ]
 
 
+def kink(radius: float, flank_angle: float, at: float, inset: float, part: int) -> list[list[float]]:
+    """Give the piece deeper than `inset` below a re-entrant corner, of a radius at a height, under a side that leans in (rad).
+
+    Seen from what is deep enough there, the side's foot lies beyond its end: it is nearest to the corner. The side, moved in,
+    leaves it out, and what stands above may be grown by less than it lies below.
+    """
+    if inset <= 0.0 or flank_angle >= 0.0:
+        return []
+    return [band_row(at + inset * math.sin(flank_angle) - HAIR, at + HAIR, radius - inset * math.cos(flank_angle), 0.0, part)]
+
+
 def opening(cutter: Dimensions, inset: float, at: float) -> list[list[float]]:
     """Make the piece of a lollipop's ball below its neck, which begins at a height: it is deeper than the ball's side says."""
     if inset <= 0.0:
@@ -150,10 +162,10 @@ def among(band: Band, start: float, end: float, *, exact: bool) -> list[list[flo
         # Round edges where a seam is a step; the side goes from tangent circle to tangent circle, or runs on.
         if low_step:
             rows.append(row_of(ARC, -math.inf, math.inf, stage.radius, band.low, -inset, band.part))
-            start = band.low + shift if start >= band.low + inset else start
+            start = band.low + shift if start >= band.low + inset - HAIR else start
         if high_step:
             rows.append(row_of(ARC, -math.inf, math.inf, stage.upper_radius, band.high, -inset, band.part))
-            end = band.high + shift if end <= band.high - inset else end
+            end = band.high + shift if end <= band.high - inset + HAIR else end
     rows.append(band_row(start, end, side + stage.slope * (start - band.low), stage.slope, band.part))
     return rows
 
@@ -256,9 +268,10 @@ def _form(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list
         low_step, high_step = _step(points, i, -1), _step(points, i + 1, 1)
         # Grown, a side that leans reaches past its ends along its normal.
         rise = max(0.0, -mine) * math.sin(math.atan(stage.slope))
-        below, beyond = max(rise, _overlap(points, i, mine)), max(-rise, _overlap(points, i + 1, mine))
-        low = w0 + mine if low_step > 0.0 else w0 - HAIR - (abs(mine) if low_step < 0.0 else below)
-        high = w1 - mine if high_step > 0.0 else w1 + HAIR + (abs(mine) if high_step < 0.0 else beyond)
+        below, beyond = max(rise, -_crossing(points, i, inset)), max(-rise, _crossing(points, i + 1, inset))
+        # A tip that ends in a point is round when it is grown.
+        low = w0 + mine if low_step > 0.0 or (i == 0 and mine < 0.0) else w0 - HAIR - (abs(inset) if low_step < 0.0 else below)
+        high = w1 - mine if high_step > 0.0 else w1 + HAIR + (abs(inset) if high_step < 0.0 else beyond)
         if w1 == points[-1][1]:
             high = top
         side = stage.radius - mine * math.hypot(1.0, stage.slope)
@@ -290,27 +303,50 @@ def _turn(points: tuple[tuple[float, float], ...], k: int) -> float:
 
 def share(points: tuple[tuple[float, float], ...], i: int) -> float:
     """By which share of the depth the side from point i to the next is moved in: less next to a re-entrant corner."""
-    corners = [i, i + 1]
+    first, last = i, i + 1
     # A corner on the other side of a step meets this side, too.
-    if i > 0 and points[i - 1][1] == points[i][1]:
-        corners.append(i - 1)
-    if i + 2 < len(points) and points[i + 2][1] == points[i + 1][1]:
-        corners.append(i + 2)
-    return min(math.cos(0.5 * min(0.0, _turn(points, k))) for k in corners)
+    while first > 0 and points[first - 1][1] == points[first][1]:
+        first -= 1
+    while last + 1 < len(points) and points[last + 1][1] == points[last][1]:
+        last += 1
+    return min(math.cos(0.5 * min(0.0, _turn(points, k))) for k in range(first, last + 1))
 
 
-def _overlap(points: tuple[tuple[float, float], ...], k: int, inset: float) -> float:
-    """How far a side that is moved in runs on past a re-entrant corner, up to where the other one begins."""
-    return max(0.0, inset) * math.tan(-0.5 * min(0.0, _turn(points, k)))
+def _crossing(points: tuple[tuple[float, float], ...], k: int, inset: float) -> float:
+    """At which height over a re-entrant corner, point k, the sides that meet there cross when moved in, mm; 0 at other corners.
+
+    Below it the lower one is the wider, above it the upper one: so far each runs on.
+    """
+    if inset <= 0.0 or _turn(points, k) >= 0.0:
+        return 0.0
+    (a, b), (c, d), (e, f) = points[k - 1], points[k], points[k + 1]
+    if d <= b or f <= d:
+        return 0.0
+    below, above = (c - a) / (d - b), (e - c) / (f - d)
+    back = [share(points, i) * math.hypot(1.0, slope) for i, slope in ((k - 1, below), (k, above))]
+    return inset * (back[1] - back[0]) / (above - below)
 
 
 def sharpest(points: tuple[tuple[float, float], ...], k: int, inset: float) -> float:
-    """By how much pieces of sides that meet at point k and are moved by `inset` hold too much there, mm."""
-    turn = _turn(points, k)
-    if turn <= 0.0:
-        return 0.0
-    if inset < 0.0:
-        return -inset * (1.0 / max(0.05, math.cos(0.5 * turn)) - 1.0)
-    # A step ends at its own depth, a side that leans at the corner's height.
-    step = points[k][1] in (points[k - 1][1], points[k + 1][1])
-    return 0.0 if step else inset * (1.0 - math.cos(turn))
+    """By how much pieces of sides that meet at point k and are moved out by `-inset` hold too much there, mm."""
+    turn = _turn(points, k) if k else math.atan2(points[1][1] - points[0][1], points[1][0] - points[0][0])
+    return -inset * (1.0 / max(0.05, math.cos(0.5 * turn)) - 1.0) if turn > 0.0 else 0.0
+
+
+def least_depth(points: tuple[tuple[float, float], ...], i: int, inset: float) -> float:
+    """How deep at least what the side from point i to the next holds lies below all sides, moved in for a depth `inset`, mm.
+
+    Its piece ends at the height of a corner, where it is deep by its own normal, not by that of the side beyond.
+    """
+    (r0, w0), (r1, w1) = points[i], points[i + 1]
+    least = mine = inset * share(points, i)
+    room = mine * math.hypot(1.0, (r1 - r0) / (w1 - w0))
+    for (a, low), (b, high) in pairwise([*points, (0.0, points[-1][1])]):
+        if low >= w1 + inset or high <= w0 - inset:
+            continue
+        if high > low:
+            least = min(least, room / math.hypot(1.0, (b - a) / (high - low)))
+        elif high < w0 or low > w1:
+            # A face across the axis, beyond a side that is shorter than the depth.
+            least = min(least, max(w0 - high, low - w1))
+    return least
