@@ -88,6 +88,13 @@ def test_no_wall_is_cut_deeper_than_the_tolerance_and_none_keeps_more(height, sh
     assert (np.abs(samples.point[rows, 0]) - side <= TOLERANCE + 1e-9).all()
 
 
+@pytest.mark.parametrize("share", [1e-3, 0.3, 0.7])
+def test_a_shank_as_wide_as_the_flutes_does_not_touch_a_wall_that_is_higher(share):
+    """It stands off by the tolerance at most, and less than that stays."""
+    result = judged(leaning(share * limit(20.0), 20.0), Cutter.parse("D8L60F5S8"))
+    assert verdicts(result).reached[within_groove(result)].all()
+
+
 @pytest.mark.parametrize("share", [0.5, 1.5])
 def test_a_machine_with_more_axes_reaches_no_less(share):
     part = leaning(share * limit(8.0), 8.0)

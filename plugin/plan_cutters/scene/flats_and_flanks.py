@@ -141,23 +141,23 @@ def on_the_flank(contacts: Contacts, face: Ints, rows: Rows, context: Context, v
     for flank in context.outer_tool.flanks:
         if not low - _WHOLE <= flank.tilt <= high + _WHOLE:
             continue
-        for at, axis in _axes(contacts, face, rows, flank, conditions):
+        for at, axis, whole in _axes(contacts, face, rows, flank, conditions):
             mine = verdicts.not_reached[at]
-            _on_flank(contacts, at[mine], axis[mine], flank, context, verdicts)
+            _on_flank(contacts, at[mine], axis[mine], flank, whole, context, verdicts)
         rows = rows[verdicts.not_reached[rows]]
 
 
 def _on_flank(
-    contacts: Contacts, rows: Rows, axis: Floats, flank: Flank, context: Context, verdicts: VerdictBuffer
-) -> None:  # fmt: skip
-    """The same with one axis (m, 3) at each."""
+    contacts: Contacts, rows: Rows, axis: Floats, flank: Flank, whole: bool, context: Context, verdicts: VerdictBuffer
+) -> None:
+    """The same with one axis (m, 3) at each; where the `whole` wall is within the tolerance, it may be kept off by that."""
     from plan_cutters.kernels.material import MAYBE_INSIDE, SURELY_INSIDE
     from plan_cutters.kernels.search.flank import FREE, NONE, along_flank
 
     conditions = context.conditions
     state, reason = np.zeros(len(rows), np.int8), np.full(len(rows), NO_REASON, np.uint8)
     shift = np.zeros((len(rows), 3))
-    away = np.unique([0.0, _AWAY * conditions.obstacles.triangles.chord_error])
+    away = np.array([0.0, _AWAY * conditions.obstacles.triangles.chord_error, conditions.tolerance])[: 3 if whole else 2]
 
     def tried(tool: Tool, solids: Any, within: float, some: Rows) -> None:
         def piece(which: Rows) -> int:
@@ -197,8 +197,12 @@ def _take(rows: Rows, axis: Floats, f: Floats, contacts: Contacts, context: Cont
     verdicts.rotation[rows] = np.rint(turn * (steps / (2.0 * np.pi))).astype(np.int32) % steps
 
 
-def _axes(contacts: Contacts, face: Ints, rows: Rows, flank: Flank, conditions: Conditions) -> Iterator[tuple[Rows, Floats]]:
-    """Axes that the machine holds with a flank along samples: those of some rows, and an axis (3,) for each, in turn."""
+def _axes(
+    contacts: Contacts, face: Ints, rows: Rows, flank: Flank, conditions: Conditions
+) -> Iterator[tuple[Rows, Floats, bool]]:
+    """Axes that the machine holds with a flank along samples, in turn: some rows, an axis (3,) for each, and whether all of what
+    lies along the flank there is within the tolerance of it.
+    """
     normal = contacts.normal
     plane = (np.abs(contacts.curvature[rows]) <= _PLANE).all(axis=1)
     for k, axis in enumerate(_special(conditions)):
@@ -207,9 +211,10 @@ def _axes(contacts: Contacts, face: Ints, rows: Rows, flank: Flank, conditions: 
         if k:
             # Up to the flank's own tilt its lower end was tried there; free-form faces hold some of these axes exactly.
             may &= (off > _WHOLE) & (plane | (off <= conditions.accuracy))
-        at, off = rows[may], off[may]
-        at = at[_lies_along(contacts, face[at], at, axis, off, flank, conditions)]
-        yield _turned(at, np.broadcast_to(axis, (len(at), 3)), contacts, conditions)
+        at, off = rows[may], np.abs(off[may])
+        whole = _wholly_along(contacts, face[at], at, axis, off, flank, conditions)
+        for some, within in ((at[whole], True), (at[~whole & (off <= conditions.accuracy)], False)):
+            yield (*_turned(some, np.broadcast_to(axis, (len(some), 3)), contacts, conditions), within)
     if flank.length <= 0.0:
         return
     # Along a flank the tool slides: at every axis that holds it exactly, not only at those where its corner touched in vain.
@@ -217,27 +222,28 @@ def _axes(contacts: Contacts, face: Ints, rows: Rows, flank: Flank, conditions: 
     kinematics = None if conditions.kinematics is None else conditions.kinematics.turning()[0]
     if kinematics is not None and len(kinematics.direction) < 2:
         for axes in _at_angle(normal[rows], cosine, kinematics):
-            yield _turned(rows, axes, contacts, conditions)
+            yield (*_turned(rows, axes, contacts, conditions), True)
         return
     for turn in conditions.postures.rotations.tolist():
         e1 = contacts.direction_max[rows]
         f = math.cos(turn) * e1 + math.sin(turn) * np.cross(normal[rows], e1)
         axes = cosine * normal[rows] + sine * f
         held = conditions.allows(axes)
-        yield rows[held], axes[held]
+        yield rows[held], axes[held], True
 
 
-def _lies_along(
+def _wholly_along(
     contacts: Contacts, face: Ints, rows: Rows, axis: Floats, off: Floats, flank: Flank, conditions: Conditions
 ) -> NDArray[np.bool_]:
-    """At which samples (m,) a flank lies along the face that is off its tilt by so much, rad: within the accuracy of the axes,
-    or because the face, from where it begins along the flank to where it ends, leaves it by no more than the tolerance. Of a
-    face that is higher than flutes under a narrower neck, as much lies along them as they are long.
+    """At which samples (m,) the face that is off the tilt of a flank by so much, rad, leaves it by no more than the tolerance,
+    from where it begins along the flank to where it ends.
+
+    Of a face that is higher than flutes under a narrower neck, as much lies along them as they are long.
     """
     from plan_cutters.kernels.linear.rulings import extents
 
-    lies = np.abs(off) <= conditions.accuracy
-    open_ = np.flatnonzero(~lies)
+    whole = off <= _WHOLE
+    open_ = np.flatnonzero(~whole)
     triangles = conditions.obstacles.triangles
     for number in np.unique(face[open_]).tolist():
         mine, own = open_[face[open_] == number], conditions.obstacles.rows_of([number])
@@ -250,8 +256,8 @@ def _lies_along(
         band = triangles.chord_error + conditions.tolerance
         extents(contacts.point[rows[mine]], ruling, n, triangles.vertex[own], band, low, high)
         long = np.minimum(high - low, flank.length or np.inf)
-        lies[mine] = long * np.sin(np.abs(off[mine])) <= conditions.tolerance
-    return lies
+        whole[mine] = long * np.sin(off[mine]) <= conditions.tolerance
+    return whole
 
 
 def _special(conditions: Conditions) -> Floats:
