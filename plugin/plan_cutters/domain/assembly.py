@@ -281,8 +281,8 @@ def _run_down(inset: float, band: Band, top: float) -> float:
     grown, slope = max(0.0, -band.inset), band.stage.slope
     wide = grown * (math.hypot(1.0, slope) + abs(slope))
     below = (inset**2 - grown**2 + wide**2) / (2.0 * (inset + grown))
-    beside = inset * (1.0 + math.sin(top)) - (inset + grown - wide) * math.cos(top)
-    return min(math.hypot(wide, inset) - grown, max(below, beside))
+    above = inset * (1.0 + math.sin(top)) - (inset + grown - wide) * math.cos(top)
+    return min(math.hypot(wide, inset) - grown, max(below, above))
 
 
 def _slack(cutter: Cutter, inset: float, bands: list[Band], kind: Kind) -> float:

@@ -340,12 +340,12 @@ def least_depth(points: tuple[tuple[float, float], ...], i: int, inset: float) -
     """
     (r0, w0), (r1, w1) = points[i], points[i + 1]
     least = mine = inset * share(points, i)
-    room = mine * math.hypot(1.0, (r1 - r0) / (w1 - w0))
+    inward = mine * math.hypot(1.0, (r1 - r0) / (w1 - w0))
     for (a, low), (b, high) in pairwise([*points, (0.0, points[-1][1])]):
         if low >= w1 + inset or high <= w0 - inset:
             continue
         if high > low:
-            least = min(least, room / math.hypot(1.0, (b - a) / (high - low)))
+            least = min(least, inward / math.hypot(1.0, (b - a) / (high - low)))
         elif high < w0 or low > w1:
             # A face across the axis, beyond a side that is shorter than the depth.
             least = min(least, max(w0 - high, low - w1))
