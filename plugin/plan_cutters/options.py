@@ -256,7 +256,7 @@ class Options:
         for cutter in self.judged:
             if not cutter.large_enough(self.tolerance):
                 raise OptionError(f"tolerance {self.tolerance:g} mm is too coarse for cutter {cutter.typed}")
-        object.__setattr__(self, "tilt", self.tilt or (0.0, largest_tilt(self.judged)))
+        object.__setattr__(self, "tilt", (0.0, largest_tilt(self.judged)) if self.tilt is None else self.tilt)
 
     def _check_numbers(self) -> None:
         """Every number within its limits."""
@@ -314,7 +314,7 @@ class Options:
         if self.unit is not None and not isinstance(self.unit, str):
             raise OptionError(f"unit must be one of {', '.join(UNITS)}, not {shown(self.unit)}")
         postures = self.postures
-        take(tilt=self.tilt and postures.tilt, rotation=postures.rotation, rotation_step=postures.step)
+        take(tilt=None if self.tilt is None else postures.tilt, rotation=postures.rotation, rotation_step=postures.step)
 
     @property
     def accuracy(self) -> float:
@@ -356,7 +356,8 @@ class Options:
     @property
     def postures(self) -> PostureRange:
         """The posture range to search."""
-        return PostureRange(self.tilt or PostureRange().tilt, self.rotation, self.rotation_step)
+        tilt = PostureRange().tilt if self.tilt is None else self.tilt
+        return PostureRange(tilt, self.rotation, self.rotation_step)
 
     @property
     def judged(self) -> tuple[Cutter, ...]:

@@ -121,7 +121,7 @@ def test_one_verified_sample_with_another_verdict_ends_it():
         verdict = verdicts.verdict.copy()
         verdict[at] = ACCESSIBLE
         return type(verdicts)(
-            verdict, *(getattr(verdicts, each) for each in ("axis", "tilt_direction", "tilt", "rotation", "reason"))
+            verdict, *(getattr(verdicts, each) for each in ("axis", "tilt_direction", "tilt", "rotation", "shift", "reason"))
         )
 
     mine, _, (_, followed, verified) = both(part_, lies)

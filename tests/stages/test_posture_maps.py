@@ -162,8 +162,8 @@ def test_stored_maps_answer_on_the_command_line(tmp_path):
     assert "no posture maps" in refused.stderr
 
 
-def horn(major=3.0, minor=8.0):
-    """A torus through its own axis: a few lines of STEP, one face, hundreds of thousands of triangles."""
+def horn(major=8.2, minor=8.0):
+    """A torus with hardly a hole: a few lines of STEP, one face, hundreds of thousands of triangles."""
     from OCP.BRepPrimAPI import BRepPrimAPI_MakeTorus
 
     return BRepPrimAPI_MakeTorus(major, minor).Shape()

@@ -110,8 +110,8 @@ def test_a_fixture_that_an_axis_limit_could_avoid_comes_second():
 
 
 def test_nothing_is_searched_where_nothing_could_be_taken_away(plate, monkeypatch):
-    calls, real = [], finding.search_postures
-    monkeypatch.setattr(finding, "search_postures", lambda *given, **more: calls.append(len(given[1])) or real(*given, **more))
+    calls, real = [], finding.search
+    monkeypatch.setattr(finding, "search", lambda *given, **more: calls.append(len(given[2])) or real(*given, **more))
     bare = plan(plate, cutters=["R13L40", "R2L30"], **HOW)
     assert bare.reaches["R13L40"].not_reached.any()
     assert not calls

@@ -31,7 +31,7 @@ def towards(part, cutter, tilt_direction, point=(0, 0, 0), **options):
 def kept(part, cutter, tilt_direction, expected, point=(0, 0, 0)):
     """To a tolerance: what is free holds in all of the range expected and beyond it by no more than that leaves."""
     turn = rotation(part, tilt_direction, point)
-    found = posture_map(part, point=point, cutter=cutter, rotations=[turn], tolerance=0.01)
+    found = posture_map(part, point=point, cutter=cutter, rotations=[turn], tolerance=0.01, tilt=(0.0, 0.5 * PI))
     (intervals,) = np.degrees(found.free)
     intervals = intervals[intervals[:, 1] - intervals[:, 0] > 0.02]
     assert intervals.shape == (1, 2), intervals

@@ -6,7 +6,7 @@ import pytest
 from OCP.BRep import BRep_Builder
 from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
 from OCP.BRepTools import BRepTools
-from OCP.Geom import Geom_SphericalSurface
+from OCP.Geom import Geom_Plane
 from OCP.gp import gp_Ax3, gp_Pln
 from OCP.Interface import Interface_Static
 from OCP.STEPCAFControl import STEPCAFControl_Controller
@@ -75,12 +75,12 @@ def test_the_rest_of_a_part_is_planned(tmp_path):
 
 def test_faces_without_area_or_edges_do_not_stop_the_rest(tmp_path):
     builder, edgeless = BRep_Builder(), TopoDS_Face()
-    builder.MakeFace(edgeless, Geom_SphericalSurface(gp_Ax3(), 3.0), TopLoc_Location(), 1e-6)
+    builder.MakeFace(edgeless, Geom_Plane(gp_Ax3()), TopLoc_Location(), 1e-6)
     speck = BRepBuilderAPI_MakeFace(gp_Pln(), 0.0, 1e-6, 0.0, 1e-6).Face()
     write_brep(compound(box(at=(30, 0, 0)), speck, edgeless), tmp_path / "part.brep")
     done = run("part.brep", "--faces", "all", "--cutter", "R3L40", "--grid", "4", "--formats", "json", cwd=tmp_path)
     assert done.returncode == 4, done.stderr
     assert "Not judged: F7 (has no area)." in done.stdout
-    assert "Not judged: F8 (has no edges)." in done.stdout
+    assert "Not judged: F8 (has no edges and no end: bound it)." in done.stdout
     plan = json.loads((tmp_path / "part-plan" / "plan.json").read_text())
     assert plan["samples"]["count"] == 96
