@@ -81,8 +81,12 @@ class PostureRange:
         """(k,) rotations, rad."""
         first, last = self.rotation
         spans = math.ceil((last - first) / self.step - _ROUNDING)
-        whole = last - first > _FULL - _ROUNDING
-        return np.linspace(first, last, max(spans, 1) if whole else spans + 1, endpoint=not whole)
+        return np.linspace(first, last, max(spans, 1) if self.full_turn else spans + 1, endpoint=not self.full_turn)
+
+    @property
+    def full_turn(self) -> bool:
+        """Whether its rotations are a whole turn."""
+        return self.rotation[1] - self.rotation[0] > _FULL - _ROUNDING
 
     @property
     def upright(self) -> bool:

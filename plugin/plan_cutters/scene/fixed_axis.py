@@ -73,7 +73,7 @@ def _tested(
     if not len(held) or not len(rows):
         return way, 0, tilt_direction
     tool, solids, contacts = context.outer, conditions.obstacles.solids, contacts_of(samples)
-    full_turn = conditions.postures.rotation[1] - conditions.postures.rotation[0] > 2.0 * np.pi - _END
+    full_turn = conditions.postures.full_turn
     about = max(FLAT, conditions.accuracy), conditions.tolerance if full_turn else -1.0, full_turn
 
     def tested(piece: NDArray[np.int64]) -> int:

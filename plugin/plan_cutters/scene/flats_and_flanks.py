@@ -24,7 +24,7 @@ from plan_cutters.scene.threads import Progress, in_chunks
 from plan_cutters.scene.work import Work
 
 Rows = NDArray[np.int64]
-#: Ranges of rotations that are less than a whole turn by no more are one; tilts this close to an end of a range are on it, rad.
+#: Tilts and rotations this close to an end of a range are on it, rad.
 _WHOLE = 1e-9
 #: Places of the axis that are nearer than this to what is certainly in the way are none, mm: no machine holds them.
 _NO_PLACE = 1e-3
@@ -70,7 +70,7 @@ def on_the_flat(contacts: Contacts, rows: Rows, context: Context, verdicts: Verd
         Read and written.
     """
     conditions = context.conditions
-    if not _whole_turn(conditions):
+    if not conditions.postures.full_turn:
         # Rotations that are limited say which side of the flat touches.
         return
     rows = rows[verdicts.reason[rows] != INSIDE]
@@ -309,17 +309,12 @@ def _turned(rows: Rows, axis: Floats, contacts: Contacts, conditions: Conditions
     known = np.isfinite(axis).all(axis=1)
     rows, axis = rows[known], axis[known]
     held = conditions.allows(axis) & (np.abs((axis * contacts.normal[rows]).sum(axis=1)) < math.cos(PARALLEL))
-    if not _whole_turn(conditions):
+    if not conditions.postures.full_turn:
         first, last = conditions.postures.rotation
         f = _tilt_direction(axis, contacts.normal[rows], contacts.direction_max[rows])
         turn = rotations_of(contacts.normal[rows], contacts.direction_max[rows], f)
         held &= np.remainder(turn - first + _WHOLE, 2.0 * np.pi) <= last - first + 2.0 * _WHOLE
     return rows[held], axis[held]
-
-
-def _whole_turn(conditions: Conditions) -> bool:
-    first, last = conditions.postures.rotation
-    return bool(last - first > 2.0 * np.pi - _WHOLE)
 
 
 def _angle(length: float, tolerance: float) -> float:
