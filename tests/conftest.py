@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-from tests.support.nightly import LIST, rules, waits
+from tests.support import record, seconds, slow
 from tests.support.skips import strict
 
 # A machine that is busy with something else is no fault; what else holds here, as in CI, stays.
@@ -36,6 +36,24 @@ def _rank(path):
     stem, folder = path.stem.removeprefix("test_"), path.parent.name
     order = [stem == COMPILING, folder in BESIDE, *(stem == each for each in FIRST), folder not in LAST, True]
     return order.index(True)
+
+
+def pytest_addoption(parser):
+    parser.addoption("--slow", default="none", help="which slow tests take part: none, all, commit, or a part such as 3/11")
+    parser.addoption("--record", type=Path, help="page that a whole run is written into")
+
+
+def pytest_configure(config):
+    config.slow_parts = slow.chosen(config.getoption("slow"))
+    seconds.register(config)
+    if (page := config.getoption("record")) and not hasattr(config, "workerinput"):
+        if config.getoption("slow") != "all" or config.option.keyword or config.option.markexpr or config.args != ["tests"]:
+            raise pytest.UsageError("--record: it is for a whole run, with --slow all and no selection")
+        config.pluginmanager.register(record.Record(page), "record of the run")
+
+
+def pytest_report_header(config):
+    return f"slow tests: {config.getoption('slow')}"
 
 
 def pytest_sessionstart():
@@ -69,11 +87,11 @@ def pytest_collection_finish():
 
 
 @pytest.hookimpl(tryfirst=True)
-def pytest_collection_modifyitems(items):
-    late = rules(LIST.read_text())
+def pytest_collection_modifyitems(config, items):
+    whole = not any("::" in each for each in config.args)
+    items[:], left = slow.select(items, config.slow_parts, whole)
+    config.hook.pytest_deselected(items=left)
     for item in items:
-        if waits(late, item.nodeid.removeprefix("tests/")):
-            item.add_marker(pytest.mark.slow)
         for value in item.callspec.params.values() if hasattr(item, "callspec") else ():
             if isinstance(value, Path) and not value.exists():
                 item.add_marker(pytest.mark.skip(reason=f"the real file {value.name} is not at hand (shared/data/cad)"))

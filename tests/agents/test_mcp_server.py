@@ -127,6 +127,7 @@ def test_the_list_of_tools_is_short(server):
     assert set(shared) < set(server.tools["plan_part"].input_schema["properties"])
 
 
+@pytest.mark.slow("starts servers or clusters")
 def test_two_calls_work_at_once_and_tell_how_far_they_are(server, planned):
     told = [name for name, _, _ in server.told]
     assert set(told) >= {"plan_part", "posture_map"}
@@ -137,6 +138,7 @@ def test_two_calls_work_at_once_and_tell_how_far_they_are(server, planned):
     assert any("judging" in words for _, _, words in server.told)
 
 
+@pytest.mark.slow("plans whole parts")
 def test_a_plan_is_what_its_file_says(server, planned):
     found, _ = planned
     plan = json.loads((server.root / "out/plan.json").read_text())
@@ -230,6 +232,7 @@ def test_a_second_call_takes_what_the_first_one_made_of_the_part(server):
     assert before.items() <= stored().items()
 
 
+@pytest.mark.slow("plans each proposed clamping")
 def test_a_map_is_answered_with_its_picture(planned):
     _, reply = planned
     found = reply.structured_content
@@ -273,6 +276,7 @@ def test_why_not_and_what_would_help_is_one_call(server):
         assert word in found["told"]
 
 
+@pytest.mark.slow("starts servers or clusters")
 def test_cutters_are_compared_on_the_faces_on_which_they_differ(server):
     found = server.call("compare_cutters", part=PEAKS, cutters=["R12L90", "R4L90"], grid=7)
     assert [each["id"] for each in found["cutters"]] == ["R4L90", "R12L90"]
@@ -281,6 +285,7 @@ def test_cutters_are_compared_on_the_faces_on_which_they_differ(server):
     assert "one cutter is compared with nothing" in server.refused("compare_cutters", part=PEAKS, cutters=["R4L90"])
 
 
+@pytest.mark.slow("starts servers or clusters")
 def test_a_picture_is_rendered_and_nothing_is_left(server):
     before = sorted(os.listdir(server.root))
     reply = server.begin("render", part=GROOVE, **HELD).result(200)
@@ -353,7 +358,7 @@ def test_a_cancelled_call_ends_its_process_and_leaves_no_file(server):
     assert server.call("explain_sample", plan="out/plan.json", cutter="R6", face="F1")["format_version"] == 1
 
 
-@pytest.mark.slow
+@pytest.mark.slow("starts a server and ends a process of it")
 @pytest.mark.skipif(not Path("/proc/self/cmdline").exists(), reason="processes are looked up as Linux lists them")
 def test_a_crash_of_the_kernel_is_an_error_of_one_call(server):
     call = server.begin("plan_part", part=GROOVE, cutters=["R6L80"], grid=61)
@@ -365,7 +370,7 @@ def test_a_crash_of_the_kernel_is_an_error_of_one_call(server):
     assert server.call("plan_part", part=GROOVE, cutters=["R6L80"], grid=3)["selected"] == "R6L80"
 
 
-@pytest.mark.slow
+@pytest.mark.slow("judges a map of many postures")
 def test_a_point_of_a_part_is_explained_with_all_its_postures(server):
     found = server.call("explain_sample", part=PEAKS, cutter="R8L90", point=[0, 0, -21.9], within_mm=5, grid=9)
     assert found["postures"]["face"] == found["face"] == "F1"
@@ -424,6 +429,7 @@ def test_a_client_that_is_killed_ends_the_server_without_a_word(tmp_path):
         assert process.stderr.read() == ""
 
 
+@pytest.mark.slow("starts servers or clusters")
 def test_what_a_file_in_the_root_names_outside_says_nothing(server):
     """A library's bits, what a machine includes, and what a STEP file refers to: each leads out of the root."""
     outside = server.root.parent / f"{server.root.name}-outside"
@@ -455,6 +461,7 @@ def test_what_a_file_in_the_root_names_outside_says_nothing(server):
 STEPPED = {"cutters": ["R3L60"], "machine": "trunnion-ac", "feed_mm_min": 1000.0, "spacing_mm": 8.0}
 
 
+@pytest.mark.slow("starts servers or clusters")
 def test_steps_of_an_answer_are_edited_and_judged_again(server):
     """What the first answer proposes is handed back: the same is finished; on fewer faces, a step does just these."""
     first = server.answer(server.begin("plan_part", part=GROOVE, operations="fastest", **STEPPED))
@@ -472,6 +479,7 @@ def test_steps_of_an_answer_are_edited_and_judged_again(server):
     assert step["area_mm2"] == step["alone_mm2"] == pytest.approx(step["own"]["asked_mm2"])
 
 
+@pytest.mark.slow("starts servers or clusters", only=("process6",))
 @pytest.mark.parametrize(
     ("process", "said"),
     [

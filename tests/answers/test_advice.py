@@ -145,6 +145,7 @@ def slotted():
     return read_part(cut(box(60, 60, 40), box(5, 40, 20, at=(28, 10, 20))))
 
 
+@pytest.mark.slow("plans again for each answer")
 def test_with_a_proposed_setup_the_option_names_it(tmp_path):
     """Another cutter might make `auto` choose otherwise: the files of the setups, their tables in them, stand in the option."""
     files = [tmp_path / f"setup-{number}.toml" for number in (1, 2)]
@@ -153,6 +154,7 @@ def test_with_a_proposed_setup_the_option_names_it(tmp_path):
     assert sorted(file.name for file in tmp_path.iterdir()) == ["plan.json", "process.toml", "setup-1.toml", "setup-2.toml"]
 
 
+@pytest.mark.slow("plans again for each answer")
 def test_with_several_proposed_setups_in_no_file_no_option_is_said_that_would_not_keep_its_word():
     """Another cutter might make `auto` choose otherwise, and no option says that each setup stands on a table of its own."""
     result = asked(slotted(), *SLOT)
@@ -172,7 +174,7 @@ HARD = {
 }  # fmt: skip
 
 
-@pytest.mark.slow
+@pytest.mark.slow("plans real parts for each answer")
 @pytest.mark.parametrize("file", real(*HARD), ids=lambda path: path.stem)
 def test_what_a_bracket_says_is_true_on_real_parts(file, tmp_path):
     assert brackets(read_part(file), *HARD[f"hard/{file.name}"], folder=tmp_path) > 0

@@ -26,6 +26,7 @@ def answered():
     return plan(PART, cutters=HELD, grid=15, area_budget=0, answers="all,stick-out-map", length_over_radius=8)
 
 
+@pytest.mark.slow("plans again for each answer")
 def test_the_plan_has_all_that_was_asked(answered, tmp_path):
     document, n = answered.plan, len(answered.samples)
     assert document.effective.answers == ["stick-out", "stick-out-map", "radius", "mend"]

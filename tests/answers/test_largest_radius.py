@@ -169,6 +169,7 @@ def test_a_sample_within_a_body_is_reached_by_no_radius():
 # The slow twin, and what is claimed of each sample
 
 
+@pytest.mark.slow("plans again for each answer", only=("4",))
 @pytest.mark.parametrize("shape", ENDS)
 @pytest.mark.parametrize("seed", [1, 4])
 def test_a_judge_of_every_radius_agrees(shape, seed):
@@ -219,6 +220,7 @@ def test_the_postures_told_hold_the_tolerance(shape):
     assert max(deepest) > 0.5 * 0.02
 
 
+@pytest.mark.slow("plans again for each answer", only=("flat",))
 @pytest.mark.parametrize("shape", ENDS)
 def test_no_smaller_radius_fails(shape):
     stands = ready(patch(3, height=14.0), grid=19, tolerance=0.02)

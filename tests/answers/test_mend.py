@@ -326,6 +326,7 @@ def wavy(request):
     return asked(part, cutter, grid=25, machine="tilt:35", tolerance=0.05, rotation_step=0.35)
 
 
+@pytest.mark.slow("plans again for each answer", but=("1",))
 def test_each_change_holds_in_a_plan_and_a_step_before_it_does_not(wavy):
     found, _, planned = wavy
     assert feasible(planned) is False
@@ -376,6 +377,7 @@ def test_batches_are_all_rows_once():
         assert np.array_equal(np.sort(np.concatenate([np.zeros(0, np.int64), *batches(some)])), some)
 
 
+@pytest.mark.slow("plans again for each answer", only=("peaks",))
 @pytest.mark.parametrize(
     ("name", "cutter", "machine"),
     [

@@ -172,6 +172,7 @@ TRIED = {
 }
 
 
+@pytest.mark.slow("plans again for each answer", only=("peaks",))
 @pytest.mark.parametrize("name", TRIED)
 def test_each_advice_that_is_followed_is_true(name):
     """Each step of each cutter, typed as it is told, leaves what it says."""
@@ -195,7 +196,7 @@ REAL = {
 }
 
 
-@pytest.mark.slow
+@pytest.mark.slow("plans real parts twice")
 @pytest.mark.parametrize("file", real(*REAL), ids=lambda path: path.stem)
 def test_the_first_advice_is_true_on_real_parts(file):
     """With default spacing, so that another cutter may bring other samples: within half a point."""
@@ -224,6 +225,7 @@ def test_samples_inside_another_body_are_out_of_the_question():
     assert any(step.lost_after < 0.5 * step.lost_before for step in steps_of(result))
 
 
+@pytest.mark.slow("plans again for each answer")
 def test_the_nearest_three_are_asked_about_and_the_others_are_named():
     words = [word for r in (3, 4, 5, 6, 8) for word in ("--cutter", f"R{r}L60")]
     part = read_part(SAMPLES / "v_groove.step")

@@ -63,6 +63,7 @@ def test_the_setup_file_is_the_same_clamping_again(held, tmp_path):
     assert np.array_equal(held.reaches[name].verdict, again.reaches[name].verdict)
 
 
+@pytest.mark.slow("plans each proposed clamping", but=("block",))
 @pytest.mark.parametrize(
     ("shape", "taken", "why"),
     [
@@ -82,6 +83,7 @@ def test_what_grips_the_part_is_proposed_and_a_table_where_nothing_does(shape, t
     assert bool(first.hidden_mm2) == bool(first.grips) == bool(first.how_held) == (first.clamping != "table")
 
 
+@pytest.mark.slow("plans each proposed clamping")
 def test_a_block_lies_on_its_largest_faces():
     """Upright it would show more of itself in each setup, and as much in both: it lies low all the same."""
     found = plan(box(80, 50, 40), **HOW)
@@ -96,6 +98,7 @@ def test_a_block_lies_on_its_largest_faces():
     assert f"what it hides of {', '.join(said.setups[0].left_for[0].faces)} is machined in setup 2" in proposal(found.plan)[1]
 
 
+@pytest.mark.slow("plans each proposed clamping")
 def test_of_table_vise_and_chuck_one_may_be_requested():
     said = plan(box(), **HOW, fixtures="table").plan.setup_proposal
     assert {each.clamping for each in said.setups} == {"table"}
@@ -137,6 +140,7 @@ def test_setups_named_behind_auto_bring_what_holds_them(tmp_path, held):
         assert done.stderr.count("--fixture chuck is left out") == 1
 
 
+@pytest.mark.slow("plans each proposed clamping")
 def test_a_vise_stays_where_what_is_named_behind_auto_says_nothing_of_it(tmp_path):
     bare = tmp_path / "bare.toml"
     bare.write_text('unit = "mm"\naxis = [0, 0, 1]\n', encoding="utf-8")

@@ -15,6 +15,8 @@ from plan_cutters.stages.judge import judge
 from tests.support.cad_parts import box
 from tests.support.two_setups import DOWN, HOW, LOWER, UP, faces_at, name_of, two
 
+pytestmark = pytest.mark.slow("plans again for each answer", but=("test_the_largest_radius",))
+
 TABLE = (Fixture.parse("table"),)
 
 

@@ -109,6 +109,7 @@ def test_each_bad_part_of_a_manifest_is_one_line_and_the_others_go_on(batch, par
     ]
 
 
+@pytest.mark.slow("starts servers or clusters", only=("words6",))
 @pytest.mark.parametrize(
     ("words", "said"),
     [
@@ -173,6 +174,7 @@ def finished(parts, workers="2"):
     return {row["name"]: row["status"] for row in rows}
 
 
+@pytest.mark.slow("starts servers or clusters")
 def test_a_killed_client_leaves_nothing_and_is_gone_on_with(parts):
     def one_is_done(client):
         ends = time.monotonic() + 120
@@ -189,7 +191,7 @@ def test_a_killed_client_leaves_nothing_and_is_gone_on_with(parts):
     assert set(statuses) == {"a", "b", "c"}
 
 
-@pytest.mark.slow
+@pytest.mark.slow("starts a cluster and ends it, twenty times")
 @pytest.mark.parametrize("seed", range(20))
 def test_kills_at_random_moments_lose_nothing(parts, seed):
     chance = random.Random(seed)

@@ -90,6 +90,7 @@ def test_a_part_that_does_not_get_the_cluster_judges_by_itself(ready, running, t
         other.release()
 
 
+@pytest.mark.slow("starts servers or clusters")
 def test_a_cluster_that_is_lost_on_the_way_costs_nothing(ready, tmp_path):
     with LocalCluster(n_workers=1, processes=False, dashboard_address=":0") as mortal:
         lent = SharedCluster(Offer(mortal.scheduler_address, str(tmp_path / "turn"), str(tmp_path / "said")), large=0)
@@ -107,7 +108,7 @@ def test_a_task_offers_the_cluster_that_it_runs_on(running, tmp_path):
         assert client.submit(_offered, tmp_path, pure=False).result().scheduler == running
 
 
-@pytest.mark.slow
+@pytest.mark.slow("starts a cluster")
 def test_two_large_parts_on_one_thread_do_not_wait_for_each_other():
     """The first gives its place away; the other one has the cluster after it, or judges by itself."""
     asked = {"cutters": "R6L80", "grid": 200, "area_budget": 0}

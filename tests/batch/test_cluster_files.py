@@ -94,7 +94,7 @@ def test_the_manifest_names_what_it_has(documents):
         assert {each["name"] for each in container.get("volumeMounts", [])} == volumes
 
 
-@pytest.mark.slow
+@pytest.mark.slow("starts a cluster")
 def test_the_script_plans_parts_where_srun_is_a_stand_in(tmp_path):
     """`srun` begins as many processes on this machine; all else is as on a cluster."""
     tools = tmp_path / "venv/bin"

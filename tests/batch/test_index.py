@@ -335,6 +335,7 @@ def test_rows_are_filtered_by_words_and_by_verdict_with_keys_alone(page):
     assert page.inner_text("#status") == "0 of 6 parts are shown."
 
 
+@pytest.mark.slow("runs a batch", but=("390-light",))
 @pytest.mark.parametrize("scheme", ["light", "dark"])
 @pytest.mark.parametrize("width", [1366, 390])
 def test_axe_finds_nothing_in_the_index(browser, folder, width, scheme):
@@ -363,6 +364,7 @@ def test_without_scripts_every_row_is_there(browser, folder):
     context.close()
 
 
+@pytest.mark.slow("opens a browser")
 def test_ten_thousand_rows_open_at_once(browser, tmp_path):
     rows = [ROWS[k % 5].model_copy(update={"name": f"part {k}"}) for k in range(10_000)]
     (tmp_path / "index.html").write_bytes(written(rows)["index.html"])

@@ -42,6 +42,7 @@ def planned(folder, part=PART, **asked):
     return result, judged, kept.faults
 
 
+@pytest.mark.slow("runs a batch", only=("folder",))
 @pytest.mark.parametrize("where", ["folder", "memory"])
 def test_the_same_plan_again_judges_nothing_and_is_the_same(tmp_path, where):
     folder = tmp_path / "kept" if where == "folder" else f"memory://{tmp_path.name}"
@@ -271,6 +272,7 @@ FORGERIES = {
 }  # fmt: skip
 
 
+@pytest.mark.slow("starts servers or clusters")
 @pytest.mark.parametrize("forgery", FORGERIES)
 def test_verdicts_that_cannot_be_of_these_samples_are_not_taken(tmp_path, forgery):
     """With their checksum made anew: whoever may write there may write anything, but not nonsense."""

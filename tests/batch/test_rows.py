@@ -103,6 +103,7 @@ def test_a_ground_holds_no_shape_of_the_kernel(ready):
     assert b"cad_io.part.part" not in packed  # a Part would bring its shape
 
 
+@pytest.mark.slow("starts servers or clusters")
 def test_a_plan_is_the_same_with_its_area_bound_and_other_setups_and_fixtures(client, tmp_path):
     asked = ASKED | {"grid": 25, "other_setups": [(0, 1, 1)], "fixtures": "table"}
     one = run(PART, Options.of(asked), Clock())
@@ -191,7 +192,7 @@ def test_losing_workers_for_ever_is_an_error(client, ready, monkeypatch):
         DistributedJudge(client, large=0)(ready, ready.cutters[0])
 
 
-@pytest.mark.slow
+@pytest.mark.slow("starts a cluster")
 def test_a_worker_that_is_killed_costs_nothing(ready, single):
     """Real processes: bytes travel, and one of two workers is killed while it judges."""
     with (
@@ -211,7 +212,7 @@ def test_a_worker_that_is_killed_costs_nothing(ready, single):
             time.sleep(0.1)
 
 
-@pytest.mark.slow
+@pytest.mark.slow("starts a cluster")
 def test_a_scheduler_that_is_killed_while_blocks_are_on_it_is_one_line(ready, tmp_path):
     """A process of its own, killed once its tasks show that a worker judges; nothing waits for it for ever."""
     file = tmp_path / "scheduler.json"

@@ -143,6 +143,7 @@ def test_a_lost_worker_loses_nothing_and_leaves_nothing(client, tmp_path):
     assert alive == []
 
 
+@pytest.mark.slow("starts servers or clusters")
 def test_from_memory_to_memory(client):
     fs = fsspec.filesystem("memory")
     fs.pipe_file("/shelf/a.step", GROOVE)
@@ -157,6 +158,7 @@ def test_from_memory_to_memory(client):
         fs.rm("/", recursive=True)
 
 
+@pytest.mark.slow("starts servers or clusters")
 def test_plan_many_gives_plans_of_shapes_and_paths(client):
     from cad_io.kernel.components import corner
 
@@ -198,6 +200,7 @@ def _half(task):
     return task / 2
 
 
+@pytest.mark.slow("starts servers or clusters")
 def test_what_is_in_flight_is_bounded_and_an_error_is_not_tried_again(client):
     class Counted:
         most = 0
@@ -257,6 +260,7 @@ def test_a_worker_that_can_plan_nothing_is_left_out_and_fails_no_part(client):
     assert {each.row.status for each in found} == {"failed"}
 
 
+@pytest.mark.slow("starts servers or clusters")
 def test_no_scheduler_is_one_line_within_seconds(tmp_path):
     began = time.monotonic()
     for address in ("tcp://127.0.0.1:1", str(tmp_path / "none.json"), "nonsense://x:1"):
@@ -277,6 +281,7 @@ def test_workers_by_cores_and_memory():
     assert cluster.workers_of(None, 1e15, 1)[0] == 1
 
 
+@pytest.mark.slow("starts servers or clusters")
 def test_what_another_version_planned_is_not_taken(tmp_path, monkeypatch):
     """Neither by a batch nor, whose keys are the same, by `changed`."""
     from plan_cutters.batch import work as works

@@ -53,6 +53,7 @@ def names(store):
     return sorted(path.removeprefix(root).strip("/") for path in fs.find(root))
 
 
+@pytest.mark.slow("runs a batch", only=("s3",))
 def test_a_part_is_done_when_its_marker_says_so(store):
     token = store.begin()
     assert store.seen(token)

@@ -104,6 +104,7 @@ def test_words_and_blank_lines_change_nothing(sources):
     assert looked(sources, names) == before
 
 
+@pytest.mark.slow("copies the sources for each change", but=("mask",))
 @pytest.mark.parametrize(("name", "old", "new"), [
     (SEARCH, "_FINEST = 1e-5", "_FINEST = 1e-6"),
     (HIT, "return", "1 + 1\n    return"),

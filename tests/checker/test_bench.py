@@ -105,10 +105,11 @@ def peaks():
     return part, cells, cells.add([Face(part, 1, "F1")])
 
 
+@pytest.mark.slow("checks a plan many times", only=("bull",))
 @pytest.mark.parametrize(
     "cutter",
     [
-        pytest.param(each, marks=[pytest.mark.slow] * (name not in _QUICK), id=name)
+        pytest.param(each, marks=[pytest.mark.slow("looks at points all over the surface")] * (name not in _QUICK), id=name)
         for each, name in zip(CUTTERS, NAMES, strict=True)
     ],
 )
@@ -149,6 +150,7 @@ def test_a_check_that_has_no_time_decides_nothing(peaks):
     assert not np.isin(found.verdict, (FREE, MET)).any()
 
 
+@pytest.mark.slow("checks a plan many times", but=("words2",))
 @pytest.mark.parametrize("words", [
     {"part": "samples/pocket_top.step", "cutters": ["R3L40rc1F12S3"], "holder": "er16",
      "fixtures": ["table", "box:10,10,25@-12,5,0"], "faces": "all", "grid": 5},

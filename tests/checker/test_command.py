@@ -23,6 +23,7 @@ def checked(folder: Path):
     return run(PART, *TYPED, "--check-operations", str(folder / "plan.json"), cwd=folder)
 
 
+@pytest.mark.slow("checks a plan many times")
 def test_a_plan_that_holds_ends_with_0(copied):
     done = checked(copied)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -30,6 +31,7 @@ def test_a_plan_that_holds_ends_with_0(copied):
     assert "not checked: plans[].operations[].proved_share" in " ".join(done.stdout.split())
 
 
+@pytest.mark.slow("checks a plan many times")
 def test_a_forged_plan_ends_with_1(copied):
     document = json.loads((copied / "plan.json").read_text())
     document["operations"]["plans"][0]["operations"][0]["angles_deg"] = {"C": 0.0, "A": 45.0}

@@ -11,12 +11,11 @@ from plan_cutters.checker.check import check
 from plan_cutters.checker.leaves import UNCHECKED, leaves, pattern
 from plan_cutters.plan_file.operations import OperationsEntry
 from tests.support.forging import forged, put
-from tests.support.nightly import NIGHTLY
 
 #: Entries for which the checker puts many tools down.
 _SLOW = ("plans[].operations[].clearance_mm", "fewest.alone")
 #: Entries of one kind that are forged, each in turn.
-_OF_A_KIND = 4 if NIGHTLY else 1
+_OF_A_KIND = [1, pytest.param(4, marks=pytest.mark.slow("forges four entries of each kind"))]
 
 
 def schema_patterns(schema, part, path=""):
@@ -65,6 +64,7 @@ _OF_PATTERNS = "How many samples of a pattern were moved, followed or verified i
 _IN_TIME = {"plans[].operations[].clearance_mm", "fewest.alone"}
 
 
+@pytest.mark.slow("checks a plan many times")
 def test_what_is_written_holds(written):
     answer = found(written)
     assert answer.holds, "\n".join(answer.lines)
@@ -97,12 +97,14 @@ def _kinds():
     """Each entry that a plan may have; those for which many tools are put down are slow."""
     schema = OperationsEntry.model_json_schema()
     return [
-        pytest.param(kind, marks=pytest.mark.slow) if kind in _SLOW else kind for kind in sorted(schema_patterns(schema, schema))
+        pytest.param(kind, marks=pytest.mark.slow("puts down many tools")) if kind in _SLOW else kind
+        for kind in sorted(schema_patterns(schema, schema))
     ]
 
 
+@pytest.mark.parametrize("of_a_kind", _OF_A_KIND)
 @pytest.mark.parametrize("kind", _kinds())
-def test_a_forged_entry_is_found_or_listed_as_unchecked(written, kind):
+def test_a_forged_entry_is_found_or_listed_as_unchecked(written, kind, of_a_kind):
     of_kind = defaultdict(list)
     for path, value in leaves(written.document["operations"]):
         of_kind[pattern(path)].append((path, value))
@@ -111,7 +113,7 @@ def test_a_forged_entry_is_found_or_listed_as_unchecked(written, kind):
         # An entry that this plan does not have: nothing else is left unforged.
         assert kind in UNCHECKED
         return
-    many = min(2, _OF_A_KIND) if kind in _IN_TIME else _OF_A_KIND
+    many = min(2, of_a_kind) if kind in _IN_TIME else of_a_kind
     picked = {*np.linspace(0, len(every) - 1, many).astype(int).tolist()}
     # What is unchecked whatever is put down needs no tool put down.
     seconds = 0.0 if kind in {*UNCHECKED} - _IN_TIME else 1e6
@@ -136,7 +138,7 @@ def test_a_list_that_is_cut_is_found(written, name):
     assert not found(written, document).holds
 
 
-@pytest.mark.slow
+@pytest.mark.slow("checks a plan once for each array and alteration")
 def test_each_array_that_is_altered_is_found(written):
     for name, array in written.arrays["operations.npz"].items():
         for how in ("cut", "nan", "kind", "gone", "one"):
@@ -167,6 +169,7 @@ def test_samples_that_are_moved_are_found(written):
 
 
 class TestTheForgeriesOfTheTrial:
+    @pytest.mark.slow("checks a plan many times")
     def test_candidates_that_are_cut(self, written):
         document, arrays = written.copies()
         forged_ = arrays["operations.npz"]
@@ -180,6 +183,7 @@ class TestTheForgeriesOfTheTrial:
         assert not answer.holds
         assert any("deg from a candidate" in each.words and each.holds is False for each in answer.findings)
 
+    @pytest.mark.slow("checks a plan many times")
     def test_found_and_at_least_of_50(self, written):
         document, _ = written.copies()
         few = document["operations"]["fewest"]
@@ -187,6 +191,7 @@ class TestTheForgeriesOfTheTrial:
         few["proof"] = "branch and bound"
         assert not found(written, document).holds
 
+    @pytest.mark.slow("checks a plan many times")
     def test_more_chosen_than_the_plan_needs(self, written):
         """At least 50 by branch and bound, with 50 chosen: the plan itself does with fewer."""
         document, arrays = written.copies()
@@ -201,6 +206,7 @@ class TestTheForgeriesOfTheTrial:
         answer = found(written, document, arrays)
         assert any("it finishes all with" in each.words and each.holds is False for each in answer.findings)
 
+    @pytest.mark.slow("checks a plan many times", only=("clearance",))
     @pytest.mark.parametrize(
         ("word", "value"),
         [("frame", {"origin": [0.0, 0.0, 0.0], "x": [0.6, 0.8, 0.0], "z": [0.0, 0.0, 1.0]}), ("clearance_mm", 50.0),
@@ -214,6 +220,7 @@ class TestTheForgeriesOfTheTrial:
         one[word] = value
         assert not found(written, document).holds
 
+    @pytest.mark.slow("checks a plan many times")
     @pytest.mark.parametrize("word", ["proved_share", "approaches_proved"])
     def test_what_is_proved_between_samples_is_listed_as_unchecked(self, written, word):
         """Forged alone it contradicts the plan's own sum; forged in both places it is not found, and the answer says so."""
@@ -228,6 +235,7 @@ class TestTheForgeriesOfTheTrial:
         assert f"plans[0].operations[0].{word}" in answer.entries.unchecked
         assert any(line.startswith("not checked:") and word in line for line in answer.lines)
 
+    @pytest.mark.slow("checks a plan many times")
     def test_at_least_any_and_candidates(self, written):
         document, _ = written.copies()
         document["operations"]["fewest"]["at_least_any"] = 50
@@ -236,6 +244,7 @@ class TestTheForgeriesOfTheTrial:
         document["operations"]["fewest"]["candidates"] = 10**6
         assert not found(written, document).holds
 
+    @pytest.mark.slow("checks a plan many times")
     @pytest.mark.parametrize("shares", [[0.1], [1.2], [0.9, 0.8]])
     def test_a_curve(self, written, shares):
         document, _ = written.copies()
@@ -243,23 +252,27 @@ class TestTheForgeriesOfTheTrial:
             step["share"] = share
         assert not found(written, document).holds
 
+    @pytest.mark.slow("checks a plan many times")
     def test_a_lean(self, written):
         document, arrays = written.copies()
         lean, label = arrays["operations.npz"]["lean"], arrays["operations.npz"]["operation"]
         lean[np.flatnonzero(label == 0)] *= -1.0
         assert not found(written, document, arrays).holds
 
+    @pytest.mark.slow("checks a plan many times")
     def test_no_plans(self, written):
         document, _ = written.copies()
         document["operations"]["plans"] = []
         assert not found(written, document).holds
 
+    @pytest.mark.slow("checks a plan many times")
     def test_plans_that_are_renamed(self, written):
         document, _ = written.copies()
         for plan, name in zip(document["operations"]["plans"], ["fastest", "fewest"], strict=False):
             plan["name"] = name
         assert not found(written, document).holds
 
+    @pytest.mark.slow("checks a plan many times")
     @pytest.mark.parametrize("kind", ["doubled", "more", "negative", "beyond", "huge"])
     def test_weights(self, written, kind):
         document, _ = written.copies()
@@ -277,6 +290,7 @@ class TestTheForgeriesOfTheTrial:
         assert not found(written, document).holds
 
 
+@pytest.mark.slow("checks a plan many times")
 def test_too_many_weights_are_found_by_putting_tools_down(written):
     """Weights of 1 on two samples that one candidate serves, with all sums made to fit."""
     document, arrays = written.copies()
@@ -315,6 +329,7 @@ def test_forged_files_are_told_by_their_checksums(written):
     assert not check(question).holds
 
 
+@pytest.mark.slow("checks a plan many times")
 def test_json_can_say_nothing_that_ends_the_checker(written):
     """Entries exchanged for others of any kind end in an answer that fails, never in an exception."""
     for path in ("plans", "fewest", "fewest.weights", "curve", "assumed", "plans[0].operations", "rotary", "cutters"):

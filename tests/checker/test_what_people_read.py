@@ -23,13 +23,12 @@ from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.plan_file.load import plan_of
 from plan_cutters.plan_file.words.text import with_text
 from tests.support.forging import forged, put
-from tests.support.nightly import NIGHTLY
 from tests.support.written_plan import Written
 
 #: A block in a vise, of a size that the vise grips at its long sides.
 HELD = {"cutters": ["D8L30F16S10"], "holder": "er16", "fixtures": "vise", "faces": "all", "grid": 4, "machine": "trunnion-ac"}
-#: Of each kind of entry one is forged; of the kinds these many in a run, all of them at night.
-_KINDS = None if NIGHTLY else 40
+#: One entry in so many is forged, or given one more beside it.
+ONE_IN = [5, pytest.param(1, marks=pytest.mark.slow("forges an entry of every kind"))]
 
 
 @pytest.fixture(scope="module")
@@ -86,21 +85,21 @@ def test_what_is_written_holds(one):
     assert not [path for path in answer.others.unchecked if path.startswith("process") and not path.startswith(advice)]
 
 
-def _forgeries(document):
-    """One entry of each kind, by a seed, with other values of its kind."""
+def _forgeries(document, one_in):
+    """One entry of each kind, or of one kind in so many, by a seed, with other values of its kind."""
     rng, of_kind = np.random.default_rng(0), defaultdict(list)
     for path, value in leaves({name: each for name, each in document.items() if name != "operations"}):
         of_kind[pattern(path)].append((path, value))
-    kinds = sorted(of_kind) if _KINDS is None else rng.choice(sorted(of_kind), min(_KINDS, len(of_kind)), replace=False).tolist()
-    for kind in kinds:
+    for kind in rng.choice(sorted(of_kind), -(-len(of_kind) // one_in), replace=False).tolist():
         path, value = of_kind[kind][int(rng.integers(len(of_kind[kind])))]
         for other in [each for each in forged(value) if not (isinstance(each, float) and math.isnan(each))]:
             yield path, value, other
 
 
-def test_a_forged_entry_is_found_or_named_in_the_first_line(one):
+@pytest.mark.parametrize("one_in", ONE_IN)
+def test_a_forged_entry_is_found_or_named_in_the_first_line(one, one_in):
     passed = []
-    for path, value, other in _forgeries(one.document):
+    for path, value, other in _forgeries(one.document, one_in):
         document, _ = one.copies()
         put(document, path, other)
         answer = answered(one, document)
@@ -109,7 +108,8 @@ def test_a_forged_entry_is_found_or_named_in_the_first_line(one):
     assert not passed
 
 
-def test_an_entry_that_no_plan_has_fails_everywhere(one):
+@pytest.mark.parametrize("one_in", ONE_IN)
+def test_an_entry_that_no_plan_has_fails_everywhere(one, one_in):
     def objects(tree, path=""):
         if isinstance(tree, dict):
             yield path
@@ -119,7 +119,7 @@ def test_an_entry_that_no_plan_has_fails_everywhere(one):
             yield from objects(tree[0], f"{path}[0]")
 
     others = {name: each for name, each in one.document.items() if name != "operations"}
-    for path in [*objects(others)][:: 1 if NIGHTLY else 5]:
+    for path in [*objects(others)][::one_in]:
         document, _ = one.copies()
         new = f"{path}.novel" if path else "novel"
         put(document, new, 3)

@@ -99,6 +99,7 @@ def ran(repository, tmp_path_factory):
     return temp, step(*repository, temp, options=OPTIONS, **{"pictures-branch": "pictures"})
 
 
+@pytest.mark.slow("runs whole commands")
 def test_the_action_tells_what_a_branch_loses(repository, ran):
     temp, (done, summary, outputs) = ran
     assert done.returncode == 1, done.stderr
@@ -136,6 +137,7 @@ def test_the_action_tells_what_a_branch_loses(repository, ran):
     assert (temp / "plan-cutters-changed/after/sub/a name.step/review.html").is_file()
 
 
+@pytest.mark.slow("runs whole commands")
 def test_pictures_are_on_their_branch_and_in_the_summary(repository, ran):
     _, (_, summary, _) = ran
     remote = repository[0].parent / "remote.git"
@@ -147,6 +149,7 @@ def test_pictures_are_on_their_branch_and_in_the_summary(repository, ran):
     assert git("-C", str(repository[0]), "status", "--porcelain") == ""
 
 
+@pytest.mark.slow("runs whole commands")
 def test_what_was_planned_is_not_planned_again(repository, ran):
     """Without a change of content the plans of the cache are taken, byte for byte; the rule alone makes the code."""
     temp, (_, summary, _) = ran
@@ -281,6 +284,7 @@ def test_a_file_that_an_option_leads_to_makes_another_key(tmp_path, monkeypatch)
         assert key() == first
 
 
+@pytest.mark.slow("starts commands and ends them on the way")
 def test_a_tool_that_changed_in_another_folder_is_planned_anew(tmp_path):
     """The bit grows from D4 to D12 in a folder beside that of the library which the option names."""
     words = shop(tmp_path)[:6]

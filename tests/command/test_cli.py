@@ -207,6 +207,7 @@ def test_several_parts_the_largest_code(tmp_path):
     assert "bad.step: plan-cutters: bad.step" in done.stderr
 
 
+@pytest.mark.slow("starts commands and ends them on the way", only=("in",))
 @pytest.mark.parametrize("ignored", [False, True], ids=["", "in the background"])
 def test_an_interrupt_leaves_nothing(tmp_path, ignored):
     """A shell lets what it runs in the background ignore interrupts; asked for in person, one still counts."""
@@ -287,6 +288,7 @@ def test_debug_shows_the_traceback_and_keeps_the_code(tmp_path):
     assert done.stderr.strip().splitlines()[-1].startswith("plan-cutters: missing.step")
 
 
+@pytest.mark.slow("starts commands and ends them on the way")
 def test_a_copy_of_this_process_says_what_a_new_one_does(tmp_path):
     """What lets most tests of the command run without the start of an interpreter."""
     (tmp_path / "bad.step").write_text("no")

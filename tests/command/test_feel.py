@@ -110,6 +110,7 @@ def test_mistakes_cost_little_and_load_no_kernel(tmp_path, words, code, cause):
     assert leftovers(tmp_path, "empty.step", "folder.step", "text.step", "-x.step") == []
 
 
+@pytest.mark.slow("starts commands and ends them on the way")
 def test_of_several_parts_those_that_cannot_be_read_are_named_at_once(tmp_path):
     done = run(GROOVE, "missing.step", *QUICK, "--formats", "json", cwd=tmp_path)
     assert done.returncode == 3
@@ -456,6 +457,7 @@ def test_what_is_found_goes_to_standard_output_and_all_else_to_standard_error(tm
     assert "\nTake flat end D12 x 80.\nAn open shell: " in done.stderr
 
 
+@pytest.mark.slow("starts commands and ends them on the way", only=(">",))
 @pytest.mark.parametrize(("close", "code", "said"), [
     ("| true", 141, []),
     (">/dev/full", 2, ["plan-cutters: standard output: cannot be written: No space left on device"]),
@@ -471,6 +473,7 @@ def test_a_summary_that_nobody_can_read_costs_no_file(tmp_path, close, code, sai
     assert json.loads((tmp_path / "out/plan.json").read_text())["not_written"] == {}
 
 
+@pytest.mark.slow("starts commands and ends them on the way")
 def test_a_full_disk_behind_standard_output_is_one_line(tmp_path):
     for words in ((GROOVE, *QUICK, "--json", "-", "--quiet"), ("--help",)):
         with open("/dev/full", "w") as full:
@@ -487,6 +490,7 @@ def closed(*words, cwd, close):
                           text=True, check=False)  # fmt: skip
 
 
+@pytest.mark.slow("starts commands and ends them on the way")
 def test_closed_streams(tmp_path):
     done = closed(GROOVE, *QUICK, "--json", "-", cwd=tmp_path, close=">&-")
     assert (done.returncode, done.stderr) == (2, "plan-cutters: --json -: standard output is closed\n")
@@ -505,6 +509,7 @@ def test_a_reader_that_has_seen_enough_ends_it_quietly(tmp_path):
         assert process.wait(120) == 141
 
 
+@pytest.mark.slow("starts commands and ends them on the way")
 def test_standard_error_that_cannot_be_written_changes_nothing(tmp_path):
     with open("/dev/full", "w") as full:
         done = subprocess.run([sys.executable, "-m", "plan_cutters", str(GROOVE), *QUICK, *FILES], cwd=tmp_path, env=ENV,
@@ -537,6 +542,7 @@ def test_a_name_that_is_no_text(tmp_path):
 # ---- signals
 
 
+@pytest.mark.slow("starts commands and ends them on the way", only=("judging",))
 @pytest.mark.parametrize("until", ["reading", "judging"])
 def test_a_terminal_that_is_closed_ends_the_run(tmp_path, until):
     process = subprocess.Popen(
@@ -553,6 +559,7 @@ def test_a_terminal_that_is_closed_ends_the_run(tmp_path, until):
     assert leftovers(tmp_path) == []
 
 
+@pytest.mark.slow("starts commands and ends them on the way")
 def test_a_run_that_shall_survive_its_terminal_does(tmp_path):
     process = subprocess.Popen(
         [sys.executable, "-m", "plan_cutters", str(GROOVE), *QUICK, "--formats", "json"], cwd=tmp_path, env=ENV,
@@ -627,6 +634,7 @@ def test_what_is_warned_of_the_cache_of_the_compiler_is_one_line(tmp_path, monke
     assert (done.returncode, done.stderr) == (0, "plan-cutters: kernels/search.nbc: is damaged\n")
 
 
+@pytest.mark.slow("starts commands and ends them on the way")
 def test_an_interrupt_where_none_can_be_raised_is_taken_again():
     code = """
 import os, signal, sys, time
@@ -649,6 +657,7 @@ except KeyboardInterrupt:
     assert (done.stdout, done.stderr) == ("heard\n", "")
 
 
+@pytest.mark.slow("starts commands and ends them on the way", but=("| true-141-words1",))
 @pytest.mark.parametrize("words", [("tools", SAMPLES / "shop.toml"), ("machines",), ("machines", "trunnion-ac")])
 @pytest.mark.parametrize(("close", "code"), [("| true", 141), (">/dev/full", 2), (">&-", 2)])
 def test_the_other_commands_survive_a_closed_output(tmp_path, words, close, code):

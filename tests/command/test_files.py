@@ -71,6 +71,7 @@ write_gltf(found, sys.argv[1] + ".glb", style, extras=lambda n: {}, piece_extras
 """
 
 
+@pytest.mark.slow("starts commands and ends them on the way")
 def test_an_assembly_has_the_same_bytes_in_every_process(tmp_path):
     for name, seed, blocks in (("a", "1", 2), ("b", "22", 70001)):
         subprocess.run([sys.executable, "-c", ASSEMBLY, str(tmp_path / name), str(blocks)], check=True,
@@ -105,12 +106,14 @@ def spin(seconds):
     return b"done"
 
 
+@pytest.mark.slow("starts commands and ends them on the way")
 def test_processor_time_is_counted_not_the_clocks():
     assert limited(lambda: time.sleep(1.5) or b"slept", 1, processor=True) == b"slept"
     with pytest.raises(TimeLimit):
         limited(lambda: spin(30), 1, processor=True)
 
 
+@pytest.mark.slow("starts commands and ends them on the way")
 def test_a_copy_that_does_nothing_at_all_is_ended(monkeypatch):
     monkeypatch.setattr("cad_io.forks._ASLEEP", 1)
     began = time.monotonic()
@@ -318,6 +321,7 @@ def child_of(process):
     return int(Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()[0])
 
 
+@pytest.mark.slow("starts commands and ends them on the way", only=("19",))
 @pytest.mark.parametrize(("number", "word"), [(signal.SIGSEGV, "SIGSEGV"), (signal.SIGSTOP, "within")])
 def test_a_crash_or_hang_while_splitting_costs_the_models_alone(tmp_path, number, word):
     process, said = start(*WORDS, "--read-timeout", "10", "--json", "-", "-o", "out", cwd=tmp_path)
@@ -336,6 +340,7 @@ def test_a_crash_or_hang_while_splitting_costs_the_models_alone(tmp_path, number
     assert [p.name for p in tmp_path.iterdir()] == ["out"]
 
 
+@pytest.mark.slow("starts commands and ends them on the way")
 def test_an_interrupt_while_splitting_leaves_the_plan(tmp_path):
     process, _ = start(*WORDS, "-o", "out", cwd=tmp_path)
     process.send_signal(signal.SIGINT)

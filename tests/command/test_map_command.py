@@ -34,6 +34,7 @@ def run(capsys, *words):
     return ended.value.code, out, err
 
 
+@pytest.mark.slow("runs whole commands")
 def test_the_seed_s_first_example(capsys, tmp_path):
     """Free tilts at the bottom of the groove between the closed forms: 27.6 to 61.3 deg at rotation 0, fewer beside it."""
     out = tmp_path / "map.png"
@@ -220,6 +221,7 @@ def test_lines_are_as_wide_as_their_letters():
     assert len(fitting("iiii " * 60, 8, 3.0)) < len(fitting("WWWW " * 60, 8, 3.0))
 
 
+@pytest.mark.slow("starts commands and ends them on the way")
 def test_a_reader_that_goes_is_no_verdict():
     done = subprocess.run(
         f"{sys.executable} -m plan_cutters map {GROOVE} --at 0,0,0 --cutter R8L90 -o $(mktemp -d)/m.png | true; "

@@ -209,7 +209,7 @@ def run(part, out, *words):
     )  # fmt: skip
 
 
-@pytest.mark.slow
+@pytest.mark.slow("starts forty commands and ends half of them")
 def test_runs_at_once_and_runs_that_are_killed(tmp_path):
     """Twenty times two at once, and twenty that are killed with all their processes: one of them, or none, never both."""
     out, won = tmp_path / "out", []

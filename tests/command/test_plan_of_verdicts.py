@@ -223,7 +223,7 @@ def test_a_proposal_that_is_interrupted_keeps_its_setups(tmp_path, monkeypatch):
     assert {"setup-1.toml", "review.html"} <= {*leftovers(tmp_path / "out")}
 
 
-@pytest.mark.slow
+@pytest.mark.slow("waits for a time limit")
 def test_a_time_limit_leaves_them_too(tmp_path, monkeypatch):
     where, absent = STAGES["operations"]
     monkeypatch.setattr(*where, lambda *_, **__: time.sleep(60))

@@ -9,6 +9,8 @@ import pytest
 from tests.support.forked import ENV
 from tests.support.places import SAMPLES
 
+pytestmark = pytest.mark.slow("starts commands and ends them on the way")
+
 SAMPLE = SAMPLES / "v_groove.step"
 #: What Windows, and in part macOS, has not.
 CODE = """

@@ -25,6 +25,8 @@ from tests.support.forked import run
 from tests.support.places import ROOT
 from tests.support.review_page import decoded
 
+pytestmark = pytest.mark.slow("opens a browser", but=("test_axe_finds_nothing[1366-light]",))
+
 AXE = ROOT / "page" / "node_modules" / "axe-core" / "axe.min.js"
 NAME = "slot <img src=x>&.step"
 

@@ -69,6 +69,7 @@ def test_progress_is_told_of_the_stages_that_are_shown():
     assert told == [("read", 0, 1), ("read", 1, 2), ("read", 1, 1)]
 
 
+@pytest.mark.slow("starts commands and ends them on the way")
 def test_the_seconds_of_a_command_are_nearly_all_of_it(tmp_path):
     """Of a whole run, start and imports included: in stages at least 95 %, and never more than was measured from outside."""
     environment = {**os.environ, "PYTHONPATH": f"{ROOT / 'plugin'}{os.pathsep}{ROOT}"}

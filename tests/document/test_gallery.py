@@ -109,6 +109,7 @@ def test_links_stand_only_where_the_page_is(tmp_path):
     assert review_pages.on_page_markdown(text, config) == "a [Review page](gallery/vise.html) b"
 
 
+@pytest.mark.slow("plans the gallery again")
 @pytest.mark.parametrize("name", ["vise", "blade"])
 def test_a_sample_is_planned_with_its_headline(tmp_path, name):
     (part,) = (part for part in PARTS if part["name"] == name)
@@ -118,6 +119,7 @@ def test_a_sample_is_planned_with_its_headline(tmp_path, name):
     assert json.loads((tmp_path / "out" / "plan.json").read_text("utf-8"))["text"]["headline"] == headline(name)
 
 
+@pytest.mark.slow("opens a browser", but=("vise",))
 @pytest.mark.parametrize("name", NAMES)
 def test_a_review_page_opens_without_the_network(tmp_path, name):
     from playwright.sync_api import sync_playwright

@@ -49,6 +49,7 @@ def found(request):
     return SimpleNamespace(plan=plan(part, **how).plan, name=request.param)
 
 
+@pytest.mark.slow("plans whole parts", only=("operations",))
 def test_steps_and_what_is_left_are_all_that_was_asked(found):
     process = found.plan.process
     left = sum(each.area_mm2 for each in process.left)

@@ -207,6 +207,7 @@ found["changed"] = list(operations.own_bits(document, objects.result_of(group)))
 """
 
 
+@pytest.mark.slow("needs FreeCAD", together="FreeCAD")
 @pytest.mark.skipif(not CONSOLE, reason="FreeCAD is not installed")
 def test_a_job_is_planned_with_its_tools_and_gets_the_users_own_bits(tmp_path):
     shutil.copytree(ROOT / "freecad", tmp_path / "user" / "Mod" / "Cutters", ignore=shutil.ignore_patterns("__pycache__"))

@@ -11,6 +11,8 @@ from plan_cutters import plan
 from tests.support.freecad_host import CONSOLE, run
 from tests.support.places import ROOT, SAMPLES
 
+pytestmark = pytest.mark.slow("needs FreeCAD", together="FreeCAD")
+
 MACRO = ROOT / "freecad" / "PlanOperations.FCMacro"
 
 HEAD = f"""
@@ -351,7 +353,7 @@ QtCore.QTimer.singleShot(1000, work)
 )
 
 
-@pytest.mark.slow
+@pytest.mark.slow("needs the window of FreeCAD", together="FreeCAD")
 def test_the_window_shows_the_colours_and_the_importer_agrees_on_the_names(written, tmp_path):
     """Names are told by the order of faces; FreeCAD's own importer tells colours by other means."""
     if not (shutil.which("freecad") and shutil.which("xvfb-run")):

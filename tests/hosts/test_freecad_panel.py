@@ -9,6 +9,8 @@ import pytest
 from tests.support.freecad_host import IN_WINDOW, run
 from tests.support.places import ROOT
 
+pytestmark = pytest.mark.slow("needs FreeCAD", together="FreeCAD")
+
 WINDOW = shutil.which("freecad") and shutil.which("xvfb-run")
 
 SESSION = (

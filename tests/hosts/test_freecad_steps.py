@@ -161,6 +161,7 @@ found["told"] = told
 """
 
 
+@pytest.mark.slow("needs FreeCAD", together="FreeCAD")
 @pytest.mark.skipif(not CONSOLE, reason="FreeCAD is not installed")
 def test_steps_are_judged_again_in_freecad(tmp_path):
     shutil.copytree(ROOT / "freecad", tmp_path / "user" / "Mod" / "Cutters", ignore=shutil.ignore_patterns("__pycache__"))
@@ -236,6 +237,7 @@ QtCore.QTimer.singleShot(1000, work)
 )
 
 
+@pytest.mark.slow("needs FreeCAD", together="FreeCAD")
 @pytest.mark.skipif(not (shutil.which("freecad") and shutil.which("xvfb-run")), reason="FreeCAD or a virtual display is missing")
 def test_the_list_of_steps_is_edited_in_the_window(tmp_path):
     addon = tmp_path / "user" / ".local" / "share" / "FreeCAD" / "Mod" / "PlanCutters"

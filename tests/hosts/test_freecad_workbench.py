@@ -22,6 +22,8 @@ from plan_cutters.library import read_library
 from tests.support.freecad_host import CONSOLE, run
 from tests.support.places import ROOT
 
+pytestmark = pytest.mark.slow("needs FreeCAD", together="FreeCAD")
+
 #: What both sessions begin with; a block with a slot stands turned in a container, beside a fixture.
 HEAD = """
 import json, os, sys, time, types

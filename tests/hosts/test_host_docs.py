@@ -3,6 +3,8 @@
 import re
 import runpy
 
+import pytest
+
 from tests.support.places import ROOT
 
 
@@ -26,6 +28,7 @@ def test_the_page_runs(monkeypatch, capsys):
     assert [child.label for child in names["labelled"].children] == [g.name for g in names["verdicts"].children]
 
 
+@pytest.mark.slow("plans whole parts")
 def test_the_blade(capsys):
     found = runpy.run_path(str(ROOT / "samples" / "cadquery_blade.py"))
     result, (thick, thin) = found["result"], found["result"].cutters

@@ -11,6 +11,7 @@ from tests.support.places import ROOT
 #: The name of each step, and words by which its call is known.
 CHECKS = {
     "setup": "setup.sh dev",
+    "freecad": "freecad",
     "tests": "python -m pytest",
     "ruff": "ruff check",
     "format": "ruff format --check",
@@ -40,7 +41,7 @@ def checkout(tmp_path_factory):
     shutil.copy(ROOT / ".ci/run", folder / ".ci")
     shutil.copy(ROOT / "README.md", folder)
     programs = [f".venv/bin/{name}" for name in ("python", "ruff", "lint-imports", "mypy", "mkdocs")]
-    for name in (*programs, "page/node_modules/.bin/tsc", "bin/node", "bin/docker", "setup.sh"):
+    for name in (*programs, "page/node_modules/.bin/tsc", "bin/node", "bin/docker", "setup.sh", ".ci/freecad"):
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
         (folder / name).write_text(CALLED)
         (folder / name).chmod(0o755)

@@ -15,6 +15,8 @@ import pytest
 
 from tests.support.places import ROOT
 
+pytestmark = pytest.mark.slow("runs a type checker on the whole")
+
 CALLS = ROOT / "tests/support/typed_calls.py"
 #: What people write who made none of these mistakes: axes and planes of their hosts among it.
 HOSTS = """

@@ -86,6 +86,7 @@ def test_only_entries_are_made_machine_code(run):
     assert [told[name][1] for name in ("deepest", "middle", "total", "first")] == [1, 1, 1, 0]
 
 
+@pytest.mark.slow("compiles anew in processes of its own")
 def test_a_kernel_that_is_kept_is_linked_into_the_next_entry(run):
     run("k.total(x)")
     assert run("k.total(x)")[1]["total"][1:] == (0, 1)
@@ -100,6 +101,7 @@ def test_python_calls_a_kernel(run):
         assert run("k.middle(x, 1), k.deepest(4.0), k.deepest(9), k.first(x)")[0] == [8.0, 3.0, 4.0, 6.0]
 
 
+@pytest.mark.slow("compiles anew in processes of its own")
 def test_the_same_sources_elsewhere_and_later_are_not_compiled_again(tmp_path):
     """As in another environment, or in a new checkout: its files have other places and other times."""
     told = []
@@ -141,6 +143,7 @@ print(number())
 """
 
 
+@pytest.mark.slow("compiles anew in processes of its own")
 def test_two_functions_under_one_name_are_two(tmp_path):
     """Sources alone do not tell which of them a process defines."""
     (tmp_path / "two.py").write_text(TWO)

@@ -242,6 +242,7 @@ def stood(rng, tilt, radius, length, s):
 NEEDLE = (0.5, 3.0, 0.01, np.array([[0.0, 0, 0], [1e4 * math.cos(2), 1e4 * math.sin(2), 1], [0, 0, -1]]))
 
 
+@pytest.mark.slow("draws many cases")
 @given(triangles_by_the_body(), st.sampled_from([0.0, RIGHT, 0.4]), st.integers(0, 5))
 @example(NEEDLE, 0.0, 0)
 @settings(max_examples=400, deadline=None)
@@ -273,6 +274,7 @@ def test_a_triangle_at_a_bound_hits_from_the_first_hair(deeper):
         assert (hit.triangle_hit(triangle, 0, body, piece, 1, 0.0, SCRATCH)[0] == 0) == (deeper > 0)
 
 
+@pytest.mark.slow("draws many cases")
 @given(triangles_by_the_body(), st.floats(1e-6, 0.3), st.integers(0, 3))
 @settings(max_examples=300, deadline=None)
 def test_a_miss_with_a_rate_is_a_miss_at_every_tilt_of_the_turn(case, rate, seed):

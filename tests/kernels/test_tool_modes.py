@@ -45,6 +45,7 @@ def turned(x, y, z, tilts, tool, mode):
     return c * (z - rise) + s * x, np.hypot(offset + c * x - s * (z - rise), y)
 
 
+@pytest.mark.slow("draws many cases", but=("bull",))
 @pytest.mark.parametrize("kind", KINDS)
 def test_arcs_are_never_too_long(kind):
     """A point that an arc forbids is in the piece, and as the outline has it in the tool; where arcs are exact, no other is."""
@@ -127,7 +128,7 @@ def test_local_gouging_is_where_the_surface_next_to_the_contact_is_in_the_tool(k
     check_gouging(kind, 300)
 
 
-@pytest.mark.slow
+@pytest.mark.slow("tests 20,000 surfaces of each kind of tool")
 @pytest.mark.parametrize("kind", ["flat", "bull", "ball", "taper bull", "lollipop", "barrel", "oval", "lens"])
 def test_local_gouging_of_twenty_thousand_surfaces(kind):
     check_gouging(kind, 20_000)

@@ -191,6 +191,7 @@ def test_nothing_hides_in_a_re_entrant_corner(cutter, corner):
     assert not (np.max([in_row(row, q, w) for row in rows], axis=0) > 0)[deep].all()
 
 
+@pytest.mark.slow("draws many cases", only=("dovetail", "taper"))
 @pytest.mark.parametrize("sort", ["outer", "inner"])
 @pytest.mark.parametrize("kind", KINDS)
 def test_pieces_hold_what_counts_and_no_more(kind, sort):
@@ -307,7 +308,7 @@ def test_round_edges_do_not_hang_on_rounding(flutes, length):
     assert over[held > 0.0].min() > -0.03
 
 
-@pytest.mark.slow
+@pytest.mark.slow("tests a million triangles of each kind of tool")
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_million_triangles_of_each_kind(kind):
     rng = np.random.default_rng([KINDS.index(kind), 7])

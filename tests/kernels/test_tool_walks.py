@@ -169,6 +169,7 @@ def end_mill(rng, larger=None):
         return None
 
 
+@pytest.mark.slow("draws many cases")
 def test_what_is_called_inside_lies_inside():
     """At the same contact and axis each point of the one, and of what its stages keep clear, is one of the other."""
     rng = np.random.default_rng(0)

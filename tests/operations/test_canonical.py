@@ -42,6 +42,7 @@ def served(task, columns):
     return np.logical_or.reduce(by)
 
 
+@pytest.mark.slow("searches long", only=("box",))
 @pytest.mark.parametrize("shape", [box(), trough(10.0, 10.0), ridge(10.0, 10.0)], ids=["box", "trough", "ridge"])
 def test_a_choice_serves_afterwards_what_it_served_before(shape, monkeypatch):
     _, seen = exchanges(shape, monkeypatch, cutters=["R2L60rc1", "R4L60rc4"])

@@ -23,6 +23,7 @@ def written(request):
     return planned(index_time=0.1, **request.param)
 
 
+@pytest.mark.slow("searches long", only=("{'operations",))
 def test_no_plan_beside_it_takes_less_than_the_fastest(written):
     seconds = {each.name: each.seconds for each in written.operations.plans}
     assert seconds["fastest"] == min(seconds.values())

@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -55,6 +56,7 @@ def test_few_rows_give_what_the_whole_table_gives(seed, reach):
     assert load.max() <= UNIT
 
 
+@pytest.mark.slow("searches long")
 @given(st.integers(0, 2**31))
 @settings(max_examples=10, deadline=None)
 def test_candidates_that_wait_change_neither_the_minimum_nor_what_the_weights_prove(seed):

@@ -32,6 +32,7 @@ def test_half_a_cylinder_needs_its_angle_over_twice_the_tilt(tilt, answer):
     assert (found.found, found.at_least, found.at_least_any) == (answer, answer, answer)
 
 
+@pytest.mark.slow("searches long", only=("head",))
 @pytest.mark.parametrize("machine", ["trunnion-ac", "head-table-bc", "nutating-bc"])
 def test_every_orientation_is_one_that_the_machine_can_be_set_to(machine):
     result = plan(box(), cutters=BALL, faces="all", grid=4, operations="fewest", machine=machine, area_budget=0)

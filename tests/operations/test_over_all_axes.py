@@ -23,9 +23,14 @@ from tests.support.shapes import ridge, trough
 BALL = "R1L60rc1"
 
 
+@pytest.mark.slow("searches long", only=("63",))
 @pytest.mark.parametrize(
     ("tilt", "caps"),
-    [(63.44, 5), (37.38, 12), *(pytest.param(*each, marks=pytest.mark.slow) for each in ((70.53, 4), (54.74, 6), (51.03, 7)))],
+    [
+        (63.44, 5),
+        (37.38, 12),
+        *(pytest.param(*each, marks=pytest.mark.slow("searches long")) for each in ((70.53, 4), (54.74, 6), (51.03, 7))),
+    ],
 )
 def test_it_never_passes_the_least_number_of_caps_that_cover_a_sphere(tilt, caps):
     """Samples all over a ball, every one of them with a weight; the answer is said to be far above."""
@@ -84,6 +89,7 @@ PARTS = {"groove": lambda: SAMPLES / "v_groove.step", "trough": lambda: trough(1
          "peaks": lambda: SAMPLES / "peaks_and_valleys.step", "pocket": lambda: SAMPLES / "pocket_top.step"}  # fmt: skip
 
 
+@pytest.mark.slow("searches long", only=("peaks", "pocket"))
 @pytest.mark.parametrize(
     ("part", "cutter", "holder", "most"),
     [("groove", "R6L40", "R15L40", 90.0), ("trough", "R4L30rc1", None, 90.0), ("peaks", "R6L40rc6", "R15L40+R25L60", 80.0),

@@ -46,6 +46,7 @@ def test_a_part_that_nearly_is_a_pattern_is_told_by_its_samples():
     assert np.hypot(*found.place[:2]) < 1e-3
 
 
+@pytest.mark.slow("plans a part of repeated steps")
 def test_nothing_is_repeated_where_axes_lock_or_it_was_refused():
     assert symmetric(task(index_step_deg=15.0)) is None
     assert symmetric(task(patterns=False)) is None
@@ -141,6 +142,7 @@ def found(blades: int = 4, index_time: float = 0.2, *, patterns: bool = True) ->
     return plan(part, **{**WORDS, "area_budget": 0, "index_time": index_time, "patterns": patterns})
 
 
+@pytest.mark.slow("plans a part of repeated steps")
 def test_the_process_has_each_step_once():
     process = found().plan.process
     step = next(each for each in process.steps if each.repeat > 1)
@@ -157,6 +159,7 @@ def test_the_process_has_each_step_once():
     assert any(line.lstrip()[1:].lstrip().startswith("4 x, C") and "+ 90" in line for line in found().plan.text.lines)
 
 
+@pytest.mark.slow("plans a part of repeated steps")
 @pytest.mark.parametrize(("blades", "index_time", "again"), [(4, 0.2, True), (6, 2.0, True), (8, 5.0, False)])
 def test_it_takes_no_more_time_than_without_them(blades, index_time, again):
     plain = found(blades, index_time, patterns=False)
@@ -167,6 +170,7 @@ def test_it_takes_no_more_time_than_without_them(blades, index_time, again):
     assert not any(each.repeat > 1 for each in plain.plan.process.steps)
 
 
+@pytest.mark.slow("plans a part of repeated steps")
 def test_operations_are_checked_as_any_others(tmp_path):
     found().write(tmp_path, ["json", "npz"])
     document = json.loads((tmp_path / "plan.json").read_text())

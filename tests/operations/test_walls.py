@@ -46,6 +46,7 @@ def overhung():
     return cq.Workplane().box(90, 60, 20).cut(cq.Workplane().workplane(offset=10).rect(60, 24).extrude(-14, taper=-0.02)).val()
 
 
+@pytest.mark.slow("plans each proposed clamping", only=("overhung",))
 @pytest.mark.parametrize(("shape", "cutter"), [(lambda: box(30.0, 30.0, 40.0), "D10L60rc1F15"), (overhung, "D12L45F10S12")])
 def test_each_sample_of_a_wall_lies_along_the_flutes_at_its_contact(shape, cutter):
     cutter = Cutter.parse(cutter)
@@ -130,6 +131,7 @@ def test_strategies_stand_in_the_operations_and_in_the_process():
     assert [each.strategy for each in top.process.steps] == ["floor"]
 
 
+@pytest.mark.slow("plans each proposed clamping")
 def test_above_the_most_orientations_simultaneous_motion_is_recommended():
     found = planned(rod(10.0, 10.0), "D6L60rc3F3", fixtures=(), max_orientations=1).plan.operations
     (fastest,) = (each for each in found.plans if each.name == "fastest")
@@ -155,6 +157,7 @@ def test_a_wall_is_higher_than_the_scallop(height, there):
     assert not there or strip == pytest.approx(height)
 
 
+@pytest.mark.slow("searches long")
 def test_no_wall_of_a_real_case_is_lower_than_the_scallop():
     """Where a rounded corner of a phone's case ends, the flutes meet it over 0.000002 mm: a pass of that height takes hours."""
     options = Options.of(

@@ -77,6 +77,7 @@ def dense(result, spacing):
     return np.concatenate([np.asarray(points), triangles.reshape(-1, 3)])
 
 
+@pytest.mark.slow("plans whole parts")
 @pytest.mark.parametrize("spec", ["", "R6L80", "R2L60rc0.5F30S4"])
 def test_a_clearance_is_never_more_than_the_distance_and_little_less(peaks, spec):
     result = peaks
@@ -99,6 +100,7 @@ def test_a_clearance_is_never_more_than_the_distance_and_little_less(peaks, spec
     assert len(distances) > 5
 
 
+@pytest.mark.slow("plans whole parts")
 def test_clearances_stay_unknown_where_there_is_no_posture_or_nothing_that_counts(peaks):
     reach = peaks.reaches[peaks.shown]
     assert np.isfinite(peaks.clearances.distance[reach.reached]).all()
@@ -232,6 +234,7 @@ def test_every_posture_found_is_served_by_its_own_axis(peaks):
         assert serves(np.array([row]), reach.axis[row], peaks.samples, Context.of(cutter, peaks.conditions))[0]
 
 
+@pytest.mark.slow("plans whole parts")
 def test_a_fixed_axis_serves_just_where_a_map_of_the_point_has_it_free(peaks):
     """The map of one point comes from other kernels: closed intervals in place of a test of one posture."""
     cutter, samples = peaks.judged(), peaks.samples
@@ -393,6 +396,7 @@ def test_formats_are_written_on_request_and_a_failure_costs_one_file(tmp_path, m
     assert not (tmp_path / "b/axes.csv").exists()
 
 
+@pytest.mark.slow("plans whole parts")
 def test_the_examples_of_the_page_run(tmp_path, monkeypatch, capsys):
     blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs/cam_outputs.md").read_text(), re.DOTALL)
     assert len(blocks) >= 3

@@ -34,6 +34,7 @@ def shares(result):
     return {name: float(area[verdict == code].sum()) for code, name in names.items() if (verdict == code).any()}
 
 
+@pytest.mark.slow("plans whole parts", only=("blade", "peaks"))
 def test_step_pieces_have_the_verdicts_names_colours_and_areas(written):
     result, document, out = written
     assert {entry.rung for entry in document.split.values()} <= {"contour"}

@@ -145,6 +145,7 @@ def test_show_without_a_browser_says_where_the_page_is(result, monkeypatch, tmp_
     assert Path(caught.value.file).is_file()
 
 
+@pytest.mark.slow("opens a browser")
 def test_page_of_a_card_runs_and_reaches_nothing_of_the_notebook(card, browser, tmp_path):
     path = tmp_path / "notebook.html"
     path.write_text(f"<!doctype html><html data-ready><title>notebook</title><meta charset=utf-8>{card}", "utf-8")
@@ -172,6 +173,7 @@ def ran():
     return [cell for cell in book.cells if cell.cell_type == "code"]
 
 
+@pytest.mark.slow("opens a browser")
 def test_notebook_of_the_docs_runs(ran):
     outputs = [output for cell in ran for output in cell.outputs]
     assert [output.output_type for output in outputs] == ["execute_result", "stream", *["execute_result"] * 3, "display_data"]

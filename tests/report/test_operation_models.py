@@ -59,6 +59,7 @@ def files(document):
     return list(zip(document.operations.plans, stems, strict=True))
 
 
+@pytest.mark.slow("plans whole parts")
 def test_regions_part_the_samples_of_their_operation_and_are_connected(written):
     result, document, _ = written
     samples = result.samples
@@ -83,6 +84,7 @@ def test_regions_part_the_samples_of_their_operation_and_are_connected(written):
                 assert met == inside
 
 
+@pytest.mark.slow("plans whole parts", only=("peaks",))
 def test_the_plane_turns_with_the_rotary_axes(written):
     result, document, _ = written
     for entry in document.operations.plans:
@@ -100,6 +102,7 @@ def test_the_plane_turns_with_the_rotary_axes(written):
                 assert np.allclose(each.frame.x, (math.cos(c), math.sin(c), 0.0), atol=1e-9)
 
 
+@pytest.mark.slow("plans whole parts", only=("peaks",))
 def test_the_clearance_of_an_operation_is_the_least_of_its_samples(written):
     result, document, _ = written
     samples = result.samples
@@ -115,6 +118,7 @@ def test_the_clearance_of_an_operation_is_the_least_of_its_samples(written):
             assert said.clearance_mm == pytest.approx(every.min(), abs=0.0)
 
 
+@pytest.mark.slow("plans whole parts", only=("peaks",))
 def test_step_faces_have_the_names_colours_and_areas_of_their_operations(written):
     result, document, out = written
     for (entry, stem), found in zip(files(document), result.answers.operations.plans, strict=True):
@@ -182,6 +186,7 @@ def test_glb_says_the_operation_of_each_piece_and_passes_the_khronos_validator(w
         assert (issues["numErrors"], issues["numWarnings"]) == (0, 0), issues
 
 
+@pytest.mark.slow("plans whole parts", only=("peaks",))
 def test_files_are_whole_or_named_and_written_with_the_formats_asked_for(written, tmp_path, monkeypatch):
     result, document, out = written
     names = {"operations_step", "operations_glb", "fastest_step", "fastest_glb"}
@@ -254,6 +259,7 @@ RATED = replace(TRUNNION := Machine.parse("trunnion-ac"),
                 axes=tuple(replace(each, rate=math.radians(30.0)) for each in TRUNNION.axes))  # fmt: skip
 
 
+@pytest.mark.slow("plans whole parts", but=("machine0",))
 @pytest.mark.parametrize(
     ("machine", "given", "source"),
     [(RATED, None, "rates"), (RATED, 7.0, "given"), (TRUNNION, 7.0, "given"), (TRUNNION, None, "assumed")],

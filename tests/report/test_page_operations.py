@@ -19,6 +19,8 @@ from tests.support.browser import opened, place_of, seen
 from tests.support.places import ROOT
 from tests.support.review_page import Page, picture
 
+pytestmark = pytest.mark.slow("opens a browser")
+
 
 @pytest.fixture(scope="module")
 def planned():

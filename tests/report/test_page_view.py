@@ -15,6 +15,8 @@ from tests.support.places import ROOT
 from tests.support.review_page import picture
 
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed: setup.sh dev")
+
+pytestmark = pytest.mark.slow("opens a browser")
 CUTTER, GRID = "R10L12HR22L30", 21
 #: Corners of the jaw, mm.
 JAW = [[x, y, z] for x in (62.0, 77.0) for y in (-10.0, 50.0) for z in (-10.0, 30.0)]

@@ -47,6 +47,7 @@ def text(planned):
     return write.page(planned, triangles=2000).decode()
 
 
+@pytest.mark.slow("opens a browser")
 def test_every_row_of_a_table_is_as_wide_as_its_head(text):
     found = Rows()
     found.feed(re.sub(r"(?s)<script.*?</script>", "", text))
@@ -55,6 +56,7 @@ def test_every_row_of_a_table_is_as_wide_as_its_head(text):
         assert set(table) == {table[0]}, table
 
 
+@pytest.mark.slow("plans whole parts")
 def test_the_first_lines_name_the_holder_and_how_short_it_may_be(planned, text):
     head = text[text.index("<header") : text.index("</header>")]
     entry = next(c for c in planned.plan.cutters if c.id == planned.shown)
@@ -63,6 +65,7 @@ def test_the_first_lines_name_the_holder_and_how_short_it_may_be(planned, text):
     assert f"It can be held as short as {up(entry.least_stick_out.least_mm)}." in head
 
 
+@pytest.mark.slow("plans whole parts")
 def test_what_would_help_is_told_once_and_in_sentences(planned, text):
     assert "does not help: does not help" not in text.lower()
     assert "Does not help:" not in text

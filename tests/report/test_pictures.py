@@ -87,6 +87,7 @@ def like(pixels, verdict):
     return (along > 0.997) & (length > 0.2)
 
 
+@pytest.mark.slow("plans whole parts")
 def test_verdicts_have_their_colours_and_what_is_not_reached_a_pattern_too(tmp_path):
     result = plan("samples/peaks_and_valleys.step", cutters="R10L100", grid=21, area_budget=0)
     assert result.selected is None
@@ -107,6 +108,7 @@ def test_verdicts_have_their_colours_and_what_is_not_reached_a_pattern_too(tmp_p
     assert result.plan.part.file
 
 
+@pytest.mark.slow("plans whole parts")
 def test_fixtures_are_drawn_and_let_what_is_behind_them_show(tmp_path):
     options = {"cutters": "R4L50", "grid": 9, "area_budget": 0, "faces": "all"}
     bare = plan("samples/v_groove.step", **options)
@@ -122,6 +124,7 @@ def test_fixtures_are_drawn_and_let_what_is_behind_them_show(tmp_path):
     assert shares[1][1] > 5000
 
 
+@pytest.mark.slow("plans whole parts", only=("asitus",))
 @pytest.mark.parametrize("path", [CAD / "bladex_upper.iges", CAD / "asitus_ANC101-ill.stp"], ids=lambda path: path.name)
 def test_real_files_fill_their_views(path, tmp_path):
     result = plan(path, cutters="R3L60", grid=3, area_budget=0, faces="all")

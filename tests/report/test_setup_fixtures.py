@@ -64,6 +64,7 @@ def test_the_model_of_operations_has_a_node_of_fixtures_for_each_setup(held, tmp
     assert not any(node["name"] == "fixtures" for node in nodes)
 
 
+@pytest.mark.slow("opens a browser")
 def test_a_browser_shows_and_picks_the_fixtures_of_the_setup_of_the_tool(held, data, tmp_path):
     """A click at a sample that the other setup serves takes its fixtures there, and the first ones away."""
     api = pytest.importorskip("playwright.sync_api")

@@ -326,6 +326,7 @@ def test_one_vise_or_chuck_is_placed_on_a_part(words):
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.slow("plans each proposed clamping")
 @pytest.mark.parametrize("file", real("hard/ampath_propeller.stp"), ids=lambda path: path.stem)
 def test_a_propeller_has_no_faces_for_a_vise(file):
     with pytest.raises(FixtureError, match="nothing to grip"):

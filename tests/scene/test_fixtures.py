@@ -300,6 +300,7 @@ def test_a_compound_holds_its_part_by_its_own_solids():
     assert result.plan.fixtures[0].watertight
 
 
+@pytest.mark.slow("searches long")
 def test_a_vise_of_many_triangles_adds_little_to_the_search(pocket):
     """Boxes and triangles that the search of 20 samples looks at, with 50,000 triangles more around 20,000 of the part."""
     from plan_cutters.options import Options

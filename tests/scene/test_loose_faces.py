@@ -25,6 +25,7 @@ CHORD = CHORD_REQUESTED * TOLERANCE
 BUDGET, LOOSE = 350_000, 23
 
 
+@pytest.mark.slow("judges a part again with each tolerance")
 @pytest.mark.parametrize("path", [PROPELLER, SPRING], ids=lambda path: path.stem)
 def test_these_need_no_larger_tolerance(path):
     """A spline with pieces of a hundred-millionth of its range; a border beside 700 lines of a grid."""
@@ -35,6 +36,7 @@ def test_these_need_no_larger_tolerance(path):
     assert_each_face_is_within_its_error(part, triangles)
 
 
+@pytest.mark.slow("judges a part again with each tolerance", but=("100000",))
 @pytest.mark.parametrize("path", [PROPELLER], ids=lambda path: path.stem)
 @pytest.mark.parametrize("budget", [BUDGET, 100_000, 30_000])
 def test_each_face_is_within_the_error_that_it_says(path, budget):
@@ -71,6 +73,7 @@ def verdicts(result):
     return next(iter(result.reaches.values())).verdict
 
 
+@pytest.mark.slow("judges a part again with each tolerance")
 def test_the_tolerance_stays_and_the_face_is_named(planned):
     close, loose = planned
     assert not close.plan.effective.local_tolerance
@@ -87,6 +90,7 @@ def test_the_tolerance_stays_and_the_face_is_named(planned):
     assert max(error for face, error in by_id.items() if face != local.face) <= CHORD
 
 
+@pytest.mark.slow("judges a part again with each tolerance")
 def test_a_looser_face_makes_no_verdict_safer_and_none_surer(planned):
     close, loose = map(verdicts, planned)
     assert len(close) == len(loose)
@@ -97,6 +101,7 @@ def test_a_looser_face_makes_no_verdict_safer_and_none_surer(planned):
     assert (loose == UNDECIDED).sum() > (close == UNDECIDED).sum()
 
 
+@pytest.mark.slow("judges a part again with each tolerance")
 def test_only_what_is_near_the_face_is_undecided(planned):
     close, loose = planned
     changed = verdicts(loose) != verdicts(close)
@@ -109,6 +114,7 @@ def test_only_what_is_near_the_face_is_undecided(planned):
     assert away.max() < 6.0
 
 
+@pytest.mark.slow("judges a part again with each tolerance")
 def test_a_part_without_its_loose_face_decides_no_less_elsewhere(planned):
     _, loose = planned
     without = plan(PROPELLER, **ASKED, ignore=f"F{LOOSE}")
@@ -144,6 +150,7 @@ def test_a_hole_whose_wall_is_loose_counts_as_no_material(monkeypatch):
     assert np.isin(verdicts(result), (ACCESSIBLE, INTERFERENCE_FREE)).any()
 
 
+@pytest.mark.slow("judges a part again with each tolerance")
 @pytest.mark.parametrize("path", [PROPELLER], ids=lambda path: path.stem)
 def test_stored_maps_leave_undecided_what_was_undecided(path, tmp_path, monkeypatch):
     """Whatever is asked of them: less freedom decides nothing that was in doubt."""

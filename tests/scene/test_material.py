@@ -254,6 +254,7 @@ def solid_of(some):
 BASE, CLAMP = ((0, 0, 0), (80, 80, 20)), ((30, 0, 20), (50, 80, 60))
 
 
+@pytest.mark.slow("searches long", only=("same", "side"))
 @pytest.mark.parametrize(
     ("low", "size"),
     [((30, 0, 20), (20, 80, 40)), ((0, 0, 20), (20, 20, 60)), ((0, 0, 20), (80, 80, 40)), ((80, 0, 0), (40, 80, 20))],

@@ -118,6 +118,7 @@ REAL = {
 }
 
 
+@pytest.mark.slow("searches long", only=("brlcad",))
 @pytest.mark.parametrize("path", real(*REAL), ids=lambda p: p.name)
 def test_blends_of_real_files(path):
     """Numbers that were looked at on pictures; the second ones are walls of bosses between fillets."""

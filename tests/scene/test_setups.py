@@ -132,6 +132,7 @@ def test_clearances_are_among_the_obstacles_of_the_setup_that_serves():
         assert np.array_equal(near.distance[same], alone.clearances.distance[same], equal_nan=True)
 
 
+@pytest.mark.slow("plans each proposed clamping")
 def test_operations_of_a_setup_leave_what_it_holds_and_what_its_fixtures_cover():
     found = two(box(), machine="trunnion-ac", operations="fewest")
     made, at = found.answers.operations.plans[0], faces_at(found)

@@ -93,7 +93,7 @@ def test_changed_files_are_refused_or_right(good, tmp_path_factory, data):
     check(data.draw(changes(good)), tmp_path_factory.getbasetemp())
 
 
-@pytest.mark.slow
+@pytest.mark.slow("changes 20,000 files")
 @given(st.data())
 @settings(max_examples=20_000, deadline=None, suppress_health_check=list(HealthCheck))
 def test_changed_files_are_refused_or_right_for_long(good, tmp_path_factory, data):

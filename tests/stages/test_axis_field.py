@@ -127,6 +127,7 @@ def test_a_field_that_does_not_turn_is_a_fixed_axis():
     assert np.ptp(waves.cells.axis, axis=0).max() > 0.2
 
 
+@pytest.mark.slow("draws many surfaces", but=("bull", "holder"))
 @pytest.mark.parametrize("kind", KINDS)
 def test_no_contact_of_a_piece_gouges_a_random_surface(kind):
     rng = np.random.default_rng(2)
@@ -149,7 +150,7 @@ def test_a_turn_that_is_not_allowed_for_gouges(monkeypatch):
     assert deepest_of(cutter, contacts) > 0.05
 
 
-@pytest.mark.slow
+@pytest.mark.slow("judges thousands of contacts on a sample part")
 @pytest.mark.parametrize("kind", KINDS)
 def test_no_contact_of_a_piece_gouges_a_sample_part(kind):
     def found_axes(point, normal, axis):

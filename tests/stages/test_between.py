@@ -23,6 +23,7 @@ from tests.support.contacts import UP, deepest, dense, served
 from tests.support.places import SAMPLES
 
 
+@pytest.mark.slow("draws many surfaces", only=("1",))
 @pytest.mark.parametrize("seed", range(2))
 def test_no_contact_of_a_served_cell_gouges_a_random_surface(seed):
     rng = np.random.default_rng(seed)
@@ -41,7 +42,7 @@ def test_all_of_a_gentle_block_is_served():
     assert deepest(found, geometry, whole, cutter, dense(whole, 0.5), 150, np.random.default_rng(0)) < 0.01
 
 
-@pytest.mark.slow
+@pytest.mark.slow("judges thousands of contacts on a sample part")
 @pytest.mark.parametrize(("name", "cutter", "how"), [
     ("peaks_and_valleys", Cutter.flat(radius=6, length=80), {"grid": 201}),
     ("blade", Cutter.flat(radius=2, length=30), {}),

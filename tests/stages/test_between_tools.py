@@ -12,6 +12,7 @@ from tests.support.tool_kinds import TOOLS
 from tests.support.tool_profile import deepest
 
 
+@pytest.mark.slow("draws many surfaces", but=("barrel", "holder", "tapered bull"))
 @pytest.mark.parametrize("kind", TOOLS)
 def test_no_contact_of_a_served_cell_gouges_a_random_surface(kind):
     cutter = TOOLS[kind]
@@ -48,7 +49,7 @@ def test_no_contact_between_samples_gouges_deeper_than_is_allowed():
     assert depth(to_border).max() <= allowed
 
 
-@pytest.mark.slow
+@pytest.mark.slow("judges thousands of contacts on a sample part")
 @pytest.mark.parametrize("kind", TOOLS)
 def test_no_contact_of_a_served_cell_gouges_a_sample_part(kind):
     cutter = TOOLS[kind]

@@ -111,6 +111,7 @@ def test_the_share_is_that_of_random_points_in_served_cells(make, budget):
         assert deepest(found, geometry, whole, cutter, dense(whole, 0.5), 300, rng) < 0.02
 
 
+@pytest.mark.slow("draws many surfaces")
 def test_the_share_is_that_of_random_points_of_all_faces():
     rng, cutter = np.random.default_rng(6), Cutter.flat(radius=1.0, length=200.0)
     found, geometry, whole = served(MOULDS["mould"](), cutter, budget=4000, spacing=4.0, faces="all", tolerance=0.1)
@@ -282,7 +283,7 @@ def test_borders_that_end_beside_their_vertices_are_followed(gap):
     assert farthest_from(border, triangles.vertex, triangles.chord_error + ROUNDING) <= triangles.chord_error + ROUNDING
 
 
-@pytest.mark.slow
+@pytest.mark.slow("looks at thousands of points of each face")
 @pytest.mark.parametrize("make", MOULDS.values(), ids=MOULDS.keys())
 def test_every_point_of_cut_quadrics_has_a_triangle_within_the_promise(make):
     part = read_part(make())
@@ -293,7 +294,7 @@ def test_every_point_of_cut_quadrics_has_a_triangle_within_the_promise(make):
         assert off <= triangles.chord_error + ROUNDING, (number, uv)
 
 
-@pytest.mark.slow
+@pytest.mark.slow("looks at thousands of points of a large real part")
 @pytest.mark.parametrize("path", real("asitus_repatch-hpdc-colored.stp"), ids=lambda p: p.name)
 def test_every_point_of_a_repaired_casting_has_a_triangle_within_the_promise(path):
     part = read_part(path)
@@ -308,6 +309,7 @@ def test_folded_triangles_are_turned_over():
     assert upright(uv, corner).tolist() == [[0, 1, 2], [0, 1, 2], [0, 1, 3]]
 
 
+@pytest.mark.slow("draws many surfaces", only=("<lambda>1", "<lambda>2"))
 @pytest.mark.parametrize("make", [*MOULDS.values(), lambda: shapes.torus(20, 5).Moved(TopLoc_Location(mirror()))])
 def test_triangles_have_the_side_of_the_surface(make):
     part = read_part(make())

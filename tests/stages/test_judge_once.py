@@ -36,6 +36,7 @@ def both(ready: Prepared, judged=judge):
     return once(ready, ready.cutters[0]), judge(ready, ready.cutters[0]), once.carried.sum(axis=0)
 
 
+@pytest.mark.slow("plans a part of repeated steps", but=("impeller-options4",))
 @pytest.mark.parametrize(
     ("name", "options"),
     [

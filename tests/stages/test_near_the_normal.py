@@ -35,6 +35,7 @@ def near(found, geometry, turn):
     return replace(found, cells=replace(cells, **{k: getattr(cells, k)[mine] for k in cells.__slots__}))
 
 
+@pytest.mark.slow("draws many surfaces", only=("0",))
 @pytest.mark.parametrize("kind", TOOLS)
 @pytest.mark.parametrize("seed", range(2))
 def test_no_contact_of_a_cell_with_its_axis_near_the_normal_gouges(kind, seed):

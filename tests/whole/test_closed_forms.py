@@ -87,6 +87,7 @@ def test_plane_with_a_wall(a, radius, length):
     assert_intervals(along, *([(0, 90)] if radius <= a else []))
 
 
+@pytest.mark.slow("searches long", only=("20",))
 @pytest.mark.parametrize(("rho", "radius"), [(20.0, 6.0), (10.0, 8.0)])
 def test_cylinder_trough(rho, radius):
     """Half a cylinder, contact on its bottom line: sin(tilt) >= R / rho across and along; leaning across, the generator

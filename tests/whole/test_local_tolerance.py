@@ -180,7 +180,7 @@ def test_no_posture_found_lets_the_true_surface_come_too_deep(radius, cutter):
     assert -1e-6 < deepest_of_found(radius, cutter, 21, 60) <= TOLERANCE
 
 
-@pytest.mark.slow
+@pytest.mark.slow("looks at ten thousand postures")
 @pytest.mark.parametrize(("radius", "cutter"), CASES, ids=lambda c: getattr(c, "id", c))
 def test_no_posture_of_ten_thousand_lets_the_true_surface_come_too_deep(radius, cutter):
     deepest = deepest_of_found(radius, cutter, 61, 10_000)

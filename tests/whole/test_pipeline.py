@@ -43,6 +43,7 @@ def whole(ready):
     return {large: (first, None), small: (second, known)}
 
 
+@pytest.mark.slow("searches long")
 @given(st.lists(st.integers(1, 61 * 61 - 1), min_size=1, max_size=6), st.integers(1, 3))
 @settings(max_examples=15, deadline=None)
 def test_rows_are_judged_alike_however_they_are_cut(ready, whole, ends, jobs):

@@ -125,6 +125,7 @@ CASES = [
 ]
 
 
+@pytest.mark.slow("searches long", only=("control",))
 @pytest.mark.parametrize(("name", "cutter", "grid"), CASES)
 def test_reported_postures_do_not_gouge(name, cutter, grid):
     deepest = deepest_of_free_postures(name, cutter, 150, 40 if name == "control_arm" else 200, grid)
@@ -132,7 +133,7 @@ def test_reported_postures_do_not_gouge(name, cutter, grid):
     assert -0.01 < deepest <= 0.01
 
 
-@pytest.mark.slow
+@pytest.mark.slow("looks at ten thousand postures")
 @pytest.mark.parametrize(("name", "cutter", "grid"), CASES)
 def test_ten_thousand_reported_postures_do_not_gouge(name, cutter, grid):
     deepest = deepest_of_free_postures(name, cutter, 10_000, 60 if name == "control_arm" else 300, grid)

@@ -49,6 +49,7 @@ def same(one, other):
     assert all(np.array_equal(one[1][name], other[1][name], equal_nan=one[1][name].dtype.kind == "f") for name in one[1])
 
 
+@pytest.mark.slow("plans a large part twice", only=("impeller",))
 @pytest.mark.parametrize(("part", "words"), [
     ("impeller", {"cutters": ["R3L40"]}),
     ("pump", {"cutters": ["R3L40", "R3L40rc1"], "fixtures": "table", "machine": "trunnion-ac", "faces": "all"}),

@@ -64,7 +64,7 @@ def test_a_ball_in_a_bowl_is_stopped_by_its_rim():
     assert np.isnan(found.local_gouge).all()
 
 
-@pytest.mark.slow
+@pytest.mark.slow("judges with a fine map of postures")
 def test_a_ball_in_a_fillet_of_its_radius_lies_down_along_it_and_not_across():
     part, cutter = shapes.shell(shapes.trough(3.0, 100.0)), Cutter.ball(radius=3, length=40)
     along, _ = towards(part, cutter, (0, 1, 0))

@@ -66,6 +66,7 @@ def test_one_that_does_not_end_is_not_waited_for_for_ever(monkeypatch):
     assert made[0].returncode is not None
 
 
+@pytest.mark.slow("compiles anew in processes of its own")
 def test_machine_code_is_found_where_the_compiler_keeps_it(tmp_path):
     """In a process of its own: where the folder is, is asked once."""
     look = "from plan_cutters.kernels.jit import at_hand; print(at_hand('material.none'), at_hand('material.moments'))"
@@ -91,6 +92,7 @@ def made_ahead():
     )
 
 
+@pytest.mark.slow("starts commands and ends them on the way")
 def test_what_is_made_ahead_is_a_plan(made_ahead):
     """What it compiles it runs: nothing of it fails, and the area between samples is among it."""
     assert made_ahead.returncode == 0
@@ -122,6 +124,7 @@ for maps in (False, True):
 """
 
 
+@pytest.mark.slow("compiles anew in processes of its own")
 def test_a_plain_cutter_loads_what_it_needs_and_nothing_else(made_ahead):
     """No posture maps, largest radius, stick-out, fixed axis or picture: each would take seconds to compile on the first run."""
     # Made before: where an entry is compiled just now, those that it calls are there as well.

@@ -16,7 +16,17 @@ from tests.support.commands import leftovers
 from tests.support.forked import ENV
 from tests.support.places import SAMPLES
 
-pytestmark = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks at processes in /proc")
+pytestmark = [
+    pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="looks at processes in /proc"),
+    pytest.mark.slow(
+        "starts commands and ends them on the way",
+        but=(
+            "test_a_command_that_is_ended_leaves_nothing_running[SIGINT-split:]",
+            "test_a_command_that_is_ended_leaves_nothing_running[SIGKILL-read:copy",
+            "test_copies_end_with_the_program_that_plans",
+        ),
+    ),
+]
 
 #: An interpreter that begins with this is stuck in the stage asked for: in one call of C that never lets go of the interpreter,
 #: as the kernel does. `where` is a stage's name; with `copy` a forked copy is stuck, and the stage waits for it.
@@ -140,14 +150,7 @@ ENDED = [
 ]
 
 
-#: These stand for the others of their half: it is one way that ends all of them.
-OFTEN = ("read:", "tessellate:", "R6L80:", "split:", "step:", *COPIES)
-
-
-@pytest.mark.parametrize(("number", "where"), [
-    pytest.param(number, where, id=f"{number.name}-{where}", marks=() if where in OFTEN else pytest.mark.slow)
-    for number, where in ENDED
-])  # fmt: skip
+@pytest.mark.parametrize(("number", "where"), [pytest.param(*each, id=f"{each[0].name}-{each[1]}") for each in ENDED])
 def test_a_command_that_is_ended_leaves_nothing_running(tmp_path, number, where):
     with Run(tmp_path, where) as run:
         run.until_stuck()
@@ -193,7 +196,7 @@ def test_the_other_commands_end_too(tmp_path, command, number):
     assert leftovers(tmp_path, "hooks") == []
 
 
-@pytest.mark.slow
+@pytest.mark.slow("waits for a time limit")
 def test_what_hangs_where_verdicts_stand_is_given_time_and_no_more(tmp_path):
     with Run(tmp_path, "area:", writing=supervise.WRITING) as run:
         run.until_stuck()

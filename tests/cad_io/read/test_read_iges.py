@@ -109,7 +109,7 @@ def test_faces_are_numbered_as_the_kernels_reader_gives_them(path):
     assert [f.surface for f in part.faces] == [f.surface for f in plain.faces]
 
 
-@pytest.mark.slow
+@pytest.mark.slow("times the kernel, five runs each")
 def test_reading_takes_little_longer_than_the_kernel_alone(tmp_path):
     from OCP.IGESControl import IGESControl_Writer
 

@@ -124,6 +124,7 @@ def test_a_needle_that_no_grid_hits_well_is_sampled_along_it(width):
     assert cKDTree(samples.point).query(along)[0].max() <= 5.0 + width
 
 
+@pytest.mark.slow("reads or samples a large real file")
 @pytest.mark.parametrize(
     "path", real("hard/turbo3d_impeller.step", "asitus_control_arm.step", "asitus_repatch-hpdc-colored.stp"), ids=lambda p: p.name
 )

@@ -433,6 +433,7 @@ def test_locate_finds_the_sample_at_a_point():
     assert locate(part, orientation, above).point[0] == pytest.approx(samples.point[20], abs=1e-6)
 
 
+@pytest.mark.slow("reads or samples a large real file", only=("4",))
 @pytest.mark.parametrize("shape", [ball(), ring(), rod(), cone(8, 4), pocketed(), as_nurbs(ball())], ids=range(6))
 def test_locate_on_turned_surfaces(shape):
     shape = shape.Moved(TopLoc_Location(moved()))

@@ -30,6 +30,7 @@ def area(triangles):
     return 0.5 * np.linalg.norm(np.cross(v[:, 1] - v[:, 0], v[:, 2] - v[:, 0]), axis=1).sum()
 
 
+@pytest.mark.slow("reads or samples a large real file", but=("cut", "holed-0.2", "moved-0.01", "ring "))
 @pytest.mark.parametrize("chord", [0.2, 0.01])
 @pytest.mark.parametrize("make", SHAPES.values(), ids=SHAPES.keys())
 def test_surface_points_are_within_the_promise(make, chord):
@@ -44,6 +45,7 @@ def test_surface_points_are_within_the_promise(make, chord):
 REAL = ("asitus_control_arm.step", "tigl_nacelle.stp", "bladex_upper.iges", "occt_linkrods.step")
 
 
+@pytest.mark.slow("reads or samples a large real file", only=("asitus",))
 @pytest.mark.parametrize("path", real(*REAL), ids=lambda p: p.name)
 def test_real_surfaces_are_within_the_promise(path):
     part = read_part(path)

@@ -181,6 +181,7 @@ def test_settings_are_put_back_after_reading(names, halves, tmp_path):
     assert bool(found.names) == names
 
 
+@pytest.mark.slow("reads or samples a large real file")
 def test_whether_the_kernel_names_shapes_by_itself_changes_nothing(tmp_path):
     """cadquery's exports turn it off for the whole process, and leave it off."""
     part = Part(compound([block(1), block(1), block(1)]))
