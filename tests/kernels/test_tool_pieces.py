@@ -237,7 +237,7 @@ def test_about_corners_nothing_is_missed_and_no_more_is_held_than_is_stated(kind
 
 
 def random_form(rng, convex):
-    """A form with sides of all lengths that lean in and out, pointed tips, flats, steps; a convex one with stock now and then."""
+    """A form with sides of all lengths that lean in and out, pointed tips, flats, steps; at times with stock or a clearance."""
     while True:
         n = rng.integers(2, 7)
         if convex:
@@ -250,8 +250,12 @@ def random_form(rng, convex):
         points = [(0.0, 0.0), *zip(q.tolist(), [0.0, *np.cumsum(up).tolist()], strict=True)]
         points = [point for i, point in enumerate(points) if i == 0 or point != points[i - 1]]
         more = {"shank_radius": float(rng.uniform(0.3, 1.3) * points[-1][0])} if rng.random() < 0.5 else {}
-        if convex and rng.random() < 0.3:
-            more["allowance"] = 0.3
+        if rng.random() < 0.3:
+            more |= (
+                {"allowance": 0.3}
+                if convex
+                else {"allowance": float(rng.choice([0.02, 0.3])), "clearance": rng.choice([0.0, 1.5])}
+            )
         if q.min() >= 0.0 and points[-1][1] > 0.0 and points[-1][0] > 0.05:
             try:
                 return Cutter.form(points, length=points[-1][1] + float(rng.uniform(2, 20)), **more)
@@ -261,9 +265,9 @@ def random_form(rng, convex):
 
 @pytest.mark.parametrize("convex", [True, False], ids=["convex", "re-entrant"])
 def test_about_corners_of_any_form_nothing_is_missed(convex):
-    """Between sides of any leans, below a shank that stands on a side that leans in, and at a pointed tip with stock."""
+    """Between sides of any leans and lengths, below a shank on a side that leans in or on a thin flange, at a pointed tip."""
     rng = np.random.default_rng(convex)
-    for _ in range(100):
+    for _ in range(100 if convex else 400):
         flutes, rest = depths(rng)
         cutter = random_form(rng, convex)
         if (found := about_corners(rng, cutter, flutes, rest)) is not None:
@@ -271,6 +275,21 @@ def test_about_corners_of_any_form_nothing_is_missed(convex):
             assert not ((held < -EXACT) & (over > 10 * EXACT)).any(), (cutter, flutes, rest)
             if convex:
                 assert over[held > 0.0].min(initial=0.0) > -slack - 10 * EXACT, (cutter, flutes, rest)
+
+
+@pytest.mark.parametrize("kind", ["flat", "taper flat", "form"])
+def test_the_clearance_of_a_shank_is_kept_below_a_flange_that_is_thinner(kind):
+    """A point under a thin flange, or beside a taper hardly wider than shank and clearance, may be too near to the shank."""
+    rng, more = np.random.default_rng(1), {"length": 30.0, "shank_radius": 4.0, "clearance": 1.02, "allowance": 0.05}
+    for more_flutes in np.linspace(0.0, 0.1, 11).tolist():  # whatever the seam's height is rounded to
+        cutter = {
+            "flat": Cutter.flat(radius=5, flutes=0.4 + more_flutes, **more),
+            "taper flat": Cutter.flat(radius=3, flutes=10 + more_flutes, taper=math.atan(0.2), **more),
+            "form": Cutter.form([(0, 0), (3, 0), (3, 4), (5, 4), (5, 4.3 + more_flutes)], **more),
+        }[kind]
+        held, over, _ = about_corners(rng, cutter, 0.02, -0.005, 20_000)
+        assert (over > 10 * EXACT).any()
+        assert not ((held < -EXACT) & (over > 10 * EXACT)).any()
 
 
 def test_a_dovetail_under_a_shank_of_its_own_width_misses_nothing_in_the_corner():
@@ -298,6 +317,15 @@ def test_what_a_narrow_shank_holds_in_the_flutes_is_no_farther_off_than_is_state
     over = reference.over(np.full(500, 4.0 + grown), 20.0 - below, depth, -grown).min()
     assert over == pytest.approx(-(depth**2) / (2.0 * (depth + grown)), abs=1e-4)
     assert over > -made.slack - 10 * EXACT
+
+
+@pytest.mark.parametrize("points", [
+    [(0, 0), (2, 0), (0.3, 0), (0.3, 2)], [(0, 0), (1, 0), (1, 2), (3, 2), (2, 2), (2, 5)],
+    [(0, 0), (1, 0), (1, 2), (0.5, 2), (1, 2), (1, 3)], [(0, 0), (1, 0), (1, 2), (3, 2)],
+])  # fmt: skip
+def test_a_disk_without_thickness_is_no_cutter(points):
+    with pytest.raises(CutterError, match="a disk without thickness"):
+        Cutter.form(points, length=20)
 
 
 @pytest.mark.parametrize(("flutes", "length"), [(11.77, 46.96), (9.62, 30.77), (6.26, 27.26)])

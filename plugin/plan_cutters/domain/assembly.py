@@ -30,7 +30,18 @@ from plan_cutters.domain.pieces import (
     sharpest,
     solid,
 )
-from plan_cutters.domain.shapes import MOST_PIECES, Flank, Mode, flanks, flute_length, modes, rim_radius, stages, top_flank_angle
+from plan_cutters.domain.shapes import (
+    MOST_PIECES,
+    Flank,
+    Mode,
+    flanks,
+    flute_length,
+    modes,
+    rim_length,
+    rim_radius,
+    stages,
+    top_flank_angle,
+)
 from plan_cutters.domain.verdicts import VerdictBuffer, Verdicts
 from plan_cutters.errors import CutterError
 from plan_cutters.kernels.codes import (
@@ -204,7 +215,8 @@ def assembly(cutter: Cutter, flutes: float, rest: float, *, kind: Kind = "outer"
             rows += alone(band)
     else:
         first = bands[0]
-        end, start = seam(rim_radius(cutter), flutes, first.stage.radius, first.inset, top)
+        straight = (rim_length(cutter), first.stage.length if first.stage.slope >= 0.0 else 0.0)
+        end, start = seam(rim_radius(cutter), flutes, first.stage.radius, first.inset, top, straight)
         if cutter.shape == "lollipop":
             rows += opening(cutter, flutes, top)
         else:

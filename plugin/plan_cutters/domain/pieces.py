@@ -79,19 +79,33 @@ def solid(row: list[float]) -> bool:
     return row[HIGH] > row[LOW] and max(row[RADIUS], row[WIDE]) > 0.0
 
 
-def seam(lower: float, lower_inset: float, upper: float, upper_inset: float, at: float) -> tuple[float, float]:
+def seam(
+    lower: float,
+    lower_inset: float,
+    upper: float,
+    upper_inset: float,
+    at: float,
+    straight: tuple[float, float] = (math.inf, math.inf),
+) -> tuple[float, float]:  # fmt: skip
     """Heights at which the band below a seam ends, and the one above begins: the narrower runs on into the wider.
 
-    A face that the other band covers is not moved in, though that one's side be moved in further.
+    A face that the other band covers is not moved in, though that one's side be moved in further. What is grown more than the
+    other runs on by all of that, unless the other is as wide for as long, in mm below and above the seam (`straight`): a flange
+    may be thinner.
     """
     below, above = lower - lower_inset, upper - upper_inset
+    end, start = at + HAIR, at
     if above > below and not (upper <= lower and upper_inset > 0.0):
         start = at + upper_inset
-        return max(at, start) + HAIR, start
-    if below > above and not (lower <= upper and lower_inset > 0.0):
+        end = max(at, start) + HAIR
+    elif below > above and not (lower <= upper and lower_inset > 0.0):
         end = at - lower_inset
-        return end, min(at, end) - HAIR
-    return at + HAIR, at
+        start = min(at, end) - HAIR
+    if upper_inset < min(0.0, lower_inset) and straight[0] < -upper_inset:
+        start = min(start, at + upper_inset)
+    if lower_inset < min(0.0, upper_inset) and straight[1] < -lower_inset:
+        end = max(end, at - lower_inset)
+    return end, start
 
 
 def between(
@@ -152,7 +166,7 @@ def among(band: Band, start: float, end: float, *, exact: bool) -> list[list[flo
         # What runs down into a wider band does so as wide as it begins: its own slope could leave out what is deep under its rim.
         rows.append(band_row(start, band.low + HAIR, stage.radius, 0.0, band.part))
         start = band.low + inset
-    low_step, high_step = abs(start - band.low) > HAIR, abs(end - band.high) > 2.0 * HAIR
+    low_step, high_step = abs(start - band.low) > 2.0 * HAIR, abs(end - band.high) > 2.0 * HAIR
     # Grown, a side that leans reaches past its ends along its normal.
     if inset < 0.0 and not (exact and low_step):
         start = min(start, band.low + min(0.0, shift))
@@ -264,7 +278,7 @@ def _form(cutter: Dimensions, inset: float, top: float, kind: Kind) -> list[list
         if kind == "inner":
             rows += alone(Band(FLUTES, w0, stage, inset))
             continue
-        mine = inset * (share(points, i) if inset > 0.0 else 1.0)
+        mine = inset * (share(points, i, inset) if inset > 0.0 else 1.0)
         low_step, high_step = _step(points, i, -1), _step(points, i + 1, 1)
         # Grown, a side that leans reaches past its ends along its normal.
         rise = max(0.0, -mine) * math.sin(math.atan(stage.slope))
@@ -301,8 +315,18 @@ def _turn(points: tuple[tuple[float, float], ...], k: int) -> float:
     return math.remainder(math.atan2(f - d, e - c) - math.atan2(d - b, c - a), 2.0 * math.pi)
 
 
-def share(points: tuple[tuple[float, float], ...], i: int) -> float:
-    """By which share of the depth the side from point i to the next is moved in: less next to a re-entrant corner."""
+def share(points: tuple[tuple[float, float], ...], i: int, inset: float) -> float:
+    """By which share of the depth the side from point i to the next is moved in: less next to a re-entrant corner.
+
+    Not at all where it leans towards a further one, no higher or lower than the depth: the foot of what lies deep may then be
+    beyond that corner, and how far the side's line is says nothing.
+    """
+    (r0, low), (r1, high) = points[i], points[i + 1]
+    for k in range(1, len(points)):
+        over, under = points[k][1] - high, low - points[k][1]
+        away = under if r1 > r0 else over if r1 < r0 else math.inf
+        if 0.0 < away <= inset and (_turn(points, k) < 0.0 or k == len(points) - 1):
+            return 0.0
     first, last = i, i + 1
     # A corner on the other side of a step meets this side, too.
     while first > 0 and points[first - 1][1] == points[first][1]:
@@ -323,7 +347,7 @@ def _crossing(points: tuple[tuple[float, float], ...], k: int, inset: float) -> 
     if d <= b or f <= d:
         return 0.0
     below, above = (c - a) / (d - b), (e - c) / (f - d)
-    back = [share(points, i) * math.hypot(1.0, slope) for i, slope in ((k - 1, below), (k, above))]
+    back = [share(points, i, inset) * math.hypot(1.0, slope) for i, slope in ((k - 1, below), (k, above))]
     return inset * (back[1] - back[0]) / (above - below)
 
 
@@ -339,7 +363,7 @@ def least_depth(points: tuple[tuple[float, float], ...], i: int, inset: float) -
     Its piece ends at the height of a corner, where it is deep by its own normal, not by that of the side beyond.
     """
     (r0, w0), (r1, w1) = points[i], points[i + 1]
-    least = mine = inset * share(points, i)
+    least = mine = inset * share(points, i, inset)
     inward = mine * math.hypot(1.0, (r1 - r0) / (w1 - w0))
     for (a, low), (b, high) in pairwise([*points, (0.0, points[-1][1])]):
         if low >= w1 + inset or high <= w0 - inset:

@@ -92,13 +92,29 @@ def rim_radius(cutter: Dimensions) -> float:
     return top_radius(cutter)
 
 
+def rim_length(cutter: Dimensions) -> float:
+    """How far down from their end the flutes are at least as wide as there, mm; 0 where that is not seen at once."""
+    top, rim = flute_length(cutter), rim_radius(cutter)
+    if cutter.shape == "form":
+        length = 0.0
+        for r, h in reversed(cutter.outline):
+            if h < top and r < rim:
+                break
+            length = top - h
+        return length
+    if cutter.shape == "end" and cutter.taper <= 0.0:
+        return top - cutter.corner_radius
+    return top - lens_height(cutter) if cutter.shape == "lens" else 0.0
+
+
 def top_flank_angle(cutter: Dimensions) -> float:
     """How far the side of the flutes leans from the axis where they end, rad; positive where they widen."""
     if cutter.shape == "barrel":
         return math.asin((cutter.arc_height - flute_length(cutter)) / cutter.arc_radius)
     if cutter.shape == "form":
-        (r, w), (s, v) = cutter.outline[-2:]
-        return math.atan2(s - r, v - w) if v > w else 0.0
+        sides = reversed([(a, b) for a, b in pairwise(cutter.outline) if b[1] > a[1]])
+        (r, w), (s, v) = next(sides)
+        return math.atan2(s - r, v - w)
     return cutter.taper
 
 
@@ -338,6 +354,11 @@ def _check_outline(cutter: Dimensions, name: str) -> None:
         raise CutterError(f"{name}: an outline begins on the axis at the tip, 0 0, and has at least one more point")
     if any(b[1] < a[1] for a, b in pairwise(points)):
         raise CutterError(f"{name}: the heights of an outline must not fall: it would overlap itself or be hollow")
+    for (a, h), (b, low), (c, high) in zip(points, points[1:], points[2:], strict=False):
+        if h == low == high and (b - a) * (c - b) < 0.0:
+            raise CutterError(f"{name}: its outline goes back over itself at the height {h:g} mm: a disk without thickness")
+    if points[-1][1] == points[-2][1] and points[-1][0] > points[-2][0]:
+        raise CutterError(f"{name}: its outline ends in a face outwards, a disk without thickness: leave out its last point")
     if any(r <= 0.0 for r, _ in points[1:]) or not points[-1][1] > 0.0:
         raise CutterError(f"{name}: an outline's radii must be positive above its tip, and it must have a height")
     if abs(max(r for r, _ in points) - cutter.radius) > SAME:
