@@ -56,6 +56,11 @@ def pytest_report_header(config):
     return f"slow tests: {config.getoption('slow')}"
 
 
+def pytest_terminal_summary(terminalreporter, config):
+    if told := slow.summary(terminalreporter.stats, config.slow_parts):
+        terminalreporter.line(told)
+
+
 def pytest_sessionstart():
     gc.disable()
 

@@ -11,13 +11,15 @@ eleven parts are the whole, and a test that is added moves no other.
 import subprocess
 import sys
 import zlib
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 import pytest
 
 from tests.support.places import ROOT
 
+#: By which a report says that its test is slow.
+PROPERTY = "part of the slow tests"
 #: In how many parts `.ci/run` tests what is slow: eleven commits in a row are the whole.
 PARTS = 11
 
@@ -121,9 +123,29 @@ def select(items: Iterable[Any], parts: frozenset[int], whole: bool) -> tuple[li
     for item in items:
         part = slow.part(item)
         (runs if part is None or part in parts else left).append(item)
+        if part is not None:
+            item.user_properties.append((PROPERTY, part))
     if whole and (unnamed := slow.unnamed()):
         raise pytest.UsageError("; ".join(unnamed))
     return runs, left
+
+
+def summary(stats: Mapping[str, Sequence[Any]], parts: frozenset[int]) -> str:
+    """One line of what the slow tests of a run have found; empty where it has none of them.
+
+    Parameters
+    ----------
+    stats : mapping of str to sequence of reports
+        Reports by outcome, as pytest keeps them.
+    parts : frozenset of int
+        The parts that took part.
+    """
+    counts = {
+        outcome: sum(PROPERTY in dict(getattr(each, "user_properties", ())) for each in stats.get(outcome, ()))
+        for outcome in ("passed", "failed", "error", "skipped", "xfailed")
+    }
+    which = "all parts" if len(parts) == PARTS else f"part {', '.join(map(str, sorted(parts)))} of {PARTS}"
+    return f"slow tests, {which}: " + ", ".join(f"{many} {outcome}" for outcome, many in counts.items()) if parts else ""
 
 
 if __name__ == "__main__":  # whether what shares this name is tested at this commit
