@@ -26,7 +26,10 @@ GROOVE, PEAKS = "v_groove.step", "peaks_and_valleys.step"
 HELD = {"cutters": ["R6L80"], "machine": "tilt:20", "grid": 5}
 NAMES = ["plan_part", "posture_map", "explain_sample", "compare_cutters", "render", "list_tools_and_machines", "compare_plans"]
 #: Fields that stay as they are, for they are handed back or must not be wider than they are; and places, in 0.1 um.
-EXACT, PLACES = {"axis", "angles", "free"}, {"point", "obstacle_point", "place_mm", "normal", "direction_max"}
+EXACT, PLACES = (
+    {"axis", "angles", "free", "undecided", "forbidden"},
+    {"point", "obstacle_point", "place_mm", "normal", "direction_max"},
+)
 LIMITS = ("--most-mb", "2", "--most-cutters", "2", "--most-samples", "10000", "--timeout", "200")
 
 
@@ -65,7 +68,7 @@ class Server:
         jsonschema.validate(found, self.tools[name].output_schema)
         assert set(found) == set(self.tools[name].output_schema["properties"])
         for field, number in numbers(found):
-            if field not in EXACT | PLACES | {"undecided", "forbidden"}:
+            if field not in EXACT | PLACES:
                 assert number == float(f"{number:.4g}"), field
         return found
 
@@ -150,8 +153,12 @@ def test_a_plan_is_what_its_file_says(server, planned):
         1 - cutter["area_share"]["inaccessible"] - cutter["area_share"]["undecided"], rel=1e-3
     )
     assert [note["code"] for note in found["notes"]][: len(plan["note_codes"])] == plan["note_codes"]
-    assert found["files"] == {"json": f"{server.root}/out/plan.json", "npz": f"{server.root}/out/samples.npz"}
-    assert sorted(os.listdir(server.root / "out")) == ["plan.json", "samples.npz"]
+    assert found["files"] == {
+        "json": f"{server.root}/out/plan.json",
+        "npz": f"{server.root}/out/samples.npz",
+        "process": f"{server.root}/out/process.toml",
+    }
+    assert sorted(os.listdir(server.root / "out")) == ["plan.json", "process.toml", "samples.npz"]
 
 
 def test_written_files_are_linked(server, planned):

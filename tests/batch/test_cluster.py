@@ -111,8 +111,8 @@ def test_a_task_offers_the_cluster_that_it_runs_on(running, tmp_path):
 @pytest.mark.slow("starts a cluster")
 def test_two_large_parts_on_one_thread_do_not_wait_for_each_other():
     """The first gives its place away; the other one has the cluster after it, or judges by itself."""
-    asked = {"cutters": "R6L80", "grid": 200, "area_budget": 0}
-    file = SAMPLES / "v_groove.step"
+    asked = {"cutters": "R6L80", "grid": 320, "area_budget": 0}
+    file = SAMPLES / "peaks_and_valleys.step"
     alone = plan(file, **asked).plan.cutters[0].model_copy(update={"seconds": 0.0})
     with (
         LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=":0", silence_logs=50) as one,
