@@ -588,7 +588,8 @@ def test_an_interrupt_while_it_is_imported_is_one_line(tmp_path):
 ])  # fmt: skip
 def test_a_request_to_end_is_an_interrupt_in_commands_without_a_child(tmp_path, asked, module, error):
     """Within imports, too, which make of it what they like once the command is there."""
-    trap = "import builtins, os, signal, time\nreal = builtins.__import__\ndef ends(name, *rest):\n"
+    trap = "import builtins, os, signal, time\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n"
+    trap += "real = builtins.__import__\ndef ends(name, *rest):\n"
     trap += f"    if name != {module!r}: return real(name, *rest)\n"
     trap += f"    try:\n        os.kill(os.getpid(), {int(asked)})\n        time.sleep(20)\n"
     trap += f"    except KeyboardInterrupt: raise {error}\nbuiltins.__import__ = ends\n"

@@ -10,6 +10,10 @@ from tests.support.places import SAMPLES
 
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed: setup.sh dev")
 
+pytestmark = pytest.mark.slow(
+    "draws many pictures in software, once more with inertia", but=("reduce", "test_one_finger", "test_zoom_buttons")
+)
+
 
 @pytest.fixture(scope="module")
 def planned():
@@ -24,7 +28,8 @@ def phone(browser, path, request):
         viewport={"width": 390, "height": 844},
         has_touch=True,
         is_mobile=True,
-        device_scale_factor=2,
+        # Inertia draws many pictures: those of a coarse screen are drawn sooner.
+        device_scale_factor=2 if request.param == "reduce" else 1,
         reduced_motion=request.param,
     )
     page = opened(context, path)
