@@ -95,6 +95,7 @@ def test_why_a_folder_takes_no_file(tmp_path):
 # Batch
 
 
+@pytest.mark.slow("starts a process for each", only=("words1-", "words2-", "words4-"))
 @pytest.mark.parametrize(
     ("words", "code", "line"),
     [
