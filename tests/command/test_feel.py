@@ -287,7 +287,7 @@ def test_it_fits_any_terminal(capsys, monkeypatch, planned, failing, columns):
 
 
 def test_many_cutters_are_said_in_few_lines(capsys, failing):
-    many = [c.model_copy(update={"id": f"{c.id}S{i}"}) for i in range(60) for c in failing.cutters]
+    many = [c.model_copy(update={"id": f"{c.id}S{i}"}) for i in range(20) for c in failing.cutters]
     document = failing.model_copy(update={"cutters": many})
     assert len(shown(capsys, document).splitlines()) <= 25
     whole = in_lines(shown(capsys, document, verbose=True))

@@ -133,7 +133,8 @@ def test_a_part_that_moved_as_a_whole_is_told(chiral, moved, text):
 def test_a_free_form_face_leaves_open_which_motion_it_was():
     """A mirror and a turn carry all middles and areas to the same places: both are named, and no doubtful pair is made."""
     part = read_part(ROOT / "samples" / "pocket_top.step")
-    old, new = (planned(shape, (2,)) for shape in (cq.Workplane(cq.Shape.cast(part.shape)).mirror(plane) for plane in ("XY", "XZ")))
+    whole = cq.Workplane(cq.Shape.cast(part.shape))
+    old, new = (planned(whole.mirror(plane), (2,)) for plane in ("XY", "XZ"))
     known = known_faces(old, new)
     assert known.moved
     assert len(known.motions) > 1
