@@ -94,6 +94,9 @@ def test_a_part_that_is_late_has_the_plan_so_far_and_is_tried_again(out, tmp_pat
 def test_a_whole_plan_of_the_same_key_stays_where_a_later_run_is_late(out, tmp_path, monkeypatch):
     done = work.work(task_of(out)).row
     assert done.status == "planned"
+    # Within the limit of samples it has no mark.
+    assert done.coarser is None
+    assert "coarser" not in page_of([done])[0].partition("<body>")[2]
     before = (tmp_path / "out/groove-plan/plan.json").read_bytes()
     monkeypatch.setattr(work, "planned", late)
     row = work.work(task_of(out, force=True)).row
@@ -110,6 +113,7 @@ def test_a_part_that_is_late_without_a_plan_leaves_nothing(out, tmp_path, monkey
     assert not (tmp_path / "out/groove-plan").exists()
 
 
+@pytest.mark.slow("plans twice", only=("density1",))
 @pytest.mark.parametrize(("density", "word"), [({"spacing": 0.5}, "--spacing 0.5"), ({"grid": 40}, "--grid 40")])
 def test_a_density_that_asks_too_much_of_a_part_is_marked_in_a_batch_and_refused_alone(out, monkeypatch, density, word):
     options = {"cutters": "R6L80", "area_budget": 0, **density}
@@ -131,12 +135,6 @@ def test_a_density_that_asks_too_much_of_a_part_is_marked_in_a_batch_and_refused
     assert row.coarser in page
     kept = work.work(task_of(out, options)).row
     assert (kept.status, kept.coarser) == ("kept", row.coarser)
-
-
-def test_a_part_within_the_limit_has_no_mark(out):
-    row = work.work(task_of(out)).row
-    assert row.coarser is None
-    assert "coarser" not in page_of([row])[0].partition("<body>")[2]
 
 
 # Exit codes

@@ -70,6 +70,7 @@ def test_a_part_is_done_when_its_marker_says_so(store):
     assert [name for name in names(store) if name.startswith("a-plan")] == ["a-plan/done.json", "a-plan/plan.json"]
 
 
+@pytest.mark.slow("starts a server", only=("s3",))
 def test_a_file_that_was_changed_or_lost_makes_the_part_undone(store):
     store.publish("a-plan", FILES, ROW)
     store.remove("a-plan/review.html")
@@ -85,6 +86,7 @@ def test_a_file_that_was_changed_or_lost_makes_the_part_undone(store):
     assert store.row("a-plan") is None
 
 
+@pytest.mark.slow("starts a server", only=("s3",))
 def test_a_marker_that_was_edited_is_none(store):
     store.publish("a-plan", FILES, ROW)
     marker = json.loads(store._content("a-plan/" + MARKER))

@@ -153,7 +153,7 @@ def test_the_files_of_a_plan(tmp_path):
 
 def test_two_runs_give_the_same_bytes(tmp_path):
     """One in a process that begins with nothing, one in a copy of this one, which has done much else before."""
-    words = [SAMPLES / "pocket_top.step", "--cutter", "R4L60", "--grid", "21", "--area-budget", "300", "--quiet"]
+    words = [SAMPLES / "pocket_top.step", "--cutter", "R4L60", "--grid", "9", "--area-budget", "60", "--quiet"]
     for name, jobs, how in (("a", 1, run_anew), ("b", 2, run)):
         done = how(*words, "-o", name, "--jobs", jobs, cwd=tmp_path)
         assert done.returncode == 0

@@ -288,7 +288,7 @@ def test_it_fits_any_terminal(capsys, monkeypatch, planned, failing, columns):
 
 
 def test_many_cutters_are_said_in_few_lines(capsys, failing):
-    many = [c.model_copy(update={"id": f"{c.id}S{i}"}) for i in range(60) for c in failing.cutters]
+    many = [c.model_copy(update={"id": f"{c.id}S{i}"}) for i in range(20) for c in failing.cutters]
     document = failing.model_copy(update={"cutters": many})
     assert len(shown(capsys, document).splitlines()) <= 25
     whole = in_lines(shown(capsys, document, verbose=True))
@@ -589,7 +589,8 @@ def test_an_interrupt_while_it_is_imported_is_one_line(tmp_path):
 ])  # fmt: skip
 def test_a_request_to_end_is_an_interrupt_in_commands_without_a_child(tmp_path, asked, module, error):
     """Within imports, too, which make of it what they like once the command is there."""
-    trap = "import builtins, os, signal, time\nreal = builtins.__import__\ndef ends(name, *rest):\n"
+    trap = "import builtins, os, signal, time\nsignal.signal(signal.SIGINT, signal.default_int_handler)\n"
+    trap += "real = builtins.__import__\ndef ends(name, *rest):\n"
     trap += f"    if name != {module!r}: return real(name, *rest)\n"
     trap += f"    try:\n        os.kill(os.getpid(), {int(asked)})\n        time.sleep(20)\n"
     trap += f"    except KeyboardInterrupt: raise {error}\nbuiltins.__import__ = ends\n"

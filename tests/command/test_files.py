@@ -354,6 +354,7 @@ def test_an_interrupt_while_splitting_leaves_the_plan(tmp_path):
     assert [p.name for p in tmp_path.iterdir()] == ["out"]
 
 
+@pytest.mark.slow("starts a command and ends its child on the way")
 def test_a_crash_at_one_part_is_not_taken_for_the_end_of_all(tmp_path):
     process, _ = start(*WORDS, SAMPLES / "v_groove.step", "-o", "out", cwd=tmp_path)
     os.kill(child_of(process), signal.SIGSEGV)

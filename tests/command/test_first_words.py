@@ -158,6 +158,7 @@ def test_behind_an_option_with_a_value_the_word_is_that_value(option):
         assert named == words
 
 
+@pytest.mark.slow("starts a process for each", only=("none", "nonsense"))
 @pytest.mark.parametrize(("rule", "code"), [("none", 0), ("late", 0), ("unreadable", 3), ("nonsense", 2)])
 def test_a_batch_of_nothing_but_faults_ends_as_it_is_told(tmp_path, rule, code):
     done = piped("batch", "none.step", "-o", "out", "--fail-on", rule, data=b"", cwd=tmp_path)

@@ -97,6 +97,7 @@ def told(done, code, *absent):
     return last
 
 
+@pytest.mark.slow("plans and writes all files for each stage", only=("answers",))
 @pytest.mark.parametrize("stage", STAGES)
 def test_an_interrupt_leaves_page_samples_and_models_of_the_verdicts(tmp_path, monkeypatch, stage):
     where, absent = STAGES[stage]
@@ -108,6 +109,7 @@ def test_an_interrupt_leaves_page_samples_and_models_of_the_verdicts(tmp_path, m
     assert unfinished(tmp_path / "out", *absent, alone=False).not_written == {}
 
 
+@pytest.mark.slow("plans and writes all files for each stage", only=("area",))
 @pytest.mark.parametrize("stage", ["area", "answers"])
 def test_where_the_kernel_does_not_come_back_the_plan_is_left_and_told(tmp_path, monkeypatch, stage):
     """The worker is killed: what it had written stands, the summary is shown of that, and the files that lack are named."""

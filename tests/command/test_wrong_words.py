@@ -40,6 +40,7 @@ def batch(*words, cwd):
 # Before the work is begun. `bare`: neither kernel nor compiler may be loaded, and no process started.
 
 
+@pytest.mark.slow("imports all of the models of a file once more", only=("words3-", "words10-"))
 @pytest.mark.parametrize(
     ("words", "code", "line"),
     [
@@ -94,6 +95,7 @@ def test_why_a_folder_takes_no_file(tmp_path):
 # Batch
 
 
+@pytest.mark.slow("starts a process for each", only=("words1-", "words2-", "words4-"))
 @pytest.mark.parametrize(
     ("words", "code", "line"),
     [

@@ -30,8 +30,8 @@ def bracket():
     return body.cut(cq.Workplane().box(30, 8, 6).translate((25, 10, 15)))
 
 
-def planned(shape):
-    tools = [Cutter.flat(radius=r, length=30, holder=Holder.parse("R12L30")) for r in (2, 8)]
+def planned(shape, radii=(2, 4)):
+    tools = [Cutter.flat(radius=r, length=30, holder=Holder.parse("R12L30")) for r in radii]
     return plan(read_part(shape), cutters=tools, faces="all", grid=4, area_budget=0, jobs=2).plan
 
 
@@ -42,7 +42,7 @@ def before():
 
 @pytest.fixture(scope="module")
 def chiral():
-    return planned(bracket())
+    return planned(bracket(), (2,))
 
 
 def test_after_a_smaller_radius_all_faces_are_known(before):
@@ -94,8 +94,8 @@ def test_of_a_slot_the_walls_and_the_floor_are_new(before):
 def test_a_rib_in_place_of_a_slot_is_another_feature():
     """Both have walls that join the same faces and look the same ways, on the other side of the top."""
     body = cq.Workplane().box(80, 60, 30)
-    slot = planned(body.cut(cq.Workplane().box(6, 60, 8).translate((-5, 0, 11))))
-    rib = planned(body.union(cq.Workplane().box(6, 60, 8).translate((5, 0, 19))))
+    slot = planned(body.cut(cq.Workplane().box(6, 60, 8).translate((-5, 0, 11))), (2,))
+    rib = planned(body.union(cq.Workplane().box(6, 60, 8).translate((5, 0, 19))), (2,))
     for old, new in ((slot, rib), (rib, slot)):
         for a, b, _ in match_faces(old, new):
             # Walls, floor and top of either have no more than 480 mm2.
@@ -103,7 +103,7 @@ def test_a_rib_in_place_of_a_slot_is_another_feature():
 
 
 def test_a_mirrored_part_is_told_and_each_face_is_its_image(chiral):
-    after = planned(bracket().mirror("YZ"))
+    after = planned(bracket().mirror("YZ"), (2,))
     known = known_faces(chiral, after)
     assert known.moved
     assert len(known.pairs) == len(chiral.faces)
@@ -125,7 +125,7 @@ def test_a_mirrored_part_is_told_and_each_face_is_its_image(chiral):
     ],
 )
 def test_a_part_that_moved_as_a_whole_is_told(chiral, moved, text):
-    found = compare(chiral, planned(moved(bracket())))
+    found = compare(chiral, planned(moved(bracket()), (2,)))
     assert text in found.motion
     assert not [f for f in found.faces if f.lost or f.won or f.old is None or f.new is None]
 
@@ -133,7 +133,8 @@ def test_a_part_that_moved_as_a_whole_is_told(chiral, moved, text):
 def test_a_free_form_face_leaves_open_which_motion_it_was():
     """A mirror and a turn carry all middles and areas to the same places: both are named, and no doubtful pair is made."""
     part = read_part(ROOT / "samples" / "pocket_top.step")
-    old, new = (planned(shape) for shape in (cq.Workplane(cq.Shape.cast(part.shape)).mirror(plane) for plane in ("XY", "XZ")))
+    whole = cq.Workplane(cq.Shape.cast(part.shape))
+    old, new = (planned(whole.mirror(plane), (2,)) for plane in ("XY", "XZ"))
     known = known_faces(old, new)
     assert known.moved
     assert len(known.motions) > 1
@@ -200,10 +201,15 @@ def of_bores(plan_):
     return [f.id for f in sorted(bores, key=lambda f: f.centre_mm[0])]
 
 
+@pytest.fixture(scope="module")
+def old_rack():
+    return planned(rack([4, 1.5, 4, 4]), (2,))
+
+
 @pytest.mark.parametrize(("at", "mirrored"), [((17, 3, 0), False), ((20, 0, 0), False), ((0, 0, 0), True), ((0, 0, 0), False)])
-def test_a_part_that_moved_and_changed_hides_no_loss(at, mirrored):
+def test_a_part_that_moved_and_changed_hides_no_loss(old_rack, at, mirrored):
     """A bore narrowed and another one opened: where the row is moved, neither takes the place of the other."""
-    old, new = planned(rack([4, 1.5, 4, 4])), planned(rack([1.5, 4, 4, 4], at, mirrored))
+    old, new = old_rack, planned(rack([1.5, 4, 4, 4], at, mirrored), (2,))
     mine, theirs = of_bores(old), of_bores(new)
     if mirrored:
         theirs.reverse()
@@ -221,6 +227,6 @@ def test_a_name_pairs_no_bore_with_a_pin():
     pin = cq.Workplane().box(60, 40, 20).union(cq.Workplane().circle(7).extrude(12).translate((20, 8, 10)))
     old, new = (
         p.model_copy(update={"faces": [f.model_copy(update={"name": "seat" if f.shape == "cylinder" else ""}) for f in p.faces]})
-        for p in (planned(bore), planned(pin))
+        for p in (planned(bore, (2,)), planned(pin, (2,)))
     )
     assert not any(a.shape == "cylinder" for a, _, _ in match_faces(old, new))

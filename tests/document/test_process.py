@@ -133,7 +133,7 @@ def test_a_next_step_takes_something_off_what_the_process_leaves():
         "cutters": ["D10L40F25S10", "D6L10F9S6"],
         "holder": "D40L30",
         "faces": f"!{bottom}",
-        "spacing": 2.0,
+        "spacing": 4.0,
         "area_budget": 0,
     }
     done = plan(part, **asked, answers="mend").plan

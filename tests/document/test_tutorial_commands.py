@@ -107,6 +107,7 @@ def test_commands_of_the_readme_run(work):
     assert (work / "peaks_and_valleys-plan" / "review.html").exists()
 
 
+@pytest.mark.slow("plans as much as a planner does in an hour; the README's command is run each time")
 def test_commands_of_the_tutorial_run(work):
     printed = follow(read("docs/tutorial.md"), work)
     assert len(printed) == 4

@@ -23,7 +23,8 @@ KNOWN = {
 
 
 def called(text):
-    calls = (ast.unparse(node.func) for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call))
+    names = (node.func for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Call))
+    calls = (ast.unparse(name) for name in names if isinstance(name, ast.Attribute))  # each of `CALLS` is of a module
     return Counter(call for call in calls if call in CALLS)
 
 

@@ -34,8 +34,9 @@ def at(browser, path):
     def open_(screen="desk", scheme="light", where=path, **more):
         width, height = SCREENS[screen]
         touch = {"has_touch": True, "is_mobile": True} if screen == "phone" else {}
+        viewport = {"width": width, "height": height}
         context = browser.new_context(
-            viewport={"width": width, "height": height}, reduced_motion="reduce", color_scheme=scheme, **touch, **more
+            **{"viewport": viewport, "reduced_motion": "reduce", "color_scheme": scheme, **touch, **more}
         )
         contexts.append(context)
         pages.append(opened(context, where))

@@ -38,7 +38,7 @@ HELD = Cutter.parse("R3L36rc3F8N2.5x10S3").asked(0.0, 0.0, Holder.parse("R10:14L
 
 @pytest.fixture(scope="module")
 def peaks():
-    return plan("samples/peaks_and_valleys.step", cutters=HELD, grid=21, area_budget=0, machine="trunnion-ac",
+    return plan("samples/peaks_and_valleys.step", cutters=HELD, grid=15, area_budget=0, machine="trunnion-ac",
                 fixtures=["box:20,20,90@20,-10,-40"], posture_maps=True, tilt=(0.0, 0.6))  # fmt: skip
 
 
@@ -113,7 +113,7 @@ def test_clearances_stay_unknown_where_there_is_no_posture_or_nothing_that_count
 
 
 def test_more_fixtures_leave_less_room(peaks):
-    bare = plan("samples/peaks_and_valleys.step", cutters=HELD, grid=21, area_budget=0, machine="trunnion-ac",
+    bare = plan("samples/peaks_and_valleys.step", cutters=HELD, grid=15, area_budget=0, machine="trunnion-ac",
                 tilt=(0.0, 0.6))  # fmt: skip
     both = peaks.reaches[peaks.shown].axis == bare.reaches[bare.shown].axis
     same = both.all(axis=1)

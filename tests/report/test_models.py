@@ -67,6 +67,7 @@ def linear(value):
     return value / 12.92 if value <= 0.04045 else ((value + 0.055) / 1.055) ** 2.4
 
 
+@pytest.mark.slow("plans whole parts", only=("peaks",))
 def test_glb_says_face_and_verdict_and_stands_upright_in_metres(written):
     result, document, out = written
     tree = chunks(out / "annotated.glb")
@@ -90,6 +91,7 @@ def test_glb_says_face_and_verdict_and_stands_upright_in_metres(written):
     assert (x, z, y) == pytest.approx(result.part.size, rel=0.02)
 
 
+@pytest.mark.slow("plans whole parts", only=("peaks",))
 def test_merged_glb_has_the_same_triangles_in_one_mesh_with_face_numbers(written):
     _, document, out = written
     single, merged = (trimesh.load(out / f"{name}.glb") for name in ("annotated", "merged"))
@@ -101,6 +103,7 @@ def test_merged_glb_has_the_same_triangles_in_one_mesh_with_face_numbers(written
     assert set(np.unique(mesh.vertex_attributes["_FACE"])) == {float(f.id[1:]) for f in document.faces}
 
 
+@pytest.mark.slow("plans whole parts", only=("peaks",))
 @pytest.mark.parametrize("name", ["annotated.glb", "merged.glb"])
 def test_glb_passes_the_khronos_validator(written, name):
     _, _, out = written
@@ -113,6 +116,7 @@ def test_glb_passes_the_khronos_validator(written, name):
     assert (issues["numErrors"], issues["numWarnings"]) == (0, 0), issues
 
 
+@pytest.mark.slow("plans whole parts", only=("peaks",))
 def test_a_face_without_a_grid_is_coloured_by_its_worst_verdict(written):
     from dataclasses import replace
 

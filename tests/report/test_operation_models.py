@@ -37,7 +37,7 @@ CASES = {
     "ridge": (lambda: ridge(10.0, 10.0), {"cutters": BALL, "faces": "all", "grid": 15, "tilt": (0.0, math.radians(31.0))}),
     "peaks": (
         lambda: SAMPLES / "peaks_and_valleys.step",
-        {"cutters": "R6L80", "grid": 21, "machine": "trunnion-ac", "index_step": math.radians(15.0)},
+        {"cutters": "R6L80", "grid": 13, "machine": "trunnion-ac", "index_step": math.radians(15.0)},
     ),
 }
 

@@ -9,7 +9,7 @@ import pytest
 
 from plan_cutters import plan
 from plan_cutters.plan_file.words.story import story_of
-from tests.support.browser import chromium, place_of, seen, wait_for_map
+from tests.support.browser import chromium, place_of, seen
 from tests.support.places import ROOT
 from tests.support.review_page import Page
 
@@ -84,26 +84,27 @@ def link(page):
 
 
 def test_a_link_leads_to_the_same_cutter_sample_posture_and_view(at, planned):
-    page = at(permissions=["clipboard-read", "clipboard-write"])
+    small = {"viewport": {"width": 800, "height": 500}}  # is drawn in little time
+    page = at(permissions=["clipboard-read", "clipboard-write"], **small)
     other = next(c.id for c in planned.plan.cutters if c.id != planned.shown)
     page.evaluate("id => review.setCutter(id)", other)
     row = seen(page, INNER)[-1]
     page.mouse.click(*place_of(page, row))
-    wait_for_map(page, row)
+    page.wait_for_function("row => review.sample?.row === row", arg=row)
     page.evaluate("review.setPosture({tilt: 17, rotation: 40})")
     page.select_option("#colouring", "scalar:curvature_max")
     page.evaluate("review.stage.table.set({turn: 33, rise: 21, half: 20})")
     address = link(page)
     assert page.evaluate("location.href") == address
 
-    again = at()
+    again = at(**small)
     again.goto(address)
     # Nothing but the part behind `#` changed: a page that is open follows, too.
     status(again, "The link's place is shown")
     assert again.evaluate("[review.cutter.id, review.sample.row, review.mode]") == [other, row, "scalar:curvature_max"]
     assert again.evaluate("[review.posture.tilt, review.posture.rotation]") == [17, 40]
     assert aim(again) == pytest.approx(aim(page), abs=0.02)
-    fresh = at()
+    fresh = at(**small)
     fresh.goto("about:blank")
     fresh.goto(address)
     fresh.wait_for_selector("html[data-ready]")
@@ -215,7 +216,7 @@ def test_who_leaves_with_unsaved_notes_is_asked(at):
 
 
 def test_a_decision_needs_a_name_and_is_kept_with_the_state_of_notes(at, path, tmp_path):
-    page = at()
+    page = at(viewport={"width": 800, "height": 500})
     assert page.locator("#decision").is_hidden()
     page.click("#approve")
     status(page, "Write your name first")
@@ -239,7 +240,7 @@ def test_a_decision_needs_a_name_and_is_kept_with_the_state_of_notes(at, path, t
     parsed = saved(copy)
     assert words in parsed.of("strong", id="decision")
     assert any("first" in item and item.endswith("; done)") for item in parsed.of("li"))
-    again = at(where=copy)
+    again = at(where=copy, viewport={"width": 800, "height": 500})
     assert again.inner_text("#decision") == words
     assert again.eval_on_selector_all("ol.notes li", "all => all.map(each => each.className)") == ["done", "open"]
     again.click("#reject")

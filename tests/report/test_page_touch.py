@@ -10,6 +10,17 @@ from tests.support.places import SAMPLES
 
 pytest.importorskip("playwright.sync_api", reason="playwright is not installed: setup.sh dev")
 
+pytestmark = pytest.mark.slow(
+    "draws many pictures in software, once more with inertia",
+    but=(
+        "test_a_pinch_zooms_about_what_lies_between_the_fingers_and_turns_nothing[reduce]",
+        "test_a_tap_chooses_the_sample_there[reduce]",
+        "test_one_finger_turns_and_inertia_comes_to_rest[no-preference]",
+        "test_targets_are_large_enough_for_fingers[reduce]",
+        "test_zoom_buttons",
+    ),
+)
+
 
 @pytest.fixture(scope="module")
 def planned():
@@ -24,7 +35,8 @@ def phone(browser, path, request):
         viewport={"width": 390, "height": 844},
         has_touch=True,
         is_mobile=True,
-        device_scale_factor=2,
+        # Inertia draws many pictures: those of a coarse screen are drawn sooner.
+        device_scale_factor=2 if request.param == "reduce" else 1,
         reduced_motion=request.param,
     )
     page = opened(context, path)

@@ -103,12 +103,17 @@ def test_what_is_undecided_is_not_told_as_blocked():
     assert spot(witness(verdict="undecided", **nothing)).endswith("may be in the way.")
 
 
-def test_witnesses_have_the_verdicts_of_their_samples(planned):
+def test_witnesses_have_the_verdicts_of_their_samples():
     from plan_cutters.domain.verdicts import INACCESSIBLE, UNDECIDED
     from plan_cutters.report.page.facts import spots_of
 
+    planned = plan(
+        ROOT / "samples" / "pocket_top.step", cutters=["R3L40"], holder="D50L60", grid=7, faces="all", area_budget=0,
+        machine="tilt:40", fixtures=["box:15,60,40@62,-10,-10"], tolerance=0.2,
+    )  # fmt: skip
     words_of = {INACCESSIBLE: "inaccessible", UNDECIDED: "undecided"}
     spots, _ = spots_of(planned)
     assert spots
+    assert {each.witness.verdict for each in spots} == set(words_of.values())
     for each in spots:
         assert each.witness.verdict == words_of[planned.reaches[each.cutter].verdict[each.sample]]

@@ -31,7 +31,7 @@ def planned(shape, **options):
 
 @pytest.fixture(scope="module")
 def once_and_twice():
-    more = {"machine": "trunnion-ac", "operations": "fewest", "feed": 1000, "cutters": ["D6L60"]}
+    more = {"machine": "trunnion-ac", "operations": "fewest", "feed": 1000, "cutters": ["D6L60"], "grid": 3}
     return tuple(plan(shape, **FEW | more) for shape in (drilled(), compound(drilled(), copied(drilled()))))
 
 

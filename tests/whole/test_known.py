@@ -63,7 +63,7 @@ def test_no_search_and_no_witness_search_for_what_is_inside(ready, reach, monkey
 
 
 def test_the_plan_says_for_how_many_samples_a_witness_stands():
-    entry = plan(bolted(), cutters=[SMALL], faces="all", grid=13, area_budget=0).plan.cutters[0]
+    entry = plan(bolted(), cutters=[SMALL], faces="all", grid=7, area_budget=0).plan.cutters[0]
     groups = {}
     for w in entry.witnesses:
         groups.setdefault((w.face, w.reason, w.obstacle_face if w.inside_bodies else None, w.samples), w.samples)
@@ -120,7 +120,7 @@ def test_samples_tried_are_far_apart(count, most, seed):
 
 @pytest.fixture(scope="module")
 def valley():
-    asked = {"cutters": ["R12L100"], "grid": 31, "area_budget": 0, "rotation_step": 0.35}
+    asked = {"cutters": ["R12L100"], "grid": 21, "area_budget": 0, "rotation_step": 0.35}
     ready = prepare(SAMPLES / "peaks_and_valleys.step", Options.of(asked))
     cutter = ready.cutters[0]
     return ready, cutter, judge(ready, cutter)
@@ -132,7 +132,7 @@ def area(valley, most, jobs=1):
     ready, cutter, reach = valley
     work = Work()
     context = Context.of(cutter, replace(ready.conditions, jobs=jobs))
-    found = between(ready.samples, reach, context, ready.scene.part, ready.scene.orientation, budget=12_000,
+    found = between(ready.samples, reach, context, ready.scene.part, ready.scene.orientation, budget=6_000,
                     most=most, work=work)  # fmt: skip
     return found, work.looked
 
@@ -221,7 +221,7 @@ def test_triangles_to_look_at_lie_near_the_surface_without_cracks(seed, chord):
 
 def test_a_stage_of_many_cutters_tells_one_progress():
     told = []
-    plan(SAMPLES / "v_groove.step", cutters=["R6L80", "R8L80", "R10L80"], grid=17, area_budget=0, machine="tilt:20",
+    plan(SAMPLES / "v_groove.step", cutters=["R6L80", "R8L80", "R10L80"], grid=9, area_budget=0, machine="tilt:20",
          progress=lambda stage, done, total: told.append((stage, done / total)))  # fmt: skip
     shares = [share for stage, share in told if stage == "reasons"]
     assert len(shares) > 4

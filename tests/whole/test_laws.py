@@ -31,6 +31,7 @@ def moved(shape, transformation):
     return BRepBuilderAPI_Transform(shape, transformation, True).Shape()
 
 
+@pytest.mark.slow("plans two parts for each seed", only=("1", "2"))
 @pytest.mark.parametrize("seed", range(3))
 def test_rigid_motion_changes_nothing(seed):
     rng = np.random.default_rng(seed)
@@ -50,6 +51,7 @@ def test_rigid_motion_changes_nothing(seed):
     assert there.samples.curvature == pytest.approx(here.samples.curvature, abs=1e-6)
 
 
+@pytest.mark.slow("plans two parts for each scale", only=("7",))
 @pytest.mark.parametrize("scale", [0.1, 7.0])
 def test_scaling_changes_nothing(scale):
     larger = gp_Trsf()

@@ -87,7 +87,7 @@ def test_a_scene_keeps_its_own_options(other):
 
 def test_parts_and_results_can_be_kept(tmp_path):
     """Pickled and back, a result writes the same bytes, and its part gives the same plan."""
-    result = plan(SAMPLES / "pocket_top.step", spacing=3.0, **{k: SMALL[k] for k in ("cutters", "area_budget")})
+    result = plan(SAMPLES / "pocket_top.step", spacing=6.0, **{k: SMALL[k] for k in ("cutters", "area_budget", "rotation_step")})
     again = pickle.loads(pickle.dumps(result))
     assert again.reaches == result.reaches
     assert again.samples == result.samples
@@ -99,7 +99,7 @@ def test_parts_and_results_can_be_kept(tmp_path):
     part = pickle.loads(pickle.dumps(result.part))
     assert part is not result.part
     assert (part.faces, part.warnings, part.tree[0].name) == (result.part.faces, result.part.warnings, result.part.tree[0].name)
-    second = plan(part, spacing=3.0, **{k: SMALL[k] for k in ("cutters", "area_budget")})
+    second = plan(part, spacing=6.0, **{k: SMALL[k] for k in ("cutters", "area_budget", "rotation_step")})
     assert told(second) == told(result)
 
 

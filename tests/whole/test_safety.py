@@ -40,6 +40,7 @@ def refined_depth(patch, contact, normal, axis, tilt_direction, radius, length, 
     return best
 
 
+@pytest.mark.slow("searches a surface of its own for each seed", only=("1", "2"))
 @pytest.mark.parametrize("seed", range(3))
 def test_verdicts_equal_those_of_the_exact_surface_outside_the_band(seed):
     """Random surfaces, random postures: the fast verdict and the slow depth differ by no more than twice the chord error."""
@@ -125,7 +126,7 @@ CASES = [
 ]
 
 
-@pytest.mark.slow("searches long", only=("control",))
+@pytest.mark.slow("searches long", only=("pocket", "blade", "control"))
 @pytest.mark.parametrize(("name", "cutter", "grid"), CASES)
 def test_reported_postures_do_not_gouge(name, cutter, grid):
     deepest = deepest_of_free_postures(name, cutter, 150, 40 if name == "control_arm" else 200, grid)

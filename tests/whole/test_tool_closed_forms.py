@@ -48,9 +48,9 @@ def before(along, across, least):
 
 
 def hollow(radius):
-    """The lower half of a sphere through the origin, its poles aside; material outside."""
+    """Of the lower half of a sphere through the origin a broad strip up to its rim in +Y; material outside."""
     frame = shapes.axes((0, 0, radius), (1, 0, 0), (0, 0, -1))
-    return BRepBuilderAPI_MakeFace(gp_Sphere(frame, radius), -PI / 2, PI / 2, -1.5, 1.5).Face().Reversed()
+    return BRepBuilderAPI_MakeFace(gp_Sphere(frame, radius), -0.4, PI / 2, -0.5, 0.5).Face().Reversed()
 
 
 def test_a_ball_in_a_bowl_is_stopped_by_its_rim():
