@@ -10,11 +10,15 @@ from plan_cutters.scene.inside_material import inside_material
 from tests.support.places import real_file
 
 
-@pytest.mark.parametrize("axis", [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, -0.6, 0.8)])
-def test_another_setup_finds_what_all_bodies_tell(axis):
-    """Bodies of this part overlap, and each table holds other faces."""
+@pytest.fixture(scope="module")
+def ready():
     options = Options.of({"cutters": "R3L40", "faces": "all", "grid": 4, "fixtures": "table", "machine": "trunnion-ac"})
-    ready = prepare(real_file("cad/hard/turbo3d_impeller.step"), options)
+    return prepare(real_file("cad/hard/turbo3d_impeller.step"), options)
+
+
+@pytest.mark.parametrize("axis", [(0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, -0.6, 0.8)])
+def test_another_setup_finds_what_all_bodies_tell(ready, axis):
+    """Bodies of this part overlap, and each table holds other faces."""
     assert (ready.inside >= 0).any()
     there = on_table(ready, axis)
     surroundings, conditions = there.conditions.surroundings, there.conditions

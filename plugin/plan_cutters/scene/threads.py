@@ -50,6 +50,13 @@ def in_chunks(
     ends = np.flatnonzero(np.diff(rows // chunk)) + 1 if fixed else np.arange(chunk, len(rows), chunk)
     pieces = [piece for piece in np.split(rows, ends) if len(piece)]
     total = 0
+    if min(jobs, len(pieces)) <= 1:  # starting a thread takes longer than most single pieces do
+        for done, piece in enumerate(pieces, 1):
+            total += work(piece) or 0
+            if progress:
+                progress(done, len(pieces))
+        METER.add(total)
+        return total
     with ThreadPoolExecutor(jobs) as pool:
         futures = [pool.submit(work, piece) for piece in pieces]
         try:
