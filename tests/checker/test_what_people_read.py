@@ -25,6 +25,8 @@ from plan_cutters.plan_file.words.text import with_text
 from tests.support.forging import forged, put
 from tests.support.written_plan import Written
 
+pytestmark = pytest.mark.slow("forges the entries of a second plan", only=("written",))
+
 #: A block in a vise, of a size that the vise grips at its long sides.
 HELD = {"cutters": ["D8L30F16S10"], "holder": "er16", "fixtures": "vise", "faces": "all", "grid": 4, "machine": "trunnion-ac"}
 #: One entry in so many is forged, or given one more beside it.

@@ -248,6 +248,7 @@ def test_bodies_that_are_held_have_both_jaws_on_them_or_lie_between_them(shape, 
     assert len(placed.unheld) == faces
 
 
+@pytest.mark.slow("draws a disc 600 mm wide", only=("<lambda>-chuck-the cylinder is 600 mm wide0",))
 @pytest.mark.parametrize(
     ("shape", "word", "why"),
     [

@@ -29,7 +29,7 @@ def test_no_contact_of_a_served_cell_gouges_a_random_surface(seed):
     rng = np.random.default_rng(seed)
     part = read_part(shapes.shell(shapes.Patch.random(rng, height=6.0).face()))
     cutter = Cutter.flat(radius=2.0, length=40.0)
-    found, geometry, whole = served(part, cutter, budget=20_000, grid=121)
+    found, geometry, whole = served(part, cutter, budget=12_000, grid=91)
     assert found.cells.face.size > 1000, "nothing to look at"
     assert deepest(found, geometry, whole, cutter, dense(whole, 0.5), 150, rng) < 0.01
 

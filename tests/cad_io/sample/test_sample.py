@@ -82,7 +82,8 @@ def assert_sound(part, samples):
 HOW = [{"grid": 12}, {"spacing": 1.5}]
 
 
-@pytest.mark.parametrize("how", HOW, ids=["grid", "spacing"])
+@pytest.mark.parametrize("how", [pytest.param(HOW[0], marks=pytest.mark.slow("samples each shape once more"), id="grid"),
+                                 pytest.param(HOW[1], id="spacing")])  # fmt: skip
 @pytest.mark.parametrize("place", [None, moved(), mirror()], ids=["here", "moved", "mirrored"])
 @pytest.mark.parametrize("convert", [lambda s: s, as_nurbs], ids=["as made", "as B-splines"])
 @pytest.mark.parametrize(
