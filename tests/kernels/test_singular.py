@@ -421,7 +421,9 @@ def test_results_are_the_same_bit_for_bit_whatever_the_thread_count(tmp_path):
     part, arrays = shapes.shell(patch.face()), []
     for jobs in (1, 3):
         # More samples than one chunk, so that the threads do share them out.
-        plan(part, cutters=[Cutter.flat(radius=3, length=30)], grid=33, jobs=jobs, area_budget=0).write(tmp_path / str(jobs), ["npz"])
+        plan(part, cutters=[Cutter.flat(radius=3, length=30)], grid=33, jobs=jobs, area_budget=0).write(
+            tmp_path / str(jobs), ["npz"]
+        )
         arrays.append(dict(np.load(tmp_path / str(jobs) / "samples.npz")))
     assert len(arrays[0]["verdict_R3L30"]) > 2 * 512
     assert len(set(arrays[0]["verdict_R3L30"].tolist())) > 1
