@@ -127,7 +127,7 @@ def test_one_copy_stands_for_all_where_the_part_and_what_is_about_it_are_a_patte
     assert (planned_by_pattern(task(**changes), offer) is not None) <= offer.exact
 
 
-@pytest.mark.slow("plans a part of repeated steps", only=("8",))
+@pytest.mark.slow("plans a part of repeated steps")
 @pytest.mark.parametrize(("blades", "index_time", "again"), [(4, 0.2, True), (8, 5.0, False)])
 def test_one_copy_is_planned_and_the_fewest_are_not_looked_for(blades, index_time, again):
     entry = found(blades, index_time).plan.operations

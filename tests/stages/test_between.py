@@ -77,6 +77,7 @@ def test_more_budget_never_serves_less_and_threads_do_not_matter():
     assert (alone.share, alone.left, alone.short) == (looks[2].share, looks[2].left, looks[2].short)
 
 
+@pytest.mark.slow("looks at the same cells with four budgets")
 def test_every_budget_looks_at_the_cells_of_a_smaller_one():
     """On a surface where not all can be served: shares never fall, and what is left is told apart."""
     part = read_part(shapes.shell(shapes.Patch.random(np.random.default_rng(0), height=6.0).face()))

@@ -313,7 +313,7 @@ def test_folded_triangles_are_turned_over():
     assert upright(uv, corner).tolist() == [[0, 1, 2], [0, 1, 2], [0, 1, 3]]
 
 
-@pytest.mark.slow("draws many surfaces", only=("<lambda>1", "<lambda>2"))
+@pytest.mark.slow("draws many surfaces", only=("<lambda>1", "<lambda>2", "mould"))
 @pytest.mark.parametrize("make", [*MOULDS.values(), lambda: shapes.torus(20, 5).Moved(TopLoc_Location(mirror()))])
 def test_triangles_have_the_side_of_the_surface(make):
     part = read_part(make())

@@ -72,7 +72,7 @@ def test_postures_that_are_moved_are_safe_in_their_own_place():
     assert least_clearance(part_.samples, part_.cutters[0], mine, part_.conditions) >= -1e-9
 
 
-@pytest.mark.slow("searches long", only=("options3",))
+@pytest.mark.slow("searches long", only=("options2", "options3"))
 @pytest.mark.parametrize(
     "options",
     [

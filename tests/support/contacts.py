@@ -22,7 +22,7 @@ UP = np.array([0.0, 0.0, 1.0])
 
 
 def served(part, cutter, *, budget, tolerance=0.01, chord=None, machine="unlimited", jobs=2, axes=None, **how):
-    """What `between` finds after the verdicts, and the geometry that it is asked of; with fixed axes (k, 3) instead of postures."""
+    """What `between` finds after the verdicts, and the geometry that it is asked of; with fixed axes (k, 3) if given."""
     machine = Machine.parse(machine)
     asked = {"cutters": [cutter], "tolerance": tolerance, "area_budget": 0, "machine": machine, **how}
     ready = prepare(part, Options.of(asked))

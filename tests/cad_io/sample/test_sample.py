@@ -162,6 +162,7 @@ def reference(part, samples, orientation):
     return np.array(normal), np.array(kappa), np.array(direction)
 
 
+@pytest.mark.slow("another side of the same law", only=("forward",))
 @pytest.mark.parametrize("turned", [False, True], ids=["forward", "reversed"])
 @settings(max_examples=8, deadline=None)
 @given(seed=st.integers(0, 10_000))
