@@ -115,14 +115,16 @@ class FaceShape:
 
     def off_border(self, point: Floats, enough: float) -> Floats:
         """Distances (k,), mm, of points (k, 3) from the border, not told too small; those within `enough` need be no closer."""
-        off, near = self.tree.query(point, k=min(_NEAR, len(self.point)))
-        off, near = off.reshape(len(point), -1), near.reshape(len(point), -1)
-        best = off.min(axis=1)
+        best = self.tree.query(point)[0]
+        # Of equal faces nearly every point has another one at its place, and needs no further ones.
+        open_ = np.flatnonzero(best > enough)
+        near = self.tree.query(point[open_], k=[*range(1, min(_NEAR, len(self.point)) + 1)])[1]
         for k in range(near.shape[1]):
-            open_ = np.flatnonzero(best > enough)
-            if not len(open_):
+            still = best[open_] > enough
+            if not still.any():
                 break
-            best[open_] = np.minimum(best[open_], self._along(point[open_], near[open_, k]))
+            rows = open_[still]
+            best[rows] = np.minimum(best[rows], self._along(point[rows], near[still, k]))
         return np.asarray(best)
 
     def _along(self, point: Floats, near: Any) -> Floats:

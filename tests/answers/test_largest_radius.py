@@ -169,7 +169,7 @@ def test_a_sample_within_a_body_is_reached_by_no_radius():
 # The slow twin, and what is claimed of each sample
 
 
-@pytest.mark.slow("plans again for each answer", only=("4",))
+@pytest.mark.slow("plans again for each answer", but=("1-ball",))
 @pytest.mark.parametrize("shape", ENDS)
 @pytest.mark.parametrize("seed", [1, 4])
 def test_a_judge_of_every_radius_agrees(shape, seed):
@@ -193,6 +193,7 @@ def test_a_judge_of_every_radius_agrees(shape, seed):
     assert {INACCESSIBLE, UNDECIDED, UNJUDGED} == set(found.beyond.tolist())
 
 
+@pytest.mark.slow("another kind of the same law", only=("ball",))
 @pytest.mark.parametrize("shape", ENDS)
 def test_the_postures_told_hold_the_tolerance(shape):
     """Independent of tree and search: every corner and middle of a triangle is no deeper in the cutter than the tolerance."""
@@ -253,6 +254,7 @@ def test_a_cutter_shrunk_about_its_contact_stays_inside_itself(shape, ratio, sha
     assert (deep > 0).sum() > (small > 0).sum()
 
 
+@pytest.mark.slow("another kind of the same law", only=("flat",))
 @pytest.mark.parametrize("shape", ENDS)
 def test_everything_twice_as_large(shape):
     twice = gp_Trsf()
@@ -266,6 +268,7 @@ def test_everything_twice_as_large(shape):
     assert (np.abs(steps) < 0.5).mean() > 0.97
 
 
+@pytest.mark.slow("another kind of the same law", only=("ball",))
 @pytest.mark.parametrize("shape", ENDS)
 def test_a_rigid_motion_changes_nothing(shape):
     turn, shift = gp_Trsf(), gp_Trsf()

@@ -132,6 +132,7 @@ def test_a_cutter_that_cuts_all_along_does_not_cut_higher_when_it_stands_out_fur
     holds(change, planned)
 
 
+@pytest.mark.slow("another kind of the same law", only=("flat",))
 @pytest.mark.parametrize("stays", [Cutter.ball, None], ids=["ball", "flat"])
 def test_the_largest_end_between_two_walls(stays):
     """Where it stands nearest to one wall, 4.5 mm, a ball goes no wider; a flat end may stand aside by a rotation."""

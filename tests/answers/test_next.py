@@ -172,7 +172,7 @@ TRIED = {
 }
 
 
-@pytest.mark.slow("plans again for each answer", only=("peaks",))
+@pytest.mark.slow("plans again for each answer", only=("peaks", "pocket_top"))
 @pytest.mark.parametrize("name", TRIED)
 def test_each_advice_that_is_followed_is_true(name):
     """Each step of each cutter, typed as it is told, leaves what it says."""

@@ -16,7 +16,7 @@ from plan_cutters.plan_file.words.story import story_of
 from plan_cutters.report.setup_files import setup_toml
 from tests.support.cad_parts import ball, box, rod
 
-HOW = {"cutters": "R2L60rc2HR15L30", "faces": "all", "grid": 7, "area_budget": 0, "machine": "trunnion-ac", "setup": "auto"}
+HOW = {"cutters": "R2L60HR15L30", "faces": "all", "grid": 4, "area_budget": 0, "machine": "trunnion-ac", "setup": "auto"}
 
 
 @pytest.fixture(scope="module")

@@ -43,6 +43,7 @@ def wrong(name: str, stated: list[dict], plans=(), process=None, effective=None)
     return [each.words for each in Patterns(question).findings() if each.holds is False]
 
 
+@pytest.mark.slow("another part of the same law", only=("plate",))
 @pytest.mark.parametrize("name", PARTS)
 def test_what_is_found_holds(name):
     stated = entries(name)

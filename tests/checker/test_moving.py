@@ -8,7 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from plan_cutters import plan
+from plan_cutters.checker.bench import Bench
 from plan_cutters.checker.check import check
+from plan_cutters.checker.clash import Clock
+from plan_cutters.checker.expected import Reckoned
+from plan_cutters.checker.moving import put_down
 from plan_cutters.checker.question import MachineAxes, Setup, axes_of, held
 from tests.support.places import SAMPLES
 from tests.support.written_plan import Written
@@ -32,6 +36,7 @@ def told(answer, *words):
     return [each for each in answer.findings if all(word in each.words for word in words)]
 
 
+@pytest.mark.slow("puts down every tool of a plan")
 def test_what_is_written_holds(blade):
     answer = answered(blade)
     assert answer.holds, "\n".join(answer.lines)
@@ -66,7 +71,17 @@ def test_what_is_forged_is_found(blade, how):
     assert [each for each in told(answer, "axes for simultaneous motion") if each.holds is False], answer.lines
 
 
+def down(blade, arrays=None):
+    """The finding about tools put down with the axes for simultaneous motion, and no other one."""
+    question = blade.question(None, arrays)
+    (line,) = put_down(question, Reckoned(question), Bench(question, str), np.random.default_rng(0), Clock(math.inf))
+    return line
+
+
 def test_an_axis_at_which_the_tool_gouges_is_found_by_putting_it_down(blade):
+    fair = down(blade)
+    assert fair.holds
+    assert "; at 0 the tool is too deep" in fair.words
     _, arrays = blade.copies()
     forged, normal = arrays["operations.npz"], arrays["samples.npz"]["normal"]
     proved = np.flatnonzero(forged["moving_piece"] >= 0)
@@ -75,7 +90,7 @@ def test_an_axis_at_which_the_tool_gouges_is_found_by_putting_it_down(blade):
     able = held(blade.question().machine, blade.question().setups[0], axis)
     assert able.any()
     forged["moving_axis"][proved[able]] = axis[able]
-    (line,) = told(answered(blade, arrays), "put down with the axes for simultaneous motion")
+    line = down(blade, arrays)
     assert line.holds is False
     assert f"at {able.sum()} the tool is too deep" in line.words
 

@@ -25,10 +25,12 @@ from plan_cutters.plan_file.words.text import with_text
 from tests.support.forging import forged, put
 from tests.support.written_plan import Written
 
+pytestmark = pytest.mark.slow("forges the entries of a second plan", only=("written",))
+
 #: A block in a vise, of a size that the vise grips at its long sides.
 HELD = {"cutters": ["D8L30F16S10"], "holder": "er16", "fixtures": "vise", "faces": "all", "grid": 4, "machine": "trunnion-ac"}
 #: One entry in so many is forged, or given one more beside it.
-ONE_IN = [5, pytest.param(1, marks=pytest.mark.slow("forges an entry of every kind"))]
+ONE_IN = [8, pytest.param(1, marks=pytest.mark.slow("forges an entry of every kind"))]
 
 
 @pytest.fixture(scope="module")
@@ -240,7 +242,8 @@ def test_a_cutter_that_joins_an_orientation_is_no_further_one(tmp_path):
     """The large cutter stands on the top of a plate where the small one cuts a slot."""
     import cadquery
 
-    path, options = str(tmp_path / "plate.step"), {**HELD, "cutters": ["D10L40F20S10", "D3L30F8S3"], "holder": None, "grid": 3}
+    path, options = str(tmp_path / "plate.step"), {**HELD, "cutters": ["D10L40F20S10", "D3L30F8S3"], "holder": None, "grid": 3,
+                                                      "tilt": (0.0, 1.0)}  # fmt: skip
     del options["fixtures"]
     plate = cadquery.Workplane().box(30, 20, 6, centered=(True, True, False)).faces(">Z").workplane().rect(24, 3.2).cutBlind(-2)
     cadquery.exporters.export(plate, path)

@@ -154,6 +154,7 @@ def test_two_functions_under_one_name_are_two(tmp_path):
         assert done.stdout.strip() == value
 
 
+@pytest.mark.slow("compiles in several processes")
 def test_kernels_in_an_archive_are_compiled_once_and_by_what_stands_there(tmp_path):
     def total(one):
         with zipfile.ZipFile(tmp_path / "room.zip", "w") as archive:

@@ -396,6 +396,7 @@ def test_where_a_posture_does_not_serve_another_cutter():
     assert hits == [-1, 1], "holder"
 
 
+@pytest.mark.slow("another seed of the same law", but=("0",))
 @pytest.mark.parametrize("seed", range(3))
 def test_a_finer_tessellation_never_turns_safe_into_blocked(seed):
     """The same tolerance, meshes from coarse to fine: what one calls safe no other calls blocked."""
@@ -418,9 +419,11 @@ def test_a_finer_tessellation_never_turns_safe_into_blocked(seed):
 def test_results_are_the_same_bit_for_bit_whatever_the_thread_count(tmp_path):
     patch = shapes.Patch.random(np.random.default_rng(4), size=40.0, height=9.0, n=7)
     part, arrays = shapes.shell(patch.face()), []
-    for jobs in (1, 2, 3):
+    for jobs in (1, 3):
         # More samples than one chunk, so that the threads do share them out.
-        plan(part, cutters=[Cutter.flat(radius=3, length=30)], grid=33, jobs=jobs).write(tmp_path / str(jobs), ["npz"])
+        plan(part, cutters=[Cutter.flat(radius=3, length=30)], grid=33, jobs=jobs, area_budget=0).write(
+            tmp_path / str(jobs), ["npz"]
+        )
         arrays.append(dict(np.load(tmp_path / str(jobs) / "samples.npz")))
     assert len(arrays[0]["verdict_R3L30"]) > 2 * 512
     assert len(set(arrays[0]["verdict_R3L30"].tolist())) > 1

@@ -55,6 +55,7 @@ def probed(contacts, solids, radius, row, depth):
     return free
 
 
+@pytest.mark.slow("another step of the same law", but=("1.7",))
 @pytest.mark.parametrize("radius", [1.45, 1.55, 1.7, 3.0])
 def test_verdicts_are_those_of_a_twin_that_probes_each_rotation(comb, radius):
     contacts, solids = comb

@@ -73,7 +73,7 @@ def test_no_tilt_of_a_free_interval_is_hit(kind, scene):
     assert (hit == -1).all()
 
 
-@pytest.mark.slow("draws many cases", only=("flat",))
+@pytest.mark.slow("draws many cases", only=("flat", "bull"))
 @pytest.mark.parametrize("kind", KINDS)
 def test_ranges_halved_one_by_one_leave_the_same(kind, scene):
     contacts, tree, ranges = scene

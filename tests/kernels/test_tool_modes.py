@@ -123,6 +123,7 @@ def gouges(reference, tilt, towards, curvature, size):
     return deepest / (h * h)
 
 
+@pytest.mark.slow("another kind of the same law", but=("flat", "bull", "barrel"))
 @pytest.mark.parametrize("kind", ["flat", "bull", "ball", "taper bull", "lollipop", "barrel", "oval", "lens"])
 def test_local_gouging_is_where_the_surface_next_to_the_contact_is_in_the_tool(kind):
     check_gouging(kind, 300)

@@ -191,7 +191,7 @@ def test_nothing_hides_in_a_re_entrant_corner(cutter, corner):
     assert not (np.max([in_row(row, q, w) for row in rows], axis=0) > 0)[deep].all()
 
 
-@pytest.mark.slow("draws many cases", only=("dovetail", "taper"))
+@pytest.mark.slow("draws many cases", but=("ball", "bull", "barrel", "form re-entrant"))
 @pytest.mark.parametrize("sort", ["outer", "inner"])
 @pytest.mark.parametrize("kind", KINDS)
 def test_pieces_hold_what_counts_and_no_more(kind, sort):

@@ -48,6 +48,7 @@ def near(rng, made, mode, tilt, size):
     return np.array([c * x + s * w, y, c * w - s * x + rise])
 
 
+@pytest.mark.slow("another kind of the same law", but=("ball", "bull", "barrel", "taper bull", "form re-entrant"))
 @pytest.mark.parametrize("long", [False, True])
 @pytest.mark.parametrize("kind", KINDS)
 def test_no_piece_is_dropped_into_which_a_point_of_a_box_reaches(kind, long):
@@ -88,6 +89,7 @@ def test_no_piece_is_dropped_into_which_a_point_of_a_box_reaches(kind, long):
     assert min(kept, dropped) > 100
 
 
+@pytest.mark.slow("another kind of the same law", but=("bull", "lens", "taper ball", "form re-entrant"))
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_miss_with_a_rate_is_a_miss_at_every_tilt_of_the_turn(kind):
     rng = np.random.default_rng(KINDS.index(kind))
@@ -110,6 +112,7 @@ def test_a_miss_with_a_rate_is_a_miss_at_every_tilt_of_the_turn(kind):
     assert min(missed, hits) > 40
 
 
+@pytest.mark.slow("another kind of the same law", but=("ball", "bull", "barrel", "taper bull", "form re-entrant"))
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_tool_drawn_out_meets_every_triangle_that_reaches_into_it(kind):
     rng = np.random.default_rng(KINDS.index(kind))

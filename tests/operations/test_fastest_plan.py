@@ -8,6 +8,9 @@ from plan_cutters.operations import choices
 from plan_cutters.plan_file.words.operations import operations
 from tests.support.shapes import trough
 
+#: Two of its plans are enough for each run.
+pytestmark = pytest.mark.slow("searches long", only=("{'most_operations",))
+
 #: With axes up to 80 deg off the setup axis the flutes cannot be laid along the trough, which would be the fastest by far.
 OPTIONS = {"faces": "all", "area_budget": 0, "feed": 1000.0, "operations": "both", "machine": "tilt:80"}
 #: Bull noses in a trough: one orientation serves all of it, and each strip is wider where the tool leans less.

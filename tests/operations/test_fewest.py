@@ -45,7 +45,7 @@ def caps(seed, n, m, reach):
 @given(st.integers(0, 2**31), st.floats(0.5, 1.2))
 @settings(max_examples=8, deadline=None)
 def test_few_rows_give_what_the_whole_table_gives(seed, reach):
-    table = caps(seed, 900, 60, reach)
+    table = caps(seed, 500, 60, reach)
     wanted = np.flatnonzero(table.any(axis=1))
     probes = Table(table)
     search = Search(probes, columns(range(60)), wanted, lambda bare: columns([]))

@@ -125,7 +125,7 @@ def test_a_groove_alone_has_two_ways_to_lean():
 
 
 def test_with_its_planes_the_groove_is_one():
-    result = plan(SAMPLES / "v_groove.step", cutters="R8L90", grid=11, tolerance=0.002, **OPTIONS)
+    result = plan(SAMPLES / "v_groove.step", cutters="R8L90", grid=7, tolerance=0.002, **OPTIONS)
     found = result.plan.operations.motion
     assert (found.needed, found.outside) == (1, 0)
     assert found.components_strict >= found.components

@@ -26,6 +26,7 @@ def test_every_part_of_the_operations_tells_its_own():
     assert any(0 < done < total for stage, done, total in every if stage == "area")
 
 
+@pytest.mark.slow("another moment of the same law", but=("3",))
 @pytest.mark.parametrize("part", [CURVE, PROOF])
 def test_who_listens_may_end_it_there(part):
     heard = []

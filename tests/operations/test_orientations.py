@@ -19,6 +19,7 @@ def fewest(shape, tilt, **options):
     return found.fewest
 
 
+@pytest.mark.slow("another tilt of the same law", but=("50.0",))
 @pytest.mark.parametrize(("tilt", "answer"), [(40.0, 6), (50.0, 3), (56.0, 2)])
 def test_a_cube_needs_six_orientations_then_three_then_two(tilt, answer):
     """Up to 45 deg an axis serves one face, from there on two, and three from acos(1 / sqrt 3) = 54.74 deg on: its corners."""
@@ -26,13 +27,14 @@ def test_a_cube_needs_six_orientations_then_three_then_two(tilt, answer):
     assert (found.found, found.at_least, found.at_least_any) == (answer, answer, answer)
 
 
+@pytest.mark.slow("another tilt of the same law", but=("31.0",))
 @pytest.mark.parametrize(("tilt", "answer"), [(25.0, 4), (31.0, 3), (46.0, 2)])
 def test_half_a_cylinder_needs_its_angle_over_twice_the_tilt(tilt, answer):
     found = fewest(ridge(10.0, 10.0), tilt, grid=19)
     assert (found.found, found.at_least, found.at_least_any) == (answer, answer, answer)
 
 
-@pytest.mark.slow("searches long", only=("head",))
+@pytest.mark.slow("searches long", but=("trunnion-ac",))
 @pytest.mark.parametrize("machine", ["trunnion-ac", "head-table-bc", "nutating-bc"])
 def test_every_orientation_is_one_that_the_machine_can_be_set_to(machine):
     result = plan(box(), cutters=BALL, faces="all", grid=4, operations="fewest", machine=machine, area_budget=0)

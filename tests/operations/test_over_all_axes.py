@@ -89,7 +89,7 @@ PARTS = {"groove": lambda: SAMPLES / "v_groove.step", "trough": lambda: trough(1
          "peaks": lambda: SAMPLES / "peaks_and_valleys.step", "pocket": lambda: SAMPLES / "pocket_top.step"}  # fmt: skip
 
 
-@pytest.mark.slow("searches long", only=("peaks", "pocket"))
+@pytest.mark.slow("searches long", only=("peaks", "pocket", "trough"))
 @pytest.mark.parametrize(
     ("part", "cutter", "holder", "most"),
     [("groove", "R6L40", "R15L40", 90.0), ("trough", "R4L30rc1", None, 90.0), ("peaks", "R6L40rc6", "R15L40+R25L60", 80.0),

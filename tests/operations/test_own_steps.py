@@ -22,7 +22,7 @@ OPTIONS = {
     "area_budget": 0,
     "feed": 1000.0,
     "machine": "trunnion-ac",
-    "grid": 5,
+    "grid": 3,
     "cutters": ["D12L60F26", "D6L40rc3F16"],
 }
 UP, DOWN = {"C": 0.0, "A": 0.0}, {"C": 0.0, "A": 130.0}

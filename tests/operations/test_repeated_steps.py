@@ -24,7 +24,7 @@ from plan_cutters.result import Result
 from plan_cutters.stages.judge import judge
 from tests.support.patterns import impeller
 
-WORDS = {"cutters": ["D4L30rc2F16S4"], "holder": "er16", "faces": "all", "spacing": 4.0, "jobs": 2, "machine": "trunnion-ac",
+WORDS = {"cutters": ["D4L30rc2F16S4"], "holder": "er16", "faces": "all", "spacing": 6.0, "jobs": 2, "machine": "trunnion-ac",
          "operations": "fastest", "feed": 1500.0}  # fmt: skip
 
 
@@ -119,6 +119,7 @@ def test_what_samples_cost_apart_is_what_putting_tools_down_at_all_copies_says()
     assert copied.apart.cutting(every) == pytest.approx(copied.problem.cutting(chosen))
 
 
+@pytest.mark.slow("plans a part of repeated steps", only=("changes1",))
 @pytest.mark.parametrize("changes", [{}, {"off": 0.02}, {"fixtures": "box:5,5,5@60,0,0"}])
 def test_one_copy_stands_for_all_where_the_part_and_what_is_about_it_are_a_pattern(changes):
     offer = planning._offer(task(**changes), lambda done, total: None)
@@ -126,6 +127,7 @@ def test_one_copy_stands_for_all_where_the_part_and_what_is_about_it_are_a_patte
     assert (planned_by_pattern(task(**changes), offer) is not None) <= offer.exact
 
 
+@pytest.mark.slow("plans a part of repeated steps")
 @pytest.mark.parametrize(("blades", "index_time", "again"), [(4, 0.2, True), (8, 5.0, False)])
 def test_one_copy_is_planned_and_the_fewest_are_not_looked_for(blades, index_time, again):
     entry = found(blades, index_time).plan.operations

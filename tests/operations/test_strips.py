@@ -119,6 +119,7 @@ CASES = [  # corner, tilt, feed from the tilt direction, curvatures along it, ac
 ]  # fmt: skip
 
 
+@pytest.mark.slow("another case of the same law", but=("1", "5", "6", "8", "9", "11"))
 @pytest.mark.parametrize("case", range(len(CASES)))
 def test_a_tool_moved_along_the_feed_leaves_as_much(case):
     corner, tilt, (along, across, mixed) = CASES[case]

@@ -39,7 +39,7 @@ def test_some_samples_stand_for_the_area_of_all(few):
 
 def test_what_is_chosen_at_some_samples_serves_all_and_takes_hardly_longer(few, monkeypatch):
     """No sample that is reached is dropped; each stands free with its operation; the time is that of a choice at all."""
-    result = plan(trough(10.0, 10.0), grid=25, **OPTIONS)
+    result = plan(trough(10.0, 10.0), grid=17, **OPTIONS)
     ((task, _),) = few
     (made, *_) = result.answers.operations.plans
     assert (made.label[task.rows] >= 0).all()
@@ -50,7 +50,7 @@ def test_what_is_chosen_at_some_samples_serves_all_and_takes_hardly_longer(few, 
             assert serves(each.rows[~wall], each.axis, task.ready.samples, context).all()
     few.clear()
     monkeypatch.setattr(planning, "thinned", lambda task: task)
-    whole = plan(trough(10.0, 10.0), grid=25, **OPTIONS).answers.operations.plans[0]
+    whole = plan(trough(10.0, 10.0), grid=17, **OPTIONS).answers.operations.plans[0]
     assert made.total <= 1.05 * whole.total
 
 

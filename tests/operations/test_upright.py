@@ -69,6 +69,7 @@ def test_postures_of_a_floor_keep_the_tool_from_the_walls(pocket):
     assert least_clearance(at_fixed_axis(samples, held, tolerance), cutter, held, result.conditions) >= 0.0
 
 
+@pytest.mark.slow("another frame of the same law", only=("straight",))
 def test_rotations_that_are_limited_leave_one_side(pocket):
     result, rows, _, axis, _ = pocket
     cutter = result.judged(result.plan.cutters[0].id)

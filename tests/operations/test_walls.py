@@ -30,6 +30,7 @@ def planned(shape, cutter, **more):
     return plan(shape, cutters=cutter, **{**OPTIONS, "operations": "fastest", **more})
 
 
+@pytest.mark.slow("another cutter of the same law", but=("D12L60F26",))
 @pytest.mark.parametrize(("cutter", "height"), [("D12L60F26", 20.0), ("D12L60F60", 50.0)])
 def test_a_block_takes_the_seconds_of_its_top_and_of_passes_along_its_sides(cutter, height):
     """The top in strips of 0.75 of the flat of the tip, each side in passes as high as the flutes: one orientation, A 0."""

@@ -91,6 +91,7 @@ def test_in_the_plan_just_what_the_jaws_cover_is_left_for_another_setup():
     assert "grips F" in " ".join(found.plan.notes)
 
 
+@pytest.mark.slow("plans a part in a chuck twice", only=("chuck",))
 @pytest.mark.parametrize("word", ["vise", "chuck"])
 def test_a_part_turned_with_its_setup_is_gripped_and_judged_alike(word):
     shape = box(40, 30, 20) if word == "vise" else rod(12, 30)
@@ -128,6 +129,7 @@ def test_what_hangs_below_the_gripped_faces_hangs_between_the_jaws():
         hold_of(BRepAlgoAPI_Fuse(box(60, 40, 20), box(20, 10, 300, at=(20, 15, -300))).Shape(), "vise")
 
 
+@pytest.mark.slow("another radius of the same law", only=("2.0",))
 @pytest.mark.parametrize("radius", [1.0, 2.0, 4.0])
 def test_above_a_fillet_jaws_reach_as_far_as_without_it(radius):
     """The part stands on what the fillet leaves of its lower face: the jaws are higher, and the ledges longer."""
@@ -246,6 +248,7 @@ def test_bodies_that_are_held_have_both_jaws_on_them_or_lie_between_them(shape, 
     assert len(placed.unheld) == faces
 
 
+@pytest.mark.slow("draws a disc 600 mm wide", only=("<lambda>-chuck-the cylinder is 600 mm wide0",))
 @pytest.mark.parametrize(
     ("shape", "word", "why"),
     [

@@ -117,6 +117,7 @@ def moved(fixture, angle, by):
     return replace(fixture, placement=(*turned.placed(np.array([x, y, z])).tolist(), rx + angle, 0, 0))
 
 
+@pytest.mark.slow("another motion of the same law", but=("37",))
 @pytest.mark.parametrize(("angle", "by"), [(90, (0, 0, 0)), (37, (11, -5, 3)), (-120, (0, 40, 0))])
 def test_part_and_fixtures_moved_together_give_the_same_verdicts(angle, by):
     part = read_part(SAMPLES / "pocket_top.step")
@@ -254,6 +255,7 @@ def test_a_fixture_in_the_part_is_refused_with_its_depth(fixture, depth):
     assert told == pytest.approx(depth, rel=0.02)
 
 
+@pytest.mark.slow("another gap of the same law", but=("0.0", "-0.009"))
 @pytest.mark.parametrize("gap", [0.0, 1e-9, -0.009, 0.5])
 def test_fixtures_may_touch_the_part(gap):
     part = read_part(box(40, 30, 20))

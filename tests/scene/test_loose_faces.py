@@ -36,7 +36,7 @@ def test_these_need_no_larger_tolerance(path):
     assert_each_face_is_within_its_error(part, triangles)
 
 
-@pytest.mark.slow("judges a part again with each tolerance", but=("100000",))
+@pytest.mark.slow("judges a part again with each tolerance", but=("30000",))
 @pytest.mark.parametrize("path", [PROPELLER], ids=lambda path: path.stem)
 @pytest.mark.parametrize("budget", [BUDGET, 100_000, 30_000])
 def test_each_face_is_within_the_error_that_it_says(path, budget):

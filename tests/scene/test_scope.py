@@ -103,7 +103,8 @@ def shapes_of(part):
 
 @pytest.mark.parametrize("name", BLENDS)
 @pytest.mark.parametrize(
-    "change", [lambda s: s, as_nurbs, loose, lambda s: s.Moved(TopLoc_Location(moved()))],
+    "change", [lambda s: s, as_nurbs, loose, pytest.param(lambda s: s.Moved(TopLoc_Location(moved())),
+                                                          marks=pytest.mark.slow("reads each shape once more"))],
     ids=["as made", "as B-splines", "loose", "moved"],
 )  # fmt: skip
 def test_fillets_are_blends_and_other_round_faces_are_not(name, change):

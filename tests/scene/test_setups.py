@@ -15,6 +15,7 @@ from tests.support.forked import run
 from tests.support.two_setups import DOWN, HOW, LOWER, UP, UPPER, faces_at, name_of, two
 
 
+@pytest.mark.slow("another machine of the same law", only=("unlimited",))
 @pytest.mark.parametrize("machine", ["unlimited", "trunnion-ac"])
 def test_each_setup_is_what_a_plan_of_it_alone_finds(machine):
     """Independent truth: the part planned by itself in the second setup, its clamped face as a target left out."""

@@ -27,6 +27,7 @@ def corner(lean=0.0):
     return read_part(shapes.shell(wall(lean), floor, beside))
 
 
+@pytest.mark.slow("another cutter of the same law", only=("ball",))
 @pytest.mark.parametrize("kind", TOOLS)
 def test_a_wall_along_the_axis_is_served_but_near_what_is_in_the_way(kind):
     """A corner c stays its own height over the floor, every tool its radius from the wall beside."""

@@ -12,7 +12,7 @@ from tests.support.tool_kinds import TOOLS
 from tests.support.tool_profile import deepest
 
 
-@pytest.mark.slow("draws many surfaces", but=("barrel", "holder", "tapered bull"))
+@pytest.mark.slow("draws many surfaces", but=("tapered bull",))
 @pytest.mark.parametrize("kind", TOOLS)
 def test_no_contact_of_a_served_cell_gouges_a_random_surface(kind):
     cutter = TOOLS[kind]

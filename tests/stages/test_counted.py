@@ -97,6 +97,7 @@ def within(cells, uv):
     return found
 
 
+@pytest.mark.slow("another trim of the same law", but=("oblique line", "a strip", "thin neck-0"))
 @pytest.mark.parametrize("budget", [0, 3000])
 @pytest.mark.parametrize("make", TRIMS.values(), ids=TRIMS.keys())
 def test_the_share_is_that_of_random_points_in_served_cells(make, budget):
@@ -134,6 +135,7 @@ TURNED = {
 }
 
 
+@pytest.mark.slow("draws many surfaces", only=("ring",))
 @pytest.mark.parametrize(("make", "how"), TURNED.values(), ids=TURNED.keys())
 def test_the_share_is_right_across_seams(make, how):
     """Cells on both sides of a seam, with a trim that crosses it, and up to poles."""
@@ -147,6 +149,7 @@ def test_the_share_is_right_across_seams(make, how):
     assert deepest(found, geometry, whole, cutter, dense(whole, 1.0), 150, rng) < 0.1
 
 
+@pytest.mark.slow("a part of many faces", only=("mould",))
 @pytest.mark.parametrize("make", [*TRIMS.values(), MOULDS["mould"], MOULDS["rod with an oblique hole"]])
 def test_what_tiles_have_of_a_trim(make):
     """Area, middle and box of what random tiles have of it, against random points; nothing of it is lost."""
@@ -210,6 +213,7 @@ def test_a_face_without_samples_whose_area_is_known_counts():
     assert not found.feasible
 
 
+@pytest.mark.slow("another spacing of the same law", only=("40.0",))
 @pytest.mark.parametrize("make", [*TRIMS.values(), MOULDS["mould"], MOULDS["ball, cap"]])
 @pytest.mark.parametrize("spacing", [2.5, 40.0])
 def test_the_largest_gap_reaches_the_border(make, spacing):
@@ -309,7 +313,7 @@ def test_folded_triangles_are_turned_over():
     assert upright(uv, corner).tolist() == [[0, 1, 2], [0, 1, 2], [0, 1, 3]]
 
 
-@pytest.mark.slow("draws many surfaces", only=("<lambda>1", "<lambda>2"))
+@pytest.mark.slow("draws many surfaces", only=("<lambda>1", "<lambda>2", "mould"))
 @pytest.mark.parametrize("make", [*MOULDS.values(), lambda: shapes.torus(20, 5).Moved(TopLoc_Location(mirror()))])
 def test_triangles_have_the_side_of_the_surface(make):
     part = read_part(make())

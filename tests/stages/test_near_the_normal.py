@@ -35,7 +35,7 @@ def near(found, geometry, turn):
     return replace(found, cells=replace(cells, **{k: getattr(cells, k)[mine] for k in cells.__slots__}))
 
 
-@pytest.mark.slow("draws many surfaces", only=("0",))
+@pytest.mark.slow("draws many surfaces", but=("1-flat", "1-holder"))
 @pytest.mark.parametrize("kind", TOOLS)
 @pytest.mark.parametrize("seed", range(2))
 def test_no_contact_of_a_cell_with_its_axis_near_the_normal_gouges(kind, seed):
@@ -52,6 +52,7 @@ def test_no_contact_of_a_cell_with_its_axis_near_the_normal_gouges(kind, seed):
     assert deepest(some, geometry, whole, TOOLS[kind], dense(whole, 0.5), 150, rng) < 0.02 + 2e-3
 
 
+@pytest.mark.slow("another cutter of the same law", but=("flat",))
 @pytest.mark.parametrize("kind", ["flat", "bull"])
 def test_a_dome_is_served_over_its_top(kind):
     """With one axis along the normal at the top: before, no cell near it was served."""
@@ -66,6 +67,7 @@ def cap():
     return np.stack([x, y, -(x**2 + y**2) / 120], axis=-1)
 
 
+@pytest.mark.slow("another side of the same law", but=("-1",))
 @pytest.mark.parametrize("side", [1, -1])
 def test_a_plane_beside_a_wall_is_served_on_one_side(side):
     """A wall along Y at one side of a plane, tool radius 2.5: with the axis upright the cutter stands on one side all over.

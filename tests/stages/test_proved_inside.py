@@ -56,6 +56,7 @@ def crossed():
     return compound(box(60, 60, 50), BRepBuilderAPI_Transform(rod(6, 40), moved(0.4, (1, 0.3, 0), (31, 29, 30)), True).Shape())
 
 
+@pytest.mark.slow("searches long", only=("R2L9F7S1",))
 @pytest.mark.parametrize(("cutter", "met"), [("R3L12", True), ("R2L9F7S1", True), ("R3L12rc1", False), ("R2L9rc2", False)])
 def test_verdicts_are_those_of_a_search_of_all_postures(crossed, cutter, met, monkeypatch):
     ready = prepare(crossed, Options.of({"cutters": cutter, "faces": "F7", "grid": 120}))

@@ -2,6 +2,7 @@
 
 import csv
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -79,19 +80,23 @@ def test_a_holder_is_the_reason_where_bare_flutes_serve():
 def test_neck_and_shank_are_told_from_the_holder():
     """A pocket into which the flutes go, and the neck, but neither the shank nor the holder."""
     part = read_part(cut(box(60, 60, 60), rod(6, 60, (30, 30, 20))))
-    how = HOW | {"tilt": (0.0, 0.3)}
+
+    @cache
+    def reached(cutter):
+        (verdicts,) = plan(part, cutters=[cutter], **{**HOW, "grid": 5, "tilt": (0.0, 0.3)}).reaches.values()
+        return verdicts
+
     thin = Cutter.flat(radius=3, length=80, flutes=10, shank_radius=8)
     held = Holder.parse("R20L30")
     slim = Cutter.flat(radius=3, length=30, flutes=10, shank_radius=3, holder=held)
-    bare = plan(part, cutters=["R3L10"], **how).reaches["R3L10"]
+    bare = reached(Cutter.parse("R3L10"))
     for cutter, word in ((thin, "shank"), (replace(thin, holder=held), "shank"), (slim, "holder")):
-        (reach,) = plan(part, cutters=[cutter], **how).reaches.values()
+        reach = reached(cutter)
         told = reach.not_reached & (reach.reason == REASONS.index(word))
         assert told.any(), word
         assert bare.reached[told].all()
         # Of two parts that are in the way the one that has to be away for there to be a posture.
-        (unheld,) = plan(part, cutters=[replace(cutter, holder=None)], **how).reaches.values()
-        assert (unheld.reached[told] == (word == "holder")).all()
+        assert (reached(replace(cutter, holder=None)).reached[told] == (word == "holder")).all()
 
 
 def test_a_fixture_that_an_axis_limit_could_avoid_comes_second():
@@ -131,6 +136,7 @@ def test_reasons_are_the_same_whatever_other_cutters_there_are(plate):
 SETUPS = [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0)]
 
 
+@pytest.mark.slow("another machine of the same law", only=("trunnion-ac",))
 @pytest.mark.parametrize("machine", ["tilt:60", "trunnion-ac"])
 def test_several_setups_are_one_answer(plate, machine, tmp_path):
     """Union is or: verdicts, choice, shares, files; each posture is held in the setup that is told."""

@@ -222,8 +222,9 @@ def test_an_undecided_sample_is_required():
 
 def test_changes_and_operations_are_about_what_is_required():
     how = {"answers": "mend", "operations": "fewest", "machine": "trunnion-ac", "setup": (0.0, 0.0, 1.0)}
-    result = left(pocket(), ["R3L40rc3"], "7-11", 1.0, **how)
+    result = left(pocket(), ["R3L40rc3"], "7-11", 2.0, **how)
     assert result.plan.cutters[0].mend is None
+    assert result.exempt.any()
     assert not (result.answers.operations.plans[0].label[result.exempt] >= 0).any()
     assert result.plan.process.left == []
 

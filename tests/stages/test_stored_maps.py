@@ -134,7 +134,7 @@ def test_what_the_flat_of_the_tip_alone_reaches_is_left_to_a_plan(tmp_path):
     import cadquery as cq
 
     cq.exporters.export(cq.Workplane().box(30, 30, 12).faces(">Z").workplane().hole(10, 8), str(tmp_path / "bore.step"))
-    asked = {"cutters": ["D8L40F20S8"], "faces": "all", "spacing": 3.0}
+    asked = {"cutters": ["D8L40F20S8"], "faces": "all", "spacing": 4.5}
     found = plan(tmp_path / "bore.step", posture_maps=True, **asked)
     (key,) = found.reaches
     under = found.reaches[key].reached & (np.linalg.norm(found.reaches[key].tilt_direction, axis=1) < 1.0 - 1e-6)

@@ -8,22 +8,25 @@ from cad_io.face.evaluate import evaluate
 from cad_io.part.orient import orient
 from cad_io.sample import sample
 from cad_io.tessellate import tessellate
-from plan_cutters import Machine, plan
+from plan_cutters import Machine, Options
+from plan_cutters.pipeline import prepare
 from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.fixed_axis import held_at, served_by
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.stages.between import between
 from plan_cutters.stages.face_cells import Fixed
+from plan_cutters.stages.judge import judge
 
 UP = np.array([0.0, 0.0, 1.0])
 
 
 def served(part, cutter, *, budget, tolerance=0.01, chord=None, machine="unlimited", jobs=2, axes=None, **how):
-    """What `between` finds after a plan, and the geometry that it is asked of; with fixed axes (k, 3) instead of its postures."""
+    """What `between` finds after the verdicts, and the geometry that it is asked of; with fixed axes (k, 3) if given."""
     machine = Machine.parse(machine)
-    result = plan(part, cutters=[cutter], tolerance=tolerance, area_budget=0, machine=machine, **how)
-    whole, samples = result.part, result.samples
+    asked = {"cutters": [cutter], "tolerance": tolerance, "area_budget": 0, "machine": machine, **how}
+    ready = prepare(part, Options.of(asked))
+    whole, samples = ready.scene.part, ready.samples
     side = orient(whole, towards=UP, flip=False)
 
     def geometry(face, uv):
@@ -31,8 +34,8 @@ def served(part, cutter, *, budget, tolerance=0.01, chord=None, machine="unlimit
         return point, shape.normal, shape.direction_max, shape.curvature
 
     around = Surroundings.sheet(Obstacles(tessellate(whole, chord or 0.2 * tolerance)))
-    context = Context.of(cutter, Conditions(machine, UP, result.postures, around, tolerance, jobs))
-    verdicts, fixed = result.reaches[cutter.id], None
+    context = Context.of(cutter, Conditions(machine, UP, ready.conditions.postures, around, tolerance, jobs))
+    verdicts, fixed = judge(ready, cutter), None
     if axes is not None:
         rows = np.arange(len(samples))
         serves = served_by(rows, axes, samples, context)[0].T
@@ -76,9 +79,11 @@ def deepest(found, geometry, whole, cutter, cloud, count, rng):
     """Largest depth of the surface in the cutter over random contacts in served cells, mm."""
     worst = -math.inf
     for contact, _, axis, x_t, points in wandering(found, geometry, whole, cloud, count, rng):
-        centre = contact - cutter.radius * x_t
-        height = (points - centre) @ axis
-        radial = np.linalg.norm(points - centre - height[:, None] * axis, axis=1)
+        away = points - (contact - cutter.radius * x_t)
+        height = away @ axis
+        # No point lies deeper than it is high.
+        away, height = away[height > worst], height[height > worst]
+        radial = np.linalg.norm(away - height[:, None] * axis, axis=1)
         depth = np.minimum(np.minimum(height, cutter.length - height), cutter.radius - radial)
-        worst = max(worst, float(depth.max()))
+        worst = max(worst, float(depth.max(initial=worst)))
     return worst

@@ -1,6 +1,7 @@
 """The outline of a tool from its words alone, and how deep points of a surface lie in it."""
 
 import math
+from functools import cache
 
 import numpy as np
 
@@ -8,6 +9,7 @@ from plan_cutters.domain.shapes import flute_length
 from tests.support.contacts import wandering
 
 
+@cache
 def profile(cutter, n=4000):
     """Radius of the whole tool over heights (n,), from its words alone."""
     r, corner, top = cutter.radius, cutter.corner_radius, cutter.length
@@ -57,17 +59,17 @@ def deepest(found, geometry, whole, cutter, cloud, count, rng):
 def deepest_of(cutter, contacts):
     """Largest of the depths, mm, of points in the tool; of contacts with normal, axis, x_T and the points of a surface."""
     worst, (w, q) = -math.inf, profile(cutter)
+    # To the outline and its mirror image; a jump of the radius is a side, too.
+    steps = np.linspace(0.0, 1.0, 20)
+    near_w = np.concatenate([w, [w[-1]], np.repeat(w[-1], 20)])
+    near_q = np.concatenate([q, [0.0], steps * q[-1]])
     for contact, normal, axis, x_t, surface in contacts:
         points = surface - contact - touching(cutter, normal, axis, x_t)
         height = points @ axis
+        within = (height > 0.0) & (height < w[-1])
+        points, height = points[within], height[within]
         radial = np.linalg.norm(points - height[:, None] * axis, axis=1)
-        inside = (height > 0.0) & (height < w[-1])
-        inside &= radial < np.interp(height, w, q)
-        for point in np.flatnonzero(inside):
-            # To the outline and its mirror image; a jump of the radius is a side, too.
-            steps = np.linspace(0.0, 1.0, 20)[:, None]
-            near_w = np.concatenate([w, [w[-1]], np.repeat(w[-1], 20)])
-            near_q = np.concatenate([q, [0.0], (steps * q[-1]).ravel()])
+        for point in np.flatnonzero(radial < np.interp(height, w, q)):
             apart = np.hypot(near_w - height[point], near_q - radial[point]).min()
             worst = max(worst, float(min(apart, max(height[point], 0.0) + 1e9 * (q[0] == 0.0))))
     return worst

@@ -2,6 +2,7 @@
 
 import copy
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,11 +17,11 @@ from plan_cutters.command.check_operations import question_of, stated_by
 from tests.support.places import ROOT
 
 PART = str(ROOT / "samples/pocket_top.step")
-WORDS = {"cutters": ["R3L40rc1F12S3", "R2L40rc2F10S3"], "holder": "er16", "fixtures": "table", "faces": "all", "grid": 5,
-         "machine": "trunnion-ac"}  # fmt: skip
+WORDS = {"cutters": ["R3L40rc1F12S3", "R2L40rc2F10S3"], "holder": "er16", "fixtures": "table", "faces": "all", "grid": 3,
+         "machine": "trunnion-ac", "tilt": (0.0, math.radians(60.0))}  # fmt: skip
 #: The same on a command line.
 TYPED = ("--cutter", "R3L40rc1F12S3", "--cutter", "R2L40rc2F10S3", "--holder", "er16", "--fixture", "table", "--faces", "all",
-         "--grid", "5", "--machine", "trunnion-ac")  # fmt: skip
+         "--grid", "3", "--machine", "trunnion-ac", "--tilt", "0:60")  # fmt: skip
 FILES = ("operations.npz", "samples.npz")
 
 

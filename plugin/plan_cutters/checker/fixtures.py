@@ -15,6 +15,8 @@ from plan_cutters.checker.surface import Face, Source, Triangles
 _TABLE = 2000.0
 #: Sides of a cylinder; each lies within r (1 - cos(pi / sides)) of it.
 _SIDES = 720
+#: So many triangles are seen from points at a time.
+_AT_ONCE = 100_000
 _MESH = (".stl", ".obj", ".ply", ".glb")
 #: Corners of the triangles of a box, counter-clockwise from outside.
 _BOX = np.array([
@@ -71,13 +73,15 @@ class PlacedFixture:
         """Which points (n, 3) lie within it, by the solid angle of its triangles; of a CAD file none is known to."""
         if self._vertex is None:
             return np.zeros(len(points), bool)
-        inside = np.zeros(len(points))
-        for a, b, c in self._vertex:
-            p, q, r = a - points, b - points, c - points
-            u, v, w = (np.linalg.norm(each, axis=1) for each in (p, q, r))
-            top = (p * np.cross(q, r)).sum(axis=1)
-            under = u * v * w + (p * q).sum(axis=1) * w + (q * r).sum(axis=1) * u + (r * p).sum(axis=1) * v
-            inside += 2.0 * np.arctan2(top, under)
+        inside, corners = np.zeros(len(points)), self._vertex.transpose(1, 0, 2)[:, :, None]
+        together = max(1, _AT_ONCE // max(1, len(self._vertex)))
+        for start in range(0, len(points), together):
+            some = slice(start, start + together)
+            p, q, r = corners - points[some]
+            u, v, w = (np.linalg.norm(each, axis=2) for each in (p, q, r))
+            top = (p * np.cross(q, r)).sum(axis=2)
+            under = u * v * w + (p * q).sum(axis=2) * w + (q * r).sum(axis=2) * u + (r * p).sum(axis=2) * v
+            inside[some] = 2.0 * np.arctan2(top, under).sum(axis=0)
         return np.asarray(np.abs(inside) > 2.0 * math.pi)
 
 

@@ -3,6 +3,7 @@
 import math
 import platform
 from collections.abc import Mapping, Sequence
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -235,12 +236,17 @@ def carrier_entry(face: FaceInfo, orientation: Orientation) -> CarrierEntry | No
     )
 
 
-def versions() -> dict[str, str]:
-    """Versions of what the plan was made with."""
+@cache
+def _version(name: str) -> str:
     from importlib.metadata import version
 
+    return version(name)
+
+
+def versions() -> dict[str, str]:
+    """Versions of what the plan was made with."""
     names = {"cadquery-ocp-proxy": "occt", "numba": "numba", "numpy": "numpy", "scipy": "scipy", "trimesh": "trimesh"}
-    result = {label: version(name) for name, label in names.items()}
+    result = {label: _version(name) for name, label in names.items()}
     return {"plan_cutters": __version__, **result, "python": platform.python_version()}
 
 

@@ -22,16 +22,24 @@ SINGULAR = math.radians(2.0)
 STEP = math.radians(2.0)
 
 
+def _cross(a: Floats, b: Floats) -> Floats:
+    """What `np.cross` gives of vectors (..., 3), bit for bit: asked for few so often, its own checks take longest."""
+    found = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    for k, i, j in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        found[..., k] = a[..., i] * b[..., j] - a[..., j] * b[..., i]
+    return found
+
+
 def turned(direction: Floats, angle: Floats | float, vector: Floats) -> Floats:
     """Vectors (..., 3) turned about a unit direction (3,) by angles (...,), rad."""
     cosine, sine = np.cos(angle)[..., None], np.sin(angle)[..., None]
     along = (vector @ direction)[..., None] * direction
-    return np.asarray(along + cosine * (vector - along) + sine * np.cross(direction, vector))
+    return np.asarray(along + cosine * (vector - along) + sine * _cross(direction, vector))
 
 
 def angle_about(direction: Floats, start: Floats, end: Floats) -> Floats:
     """Angles (...,), rad, by which vectors (..., 3) turn about a unit direction (3,) into others."""
-    cross = np.cross(start, end) @ direction
+    cross = _cross(start, end) @ direction
     return np.asarray(np.arctan2(cross, (start * end).sum(axis=-1) - (start @ direction) * (end @ direction)))
 
 
@@ -81,7 +89,7 @@ class Kinematics(Record):
                 tool = turned(direction[k], still, tool)
                 for other in turning_axes:
                     direction[other] = turned(direction[k], still, direction[other])
-            elif turning_axes or np.linalg.norm(np.cross(direction[k], tool)) > PARALLEL:
+            elif turning_axes or np.linalg.norm(_cross(direction[k], tool)) > PARALLEL:
                 turning_axes.insert(0, k)
         if len(turning_axes) == len(direction):
             return self, turning_axes
@@ -139,10 +147,10 @@ class Kinematics(Record):
         for k, (low, high) in enumerate(self.limit):
             positions[:, :, k] = within(positions[:, :, k], low, high)
         if len(self.direction) == 0:
-            held = np.linalg.norm(np.cross(axis, self.tool), axis=1) <= self._reach()
+            held = np.linalg.norm(_cross(axis, self.tool), axis=1) <= self._reach()
             taken = np.where(held & (axis @ self.tool > 0.0), 0, -1)
             return positions, taken.astype(np.int8), np.zeros(len(axis), bool)
-        sine = np.linalg.norm(np.cross(axis, self.direction[0]), axis=1)
+        sine = np.linalg.norm(_cross(axis, self.direction[0]), axis=1)
         if len(self.direction) == 2:
             # On the singular axis itself any angle of the first one serves, so one within its limits does.
             low, high = self.limit[0]
@@ -198,7 +206,7 @@ class Kinematics(Record):
             rows = [[*first, along - PARALLEL], [*first, along + PARALLEL]]
             for end in (low, high):
                 if math.isfinite(end) and high - low < 2.0 * math.pi:
-                    across = np.cross(first, turned(first, np.array(end), self.tool))
+                    across = _cross(first, turned(first, np.array(end), self.tool))
                     rows.append([*(across / np.linalg.norm(across)), 0.0])
             return np.array(rows)
         first, second = self.direction
@@ -235,7 +243,7 @@ class Kinematics(Record):
         first, second = self.direction
         along = float(self.tool @ second)
         remainder = self.tool - along * second
-        a, b = float(first @ remainder), float(first @ np.cross(second, remainder))
+        a, b = float(first @ remainder), float(first @ _cross(second, remainder))
         return math.atan2(b, a), math.hypot(a, b), float(first @ second) * along
 
     def _reach(self) -> float:
@@ -245,4 +253,4 @@ class Kinematics(Record):
 
 def _between(axis: Floats, direction: Floats) -> Floats:
     """Angles (n,), rad, of unit axes (n, 3) to a unit direction (3,)."""
-    return np.asarray(np.arctan2(np.linalg.norm(np.cross(axis, direction), axis=1), axis @ direction))
+    return np.asarray(np.arctan2(np.linalg.norm(_cross(axis, direction), axis=1), axis @ direction))

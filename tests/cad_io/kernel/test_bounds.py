@@ -216,7 +216,7 @@ module._sample_face = sample
 """
 
 
-@pytest.mark.slow("starts commands and ends them on the way", but=("crash",))
+@pytest.mark.slow("starts commands and ends them on the way")
 @pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="needs Linux: a face's processor time is asked of it")
 @pytest.mark.parametrize(
     ("module", "code", "fault", "parts", "timeout", "said"),

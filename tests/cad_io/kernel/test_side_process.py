@@ -113,6 +113,7 @@ def test_a_copy_whose_words_are_taken_slowly_is_not_stuck(monkeypatch):
         assert copy.result(lambda: b"") == b"x" * 30_000_000
 
 
+@pytest.mark.slow("plans and writes all files", only=("10000",))
 @pytest.mark.parametrize("faces", [1, 10_000])
 def test_samples_and_files_are_the_same_with_copies_and_without(tmp_path, monkeypatch, faces):
     monkeypatch.setattr(pipeline, "_MANY_FACES", faces)

@@ -59,6 +59,7 @@ def test_a_deeper_pocket_is_not_one_of_them():
     assert (walls.order, len(walls.faces)) == (11, 8)
 
 
+@pytest.mark.slow("another motion of the same law", but=("0",))
 @pytest.mark.parametrize("seed", range(3))
 def test_a_rigid_motion_and_a_scale_change_nothing(seed):
     rng = np.random.default_rng(seed)

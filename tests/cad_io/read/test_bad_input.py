@@ -68,6 +68,7 @@ def test_what_is_no_cad_file_is_not_read_to_its_end(tmp_path, name, make, match)
     assert time.process_time() - began < 1
 
 
+@pytest.mark.slow("reads a long file", only=("garbage",))
 @pytest.mark.parametrize(
     ("name", "content", "match"),
     [

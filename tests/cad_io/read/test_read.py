@@ -65,6 +65,7 @@ def manifest():
     return [pytest.param(row, id=row["file"]) for row in rows if int(row["faces"]) < 150]
 
 
+@pytest.mark.slow("another file of the same law", only=("asitus_ANC101", "occt_linkrods"))
 @pytest.mark.parametrize("row", manifest())
 def test_real_files_are_read_as_the_manifest_says(row):
     part = read_part(CAD / row["file"])

@@ -94,6 +94,7 @@ def test_real_names(path):
     assert {face.name for face in part.faces} >= {"Top", "Bottom"}
 
 
+@pytest.mark.slow("another file of the same law", only=("occt_bearing",))
 @pytest.mark.parametrize("path", sorted(CAD.glob("*.ig*s")) or real("*.igs"), ids=lambda p: p.name)
 def test_faces_are_numbered_as_the_kernels_reader_gives_them(path):
     reader = IGESControl_Reader()

@@ -68,6 +68,7 @@ SHAPES = {
 }
 
 
+@pytest.mark.slow("another shape of the same law", only=("holed", "ring without", "pocket"))
 @pytest.mark.parametrize("make", SHAPES.values(), ids=SHAPES.keys())
 @settings(max_examples=4, deadline=None)
 @given(spacing=st.floats(1.2, 30.0))
@@ -82,6 +83,7 @@ def test_no_point_is_farther_than_the_spacing(make, spacing):
         assert far <= min(1.1 * gaps[number] + 1e-9, 1.05 * spacing)
 
 
+@pytest.mark.slow("another grid of the same law", only=("11",))
 @pytest.mark.parametrize("name", SHAPES)
 @pytest.mark.parametrize("grid", [4, 11])
 def test_the_gap_of_a_grid_is_told(name, grid):

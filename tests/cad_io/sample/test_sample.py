@@ -82,7 +82,8 @@ def assert_sound(part, samples):
 HOW = [{"grid": 12}, {"spacing": 1.5}]
 
 
-@pytest.mark.parametrize("how", HOW, ids=["grid", "spacing"])
+@pytest.mark.parametrize("how", [pytest.param(HOW[0], marks=pytest.mark.slow("samples each shape once more"), id="grid"),
+                                 pytest.param(HOW[1], id="spacing")])  # fmt: skip
 @pytest.mark.parametrize("place", [None, moved(), mirror()], ids=["here", "moved", "mirrored"])
 @pytest.mark.parametrize("convert", [lambda s: s, as_nurbs], ids=["as made", "as B-splines"])
 @pytest.mark.parametrize(
@@ -161,6 +162,7 @@ def reference(part, samples, orientation):
     return np.array(normal), np.array(kappa), np.array(direction)
 
 
+@pytest.mark.slow("another side of the same law", only=("forward",))
 @pytest.mark.parametrize("turned", [False, True], ids=["forward", "reversed"])
 @settings(max_examples=8, deadline=None)
 @given(seed=st.integers(0, 10_000))
@@ -394,6 +396,7 @@ REAL = ("asitus_wavy-cube.stp", "axom_revolved_sphere.step", "axom_sliced_cylind
         "asitus_control_arm.step", "occt_linkrods.step", "tigl_nacelle.stp")  # fmt: skip
 
 
+@pytest.mark.slow("another file of the same law", but=("tigl",))
 @pytest.mark.parametrize("path", real(*REAL), ids=lambda p: p.name)
 def test_real_files_are_sampled_whole(path):
     part = read_part(path)
@@ -433,7 +436,7 @@ def test_locate_finds_the_sample_at_a_point():
     assert locate(part, orientation, above).point[0] == pytest.approx(samples.point[20], abs=1e-6)
 
 
-@pytest.mark.slow("reads or samples a large real file", only=("4",))
+@pytest.mark.slow("reads or samples a large real file", but=("0", "1", "5"))
 @pytest.mark.parametrize("shape", [ball(), ring(), rod(), cone(8, 4), pocketed(), as_nurbs(ball())], ids=range(6))
 def test_locate_on_turned_surfaces(shape):
     shape = shape.Moved(TopLoc_Location(moved()))

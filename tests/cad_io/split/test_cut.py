@@ -77,6 +77,7 @@ def sound(part, found, fields):
         assert sum(areas) == pytest.approx(whole, rel=1e-6)
 
 
+@pytest.mark.slow("another solid of the same law", only=("moved", "turned out"))
 @pytest.mark.parametrize("name", SOLIDS)
 def test_a_solid_stays_what_it_was(name):
     part = Part(solid_of(SOLIDS[name]()))

@@ -84,6 +84,7 @@ SEAMED = {
 }
 
 
+@pytest.mark.slow("another seed of the same law", but=("torus-0", "sphere-0", "cone-1"))
 @pytest.mark.parametrize("seed", [0, 1])
 @pytest.mark.parametrize("name", SEAMED)
 def test_boundaries_cross_seams_and_meet_at_poles(name, seed):
@@ -92,6 +93,7 @@ def test_boundaries_cross_seams_and_meet_at_poles(name, seed):
     check(part, [labels(part, 1, waves(seed), closed=closed)], closed)
 
 
+@pytest.mark.slow("another surface of the same law", but=("torus",))
 @pytest.mark.parametrize("name", SEAMED)
 def test_island_on_the_seam_and_a_band_around(name):
     shape, closed = SEAMED[name]
@@ -108,6 +110,7 @@ def test_a_seam_sampled_twice_is_the_same_as_once():
     assert sorted(p.label for p in once.pieces) == sorted(p.label for p in twice.pieces)
 
 
+@pytest.mark.slow("another seed of the same law", but=("3",))
 @pytest.mark.parametrize("seed", [3, 4])
 def test_open_and_closed_boundaries_on_a_patch(seed):
     part = Part(patch())

@@ -66,7 +66,7 @@ def test_quadrics_tori_and_their_nurbs(mirrored):
     assert kinds >= {"plane", "cylinder", "cone", "sphere", "torus", "bspline"}
 
 
-@pytest.mark.slow("reads or samples a large real file", only=("brlcad", "occt_bearing"))
+@pytest.mark.slow("reads or samples a large real file", but=("trimesh",))
 @pytest.mark.parametrize(
     "path",
     real("asitus_ANC101-ill.stp", "occt_linkrods.step", "bladex_upper.iges", "tigl_D150_wing.igs", "occt_bearing.iges",

@@ -305,6 +305,7 @@ def test_what_hides_between_knots_that_are_nearly_one_is_measured(apart, proved)
     assert farthest_from(part.surface(1).values(10 * u, v), found.vertex, 0.01 + 1e-9) <= 0.01 + 1e-9
 
 
+@pytest.mark.slow("another file of the same law", only=("asitus",))
 @pytest.mark.parametrize("path", real("occt_linkrods.step", "asitus_ANC101-ill.stp"), ids=lambda p: p.name)
 def test_real_files_are_proved(path):
     part = read_part(path)

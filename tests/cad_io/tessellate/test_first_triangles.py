@@ -136,6 +136,7 @@ def test_the_usual_needs_no_mesher(make, monkeypatch):
     assert not tessellate(part, 0.1).missing
 
 
+@pytest.mark.slow("another file of the same law", but=("asitus",))
 @pytest.mark.parametrize(
     "path", real("asitus_control_arm.step", "occt_linkrods.step", "axom_boxed_sphere.step"), ids=lambda p: p.name
 )
@@ -234,6 +235,7 @@ def test_holes_that_nearly_touch_are_seen_apart():
 # --- the kernel's mesher ----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow("another shape of the same law", but=("ring",))
 @pytest.mark.parametrize("make", [ring, pocketed, lambda: as_nurbs(ball(10))], ids=["ring", "pocketed", "ball as B-spline"])
 def test_the_second_way_keeps_the_promise_too(make, monkeypatch):
     monkeypatch.setattr(start, "own_start", lambda *_: None)
@@ -248,8 +250,8 @@ def test_what_never_meshes_costs_its_own_faces_only(monkeypatch):
     own = start.own_start
     monkeypatch.setattr(start, "own_start", lambda part, n, chord: None if n < 5 else own(part, n, chord))
     monkeypatch.setattr(mesher, "BRepMesh_IncrementalMesh", never)
-    monkeypatch.setattr(start, "_SECONDS", 1.0)
-    monkeypatch.setattr(start, "_TOTAL", 2.0)
+    monkeypatch.setattr(start, "_SECONDS", 0.3)
+    monkeypatch.setattr(start, "_TOTAL", 0.6)
     began = time.process_time()
     triangles = tessellate(read_part(box()), 0.1)
     assert time.process_time() - began < 10
@@ -292,6 +294,7 @@ def test_a_face_that_never_meshes_is_not_drawn_and_others_are(monkeypatch):
         return kernel(given, *more)
 
     monkeypatch.setattr(mesher, "BRepMesh_IncrementalMesh", asked)
+    monkeypatch.setattr(mesher, "FACE", 0.4)
     began = time.monotonic()
     drawn = [found is not None for found in mesher.meshed(faces(shape), 0.1, 0.3)]
     assert drawn == [False] + [True] * 6
@@ -301,6 +304,7 @@ def test_a_face_that_never_meshes_is_not_drawn_and_others_are(monkeypatch):
 def test_many_faces_that_never_mesh_end_in_time(monkeypatch):
     monkeypatch.setattr(mesher, "BRepMesh_IncrementalMesh", never)
     monkeypatch.setattr(mesher, "HANGS", 2)
+    monkeypatch.setattr(mesher, "FACE", 0.4)
     began = time.monotonic()
     assert list(mesher.meshed(faces(compound(*[box()] * 20)), 0.1, 0.3)) == [None] * 6
     assert time.monotonic() - began < 20

@@ -129,6 +129,7 @@ def test_normals_are_unit_and_outward(shape, tmp_path):
             assert np.allclose(normal, point / np.linalg.norm(point, axis=1)[:, None], atol=2e-5)
 
 
+@pytest.mark.slow("writes a whole part twice")
 def test_same_bytes_whatever_mesh_the_part_carries(halves, tmp_path):
     from OCP.BRepMesh import BRepMesh_IncrementalMesh
 
