@@ -13,7 +13,7 @@ from OCP.GProp import GProp_GProps
 from cad_io.errors import CadIoError
 from plan_cutters import Axis, CutterError, Machine, MachineError, PlanError, Scene, plan
 from plan_cutters.domain.placement import Placement, frame_of
-from tests.soak.solids import Body, Material
+from tests.soak.solids import Body, Material, angles_of
 from tests.soak.truth import Truth
 from tests.support.tool_reference import KINDS, random_cutter
 
@@ -165,14 +165,10 @@ class Setting:
     def _table(self):
         """A large block right below the part, a hair lower: the lowest point of the skin is known to the points on it alone."""
         z = np.array(Placement(self.setup).z)
-        frame = frame_of(z)
-        skin = self.part.material.skin(0.6).point
+        frame, skin = frame_of(z), self.part.material.skin(0.6).point
         low, middle = float((skin @ z).min()) - 0.02, frame @ skin.mean(axis=0)
-        from scipy.spatial.transform import Rotation
-
-        turn = tuple(Rotation.from_matrix(frame.T).as_euler("xyz", degrees=True).tolist())
-        corner = frame.T @ np.array([middle[0] - 60, middle[1] - 60, low - 80])
-        return Body("box", (120.0, 120.0, 80.0), turn, tuple(corner.tolist()))
+        corner = frame.T @ np.array([middle[0] - 200, middle[1] - 200, low - 200])
+        return Body("box", (400.0, 400.0, 200.0), angles_of(frame.T), tuple(corner.tolist()))
 
     def but(self, **changes):
         return replace(self, **changes)

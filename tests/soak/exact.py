@@ -130,22 +130,22 @@ def maps_tell_free_from_forbidden(setting: Setting):
         found = _mapped(setting, result.scene, samples.point[row], turns)
         if np.abs(found.normal - samples.normal[row]).max() > 1e-6:
             continue  # the point lies on an edge: it is that of another face
-        contact = found.point, found.normal
+        contact, tolerance = (found.point, found.normal), found.tolerance
         for k, turn in enumerate(turns.tolist()):
             f = tilt_direction(found.normal, found.direction_max, turn)
             where = told(samples, row, f"rotation {turn}")
-            _safe_within(setting, truth, *contact, f, found.free[k], found.tolerance, rng, where)
+            _safe_within(setting, truth, *contact, f, found.free[k], tolerance, rng, where)
             open_ = np.concatenate([found.free[k], found.undecided[k]])
             for tilt in _tilts(setting.tool.cutter, *result.postures.tilt, 12, rng).tolist():
                 if not ((open_[:, 0] <= tilt + _BESIDE) & (open_[:, 1] >= tilt - _BESIDE)).any():
-                    clear = _clear(setting, truth, *contact, f, tilt, found.tolerance)
+                    clear = _clear(setting, truth, *contact, f, tilt, tolerance)
                     assert not clear, told(samples, row, f"forbidden and free at rotation {turn}, tilt {tilt} rad")
 
 
 def _mapped(setting, scene, point, turns):
-    more = {**({} if setting.tilt is None else {"tilt_deg": setting.tilt}), **({} if setting.x is None else {"x": setting.x})}
-    return refused(lambda: posture_map(
-        scene, point=tuple(point), cutter=setting.tool.cutter, rotations=turns, machine=setting.mill.machine, **more))  # fmt: skip
+    more = {name: value for name, value in (("tilt_deg", setting.tilt), ("x", setting.x)) if value is not None}
+    question = {"point": tuple(point), "cutter": setting.tool.cutter, "rotations": turns, "machine": setting.mill.machine}
+    return refused(lambda: posture_map(scene, **question, **more))
 
 
 def _safe_within(setting, truth, point, normal, f, free, tolerance, rng, where):

@@ -8,13 +8,13 @@ import numpy as np
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from plan_cutters import Cutter, Scene, plan, posture_map
+from plan_cutters import Cutter, Holder, Scene, Segment, plan, posture_map
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE
 from tests.soak.cases import Mill, Part, Setting, VoidError, fixtures, parts, refused, settings
 from tests.soak.exact import told
 from tests.soak.register import law
-from tests.soak.solids import moved
+from tests.soak.solids import angles_of, moved
 
 
 def _contradict(one, other):
@@ -41,8 +41,7 @@ def a_rigid_motion_changes_nothing(case: tuple[Setting, tuple, tuple]):
     here = setting.planned()
 
     def carried(body):
-        turned = Rotation.from_matrix(matrix @ body.matrix).as_euler("xyz", degrees=True)
-        return replace(body, turn=tuple(turned.tolist()), at=tuple((matrix @ body.at + shift).tolist()))
+        return replace(body, turn=angles_of(matrix @ body.matrix), at=tuple((matrix @ body.at + shift).tolist()))
 
     there = setting.but(fixtures=tuple(carried(each) for each in setting.fixtures))
     place = Placement(tuple(matrix @ setting.setup), tuple(matrix @ setting.frame[0]))
@@ -98,9 +97,10 @@ def scaled(cutter: Cutter, scale):
 def _more_in_the_way(draw):
     setting = draw(settings())
     cutter = setting.tool.cutter
-    ways = ["fixture"] * (not setting.part.sheet) + ["table"] * (not setting.part.sheet) + ["allowance", "clearance"]
-    if cutter.holder is not None:
-        ways += ["wider", "shorter"]
+    ways = ["clearance"] if setting.part.sheet else ["clearance", "fixture", "table"]
+    # Stock left on the surface lifts what stands above the flutes.
+    ways += [] if cutter.stages else ["allowance"]
+    ways += [] if cutter.holder is None else ["wider", "shorter"]
     return (
         setting,
         draw(st.sampled_from(ways)),
@@ -121,13 +121,17 @@ def more_in_the_way_never_gives_more(case: tuple[Setting, str, float, tuple]):
     elif way in ("allowance", "clearance"):
         tool = replace(cutter, **{way: (getattr(cutter, way) or 0.0) + share})
     elif way == "shorter":
+        # Under one cylinder, that goes up as far as before: then the tool holds all of what it was.
         low = max([cutter.flutes or 0.0, *(at for part, at, _ in cutter.stages if part != "holder")])
-        tool = refused(lambda: replace(cutter, length=low + share * (cutter.length - low)))
+        wide, by = max(max(each.radius, each.upper_radius) for each in cutter.holder.stages), (1 - share) * (cutter.length - low)
+        cutter = replace(cutter, holder=Holder((Segment(wide, 30.0),)))
+        tool = refused(lambda: replace(cutter, length=cutter.length - by, holder=Holder((Segment(wide, 30.0 + by),))))
     else:
         wider = [replace(each, radius=each.radius + 5 * share, upper_radius=each.upper_radius + 5 * share)
                  for each in cutter.holder.stages]  # fmt: skip
         tool = replace(cutter, holder=replace(cutter.holder, stages=tuple(wider)))
-    before, after = setting.planned(), refused(lambda: plan(setting.part.shape, **{**harder.options, "cutters": [tool]}))
+    before = setting.planned(cutters=[cutter])
+    after = refused(lambda: plan(setting.part.shape, **{**harder.options, "cutters": [tool]}))
     _comparable(before, after, setting.step)
     (a,), (b,) = before.reaches.values(), after.reaches.values()
     rows = _contradict(b, a)

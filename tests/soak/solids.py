@@ -4,6 +4,7 @@ Nothing here asks the product: the kernel makes the shape, and the formulas say 
 """
 
 import math
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
@@ -195,6 +196,13 @@ class Body:
         return moved(made, self.matrix, self.at)
 
 
+def angles_of(matrix):
+    """The turns of a `Body`, degrees, that a rotation matrix (3, 3) is."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # where two of the axes are one, any of the turns about them will do
+        return tuple(Rotation.from_matrix(matrix).as_euler("xyz", degrees=True).tolist())
+
+
 def moved(shape, matrix=((1, 0, 0), (0, 1, 0), (0, 0, 1)), shift=(0, 0, 0), scale=1.0):
     """A shape turned by a matrix (3, 3), made larger, and shifted."""
     turn = gp_Trsf()
@@ -247,11 +255,11 @@ class Material:
             kept, sign = front != back, np.where(front, -1.0, 1.0)
         return point[kept], (sign[:, None] * out)[kept], np.stack([u, v], 1)[kept], kept
 
-    def skin(self, apart):
-        """Points of the whole skin, some mm apart, each at the middle of a cell of an area, mm2."""
+    def skin(self, apart, most=600):
+        """Points of the whole skin, some mm apart and no more than `most` in a row, each of a cell of an area, mm2."""
         found = []
         for k, face in enumerate(self.faces):
-            n, m = (int(min(600, max(4, math.ceil(size / apart)))) for size in (face.long, face.wide))
+            n, m = (int(min(most, max(4, math.ceil(size / apart)))) for size in (face.long, face.wide))
             u, v = (each.ravel() for each in np.meshgrid((np.arange(n) + 0.5) / n, (np.arange(m) + 0.5) / m, indexing="ij"))
             point, out, uv, kept = self.on(k, u, v)
             step = 1e-4

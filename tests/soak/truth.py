@@ -23,7 +23,7 @@ class Truth:
     def __init__(self, bodies, cutter, seed=0):
         self.bodies = bodies
         self.tool = Reference(cutter)
-        self.skins = [each.skin(_APART if k == 0 else 2 * _APART) for k, each in enumerate(bodies)]
+        self.skins = [each.skin(_APART) if k == 0 else each.skin(2 * _APART, 120) for k, each in enumerate(bodies)]
         self.rng = np.random.default_rng(seed)
         self.allowance, self.clearance = cutter.allowance or 0.0, cutter.clearance or 0.0
 

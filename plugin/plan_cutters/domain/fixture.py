@@ -305,7 +305,7 @@ def _placed(numbers: tuple[float, ...], which: str) -> tuple[float, ...]:
 
 
 def _cosine_and_sine(angle: float) -> tuple[float, float]:
-    """Of an angle, deg; exact at quarter turns, up to the rounding of degrees, so that a fixture turned by 90 keeps its planes."""
+    """Of an angle, deg; exact at quarter turns, up to rounding, so that a fixture turned by 90 degrees keeps its planes."""
     quarters = round(angle / 90.0)
     if abs(angle - 90.0 * quarters) <= _HAIR:
         return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[quarters % 4]
