@@ -2,6 +2,8 @@
 
 import math
 import time
+from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,7 +13,7 @@ from cad_io.kernel import values
 from plan_cutters import Cutter, Options
 from plan_cutters.checker.bench import Bench
 from plan_cutters.checker.clash import FREE, MET, Clock, met, nearest
-from plan_cutters.checker.question import Setup, axes_of
+from plan_cutters.checker.question import MachineAxes, Setup, axes_of, other_angles
 from plan_cutters.checker.surface import Cells, Face
 from plan_cutters.checker.tool import tool_of
 from plan_cutters.command.check_operations import _sizes
@@ -65,6 +67,43 @@ def test_points_lie_within_the_solids_if_they_lie_within_the_outline(cutter):
     outside = sure & ~within
     assert np.abs(-deep[outside] - away[outside]).max() < 1e-3
     assert (deep[within] <= away[within] + 1e-3).all()
+
+
+@pytest.mark.parametrize("cutter", CUTTERS, ids=NAMES)
+@pytest.mark.parametrize("share", [0.3, 0.55])
+def test_what_is_above_a_height_ends_there(cutter, share):
+    """Cut off there it is as wide as at that height, not as at its widest: its distance is that of the outline's rest."""
+    tool = tool_of(_sizes(cutter))
+    height = share * tool.solids[0].high if cutter.shape != "form" else 2.5
+    border = points(outline(cutter), 1e-4)
+    (edge,) = [a[0] + (height - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) for a, b in pairwise(border) if a[1] <= height < b[1]]
+    rest = np.concatenate([[(0.0, height), (edge, height)], border[border[:, 1] > height]])
+    rng = np.random.default_rng(0)
+    q, h = rng.uniform(0.0, 1.5 * tool.wide, 1500), rng.uniform(0.0, tool.high, 1500)
+    deep = np.max([solid.depth(q, h)[0] for solid in tool.above(height)], axis=0)
+    away, _ = polyline_distance(rest, q, h)
+    within = (h > height) & polyline_distance(border, q, h)[1]
+    outside = ~within & (away > 1e-2)
+    assert outside.any()
+    assert np.abs(-deep - away)[outside].max() < 1e-2
+
+
+def test_a_tapered_tool_does_not_stand_along_a_wall_that_its_flank_leaves():
+    """At the border of a wall it may be free there, beyond its flutes; but a search puts it down at no such tilt."""
+    tool = tool_of(_sizes(Cutter.flat(radius=2, length=10, taper_deg=3)))
+    straight = tool_of(_sizes(Cutter.flat(radius=2, length=10)))
+    tilts = np.radians([0.0, 45.0, 87.0, 88.0, 90.0])
+    assert tool.touches(tilts).tolist() == [True, True, True, False, False]
+    assert straight.touches(tilts).all()
+
+
+def test_half_a_turn_either_way_is_as_large():
+    """A control may show -180 or 180: whichever is written, it is the other solution."""
+    machine = MachineAxes(("C", "A"), np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]), np.array([[-400.0, 400.0], [-110.0, 110.0]])
+                          * math.pi / 180.0, np.array([0.0, 0.0, 1.0]), math.pi, rates=False)  # fmt: skip
+    question = SimpleNamespace(machine=machine, setups=(Setup((0.0, 0.0, 1.0), None, None, (), frozenset()),))
+    assert sorted(other_angles(question, 0, np.array([0.0, 30.0]))) == [(-180.0, -30.0), (180.0, -30.0)]
+    assert other_angles(question, 0, np.array([90.0, 30.0])) == [(-90.0, -30.0)]
 
 
 @pytest.mark.parametrize("cutter", CUTTERS, ids=NAMES)

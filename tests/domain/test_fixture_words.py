@@ -5,7 +5,7 @@ import pickle
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
@@ -91,6 +91,7 @@ def test_values_that_mean_nothing(more):
 
 
 @given(ANGLE, ANGLE, ANGLE)
+@example(4e-11, -8e-11, 90.0 + 6e-11)
 def test_turns_are_about_the_fixed_axes_x_then_y_then_z_and_the_shift_comes_last(x, y, z):
     fixture = Fixture("vise.stl", (7.0, -8.0, 9.0, x, y, z))
     expected = Rotation.from_euler("xyz", [x, y, z], degrees=True)

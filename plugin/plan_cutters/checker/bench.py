@@ -190,15 +190,18 @@ class Bench:
         the tip, and along a wall at the distance of the tolerance. `OPEN` also where too many places would have to be tried.
         """
         verdict = self.stands(setup, tool, rows, axis, self.own_tilt_direction(rows, axis), clock, surely=surely)
+        cosine = (self.normal[rows] * axis).sum(axis=1)
+        sine = np.linalg.norm(np.cross(self.normal[rows], axis), axis=1)
+        if not surely:
+            # A search does not put a tool down at a tilt at which it touches with nothing that cuts, though it be free there.
+            verdict[~tool.touches(np.arctan2(sine, cosine))] = MET
         low, high = self._rotation
         if high - low < 2.0 * math.pi - _END:
             return verdict
-        cosine = (self.normal[rows] * axis).sum(axis=1)
-        sine = np.linalg.norm(np.cross(self.normal[rows], axis), axis=1)
         # A search may refuse flutes that leave the wall by more than its triangles are sure of.
         most = math.sin(self.accuracy) if surely else min(math.sin(self.accuracy), _DEEP * self.question.tolerance / tool.high)
         walls = np.flatnonzero((verdict != FREE) & (np.abs(cosine) <= most))
-        if len(walls):
+        if len(walls) and (surely or tool.touches(np.array([0.5 * math.pi]))[0]):
             verdict[walls] = self.stands(setup, tool, rows[walls], axis[walls], 2.0 * axis[walls], clock, surely=surely)
         upright = np.flatnonzero((verdict != FREE) & (np.arctan2(sine, cosine) <= self.accuracy))
         if len(upright) and tool.flat > 0.0:

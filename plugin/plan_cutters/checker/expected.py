@@ -330,12 +330,13 @@ class Reckoned:
             entry["index_s"] = written["assumed"]["index_s"]
         else:
             entry["index_s"] = Loose(0.0, math.inf)
-        other = other_angles(question, each["setup"], degrees[0])
-        entry["other_angles_deg"] = (
-            None
-            if other is None
-            else {name: Between(angle - _ROUNDED, angle + _ROUNDED) for name, angle in zip(names, other, strict=True)}
-        )
+        others, said = other_angles(question, each["setup"], degrees[0]), each["other_angles_deg"] or {}
+        entry["other_angles_deg"] = None
+        if others:
+            # Of those that are as large any may be written.
+            other = min(others, key=lambda angles: math.dist(angles, [float(said.get(name, 0.0)) for name in names]))
+            near = {name: Between(angle - _ROUNDED, angle + _ROUNDED) for name, angle in zip(names, other, strict=True)}
+            entry["other_angles_deg"] = near
         return entry
 
     def _faces(self, rows: Rows, written: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:

@@ -262,8 +262,9 @@ def _turns_to(angle: Floats, limits: Floats) -> NDArray[np.bool_]:
     return np.asarray(angle + 2.0 * math.pi * np.ceil((low - angle) / (2.0 * math.pi)) <= high)
 
 
-def other_angles(question: Question, setup: int, degrees: Floats) -> tuple[float, ...] | None:
-    """The other angles, deg, with the same axis within the machine's limits, as a control shows them; None: there are none.
+def other_angles(question: Question, setup: int, degrees: Floats) -> list[tuple[float, ...]]:
+    """The other angles, deg, with the same axis within the machine's limits, as a control shows them: none where there are none,
+    and several where they are as large, as half a turn is either way.
 
     The second axis turns the tool towards the first axis and away: mirrored about where it is nearest, it is as far off.
     """
@@ -273,7 +274,7 @@ def other_angles(question: Question, setup: int, degrees: Floats) -> tuple[float
     nearest = math.degrees(math.atan2(first @ np.cross(second, base), first @ base))
     mirrored = 2.0 * nearest - degrees[1]
     wanted = axes_of(machine, question.setups[setup], degrees[None])[0]
-    best: tuple[float, ...] | None = None
+    found = list[tuple[float, ...]]()
     for b in (mirrored + 360.0 * k for k in (-2, -1, 0, 1, 2)):
         if not _within(b, machine.limits[1]):
             continue
@@ -281,14 +282,15 @@ def other_angles(question: Question, setup: int, degrees: Floats) -> tuple[float
         turning = carried_first(question, setup)
         p, q = (v - (v @ turning) * turning for v in (at_zero, wanted))
         if np.linalg.norm(p) < 1e-9:
-            return None
+            return []
         a = math.degrees(math.atan2(np.cross(p, q) @ turning, p @ q))
         for turn in (a, a - 360.0, a + 360.0):
             candidate = (turn, b)
             apart = sum(abs((x - y + 180.0) % 360.0 - 180.0) for x, y in zip(candidate, degrees.tolist(), strict=True))
-            if _within(turn, machine.limits[0]) and apart > 0.01 and (best is None or _size(candidate) < _size(best) - 1e-9):
-                best = candidate
-    return None if best is None else tuple(round(x, 3) + 0.0 for x in best)
+            if _within(turn, machine.limits[0]) and apart > 0.01:
+                found.append(candidate)
+    least = min(map(_size, found), default=0.0)
+    return [tuple(round(x, 3) + 0.0 for x in each) for each in found if _size(each) <= least + 1e-6]
 
 
 def carried_first(question: Question, setup: int) -> Floats:

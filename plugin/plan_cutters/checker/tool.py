@@ -197,6 +197,11 @@ class Tool:
             open_rows &= ~mine
         return tips
 
+    def touches(self, tilt: Floats) -> NDArray[np.bool_]:
+        """Whether it touches at tilts (n,), rad, with a corner or an arc of what cuts."""
+        turned = np.asarray(tilt) + _DOWN
+        return np.logical_or.reduce([(turned >= arc.first - _HAIR) & (turned <= arc.last + _HAIR) for arc in self.contacts])
+
     def stands_along(self, normal: Floats, axis: Floats, tilt_direction: Floats, accuracy: float) -> NDArray[np.bool_]:
         """Where a tilt direction says that the flank stands along a wall, and the wall holds the axis within an accuracy."""
         twice = np.linalg.norm(tilt_direction - 2.0 * axis, axis=1) <= _SAME
@@ -220,9 +225,11 @@ def _cut(solid: Solid, height: float) -> Solid:
         for arc in solid.arcs
         if arc.h + arc.radius * math.sin(arc.last) > height
     )
-    wide = min((q for a, b, c, d in border for q, h in ((a, b), (c, d)) if h == height), default=solid.wide)
-    wide = max([wide, *(arc.q + arc.radius * math.cos(arc.first) for arc in arcs)])
-    return Solid(solid.part, lines, arcs, np.array([*border, (0.0, height, wide, height)]), height, solid.high, solid.wide)
+    # What ends at that height is its edge there: of an arc, where it is cut off.
+    ends = [(q, h) for a, b, c, d in border for q, h in ((a, b), (c, d))]
+    ends += [(arc.q + arc.radius * math.cos(arc.first), arc.h + arc.radius * math.sin(arc.first)) for arc in arcs]
+    edge = max((q for q, h in ends if abs(h - height) <= _HAIR), default=0.0)
+    return Solid(solid.part, lines, arcs, np.array([*border, (0.0, height, edge, height)]), height, solid.high, solid.wide)
 
 
 def _line(a: tuple[float, float], b: tuple[float, float]) -> tuple[float, float, float]:

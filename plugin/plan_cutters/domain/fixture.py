@@ -25,6 +25,8 @@ MESH = (".stl", ".obj", ".ply", ".glb")
 _FORM = "FILE[@x,y,z[,rx,ry,rz]][:UNIT], box:x,y,z, cylinder:r,h, table, table:h, vise or chuck"
 #: Lengths beyond this, mm, are rather a mistake.
 _FARTHEST = 1e6
+#: Angles this close to a quarter turn are one, deg: less than what a length of 1 m shows of rounding.
+_HAIR = 1e-12
 _NOWHERE = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 
 
@@ -198,8 +200,7 @@ class Fixture:
     @property
     def rotation(self) -> Floats:
         """Matrix (3, 3): a point of the source goes to `rotation @ point + shift`."""
-        x, y, z = (math.radians(angle) for angle in self.placement[3:])
-        (a, b), (c, d), (e, f) = ((_cos(t), _sin(t)) for t in (x, y, z))
+        (a, b), (c, d), (e, f) = map(_cosine_and_sine, self.placement[3:])
         about_x = np.array([[1, 0, 0], [0, a, -b], [0, b, a]])
         about_y = np.array([[c, 0, d], [0, 1, 0], [-d, 0, c]])
         about_z = np.array([[e, -f, 0], [f, e, 0], [0, 0, 1]])
@@ -303,13 +304,10 @@ def _placed(numbers: tuple[float, ...], which: str) -> tuple[float, ...]:
     return tuple(float(each) for each in (*numbers, 0.0, 0.0, 0.0)[:6])
 
 
-def _cos(angle: float) -> float:
-    """Cosine, exact at quarter turns, so that a fixture turned by 90 degrees keeps its planes."""
-    return _sin(angle + 0.5 * math.pi)
-
-
-def _sin(angle: float) -> float:
-    quarter = angle / (0.5 * math.pi)
-    if abs(quarter - round(quarter)) < 1e-12:
-        return (0.0, 1.0, 0.0, -1.0)[round(quarter) % 4]
-    return math.sin(angle)
+def _cosine_and_sine(angle: float) -> tuple[float, float]:
+    """Of an angle, deg; exact at quarter turns, up to rounding, so that a fixture turned by 90 degrees keeps its planes."""
+    quarters = round(angle / 90.0)
+    if abs(angle - 90.0 * quarters) <= _HAIR:
+        return ((1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0))[quarters % 4]
+    turn = math.radians(angle)
+    return math.cos(turn), math.sin(turn)
