@@ -135,14 +135,14 @@ def verdicts(reached, tmp_path):
 def test_a_fault_that_a_test_notices_is_killed_by_it(reached, tmp_path):
     tests = reached["tests/room/test_m.py"]["tests"]
     lines = {test.rpartition("::")[2]: each["lines"] for test, each in tests.items()}
-    assert lines["test_of_two"] == {"plugin/plan_cutters/m.py": f"{1 << 2 | 1 << 3 | 1 << 4:x}"}
+    assert lines["test_of_two"] == {"plugin/plan_cutters/m.py": f"{1 << 1 | 1 << 2 | 1 << 3 | 1 << 4:x}"}
     assert lines["test_of_none"] == {}
     rows = verdicts(reached, tmp_path)
     assert rows
     for (_, after), row in rows.items():
         # Of equals either is the larger one.
         assert row["verdict"] == (tried.SURVIVED if after == "(a >= b)" else tried.KILLED), row
-        assert row["verdict"] == tried.SURVIVED or row["by"].endswith("::test_of_two")
+        assert row["verdict"] == tried.SURVIVED or row["by"].endswith("::test_of_two (1.)")
 
 
 def test_a_test_that_takes_too_long_is_ended(reached, tmp_path, monkeypatch):
@@ -150,7 +150,7 @@ def test_a_test_that_takes_too_long_is_ended(reached, tmp_path, monkeypatch):
     (copy.folder / "plugin/plan_cutters/m.py").write_text(FUNCTION.replace("if", "while").replace("return a", "a + b"))
     note, test = tmp_path / "note", "tests/room/test_m.py::test_of_two"
     assert copy.run(["tests/room/test_m.py"], Verdict([test], [], {test: 0.3}, note), 60.0, tmp_path / "result") is None
-    assert note.read_text() == test
+    assert note.read_text() == f"{test} (1.)"
 
 
 def test_a_fault_that_no_test_runs_survives_without_one(tmp_path, reached):

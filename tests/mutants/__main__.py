@@ -12,6 +12,7 @@ import argparse
 import contextlib
 import hashlib
 import json
+import math
 import os
 import shutil
 import signal
@@ -86,16 +87,18 @@ class Copy:
             finally:
                 sys.stdout.flush()
                 os._exit(code)
-        ends = time.monotonic() + limit
-        status = None
-        while status is None and time.monotonic() < ends:
-            pid, status = os.waitpid(process, os.WNOHANG)
-            status = status if pid else None
-            time.sleep(0.01)
-        with contextlib.suppress(ProcessLookupError):  # nothing that the tests began outlives them
-            os.killpg(process, signal.SIGKILL)
+        ends, status = time.monotonic() + limit, None
+        try:
+            while status is None and time.monotonic() < ends:
+                time.sleep(0.02)
+                pid, status = os.waitpid(process, os.WNOHANG)
+                status = status if pid else None
+        finally:  # nothing that the tests began outlives them
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process, signal.SIGKILL)
+            if status is None:
+                os.waitpid(process, 0)
         if status is None:
-            os.waitpid(process, 0)
             return None
         code = os.waitstatus_to_exitcode(status)
         return None if code == -signal.SIGPROF else code
@@ -194,21 +197,25 @@ def ordered(reached: dict[str, dict], mutant: Mutant) -> tuple[list[str], list[s
     return files, [test for _, _, _, some in sorted(order) for test in some], left_out, limits
 
 
-def judged(mutant: Mutant, copy: Copy, reached: dict[str, dict], work: Path) -> dict:
-    """Put one fault into a copy, and see whether tests notice it."""
+def judged(mutant: Mutant, copy: Copy, reached: dict[str, dict], work: Path, most: float = math.inf) -> dict:
+    """Put one fault into a copy, and see whether tests notice it, which begin within so many processor seconds."""
     files, order, left_out, limits = ordered(reached, mutant)
-    began, result = time.monotonic(), {"verdict": SURVIVED, "by": "no test of the room runs it"}
-    source, stat = (ROOT / mutant.path).read_bytes(), (ROOT / mutant.path).stat()
+    began, result = time.monotonic(), {"verdict": SURVIVED, "by": "no test of the room runs it", "tests": 0}
+    place = copy.folder / mutant.path
+    source, stat = place.read_bytes(), place.stat()
     if files:
         overlaid(work / "common" / "plan-cutters", copy.cache / "plan-cutters")
-        place, note = copy.folder / mutant.path, copy.cache.with_suffix(".test")
+        note = copy.cache.with_suffix(".test")
         note.write_text("while tests are collected")
         sys.stdout.flush()
         place.write_bytes(mutant.applied(source))
         os.utime(place, (1e9, 1e9))  # no byte code is older
         try:
             code = copy.run(
-                files, Verdict(order, left_out, limits, note), 60.0 + 2.0 * sum(limits.values()), copy.cache.with_suffix(".json")
+                files,
+                Verdict(order, left_out, limits, note, most),
+                60.0 + 2.0 * sum(limits.values()),
+                copy.cache.with_suffix(".json"),
             )
         finally:
             place.write_bytes(source)
@@ -216,7 +223,7 @@ def judged(mutant: Mutant, copy: Copy, reached: dict[str, dict], work: Path) -> 
             for each in place.parent.glob(f"__pycache__/{place.stem}.*.pyc"):
                 each.unlink()
         verdict = {None: TIMED_OUT, 0: SURVIVED}.get(code, KILLED)
-        result = {"verdict": verdict, "by": f"{len(order)} tests" if verdict == SURVIVED else note.read_text()}
+        result = {"verdict": verdict, "by": note.read_text(), "tests": len(order)}
     return {
         **mutant._asdict(),
         "name": mutant.name,
@@ -258,7 +265,13 @@ def table(rows: list[dict]) -> str:
 def shown(row: dict) -> str:
     """A fault as a reader of changes knows it."""
     head = f"{row['verdict']}: {row['name']}"
-    return "\n  ".join([head, *row["diff"], f"{row['path']}:{row['line']} ({row['kind']}), {row['by']}, {row['seconds']} s"])
+    return "\n  ".join(
+        [
+            head,
+            *row["diff"],
+            f"{row['path']}:{row['line']} ({row['kind']}), {row['by']} of {row['tests']} tests, {row['seconds']} s",
+        ]
+    )
 
 
 def main() -> None:
@@ -271,6 +284,7 @@ def main() -> None:
     words.add_argument("--jobs", type=int, default=1, help="copies in which faults are tried at a time")
     words.add_argument("--only", default="", help="of these faults those alone whose module or function has this in its name")
     words.add_argument("--again", action="store_true", help="try those once more that survived")
+    words.add_argument("--most", type=float, default=math.inf, help="seconds of tests after which a fault counts as not noticed")
     words.add_argument("--out", type=Path, help="results, a line of JSON each; what stands there is not tried again")
     words.add_argument("--work", type=Path, default=Path(tempfile.gettempdir(), "plan-cutters-mutants"), help="folder for copies")
     asked = words.parse_args()
@@ -278,12 +292,17 @@ def main() -> None:
     out = asked.out or asked.work / f"{asked.room.replace('/', '-')}-{asked.seed}.jsonl"
     old = [json.loads(line) for line in out.read_text().splitlines()] if out.exists() else []
     known = {row["name"]: row for row in old if not (asked.again and row["verdict"] == SURVIVED)}
+    # Who is ended ends what it began.
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     preload()
     if not (asked.work / "common").exists():
         from cad_io.user_cache import roots
 
         overlaid(next(roots()), asked.work / "common" / "plan-cutters")
     reached = reach(asked.room, asked.work)
+    commit = subprocess.run(
+        ["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=True
+    ).stdout.strip()
     modules = [name for name in listed(ROOMS[asked.room][0]) if name.endswith(".py")]
     mutants = list(islice(drawn(ROOT, modules, f"{asked.room} {asked.seed}"), asked.count))
     waiting = [each for each in mutants if each.name not in known and asked.only in each.name]
@@ -291,15 +310,22 @@ def main() -> None:
     for number in range(min(asked.jobs, len(waiting))):
         workers.append(os.fork())
         if workers[-1] == 0:
-            copy = Copy(asked.work, 1 + number)
-            for mutant in waiting[number :: asked.jobs]:
-                row = {"room": asked.room, "seed": asked.seed, **judged(mutant, copy, reached, asked.work)}
-                with open(out, "a") as file:
-                    file.write(json.dumps(row) + "\n")
-                print(shown(row), flush=True)
+            with contextlib.suppress(SystemExit):
+                copy = Copy(asked.work, 1 + number)
+                for mutant in waiting[number :: asked.jobs]:
+                    found = judged(mutant, copy, reached, asked.work, asked.most)
+                    row = {"room": asked.room, "seed": asked.seed, "commit": commit, **found}
+                    with open(out, "a") as file:
+                        file.write(json.dumps(row) + "\n")
+                    print(shown(row), flush=True)
             os._exit(0)
-    for worker in workers:
-        os.waitpid(worker, 0)
+    try:
+        for worker in workers:
+            os.waitpid(worker, 0)
+    except BaseException:
+        for worker in workers:
+            os.kill(worker, signal.SIGTERM)
+        raise
     latest = {row["name"]: row for row in map(json.loads, out.read_text().splitlines())} if out.exists() else {}
     rows = [latest[each.name] for each in mutants if each.name in latest]
     print(table(rows), *(shown(row) for row in rows if row["verdict"] == SURVIVED), sep="\n")

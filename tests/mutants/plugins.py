@@ -27,9 +27,8 @@ class Reach:
     def __init__(self, root, copies):
         self.root, self.copies = f"{root}{os.sep}", copies
         self.of_program = tuple(f"{self.root}{each}{os.sep}" for each in ("plugin", "cad_io"))
-        self.seen, self.entries, self.tests, self.process = set(), set(), {}, os.getpid()
-        self.compiled, self.codes, self.modules, self.starts = defaultdict(set), set(), 0, False
-        sys.addaudithook(self.audit)
+        self.waiting, self.codes, self.entries, self.tests = {}, [], set(), {}
+        self.compiled, self.modules, self.starts = defaultdict(set), 0, False
 
     def audit(self, event, values):
         """Note that a test starts an interpreter, of which nothing is seen here."""
@@ -37,22 +36,31 @@ class Reach:
             self.starts = True
 
     def enter(self, frame, event, _):
-        code = frame.f_code
-        if not code.co_filename.startswith(self.root):
-            return None
-        if code not in self.codes:
-            self.codes.add(code)
-            self.calls(frame)
-        return self.line if code.co_filename.startswith(self.of_program) else None
+        waiting = self.waiting.get(id(frame.f_code))
+        if waiting is None:
+            code = frame.f_code
+            ours = code.co_filename.startswith(self.of_program)
+            # Kept with its code, so that no other one has the same place in memory.
+            waiting = self.waiting[id(code)] = {line for _, _, line in code.co_lines() if line} if ours else set()
+            self.codes.append((code, waiting, {*waiting}))
+            if ours:
+                self.run(code, code.co_firstlineno)
+            if code.co_filename.startswith(self.root):
+                self.calls(frame)
+        return self.line if waiting else None
 
     def line(self, frame, event, _):
-        key = frame.f_code.co_filename, frame.f_lineno
-        if key not in self.seen:
-            self.seen.add(key)
-            if os.getpid() != self.process:
-                with open(self.copies, "a") as file:
-                    file.write(f"{key[0]}\t{key[1]}\n")
-        return self.line
+        """Note a line; a function all of whose lines have run is watched no more."""
+        waiting = self.waiting.get(id(frame.f_code), ())
+        if frame.f_lineno in waiting:
+            self.run(frame.f_code, frame.f_lineno)
+        return self.line if waiting else None
+
+    def run(self, code, line):
+        self.waiting[id(code)].discard(line)
+        if os.getpid() != self.process:
+            with open(self.copies, "a") as file:
+                file.write(f"{code.co_filename}\t{line}\n")
 
     def calls(self, frame):
         """Note the compiled functions that a function names, and those in a table that it names."""
@@ -76,21 +84,23 @@ class Reach:
 
     def taken(self):
         """Lines since the last call, as a number with a bit for each in each module, and the compiled functions called."""
+        seen = {(code.co_filename, line) for code, waiting, every in self.codes for line in every - waiting}
         if os.path.exists(self.copies):
             with open(self.copies) as file:
-                self.seen |= {(path, int(line)) for path, line in (row.rstrip("\n").split("\t") for row in file)}
+                seen |= {(path, int(line)) for path, line in (row.rstrip("\n").split("\t") for row in file)}
             os.remove(self.copies)
-        lines = defaultdict(int)
+        lines, starts, self.starts = defaultdict(int), self.starts, False
         named = {_name(each): _reached(each) for each in self.entries}
-        for path, line in chain(self.seen, *named.values()):
+        for path, line in chain(seen, *named.values()):
             if path.startswith(self.of_program):
                 lines[path.removeprefix(self.root)] |= 1 << line
-        starts, self.starts = self.starts, False
-        for each in (self.seen, self.entries, self.codes):
+        for each in (self.waiting, self.entries, self.codes):
             each.clear()
         return {"lines": {path: f"{each:x}" for path, each in lines.items()}, "entries": sorted(named), "starts": starts}
 
     def pytest_sessionstart(self):
+        self.process = os.getpid()
+        sys.addaudithook(self.audit)
         sys.settrace(self.enter)
         threading.settrace(self.enter)
 
@@ -136,7 +146,8 @@ class Verdict:
     A test that takes longer ends the process by a signal.
     """
 
-    def __init__(self, order, left_out, limits, file):
+    def __init__(self, order, left_out, limits, file, most=float("inf")):
+        self.ends, self.count = seconds() + most, 0
         self.order = {test: k for k, test in enumerate(order)}
         self.left_out, self.limits, self.file = left_out, limits, file
 
@@ -145,27 +156,20 @@ class Verdict:
         items[:] = [item for item in items if item.nodeid not in self.left_out]
         items.sort(key=lambda item: self.order.get(item.nodeid, len(self.order)))
 
-    @pytest.hookimpl(wrapper=True)
+    @pytest.hookimpl(tryfirst=True)
     def pytest_runtest_protocol(self, item):
-        self.file.write_text(item.nodeid)
+        if seconds() > self.ends:
+            return True  # as if it had run
+        self.count += 1
+        self.file.write_text(f"{item.nodeid} ({self.count}.)")
         signal.setitimer(signal.ITIMER_PROF, self.limits.get(item.nodeid, max(self.limits.values(), default=60.0)))
-        try:
-            return (yield)
-        finally:
-            signal.setitimer(signal.ITIMER_PROF, 0.0)
+        return None
+
+    def pytest_runtest_logfinish(self):
+        signal.setitimer(signal.ITIMER_PROF, 0.0)
 
 
 def preload():
     """Import what is not ours, once for all processes that begin as copies of this one."""
-    for name in (
-        "hypothesis",
-        "numba",
-        "OCP.BRepMesh",
-        "pydantic",
-        "rich",
-        "scipy.optimize",
-        "scipy.spatial",
-        "shapely",
-        "trimesh",
-    ):
+    for name in ("numba", "OCP.BRepMesh", "pydantic", "scipy.optimize", "scipy.spatial", "shapely", "trimesh"):
         importlib.import_module(name)
