@@ -44,6 +44,8 @@ ROOMS = {
 TIMES, MORE, PER_LINE = 3.0, 10.0, 0.05
 #: Tests that take longer than this, s, run after the others.
 SHORT = 1.0
+#: Seconds by the clock after which tests are ended, which wait for something then: a busy machine is no fault.
+HOUR = 3600.0
 KILLED, TIMED_OUT, SURVIVED, EQUAL = "killed", "timed out", "survived", "equivalent"
 
 
@@ -146,7 +148,7 @@ def reach(room: str, work: Path) -> dict[str, dict]:
         copy = copy or Copy(work, 0, work / "common")
         began, file = time.monotonic(), work / "reached.json"
         file.unlink(missing_ok=True)
-        code = copy.run([name], Reach(copy.folder, str(work / "copies.txt")), 3600.0, file)
+        code = copy.run([name], Reach(copy.folder, str(work / "copies.txt")), HOUR, file)
         if not file.exists():
             sys.exit(f"{name}: pytest ended with {code}, see {file.with_suffix('.log')}")
         result[name] = {"key": key, "tests": json.loads(file.read_text())}
@@ -211,12 +213,7 @@ def judged(mutant: Mutant, copy: Copy, reached: dict[str, dict], work: Path, mos
         place.write_bytes(mutant.applied(source))
         os.utime(place, (1e9, 1e9))  # no byte code is older
         try:
-            code = copy.run(
-                files,
-                Verdict(order, left_out, limits, note, most),
-                60.0 + 2.0 * sum(limits.values()),
-                copy.cache.with_suffix(".json"),
-            )
+            code = copy.run(files, Verdict(order, left_out, limits, note, most), HOUR, copy.cache.with_suffix(".json"))
         finally:
             place.write_bytes(source)
             os.utime(place, ns=(stat.st_atime_ns, stat.st_mtime_ns))
