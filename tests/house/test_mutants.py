@@ -143,6 +143,10 @@ def test_a_fault_that_a_test_notices_is_killed_by_it(reached, tmp_path):
         # Of equals either is the larger one.
         assert row["verdict"] == (tried.SURVIVED if after == "(a >= b)" else tried.KILLED), row
         assert row["verdict"] == tried.SURVIVED or row["by"].endswith("::test_of_two (1.)")
+    copy = tried.Copy(tmp_path, 2)
+    assert tried.void(list(rows.values()), copy) == ""
+    (copy.folder / "plugin/plan_cutters/m.py").write_text(FUNCTION.replace(">", "<"))
+    assert tried.void(list(rows.values()), copy) == "tests/room/test_m.py::test_of_two (1.)"
 
 
 def test_a_test_that_takes_too_long_is_ended(reached, tmp_path, monkeypatch):

@@ -40,13 +40,17 @@ ROOMS = {
     "cad_io/tessellate": ("cad_io/tessellate", "tests/cad_io/tessellate"),
     "domain/kinematics": ("plugin/plan_cutters/domain/kinematics.py", "tests/domain"),
 }
+#: Where functions are compiled anew for a fault.
+COMPILED = (ROOMS["kernels"][0], ROOMS["cad_io/tessellate"][0])
 #: A test may take so many times as long as without a fault, and so many seconds more; so long is compiling a line of a kernel.
 TIMES, MORE, PER_LINE = 3.0, 10.0, 0.05
 #: Tests that take longer than this, s, run after the others.
 SHORT = 1.0
 #: Seconds by the clock after which tests are ended, which wait for something then: a busy machine is no fault.
 HOUR = 3600.0
-KILLED, TIMED_OUT, SURVIVED, EQUAL = "killed", "timed out", "survived", "equivalent"
+KILLED, TIMED_OUT, SURVIVED = "killed", "timed out", "survived"
+#: Exit code of a process in which pytest could not begin.
+BROKEN = 99
 
 
 def listed(*folders: str) -> list[str]:
@@ -76,7 +80,7 @@ class Copy:
         """
         process = os.fork()
         if process == 0:
-            code = 99
+            code = BROKEN
             try:
                 self.enter(result.with_suffix(".log"))
                 options = ["-x", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "--hypothesis-seed=0"]
@@ -96,13 +100,16 @@ class Copy:
                 pid, status = os.waitpid(process, os.WNOHANG)
                 status = status if pid else None
         finally:  # nothing that the tests began outlives them
-            with contextlib.suppress(ProcessLookupError):
-                os.killpg(process, signal.SIGKILL)
+            for end in (os.killpg, os.kill) if status is None else (os.killpg,):
+                with contextlib.suppress(ProcessLookupError):
+                    end(process, signal.SIGKILL)
             if status is None:
                 os.waitpid(process, 0)
         if status is None:
             return None
         code = os.waitstatus_to_exitcode(status)
+        if code == BROKEN:
+            sys.exit(f"pytest could not begin, see {result.with_suffix('.log')}")
         return None if code == -signal.SIGPROF else code
 
     def enter(self, log: Path) -> None:
@@ -183,11 +190,9 @@ def ordered(reached: dict[str, dict], mutant: Mutant) -> tuple[list[str], list[s
             continue
         costs = {}
         for test, known in tests.items():
-            compiled = (
-                PER_LINE * sum(int(lines, 16).bit_count() for lines in known["lines"].values()) if known["entries"] else 0.0
-            )
-            compiled *= "kernels" in mutant.path or "tessellate" in mutant.path
-            costs[test] = known["seconds"] + compiled
+            costs[test] = known["seconds"]
+            if known["entries"] and mutant.path.startswith(COMPILED):
+                costs[test] += PER_LINE * sum(int(lines, 16).bit_count() for lines in known["lines"].values())
             limits[test] = TIMES * costs[test] + MORE
         ours = {test for test in tests if runs(tests[test], mutant)}
         left_out += [test for test in tests if tests[test].get("failed")]
@@ -228,6 +233,19 @@ def judged(mutant: Mutant, copy: Copy, reached: dict[str, dict], work: Path, mos
         **result,
         "seconds": round(time.monotonic() - began, 1),
     }
+
+
+def void(rows: list[dict], copy: Copy) -> str:
+    """Run the tests that noticed faults without one, in one process: the first that fails, which has noticed nothing."""
+    killers = list(
+        dict.fromkeys(row["by"].rpartition(" (")[0] for row in rows if row["verdict"] != SURVIVED and " (" in row["by"])
+    )
+    if not killers:
+        return ""
+    note = copy.cache.with_suffix(".test")
+    plugin = Verdict(killers, [], {"": HOUR}, note, only=True)
+    code = copy.run(sorted({test.partition("::")[0] for test in killers}), plugin, HOUR, copy.cache.with_suffix(".json"))
+    return "" if code == 0 else note.read_text()
 
 
 def equivalents() -> dict[str, str]:
@@ -326,6 +344,8 @@ def main() -> None:
     latest = {row["name"]: row for row in map(json.loads, out.read_text().splitlines())} if out.exists() else {}
     rows = [latest[each.name] for each in mutants if each.name in latest]
     print(table(rows), *(shown(row) for row in rows if row["verdict"] == SURVIVED), sep="\n")
+    if waiting and (test := void(rows, Copy(asked.work, 1, asked.work / "common"))):
+        sys.exit(f"It fails without a fault, too: {test}. Faults that it noticed count for nothing.")
 
 
 if __name__ == "__main__":

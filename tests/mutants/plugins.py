@@ -146,14 +146,15 @@ class Verdict:
     A test that takes longer ends the process by a signal.
     """
 
-    def __init__(self, order, left_out, limits, file, most=float("inf")):
+    def __init__(self, order, left_out, limits, file, most=float("inf"), only=False):
+        self.only = only
         self.ends, self.count = seconds() + most, 0
         self.order = {test: k for k, test in enumerate(order)}
         self.left_out, self.limits, self.file = left_out, limits, file
 
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items):
-        items[:] = [item for item in items if item.nodeid not in self.left_out]
+        items[:] = [item for item in items if item.nodeid not in self.left_out and (item.nodeid in self.order or not self.only)]
         items.sort(key=lambda item: self.order.get(item.nodeid, len(self.order)))
 
     @pytest.hookimpl(tryfirst=True)
