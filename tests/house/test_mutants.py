@@ -1,6 +1,8 @@
 """Faults that the tests of a room are tried with are what they say, a seed gives the same ones, and a test that fails is seen."""
 
 import ast
+import json
+import os
 import subprocess
 
 import pytest
@@ -121,15 +123,14 @@ def checkout(tmp_path_factory):
 @pytest.fixture
 def reached(checkout, tmp_path, monkeypatch):
     monkeypatch.setattr(tried, "ROOT", checkout)
-    monkeypatch.setitem(tried.ROOMS, "room", ("plugin/plan_cutters", "tests/room"))
     (tmp_path / "common").mkdir()
-    return tried.reach("room", tmp_path)
+    return tried.reach(["tests/room"], tmp_path)
 
 
 def verdicts(reached, tmp_path):
     copy = tried.Copy(tmp_path, 1)
     found = drawn(tried.ROOT, ["plugin/plan_cutters/m.py"], "1")
-    return {(each.before, each.after): tried.judged(each, copy, reached, tmp_path) for each in found}
+    return {(each.before, each.after): tried.judged(each, copy, reached) for each in found}
 
 
 def test_a_fault_that_a_test_notices_is_killed_by_it(reached, tmp_path):
@@ -149,11 +150,43 @@ def test_a_fault_that_a_test_notices_is_killed_by_it(reached, tmp_path):
     assert tried.void(list(rows.values()), copy) == "tests/room/test_m.py::test_of_two (1.)"
 
 
+def test_in_functions_that_are_there_a_fault_is_the_same(reached, tmp_path):
+    """Each is put into a copy of a process that has collected the tests."""
+    faults, out = list(drawn(tried.ROOT, ["plugin/plan_cutters/m.py"], "1")), tmp_path / "out"
+    assert all(tried.soon(each, reached) for each in faults)
+    process = os.fork()
+    if process == 0:
+        tried.work(faults, tried.Copy(tmp_path, 1), reached, 60.0, {"room": "room"}, out)
+    os.waitpid(process, 0)
+    rows = [json.loads(line) for line in out.read_text().splitlines()]
+    assert {(row["before"], row["after"]): row["verdict"] for row in rows} == {
+        key: row["verdict"] for key, row in verdicts(reached, tmp_path).items()
+    }
+
+
+def test_functions_get_the_code_of_another_source(tmp_path, monkeypatch):
+    source = """from functools import cache
+@cache
+def f(a):
+    return [x + 1 for x in a]
+class C:
+    def f(self):
+        return 3
+"""
+    (tmp_path / "swapped_module.py").write_text(source)
+    monkeypatch.syspath_prepend(tmp_path)
+    import swapped_module
+
+    f, method = swapped_module.f, swapped_module.C().f
+    tried.swapped(tmp_path / "swapped_module.py", source.replace("x + 1", "(\n x - 1)").replace("3", "4").encode())
+    assert (f((1, 2)), method()) == ([0, 1], 4)
+
+
 def test_a_test_that_takes_too_long_is_ended(reached, tmp_path, monkeypatch):
     copy = tried.Copy(tmp_path, 1)
     (copy.folder / "plugin/plan_cutters/m.py").write_text(FUNCTION.replace("if", "while").replace("return a", "a + b"))
     note, test = tmp_path / "note", "tests/room/test_m.py::test_of_two"
-    assert copy.run(["tests/room/test_m.py"], Verdict([test], [], {test: 0.3}, note), 60.0, tmp_path / "result") is None
+    assert copy.run(["tests/room/test_m.py"], Verdict([test], [], {test: 0.3}, note), tmp_path / "result") is None
     assert note.read_text() == f"{test} (1.)"
 
 

@@ -10,6 +10,7 @@ A fault that no test notices survives, and is printed.
 
 import argparse
 import contextlib
+import gc
 import hashlib
 import json
 import math
@@ -21,8 +22,12 @@ import sys
 import tempfile
 import time
 import traceback
+from collections.abc import Callable
+from functools import partial
 from itertools import islice, pairwise
 from pathlib import Path
+from types import CodeType, FunctionType
+from typing import NoReturn
 
 import pytest
 
@@ -42,6 +47,7 @@ ROOMS = {
 }
 #: Where functions are compiled anew for a fault.
 COMPILED = (ROOMS["kernels"][0], ROOMS["cad_io/tessellate"][0])
+OPTIONS = ("-q", "-p", "no:cacheprovider", "-p", "no:xdist", "--hypothesis-seed=0")
 #: A test may take so many times as long as without a fault, and so many seconds more; so long is compiling a line of a kernel.
 TIMES, MORE, PER_LINE = 3.0, 10.0, 0.05
 #: Tests that take longer than this, s, run after the others.
@@ -60,11 +66,19 @@ def listed(*folders: str) -> list[str]:
     return sorted(name for name in set(names) if (ROOT / name).is_file())
 
 
+def overlaid(cache: Path, other: Path) -> None:
+    """Lay a cache of its own over a common one: files are linked, and whoever writes one puts another in its place."""
+    shutil.rmtree(other.parent, ignore_errors=True)
+    left_out = shutil.ignore_patterns("stages", "scratch", "test_*", "tests.*")
+    shutil.copytree(cache, other, copy_function=os.link, ignore=left_out) if cache.is_dir() else other.mkdir(parents=True)
+
+
 class Copy:
     """A copy of the checkout, with a cache of compiled code of its own, in which tests run."""
 
     def __init__(self, work: Path, number: int, cache: Path | None = None) -> None:
         self.folder, self.cache = work / f"copy{number}" / "checkout", cache or work / f"cache{number}"
+        self.common, self.entered = work / "common", False
         shutil.rmtree(self.folder, ignore_errors=True)
         for name in listed():
             (self.folder / name).parent.mkdir(parents=True, exist_ok=True)
@@ -73,7 +87,7 @@ class Copy:
             if (ROOT / name).exists() and not (self.folder / name).exists():
                 (self.folder / name).symlink_to((ROOT / name).resolve())
 
-    def run(self, files: list[str], plugin: object, limit: float, result: Path) -> int | None:
+    def run(self, files: list[str], plugin: object, result: Path, swap: Callable[[], None] = lambda: None) -> int | None:
         """Run files of tests in a process of their own: pytest's exit code; None where it was ended.
 
         What the plugin gathers is in `result`, if it is asked for.
@@ -82,9 +96,10 @@ class Copy:
         if process == 0:
             code = BROKEN
             try:
+                os.setsid()
                 self.enter(result.with_suffix(".log"))
-                options = ["-x", "-q", "-p", "no:cacheprovider", "-p", "no:xdist", "--hypothesis-seed=0"]
-                code = int(pytest.main([*(options if isinstance(plugin, Verdict) else options[1:]), *files], plugins=[plugin]))
+                swap()
+                code = int(pytest.main([*OPTIONS, *(["-x"] if isinstance(plugin, Verdict) else []), *files], plugins=[plugin]))
                 if isinstance(plugin, Reach):
                     sys.settrace(None)
                     result.write_text(json.dumps(plugin.tests))
@@ -93,7 +108,7 @@ class Copy:
             finally:
                 sys.stdout.flush()
                 os._exit(code)
-        ends, status = time.monotonic() + limit, None
+        ends, status = time.monotonic() + HOUR, None
         try:
             while status is None and time.monotonic() < ends:
                 time.sleep(0.02)
@@ -113,19 +128,21 @@ class Copy:
         return None if code == -signal.SIGPROF else code
 
     def enter(self, log: Path) -> None:
-        """Make this process one that begins in the copy."""
-        os.setsid()
+        """Make this process one that begins in the copy, if it is none yet."""
         with open(log, "w") as file:
             os.dup2(file.fileno(), 1)
             os.dup2(file.fileno(), 2)
+        scratch = self.cache / "scratch"
+        scratch.mkdir(parents=True, exist_ok=True)
+        if self.entered:
+            return
+        self.entered = True
         os.chdir(self.folder)
         ours = [str(self.folder / "plugin"), str(self.folder)]
         sys.path[:] = [*ours, *(each for each in sys.path if "site-packages" in each or each.startswith(sys.base_prefix))]
         sys.path_importer_cache.clear()
         for name in [name for name in sys.modules if name.partition(".")[0] in ("tests", "cad_io", "plan_cutters")]:
             del sys.modules[name]
-        scratch = self.cache / "scratch"
-        scratch.mkdir(parents=True, exist_ok=True)
         tempfile.tempdir = None
         os.environ |= {"PYTHONPATH": os.pathsep.join(ours), "NUMBA_CACHE_DIR": str(self.cache), "TMPDIR": str(scratch)}
         os.environ["HYPOTHESIS_STORAGE_DIRECTORY"] = str(scratch / "hypothesis")
@@ -133,21 +150,27 @@ class Copy:
 
         assert Path(cad_io.__file__).is_relative_to(self.folder), cad_io.__file__
 
+    def clear(self) -> None:
+        """Begin with the common cache and without files of earlier tests."""
+        if self.entered:  # nothing was compiled of a fault
+            shutil.rmtree(self.cache / "scratch", ignore_errors=True)
+        else:
+            overlaid(self.common / "plan-cutters", self.cache / "plan-cutters")
 
-def overlaid(cache: Path, other: Path) -> None:
-    """Lay a cache of its own over a common one: files are linked, and whoever writes one puts another in its place."""
-    shutil.rmtree(other.parent, ignore_errors=True)
-    left_out = shutil.ignore_patterns("stages", "scratch", "test_*", "tests.*")
-    shutil.copytree(cache, other, copy_function=os.link, ignore=left_out) if cache.is_dir() else other.mkdir(parents=True)
+    def collect(self, files: list[str]) -> None:
+        """Make this process one that begins in the copy and has collected tests, to be copied for each fault."""
+        self.clear()
+        self.enter(self.cache.with_suffix(".log"))
+        pytest.main([*OPTIONS, "--collect-only", *files])
 
 
-def reach(room: str, work: Path) -> dict[str, dict]:
-    """Which lines each test of a room runs, by its file; what is known of a file that is as it was is not asked again."""
-    copy, known = None, work / f"reach-{room.replace('/', '-')}.json"
+def reach(tests: list[str], work: Path) -> dict[str, dict]:
+    """Which lines each test of some folders runs, by its file; what is known of a file that is as it was is not asked again."""
+    copy, known = None, work / "reach.json"
     found = json.loads(known.read_text()) if known.exists() else {}
     common = digest(listed("plugin", "cad_io", "tests/support", "tests/conftest.py", "tests/nightly.txt", "pyproject.toml"))
     result = {}
-    for name in (each for each in listed(ROOMS[room][1]) if Path(each).name.startswith("test_")):
+    for name in (each for each in listed(*tests) if Path(each).name.startswith("test_")):
         key = f"{common} {digest([name])}"
         if name in found and found[name]["key"] == key:
             result[name] = found[name]
@@ -155,15 +178,15 @@ def reach(room: str, work: Path) -> dict[str, dict]:
         copy = copy or Copy(work, 0, work / "common")
         began, file = time.monotonic(), work / "reached.json"
         file.unlink(missing_ok=True)
-        code = copy.run([name], Reach(copy.folder, str(work / "copies.txt")), HOUR, file)
+        code = copy.run([name], Reach(copy.folder, str(work / "copies.txt")), file)
         if not file.exists():
             sys.exit(f"{name}: pytest ended with {code}, see {file.with_suffix('.log')}")
         result[name] = {"key": key, "tests": json.loads(file.read_text())}
-        tests = result[name]["tests"]
-        failed = [test for test, each in tests.items() if each.get("failed")]
+        each = result[name]["tests"]
+        failed = [test for test in each if each[test].get("failed")]
         print(
-            f"{name}: {len(tests) - 1} tests, {time.monotonic() - began:.0f} s",
-            *(f"\n  fails without a fault: {each}" for each in failed),
+            f"{name}: {len(each) - 1} tests, {time.monotonic() - began:.0f} s",
+            *(f"\n  fails without a fault: {test}" for test in failed),
         )
         known.write_text(json.dumps(found | result))
     return result
@@ -204,21 +227,22 @@ def ordered(reached: dict[str, dict], mutant: Mutant) -> tuple[list[str], list[s
     return files, [test for _, _, _, some in sorted(order) for test in some], left_out, limits
 
 
-def judged(mutant: Mutant, copy: Copy, reached: dict[str, dict], work: Path, most: float = math.inf) -> dict:
+def judged(mutant: Mutant, copy: Copy, reached: dict[str, dict], most: float = math.inf) -> dict:
     """Put one fault into a copy, and see whether tests notice it, which begin within so many processor seconds."""
     files, order, left_out, limits = ordered(reached, mutant)
     began, result = time.monotonic(), {"verdict": SURVIVED, "by": "no test of the room runs it", "tests": 0}
     place = copy.folder / mutant.path
     source, stat = place.read_bytes(), place.stat()
     if files:
-        overlaid(work / "common" / "plan-cutters", copy.cache / "plan-cutters")
+        copy.clear()
         note = copy.cache.with_suffix(".test")
         note.write_text("while tests are collected")
         sys.stdout.flush()
         place.write_bytes(mutant.applied(source))
         os.utime(place, (1e9, 1e9))  # no byte code is older
         try:
-            code = copy.run(files, Verdict(order, left_out, limits, note, most), HOUR, copy.cache.with_suffix(".json"))
+            swap = partial(swapped, place, mutant.applied(source)) if copy.entered else lambda: None
+            code = copy.run(files, Verdict(order, left_out, limits, note, most), copy.cache.with_suffix(".json"), swap)
         finally:
             place.write_bytes(source)
             os.utime(place, ns=(stat.st_atime_ns, stat.st_mtime_ns))
@@ -235,6 +259,30 @@ def judged(mutant: Mutant, copy: Copy, reached: dict[str, dict], work: Path, mos
     }
 
 
+def soon(mutant: Mutant, reached: dict[str, dict]) -> bool:
+    """Whether a fault can be put into functions that are there: they are neither compiled nor run while tests are collected."""
+    there = any(runs(each["tests"][""], mutant) for each in reached.values())
+    return bool(mutant.lines[1]) and not mutant.path.startswith(COMPILED) and not there
+
+
+def swapped(path: Path, source: bytes) -> None:
+    """Give the functions of a module that is imported the code of another source, in which they have the same order."""
+    gc.unfreeze()
+    known = [each for each in gc.get_objects() if isinstance(each, FunctionType) and each.__code__.co_filename == str(path)]
+    codes, waiting = [], [compile(source, str(path), "exec", dont_inherit=True)]
+    while waiting:
+        code = waiting.pop()
+        codes.append(code)
+        waiting += [each for each in code.co_consts if isinstance(each, CodeType)]
+    for name in {each.__code__.co_qualname for each in known}:
+        new = sorted((each for each in codes if each.co_qualname == name), key=lambda each: each.co_firstlineno)
+        places = sorted({each.__code__.co_firstlineno for each in known if each.__code__.co_qualname == name})
+        for function in known:
+            if function.__code__.co_qualname == name and len(new) == len(places):
+                function.__code__ = new[places.index(function.__code__.co_firstlineno)]
+    gc.freeze()
+
+
 def void(rows: list[dict], copy: Copy) -> str:
     """Run the tests that noticed faults without one, in one process: the first that fails, which has noticed nothing."""
     killers = list(
@@ -244,7 +292,7 @@ def void(rows: list[dict], copy: Copy) -> str:
         return ""
     note = copy.cache.with_suffix(".test")
     plugin = Verdict(killers, [], {"": HOUR}, note, only=True)
-    code = copy.run(sorted({test.partition("::")[0] for test in killers}), plugin, HOUR, copy.cache.with_suffix(".json"))
+    code = copy.run(sorted({test.partition("::")[0] for test in killers}), plugin, copy.cache.with_suffix(".json"))
     return "" if code == 0 else note.read_text()
 
 
@@ -277,6 +325,24 @@ def table(rows: list[dict]) -> str:
     return "\n".join(lines)
 
 
+def work(mutants: list[Mutant], copy: Copy, reached: dict[str, dict], most: float, head: dict, out: Path) -> NoReturn:
+    """Try faults in this process, which ends with it; write the results, each with a head, and print them."""
+    with os.fdopen(os.dup(1), "w") as terminal:
+        try:
+            for mutant in sorted(mutants, key=lambda each: soon(each, reached)):
+                if soon(mutant, reached) and not copy.entered:
+                    copy.collect(sorted(reached))
+                row = head | judged(mutant, copy, reached, most)
+                with open(out, "a") as file:
+                    file.write(json.dumps(row) + "\n")
+                print(shown(row), file=terminal, flush=True)
+        except SystemExit as end:
+            print(end, file=terminal)
+        except BaseException:
+            traceback.print_exc(file=terminal)
+    os._exit(0)
+
+
 def shown(row: dict) -> str:
     """A fault as a reader of changes knows it."""
     head = f"{row['verdict']}: {row['name']}"
@@ -300,6 +366,7 @@ def main() -> None:
     words.add_argument("--only", default="", help="of these faults those alone whose module or function has this in its name")
     words.add_argument("--again", action="store_true", help="try those once more that survived")
     words.add_argument("--most", type=float, default=math.inf, help="seconds of tests after which a fault counts as not noticed")
+    words.add_argument("--tests", nargs="+", help="folders or files of tests in the place of those of the room")
     words.add_argument("--out", type=Path, help="results, a line of JSON each; what stands there is not tried again")
     words.add_argument("--work", type=Path, default=Path(tempfile.gettempdir(), "plan-cutters-mutants"), help="folder for copies")
     asked = words.parse_args()
@@ -314,26 +381,19 @@ def main() -> None:
         from cad_io.user_cache import roots
 
         overlaid(next(roots()), asked.work / "common" / "plan-cutters")
-    reached = reach(asked.room, asked.work)
+    reached = reach(asked.tests or [ROOMS[asked.room][1]], asked.work)
     commit = subprocess.run(
         ["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=True
     ).stdout.strip()
     modules = [name for name in listed(ROOMS[asked.room][0]) if name.endswith(".py")]
     mutants = list(islice(drawn(ROOT, modules, f"{asked.room} {asked.seed}"), asked.count))
     waiting = [each for each in mutants if each.name not in known and asked.only in each.name]
+    head = {"room": asked.room, "seed": asked.seed, "commit": commit}
     workers = []
     for number in range(min(asked.jobs, len(waiting))):
         workers.append(os.fork())
         if workers[-1] == 0:
-            with contextlib.suppress(SystemExit):
-                copy = Copy(asked.work, 1 + number)
-                for mutant in waiting[number :: asked.jobs]:
-                    found = judged(mutant, copy, reached, asked.work, asked.most)
-                    row = {"room": asked.room, "seed": asked.seed, "commit": commit, **found}
-                    with open(out, "a") as file:
-                        file.write(json.dumps(row) + "\n")
-                    print(shown(row), flush=True)
-            os._exit(0)
+            work(waiting[number :: asked.jobs], Copy(asked.work, 1 + number), reached, asked.most, head, out)
     try:
         for worker in workers:
             os.waitpid(worker, 0)
