@@ -223,6 +223,24 @@ def test_fewer_axes():
     assert intervals == pytest.approx(np.array([[0.0, 2.0]]), abs=3e-6)
 
 
+@pytest.mark.parametrize("limit", [(-0.5, 2.0), (-math.inf, math.inf), (-math.pi, math.pi), (0.1, 0.11), (-3.0, 3.0)])
+def test_axes_of_a_single_rotary_axis_are_searched_two_degrees_apart_from_end_to_end(limit):
+    four = Kinematics(np.array([[1.0, 0, 0]]), np.array([limit]), UP)
+    aims, (low, high) = four.aims(), np.clip(limit, -math.pi, math.pi)
+    assert four.allows(aims).all()
+    apart = np.arccos(np.clip((aims[1:] * aims[:-1]).sum(axis=1), -1, 1))
+    assert 0.0 < apart.min()
+    assert apart.max() <= math.radians(2.0) + 1e-9
+    # All around, the last one is as far from the first one as any two are; else both ends are there.
+    around = math.acos(aims[0] @ aims[-1])
+    if high - low < 2 * math.pi:
+        assert apart.sum() == pytest.approx(high - low)
+    else:
+        assert around == pytest.approx(apart[0])
+    assert of("trunnion-ac").aims().shape == (0, 3)
+    assert of("3-axis").aims().tolist() == [UP.tolist()]
+
+
 def points_of_caps(axis, swing, rng, count=60):
     """Random directions (n, count, 3) within angles (n,) of axes (n, 3), and on the rims."""
     aside = np.cross(axis[:, None], rng.standard_normal((len(axis), count, 3)))
