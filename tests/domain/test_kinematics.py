@@ -223,6 +223,69 @@ def test_fewer_axes():
     assert intervals == pytest.approx(np.array([[0.0, 2.0]]), abs=3e-6)
 
 
+@pytest.mark.parametrize("limit", [(-0.5, 2.0), (-math.inf, math.inf), (-math.pi, math.pi), (0.1, 0.11), (-3.0, 3.0)])
+def test_axes_of_a_single_rotary_axis_are_searched_two_degrees_apart_from_end_to_end(limit):
+    four = Kinematics(np.array([[1.0, 0, 0]]), np.array([limit]), UP)
+    aims, (low, high) = four.aims(), np.clip(limit, -math.pi, math.pi)
+    assert four.allows(aims).all()
+    apart = np.arccos(np.clip((aims[1:] * aims[:-1]).sum(axis=1), -1, 1))
+    assert 0.0 < apart.min()
+    assert apart.max() <= math.radians(2.0) + 1e-9
+    # All around, the last one is as far from the first one as any two are; else both ends are there.
+    around = math.acos(aims[0] @ aims[-1])
+    if high - low < 2 * math.pi:
+        assert apart.sum() == pytest.approx(high - low)
+    else:
+        assert around == pytest.approx(apart[0])
+    assert of("trunnion-ac").aims().shape == (0, 3)
+    assert of("3-axis").aims().tolist() == [UP.tolist()]
+
+
+def points_of_caps(axis, swing, rng, count=60):
+    """Random directions (n, count, 3) within angles (n,) of axes (n, 3), and on the rims."""
+    aside = np.cross(axis[:, None], rng.standard_normal((len(axis), count, 3)))
+    aside /= np.linalg.norm(aside, axis=-1, keepdims=True)
+    angle = swing[:, None, None] * np.sqrt(np.minimum(1.0, rng.uniform(0, 1.5, (len(axis), count, 1))))
+    return np.cos(angle) * axis[:, None] + np.sin(angle) * aside
+
+
+@given(seed=st.integers(0, 10_000))
+def test_one_solution_holds_every_axis_in_a_cap_that_a_machine_is_said_to_hold(seed):
+    rng = np.random.default_rng(seed)
+    setup = directions(rng, 1)[0]
+    machine = chain(seed) if rng.random() < 0.5 else of(str(rng.choice(FIVE)), setup)
+    axis, swing = directions(rng, 60), rng.uniform(0.0, 0.4, 60)
+    held = machine.allows_about(axis, swing)
+    points = points_of_caps(axis[held], swing[held], rng)
+    angles, _, _ = machine.positions(points.reshape(-1, 3))
+    assert np.isfinite(angles).all(axis=2).reshape(*points.shape[:2], 2).all(axis=1).any(axis=1).all()
+
+
+@given(seed=st.integers(0, 10_000))
+def test_a_cap_that_no_circle_crosses_is_held_where_its_middle_is(seed):
+    """The circles are all that there is between axes that are allowed and others."""
+    rng, machine = np.random.default_rng(seed), chain(seed)
+    axis, swing = directions(rng, 60), rng.uniform(0.0, 0.4, 60)
+    circles = machine.circles()
+    away = np.arccos(np.clip(axis @ circles[:, :3].T, -1, 1)) - np.arccos(np.clip(circles[:, 3], -1, 1))
+    pole = np.arccos(np.abs(np.clip(axis @ machine.direction[0], -1, 1)))
+    alone = (np.abs(away).min(axis=1) > swing + 1e-6) & (pole > swing + 1e-6)
+    assert (machine.allows_about(axis, swing) == machine.allows(axis))[alone].all()
+
+
+def test_small_caps_inside_the_limits_of_a_trunnion_are_held():
+    """A from -30 to 120 deg: all within 120 deg of Z, on either side of the circle at 30 deg."""
+    tilt = np.radians([5.0, 29.9, 30.1, 60.0, 115.0, 119.0, 125.0])
+    axis = np.column_stack([np.sin(tilt), np.zeros(7), np.cos(tilt)])
+    assert of("trunnion-ac").allows_about(axis, np.radians(np.full(7, 2.0))).tolist() == [True] * 5 + [False] * 2
+
+
+def test_a_machine_of_fewer_axes_holds_a_cap_of_one_axis_alone():
+    four = Kinematics(np.array([[1.0, 0, 0]]), np.array([[-0.5, 2.0]]), UP)
+    for machine, axis in ((of("3-axis"), UP), (four, four.axis(np.array([[1.0]]))[0])):
+        assert machine.allows_about(np.array([axis, axis, -axis]), np.array([0.0, 1e-3, 0.0])).tolist() == [True, False, False]
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [

@@ -9,8 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from cad_io import read_part
-from plan_cutters import Cutter, Machine
-from plan_cutters.domain.placement import frame_of
+from plan_cutters import Cutter
 from plan_cutters.kernels.area.moved_cutter import swung
 from plan_cutters.kernels.codes import COLUMNS
 from plan_cutters.kernels.tool.pieces import inset
@@ -161,24 +160,3 @@ def test_no_contact_of_a_piece_gouges_a_sample_part(kind):
     worst = deepest_of(EVERY[kind], turned_contacts(found, geometry, whole, fields, dense(whole, 0.4), 1500, rng))
     print(kind, found.share, len(found.cells.face), f"deepest {worst:.4f} mm")
     assert worst < 0.01 + 2e-3
-
-
-@given(seed=st.integers(0, 10_000))
-def test_a_machine_holds_every_axis_in_a_cap_that_it_is_said_to_hold(seed):
-    rng = np.random.default_rng(seed)
-    name = str(rng.choice(["trunnion-ac", "trunnion-bc", "head-table-bc", "head-head-ca", "nutating-bc"]))
-    kinematics = Machine.parse(name).kinematics(frame_of(unit(rng.standard_normal(3)), None))
-    axis, swing = unit(rng.standard_normal((40, 3))), rng.uniform(0.0, 0.4, 40)
-    good = kinematics.allows_about(axis, swing)
-    for k in np.flatnonzero(good):
-        aside = unit(np.cross(axis[k], rng.standard_normal((60, 3))))
-        angle = swing[k] * np.sqrt(rng.uniform(0, 1, (60, 1)))
-        assert kinematics.allows(np.cos(angle) * axis[k] + np.sin(angle) * aside).all()
-
-
-def test_small_caps_inside_the_limits_of_a_trunnion_are_held():
-    """A from -30 to 120 deg: all within 120 deg of Z, on either side of the circle at 30 deg."""
-    kinematics = Machine.parse("trunnion-ac").kinematics(frame_of(np.array([0.0, 0.0, 1.0]), None))
-    tilt = np.radians([5.0, 29.9, 30.1, 60.0, 115.0, 119.0, 125.0])
-    axis = np.column_stack([np.sin(tilt), np.zeros(7), np.cos(tilt)])
-    assert kinematics.allows_about(axis, np.radians(np.full(7, 2.0))).tolist() == [True] * 5 + [False] * 2

@@ -174,21 +174,23 @@ class Kinematics(Record):
         False as well where that is not known.
         """
         machine, _ = self.turning()
-        held = np.asarray(self.allows(axis))
         if len(machine.direction) < 2:
             # A machine that turns a tool in one plane cannot turn it in all directions.
-            return held & (swing <= 0.0)
+            return np.asarray(self.allows(axis) & (swing <= 0.0))
         (first, second), (start, most, base) = machine.direction, machine.swing
         away = _between(axis, first)
         shares = [(np.cos(np.clip(away + sign * swing, 0.0, math.pi)) - base) / most for sign in (-1.0, 1.0)]
-        known = held & (np.abs(shares) <= 1.0).all(axis=0)
+        known = (np.abs(shares) <= 1.0).all(axis=0)
         ends = np.arccos(np.clip(shares, -1.0, 1.0))
         middle, half = 0.5 * (ends[0] + ends[1]), 0.5 * np.abs(ends[1] - ends[0])
         low, high = machine.limit[1]
         one = np.zeros(len(axis), bool)
-        for sign in (1.0, -1.0):
+        # The solution whose second angle has room in the whole cap is the one that holds its middle: of the other one, the first
+        # angle may be beyond its limits all over the cap.
+        held = np.isfinite(machine.positions(axis)[0]).all(axis=2)
+        for i, sign in enumerate((1.0, -1.0)):
             placed = within(start + sign * middle, float(low), float(high))
-            one |= (placed - half >= low - ON_LIMIT) & (placed + half <= high + ON_LIMIT)
+            one |= held[:, i] & (placed - half >= low - ON_LIMIT) & (placed + half <= high + ON_LIMIT)
         low, high = machine.limit[0]
         if high - low < 2.0 * math.pi:
             for end in (low, high):
