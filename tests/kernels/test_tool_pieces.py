@@ -86,17 +86,24 @@ def triangles(rng, reference, over, n):
 
 
 def deepest(corner, over):
-    """The largest of what points of triangles count by: over a grid, then about the best of it ever closer."""
-    n, shares = len(corner), np.broadcast_to(GRID, (len(corner), *GRID.shape))
-    best = np.full(n, -np.inf)
+    """The largest of what points of triangles count by, or less than 0: over a grid, then about the best of it ever closer.
+
+    What a point counts by changes by no more than it is moved, and each point of a triangle lies within a seventh of its longest
+    side of one of the grid.
+    """
+    longest = np.linalg.norm(corner - np.roll(corner, 1, axis=1), axis=2).max(1)
+    best, shares, open_ = np.full(len(corner), -np.inf), np.broadcast_to(GRID, (len(corner), *GRID.shape)), np.arange(len(corner))
     for turn in range(5):
-        points = np.einsum("nkc,ncd->nkd", shares, corner)
+        points = np.einsum("nkc,ncd->nkd", shares, corner[open_])
         value = over(np.hypot(points[..., 0], points[..., 1]), points[..., 2])
         at = value.argmax(1)
-        best = np.maximum(best, value[np.arange(n), at])
+        best[open_] = np.maximum(best[open_], value[np.arange(len(open_)), at])
         if turn < 4:
-            centre = shares[np.arange(n), at][:, None]
-            shares = centre + (GRID - 1 / 3) * 0.3 ** (turn + 1)
+            centre = shares[np.arange(len(open_)), at]
+            if turn == 0:
+                some = best + longest / 7 >= 0.0
+                open_, centre = open_[some], centre[some]
+            shares = centre[:, None] + (GRID - 1 / 3) * 0.3 ** (turn + 1)
             shares = np.clip(shares, 0, 1)
             shares = shares / shares.sum(2, keepdims=True)
     return best
@@ -128,8 +135,9 @@ def check(rng, kind, sort, cutters, n):
         _hits(vertex, bodies, piece, (1 << len(piece)) - 1, scratch, which, met)
         slack = EXACT + 1e-12 * np.abs(vertex).max()
         if sort == "outer":
-            missed = (deepest(local, over) > slack) & (which < 0)
-            assert not missed.any(), (cutter, flutes, rest, local[missed][0])
+            beside = local[which < 0]
+            missed = deepest(beside, over) > slack
+            assert not missed.any(), (cutter, flutes, rest, beside[missed][0])
         some = which >= 0
         w = met[some, 0] + made.mode[mode, 4]
         q = np.hypot(met[some, 1], met[some, 2])
