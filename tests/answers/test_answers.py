@@ -23,7 +23,7 @@ HELD = [
 
 @pytest.fixture(scope="module")
 def answered():
-    return plan(PART, cutters=HELD, grid=15, area_budget=0, answers="all,stick-out-map", length_over_radius=8)
+    return plan(PART, cutters=HELD, grid=9, area_budget=0, answers="all,stick-out-map", length_over_radius=8)
 
 
 @pytest.mark.slow("plans again for each answer")
@@ -57,7 +57,7 @@ def test_the_plan_has_all_that_was_asked(answered, tmp_path):
 
 
 def test_the_largest_radius_does_not_ask_the_cutters(answered):
-    other = plan(PART, cutters="R1L9", grid=15, area_budget=0, answers=["radius"], length_over_radius=8)
+    other = plan(PART, cutters="R1L9", grid=9, area_budget=0, answers=["radius"], length_over_radius=8)
     assert other.plan.largest_radius == answered.plan.largest_radius
     assert other.plan.cutters[0].least_stick_out is None
     assert other.answers.mends == {}

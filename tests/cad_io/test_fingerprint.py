@@ -122,6 +122,7 @@ def test_a_change_counts_for_the_module_and_its_users_alone(sources, name, old, 
     assert changed(before, looked(sources, names)) == those
 
 
+@pytest.mark.slow("runs each form from an archive once more", only=("True",))
 @pytest.mark.parametrize("line", [
     "from . import beneath",
     "from .beneath import NUMBER",

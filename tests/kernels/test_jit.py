@@ -117,6 +117,7 @@ def test_the_same_sources_elsewhere_and_later_are_not_compiled_again(tmp_path):
     assert told == [(1, 0), (0, 1)]
 
 
+@pytest.mark.slow("compiles anew in processes of its own")
 def test_a_line_above_a_function_is_no_other_function(run, tmp_path):
     run("k.total(x)")
     source = (tmp_path / "kernels_of_test.py").read_text()

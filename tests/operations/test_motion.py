@@ -124,6 +124,7 @@ def test_a_groove_alone_has_two_ways_to_lean():
     assert found.largest_share == pytest.approx(1.0)
 
 
+@pytest.mark.slow("maps the postures of all of a groove")
 def test_with_its_planes_the_groove_is_one():
     result = plan(SAMPLES / "v_groove.step", cutters="R8L90", grid=7, tolerance=0.002, **OPTIONS)
     found = result.plan.operations.motion

@@ -132,6 +132,7 @@ def test_a_simultaneous_step_takes_what_its_cutter_reaches(block):
     assert result.answers.operations.plans[0].operations[0].step == 1
 
 
+@pytest.mark.slow("checks a plan twice")
 def test_the_checker_follows_the_steps_and_finds_one_that_is_forged(block, tmp_path):
     """A plan whose operation says that it is of another step than it is does not hold."""
     cq.Shape.cast(block).exportStep(str(tmp_path / "block.step"))

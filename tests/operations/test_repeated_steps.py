@@ -119,7 +119,7 @@ def test_what_samples_cost_apart_is_what_putting_tools_down_at_all_copies_says()
     assert copied.apart.cutting(every) == pytest.approx(copied.problem.cutting(chosen))
 
 
-@pytest.mark.slow("plans a part of repeated steps", only=("changes1",))
+@pytest.mark.slow("plans a part of repeated steps", only=("changes2",))
 @pytest.mark.parametrize("changes", [{}, {"off": 0.02}, {"fixtures": "box:5,5,5@60,0,0"}])
 def test_one_copy_stands_for_all_where_the_part_and_what_is_about_it_are_a_pattern(changes):
     offer = planning._offer(task(**changes), lambda done, total: None)

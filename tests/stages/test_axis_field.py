@@ -138,6 +138,7 @@ def test_no_contact_of_a_piece_gouges_a_random_surface(kind):
     assert deepest_of(EVERY[kind], contacts) < 0.01 + 2e-3
 
 
+@pytest.mark.slow("searches for counterexamples, of which there are many")
 def test_a_turn_that_is_not_allowed_for_gouges(monkeypatch):
     """The search for counterexamples finds some, if the axes of a cell are said not to turn in it."""
     within = AxisField.within

@@ -24,10 +24,10 @@ STEP = math.radians(2.0)
 
 def _cross(a: Floats, b: Floats) -> Floats:
     """What `np.cross` gives of vectors (..., 3), bit for bit: asked for few so often, its own checks take longest."""
-    found = np.empty(np.broadcast_shapes(a.shape, b.shape))
+    product = np.empty(np.broadcast_shapes(a.shape, b.shape))
     for k, i, j in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        found[..., k] = a[..., i] * b[..., j] - a[..., j] * b[..., i]
-    return found
+        product[..., k] = a[..., i] * b[..., j] - a[..., j] * b[..., i]
+    return product
 
 
 def turned(direction: Floats, angle: Floats | float, vector: Floats) -> Floats:

@@ -117,7 +117,7 @@ def test_a_copy_whose_words_are_taken_slowly_is_not_stuck(monkeypatch):
 @pytest.mark.parametrize("faces", [1, 10_000])
 def test_samples_and_files_are_the_same_with_copies_and_without(tmp_path, monkeypatch, faces):
     monkeypatch.setattr(pipeline, "_MANY_FACES", faces)
-    asked = {"cutters": "R2L30", "grid": 9, "jobs": 2}
+    asked = {"cutters": "R2L30", "grid": 9, "area_budget": 0, "jobs": 2}
     one, other = plan(GROOVE, **asked), plan(GROOVE, **asked | {"jobs": 1})
     assert one.samples == other.samples
     wanted = ("json", "npz", "html", "glb", "step")
@@ -134,7 +134,7 @@ def test_a_split_that_fails_costs_the_models_not_the_page(tmp_path, monkeypatch)
         raise RuntimeError("no faces")
 
     monkeypatch.setattr(models, "split_result", fails)
-    result = plan(GROOVE, cutters="R2L30", grid=9, jobs=2)
+    result = plan(GROOVE, cutters="R2L30", grid=9, area_budget=0, jobs=2)
     document = write_all(result, tmp_path / "out", ("json", "html", "glb", "step"))
     assert set(document.files) == {"html", "process"}
     assert set(document.not_written) == {"glb", "step"}
@@ -150,7 +150,7 @@ def test_a_page_whose_copy_crashes_is_written_here(tmp_path, monkeypatch):
         return made(self, name, split)
 
     monkeypatch.setattr(formats.Making, "file", file)
-    result = plan(GROOVE, cutters="R2L30", grid=9, jobs=2)
+    result = plan(GROOVE, cutters="R2L30", grid=9, area_budget=0, jobs=2)
     document = write_all(result, tmp_path / "out", ("json", "html", "glb", "step"))
     assert set(document.files) == {"html", "glb", "step", "process"}
 
@@ -158,7 +158,7 @@ def test_a_page_whose_copy_crashes_is_written_here(tmp_path, monkeypatch):
 def test_one_thread_asked_for_is_one_process(tmp_path, monkeypatch):
     begun = []
     monkeypatch.setattr("cad_io.copies.Copy", lambda *given: begun.append(given))
-    result = plan(GROOVE, cutters="R2L30", grid=9, jobs=1)
+    result = plan(GROOVE, cutters="R2L30", grid=9, area_budget=0, jobs=1)
     write_all(replace(result), tmp_path / "out", ("json", "html"))
     assert not begun
 

@@ -99,6 +99,7 @@ def test_coordinates_without_digits_left_are_refused(tmp_path, number):
         read_part(tmp_path / "a.step")
 
 
+@pytest.mark.slow("nests so deep that the kernel crashes", only=("nested",))
 @pytest.mark.parametrize(
     ("name", "content", "cause"),
     [

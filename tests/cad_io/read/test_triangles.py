@@ -59,7 +59,7 @@ def test_a_part_of_triangles_is_refused_with_its_cause(tmp_path):
 
 def test_the_rest_of_a_part_is_planned(tmp_path):
     write_step(compound(box(at=(30, 0, 0)), triangulated(ball())), tmp_path / "some.step")
-    done = run("some.step", "--cutter", "R3L40", "--grid", "4", cwd=tmp_path)
+    done = run("some.step", "--cutter", "R3L40", "--grid", "4", "--area-budget", "0", "--formats", "json,step", cwd=tmp_path)
     assert done.returncode == 4, done.stderr
     assert f"Not judged: F7 ({REASON}" in in_lines(done.stdout)
     plan = json.loads((tmp_path / "some-plan" / "plan.json").read_text())
@@ -78,7 +78,9 @@ def test_faces_without_area_or_edges_do_not_stop_the_rest(tmp_path):
     builder.MakeFace(edgeless, Geom_Plane(gp_Ax3()), TopLoc_Location(), 1e-6)
     speck = BRepBuilderAPI_MakeFace(gp_Pln(), 0.0, 1e-6, 0.0, 1e-6).Face()
     write_brep(compound(box(at=(30, 0, 0)), speck, edgeless), tmp_path / "part.brep")
-    done = run("part.brep", "--faces", "all", "--cutter", "R3L40", "--grid", "4", "--formats", "json", cwd=tmp_path)
+    done = run(
+        "part.brep", "--faces", "all", "--cutter", "R3L40", "--grid", "4", "--area-budget", "0", "--formats", "json", cwd=tmp_path
+    )
     assert done.returncode == 4, done.stderr
     assert "Not judged: F7 (has no area)." in done.stdout
     assert "Not judged: F8 (has no edges and no end: bound it)." in done.stdout

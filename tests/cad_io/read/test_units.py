@@ -52,6 +52,7 @@ def source(request, tmp_path):
     return path, UNITS.get(unit, 1.0)
 
 
+@pytest.mark.slow("another unit of the same law", but=("step mm", "iges in-mm", "iges in-in"))
 @pytest.mark.parametrize("unit", ["mm", "in", "m", "um"])
 def test_lengths_are_as_if_written_in_the_unit(source, unit):
     path, written = source

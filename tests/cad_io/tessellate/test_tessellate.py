@@ -30,7 +30,7 @@ def area(triangles):
     return 0.5 * np.linalg.norm(np.cross(v[:, 1] - v[:, 0], v[:, 2] - v[:, 0]), axis=1).sum()
 
 
-@pytest.mark.slow("reads or samples a large real file", but=("cut", "moved-0.01", "ring "))
+@pytest.mark.slow("reads or samples a large real file", but=("cut", "ring "))
 @pytest.mark.parametrize("chord", [0.2, 0.01])
 @pytest.mark.parametrize("make", SHAPES.values(), ids=SHAPES.keys())
 def test_surface_points_are_within_the_promise(make, chord):
