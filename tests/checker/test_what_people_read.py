@@ -17,6 +17,7 @@ from plan_cutters.checker.expected import Reckoned
 from plan_cutters.checker.findings import _beginnings
 from plan_cutters.checker.holding import faults
 from plan_cutters.checker.leaves import leaves, pattern
+from plan_cutters.checker.trials import Trials
 from plan_cutters.checker.verdicts import postures
 from plan_cutters.command.check_operations import question_of, stated_by
 from plan_cutters.errors import OptionError, PlanError
@@ -254,6 +255,23 @@ def test_a_cutter_that_joins_an_orientation_is_no_further_one(tmp_path):
     assert len(fixed) > operations["fewest"]["found"]
     wrong = [each.words for each in check(joined.asked(), seconds=0.0).findings if each.holds is False]
     assert not wrong
+
+
+def test_what_stands_along_a_wall_without_a_pass_is_no_other_operation(tmp_path):
+    """At the border of a block a bull stands free along a wall, its wider shank beyond it; but it has no pass there."""
+    import cadquery
+
+    path = str(tmp_path / "block.step")
+    cadquery.exporters.export(cadquery.Workplane().box(22, 27, 24.5, centered=False), path)
+    words = {"cutters": ["R4.7L31rc3.7F17.6S5.4HR14L20"], "faces": "all", "grid": 3, "rotation_step_deg": 45, "setup": (1, -2, 3),
+             "tolerance": 0.02}  # fmt: skip
+    plan(path, operations="fewest", feed=1000, area_budget=0, **words).write(tmp_path, ["json", "npz"])
+    question = Written(tmp_path, path, words).asked()
+    trials = Trials(
+        question, Reckoned(question), Bench(question, str), np.random.default_rng(0), lambda part: Clock(math.inf), str
+    )
+    found = [*trials.alone()]
+    assert [each.holds for each in found] == [True], found
 
 
 class TestTheGrip:

@@ -44,7 +44,7 @@ def test_the_exact_surface_is_as_deep_as_it_is_by_a_formula():
     setting = replace(SMALL, part=Part(((1, Body("box", (20.0, 20.0, 10.0))),)), tool=Tool("flat", 5))
     truth, radius = setting.truth(), setting.tool.cutter.radius
     for low, deep in ((0.3, 0.3), (0.0, 0.0), (4.0, min(4.0, radius))):
-        found = truth.deepest([10.0, 10.0, 10.0 - low], [0.0, 0.0, 1.0], 0.0)
+        found = truth.deepest([10.0, 10.0, 10.0 - low], [0.0, 0.0, 1.0], (0.0, 0.0))
         assert found == pytest.approx(deep, abs=1e-6 if low < 1.0 else 0.3)
 
 

@@ -165,7 +165,7 @@ class Setting:
     def _table(self):
         """A large block right below the part, a hair lower: the lowest point of the skin is known to the points on it alone."""
         z = np.array(Placement(self.setup).z)
-        frame, skin = frame_of(z), self.part.material.skin(0.6).point
+        frame, skin = frame_of(z), self.part.material.edged(160)
         low, middle = float((skin @ z).min()) - 0.02, frame @ skin.mean(axis=0)
         corner = frame.T @ np.array([middle[0] - 200, middle[1] - 200, low - 200])
         return Body("box", (400.0, 400.0, 200.0), angles_of(frame.T), tuple(corner.tolist()))

@@ -11,13 +11,13 @@ from plan_cutters.domain.posture import tilt_direction
 from plan_cutters.domain.verdicts import INACCESSIBLE, INTERFERENCE_FREE, REASONS
 from tests.soak.cases import Mill, Setting, VoidError, parts, refused, settings, tools
 from tests.soak.register import law
-from tests.soak.truth import ROUNDING, holds
+from tests.soak.truth import ROUNDING, clear, holds, safe
 from tests.support.contacts import served, wandering
 
 #: Postures that are put down in a case, samples that are searched by trial, and trials at each.
 _POSTURES, _SAMPLES, _TRIALS = 40, 4, 60
-#: A posture is clearly free if nothing is deeper than this share of the tolerance, at its tilt and so far beside it, rad.
-_CLEAR, _BESIDE = 0.3, math.radians(0.02)
+#: A posture is clearly free if it is so at its tilt and so far beside it, rad.
+_BESIDE = math.radians(0.02)
 #: Slack of a machine's limits, rad: an axis is one that it holds within 1e-6 in each of two directions.
 _HELD = 3e-6
 #: Ends of free tilts are looked at so far within, rad: at the end itself another corner of the tool may touch as well.
@@ -49,8 +49,8 @@ def safe_is_safe(setting: Setting):
         assert np.abs(frame[2] - axis).max() < 1e-6, told(samples, row, "the axis is not that of the tilt")
         assert holds(setting.mill.machine, setting.frame, axis[None], _HELD)[0], (
             told(samples, row, f"the machine does not hold {axis.tolist()}"))  # fmt: skip
-        deep = truth.deepest(tip, axis, tolerance)
-        assert deep <= ROUNDING, told(samples, row, f"{deep + tolerance:.6f} mm deep at tolerance {tolerance}")
+        deep = truth.deepest(tip, axis, safe(tolerance))
+        assert deep <= ROUNDING, told(samples, row, f"{deep:.6f} mm too deep at tolerance {tolerance}")
 
 
 @law(settings())
@@ -87,7 +87,7 @@ def _clear(setting, truth, point, normal, f, tilt, tolerance):
         tip, frame = truth.stands(point, normal, f, tilt + beside)
         if not holds(setting.mill.machine, setting.frame, frame[2:], -1e-4)[0]:
             return False
-        if truth.deepest(tip, frame[2], _CLEAR * tolerance) > 0.0:
+        if truth.deepest(tip, frame[2], clear(tolerance)) > 0.0:
             return False
     return True
 
@@ -138,8 +138,8 @@ def maps_tell_free_from_forbidden(setting: Setting):
             open_ = np.concatenate([found.free[k], found.undecided[k]])
             for tilt in _tilts(setting.tool.cutter, *result.postures.tilt, 12, rng).tolist():
                 if not ((open_[:, 0] <= tilt + _BESIDE) & (open_[:, 1] >= tilt - _BESIDE)).any():
-                    clear = _clear(setting, truth, *contact, f, tilt, tolerance)
-                    assert not clear, told(samples, row, f"forbidden and free at rotation {turn}, tilt {tilt} rad")
+                    free = _clear(setting, truth, *contact, f, tilt, tolerance)
+                    assert not free, told(samples, row, f"forbidden and free at rotation {turn}, tilt {tilt} rad")
 
 
 def _mapped(setting, scene, point, turns):
@@ -154,8 +154,8 @@ def _safe_within(setting, truth, point, normal, f, free, tolerance, rng, where):
         inward = min(_INWARD, 0.5 * (last - first))
         for tilt in (first + inward, last - inward, rng.uniform(first, last)):
             tip, frame = truth.stands(point, normal, f, tilt)
-            deep = truth.deepest(tip, frame[2], tolerance)
-            assert deep <= ROUNDING, f"{deep + tolerance:.6f} mm deep at tilt {tilt} rad, {where}"
+            deep = truth.deepest(tip, frame[2], safe(tolerance))
+            assert deep <= ROUNDING, f"{deep:.6f} mm too deep at tilt {tilt} rad, {where}"
             held = holds(setting.mill.machine, setting.frame, frame[2:], _HELD)[0]
             assert held, f"the machine does not hold tilt {tilt} rad, {where}"
 
@@ -191,5 +191,5 @@ def between_samples_is_safe(setting: Setting):
         f = math.cos(tilt) * x_t + math.sin(tilt) * axis
         f -= (f @ normal) * normal
         tip, frame = truth.stands(contact, normal, f / np.linalg.norm(f), tilt)
-        deep = truth.deepest(tip, frame[2], setting.tolerance)
-        assert deep <= ROUNDING, f"{deep + setting.tolerance:.6f} mm deep at {contact.tolist()} with {axis.tolist()}"
+        deep = truth.deepest(tip, frame[2], safe(setting.tolerance))
+        assert deep <= ROUNDING, f"{deep:.6f} mm too deep at {contact.tolist()} with {axis.tolist()}"

@@ -268,6 +268,12 @@ class Material:
             found.append(Skin(point, out, np.full(len(point), k), uv, area))
         return Skin(*(np.concatenate(each) for each in zip(*found, strict=True)))
 
+    def edged(self, count):
+        """Points of the skin on a grid of so many by as many on each face, up to its edges."""
+        line = np.linspace(1e-6, 1.0 - 1e-6, count)
+        u, v = (each.ravel() for each in np.meshgrid(line, line))
+        return np.concatenate([self.on(k, u, v)[0] for k in range(len(self.faces))])
+
     def shape(self):
         """As the kernel makes it."""
         (_, first), *rest = self.steps

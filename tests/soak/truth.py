@@ -12,6 +12,17 @@ _APART, _SEEDS, _ROUNDS, _MORE = 0.6, 8, 5, 150
 _WITHIN = 300
 #: mm.
 ROUNDING = 1e-6
+_HAIR = 1e-9
+
+
+def safe(tolerance):
+    """How deep the surface may lie in flutes, and in what stands above them, where a posture is called safe."""
+    return tolerance, 0.0
+
+
+def clear(tolerance):
+    """The same where a posture is so free that none may call it blocked: by a share of the tolerance."""
+    return 0.3 * tolerance, -0.6 * tolerance
 
 
 class Truth:
@@ -34,27 +45,31 @@ class Truth:
         tip, frame = self.tool.frame(contact, normal, tilt_direction, tilt, towards)
         return tip, np.stack([*frame[:2] / max(1e-300, np.linalg.norm(tilt_direction)), frame[2]])
 
-    def over(self, points, tip, axis, depth):
-        """By how much points (n, 3) are deeper in the tool than a depth, or nearer to it than what has to stay free."""
+    def over(self, points, tip, axis, limits):
+        """By how much points (n, 3) are deeper than limits, of the flutes and of what stands above them; negative: that near."""
         away = points - tip
         w = away @ axis
-        return self.tool.over(np.sqrt(np.maximum(0.0, (away * away).sum(axis=1) - w * w)), w, depth - self.allowance,
-                              depth - self.clearance)  # fmt: skip
+        return self._beyond(np.sqrt(np.maximum(0.0, (away * away).sum(axis=1) - w * w)), w, limits)
 
-    def deepest(self, tip, axis, depth):
+    def _beyond(self, q, w, limits):
+        flutes, rest = limits
+        # What stands above is measured by itself, a hair outside of it.
+        return self.tool.over(q, w, flutes - self.allowance, min(rest, -_HAIR) - self.clearance)
+
+    def deepest(self, tip, axis, limits):
         """The largest of these over all skins, refined about the worst points, and over points of the tool within material."""
-        worst, tool, spare = -math.inf, self.tool, 1.0 + max(self.allowance, self.clearance)
+        worst, tool, spare = -math.inf, self.tool, 1.0 + max(self.allowance, self.clearance) - min(limits)
         for body, skin in zip(self.bodies, self.skins, strict=True):
             away = skin.point - tip
             w = away @ axis
             near = np.flatnonzero((w > -spare) & (w < tool.end + spare))
             near = near[((away[near] ** 2).sum(axis=1) - w[near] ** 2) < (tool.wide + spare) ** 2]
             if len(near):
-                worst = max(worst, self._refined(body, skin, near, tip, axis, depth))
-        return max(worst, self._sunk(tip, axis, depth))
+                worst = max(worst, self._refined(body, skin, near, tip, axis, limits))
+        return max(worst, self._sunk(tip, axis, limits))
 
-    def _refined(self, body, skin, near, tip, axis, depth):
-        found = self.over(skin.point[near], tip, axis, depth)
+    def _refined(self, body, skin, near, tip, axis, limits):
+        found = self.over(skin.point[near], tip, axis, limits)
         best = float(found.max())
         # One seed of each neighbourhood: the worst, and the worst of those that lie apart.
         order, seeds = near[np.argsort(-found)[:400]], []
@@ -72,19 +87,19 @@ class Truth:
                 step /= 3
                 if not len(point):
                     continue
-                deep = self.over(point, tip, axis, depth)
+                deep = self.over(point, tip, axis, limits)
                 k = int(deep.argmax())
                 if deep[k] >= best - 1.0:
                     uv = kept[k]
                 best = max(best, float(deep[k]))
         return best
 
-    def _sunk(self, tip, axis, depth):
-        """How much deeper than a depth points of the tool are that lie within material; -inf if none does."""
+    def _sunk(self, tip, axis, limits):
+        """How much deeper than limits points of the tool are that lie within material; -inf if none does."""
         tool = self.tool
         w = self.rng.uniform(0.0, tool.end, _WITHIN)
         q = np.maximum(0.0, tool.whole.radius(w)) * np.sqrt(self.rng.uniform(0.0, 1.0, _WITHIN))
-        count = tool.over(q, w, depth - self.allowance, depth - self.clearance)
+        count = self._beyond(q, w, limits)
         turn = self.rng.uniform(0.0, 2 * math.pi, _WITHIN)
         u = np.cross(axis, np.eye(3)[np.abs(axis).argmin()])
         u /= np.linalg.norm(u)

@@ -185,9 +185,12 @@ class Bench:
         verdict[deep] = np.where(again == FREE, OPEN, again)
         return verdict, int((again == FREE).sum()), words
 
-    def serves(self, setup: int, tool: Tool, rows: Rows, axis: Floats, clock: Clock, *, surely: bool) -> NDArray[np.int8]:
+    def serves(
+        self, setup: int, tool: Tool, rows: Rows, axis: Floats, clock: Clock, *, surely: bool, along: bool = True
+    ) -> NDArray[np.int8]:
         """The same for a fixed axis at samples (m,), (m, 3): where it is the normal with the contact anywhere under the flat of
-        the tip, and along a wall at the distance of the tolerance. `OPEN` also where too many places would have to be tried.
+        the tip, and, unless not `along`, along a wall at the distance of the tolerance. `OPEN` also where too many places would
+        have to be tried.
         """
         verdict = self.stands(setup, tool, rows, axis, self.own_tilt_direction(rows, axis), clock, surely=surely)
         cosine = (self.normal[rows] * axis).sum(axis=1)
@@ -201,7 +204,7 @@ class Bench:
         # A search may refuse flutes that leave the wall by more than its triangles are sure of.
         most = math.sin(self.accuracy) if surely else min(math.sin(self.accuracy), _DEEP * self.question.tolerance / tool.high)
         walls = np.flatnonzero((verdict != FREE) & (np.abs(cosine) <= most))
-        if len(walls) and (surely or tool.touches(np.array([0.5 * math.pi]))[0]):
+        if along and len(walls) and (surely or tool.touches(np.array([0.5 * math.pi]))[0]):
             verdict[walls] = self.stands(setup, tool, rows[walls], axis[walls], 2.0 * axis[walls], clock, surely=surely)
         upright = np.flatnonzero((verdict != FREE) & (np.arctan2(sine, cosine) <= self.accuracy))
         if len(upright) and tool.flat > 0.0:

@@ -264,7 +264,9 @@ class Trials:
             each = plan["operations"][i]
             mine = np.flatnonzero((label[rows] != i) & ~served)
             axis, there = self._axes(each, rows[mine])
-            verdict = self.bench.serves(each["setup"], self.bench.tools[each["cutter"]], there, axis, clock, surely=surely)
+            # Along a wall a tool may stand free, and yet have no pass there: then it is no operation that serves.
+            place = each["setup"], self.bench.tools[each["cutter"]]
+            verdict = self.bench.serves(*place, there, axis, clock, surely=surely, along=surely)
             # What could not be settled may stand free.
             served[mine[(verdict == FREE) | ((verdict == OPEN) & surely)]] = True
         return served
