@@ -199,7 +199,7 @@ class Kinematics(Record):
             along = float(self.tool @ first)
             rows = [[*first, along - PARALLEL], [*first, along + PARALLEL]]
             for end in (low, high):
-                if math.isfinite(end) and high - low < 2.0 * math.pi:
+                if high - low < 2.0 * math.pi:
                     across = np.cross(first, turned(first, np.array(end), self.tool))
                     rows.append([*(across / np.linalg.norm(across)), 0.0])
             return np.array(rows)
@@ -210,8 +210,6 @@ class Kinematics(Record):
             if high - low >= 2.0 * math.pi:
                 continue
             for end in (low, high):
-                if not math.isfinite(end):
-                    continue
                 if k == 1:
                     rows.append([*first, float(turned(second, np.array(end), self.tool) @ first)])
                 else:
