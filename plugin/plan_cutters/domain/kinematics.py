@@ -179,7 +179,7 @@ class Kinematics(Record):
         one = np.zeros(len(axis), bool)
         # The solution whose second angle has room in the whole cap is the one that holds its middle: of the other one, the first
         # angle may be beyond its limits all over the cap.
-        held = np.isfinite(machine.positions(axis)[0]).all(axis=2)
+        held = np.asarray(np.isfinite(machine.positions(axis)[0]).all(axis=2))
         for i, sign in enumerate((1.0, -1.0)):
             placed = within(start + sign * middle, float(low), float(high))
             one |= held[:, i] & (placed - half >= low - ON_LIMIT) & (placed + half <= high + ON_LIMIT)
