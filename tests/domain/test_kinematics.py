@@ -241,6 +241,29 @@ def test_axes_of_a_single_rotary_axis_are_searched_two_degrees_apart_from_end_to
     assert of("3-axis").aims().tolist() == [UP.tolist()]
 
 
+@pytest.mark.parametrize("name", [*FIVE, *range(20)])
+def test_what_the_second_axis_just_reaches_is_held(name):
+    """Where it brings the tool nearest to the first axis, and farthest from it, rounding takes no axis out of reach."""
+    found = chain(name) if isinstance(name, int) else of(name)
+    free = Kinematics(found.direction, np.full((2, 2), (-math.inf, math.inf)), found.tool)
+    first = np.random.default_rng(5).uniform(-4, 4, 200)
+    for swing in (free.swing[0], free.swing[0] + math.pi):
+        assert free.allows(free.axis(np.column_stack([first, np.full(200, swing)]))).all()
+
+
+@pytest.mark.parametrize("limit", [(0.2, 1.0), (-1.0, -0.2), (-1.0, 1.0), (0.0, 0.5), (-math.inf, math.inf)])
+def test_along_the_first_axis_any_angle_of_it_serves_and_one_within_its_limits_is_taken(limit):
+    table = Kinematics(np.array([[0, 0, 1.0], [1.0, 0, 0]]), np.array([limit, (-0.5, 2.0)]), UP)
+    angles, taken, singular = table.positions(np.array([UP, UP]))
+    assert (taken >= 0).all()
+    assert singular.all()
+    held = angles[[0, 1], taken]
+    assert ((held >= np.array([limit[0], -0.5]) - 1e-8) & (held <= np.array([limit[1], 2.0]) + 1e-8)).all()
+    assert np.allclose(table.axis(held), UP, atol=1e-12)
+    beyond = Kinematics(table.direction, np.array([limit, (0.1, 2.0)]), UP)
+    assert not beyond.allows(UP[None]).any()
+
+
 def points_of_caps(axis, swing, rng, count=60):
     """Random directions (n, count, 3) within angles (n,) of axes (n, 3), and on the rims."""
     aside = np.cross(axis[:, None], rng.standard_normal((len(axis), count, 3)))

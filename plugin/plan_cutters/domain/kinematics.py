@@ -187,7 +187,7 @@ class Kinematics(Record):
         one = np.zeros(len(axis), bool)
         # The solution whose second angle has room in the whole cap is the one that holds its middle: of the other one, the first
         # angle may be beyond its limits all over the cap.
-        held = np.isfinite(machine.positions(axis)[0]).all(axis=2)
+        held = np.asarray(np.isfinite(machine.positions(axis)[0]).all(axis=2))
         for i, sign in enumerate((1.0, -1.0)):
             placed = within(start + sign * middle, float(low), float(high))
             one |= held[:, i] & (placed - half >= low - ON_LIMIT) & (placed + half <= high + ON_LIMIT)
@@ -207,7 +207,7 @@ class Kinematics(Record):
             along = float(self.tool @ first)
             rows = [[*first, along - PARALLEL], [*first, along + PARALLEL]]
             for end in (low, high):
-                if math.isfinite(end) and high - low < 2.0 * math.pi:
+                if high - low < 2.0 * math.pi:
                     across = _cross(first, turned(first, np.array(end), self.tool))
                     rows.append([*(across / np.linalg.norm(across)), 0.0])
             return np.array(rows)
@@ -218,8 +218,6 @@ class Kinematics(Record):
             if high - low >= 2.0 * math.pi:
                 continue
             for end in (low, high):
-                if not math.isfinite(end):
-                    continue
                 if k == 1:
                     rows.append([*first, float(turned(second, np.array(end), self.tool) @ first)])
                 else:

@@ -176,6 +176,11 @@ def test_no_two_points_are_farther_apart_than_lines_between_them_are_long(seed, 
             point = surface.values(at[:, 0].copy(), at[:, 1].copy())
             apart = np.linalg.norm(point[:, None] - point[None], axis=2).max()
             assert apart <= (row[14] + row[15]) * (1 + 1e-9) + 1e-12
+            # Nor is a first derivative there longer than the window says, or a second one farther from its middle.
+            derivative = surface.form.evaluate(at[:, 0].copy(), at[:, 1].copy(), 6)
+            assert (np.linalg.norm(derivative[:, 1:3], axis=2) <= row[12:14] * (1 + 1e-9) + 1e-9).all()
+            off = np.linalg.norm(derivative[:, 3:] - row[:9].reshape(3, 3), axis=2)
+            assert (off <= row[9:12] * (1 + 1e-9) + 1e-9 * np.abs(derivative).max()).all()
 
 
 def test_bounds_of_small_triangles_are_near_what_is_measured():
