@@ -234,7 +234,7 @@ def test_a_second_call_takes_what_the_first_one_made_of_the_part(server):
     def stored():
         return {path: path.stat().st_ino for path in cache.rglob("*.stage")}
 
-    ask = {"part": PEAKS, "cutters": ["R7L90"], "grid": 4}
+    ask = {"part": GROOVE, "cutters": ["R7L90"], "grid": 4}
     first = server.call("plan_part", **ask)
     before = stored()
     assert before
