@@ -107,6 +107,15 @@ def planned(server):
     return server.answer(server.begin("plan_part", part=GROOVE, out="out", formats=["npz"], **HELD))
 
 
+#: The same without a limit of tilt.
+WHOLE = {"part": GROOVE, "cutters": ["R6L80"], "grid": 5, "out": "whole"}
+
+
+@pytest.fixture(scope="module")
+def whole(server):
+    return server.call("plan_part", **WHOLE)
+
+
 @pytest.fixture(scope="module")
 def both(server):
     """A plan that is made while another call works: its answer, that of the other one, and how far they said they were."""
@@ -181,9 +190,8 @@ def test_written_files_are_linked(server, planned):
     assert [each.type for each in nothing.content] == ["text"]
 
 
-def test_two_plans_are_compared(server, planned):
+def test_two_plans_are_compared(server, planned, whole):
     """The groove with a shorter limit of tilt is another question."""
-    server.answer(server.begin("plan_part", part=GROOVE, cutters=["R6L80"], grid=5, out="whole"))
     found = server.call("compare_plans", old="whole/plan.json", new="out/plan.json")
     assert (found["comparable"], found["lost"], found["faces"]) == (False, None, [])
     assert any("machine differs" in line for line in found["why_not"])
@@ -235,18 +243,16 @@ def test_one_spacing_makes_the_samples_of_all_calls_the_same(server):
     assert one["spacing_mm"] == 6.0
 
 
-def test_a_second_call_takes_what_the_first_one_made_of_the_part(server):
+def test_a_second_call_takes_what_the_first_one_made_of_the_part(server, whole):
     cache = Path(f"{server.root}-cache")
 
     def stored():
         return {path: path.stat().st_ino for path in cache.rglob("*.stage")}
 
-    ask = {"part": PEAKS, "cutters": ["R7L90"], "grid": 4}
-    first = server.call("plan_part", **ask)
     before = stored()
     assert before
-    second = server.call("plan_part", **ask)
-    assert second["cutters"] == first["cutters"]
+    second = server.call("plan_part", **WHOLE)
+    assert second["cutters"] == whole["cutters"]
     # A file that is written again is another one.
     assert before.items() <= stored().items()
 

@@ -126,6 +126,7 @@ def test_a_killed_child_and_one_that_takes_too_long_cost_one_part(client, tmp_pa
     assert not (tmp_path / "out/a-plan").exists()
 
 
+@pytest.mark.slow("ends a worker, which is started again")
 def test_a_lost_worker_loses_nothing_and_leaves_nothing(client, tmp_path):
     out = Store(str(tmp_path / "out"))
     left = []

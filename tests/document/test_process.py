@@ -18,6 +18,7 @@ from tests.support.cad_parts import box, compound
 from tests.support.forked import run
 from tests.support.places import SAMPLES
 
+pytestmark = pytest.mark.slow("plans operations of two kinds", only=("fewest",))
 #: The cheapest that still answers.
 QUICK = {"grid": 5, "area_budget": 0, "spacing": None}
 
@@ -122,6 +123,7 @@ def test_of_many_steps_the_largest_are_told():
     assert story.more.startswith("and 3 smaller steps for 1.4 %")
 
 
+@pytest.mark.slow("looks for what would help in two pockets")
 def test_a_next_step_takes_something_off_what_the_process_leaves():
     import cadquery as cq
 

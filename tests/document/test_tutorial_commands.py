@@ -101,13 +101,14 @@ def told(text):
     return re.sub(r"^\d+ notes", "N notes", text.partition("\nReview page")[0].rstrip(), flags=re.MULTILINE)
 
 
+@pytest.mark.slow("plans with all that is found by default")
 def test_commands_of_the_readme_run(work):
     (printed,) = follow(read("README.md"), work).values()
     assert printed.startswith("Take ")
     assert (work / "peaks_and_valleys-plan" / "review.html").exists()
 
 
-@pytest.mark.slow("plans as much as a planner does in an hour; the README's command is run each time")
+@pytest.mark.slow("plans with all that is found by default")
 def test_commands_of_the_tutorial_run(work):
     printed = follow(read("docs/tutorial.md"), work)
     assert len(printed) == 4
@@ -137,6 +138,17 @@ def test_commands_and_options_in_sentences_exist(page):
     assert set(re.findall(r"`(--?[a-z][\w-]*)", prose)) <= options
     for word in re.findall(r"`sh setup\.sh ?(\w*)`", prose):
         _setup_takes(word)
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/tutorial.md"])
+def test_commands_in_fences_can_be_typed(page):
+    """What they do is run in a part of all runs."""
+    typed = [shlex.split(each) for block in blocks(read(page)) if block.kind == "sh" for each in commands(block)]
+    mine = [words[1:] for words in typed if words[0].endswith("plan-cutters")]
+    assert mine
+    for words in mine:
+        assert {each.partition("=")[0] for each in words if re.match("--?[a-z]", each)} <= known_options(), words
+        assert all((ROOT / each).exists() for each in words if each.startswith("samples/")), words
 
 
 def known_options():

@@ -220,6 +220,7 @@ def test_why_travel_is_not_judged():
     assert "rotary axes" in unjudged(Machine("m", axes=mill), placed)
 
 
+@pytest.mark.slow("plans twice for each", only=("x0", "x2"))
 @pytest.mark.parametrize("x", [(0, 1, 0), (1, 1, 0.5), (-1, 0, 0)])
 def test_turning_the_part_is_turning_the_machine(x):
     """The part's `x` along the machine's X is the same as a machine whose axes are turned about the spindle."""

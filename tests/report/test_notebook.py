@@ -199,6 +199,7 @@ def test_a_result_that_was_packed_shows_the_same(result, card):
     assert np.array_equal(again.reaches["R3L40"].verdict, result.reaches["R3L40"].verdict)
 
 
+@pytest.mark.slow("draws the part once more", only=("False",))
 @pytest.mark.parametrize("many", [False, True])
 def test_a_small_card_has_the_verdict_and_at_most_50_kb(result, card, monkeypatch, many):
     """A notebook in git keeps it in each cell."""

@@ -32,6 +32,7 @@ from tests.support.cad_parts import box
 from tests.support.places import ROOT, SAMPLES
 from tests.support.shapes import ridge
 
+pytestmark = pytest.mark.slow("plans operations of a machine on a sculptured part", only=("peaks",))
 BALL = "R1L60rc1"
 CASES = {
     "ridge": (lambda: ridge(10.0, 10.0), {"cutters": BALL, "faces": "all", "grid": 15, "tilt": (0.0, math.radians(31.0))}),

@@ -86,6 +86,7 @@ def test_products_instances_names_layers_and_colours_are_read(file):
     assert part.layers == {f.number: ("base",) for f in bottoms}
 
 
+@pytest.mark.slow("plans and writes for each schema", only=("ap214",))
 @pytest.mark.parametrize("schema", ["ap242", "ap214"])
 def test_annotated_step_keeps_them(file, tmp_path, schema):
     result = plan(file, cutters=[Cutter.flat(radius=8, length=90)], spacing=4.0, tolerance=0.1)
