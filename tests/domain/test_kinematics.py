@@ -229,7 +229,7 @@ def test_axes_of_a_single_rotary_axis_are_searched_two_degrees_apart_from_end_to
     aims, (low, high) = four.aims(), np.clip(limit, -math.pi, math.pi)
     assert four.allows(aims).all()
     apart = np.arccos(np.clip((aims[1:] * aims[:-1]).sum(axis=1), -1, 1))
-    assert 0.0 < apart.min()
+    assert apart.min() > 0.0
     assert apart.max() <= math.radians(2.0) + 1e-9
     # All around, the last one is as far from the first one as any two are; else both ends are there.
     around = math.acos(aims[0] @ aims[-1])
