@@ -124,6 +124,9 @@ def test_a_forged_entry_is_found_or_listed_as_unchecked(written, kind, of_a_kind
             if kind == "fewest.weights[][]" and path.endswith("[0]") and abs((other or 0) - value) <= 1:
                 # The same weight on a neighbour may prove as much.
                 continue
+            if kind.endswith(".clearance_mm") and value < (other or 0.0) <= 1.45 * value:
+                # Flutes are grown with square edges: what is written is by up to that share less than what there is.
+                continue
             document, _ = written.copies()
             put(document["operations"], path, other)
             answer = found(written, document, seconds=seconds)
@@ -143,21 +146,24 @@ def test_a_list_that_is_cut_is_found(written, name):
 @pytest.mark.slow("checks a plan once for each array and alteration")
 def test_each_array_that_is_altered_is_found(written):
     for name, array in written.arrays["operations.npz"].items():
+        there = np.flatnonzero(np.isfinite(array.astype(float)).reshape(len(array), -1).all(axis=1))
         for how in ("cut", "nan", "kind", "gone", "one"):
             document, arrays = written.copies()
             forged_ = arrays["operations.npz"]
+            if (how == "cut" and not len(array)) or (how in ("nan", "one") and not len(there)):
+                continue
             if how == "cut":
                 forged_[name] = array[:-1]
             elif how == "nan":
                 if array.dtype.kind != "f":
                     continue
-                forged_[name][np.flatnonzero(np.isfinite(array).reshape(len(array), -1).all(axis=1))[0]] = np.nan
+                forged_[name][there[0]] = np.nan
             elif how == "kind":
                 forged_[name] = array.astype(complex)
             elif how == "gone":
                 del forged_[name]
             else:
-                row = int(np.flatnonzero(np.isfinite(array.astype(float)).reshape(len(array), -1).all(axis=1))[0])
+                row = int(there[0])
                 forged_[name][row] = ~array[row] if array.dtype.kind == "b" else array[row] + 7
             answer = found(written, document, arrays)
             assert not answer.holds, (name, how)
