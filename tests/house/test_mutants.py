@@ -207,4 +207,4 @@ def test_the_table_counts_equivalents_apart(monkeypatch):
     monkeypatch.setattr(tried, "equivalents", lambda: {"same": "nobody sees it"})
     rows = [{"room": "room", "verdict": verdict, "name": name, "seconds": 2.0} for verdict, name in (
         (tried.KILLED, "a"), (tried.TIMED_OUT, "b"), (tried.SURVIVED, "same"), (tried.SURVIVED, "c"))]  # fmt: skip
-    assert tried.table(rows).splitlines()[-1] == "| room | 4 | 1 | 1 | 2 | 1 | 50% | 67% | 8 |"
+    assert tried.table(rows).splitlines()[-1] == "| room | 4 | 1 | 1 | 2 | 1 | 50 % | 66 % | 8 |"

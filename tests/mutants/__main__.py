@@ -233,7 +233,9 @@ def judged(mutant: Mutant, copy: Copy, reached: dict[str, dict], most: float = m
     began, result = time.monotonic(), {"verdict": SURVIVED, "by": "no test of the room runs it", "tests": 0}
     place = copy.folder / mutant.path
     source, stat = place.read_bytes(), place.stat()
-    if files:
+    if mutant.name in equivalents():
+        result["by"] = "it changes nothing: none"
+    elif files:
         copy.clear()
         note = copy.cache.with_suffix(".test")
         note.write_text("while tests are collected")
@@ -313,15 +315,10 @@ def table(rows: list[dict]) -> str:
         ours = [row for row in rows if row["room"] == room]
         killed, timed, lived = (sum(row["verdict"] == each for row in ours) for each in (KILLED, TIMED_OUT, SURVIVED))
         equal = sum(row["verdict"] == SURVIVED and row["name"] in same for row in ours)
-        shares = [f"{(killed + timed) / max(1, each):.0%}" for each in (len(ours), len(ours) - equal)]
-        lines.append(
-            " | ".join(
-                map(
-                    str,
-                    ["| " + room, len(ours), killed, timed, lived, equal, *shares, f"{sum(r['seconds'] for r in ours):.0f} |"],
-                )
-            )
-        )
+        # Rounded down: what is not all is not 100 %.
+        shares = [f"{100 * (killed + timed) // max(1, each)} %" for each in (len(ours), len(ours) - equal)]
+        cells = [room, len(ours), killed, timed, lived, equal, *shares, f"{sum(row['seconds'] for row in ours):.0f}"]
+        lines.append(f"| {' | '.join(map(str, cells))} |")
     return "\n".join(lines)
 
 
@@ -345,14 +342,8 @@ def work(mutants: list[Mutant], copy: Copy, reached: dict[str, dict], most: floa
 
 def shown(row: dict) -> str:
     """A fault as a reader of changes knows it."""
-    head = f"{row['verdict']}: {row['name']}"
-    return "\n  ".join(
-        [
-            head,
-            *row["diff"],
-            f"{row['path']}:{row['line']} ({row['kind']}), {row['by']} of {row['tests']} tests, {row['seconds']} s",
-        ]
-    )
+    place = f"{row['path']}:{row['line']} ({row['kind']}), {row['by']} of {row['tests']} tests, {row['seconds']} s"
+    return "\n  ".join([f"{row['verdict']}: {row['name']}", *row["diff"], place])
 
 
 def main() -> None:
