@@ -1,12 +1,13 @@
 """The laws that `python -m tests.soak` draws cases of: each in one case, and what becomes of a law that is false."""
 
 import inspect
+import math
 from dataclasses import replace
 
 import pytest
 
 from tests.soak import commands, exact, files, laws  # noqa: F401
-from tests.soak.cases import Mill, Part, Setting, Tool, Turn, VoidError, parts
+from tests.soak.cases import Mill, Part, Setting, Tool, Turn, VoidError, bodies
 from tests.soak.commands import Line
 from tests.soak.register import LAWS, Law
 from tests.soak.run import Soak, alone, drawn
@@ -48,25 +49,25 @@ def test_the_exact_surface_is_as_deep_as_it_is_by_a_formula():
         assert found == pytest.approx(deep, abs=1e-6 if low < 1.0 else 0.3)
 
 
-def no_ball_is_cut(part):
-    """No ball is cut out: false on purpose."""
-    assert not any(sign < 0 and body.kind == "ball" for sign, body in part.steps)
+def no_body_is_a_ball(body):
+    """False on purpose."""
+    assert body.kind != "ball"
 
 
-def never_ends(part):
+def never_ends(body):
     """It takes longer than a case may."""
     while True:
         pass
 
 
-FALSE = Law("no_ball_is_cut", no_ball_is_cut, parts(), 5.0)
+FALSE = Law("no_body_is_a_ball", no_body_is_a_ball, bodies((20.0, 20.0, 10.0)), 5.0)
 
 
 @pytest.fixture(scope="module")
 def told():
     """What is printed of a law that is false."""
     lines = []
-    soak = Soak([FALSE], tell=lines.append)
+    soak = Soak([FALSE], shrink=math.inf, tell=lines.append)
     number = next(k for k in range(100) if alone(FALSE, drawn(FALSE, k)).fell)
     soak.one(soak.rows[0], number)
     return soak, number, lines
@@ -77,11 +78,9 @@ class TestALawThatIsFalse:
         soak, *_ = told
         ((_, case, outcome),) = soak.rows[0].fell
         assert outcome.kind == "fell"
-        # Of the bodies that are cut out the ball alone is left, in the smallest block and of the smallest size.
-        assert [body.kind for _, body in case.steps] == ["box", "ball"]
-        assert case.steps[0][1].sizes == (12.0, 12.0, 8.0)
-        assert case.steps[1][1].sizes == (2.0,)
-        assert "fell: --only no_ball_is_cut --case" in soak.table()
+        # The smallest ball that is drawn, turned by nothing.
+        assert (case.kind, case.sizes, case.turn) == ("ball", (2.0,), (0.0, 0.0, 0.0))
+        assert "fell: --only no_body_is_a_ball --case" in soak.table()
 
     def test_it_is_printed_as_a_test_that_falls(self, told):
         _, number, lines = told
@@ -105,7 +104,7 @@ def test_the_same_seed_gives_the_same_cases():
 
 
 def test_a_case_that_takes_too_long_is_ended():
-    assert alone(Law("never_ends", never_ends, parts(), 0.2), POCKET).kind == "late"
+    assert alone(Law("never_ends", never_ends, bodies((1.0, 1.0, 1.0)), 0.2), BLOCK).kind == "late"
 
 
 def test_what_the_kernel_makes_otherwise_is_no_case():

@@ -8,6 +8,8 @@ from tests.support.tool_reference import Reference
 
 #: Distance of points of the skin, mm; those around which more are looked at, how often, and how many.
 _APART, _SEEDS, _ROUNDS, _MORE = 0.6, 8, 5, 150
+#: No point of the skin is farther than this from the points that are looked at, mm: what is so far off is not looked at closer.
+_FAR = 4.0
 #: Points within the tool that are looked for in material.
 _WITHIN = 300
 #: mm.
@@ -73,6 +75,7 @@ class Truth:
         best = float(found.max())
         # One seed of each neighbourhood: the worst, and the worst of those that lie apart.
         order, seeds = near[np.argsort(-found)[:400]], []
+        order = order[np.sort(-found)[: len(order)] < _FAR]
         for row in order:
             if len(seeds) == _SEEDS:
                 break
