@@ -40,16 +40,16 @@ def _rank(path):
 
 def pytest_addoption(parser):
     parser.addoption("--slow", default="none", help="which slow tests take part: none, all, commit, or a part such as 3/11")
-    parser.addoption("--record", type=Path, help="page that a whole run is written into")
+    parser.addoption("--record", action="store_true", help="write what a whole run found into docs/nightly.md")
 
 
 def pytest_configure(config):
     config.slow_parts = slow.chosen(config.getoption("slow"))
     seconds.register(config)
-    if (page := config.getoption("record")) and not hasattr(config, "workerinput"):
+    if config.getoption("record") and not hasattr(config, "workerinput"):
         if config.getoption("slow") != "all" or config.option.keyword or config.option.markexpr or config.args != ["tests"]:
             raise pytest.UsageError("--record: it is for a whole run, with --slow all and no selection")
-        config.pluginmanager.register(record.Record(page), "record of the run")
+        config.pluginmanager.register(record.Record(record.PAGE), "record of the run")
 
 
 def pytest_report_header(config):

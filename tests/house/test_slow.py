@@ -108,7 +108,7 @@ def test_a_part_that_there_is_not_is_refused(text):
         slow.chosen(text)
 
 
-@pytest.mark.parametrize("words", [["--record", "page.md"], ["--record", "page.md", "--slow", "all", "-k", "long"]], ids=str)
+@pytest.mark.parametrize("words", [["--record"], ["--record", "--slow", "all", "-k", "long"]], ids=str)
 def test_a_record_is_of_a_whole_run(run, words):
     done = run(*words)
     assert done.returncode == pytest.ExitCode.USAGE_ERROR

@@ -1,6 +1,6 @@
 """The page that says when all tests, the slow ones among them, were last run, and what they found.
 
-`--record docs/nightly.md` beside `--slow all` writes it. `.ci/run` warns where its newest commit is far behind.
+`--record` beside `--slow all` writes it. `.ci/run` warns where its newest commit is far behind.
 """
 
 import datetime
