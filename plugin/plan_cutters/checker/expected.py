@@ -330,11 +330,11 @@ class Reckoned:
             entry["index_s"] = written["assumed"]["index_s"]
         else:
             entry["index_s"] = Loose(0.0, math.inf)
-        others, said = other_angles(question, each["setup"], degrees[0]), each["other_angles_deg"] or {}
+        others, stated = other_angles(question, each["setup"], degrees[0]), each["other_angles_deg"] or {}
         entry["other_angles_deg"] = None
         if others:
             # Of those that are as large any may be written.
-            other = min(others, key=lambda angles: math.dist(angles, [float(said.get(name, 0.0)) for name in names]))
+            other = min(others, key=lambda angles: math.dist(angles, [float(stated.get(name, 0.0)) for name in names]))
             near = {name: Between(angle - _ROUNDED, angle + _ROUNDED) for name, angle in zip(names, other, strict=True)}
             entry["other_angles_deg"] = near
         return entry

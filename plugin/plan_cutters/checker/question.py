@@ -274,7 +274,7 @@ def other_angles(question: Question, setup: int, degrees: Floats) -> list[tuple[
     nearest = math.degrees(math.atan2(first @ np.cross(second, base), first @ base))
     mirrored = 2.0 * nearest - degrees[1]
     wanted = axes_of(machine, question.setups[setup], degrees[None])[0]
-    found = list[tuple[float, ...]]()
+    candidates = list[tuple[float, ...]]()
     for b in (mirrored + 360.0 * k for k in (-2, -1, 0, 1, 2)):
         if not _within(b, machine.limits[1]):
             continue
@@ -288,9 +288,9 @@ def other_angles(question: Question, setup: int, degrees: Floats) -> list[tuple[
             candidate = (turn, b)
             apart = sum(abs((x - y + 180.0) % 360.0 - 180.0) for x, y in zip(candidate, degrees.tolist(), strict=True))
             if _within(turn, machine.limits[0]) and apart > 0.01:
-                found.append(candidate)
-    least = min(map(_size, found), default=0.0)
-    return [tuple(round(x, 3) + 0.0 for x in each) for each in found if _size(each) <= least + 1e-6]
+                candidates.append(candidate)
+    least = min(map(_size, candidates), default=0.0)
+    return [tuple(round(x, 3) + 0.0 for x in each) for each in candidates if _size(each) <= least + 1e-6]
 
 
 def carried_first(question: Question, setup: int) -> Floats:
