@@ -49,7 +49,7 @@ def pytest_configure(config):
     if config.getoption("record") and not hasattr(config, "workerinput"):
         if config.getoption("slow") != "all" or config.option.keyword or config.option.markexpr or config.args != ["tests"]:
             raise pytest.UsageError("--record: it is for a whole run, with --slow all and no selection")
-        config.pluginmanager.register(record.Record(record.PAGE), "record of the run")
+        config.pluginmanager.register(record.Record(), "record of the run")
 
 
 def pytest_report_header(config):

@@ -128,7 +128,7 @@ def test_the_page_keeps_the_newest_runs_and_what_is_red_in_the_last():
 def test_a_run_that_is_no_longer_the_answer_is_warned_of(monkeypatch):
     text = record.page("", "abc", "2026-01-02", 1.0, {}, [])
     for count, told in (("0", ""), ("100", ""), ("101", "101 commits old"), ("", "no commit of this history")):
-        monkeypatch.setattr(record, "_git", lambda *_, count=count: count)
+        monkeypatch.setattr(record, "git", lambda *_, count=count: count)
         assert (told in record.behind(text)) == bool(told) or record.behind(text) == told
     assert "has no whole run" in record.behind("")
 

@@ -1,5 +1,6 @@
 """Where the tests find things: the project, its samples, and real files that lie beside the project or not at all."""
 
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -15,3 +16,8 @@ def real_file(name: str) -> Path:
     if not (DATA / name).is_file():
         pytest.skip(f"the real file {Path(name).name} is not at hand (shared/data/{Path(name).parent})")
     return DATA / name
+
+
+def git(*words: str) -> str:
+    """What git says of this checkout; empty where it is none."""
+    return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True).stdout.strip()

@@ -4,16 +4,14 @@
 """
 
 import datetime
-import subprocess
 import sys
 import time
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import pytest
 
-from tests.support.places import ROOT
+from tests.support.places import ROOT, git
 
 PAGE = ROOT / "docs/nightly.md"
 #: How many runs the page has, and after how many commits the newest one is too old.
@@ -60,23 +58,23 @@ def behind(text: str) -> str:
     commit = next((line.split("`")[1] for line in text.splitlines() if line.startswith("| `")), None)
     if commit is None:
         return "docs/nightly.md has no whole run: call .ci/nightly"
-    found = _git("rev-list", "--count", f"{commit}..HEAD")
+    found = git("rev-list", "--count", f"{commit}..HEAD")
     if not found.isdecimal():
         return f"docs/nightly.md: {commit} is no commit of this history: call .ci/nightly"
     return f"docs/nightly.md: the whole run is {found} commits old: call .ci/nightly" if int(found) > OLD else ""
 
 
-def _git(*words: str) -> str:
-    return subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True).stdout.strip()
+def _written() -> str:
+    return PAGE.read_text() if PAGE.exists() else ""
 
 
 class Record:
     """Writes the page at the end of a run."""
 
-    def __init__(self, path: Path) -> None:
-        self.path, self.began = path, time.monotonic()
-        self.commit = _git("rev-parse", "--short=10", "HEAD")
-        if _git("status", "--porcelain", "--untracked-files=no"):
+    def __init__(self) -> None:
+        self.began = time.monotonic()
+        self.commit = git("rev-parse", "--short=10", "HEAD")
+        if git("status", "--porcelain", "--untracked-files=no"):
             raise pytest.UsageError("--record: there are changes that are in no commit")
 
     def pytest_terminal_summary(self, terminalreporter: Any, exitstatus: int) -> None:
@@ -87,10 +85,9 @@ class Record:
         red = sorted({each.nodeid for name in ("failed", "error") for each in stats.get(name, ())})
         counts["failed"] = len(red)
         date, seconds = datetime.date.today().isoformat(), time.monotonic() - self.began
-        before = self.path.read_text() if self.path.exists() else ""
-        self.path.write_text(page(before, self.commit, date, seconds, counts, red))
+        PAGE.write_text(page(_written(), self.commit, date, seconds, counts, red))
 
 
 if __name__ == "__main__":
-    if why := behind(PAGE.read_text() if PAGE.exists() else ""):
+    if why := behind(_written()):
         print(f"warning: {why}", file=sys.stderr)

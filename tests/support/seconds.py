@@ -28,7 +28,7 @@ class Seconds:
         self.fixtures: dict[str, list[float]] = defaultdict(list)
 
     def pytest_runtest_logreport(self, report: Any) -> None:
-        room = self.rooms["/".join(report.nodeid.removeprefix("tests/").split("/")[:1])]
+        room = self.rooms[report.nodeid.removeprefix("tests/").partition("/")[0]]
         room[report.when] += report.duration
         if report.when == "call":
             room["tests"] += 1
@@ -58,46 +58,20 @@ def _whole(figures: dict[str, float]) -> float:
     return figures["setup"] + figures["call"] + figures["teardown"]
 
 
-class _Compiling:
-    """Seconds that the compiler has taken in this process so far."""
-
-    def __init__(self) -> None:
-        from numba.core import event
-
-        self.seconds, self._depth, self._began = 0.0, 0, 0.0
-        event.register("numba:compile", _listener(self))
-
-    def start(self) -> None:
-        self._depth += 1
-        if self._depth == 1:
-            self._began = time.perf_counter()
-
-    def end(self) -> None:
-        self._depth = max(self._depth - 1, 0)
-        if not self._depth:
-            self.seconds += time.perf_counter() - self._began
-
-
-def _listener(compiling: _Compiling) -> Any:
-    from numba.core import event
-
-    class Listener(event.Listener):
-        def on_start(self, event: Any) -> None:
-            compiling.start()
-
-        def on_end(self, event: Any) -> None:
-            compiling.end()
-
-    return Listener()
-
-
 class Measures:
     """The plugin of a process that runs tests."""
 
     def __init__(self) -> None:
-        self._compiling = _Compiling()
+        from numba.core import event
+
+        self._compiling = event.TimingListener()
+        event.register("numba:compile", self._compiling)
         self._fixtures: list[tuple[str, float]] = []
         self._inner = 0.0
+
+    def _compiled(self) -> float:
+        """Seconds that the compiler has taken in this process so far."""
+        return self._compiling.duration if self._compiling.done else 0.0
 
     @pytest.hookimpl(wrapper=True)
     def pytest_fixture_setup(self, fixturedef: Any, request: Any) -> Any:
@@ -115,13 +89,13 @@ class Measures:
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_protocol(self, item: Any) -> Any:
-        self._before = self._compiling.seconds
+        self._before = self._compiled()
         return (yield)
 
     @pytest.hookimpl(wrapper=True)
     def pytest_runtest_makereport(self, item: Any, call: Any) -> Any:
         if call.when == "teardown":
-            item.user_properties += [(FIXTURES, self._fixtures), (COMPILE, self._compiling.seconds - self._before)]
+            item.user_properties += [(FIXTURES, self._fixtures), (COMPILE, self._compiled() - self._before)]
             self._fixtures = []
         return (yield)
 

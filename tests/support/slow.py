@@ -8,7 +8,6 @@ share, such as a program that must be installed: they come in one part.
 eleven parts are the whole, and a test that is added moves no other.
 """
 
-import subprocess
 import sys
 import zlib
 from collections.abc import Iterable, Mapping, Sequence
@@ -16,7 +15,7 @@ from typing import Any
 
 import pytest
 
-from tests.support.places import ROOT
+from tests.support.places import ROOT, git
 
 #: By which a report says that its test is slow.
 PROPERTY = "part of the slow tests"
@@ -41,10 +40,10 @@ def of_commit() -> int:
     pytest.UsageError
         Where this is no checkout.
     """
-    done = subprocess.run(["git", "rev-list", "--count", "HEAD"], cwd=ROOT, capture_output=True, text=True)
-    if not done.stdout.strip().isdecimal():
-        raise pytest.UsageError(f"--slow commit: git does not count the commits of {ROOT}: {done.stderr.strip()}")
-    return int(done.stdout) % PARTS
+    count = git("rev-list", "--count", "HEAD")
+    if not count.isdecimal():
+        raise pytest.UsageError(f"--slow commit: git does not count the commits of {ROOT}")
+    return int(count) % PARTS
 
 
 def chosen(text: str) -> frozenset[int]:
@@ -89,11 +88,12 @@ class Slow:
         case = item.callspec.id if hasattr(item, "callspec") else ""
         found = None
         for mark in item.iter_markers("slow"):
-            words = [each for each in _words(mark) if item.name.startswith(each) or (case and case.startswith(each))]
-            for each in _words(mark):
+            words = _words(mark)
+            named = [each for each in words if item.name.startswith(each) or (case and case.startswith(each))]
+            for each in words:
                 at = (str(item.path), each)
-                self._unnamed[at] = self._unnamed.get(at, True) and each not in words
-            if bool(words) == ("but" not in mark.kwargs) or not _words(mark):
+                self._unnamed[at] = self._unnamed.get(at, True) and each not in named
+            if bool(named) == ("but" not in mark.kwargs) or not words:
                 found = part_of(mark.kwargs.get("together", item.nodeid))
         return found
 
