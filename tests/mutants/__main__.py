@@ -146,6 +146,7 @@ class Copy:
         tempfile.tempdir = None
         os.environ |= {"PYTHONPATH": os.pathsep.join(ours), "NUMBA_CACHE_DIR": str(self.cache), "TMPDIR": str(scratch)}
         os.environ["HYPOTHESIS_STORAGE_DIRECTORY"] = str(scratch / "hypothesis")
+        os.environ.pop("PYTEST_ADDOPTS", None)  # options of the checkout's own plugins, which are not loaded
         import cad_io
 
         assert Path(cad_io.__file__).is_relative_to(self.folder), cad_io.__file__
