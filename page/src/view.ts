@@ -75,6 +75,9 @@ function around({ drawn }: App, place: Vec, within: number): Ring[] {
   return corners.map((centre) => ({ centre, radius: 0, axis: null }));
 }
 
+/** A tool that stands out of the picture by less than this is seen whole: nothing is won by cutting off its top. */
+const NEARLY = 1.15;
+
 /** Where all of a long tool would leave the part small: nearer, so that the part takes half of the picture, places within it. */
 function withPart(app: App, aim: Aim, places: Vec[]): Aim {
   const { drawn, stage: { table } } = app;
@@ -91,7 +94,7 @@ function withPart(app: App, aim: Aim, places: Vec[]): Aim {
   const most = Math.max(...part.map(([low, high], k) => (high - low) / (2 * PART * aspects[k])));
   const wide = Math.sqrt(seenOf(app, cross(right, up)) / (4 * table.aspect * TOOL));
   const half = Math.min(Math.max(Math.min(aim.half, most), wide), (most * PART) / LEAST);
-  if (aim.half <= half) return { ...aim, half };
+  if (aim.half <= NEARLY * half) return { ...aim, half: Math.max(aim.half, half) };
   // As much of the tool as there is room for beside the part.
   let { target } = aim;
   ways.forEach((way, k) => {
