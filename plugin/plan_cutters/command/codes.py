@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, NoReturn
 import click
 
 from plan_cutters.command import terminal
+from plan_cutters.command.taken_out import instead
 from plan_cutters.workers.assignment import INTERRUPTED
 from plan_cutters.workers.errors import Supervised
 
@@ -186,6 +187,8 @@ def ended(name: str, words: Sequence[str], work: Callable[[], int]) -> NoReturn:
                 sys.stdout.flush()
             return code, ""
         except click.UsageError as error:
+            if isinstance(error, click.NoSuchOption) and (gone := instead(error.option_name)):
+                raise click.UsageError(gone) from None
             meant = [word for word in words if word.startswith("-")] if isinstance(error, click.NoSuchOption) else []
             files = [word for word in (*name.split()[1:], *meant) if os.path.exists(word)]
             hint = f"; for the file, write ./{files[0]}" if files else ""

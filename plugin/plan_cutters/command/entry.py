@@ -6,6 +6,8 @@ import sys
 from collections.abc import Sequence
 from importlib import import_module
 
+from plan_cutters.command.taken_out import TAKEN_OUT, instead
+
 TYPE_CHECKING = False  # `typing` itself takes time
 if TYPE_CHECKING:
     from typing import Any
@@ -30,6 +32,9 @@ def plan_cutters() -> None:
     name, words = _SELF, sys.argv[1:]
     if words and words[0] in SUBCOMMANDS:
         name, words = f"{_SELF} {words[0]}", words[1:]
+    elif words and f"command {words[0]}" in TAKEN_OUT and not os.path.exists(words[0]):
+        os.write(2, f"{_SELF}: {instead(f'command {words[0]}')}\n".encode())
+        os._exit(2)
     begin(name, words)
 
 
