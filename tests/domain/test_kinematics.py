@@ -239,6 +239,7 @@ def test_axes_of_a_single_rotary_axis_are_searched_two_degrees_apart_from_end_to
         assert around == pytest.approx(apart[0])
     assert of("trunnion-ac").aims().shape == (0, 3)
     assert of("3-axis").aims().tolist() == [UP.tolist()]
+    assert of("3-axis").positions(np.array([UP, -UP, [1.0, 0, 0]]))[1].tolist() == [0, -1, -1]
 
 
 @pytest.mark.parametrize("name", [*FIVE, *range(20)])

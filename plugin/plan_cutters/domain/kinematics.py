@@ -47,8 +47,7 @@ def within(angle: Floats, low: float, high: float) -> Floats:
     """The turn of each angle (...,) that lies between two limits, nan where none does; the one nearest to 0, where several do."""
     turn = 2.0 * math.pi
     near = angle - turn * np.round(angle / turn)
-    least = np.ceil((low - ON_LIMIT - near) / turn) if math.isfinite(low) else np.full(np.shape(near), -np.inf)
-    most = np.floor((high + ON_LIMIT - near) / turn) if math.isfinite(high) else np.full(np.shape(near), np.inf)
+    least, most = np.ceil((low - ON_LIMIT - near) / turn), np.floor((high + ON_LIMIT - near) / turn)
     turns = np.minimum(np.maximum(0.0, least), most)
     return np.asarray(np.where(least <= most, near + turn * turns, np.nan))
 
@@ -182,7 +181,7 @@ class Kinematics(Record):
         shares = [(np.cos(np.clip(away + sign * swing, 0.0, math.pi)) - base) / most for sign in (-1.0, 1.0)]
         known = (np.abs(shares) <= 1.0).all(axis=0)
         ends = np.arccos(np.clip(shares, -1.0, 1.0))
-        middle, half = 0.5 * (ends[0] + ends[1]), 0.5 * np.abs(ends[1] - ends[0])
+        middle, half = 0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0])
         low, high = machine.limit[1]
         one = np.zeros(len(axis), bool)
         # The solution whose second angle has room in the whole cap is the one that holds its middle: of the other one, the first
