@@ -25,7 +25,9 @@ export class Links {
   constructor(private readonly app: App) {
     this.button = copyButton("Copy link", () => this.keep(), app.say, "Copy link to what is shown: cutter, sample and view (y)");
     window.addEventListener("hashchange", () => {
-      if (location.hash !== this.mine) this.follow();
+      if (location.hash === this.mine) return;
+      this.mine = "";
+      this.follow();
     });
   }
 

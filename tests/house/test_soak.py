@@ -34,6 +34,18 @@ CASES = {
 }  # fmt: skip
 
 
+@pytest.mark.slow(
+    "laws that other rooms test of parts of their own",
+    only=(
+        "a_rigid_motion_changes_nothing",
+        "scaling_changes_nothing",
+        "the_order_of_features_changes_nothing",
+        "a_mirror_image_has_the_same_postures",
+        "narrower_limits_never_give_more",
+        "a_larger_tolerance_never_gives_less",
+        "more_in_the_way_never_gives_more",
+    ),
+)
 @pytest.mark.parametrize("name", sorted(LAWS))
 def test_a_law_holds_in_one_case(name, monkeypatch):
     monkeypatch.setattr(files, "_CHECK", 3.0)

@@ -97,20 +97,22 @@ def test_a_link_leads_to_the_same_cutter_sample_posture_and_view(at, planned):
     address = link(page)
     assert page.evaluate("location.href") == address
 
-    again = at(**small)
-    again.goto(address)
-    # Nothing but the part behind `#` changed: a page that is open follows, too.
-    status(again, "The link's place is shown")
-    assert again.evaluate("[review.cutter.id, review.sample.row, review.mode]") == [other, row, "scalar:curvature_max"]
-    assert again.evaluate("[review.posture.tilt, review.posture.rotation]") == [17, 40]
-    assert aim(again) == pytest.approx(aim(page), abs=0.02)
+    # Nothing but the part behind `#` changes: a page that is open follows, too.
+    wanted = aim(page)
+    page.evaluate("id => { review.setCutter(id); location.hash = 'face=F1'; }", planned.shown)
+    status(page, "is shown")
+    page.goto(address)
+    status(page, "The link's place is shown")
+    assert page.evaluate("[review.cutter.id, review.sample.row, review.mode]") == [other, row, "scalar:curvature_max"]
+    assert page.evaluate("[review.posture.tilt, review.posture.rotation]") == [17, 40]
+    assert aim(page) == pytest.approx(wanted, abs=0.02)
     fresh = at(**small)
     fresh.goto("about:blank")
     fresh.goto(address)
     fresh.wait_for_selector("html[data-ready]")
     status(fresh, "The link's place is shown")
     assert fresh.evaluate("[review.cutter.id, review.sample.row]") == [other, row]
-    assert aim(fresh) == pytest.approx(aim(page), abs=0.02)
+    assert aim(fresh) == pytest.approx(wanted, abs=0.02)
 
 
 def test_a_face_is_a_link_by_its_number(at):

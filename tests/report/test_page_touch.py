@@ -15,9 +15,6 @@ pytestmark = pytest.mark.slow(
     but=(
         "test_a_pinch_zooms_about_what_lies_between_the_fingers_and_turns_nothing[reduce]",
         "test_a_tap_chooses_the_sample_there[reduce]",
-        "test_one_finger_turns_and_inertia_comes_to_rest[no-preference]",
-        "test_targets_are_large_enough_for_fingers[reduce]",
-        "test_zoom_buttons",
     ),
 )
 
