@@ -135,7 +135,7 @@ def test_help_is_in_groups_with_examples_and_fits(tmp_path):
     examples = [line.split() for line in said.splitlines() if line.strip().startswith("plan-cutters ")]
     assert len(examples) >= 5
     for _, *words in examples:
-        name = f"plan-cutters {words.pop(0)}" if words[0] in entry.SUBCOMMANDS else "plan-cutters"
+        name = f"plan-cutters {words.pop(0)}" if words[0] in entry.commands() else "plan-cutters"
         params = entry.module_of(name).command.make_context(name, words).params
         assert params.get("parts") or params["part"]
 

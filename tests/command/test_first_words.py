@@ -28,7 +28,7 @@ def piped(*words, data, cwd):
 # ---- help
 
 
-@pytest.mark.parametrize("name", entry.SUBCOMMANDS)
+@pytest.mark.parametrize("name", entry.commands())
 def test_help_is_a_look_and_help_all_has_every_option(tmp_path, name):
     short, whole = (run(name, word, cwd=tmp_path, bare=True).stdout for word in ("--help", "--help-all"))
     assert len(short.splitlines()) <= MOST_LINES

@@ -16,7 +16,7 @@ def parsed(command, *words):
 
 
 def options():
-    for name in entry.SUBCOMMANDS:
+    for name in entry.commands():
         for each in entry.module_of(f"plan-cutters {name}").command.params:
             if isinstance(each, click.Option) and not each.is_flag and not each.multiple:
                 yield pytest.param(name, each, id=f"{name} {each.opts[-1]}")
@@ -51,7 +51,7 @@ def test_no_value_is_dropped(command, option):
 
 
 def test_all_commands_have_such_options():
-    assert {each.values[0] for each in options()} == set(entry.SUBCOMMANDS)
+    assert {each.values[0] for each in options()} == set(entry.commands())
 
 
 def test_values_that_are_the_same_in_other_words_agree():

@@ -39,7 +39,7 @@ COMMANDS = {
 
 
 @pytest.mark.parametrize("every", [False, True], ids=["least words", "many words"])
-@pytest.mark.parametrize("name", entry.SUBCOMMANDS)
+@pytest.mark.parametrize("name", entry.commands())
 def test_a_record_has_what_its_command_parses(name, every):
     record, least, more = COMMANDS[name]
     command = entry.module_of(f"plan-cutters {name}").command

@@ -40,7 +40,7 @@ def test_the_old_names_are_aliases(tmp_path, subcommand, words, code):
 
 def test_a_first_word_that_is_no_subcommand_is_a_part(tmp_path):
     """And one that is: a file of its name is said with its folder, or after `plan`."""
-    for name in entry.SUBCOMMANDS:
+    for name in entry.commands():
         (tmp_path / name).write_text("no part")
     for words in (["./map"], ["plan", "map"], ["plan", "plan"], ["part.step", "map"]):
         done = run(*words, cwd=tmp_path)
@@ -61,7 +61,7 @@ def test_plan_is_the_main_job(tmp_path):
         assert (tmp_path / f"out{len(words)}" / "plan.json").is_file()
 
 
-@pytest.mark.parametrize("name", entry.SUBCOMMANDS)
+@pytest.mark.parametrize("name", entry.commands())
 def test_the_help_of_each_says_its_exit_codes_and_loads_no_kernel(tmp_path, name):
     done = run(name, "--help-all", cwd=tmp_path, bare=True)
     assert (done.returncode, done.stderr) == (0, "")
@@ -75,7 +75,7 @@ def test_the_help_of_each_says_its_exit_codes_and_loads_no_kernel(tmp_path, name
 def test_each_help_begins_with_an_imperative():
     """As docstrings do: no sentence is a question in disguise."""
     verbs = {"Find", "Draw", "Judge", "List", "Show", "Serve", "Plan"}
-    for name, (_, told) in entry.SUBCOMMANDS.items():
+    for name, told in entry.sentences():
         command = entry.module_of(f"plan-cutters {name}").command
         for text in (told, command.help):
             first = " ".join(text.split()).partition(". ")[0]
@@ -96,9 +96,9 @@ def test_help_loads_neither_numpy_nor_the_kernel(tmp_path, name):
 def test_one_help_names_all_subcommands(tmp_path):
     said = run("--help", cwd=tmp_path, bare=True).stdout
     listed = said.partition("\nCommands:\n")[2].partition("\n\n")[0]
-    assert re.findall(r"^  (\w+) ", listed, re.MULTILINE) == list(entry.SUBCOMMANDS)
+    assert re.findall(r"^  (\w+) ", listed, re.MULTILINE) == list(entry.commands())
     told = (ROOT / "docs/command.md").read_text()
-    for name in entry.SUBCOMMANDS:
+    for name in entry.commands():
         assert isinstance(entry.module_of(f"plan-cutters {name}").command, click.Command)
         assert f"<!-- help: plan-cutters{'' if name == 'plan' else f' {name}'} -->" in told
 
@@ -107,7 +107,7 @@ def test_one_help_names_all_subcommands(tmp_path):
     ("words", "offered"),
     [
         (["m"], ["plain,map", "plain,machines", "plain,mcp"]),
-        ([""], [f"plain,{name}" for name in entry.SUBCOMMANDS]),
+        ([""], [f"plain,{name}" for name in entry.commands()]),
         (["blade"], ["file,"]),
         (["blade.step", "m"], ["file,"]),
         (["--map"], ["plain,--map-budget"]),

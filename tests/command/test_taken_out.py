@@ -2,7 +2,7 @@
 
 import pytest
 
-from plan_cutters.command.entry import SUBCOMMANDS
+from plan_cutters.command.entry import commands
 from plan_cutters.command.taken_out import TAKEN_OUT, instead
 from tests.support.places import ROOT
 
@@ -11,4 +11,4 @@ from tests.support.places import ROOT
 def test_a_word_that_is_gone_stands_in_the_migration_note(word):
     assert word.removeprefix("command ") in (ROOT / "docs/migration.md").read_text(encoding="utf-8")
     assert instead(word).startswith(word)
-    assert word.removeprefix("command ") not in SUBCOMMANDS
+    assert word.removeprefix("command ") not in commands()

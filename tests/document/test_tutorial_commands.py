@@ -1,6 +1,5 @@
 """The commands of the README and of the tutorial do what their text says: run in their order, as they stand there."""
 
-import importlib
 import re
 import shlex
 import shutil
@@ -156,8 +155,8 @@ def known_options():
     from plan_cutters.command import entry
 
     found = set()
-    for module, *_ in entry.SUBCOMMANDS.values():
-        command = importlib.import_module(f"plan_cutters.command.{module}").command
+    for name in entry.commands():
+        command = entry.module_of(f"plan-cutters {name}").command
         found |= {name for each in command.params for name in (*each.opts, *each.secondary_opts)}
     return found
 

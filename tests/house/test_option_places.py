@@ -86,7 +86,7 @@ def test_every_option_can_be_given_on_the_command_line():
 
 def test_the_commands_declare_an_option_alike():
     """What several commands have is the same option, but for what is said of it and how often it may be given."""
-    commands = {name: entry.module_of(f"plan-cutters {name}").command for name in entry.SUBCOMMANDS}
+    commands = {name: entry.module_of(f"plan-cutters {name}").command for name in entry.commands()}
     plans = {each.name: each for each in cli.command.params}
     for command in (of_a_point.command, stored_maps.command):
         shared = [each for each in command.params if each.name in plans and each.name not in ("part", "out", "json_out")]

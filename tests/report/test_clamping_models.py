@@ -5,12 +5,12 @@ import pytest
 
 from cad_io import read_part
 from plan_cutters import plan
-from plan_cutters.checker.fixtures import PlacedFixture
-from plan_cutters.checker.question import Setup
-from plan_cutters.command.check_operations import _bodies
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.report import models
 from plan_cutters.report.clamping_shapes import clamping_shape
+from plan_cutters_check.command import _bodies
+from plan_cutters_check.fixtures import PlacedFixture
+from plan_cutters_check.question import Setup
 from tests.support import gltf
 from tests.support.cad_parts import box, rod
 

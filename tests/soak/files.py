@@ -5,9 +5,9 @@ from pathlib import Path
 
 from hypothesis import strategies as st
 
-from plan_cutters.checker.check import check
 from plan_cutters.command.codes import code_of
 from plan_cutters.report.to_json import dumps
+from plan_cutters_check.check import check
 from tests.soak.cases import Mill, Setting, Turn, VoidError, parts, refused, settings, tools
 from tests.soak.register import law
 from tests.support import fuzz_read

@@ -10,10 +10,10 @@ import numpy as np
 
 from cad_io import read_part
 from plan_cutters import Options, plan
-from plan_cutters.checker.check import on_paper
-from plan_cutters.checker.findings import Answer
-from plan_cutters.checker.question import Question
-from plan_cutters.command.check_operations import question_of, stated_by
+from plan_cutters_check.check import on_paper
+from plan_cutters_check.command import question_of, stated_by
+from plan_cutters_check.findings import Answer
+from plan_cutters_check.question import Question
 from tests.support.places import ROOT
 
 PART = str(ROOT / "samples/pocket_top.step")

@@ -17,7 +17,7 @@ import click
 from cad_io.errors import CadIoError
 from plan_cutters.command import help_groups, terminal
 from plan_cutters.command.codes import CODES, USAGE, ended, guarded, interrupt, invoked, keep_interrupts
-from plan_cutters.command.entry import SUBCOMMANDS
+from plan_cutters.command.entry import module_of, sentences
 from plan_cutters.command.option_groups import EXAMPLES, options
 from plan_cutters.command.part_cases import PartCases
 from plan_cutters.command.piped import spooled
@@ -33,7 +33,7 @@ _SELF = "plan-cutters"
 
 
 @click.command(
-    cls=help_groups.Command, subcommands=[(name, what) for name, (_, what) in SUBCOMMANDS.items()], examples=EXAMPLES, codes=CODES
+    cls=help_groups.Command, subcommands=sentences, examples=EXAMPLES, codes=CODES
 )
 @click.argument("parts", nargs=-1, required=True, metavar="PART...", type=File("PART"))
 @options()
@@ -54,9 +54,7 @@ def command(request: PlanRequest) -> int:
 
         return stored(parts[0], request.postures, requested, request, help_groups.named())
     if request.check_operations is not None:
-        from plan_cutters.command.check_operations import checked
-
-        return checked(parts[0], request.check_operations, requested, quiet=request.quiet, read_timeout=request.read_timeout)
+        return module_of(f"{_SELF} check").checked(parts[0], request.check_operations, requested, quiet=request.quiet, read_timeout=request.read_timeout)
     codes = []
     cases = _part_cases(request)
     outs = folders(request)

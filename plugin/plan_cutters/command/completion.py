@@ -7,7 +7,7 @@ import click
 from click.shell_completion import CompletionItem, shell_complete
 
 from plan_cutters.command.codes import ended
-from plan_cutters.command.entry import SUBCOMMANDS, module_of
+from plan_cutters.command.entry import OURS, commands, module_of
 from plan_cutters.command.values import FILE
 
 
@@ -19,21 +19,21 @@ class Subcommands(click.Group):
         super().__init__(context_settings={"ignore_unknown_options": True}, add_help_option=False)
 
     def list_commands(self, ctx: click.Context) -> list[str]:
-        return list(SUBCOMMANDS)
+        return list(commands())
 
     def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command:
         command: click.Command = module_of(f"plan-cutters {cmd_name}").command
         return command
 
     def resolve_command(self, ctx: click.Context, args: list[str]) -> tuple[str | None, click.Command | None, list[str]]:
-        return super().resolve_command(ctx, args if args[0] in SUBCOMMANDS else [next(iter(SUBCOMMANDS)), *args])
+        return super().resolve_command(ctx, args if args[0] in commands() else [next(iter(OURS)), *args])
 
     def shell_complete(self, ctx: click.Context, incomplete: str) -> list[CompletionItem]:
         if incomplete.startswith("-"):
             first = module_of("plan-cutters").command
             items: list[CompletionItem] = first.shell_complete(click.Context(first, resilient_parsing=True), incomplete)
             return items
-        return [CompletionItem(name) for name in SUBCOMMANDS if name.startswith(incomplete)] or [FILE]
+        return [CompletionItem(name) for name in commands() if name.startswith(incomplete)] or [FILE]
 
 
 def main(name: str) -> NoReturn:

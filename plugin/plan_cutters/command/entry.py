@@ -6,6 +6,7 @@ import sys
 from collections.abc import Sequence
 from importlib import import_module
 
+from plan_cutters.command.leaves import leaves, sentence
 from plan_cutters.command.taken_out import TAKEN_OUT, instead
 
 TYPE_CHECKING = False  # `typing` itself takes time
@@ -13,24 +14,31 @@ if TYPE_CHECKING:
     from typing import Any
 
 _SELF = "plan-cutters"
-#: The subcommands: the module of each, and its sentence in the help. The first is meant where none is named.
-SUBCOMMANDS = {
+#: The commands of this package: the module of each, and its sentence in the help. The first is meant where none is named.
+OURS = {
     "plan": ("cli", "Find the cutters that finish a part: see below. It is meant where no command is named."),
     "map": ("map", "Draw all postures of one cutter at one point."),
     "stored": ("stored_maps", "Judge another machine or setup by the posture maps of a plan."),
-    "diff": ("diff", "Show which faces and cutters were lost or won from one plan to another."),
-    "changed": ("changed", "Find the parts that changed in a git repository, and compare their plans."),
     "tools": ("tools", "List the tools of a library as they are understood."),
     "machines": ("machines", "List the built-in machines, or show how a machine file is understood."),
-    "batch": ("batch", "Plan many parts, on this machine or on a cluster."),
-    "mcp": ("mcp", "Serve these questions to agents, by the Model Context Protocol."),
 }
+
+
+def commands() -> tuple[str, ...]:
+    """The names of all commands, those of other packages last."""
+    return (*OURS, *(name for name in leaves() if name not in OURS))
+
+
+def sentences() -> list[tuple[str, str]]:
+    """Each command with its sentence in the help."""
+    return [(name, OURS[name][1] if name in OURS else sentence(leaves()[name])) for name in commands()]
 
 
 def plan_cutters() -> None:
     """Begin the subcommand that the first word names; a first word that names none is a part to plan."""
     name, words = _SELF, sys.argv[1:]
-    if words and words[0] in SUBCOMMANDS:
+    # Whatever an option begins with, no package is looked for.
+    if words and (words[0] in OURS or (words[0].isidentifier() and words[0] in leaves())):
         name, words = f"{_SELF} {words[0]}", words[1:]
     elif words and f"command {words[0]}" in TAKEN_OUT and not os.path.exists(words[0]):
         os.write(2, f"{_SELF}: {instead(f'command {words[0]}')}\n".encode())
@@ -56,12 +64,13 @@ def subcommand(name: str) -> str:
     >>> subcommand("plan-cutters map"), subcommand("plan-cutters-map"), subcommand("plan-cutters")
     ('map', 'map', 'plan')
     """
-    return name[len(_SELF) + 1 :] or next(iter(SUBCOMMANDS))
+    return name[len(_SELF) + 1 :] or next(iter(OURS))
 
 
 def module_of(name: str) -> "Any":
     """The module of a command by its name; it has the `command` of click and `main`."""
-    return import_module(f"plan_cutters.command.{SUBCOMMANDS[subcommand(name)][0]}")
+    word = subcommand(name)
+    return import_module(f"plan_cutters.command.{OURS[word][0]}" if word in OURS else leaves()[word])
 
 
 def begin(name: str, words: Sequence[str] | None = None) -> None:

@@ -5,7 +5,7 @@ Where all of it is long, `--help` has what most people need, a line for each, an
 
 import os
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import click
@@ -70,8 +70,8 @@ class Command(click.Command):
 
     Parameters
     ----------
-    subcommands : sequence of (str, str)
-        What help lists first: other commands, and what they answer.
+    subcommands : callable
+        What help lists first, asked when it is shown: other commands, and what they answer, each as (str, str).
     examples : sequence of (str, str)
         A command line, and what it does.
     codes : sequence of (str, str)
@@ -81,7 +81,7 @@ class Command(click.Command):
     def __init__(
         self,
         *words: Any,
-        subcommands: Sequence[tuple[str, str]] = (),
+        subcommands: Callable[[], Sequence[tuple[str, str]]] = tuple,
         examples: Sequence[tuple[str, str]] = (),
         codes: Sequence[tuple[str, str]] = (),
         **more: Any,
@@ -108,7 +108,7 @@ class Command(click.Command):
         return super().get_help(ctx)
 
     def format_options(self, ctx: click.Context, formatter: click.HelpFormatter) -> None:
-        groups = {"Commands": [(name.ljust(_NAMES), what) for name, what in self.subcommands]} if self.subcommands else {}
+        groups = {"Commands": [(name.ljust(_NAMES), what) for name, what in listed]} if (listed := self.subcommands()) else {}
         title = "Options"
         for param in self.get_params(ctx):
             record, title = param.get_help_record(ctx), getattr(param, "group", title)

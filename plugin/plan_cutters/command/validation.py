@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from cad_io.errors import CadIoError, ReadError
 from cad_io.whole import refusal
-from plan_cutters.command.entry import SUBCOMMANDS
+from plan_cutters.command.entry import commands
 from plan_cutters.command.request import PlanningRequest, PlanRequest, planning_options
 
 if TYPE_CHECKING:
@@ -56,7 +56,7 @@ def _first_word(word: str) -> None:
     from plan_cutters.domain.checks import did_you_mean
     from plan_cutters.errors import OptionError
 
-    meant = "" if os.path.exists(word) else did_you_mean(word, SUBCOMMANDS)
+    meant = "" if os.path.exists(word) else did_you_mean(word, commands())
     if meant:
         raise OptionError(f"{word} is neither a command nor a file{meant}")
 

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from cad_io import Part
 from cad_io.arrays import Floats
 from cad_io.kernel import first_derivatives
-from plan_cutters.checker.fixtures import rotation_of
-from plan_cutters.checker.question import Grip, Question
+from plan_cutters_check.fixtures import rotation_of
+from plan_cutters_check.question import Grip, Question
 
 #: How far a face may be from a jaw, and the part's lowest point from the ledges, mm; cosine of the angle between both.
 _AT, _SQUARE = 0.02, math.cos(math.radians(0.2))

@@ -10,19 +10,19 @@ import numpy as np
 import pytest
 
 from plan_cutters import Options, plan
-from plan_cutters.checker.bench import Bench
-from plan_cutters.checker.check import check, on_paper
-from plan_cutters.checker.clash import FREE, MET, Clock
-from plan_cutters.checker.expected import Reckoned
-from plan_cutters.checker.findings import _beginnings
-from plan_cutters.checker.holding import faults
-from plan_cutters.checker.leaves import leaves, pattern
-from plan_cutters.checker.trials import Trials
-from plan_cutters.checker.verdicts import postures
-from plan_cutters.command.check_operations import question_of, stated_by
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.plan_file.load import plan_of
 from plan_cutters.plan_file.words.text import with_text
+from plan_cutters_check.bench import Bench
+from plan_cutters_check.check import check, on_paper
+from plan_cutters_check.clash import FREE, MET, Clock
+from plan_cutters_check.command import question_of, stated_by
+from plan_cutters_check.expected import Reckoned
+from plan_cutters_check.findings import _beginnings
+from plan_cutters_check.holding import faults
+from plan_cutters_check.leaves import leaves, pattern
+from plan_cutters_check.trials import Trials
+from plan_cutters_check.verdicts import postures
 from tests.support.forging import forged, put
 from tests.support.written_plan import Written
 

@@ -9,10 +9,10 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from cad_io.kernel import first_derivatives
-from plan_cutters.checker.expected import WALL, Reckoned
-from plan_cutters.checker.findings import Finding
-from plan_cutters.checker.question import Question, allowed, axes_of
-from plan_cutters.checker.strategies import Strategies
+from plan_cutters_check.expected import WALL, Reckoned
+from plan_cutters_check.findings import Finding
+from plan_cutters_check.question import Question, allowed, axes_of
+from plan_cutters_check.strategies import Strategies
 
 #: Parts of unit vectors, and mm, that differ by less are one; share by which areas of a face may differ.
 _SAME, _SAME_MM, _SAME_AREA = 1e-6, 1e-5, 0.01

@@ -9,9 +9,9 @@ import pytest
 from cad_io import Part, read_part
 from cad_io.part.orient import orient
 from cad_io.part.patterns import patterns
-from plan_cutters.checker.patterns import Patterns
-from plan_cutters.checker.question import Question
 from plan_cutters.document.patterns import pattern_entries
+from plan_cutters_check.patterns import Patterns
+from plan_cutters_check.question import Question
 from tests.support.patterns import impeller, plate
 
 PARTS = {"impeller": lambda: impeller(6), "plate": lambda: plate(3, 1)}

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from cad_io import Part, read_part
 from cad_io.arrays import Floats
 from cad_io.read.mesh import Mesh, is_mesh, read_mesh
-from plan_cutters.checker.question import Body, Setup, frame_of
-from plan_cutters.checker.surface import Face, Source, Triangles
+from plan_cutters_check.question import Body, Setup, frame_of
+from plan_cutters_check.surface import Face, Source, Triangles
 
 #: A table reaches so much farther than the part, mm: as far as any tool.
 _TABLE = 2000.0

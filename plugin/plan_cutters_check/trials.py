@@ -7,15 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.checker.bench import Bench
-from plan_cutters.checker.clash import FREE, MET, OPEN, Clock
-from plan_cutters.checker.expected import Reckoned
-from plan_cutters.checker.findings import Finding
-from plan_cutters.checker.leaves import Between, Loose
-from plan_cutters.checker.moving import put_down
-from plan_cutters.checker.question import Question, allowed, axes_of
-from plan_cutters.checker.strategies import Contacts, contacts_at
-from plan_cutters.checker.tool import Tool
+from plan_cutters_check.bench import Bench
+from plan_cutters_check.clash import FREE, MET, OPEN, Clock
+from plan_cutters_check.expected import Reckoned
+from plan_cutters_check.findings import Finding
+from plan_cutters_check.leaves import Between, Loose
+from plan_cutters_check.moving import put_down
+from plan_cutters_check.question import Question, allowed, axes_of
+from plan_cutters_check.strategies import Contacts, contacts_at
+from plan_cutters_check.tool import Tool
 
 Rows = NDArray[np.int64]
 _UNIT = 1_000_000

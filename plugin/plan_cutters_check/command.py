@@ -1,15 +1,23 @@
-"""`--check-operations`: a written plan of operations against the part; nothing is written."""
+"""Show whether a written plan of operations holds on its part.
+
+`plan-cutters check PLAN.JSON PART` is `plan-cutters PART --check-operations PLAN.JSON`: nothing is written.
+"""
 
 import hashlib
 import json
 import math
+import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import click
 
 from plan_cutters.command import terminal
+from plan_cutters.command.codes import ENDED, run
+from plan_cutters.command.help_groups import Command
 from plan_cutters.command.progress import Display, Teller
 from plan_cutters.workers.assignment import is_child
 
@@ -17,17 +25,49 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from cad_io import Part
-    from plan_cutters.checker.question import Body, Grip, MachineAxes, Question, Setup, ToolSizes
     from plan_cutters.domain.cutter import Cutter
     from plan_cutters.domain.fixture import Fixture
     from plan_cutters.domain.machine import Machine
     from plan_cutters.domain.placement import Placement
     from plan_cutters.options import Options
+    from plan_cutters_check.question import Body, Grip, MachineAxes, Question, Setup, ToolSizes
 
+_SELF = "plan-cutters check"
 #: Files that must stand with plan.json, and what they hold.
 _FILES = {"operations.npz": "operations of a plan", "samples.npz": "samples of a plan"}
 #: How far the chords of a chuck's jaws may be from their bore, mm.
 _BORE = 1e-3
+
+
+@click.command(
+    cls=Command,
+    context_settings={"ignore_unknown_options": True},
+    examples=((f"{_SELF} part-plan/plan.json part.step --cutter D12 --machine trunnion-ac", "With the options of the plan:"),),
+    codes=(
+        ("0", "all that was checked holds"),
+        ("1", "something does not hold, or not by the tolerance that is asked for"),
+        ("2", "the command line is wrong, or the file is no plan of this part with these options"),
+        ("3", "the part cannot be read"),
+        ENDED,
+    ),
+)
+@click.argument("file", metavar="PLAN.JSON")
+@click.argument("words", metavar="PART [OPTIONS]", nargs=-1, required=True, type=click.UNPROCESSED)
+def command(file: str, words: tuple[str, ...]) -> None:
+    """Show whether the operations of PLAN.JSON hold on PART, by a program that shares nothing with the search.
+
+    The options are those of the plan: cutters, machine, setups, fixtures and tolerance. The files of the plan stand beside it.
+    """
+
+
+def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
+    """Run the main command on the part, with the plan to check."""
+    words = list(sys.argv[1:] if args is None else args)
+    if len(words) < 2 or words[0].startswith("-"):
+        run(command, name, words)
+    from plan_cutters.command.cli import main as plan
+
+    plan([*words[1:], "--check-operations", words[0]], name)
 
 
 def checked(part: str, file: str, options: "Options", *, quiet: bool, read_timeout: float) -> int:
@@ -39,8 +79,8 @@ def checked(part: str, file: str, options: "Options", *, quiet: bool, read_timeo
         The file is no plan with operations, or one of another part or of other options.
     """
     from cad_io import read_part
-    from plan_cutters.checker.check import check
     from plan_cutters.errors import OptionError
+    from plan_cutters_check.check import check
 
     document, arrays, checksums = _read(file)
     display = None if is_child() else Display(quiet, 0, time.monotonic(), itself=True)
@@ -76,9 +116,9 @@ def question_of(
     """
     from cad_io.part.orient import orient
     from cad_io.part.repeats import repeated_faces
-    from plan_cutters.checker.question import Question
     from plan_cutters.errors import OptionError
     from plan_cutters.scene.faces import ignored_faces, ignored_words
+    from plan_cutters_check.question import Question
 
     if not isinstance(document.get("operations"), dict):
         raise OptionError("the plan has no operations: make it with --operations")
@@ -201,9 +241,9 @@ def _grip(wanted: "Fixture", placed: "Fixture", faces: tuple[str, ...], setup: i
     OptionError
         It is another one than the user asked for.
     """
-    from plan_cutters.checker.question import Grip
     from plan_cutters.domain.clamping import Chuck, Vise
     from plan_cutters.errors import OptionError
+    from plan_cutters_check.question import Grip
 
     clamping, sizes = placed.clamping, wanted.grips
     same = placed.kind == wanted.kind and clamping is not None and not placed.to_place
@@ -219,8 +259,8 @@ def _grip(wanted: "Fixture", placed: "Fixture", faces: tuple[str, ...], setup: i
 
 def _setups(part: "Part", options: "Options", document: Mapping[str, Any]) -> "tuple[tuple[Setup, ...], tuple[Grip, ...]]":
     """The setups, and the vises and chucks in them of which the plan alone says where they stand."""
-    from plan_cutters.checker.question import Setup
     from plan_cutters.scene.faces import clamped_faces
+    from plan_cutters_check.question import Setup
 
     setups, grips = [], list[Any]()
     for s, (axis, place) in enumerate(zip((options.setup, *options.other_setups), _places(options), strict=True)):
@@ -239,7 +279,7 @@ def _axes(machine: "Machine") -> "MachineAxes":
     """The rotary axes; a machine without them is set by the azimuth about the setup axis and the tilt from it."""
     import numpy as np
 
-    from plan_cutters.checker.question import MachineAxes
+    from plan_cutters_check.question import MachineAxes
 
     turning, free = machine.rotary, (-math.inf, math.inf)
     return MachineAxes(
@@ -256,8 +296,8 @@ def _bodies(fixture: "Fixture") -> "tuple[Body, ...]":
     """A fixture as the checker takes it: a vise or chuck by each of its bodies."""
     import numpy as np
 
-    from plan_cutters.checker.question import Body
     from plan_cutters.domain.clamping import Block
+    from plan_cutters_check.question import Body
 
     clamping = fixture.clamping
     if clamping is None:
@@ -276,7 +316,7 @@ def _bodies(fixture: "Fixture") -> "tuple[Body, ...]":
 
 
 def _sizes(cutter: "Cutter") -> "ToolSizes":
-    from plan_cutters.checker.question import Section, ToolSizes
+    from plan_cutters_check.question import Section, ToolSizes
 
     above = tuple(Section(part, low, each.length, each.radius, each.upper_radius) for part, low, each in cutter.stages)
     flutes = above[0].low if above else cutter.length

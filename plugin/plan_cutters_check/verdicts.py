@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.checker.bench import Bench
-from plan_cutters.checker.clash import MET, OPEN, Clock
-from plan_cutters.checker.expected import Reckoned
-from plan_cutters.checker.findings import Finding
-from plan_cutters.checker.leaves import Loose
-from plan_cutters.checker.process import face_areas, weighed
-from plan_cutters.checker.question import Question, held
+from plan_cutters_check.bench import Bench
+from plan_cutters_check.clash import MET, OPEN, Clock
+from plan_cutters_check.expected import Reckoned
+from plan_cutters_check.findings import Finding
+from plan_cutters_check.leaves import Loose
+from plan_cutters_check.process import face_areas, weighed
+from plan_cutters_check.question import Question, held
 
 #: Verdicts of samples.npz by their words; those that say that a posture was found, and that none was.
 _WORDS = {"interference_free": 2, "accessible": 1, "undecided": 3, "inaccessible": 0, "unjudged": 255}

@@ -9,9 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.checker.expected import Reckoned
-from plan_cutters.checker.leaves import Between, Loose
-from plan_cutters.checker.question import axes_of, frame_of
+from plan_cutters_check.expected import Reckoned
+from plan_cutters_check.leaves import Between, Loose
+from plan_cutters_check.question import axes_of, frame_of
 
 Rows = NDArray[np.int64]
 #: Which plan of operations is the process: the first of these that there is.

@@ -12,12 +12,12 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from cad_io.kernel import first_derivatives
 from cad_io.kernel.inside import within
-from plan_cutters.checker.clash import FREE, MET, OPEN, Clock, lowest, met, nearest
-from plan_cutters.checker.fixtures import PlacedFixture, rotation_of
-from plan_cutters.checker.places import Places, across, reach_at
-from plan_cutters.checker.question import Question, frame_of
-from plan_cutters.checker.surface import Cells, Face
-from plan_cutters.checker.tool import FLAT, Tool, tool_of
+from plan_cutters_check.clash import FREE, MET, OPEN, Clock, lowest, met, nearest
+from plan_cutters_check.fixtures import PlacedFixture, rotation_of
+from plan_cutters_check.places import Places, across, reach_at
+from plan_cutters_check.question import Question, frame_of
+from plan_cutters_check.surface import Cells, Face
+from plan_cutters_check.tool import FLAT, Tool, tool_of
 
 Rows = NDArray[np.int64]
 #: Shares of the tolerance: what may be missed; what a posture that counts as blocked is at least too deep by, below the flutes'

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats
-from plan_cutters.checker.expected import FLOOR, WALL, Reckoned
-from plan_cutters.checker.findings import Finding
-from plan_cutters.checker.question import Question, ToolSizes, axes_of
-from plan_cutters.checker.tool import tool_of
+from plan_cutters_check.expected import FLOOR, WALL, Reckoned
+from plan_cutters_check.findings import Finding
+from plan_cutters_check.question import Question, ToolSizes, axes_of
+from plan_cutters_check.tool import tool_of
 
 Rows = NDArray[np.int64]
 #: Lengths and parts of unit vectors that are the same, mm; a share by which numbers may be off.

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.checker.tool import Solid
+from plan_cutters_check.tool import Solid
 
 #: Places on the rim and within it that are looked at first; by how much disks are widened, mm; rounding, mm.
 _RIM, _RING, _APART, _ROUNDING = 36, 12, 1e-5, 1e-9

@@ -11,22 +11,22 @@ from typing import Any
 
 import numpy as np
 
-from plan_cutters.checker.bench import Bench
-from plan_cutters.checker.clash import Clock
-from plan_cutters.checker.document import Document
-from plan_cutters.checker.expected import Reckoned
-from plan_cutters.checker.findings import Answer, Finding
-from plan_cutters.checker.holding import faults as not_held
-from plan_cutters.checker.holding import resting
-from plan_cutters.checker.leaves import Compared, compared
-from plan_cutters.checker.moving import ill_formed
-from plan_cutters.checker.paper import Paper
-from plan_cutters.checker.patterns import Patterns
-from plan_cutters.checker.question import Question
-from plan_cutters.checker.reading import faults
-from plan_cutters.checker.trials import Trials
-from plan_cutters.checker.verdicts import postures
 from plan_cutters.errors import OptionError
+from plan_cutters_check.bench import Bench
+from plan_cutters_check.clash import Clock
+from plan_cutters_check.document import Document
+from plan_cutters_check.expected import Reckoned
+from plan_cutters_check.findings import Answer, Finding
+from plan_cutters_check.holding import faults as not_held
+from plan_cutters_check.holding import resting
+from plan_cutters_check.leaves import Compared, compared
+from plan_cutters_check.moving import ill_formed
+from plan_cutters_check.paper import Paper
+from plan_cutters_check.patterns import Patterns
+from plan_cutters_check.question import Question
+from plan_cutters_check.reading import faults
+from plan_cutters_check.trials import Trials
+from plan_cutters_check.verdicts import postures
 
 #: Seconds that a check takes at most unless another time is set, and the share of them by which each of its parts must be done.
 SECONDS = 60.0

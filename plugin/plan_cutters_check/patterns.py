@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from cad_io.kernel import first_derivatives
-from plan_cutters.checker.findings import Finding
-from plan_cutters.checker.question import Question
+from plan_cutters_check.findings import Finding
+from plan_cutters_check.question import Question
 
 #: Faces are equal within this share of the part's size; areas, cosines of normals, and unit vectors.
 _EXACT, _AREA, _NORMAL, _SAME = 2e-6, 2e-4, 1.0 - 1e-4, 1e-6

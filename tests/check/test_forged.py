@@ -7,9 +7,9 @@ from collections import defaultdict
 import numpy as np
 import pytest
 
-from plan_cutters.checker.check import check
-from plan_cutters.checker.leaves import UNCHECKED, leaves, pattern
 from plan_cutters.plan_file.operations import OperationsEntry
+from plan_cutters_check.check import check
+from plan_cutters_check.leaves import UNCHECKED, leaves, pattern
 from tests.support.forging import forged, put
 
 #: Entries for which the checker puts many tools down.

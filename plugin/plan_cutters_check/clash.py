@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.checker.surface import OUTSIDE, Cells
-from plan_cutters.checker.tool import Solid, Tool, bounds
+from plan_cutters_check.surface import OUTSIDE, Cells
+from plan_cutters_check.tool import Solid, Tool, bounds
 
 Rows = NDArray[np.int64]
 #: Verdicts of a placement.

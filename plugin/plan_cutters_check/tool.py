@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.checker.question import ToolSizes
+from plan_cutters_check.question import ToolSizes
 
 _DOWN, _OUT = -math.pi / 2, 0.0
 #: Angles within this of the end of an arc are on it, rad.

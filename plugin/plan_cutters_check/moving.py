@@ -7,11 +7,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.checker.bench import Bench
-from plan_cutters.checker.clash import MET, OPEN, Clock
-from plan_cutters.checker.expected import Reckoned
-from plan_cutters.checker.findings import Finding
-from plan_cutters.checker.question import Question, held
+from plan_cutters_check.bench import Bench
+from plan_cutters_check.clash import MET, OPEN, Clock
+from plan_cutters_check.expected import Reckoned
+from plan_cutters_check.findings import Finding
+from plan_cutters_check.question import Question, held
 
 #: Lengths of unit vectors that differ from 1 by less.
 _SAME = 1e-6

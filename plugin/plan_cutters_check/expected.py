@@ -9,10 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
-from plan_cutters.checker.compared import compared
-from plan_cutters.checker.leaves import Between, Loose
-from plan_cutters.checker.question import Question, axes_of, carried, frame_of, other_angles
-from plan_cutters.checker.reading import suffix
+from plan_cutters_check.compared import compared
+from plan_cutters_check.leaves import Between, Loose
+from plan_cutters_check.question import Question, axes_of, carried, frame_of, other_angles
+from plan_cutters_check.reading import suffix
 
 Rows = NDArray[np.int64]
 #: Verdicts of samples.npz that say that a sample is reached, that it was not judged, and a reason that is none.

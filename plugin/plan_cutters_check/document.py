@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from plan_cutters.checker.expected import Reckoned
-from plan_cutters.checker.findings import Finding
-from plan_cutters.checker.leaves import Between, Compared, compared
-from plan_cutters.checker.process import Process
-from plan_cutters.checker.question import Question
-from plan_cutters.checker.spoken import contradictions
-from plan_cutters.checker.verdicts import COUNTS, chosen, cutters, without_posture
+from plan_cutters_check.expected import Reckoned
+from plan_cutters_check.findings import Finding
+from plan_cutters_check.leaves import Between, Compared, compared
+from plan_cutters_check.process import Process
+from plan_cutters_check.question import Question
+from plan_cutters_check.spoken import contradictions
+from plan_cutters_check.verdicts import COUNTS, chosen, cutters, without_posture
 
 #: What is not checked, and why, by paths; those that end in `**` with all that is under them. What is here may be checked where
 #: more is known.

@@ -11,16 +11,16 @@ import pytest
 from cad_io import read_part
 from cad_io.kernel import values
 from plan_cutters import Cutter, Options
-from plan_cutters.checker.bench import Bench
-from plan_cutters.checker.clash import FREE, MET, Clock, met, nearest
-from plan_cutters.checker.question import MachineAxes, Setup, axes_of, other_angles
-from plan_cutters.checker.surface import Cells, Face
-from plan_cutters.checker.tool import tool_of
-from plan_cutters.command.check_operations import _sizes
 from plan_cutters.domain.outline import outline, points
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import served_by
+from plan_cutters_check.bench import Bench
+from plan_cutters_check.clash import FREE, MET, Clock, met, nearest
+from plan_cutters_check.command import _sizes
+from plan_cutters_check.question import MachineAxes, Setup, axes_of, other_angles
+from plan_cutters_check.surface import Cells, Face
+from plan_cutters_check.tool import tool_of
 from tests.support.places import ROOT
 
 PEAKS = str(ROOT / "samples/peaks_and_valleys.step")
@@ -206,8 +206,8 @@ def test_the_search_and_the_checker_agree(words):
     options = Options(machine="trunnion-ac", **{name: each for name, each in words.items() if name != "part"})
     ready = prepare(part, options)
     samples, cutter = ready.samples, ready.cutters[0]
-    from plan_cutters.checker.question import MachineAxes, Question
-    from plan_cutters.command.check_operations import _bodies
+    from plan_cutters_check.command import _bodies
+    from plan_cutters_check.question import MachineAxes, Question
 
     machine = MachineAxes(
         ("C", "A"), np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]), np.array([[-math.inf, math.inf], np.radians([-30.0, 120.0])]),

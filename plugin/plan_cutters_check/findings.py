@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 
-from plan_cutters.checker.leaves import Compared, pattern
+from plan_cutters_check.leaves import Compared, pattern
 
 
 @dataclass(frozen=True, slots=True)

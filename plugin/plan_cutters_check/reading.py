@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from plan_cutters.checker.question import Question
+from plan_cutters_check.question import Question
 
 #: Arrays of operations.npz that are of each plan, of samples and of candidates: their last axes, and kinds.
 _OF_PLAN = {"operation": ((), "i"), "strip_mm": ((), "f"), "seconds": ((), "f"), "exclusive": ((), "b"), "lean": ((3,), "f"),
