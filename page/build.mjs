@@ -10,7 +10,7 @@ const rooms = join(here, "..", "plugin", "plan_cutters");
 const pages = [
   { script: "src/three.ts", global: "THREE", into: join(rooms, "report", "page"), name: "three" },
   { script: "src/main.ts", style: "src/page.css", into: join(rooms, "report", "page"), name: "page" },
-  { script: "src/compare.ts", style: "src/compare.css", into: join(rooms, "comparison"), name: "review" },
+  { script: "src/compare.ts", style: "src/compare.css", into: join(rooms, "..", "plan_cutters_ci"), name: "review" },
 ];
 const common = { absWorkingDir: here, minify: true, charset: "ascii", legalComments: "none", write: false };
 /** A page takes three.js from the script before its own. */

@@ -1,4 +1,4 @@
-// The form of the data of two plans, as plan_cutters.comparison.review writes it.
+// The form of the data of two plans, as plan_cutters_ci.review writes it.
 
 import { text } from "./decode.ts";
 import type { Meta, Pattern } from "./meta.ts";

@@ -11,18 +11,17 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mcp import Client, types
 
-from plan_cutters.agents import child
-from plan_cutters.agents.cutter_names import chosen
-from plan_cutters.agents.digits import short
-from plan_cutters.agents.limits import CallError, Limits
-from plan_cutters.agents.plan_answers import compared, explained, planned
-from plan_cutters.agents.roots import Roots
-from plan_cutters.agents.server import made, service_of
-from plan_cutters.agents.tools import fitting
-from plan_cutters.command import mcp as command
 from plan_cutters.plan_file.load import plan_of
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.numbers import percent, size
+from plan_cutters_agents import child, command
+from plan_cutters_agents.cutter_names import chosen
+from plan_cutters_agents.digits import short
+from plan_cutters_agents.limits import CallError, Limits
+from plan_cutters_agents.plan_answers import compared, explained, planned
+from plan_cutters_agents.roots import Roots
+from plan_cutters_agents.server import made, service_of
+from plan_cutters_agents.tools import fitting
 from tests.support import plan_files
 
 
@@ -320,7 +319,7 @@ def test_whoever_runs_a_service_allows_fewer_samples(monkeypatch):
 
 
 def test_an_internal_error_is_one_line(monkeypatch):
-    from plan_cutters.agents import server as module
+    from plan_cutters_agents import server as module
 
     def broken(*_):
         raise RuntimeError("a\nb")

@@ -13,10 +13,10 @@ from plan_cutters import Options, plan
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.plan_file.load import plan_of
 from plan_cutters.plan_file.words.text import with_text
+from plan_cutters_check.asking import question_of, stated_by
 from plan_cutters_check.bench import Bench
 from plan_cutters_check.check import check, on_paper
 from plan_cutters_check.clash import FREE, MET, Clock
-from plan_cutters_check.command import question_of, stated_by
 from plan_cutters_check.expected import Reckoned
 from plan_cutters_check.findings import _beginnings
 from plan_cutters_check.holding import faults

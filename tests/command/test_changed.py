@@ -12,11 +12,11 @@ import pytest
 import yaml
 
 from plan_cutters.batch import keys
-from plan_cutters.command.annotations import annotations, requested
-from plan_cutters.command.changed import RULES, PartRequest, Row
-from plan_cutters.command.repository import Changed, changed, content
+from plan_cutters.cases.case import Case
 from plan_cutters.errors import PlanError
-from plan_cutters.report.cases.case import Case
+from plan_cutters_ci.annotations import annotations, requested
+from plan_cutters_ci.changed import RULES, PartRequest, Row
+from plan_cutters_ci.repository import Changed, changed, content
 from tests.support.forked import ENV
 from tests.support.junit import cases
 from tests.support.places import ROOT, real_file

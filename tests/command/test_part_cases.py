@@ -5,10 +5,10 @@ import math
 
 import pytest
 
+from plan_cutters.cases.files import CaseFiles
 from plan_cutters.command import retry
 from plan_cutters.command.part_cases import PartCases
 from plan_cutters.command.progress import Display
-from plan_cutters.report.cases.files import CaseFiles
 from plan_cutters.workers.assignment import TIMED_OUT
 from plan_cutters.workers.errors import OutOfTime
 from tests.support.commands import assert_one_line, leftovers

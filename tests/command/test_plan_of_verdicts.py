@@ -10,10 +10,8 @@ from dataclasses import replace
 import pytest
 
 from plan_cutters import plan
-from plan_cutters.agents.plan_answers import planned
 from plan_cutters.answers import ask
 from plan_cutters.command import retry
-from plan_cutters.comparison.plans import compare
 from plan_cutters.document.clock import Clock
 from plan_cutters.interim import Interim
 from plan_cutters.judged_part import JudgedPart
@@ -28,6 +26,8 @@ from plan_cutters.stages.reasons import Reasons
 from plan_cutters.workers import supervise
 from plan_cutters.workers.assignment import TIMED_OUT
 from plan_cutters.workers.errors import OutOfTime
+from plan_cutters_agents.plan_answers import planned
+from plan_cutters_ci.plans import compare
 from tests.support.commands import in_lines, leftovers
 from tests.support.forked import run
 from tests.support.places import SAMPLES

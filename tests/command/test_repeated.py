@@ -51,7 +51,7 @@ def test_no_value_is_dropped(command, option):
 
 
 def test_all_commands_have_such_options():
-    assert {each.values[0] for each in options()} == set(entry.commands())
+    assert {each.values[0] for each in options()} == {*entry.commands()} - {"check"}  # which hands its words on
 
 
 def test_values_that_are_the_same_in_other_words_agree():

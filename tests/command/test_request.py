@@ -7,6 +7,9 @@ import pytest
 from pydantic import ConfigDict, TypeAdapter
 
 from plan_cutters.command import entry, request
+from plan_cutters_agents.command import McpRequest
+from plan_cutters_ci.changed import ChangedRequest
+from plan_cutters_ci.diff import DiffRequest
 
 #: Of each command its record, the words without which it is refused, and words that give every option a value of its own kind.
 COMMANDS = {
@@ -24,8 +27,8 @@ COMMANDS = {
              "-o", "a.png", "-o", "a.svg", "--json", "-"]),
     "stored": (request.StoredRequest, ["m.npz"], ["p.step", "--cutter", "R6L80", "--setup", "s.toml", "--grid", "5",
                "--spacing", "2", "--jobs", "3", "--json", "-"]),
-    "diff": (request.DiffRequest, ["a", "b"], ["--slack", "1", "--despite", "unit", "-o", "out", "--json", "--junit", "j.xml"]),
-    "changed": (request.ChangedRequest, [], ["--junit", "j.xml", "--annotations", "none", "--base", "main", "--staged",
+    "diff": (DiffRequest, ["a", "b"], ["--slack", "1", "--despite", "unit", "-o", "out", "--json", "--junit", "j.xml"]),
+    "changed": (ChangedRequest, [], ["--junit", "j.xml", "--annotations", "none", "--base", "main", "--staged",
                  "--cache", "c", "--pictures-branch", "p", "--",
                 "--grid", "5"]),
     "tools": (request.ToolsRequest, [], ["a.toml", "--cutter", "D12L80", "--holder", "er32", "--assume-stickout", "30",
@@ -34,12 +37,12 @@ COMMANDS = {
     "batch": (request.BatchRequest, ["parts", "--out", "plans"], ["--cutter", "R6L80", "--setup", "+x", "--workers", "2",
               "--timeout-part", "9", "--limit-memory", "4", "--cluster", "tcp://h:1", "--force", "--dry-run", "--jobs", "1",
               "--junit", "j.xml"]),
-    "mcp": (request.McpRequest, [], ["--root", "parts", "--client-roots", "--most-mb", "3", "--memory", "4", "--timeout", "9"]),
+    "mcp": (McpRequest, [], ["--root", "parts", "--client-roots", "--most-mb", "3", "--memory", "4", "--timeout", "9"]),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("every", [False, True], ids=["least words", "many words"])
-@pytest.mark.parametrize("name", entry.commands())
+@pytest.mark.parametrize("name", sorted({*entry.commands()} - {"check"}))  # `check` hands its words on
 def test_a_record_has_what_its_command_parses(name, every):
     record, least, more = COMMANDS[name]
     command = entry.module_of(f"plan-cutters {name}").command
@@ -53,4 +56,4 @@ def test_a_record_has_what_its_command_parses(name, every):
 
 def test_a_value_without_a_field_is_refused():
     with pytest.raises(TypeError):
-        request.DiffRequest(**dict.fromkeys(get_type_hints(request.DiffRequest)), more=1)
+        DiffRequest(**dict.fromkeys(get_type_hints(DiffRequest)), more=1)

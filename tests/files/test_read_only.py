@@ -9,9 +9,9 @@ import pytest
 
 from plan_cutters.batch import cluster
 from plan_cutters.command import map as map_command
-from plan_cutters.command.changed import command as changed
 from plan_cutters.errors import PlanError
 from plan_cutters.report.drawing import posture_map
+from plan_cutters_ci.changed import command as changed
 
 
 def read_only(*given, **words):

@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.support.places import ROOT
+from tests.support.places import PACKAGES, ROOT
 
 pytestmark = pytest.mark.slow("runs a type checker on the whole")
 
@@ -42,8 +42,8 @@ def found(tmp_path_factory):
     # The packages as they lie where pip puts them: of what is installed, checkers believe annotations alone.
     packages = folder / "env/lib" / f"python{sys.version_info[0]}.{sys.version_info[1]}" / "site-packages"
     packages.mkdir(parents=True)
-    (packages / "plan_cutters").symlink_to(ROOT / "plugin/plan_cutters")
-    (packages / "cad_io").symlink_to(ROOT / "cad_io")
+    for name, folder_ in PACKAGES.items():
+        (packages / name).symlink_to(folder_)
     (packages / "others.pth").write_text(sysconfig.get_path("purelib"))
     shutil.copy(CALLS, folder)
     (folder / "hosts.py").write_text(HOSTS)
@@ -69,7 +69,7 @@ def test_editors_find_the_sources_that_setup_installed():
         pytest.skip("this environment was not made by setup.sh")
     roots = [Path(line) for line in paths.read_text().splitlines()]
     typed = {path.parent for root in roots for path in root.glob("*/py.typed")}
-    assert typed == {ROOT / "plugin/plan_cutters", ROOT / "cad_io"}
+    assert typed == set(PACKAGES.values())
 
 
 def marked(text, mark):

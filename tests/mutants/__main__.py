@@ -33,6 +33,7 @@ import pytest
 
 from tests.mutants.faults import Mutant, drawn
 from tests.mutants.plugins import Reach, Verdict, preload
+from tests.support.places import PACKAGES
 
 ROOT = Path(__file__).resolve().parents[2]
 EQUIVALENT = Path(__file__).with_name("equivalent.txt")
@@ -141,7 +142,7 @@ class Copy:
         ours = [str(self.folder / "plugin"), str(self.folder)]
         sys.path[:] = [*ours, *(each for each in sys.path if "site-packages" in each or each.startswith(sys.base_prefix))]
         sys.path_importer_cache.clear()
-        for name in [name for name in sys.modules if name.partition(".")[0] in ("tests", "cad_io", "plan_cutters")]:
+        for name in [name for name in sys.modules if name.partition(".")[0] in ("tests", *PACKAGES)]:
             del sys.modules[name]
         tempfile.tempdir = None
         os.environ |= {"PYTHONPATH": os.pathsep.join(ours), "NUMBA_CACHE_DIR": str(self.cache), "TMPDIR": str(scratch)}

@@ -11,6 +11,8 @@ from itertools import chain
 
 import pytest
 
+from tests.support.places import PACKAGES
+
 
 def seconds():
     """Processor seconds of this process and of those that it has waited for."""
@@ -76,7 +78,7 @@ class Reach:
         if self.modules != len(sys.modules):
             self.modules = len(sys.modules)
             for of, module in [*sys.modules.items()]:
-                if of.partition(".")[0] in ("plan_cutters", "cad_io"):
+                if of.partition(".")[0] in PACKAGES:
                     for key, each in vars(module).items():
                         if hasattr(each, "py_func"):
                             self.compiled[key].add(each)

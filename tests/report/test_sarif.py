@@ -3,8 +3,8 @@
 from hypothesis import given
 from hypothesis import strategies as st
 
-from plan_cutters.report.cases.case import Case
-from plan_cutters.report.cases.sarif import document
+from plan_cutters.cases.case import Case
+from plan_cutters.cases.sarif import document
 from tests.support.cases import OUTCOMES, TEXT
 from tests.support.sarif import findings
 

@@ -4,14 +4,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from plan_cutters.cases.case import Case
+from plan_cutters.cases.files import CaseFiles
+from plan_cutters.cases.junit import document
+from plan_cutters.cases.plan import PROCESS, plan_cases
 from plan_cutters.command.codes import code_of
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.plan_file.model import MissingEntry
 from plan_cutters.plan_file.process import ProcessEntry, RemainingEntry
-from plan_cutters.report.cases.case import Case
-from plan_cutters.report.cases.files import CaseFiles
-from plan_cutters.report.cases.junit import document
-from plan_cutters.report.cases.plan import PROCESS, plan_cases
 from tests.support.cases import OUTCOMES, TEXT
 from tests.support.junit import cases, outcomes
 from tests.support.plan_files import SAMPLES, cutter, face, made, verdicts

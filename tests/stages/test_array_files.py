@@ -238,7 +238,7 @@ def test_undecided_stays_undecided_as_long_as_the_machine_holds_a_posture():
 
 def test_no_other_reader_of_arrays(tmp_path):
     """Every `.npz` goes through the one door, and `samples.npz` in FreeCAD through a narrower one of its own."""
-    for root in ("plugin/plan_cutters", "cad_io", "freecad"):
+    for root in ("plugin", "cad_io", "freecad"):
         for path in Path(root).rglob("*"):
             if path.suffix in (".py", ".FCMacro"):
                 text = path.read_text(encoding="utf-8")

@@ -20,7 +20,7 @@ import warnings
 from types import SimpleNamespace
 
 from plan_cutters.command import entry
-from tests.support.places import ROOT
+from tests.support.places import PACKAGES, ROOT
 
 ENV = {**os.environ, "PYTHONPATH": f"{ROOT / 'plugin'}{os.pathsep}{ROOT}"}
 
@@ -101,7 +101,7 @@ def _command(command, words, cwd, environment, streams, bare):
     signal.signal(signal.SIGINT, signal.default_int_handler)
     sys.argv = [command, *words]
     if bare:
-        for name in [n for n in sys.modules if n.partition(".")[0] in ("plan_cutters", "cad_io", "OCP", "numba")]:
+        for name in [n for n in sys.modules if n.partition(".")[0] in (*PACKAGES, "OCP", "numba")]:
             del sys.modules[name]
         sys.modules["OCP"] = sys.modules["numba"] = subprocess.Popen = None
     child = importlib.import_module("plan_cutters.workers.child")

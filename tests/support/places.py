@@ -9,6 +9,8 @@ ROOT = Path(__file__).resolve().parents[2]
 SAMPLES = ROOT / "samples"
 SHARED = ROOT.parent / "shared"
 DATA = SHARED / "data"
+#: The packages, by name.
+PACKAGES = {path.parent.name: path.parent for path in (*ROOT.glob("plugin/*/__init__.py"), ROOT / "cad_io/__init__.py")}
 
 
 def real_file(name: str) -> Path:

@@ -68,7 +68,7 @@ CONTRACT = {"asked_mm2", "left", "left_share"}
 #: Plain English in a sentence.
 ONLY_NAMES = {"found", "given", "left"}
 
-SOURCES = (("plugin/plan_cutters", "*.py"), ("cad_io", "*.py"), ("plugin/plan_cutters", "*.jinja"), ("page/src", "*.ts"))
+SOURCES = (("plugin", "*.py"), ("cad_io", "*.py"), ("plugin", "*.jinja"), ("page/src", "*.ts"))
 
 #: Kind ("names" or "texts"), room, word -> places, as `file:line: name`.
 Places = dict[tuple[str, str, str], list[str]]
@@ -158,7 +158,7 @@ def count(folder: Path = ROOT) -> Places:
     for base, pattern in SOURCES:
         for path in sorted((folder / base).rglob(pattern)):
             within = path.relative_to(folder / base).parts
-            room = "/".join([base.rsplit("/", 1)[-1] if base != "page/src" else "page", *within[:-1][:1]])
+            room = "page" if base == "page/src" else "/".join([*base.split("/"), *within[:-1]][base == "plugin" :][:2])
             file, source = path.relative_to(folder).as_posix(), path.read_text(encoding="utf-8")
             if pattern == "*.py":
                 tree = ast.parse(source)

@@ -10,8 +10,8 @@ import numpy as np
 
 from cad_io import read_part
 from plan_cutters import Options, plan
+from plan_cutters_check.asking import question_of, stated_by
 from plan_cutters_check.check import on_paper
-from plan_cutters_check.command import question_of, stated_by
 from plan_cutters_check.findings import Answer
 from plan_cutters_check.question import Question
 from tests.support.places import ROOT

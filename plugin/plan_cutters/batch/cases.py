@@ -2,8 +2,8 @@
 
 from plan_cutters.batch.row import PartRow
 from plan_cutters.batch.summary import Outcome, cause, outcome
-from plan_cutters.report.cases import case
-from plan_cutters.report.cases.case import Case
+from plan_cutters.cases import case
+from plan_cutters.cases.case import Case
 
 #: What is not sure is neither reached nor known not to be.
 _OUTCOMES: dict[Outcome, case.Outcome] = {"failed": "error", "not_finished": "failure", "not_sure": "error", "finished": "passed"}

@@ -17,10 +17,10 @@ from plan_cutters.batch.shop_text import shop_lines
 from plan_cutters.batch.summary import OUTCOMES, BatchRun, Outcome, Summary, Table, cause, fault, outcome, summary_of
 from plan_cutters.batch.table import csv_of, parquet_of
 from plan_cutters.document.build import versions
+from plan_cutters.files.markup import finite, plain, policy, template
 from plan_cutters.plan_file import numbers
 from plan_cutters.plan_file.numbers import percent
 from plan_cutters.plan_file.words.cutters import reason
-from plan_cutters.report.markup import finite, plain, policy, template
 
 PAGE, CSV, PARQUET, SUMMARY = "index.html", "index.csv", "index.parquet", "summary.json"
 _HERE = Path(__file__).parent

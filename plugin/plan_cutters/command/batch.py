@@ -16,8 +16,9 @@ from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import options
 from plan_cutters.command.request import BatchRequest, takes
 from plan_cutters.command.values import File, Words
+from plan_cutters.files.pictures import with_pictures
 from plan_cutters.files.terminal_text import clean
-from plan_cutters.report.folder import DEFAULT_FORMATS, with_pictures
+from plan_cutters.report.folder import DEFAULT_FORMATS
 
 if TYPE_CHECKING:
     from plan_cutters.batch.job import Fault, Job, Settings
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
     from plan_cutters.batch.run import Terms
     from plan_cutters.batch.sources import Source
     from plan_cutters.batch.store import Store
-    from plan_cutters.report.cases.files import CaseFiles
+    from plan_cutters.cases.files import CaseFiles
 
 _SELF = "plan-cutters batch"
 #: Groups of options that a part of a manifest may have of its own.

@@ -32,9 +32,7 @@ from plan_cutters.workers.supervise import default_memory
 _SELF = "plan-cutters"
 
 
-@click.command(
-    cls=help_groups.Command, subcommands=sentences, examples=EXAMPLES, codes=CODES
-)
+@click.command(cls=help_groups.Command, subcommands=sentences, examples=EXAMPLES, codes=CODES)
 @click.argument("parts", nargs=-1, required=True, metavar="PART...", type=File("PART"))
 @options()
 @takes(PlanRequest)
@@ -54,7 +52,8 @@ def command(request: PlanRequest) -> int:
 
         return stored(parts[0], request.postures, requested, request, help_groups.named())
     if request.check_operations is not None:
-        return module_of(f"{_SELF} check").checked(parts[0], request.check_operations, requested, quiet=request.quiet, read_timeout=request.read_timeout)
+        checked = module_of(f"{_SELF} check").checked
+        return int(checked(parts[0], request.check_operations, requested, quiet=request.quiet, read_timeout=request.read_timeout))
     codes = []
     cases = _part_cases(request)
     outs = folders(request)

@@ -20,6 +20,7 @@ OURS = {
     "map": ("map", "Draw all postures of one cutter at one point."),
     "stored": ("stored_maps", "Judge another machine or setup by the posture maps of a plan."),
     "tools": ("tools", "List the tools of a library as they are understood."),
+    "batch": ("batch", "Plan many parts, on this machine or on a cluster."),
     "machines": ("machines", "List the built-in machines, or show how a machine file is understood."),
 }
 

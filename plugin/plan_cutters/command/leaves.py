@@ -13,23 +13,23 @@ GROUP = "plan_cutters.commands"
 
 @cache
 def leaves() -> dict[str, str]:
-    """The module of each command that an installed package adds, by its name; of two of a name, the first on the path.
+    """List the modules of the commands that installed packages add, by name; of two of a name, the first on the path.
 
     The files are read here: `importlib.metadata` alone takes a third of the time that help may take.
     """
-    found: dict[str, str] = {}
+    modules: dict[str, str] = {}
     for folder in sys.path:
         for file in sorted(Path(folder or ".").glob("*.dist-info/entry_points.txt")):
             group = file.read_text(encoding="utf-8", errors="replace").partition(f"[{GROUP}]\n")[2].partition("\n[")[0]
             for line in filter(None, map(str.strip, group.splitlines())):
                 name, equals, module = map(str.strip, line.partition("="))
                 if equals and name.isidentifier():
-                    found.setdefault(name, module.partition(":")[0])
-    return found
+                    modules.setdefault(name, module.partition(":")[0])
+    return modules
 
 
 def sentence(module: str) -> str:
-    """What a module says about itself in its first line, without running it."""
+    """Read the first line of a module's text, without running it."""
     try:
         spec = find_spec(module)
         code = spec.loader.get_code(module) if spec else None  # type: ignore[union-attr]

@@ -88,7 +88,7 @@ def command(request: MapRequest) -> int:
     from cad_io.read.sniff import kind
     from cad_io.whole import refusal
     from plan_cutters.errors import OptionError
-    from plan_cutters.report.formats import NO_PICTURES, draws_pictures
+    from plan_cutters.files.pictures import NO_PICTURES, draws_pictures
 
     part = request.part
     report("part", part)
@@ -294,7 +294,7 @@ def _table(result: "PostureMap", about: list[str], outs: Sequence[Path], console
     """The free intervals for people."""
     from rich.table import Table
 
-    from plan_cutters.report.formats import NO_PICTURES
+    from plan_cutters.files.pictures import NO_PICTURES
 
     for line in about:
         console.print(clean(line), soft_wrap=True)

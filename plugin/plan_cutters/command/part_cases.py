@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 from plan_cutters.workers.assignment import is_child, report
 
 if TYPE_CHECKING:
+    from plan_cutters.cases.case import Case
+    from plan_cutters.cases.files import CaseFiles
     from plan_cutters.plan_file.model import Plan
-    from plan_cutters.report.cases.case import Case
-    from plan_cutters.report.cases.files import CaseFiles
 
 _SUITE = "plan-cutters"
 
@@ -33,7 +33,7 @@ class PartCases:
 
     def planned(self, part: str, plan: "Plan", code: int) -> None:
         """Take the cases of a plan, or hand them to the process that gathers them."""
-        from plan_cutters.report.cases.plan import plan_cases
+        from plan_cutters.cases.plan import plan_cases
 
         cases = plan_cases(plan, code, part)
         if is_child():
@@ -43,7 +43,7 @@ class PartCases:
 
     def handed(self, text: str) -> None:
         """Take the cases of the part that began last."""
-        from plan_cutters.report.cases.case import Case
+        from plan_cutters.cases.case import Case
 
         self.cases[self.part] = [Case(*each) for each in json.loads(text)]
 
@@ -61,8 +61,8 @@ class PartCases:
         PlanError
             One cannot be written.
         """
-        from plan_cutters.report.cases.case import Case
-        from plan_cutters.report.cases.plan import PROCESS
+        from plan_cutters.cases.case import Case
+        from plan_cutters.cases.plan import PROCESS
 
         cases: list[Case] = []
         for part in self.parts:

@@ -11,11 +11,11 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, TypeVar, cast
 
 if TYPE_CHECKING:
+    from plan_cutters.cases.files import CaseFiles
     from plan_cutters.domain.cutter import Cutter
     from plan_cutters.domain.holder import Holder
     from plan_cutters.library.records import Library
     from plan_cutters.option_types import PlanOptions
-    from plan_cutters.report.cases.files import CaseFiles
 
 #: A setup: a direction of the part, a setup file, or `auto`.
 Setup = tuple[float, ...] | str
@@ -115,7 +115,7 @@ class PlanningRequest(JudgingRequest):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class _Reported:
+class Reported:
     """Files of test cases."""
 
     junit: str | None
@@ -126,13 +126,13 @@ class _Reported:
         """Those that are requested, if any is."""
         if self.junit is None and self.sarif is None:
             return None
-        from plan_cutters.report.cases.files import CaseFiles
+        from plan_cutters.cases.files import CaseFiles
 
         return CaseFiles(self.junit, self.sarif)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class PlanRequest(PlanningRequest, _Reported):
+class PlanRequest(PlanningRequest, Reported):
     """Plans of some parts: `plan-cutters`."""
 
     parts: tuple[str, ...]
@@ -149,7 +149,7 @@ class PlanRequest(PlanningRequest, _Reported):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class BatchRequest(PlanningRequest, _Reported):
+class BatchRequest(PlanningRequest, Reported):
     """Plans of many parts on workers: `plan-cutters batch`."""
 
     sources: tuple[str, ...]
@@ -202,54 +202,6 @@ class MachinesRequest:
     axis: str | None
     as_json: bool
     to_toml: str | None
-    debug: bool
-
-
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class DiffRequest:
-    """The difference of two plans: `plan-cutters diff`."""
-
-    old: str
-    new: str
-    as_json: bool
-    as_markdown: bool
-    out: str | None
-    junit: str | None
-    slack: float
-    despite: str
-    debug: bool
-
-
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class ChangedRequest(_Reported):
-    """Parts that changed in a repository: `plan-cutters changed`."""
-
-    #: Those of a plan, as words of its command line.
-    plan_options: tuple[str, ...]
-    base: str | None
-    head: str
-    staged: bool
-    fail_on: str
-    out: str
-    annotations: str | None
-    cache: str | None
-    pictures_branch: str | None
-    debug: bool
-
-
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class McpRequest:
-    """Tools of agents: `plan-cutters mcp`."""
-
-    roots: tuple[str, ...]
-    client_roots: bool
-    most_mb: float
-    most_samples: int
-    most_cutters: int
-    most_characters: int
-    timeout: float
-    memory: float | None
-    calls: int
     debug: bool
 
 

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Protocol
 from cad_io.errors import CadIoError
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.files.lock import Lock
-from plan_cutters.report.formats import LATER, NO_PICTURES, WRITERS, draws_pictures, sha256
+from plan_cutters.files.pictures import NO_PICTURES, draws_pictures
+from plan_cutters.report.formats import LATER, WRITERS, sha256
 from plan_cutters.report.protocol import Judged
 
 if TYPE_CHECKING:
@@ -41,14 +42,6 @@ _SIDE_FILES = {
 FORMATS = ("json", *(f for f in WRITERS if f not in _SIDE_FILES), "plans")
 #: What is written unless asked otherwise (`docs/decisions/0017-formats-on-request.md`).
 DEFAULT_FORMATS = ("json", "html", "step", "glb", "npz")
-
-
-def with_pictures(formats: Sequence[str], hint: Callable[[str], None]) -> tuple[str, ...]:
-    """Default formats and the picture of the part; without it, and with a word in `hint`, where pictures cannot be drawn."""
-    if draws_pictures():
-        return (*formats, "png")
-    hint(f"no pictures of parts: {NO_PICTURES}")
-    return tuple(formats)
 
 
 def read_formats(text: str) -> tuple[str, ...]:

@@ -5,11 +5,9 @@ from collections.abc import Callable, Generator, Sequence
 from contextlib import ExitStack
 from functools import partial
 from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from plan_cutters.errors import extra_hint
 from plan_cutters.report.protocol import Judged
 
 if TYPE_CHECKING:
@@ -55,15 +53,6 @@ _MODELS = {
 LATER = ("html", "csv", "vtk", "regions", *(name for models in _MODELS.values() for name in models))
 #: Processor time that a copy may take for a file, s: behind it, the file is made here.
 _COPY = 300.0
-
-
-#: What is said where a picture was to be drawn and Matplotlib is not installed.
-NO_PICTURES = f"pictures need Matplotlib: {extra_hint('pictures')}"
-
-
-def draws_pictures() -> bool:
-    """Whether Matplotlib is installed, which draws the part and posture maps."""
-    return find_spec("matplotlib") is not None
 
 
 class Making:

@@ -14,13 +14,13 @@ from typing import Any, Literal, NamedTuple, get_args
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.lengths import reporting
 from plan_cutters.errors import OptionError, PlanError
+from plan_cutters.files.markup import plain, template
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.shares import VERDICTS
 from plan_cutters.plan_file.words.cutters import FEASIBLE
 from plan_cutters.plan_file.words.story import Story, story_of
 from plan_cutters.plan_file.words.text import further, of_the_plan
 from plan_cutters.plan_file.words.text import text_of as made_of
-from plan_cutters.report.markup import plain, template
 from plan_cutters.report.page.write import LARGEST_WITHOUT, page
 from plan_cutters.report.protocol import Judged
 

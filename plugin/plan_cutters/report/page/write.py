@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from cad_io.write.render_mesh import render_mesh
 from plan_cutters.domain.lengths import reporting
 from plan_cutters.domain.tolerance import depths
+from plan_cutters.files.markup import embedded, policy, template, with_three
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.report.markup import embedded, policy, template, with_three
 from plan_cutters.report.page import arrays, tables
 from plan_cutters.report.page.arrays import Arrays
 from plan_cutters.report.page.atlas import atlas_of

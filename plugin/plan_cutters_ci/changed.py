@@ -1,0 +1,379 @@
+"""Find the parts that changed in a git repository, and compare their plans."""
+
+import hashlib
+import json
+import os
+import re
+import shutil
+import tempfile
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NoReturn
+
+import click
+
+from cad_io.whole import whole
+from plan_cutters.command.codes import ENDED, run
+from plan_cutters.command.help_groups import Command, heading
+from plan_cutters.command.option_groups import options
+from plan_cutters.command.request import PlanRequest, Reported, takes
+from plan_cutters.command.terminal import error, hand_out, say
+from plan_cutters.command.values import Folder
+from plan_cutters.errors import OptionError, PlanError
+from plan_cutters.files.pictures import with_pictures
+from plan_cutters.files.temporary import require_temporary
+from plan_cutters_ci.annotations import KINDS, annotations, requested
+from plan_cutters_ci.changed_row import RULES, Row, row_cases
+from plan_cutters_ci.repository import Changed, changed, content, publish
+
+if TYPE_CHECKING:
+    from plan_cutters.batch.content import Content
+    from plan_cutters.batch.job import Handed, Settings
+
+_SELF = "plan-cutters changed"
+#: Options of a plan that this command gives itself.
+_OURS = ("-o", "--out", "--formats", "--json", "--junit", "--sarif", "--quiet", "--postures", "--check-operations", "--help",
+         "-h", "--version")  # fmt: skip
+_PLANNED = (0, 1, 4)
+
+_commits, _output, _rules = heading("Commits"), heading("Output"), heading("Rule")
+
+
+@dataclass(frozen=True)
+class PartRequest:
+    """How the parts are planned: the options after `--`, read once, so that all parts have the same tools.
+
+    Attributes
+    ----------
+    settings : Settings
+    handed : Handed
+    words : tuple of str
+        Of the command line, for what is no option of the plan.
+    """
+
+    settings: "Settings"
+    handed: "Handed"
+    words: tuple[str, ...]
+
+    @classmethod
+    def of(cls, words: Sequence[str]) -> "PartRequest":
+        """Read the options, and every file that they name.
+
+        Raises
+        ------
+        CadIoError, OptionError, PlanError
+            An option has no meaning, or a file cannot be used.
+        """
+        from cad_io.files import noted
+        from plan_cutters.batch.job import Settings, handed
+        from plan_cutters.command.cli import command as plan
+        from plan_cutters.command.validation import look_at, options_of, refuse_unplanned_operations
+
+        with plan.make_context(_SELF, ["part", *words]) as context:
+            requested = PlanRequest(**context.params)
+        if len(requested.parts) > 1:
+            raise OptionError(f"{requested.parts[1]} cannot stand after --: only options can")
+        refuse_unplanned_operations(requested)
+        with noted() as files:
+            options = options_of(requested)
+        look_at(options)
+        formats = with_pictures(("json", "html"), lambda line: error(f"{_SELF}: {line}"))
+        settings = Settings(options, formats, requested.step_schema, read=tuple(filter(None, files.values())))
+        handed_on = ["--formats", ",".join(formats), *(["--debug"] if requested.debug else [])]
+        handed_on += [] if requested.cache else ["--no-cache"]
+        for name in ("step_schema", "read_timeout", "timeout", "memory", "cluster", "verdicts", "verdicts_key"):
+            if (value := getattr(requested, name)) is not None:
+                here = name in ("cluster", "verdicts", "verdicts_key") and "://" not in value
+                handed_on += [f"--{name.replace('_', '-')}", os.path.abspath(value) if here else str(value)]
+        return cls(settings, handed(options), tuple(handed_on))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class ChangedRequest(Reported):
+    """Parts that changed in a repository: `plan-cutters changed`."""
+
+    #: Those of a plan, as words of its command line.
+    plan_options: tuple[str, ...]
+    base: str | None
+    head: str
+    staged: bool
+    fail_on: str
+    out: str
+    annotations: str | None
+    cache: str | None
+    pictures_branch: str | None
+    debug: bool
+
+
+@click.command(
+    cls=Command,
+    examples=(
+        (f"{_SELF} --base origin/main", "The parts of this branch, with the cutters that are built in:"),
+        (f"{_SELF} --base main --fail-on lost -- --cutters shop.toml", "With options of a plan after --:"),
+    ),
+    codes=(
+        ("0", "no part fails by the rule"),
+        ("1", "a part fails by the rule"),
+        ("2", "the command line or the repository is wrong"),
+        ENDED,
+    ),
+)
+@click.argument("plan_options", nargs=-1, metavar="[-- OPTION...]")
+@_commits(
+    "--base",
+    metavar="COMMIT",
+    help="Compare with where HEAD began on this.  [default: the pull request's base, of GITHUB_BASE_REF]",
+)
+@_commits("--head", default="HEAD", metavar="COMMIT", help="The commit to look at.  [default: HEAD]")
+@_commits("--staged", is_flag=True, help="Look at what is staged for the next commit, in place of a commit.")
+@_rules(
+    "--fail-on",
+    type=click.Choice(RULES),
+    default="lost",
+    help="lost: a face or cutter is lost, or a part cannot be planned; unreachable: or no cutter reaches some face whole; "
+    "not-comparable: or plans are not comparable; none: never.  [default: lost]",
+)
+@_output(
+    "-o",
+    "--out",
+    type=Folder("DIR"),
+    default="plan-cutters-changed",
+    help="Plans before and after, summary.md and changed.json.  [default: plan-cutters-changed]",
+)
+@_output("--cache", type=Folder("DIR"), help="Plans of earlier runs, by content; parts that are there are not planned again.")
+@_output(
+    "--annotations",
+    type=click.Choice(KINDS),
+    help="github: an ::error line for each part that fails, on standard error; none.  [default: github in a job of GitHub]",
+)
+@_output("--pictures-branch", metavar="NAME", help="Push pictures to this branch of origin and show them in the summary.")
+@options("debug", junit={"help": "Also write what became of each part as JUnit XML; what --fail-on lets pass is skipped."},
+         sarif={})  # fmt: skip
+@takes(ChangedRequest)
+def command(request: ChangedRequest) -> int:
+    """Find the parts (STEP, IGES, BREP) that changed since COMMIT, and show which faces and cutters were lost.
+
+    Each part is planned as it was and as it is, with the same options: those after --. The summary is Markdown, on standard
+    output and in the file that GITHUB_STEP_SUMMARY names.
+    """
+    for word in request.plan_options:
+        if word.partition("=")[0] in _OURS or re.match("-o.", word):
+            raise OptionError(f"{word} cannot stand after --: this command gives it itself")
+    base = request.base or (f"origin/{ref}" if (ref := os.environ.get("GITHUB_BASE_REF")) else "")
+    if not base:
+        raise OptionError("compare with which commit? give --base, as --base origin/main")
+    files = request.case_files
+    if files is not None:
+        files.check()
+    require_temporary()
+    began, head, parts = changed(base, None if request.staged else request.head)
+    out = Path(request.out)
+    with tempfile.TemporaryDirectory() as folder:
+        cache = Path(request.cache or folder).absolute()
+        of_part = PartRequest.of(request.plan_options) if parts else None
+        rows = [_compared(part, began, head, of_part, cache, out) for part in parts]
+    links: dict[Path, str] = {}
+    if request.pictures_branch and rows:
+        try:
+            links = _links(rows, request.pictures_branch)
+        except PlanError as fault:
+            error(f"{_SELF}: pictures are in {out} alone: {fault}")
+    failing = [row for row in rows if row.breaks(request.fail_on)]
+    text, job = (_summary(rows, request.fail_on, failing, links, began, at) for at in ("", _artifacts()))
+    _hand_on(rows, out, text, job, failing)
+    cases = [(row.part.name, [*row_cases(row, request.fail_on)]) for row in rows]
+    if files is not None:
+        files.write(_SELF, [case for _, each in cases for case in each])
+    for line in annotations(cases) if requested(request.annotations) else ():
+        error(line)
+    for row in rows:
+        for line in filter(None, (row.failed, row.unread)):
+            error(f"{_SELF}: {line}")
+    return 1 if failing else 0
+
+
+def _compared(part: Changed, began: str, head: str, request: PartRequest | None, cache: Path, out: Path) -> Row:
+    """Plan a part as it was and as it is; what cannot be planned is told in the row. A part that is gone is not planned."""
+    if part.new is None or request is None:
+        return Row(part)
+    from plan_cutters.batch.content import content as all_of
+    from plan_cutters.batch.store import MARKER
+    from plan_cutters.plan_file.load import PLAN, load_plan
+    from plan_cutters_ci.pictures import picture_of
+    from plan_cutters_ci.plans import compare
+    from plan_cutters_ci.review import PAGE, Side, page
+    from plan_cutters_ci.states import unreachable
+
+    pages: dict[str, Path] = {}
+    why: dict[str, str] = {}
+    known: dict[Content, Path] = {}
+    for side, at, path in (("after", head, part.new), ("before", began, part.old)):
+        if path is None:
+            continue
+        say(f"{path}: {'as it was' if side == 'before' else 'as it is'}")
+        try:
+            data = all_of(path, partial(content, at))
+            # A part that was only renamed is planned once.
+            known[data] = plan = known.get(data) or _planned(data, path, request, cache)
+            pages[side] = out / side / part.name
+            shutil.rmtree(pages[side], ignore_errors=True)
+            shutil.copytree(plan, pages[side], ignore=shutil.ignore_patterns(MARKER))
+        except PlanError as fault:
+            why[side] = str(fault) if fault.file == path else f"{path}: {fault}"
+    plans = {side: load_plan(folder / PLAN) for side, folder in pages.items()}
+    difference = compare(plans["before"], plans["after"], name=part.name) if len(plans) == 2 else None
+    side_page = Path("compare", part.name, PAGE)
+    shutil.rmtree((out / side_page).parent, ignore_errors=True)
+    if difference and not difference.same:
+        names = {"before": f"as it was, {began[:12]}", "after": "as it is"}
+        (out / side_page).parent.mkdir(parents=True)
+        with whole(out / side_page, PlanError) as temporary:
+            sides = [Side(names[side], plans[side], picture_of(pages[side] / PLAN, plans[side])) for side in names]
+            temporary.write_bytes(page(difference, *sides))
+    return Row(
+        part,
+        pages.get("before"),
+        pages.get("after"),
+        difference=difference,
+        beside=side_page if (out / side_page).is_file() else None,
+        unreachable=tuple(unreachable(plans["after"])) if "after" in plans else (),
+        failed=why.get("after", ""),
+        unread=why.get("before", ""),
+    )
+
+
+def _planned(content: "Content", path: str, request: PartRequest, cache: Path) -> Path:
+    """The folder of a plan of a part in the cache, planned unless it is there.
+
+    Raises
+    ------
+    PlanError
+        It cannot be planned.
+    """
+    from plan_cutters.batch import keys, work
+    from plan_cutters.batch.rows_of_plans import row_of
+    from plan_cutters.batch.store import Store
+    from plan_cutters.plan_file.load import load_plan
+
+    name = Path(path).name
+    key = keys.key(content.key, keys.settings_key(request.settings, request.handed))
+    # The part's name stands in its plan.
+    folder = keys.key(key, keys.checksum(name.encode("utf-8", "surrogateescape")))
+    store = Store(str(cache))
+    if work.cached(store, folder, key, name, path) is not None:
+        return cache / folder
+    cache.mkdir(parents=True, exist_ok=True)
+    task = work.Task(name, path, None, None, request.handed, request.words, key, None, "", False, None, {})
+    with tempfile.TemporaryDirectory(dir=cache, prefix=".") as place:
+        code, line = work.planned(task, content, Path(place))
+        made = work.files_of(Path(place) / "out")
+        if code not in _PLANNED or work.PLAN not in made:
+            raise PlanError(line or f"ended with exit code {code} and no plan")
+        plan = load_plan(made[work.PLAN])
+        store.publish(folder, made, row_of(plan, name=name, file=path, code=code, key=key, folder=folder, seconds=0.0))
+    return cache / folder
+
+
+def _links(rows: Sequence[Row], branch: str) -> dict[Path, str]:
+    """Addresses of the pictures of folders, once they are pushed."""
+    data = {
+        folder: (folder / "review.png").read_bytes()
+        for row in rows
+        for folder in (row.before, row.after)
+        if folder is not None and (folder / "review.png").is_file()
+    }
+    names = {folder: f"{hashlib.sha256(each).hexdigest()[:32]}.png" for folder, each in data.items()}
+    made = publish({names[folder]: each for folder, each in data.items()}, branch, "origin")
+    where = f"{os.environ.get('GITHUB_SERVER_URL', '')}/{os.environ.get('GITHUB_REPOSITORY', '')}/raw/{made}"
+    return {folder: f"{where}/{name}" for folder, name in names.items()}
+
+
+def _artifacts() -> str:
+    """Address of the files that the job keeps; empty where this is no job."""
+    names = ("GITHUB_SERVER_URL", "GITHUB_REPOSITORY", "GITHUB_RUN_ID")
+    server, repository, run_id = (os.environ.get(name, "") for name in names)
+    return f"{server}/{repository}/actions/runs/{run_id}#artifacts" if server and repository and run_id else ""
+
+
+def _summary(rows: Sequence[Row], rule: str, failing: Sequence[Row], links: dict[Path, str], began: str, artifacts: str) -> str:
+    """The summary: with links to the files beside it, or to the artifacts of the job, which have them."""
+    if not rows:
+        return f"## plan-cutters\n\nNo part changed since {began[:12]}.\n"
+    from plan_cutters.plan_file.numbers import count, listed
+    from plan_cutters_ci.markdown import escaped, page_link, section, table
+
+    lines = ["## plan-cutters", ""]
+    many = count(len(rows), "part")
+    text = f"{len(failing)} of {many} fail{'s' if len(failing) == 1 else ''}" if failing else f"{many} changed, none fails"
+    lines += [f"**{text}** by the rule `{rule}`, since {began[:12]}."]
+    lines += table(("", "part", "how", "result", "reached before", "reached now"), (_line(row, row in failing) for row in rows))
+    for row in rows:
+        if row.difference is not None and not row.difference.same:
+            lines += ["", *section(row.difference)]
+        if row.beside is not None:
+            lines += ["", page_link(row.beside.as_posix(), artifacts)]
+        if row.unreachable:
+            lines += ["", f"No cutter reaches all of {listed(row.unreachable, 20)} of {escaped(row.part.name)}."]
+        shown = [(side, links[folder]) for side, folder in (("before", row.before), ("now", row.after)) if folder in links]
+        lines += [line for side, link in shown for line in ("", f"![{escaped(row.part.name)} {side}]({link})")]
+    if not links:
+        lines += [
+            "",
+            f"Pictures and review pages are {'in the artifact of this job' if artifacts else 'in the folder of this summary'}.",
+        ]
+    return "\n".join(lines) + "\n"
+
+
+def _line(row: Row, fails: bool) -> tuple[str, ...]:
+    from plan_cutters_ci.wording import mark_of
+
+    text = row.failed or row.unread or (mark_of(row.difference) if row.difference else "")
+    return ("fails" if fails else "", row.part.name, row.part.how, text, *(_bar(folder) for folder in (row.before, row.after)))
+
+
+def _bar(folder: Path | None) -> str:
+    """What the best cutter reaches of a part, drawn with letters: it needs no picture."""
+    from plan_cutters.plan_file.load import PLAN, load_plan
+    from plan_cutters.plan_file.numbers import percent
+    from plan_cutters_ci.states import reached
+
+    if folder is None:
+        return "-"
+    share = max((reached(cutter) for cutter in load_plan(folder / PLAN).cutters), default=0.0)
+    # Full only where all is reached.
+    full = 10 if share == 1.0 else min(9, int(10 * share))
+    return f"{'█' * full}{'░' * (10 - full)} {percent(share)}"
+
+
+def _hand_on(rows: Sequence[Row], out: Path, text: str, job: str, failing: Sequence[Row]) -> None:
+    """The summary and the facts, for people, for the job and for its next steps."""
+    out.mkdir(parents=True, exist_ok=True)
+    facts = {"format": "plan-cutters-changed", "format_version": 1, "parts": list(_facts(rows, failing))}
+    (out / "summary.md").write_text(text, encoding="utf-8")
+    (out / "changed.json").write_text(json.dumps(facts, indent=2) + "\n", encoding="utf-8")
+    hand_out(text)
+    outputs = {"parts": len(rows), "lost": sum(row.breaks("lost") for row in rows), "failing": len(failing), "folder": out}
+    assignments = "".join(f"{name}={value}\n" for name, value in outputs.items())
+    for variable, what in (("GITHUB_STEP_SUMMARY", job), ("GITHUB_OUTPUT", assignments)):
+        if os.environ.get(variable):
+            with open(os.environ[variable], "a", encoding="utf-8") as file:
+                file.write(what)
+
+
+def _facts(rows: Sequence[Row], failing: Sequence[Row]) -> Iterator[dict[str, Any]]:
+    for row in rows:
+        yield {
+            "part": row.part.name,
+            "how": row.part.how,
+            "fails": row in failing,
+            "error": row.failed or row.unread or None,
+            "unreachable": list(row.unreachable),
+            "difference": None if row.difference is None else json.loads(row.difference.model_dump_json()),
+        }
+
+
+def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
+    """Run the command."""
+    run(command, name, args)

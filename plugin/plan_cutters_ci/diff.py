@@ -1,0 +1,208 @@
+"""Show which faces and cutters were lost or won from one plan to another."""
+
+import os
+import sys
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, NoReturn
+
+import click
+
+from plan_cutters.command.codes import ENDED, USAGE, run
+from plan_cutters.command.help_groups import Command, heading
+from plan_cutters.command.option_groups import options
+from plan_cutters.command.request import takes
+from plan_cutters.command.terminal import error, hand_out, paper
+from plan_cutters.command.values import File, Folder, Words
+from plan_cutters.files.terminal_text import clean
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from plan_cutters_ci.model import Comparison, PlanDifference
+
+_SELF = "plan-cutters diff"
+#: Something was lost; two plans that cannot be compared are as a wrong command line.
+LOST, NOT_COMPARABLE = 1, USAGE
+_COLOURS = {"lost": "bold red", "won": "green", "lost and won": "bold red"}
+
+_output, _rules = heading("Output"), heading("Comparison")
+
+
+def requested_words() -> Sequence[str]:
+    from plan_cutters_ci.model import REQUESTED
+
+    return REQUESTED
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class DiffRequest:
+    """The difference of two plans: `plan-cutters diff`."""
+
+    old: str
+    new: str
+    as_json: bool
+    as_markdown: bool
+    out: str | None
+    junit: str | None
+    slack: float
+    despite: str
+    debug: bool
+
+
+@click.command(
+    cls=Command,
+    examples=(
+        (f"{_SELF} before-plan after-plan", "What a change of the part costs:"),
+        (f"{_SELF} before-plan after-plan -o compared", "Both parts side by side, in compared/review.html:"),
+        (f"{_SELF} monday friday --markdown", "Two folders of many plans, as Markdown:"),
+    ),
+    codes=(
+        ("0", "nothing was lost"),
+        ("1", "a face or a cutter lost, or a plan is in OLD alone"),
+        ("2", "the plans are not comparable, cannot be read, or the command line is wrong"),
+        ENDED,
+    ),
+)
+@click.argument("old", type=File("OLD"))
+@click.argument("new", type=File("NEW"))
+@_output("--json", "as_json", is_flag=True, help="All differences, as JSON on standard output.")
+@_output("--markdown", "as_markdown", is_flag=True, help="The same tables as Markdown, for the summary of a job.")
+@_output(
+    "-o",
+    "--out",
+    type=Folder("DIR"),
+    help="Both plans side by side, in DIR/review.html; of two folders of many, DIR/NAME/review.html for each pair that differs.",
+)
+@_rules(
+    "--slack",
+    type=click.FloatRange(0.0, 100.0),
+    default=0.1,
+    metavar="PERCENT",
+    help="Shares of an area that differ by no more are the same: samples of a changed part lie in other places.  [default: 0.1]",
+)
+@_rules(
+    "--despite",
+    type=Words("LIST", requested_words, listed=True),
+    default="",
+    help="Compare although these differ: unit, faces, sampling, postures, tolerance, clearance, machine, setup, fixtures.",
+)
+@options("debug", junit={"help": "Also write JUnit XML: a test case for each face and cutter that differs."})
+@takes(DiffRequest)
+def command(request: DiffRequest) -> int:
+    """Show which faces and cutters were lost or won from plan OLD to plan NEW.
+
+    OLD and NEW are plan.json files, the folders of two plans, or two folders of many plans, which are paired by name.
+    A face whose number shifted is known again by its place, its surface or its neighbours; one that is not known again is told.
+    """
+    from cad_io.whole import refusal
+    from plan_cutters.errors import OptionError, PlanError
+
+    if request.junit is None:  # where there is one, it says so too
+        for path in (request.old, request.new):
+            if not os.path.exists(path):
+                raise PlanError("no such file or folder", file=path)
+    from plan_cutters.cases.case import Case
+    from plan_cutters.cases.files import CaseFiles
+    from plan_cutters_ci.cases import COMPARABLE, comparison_cases
+    from plan_cutters_ci.folders import compare_folders
+
+    if request.as_json and request.as_markdown:
+        raise OptionError("--json and --markdown both write standard output: give one of them")
+    despite = [word.strip() for word in request.despite.split(",") if word.strip()]
+    for word in despite:
+        if word not in requested_words():
+            raise OptionError(f"--despite {word!r} is not known; give some of {','.join(requested_words())}")
+    files = None if request.junit is None else CaseFiles(request.junit)
+    if files is not None:
+        files.check()
+    if request.out and (why := refusal(request.out)):
+        raise OptionError(f"cannot write there ({why}); give another folder with -o", file=request.out)
+    old, new = Path(request.old), Path(request.new)
+    try:
+        comparison = compare_folders(old, new, slack=request.slack / 100.0, despite=despite)
+    except PlanError as fault:
+        if files is not None:
+            files.write(_SELF, [Case(request.new, COMPARABLE, "error", "unread", str(fault))])
+        raise
+    if files is not None:
+        files.write(_SELF, comparison_cases(comparison))
+    made = _pages(old, new, comparison, Path(request.out)) if request.out else {}
+    if request.as_json:
+        hand_out(comparison.model_dump_json(indent=2) + "\n")
+    elif request.as_markdown:
+        from plan_cutters_ci.markdown import markdown
+
+        hand_out(markdown(comparison, {name: path.as_posix() for name, path in made.items()}))
+    else:
+        from plan_cutters_ci.wording import apart, verdict
+
+        with paper(120) as console:
+            for each in comparison.plans:
+                _show(each, console)
+            lines = [f"Side by side: {path}" for path in made.values()]
+            for line in (*apart(comparison), *lines, verdict(comparison)):
+                console.print(clean(line), soft_wrap=True)
+    for line in comparison.unread if request.as_json or request.as_markdown else ():
+        error(f"{_SELF}: {line}")
+    return NOT_COMPARABLE if not comparison.comparable else LOST if comparison.lost else 0
+
+
+def _pages(old: Path, new: Path, comparison: "Comparison", out: Path) -> dict[str, Path]:
+    """Write the pages of the pairs that differ; where each is, by the name of its pair.
+
+    Raises
+    ------
+    PlanError
+        A page would take the place of a plan's own, or cannot be written.
+    """
+    from cad_io.whole import whole
+    from plan_cutters.errors import PlanError
+    from plan_cutters.plan_file.load import PLAN
+    from plan_cutters_ci.review import PAGE, pages
+
+    made = {}
+    for name, page in pages(old, new, comparison):
+        path = out / name / PAGE
+        if (path.parent / PLAN).exists():
+            raise PlanError("holds a plan, whose page would be overwritten: give another folder to -o", file=str(path.parent))
+        try:
+            if page is None:
+                # What an earlier comparison left says what is not so any more.
+                path.unlink(missing_ok=True)
+                continue
+            path.parent.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise PlanError(f"cannot be written: {error.strerror}", file=str(path)) from None
+        with whole(path, PlanError) as temporary:
+            temporary.write_bytes(page)
+        made[name] = path
+    return made
+
+
+def _show(difference: "PlanDifference", console: "Console") -> None:
+    from rich.table import Table
+    from rich.text import Text
+
+    from plan_cutters_ci.wording import CUTTERS, FACES, cutter_rows, face_rows, headline, remarks
+
+    def say(text: str, style: str = "") -> None:
+        console.print(Text(clean(text), style), soft_wrap=True)
+
+    say(headline(difference), "bold")
+    for line in difference.why_not:
+        say(f"  not comparable: {line}", "bold yellow")
+    for line in remarks(difference):
+        say(f"  {line}")
+    for names, rows in ((FACES, list(face_rows(difference))), (CUTTERS, list(cutter_rows(difference)))):
+        if rows:
+            table = Table(*names)
+            for row in rows:
+                table.add_row(Text(row[0], _COLOURS.get(row[0], "")), *(Text(clean(cell)) for cell in row[1:]))
+            console.print(table)
+
+
+def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
+    """Run the command."""
+    run(command, name, sys.argv[1:] if args is None else args)
