@@ -1,1 +1,1 @@
-"""The room compares plans: pure functions from two plan files to what was lost and won between them; it judges nothing."""
+"""Plans are compared: what was lost and won from one to another, as words, pages and lines for a job of continuous integration."""
