@@ -18,16 +18,20 @@ LEAVES = sorted(path.parent.name for path in ROOT.glob("plugin/plan_cutters_*/__
 
 HEAD = """# The house
 
-`python docs/house.py` draws this page from the import contracts in `pyproject.toml`, which each run of CI keeps; the sentence about a room is the
-first line of its own text. [What to touch for which change](maintainers.md) is another page.
+`python docs/house.py` draws this page from the import contracts in `pyproject.toml`, which each run of CI keeps. The sentence
+about a room is the first one of its own text. [What to touch for which change](maintainers.md) is another page.
 
-A part is read (`cad_io.read`), sampled and tessellated (`cad_io`); each cutter is judged at each sample (`stages` over `scene` and `kernels`); what follows from the
-verdicts is worked out (`operations`, `answers`); the plan file is put together (`document`) and written with pictures and models (`report`). `pipeline` alone
-knows this order. `command` takes words and gives an exit code.
+A part is read, sampled and tessellated (`cad_io`); each cutter is judged at each sample (`stages` over `scene` and `kernels`);
+what follows from the verdicts is worked out (`operations`, `answers`); the plan file is put together (`document`) and written
+with pictures and models (`report`). `pipeline` alone knows this order. `command` takes words and gives an exit code.
 
 ## Packages
 
 """
+ENTRY = """
+The core imports none of the first ones; their commands come by entry points of the group `plan_cutters.commands`, as those of
+a stranger's package do."""
+BELOW = "A room imports from rooms below it alone; rooms on one floor do not import each other."
 
 
 def sentence(path: Path) -> str:
@@ -55,9 +59,9 @@ def drawn() -> Iterator[str]:
         yield f"| `{name}` | {imports} | {sentence(place(name) / '__init__.py')} |"
     yield f"| `plan_cutters` | `cad_io` | {sentence(place('plan_cutters') / '__init__.py')} |"
     yield f"| `cad_io` | the CAD kernel | {sentence(place('cad_io') / '__init__.py')} |"
-    yield "\nThe core imports none of the first ones; their commands come by entry points of the group `plan_cutters.commands`, as those of a stranger's package do."
+    yield ENTRY
     for package in ("plan_cutters", "cad_io"):
-        yield f"\n## Floors of {package}\n\nA room imports from rooms below it alone; rooms on one floor do not import each other.\n"
+        yield f"\n## Floors of {package}\n\n{BELOW}\n"
         yield "| floor | room | for |\n|---:|---|---|"
         for floor, rooms in zip(range(len(floors(package)), 0, -1), floors(package), strict=True):
             for room in rooms:
@@ -73,7 +77,9 @@ def drawn() -> Iterator[str]:
 def main() -> None:
     text = HEAD + "\n".join(drawn()) + "\n"
     if "--check" in sys.argv[1:]:
-        sys.exit(None if PAGE.read_text(encoding="utf-8") == text else "docs/house.md is an old one: python docs/house.py")
+        raise SystemExit(
+            None if PAGE.read_text(encoding="utf-8") == text else "docs/house.md is an old one: python docs/house.py"
+        )
     PAGE.write_text(text, encoding="utf-8")
 
 

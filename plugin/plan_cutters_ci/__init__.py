@@ -1,1 +1,1 @@
-"""Plans are compared: what was lost and won from one to another, as words, pages and lines for a job of continuous integration."""
+"""Plans are compared: what was lost and won from one to another, as words, pages and lines of continuous integration."""
