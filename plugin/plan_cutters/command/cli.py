@@ -49,10 +49,6 @@ def command(request: PlanRequest) -> int:
 
     parts = request.parts
     requested, _ = check(request)
-    if request.postures is not None:
-        from plan_cutters.command.stored_maps import stored
-
-        return stored(parts[0], request.postures, requested, request, help_groups.named())
     if request.check_operations is not None:
         from plan_cutters.command.check_operations import checked
 
@@ -168,7 +164,7 @@ def _watched(words: list[str], name: str) -> int:
         terminal.keep_output()
         return invoked(command, _SELF, words)
     names = {cutter.id: called(cutter) for cutter in requested.judged}
-    display = Display(request.quiet or request.postures is not None, len(names), began(), names=names)
+    display = Display(request.quiet, len(names), began(), names=names)
     for fault in faults:
         terminal.error(f"plan-cutters: {fault}; the other parts are planned")
     memory = default_memory() if request.memory is None else int(request.memory * 1e9)

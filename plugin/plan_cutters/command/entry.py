@@ -17,7 +17,6 @@ _SELF = "plan-cutters"
 SUBCOMMANDS = {
     "plan": ("cli", "Find the cutters that finish a part: see below. It is meant where no command is named."),
     "map": ("map", "Draw all postures of one cutter at one point."),
-    "stored": ("stored_maps", "Judge another machine or setup by the posture maps of a plan."),
     "diff": ("diff", "Show which faces and cutters were lost or won from one plan to another."),
     "changed": ("changed", "Find the parts that changed in a git repository, and compare their plans."),
     "tools": ("tools", "List the tools of a library as they are understood."),

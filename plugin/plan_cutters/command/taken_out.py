@@ -1,7 +1,11 @@
 """Words of the command line that are gone, and what to use instead."""
 
 #: Options by their word, commands as "command WORD", values as "--option VALUE": what to use instead.
-TAKEN_OUT: dict[str, str] = {}
+TAKEN_OUT: dict[str, str] = {
+    "command stored": "plan again with the other machine or setup; the kept stages answer",
+    "--postures": "plan again with the other machine or setup; the kept stages answer",
+    "--answers stick-out-map": "give --answers stick-out; in Python, on_face asks for that of one face",
+}
 
 
 def instead(word: str) -> str:
