@@ -122,7 +122,7 @@ def test_each_bad_part_of_a_manifest_is_one_line_and_the_others_go_on(batch, par
         (["--cluster", "tcp://127.0.0.1:1"], "--cluster tcp://127.0.0.1:1: "),
         (["--cluster", "tcp://127.0.0.1:1", "--workers", "2"], "--workers is about this machine"),
         (["--feed", "500"], "--feed is about a plan of operations"),
-        (["--postures", "x.npz"], "--postures was taken out"),
+        (["--postures", "x.npz"], "No such option"),
     ],
 )
 def test_wrong_words_are_one_line(batch, parts, words, said):

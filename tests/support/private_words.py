@@ -44,7 +44,6 @@ INSTEAD = {
     "wobble": "variation",
     "site": "face cells",
     "crumb": "minor area",
-    "habit": "largest first",
     "lending": "shared cluster",
     "lent": "shared",
     "handing": "job input",

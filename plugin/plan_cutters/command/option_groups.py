@@ -208,8 +208,7 @@ _OPTIONS = (
         "--formats",
         brief="Of json, step, glb, html, npz, png, csv and more.",
         type=Words("LIST", lambda: FORMATS, listed=True),
-        help=f"Of {', '.join(FORMATS)}; merged is a GLB of one mesh, for parts of thousands of faces; "
-        "plans adds STEP and GLB of each plan of operations.  "
+        help=f"Of {', '.join(FORMATS)}; merged is a GLB of one mesh, for parts of thousands of faces.  "
         f"[default: {','.join(DEFAULT_FORMATS)}]",
     ),
     _output(

@@ -4,6 +4,8 @@
 TAKEN_OUT: dict[str, str] = {
     "command stored": "plan again with the other machine or setup; the kept stages answer",
     "--postures": "plan again with the other machine or setup; the kept stages answer",
+    "--formats regions": "the regions and axes of --operations stand in plan.json",
+    "--formats plans": "leave it out; STEP and GLB of both plans are written with --operations both",
     "--answers stick-out-map": "give --answers stick-out; in Python, on_face asks for that of one face",
 }
 

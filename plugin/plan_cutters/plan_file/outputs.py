@@ -60,16 +60,6 @@ class MapOutput(Frozen):
     rotations: list[RotationOutput]
 
 
-class VerdictsOutput(Frozen):
-    """Samples by verdict."""
-
-    interference_free: int
-    accessible: int
-    inaccessible: int
-    undecided: int
-    unjudged: int
-
-
 class HeldOutput(Frozen):
     name: str
     id: str
