@@ -1,4 +1,4 @@
-"""What cutters are worth: a plane with a groove, whose answer is known, and a real plan."""
+"""What cutters are worth: a plane with a groove, whose answer is known, the shop's habit, and a real plan."""
 
 import math
 from types import SimpleNamespace
@@ -9,7 +9,7 @@ import pytest
 from plan_cutters import Cutter, plan
 from plan_cutters.operations.fastest import fastest
 from plan_cutters.operations.problem import Costs, Problem
-from plan_cutters.operations.rest_areas import with_and_without, worths
+from plan_cutters.operations.rest_areas import largest_first, with_and_without, worths
 from tests.support.shapes import trough
 
 LARGE, SMALL = Cutter.parse("R8L80rc8"), Cutter.parse("R3L80rc3")
@@ -77,6 +77,39 @@ def test_the_first_cutter_and_the_first_setup_cost_nothing():
     problem = grooved(1000.0, 50.0, 20.0)
     assert problem.total(np.array([1])) == pytest.approx(1050.0 / (pass_width(SMALL) * FEED))
     assert problem.total(np.array([0, 1])) == pytest.approx(problem.cutting(np.array([0, 1])) + 20.0)
+
+
+def crumbed(plane, crumb, groove, operation):
+    """Rows: a plane, a crumb, a groove; columns: the large cutter on plane, on crumb, the small one on all three."""
+    feeds = [pass_width(cutter) * FEED for cutter in (LARGE, LARGE, SMALL)]
+    seconds = np.array([[area / each for each in feeds] for area in (plane, crumb, groove)])
+    seconds[[0, 1, 2, 2], [1, 0, 0, 1]] = math.inf
+    return Problem(seconds, np.array([0, 0, 1], np.int32), np.zeros(3, np.int32), Costs(operation, 20.0, 0.0))
+
+
+@pytest.mark.parametrize("side", [0.9, 1.1])
+def test_by_the_habit_the_large_cutter_turns_to_what_it_cuts_for_longer_than_it_turns(side):
+    operation = 5.0
+    crumb = side * operation * FEED * pass_width(LARGE)
+    assert largest_first(crumbed(1e5, crumb, 50.0, operation), (0, 1)).tolist() == ([0, 1, 2] if side > 1.0 else [0, 2])
+    assert largest_first(crumbed(1e5, crumb, 50.0, 0.0), (0, 1)).tolist() == [0, 1, 2]
+
+
+def test_by_the_habit_the_large_cutter_turns_to_what_it_alone_reaches():
+    problem = crumbed(1e5, 1e-3, 50.0, 5.0)
+    problem.cost[1, 2] = math.inf
+    assert largest_first(problem, (0, 1)).tolist() == [0, 1, 2]
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_habit_serves_all(seed):
+    rng = np.random.default_rng(seed)
+    cost = np.where(rng.random((12, 9)) < 0.4, 10.0 * rng.random((12, 9)), np.inf)
+    cost = cost[np.isfinite(cost).any(axis=1)]
+    problem = Problem(cost, rng.integers(0, 3, 9), np.zeros(9, np.int32), Costs(2.0, 20.0, 0.0))
+    found = largest_first(problem, (2, 0, 1))
+    assert np.isfinite(cost[:, found]).any(axis=1).all()
+    assert len(found) == len(set(found.tolist()))
 
 
 def test_plans_of_two_cutters_agree_with_themselves():

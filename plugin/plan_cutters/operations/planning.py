@@ -197,9 +197,8 @@ def _plans(task: Task, some: Task, search: Search, few: Columns, offer: Repeated
     choice = fastest_choice(task, some, search, few, parts[1])
     compared = [choice.columns.of(each) for each in (choice.safe, *with_and_without(choice.problem, choice.safe))]
     if len(task.cutters) > 1:
-        compared.append(
-            recommended(some, _worth(some, "fastest", largest_first_choice(some, search, few, minor=some is not task)))
-        )
+        by_size = largest_first_choice(some, search, few, minor=some is not task)
+        compared.append(recommended(some, _worth(some, "fastest", by_size)))
     compared += [_columns_of(task, each) for each in printed]
     plans = [plan_with(some, "fastest", _worth(some, "fastest", each)) for each in compared]
     best, words = _recommended(some, plans)
