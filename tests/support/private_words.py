@@ -44,6 +44,7 @@ INSTEAD = {
     "wobble": "variation",
     "site": "face cells",
     "crumb": "minor area",
+    "habit": "largest first",
     "lending": "shared cluster",
     "lent": "shared",
     "handing": "job input",

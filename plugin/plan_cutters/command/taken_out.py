@@ -2,16 +2,16 @@
 
 #: Options by their word, commands as "command WORD", values as "--option VALUE": what to use instead.
 TAKEN_OUT: dict[str, str] = {
-    "command stored": "plan again with the other machine or setup; the kept stages answer",
-    "--postures": "plan again with the other machine or setup; the kept stages answer",
+    "command stored": "plan again with the other machine or setup; stored stages make that short",
+    "--postures": "plan again with the other machine or setup; stored stages make that short",
     "--formats regions": "the regions and axes of --operations stand in plan.json",
     "--formats plans": "leave it out; STEP and GLB of both plans are written with --operations both",
-    "--answers stick-out-map": "give --answers stick-out; in Python, on_face asks for that of one face",
+    "--answers stick-out-map": "give --answers stick-out; in Python, result.face(F1, stick_out=True) is about a face",
 }
 
 
 def instead(word: str) -> str:
-    """What a word that is gone has in its place, as the end of an error; "" for a word that never was.
+    """Say what a word that is gone has in its place, as the end of an error; "" for a word that never was.
 
     >>> instead("--never-was")
     ''

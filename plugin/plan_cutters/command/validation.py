@@ -19,8 +19,6 @@ from plan_cutters.command.request import PlanningRequest, PlanRequest, planning_
 if TYPE_CHECKING:
     from plan_cutters.options import Options
 
-#: Parameters of the commands that `Options` names otherwise.
-NAMED = {"cutter": "cutters", "cutters": "libraries", "fixture": "fixtures"}
 #: Options that count in a plan of operations alone: without one they must not be ignored.
 OF_OPERATIONS = ("feed", "scallop", "stepover", "index_step", "index_time", "change_time", "setup_time",
                  "overlap", "most_operations", "max_orientations")  # fmt: skip

@@ -1,4 +1,4 @@
-"""What each cutter of a plan is worth, and a shop's habit, from which the fastest plan is looked for, too."""
+"""Tell what each cutter of a plan is worth, and choose by a shop's habit, from which the fastest plan is looked for, too."""
 
 from collections.abc import Iterator, Sequence
 

@@ -1,6 +1,6 @@
 """The page as a file: data, tables and script in one, within its size."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Any
 
@@ -91,13 +91,13 @@ def page(result: Judged, *, largest: int = LARGEST, triangles: int = TRIANGLES) 
     }
     about = Drawing(faces.deflection, faces.missing)
 
-    def made(others: Arrays, omitted: Sequence[str] = ()) -> bytes:
+    def made(others: Arrays, omitted: list[str]) -> bytes:
         entries, data = joined({**base, **others})
         for each in meta["cutters"]:
             each["has_posture"] = f"tilt.{each['id']}" in entries
         return _rendered({**meta, "arrays": entries}, data, tables.of(result, spots, more, about, omitted))
 
-    data = made(others)
+    data = made(others, [])
     return made({}, [_OTHERS]) if len(data) > largest and others else data
 
 
