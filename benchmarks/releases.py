@@ -40,7 +40,7 @@ STAGES = {
     "search": (),
     "setups, reasons": ("proposal", "setups", "reasons"),
     "area": ("area",),
-    "answers": ("stick-out", "stick-out-map", "radius", "mend"),
+    "answers": ("stick-out", "radius", "mend"),
     "operations": ("operations",),
     "write": (
         "write",

@@ -91,11 +91,6 @@ def followed(data: bytes, read: Callable[[str], bytes | None]) -> Iterator[tuple
                 waiting.append((os.path.dirname(path), raw))
 
 
-def fingerprint_of(data: bytes, read: Callable[[str], bytes | None]) -> str:
-    """Checksum of a CAD file with all that it refers to (`cad_io.files.fingerprint`); parameters as of `followed`."""
-    return files.fingerprint(files.checksum(data), files.checksums(followed(data, read)))
-
-
 def in_folder_of(file: str | os.PathLike[str]) -> Callable[[str], bytes | None]:
     """Read files by their paths from the folder of a file; None where there is none that can be read.
 

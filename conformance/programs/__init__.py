@@ -12,7 +12,7 @@ from conformance.programs.protocol import Unavailable
 #: Name of a program: module, class, what it is.
 MODULES = {
     "plan-cutters": ("plan_cutters", "PointMaps", "plan-cutters, posture maps of single points"),
-    "plan-cutters-maps": ("plan_cutters_claims", "StoredMaps", "plan-cutters, posture maps stored with a plan: postures of its own"),
+    "plan-cutters-maps": ("plan_cutters_claims", "Maps", "plan-cutters, posture maps beside a plan: postures of its own"),
     "plan-cutters-plans": ("plan_cutters_claims", "Plans", "plan-cutters, the posture that a plan names at each sample: postures of its own"),
     "fcl": ("fcl", "Program", "python-fcl: collision of triangle meshes"),
     "embree": ("embree", "Program", "embreex: rays along the outline of the tool"),

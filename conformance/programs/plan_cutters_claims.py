@@ -1,4 +1,4 @@
-"""plan-cutters with postures of its own: those that plans name, and those that stored posture maps call free or blocked."""
+"""plan-cutters with postures of its own: those that plans name, and those that its posture maps call free or blocked."""
 
 from collections import Counter
 from typing import Any
@@ -78,8 +78,8 @@ class Plans(_Planner):
     name = "plan-cutters-plans"
 
 
-class StoredMaps(_Planner):
-    """Tilts of stored maps: just within the ends of a free interval, and just beyond where nothing is undecided."""
+class Maps(_Planner):
+    """Tilts of posture maps: just within the ends of a free interval, and just beyond where nothing is undecided."""
 
     name = "plan-cutters-maps"
     _maps = True
@@ -87,14 +87,14 @@ class StoredMaps(_Planner):
     _INSIDE, _BEYOND = 1e-6, 2e-3
 
     def _gather(self, result: Any, tool: Tool, held: Any, rows: dict[str, list[Any]]) -> None:
-        """Add the postures of maps, and those that they give in the setup."""
+        """Add the postures of maps."""
         maps = result.maps
         if maps is None:
             self.why["no maps"] += 1
             return
-        _of_verdicts(result.samples, maps.within(machine_of(held), held.axis), tool, rows)
         if held.limit_deg is not None:
-            # Maps are without limit: only what `within` answers is a claim about this machine.
+            # Maps are without limit: they claim nothing of this machine.
+            self.why["maps claim nothing of a limit"] += 1
             return
         turns, points = len(maps.rotations), result.samples.point
         offset = maps.offset

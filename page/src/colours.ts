@@ -60,15 +60,14 @@ const CLASSES: [string, string, Pattern][] = [
   ["saddle", "#7FC8A9", "plain"],
 ];
 
-export function modesOf(meta: Meta, cutter: string): Mode[] {
-  const scalars = meta.scalars.filter((each) => each.cutter === null || each.cutter === cutter);
+export function modesOf(meta: Meta): Mode[] {
   return [
     { key: "verdict", label: "Verdict" },
     ...plansOf(meta).map((plan) => ({ key: modeOf(plan), label: titleOf(plan) })),
     { key: "reason", label: "Reason" },
     ...(meta.setups.length ? [{ key: "setup", label: "Setup that serves" }] : []),
     { key: "class", label: "Surface class" },
-    ...scalars.map((each) => ({ key: `scalar:${each.key}`, label: capital(each.label) })),
+    ...meta.scalars.map((each) => ({ key: `scalar:${each.key}`, label: capital(each.label) })),
   ];
 }
 

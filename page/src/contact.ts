@@ -2,7 +2,7 @@
 
 import type { Cutter, Mode, Vec } from "./meta.ts";
 import { type Posture, type Sample, Samples } from "./samples.ts";
-import { DEG, dot, mixed, plus, RAD } from "./vectors.ts";
+import { mixed, plus, RAD } from "./vectors.ts";
 
 export interface Placed {
   tip: Vec;
@@ -69,30 +69,6 @@ export function gouges(cutter: Cutter, sample: Sample, posture: Posture): boolea
   return !bounds || posture.tilt * RAD < bounds[0] - HAIR || posture.tilt * RAD > bounds[1] + HAIR;
 }
 
-/** Tilts from and to, degrees, at which a plain limit (degrees) about the setup axis holds the tool axis at a rotation. */
-export function heldTilts(
-  sample: Sample,
-  rotation: number,
-  setup: Vec,
-  limit: number,
-  range: [number, number],
-): [number, number][] {
-  const lean = Samples.lean(sample, rotation);
-  const [along, ahead] = [dot(sample.normal, setup), dot(lean, setup)];
-  const size = Math.hypot(along, ahead);
-  const cosine = Math.cos(limit * RAD);
-  if (size <= Math.abs(cosine)) return cosine <= 0 ? [range] : [];
-  const middle = Math.atan2(ahead, along) * DEG;
-  const half = Math.acos(cosine / size) * DEG;
-  const found: [number, number][] = [];
-  for (const turn of [-360, 0, 360]) {
-    const low = Math.max(range[0], middle + turn - half);
-    const high = Math.min(range[1], middle + turn + half);
-    if (low <= high) found.push([low, high]);
-  }
-  return found;
-}
-
 /** The parts of ascending tilts that are held, each ending at tilts that are. */
 export function runs(tilts: number[], held: (tilt: number, row: number) => boolean): [number, number][] {
   const found: [number, number][] = [];
@@ -104,10 +80,4 @@ export function runs(tilts: number[], held: (tilt: number, row: number) => boole
     open = now;
   });
   return found;
-}
-
-/** What two lists of intervals have in common. */
-export function common(a: [number, number][], b: [number, number][]): [number, number][] {
-  const pairs = a.flatMap(([x, y]) => b.map(([u, v]): [number, number] => [Math.max(x, u), Math.min(y, v)]));
-  return pairs.filter(([low, high]) => low <= high).sort((x, y) => x[0] - y[0]);
 }

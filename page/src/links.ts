@@ -87,7 +87,7 @@ export class Links {
     }
     const mode = words.get("colours");
     if (mode !== null) {
-      if (modesOf(app.meta, app.cutter.id).some(({ key }) => key === mode)) app.setMode(mode);
+      if (modesOf(app.meta).some(({ key }) => key === mode)) app.setMode(mode);
       else missing.push("its colours");
     }
     const named = words.get("face")?.toUpperCase() ?? null;

@@ -1,13 +1,8 @@
 // Whether the machine holds a tool axis: by its plain limit, and by its rotary axes within their limits.
 
 import { ON_LIMIT, PARALLEL } from "./codes.ts";
-import { common, heldTilts, runs } from "./contact.ts";
 import type { Kinematics, Meta, Vec } from "./meta.ts";
-import { type Sample, Samples } from "./samples.ts";
-import { cross, DEG, dot, minus, mixed, norm, plus, RAD, scaled } from "./vectors.ts";
-
-/** Stored intervals are cut back to the last tilt that is held, in steps of this, degrees. */
-const STEP = 0.1;
+import { cross, DEG, dot, minus, norm, plus, RAD, scaled } from "./vectors.ts";
 
 export class Machine {
   /** The setup in which the part stands, counted from 0. */
@@ -38,35 +33,12 @@ export class Machine {
     return found.filter((each, i) => i === 0 || each.angles.some((angle, k) => Math.abs(angle - found[0].angles[k]) > 1e-4));
   }
 
-  get limited(): boolean {
-    return this.meta.tilt_limit_deg !== null || this.meta.kinematics !== null;
-  }
-
   holds(axis: Vec): boolean {
     const { tilt_limit_deg: limit } = this.meta;
     const { z, kinematics } = this.setup;
     if (limit !== null && dot(axis, z) < Math.cos(limit * RAD) - ON_LIMIT) return false;
     return kinematics === null || turnsTo(kinematics, axis);
   }
-
-  /** What of free intervals (degrees) at a rotation the machine holds. */
-  within(free: [number, number][], sample: Sample, rotation: number): [number, number][] {
-    const { tilt_limit_deg: limit, tilt_deg } = this.meta;
-    const { z, kinematics } = this.setup;
-    let left = free;
-    if (limit !== null) left = common(left, heldTilts(sample, rotation, z, limit, tilt_deg));
-    if (kinematics === null) return left;
-    const lean = Samples.lean(sample, rotation);
-    const held = (tilt: number): boolean =>
-      turnsTo(kinematics, mixed(sample.normal, Math.cos(tilt * RAD), lean, Math.sin(tilt * RAD)));
-    return left.flatMap(([low, high]) => runs(stepped(low, high), held));
-  }
-}
-
-/** Tilts of an interval in steps, both ends included. */
-function stepped(low: number, high: number): number[] {
-  const steps = Math.max(1, Math.ceil((high - low) / STEP - 1e-9));
-  return Array.from({ length: steps + 1 }, (_, i) => (i === steps ? high : low + i * STEP));
 }
 
 /** A position of the rotary axes. */

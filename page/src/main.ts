@@ -196,7 +196,7 @@ function whyButton(): HTMLButtonElement | string {
 function colouring(app: App): HTMLSelectElement {
   const select = el("select", { id: "colouring" });
   const fill = (): void => {
-    const modes = modesOf(app.meta, app.cutter.id);
+    const modes = modesOf(app.meta);
     if (!modes.some((each) => each.key === app.mode)) app.mode = "verdict";
     select.replaceChildren(...modes.map(({ key, label }) => el("option", { value: key, selected: key === app.mode }, label)));
   };

@@ -72,7 +72,6 @@ export interface Scalar {
   key: string;
   label: string;
   unit: string;
-  cutter: string | null;
   low: number | null;
   high: number | null;
   array: string;
@@ -150,7 +149,6 @@ export interface Meta {
   spots: Spot[];
   scalars: Scalar[];
   operations: null | { plans: OperationPlan[] };
-  maps: null | { cutter: string; count: number; of: number; step_deg: number; why: string | null };
   arrays: Record<string, ArrayEntry>;
 }
 

@@ -10,7 +10,6 @@ import { swatch, tile } from "./patterns.ts";
 import { SampleMap, wording } from "./posture_states.ts";
 import { alike } from "./samples.ts";
 import { styled } from "./scheme.ts";
-import { StoredMaps } from "./stored_map.ts";
 import { turned } from "./vectors.ts";
 
 const LEFT = 30;
@@ -42,13 +41,11 @@ export class PosturePanel {
   /** What can be done at the sample; others add to it. */
   readonly tools = el("p", { class: "tools" }, this.start);
   private readonly body = el("div", { class: "posture-body" });
-  private readonly stored: StoredMaps;
   private map: SampleMap | null = null;
   private width = 320;
   private timer = 0;
 
   constructor(private readonly app: App) {
-    this.stored = new StoredMaps(app.meta, app.arrays);
     this.angles = new Angles(app);
     const head = ["rotation, °", "free tilts, °", "else in the way"].map((text) => el("th", { scope: "col" }, text));
     this.intervals = el(
@@ -91,7 +88,7 @@ export class PosturePanel {
     this.root.parentElement?.classList.toggle("chosen", !!sample);
     this.app.stage.refit();
     this.title.textContent = "Posture map";
-    this.map = sample && new SampleMap(this.app, this.stored, sample);
+    this.map = sample && new SampleMap(this.app, sample);
     if (!sample || !this.map) return;
     const face = this.app.meta.faces.find((each) => each.number === sample.face);
     const verdict = samples.verdict(cutter.id, sample.row);
@@ -109,14 +106,14 @@ export class PosturePanel {
       el("strong", {}, cutter.name || cutter.id),
       `: ${spoken(this.app.meta, verdict)}${reason ? ` (${spoken(this.app.meta, reason)})` : ""}${setup}. Curvature ${sample.curvature.map(bend).join(" and ")}.`,
     );
-    this.kind.textContent = this.map.certified
-      ? "What is free is certified. What forbids the others comes from the drawn triangles."
+    this.kind.textContent = this.map.blocked
+      ? "Nothing is called free here. What forbids the postures comes from the drawn triangles."
       : "Approximate: this map comes from the drawn triangles and overlooks what reaches less than " +
         `${figure(this.app.liveTool().spared, 2)} mm into the tool. It is not certified.`;
     if (this.app.meta.kinematics && this.app.meta.kinematics.direction.length < 2) {
       this.kind.textContent += " This machine turns too few axes for a map: only the posture found is shown.";
     }
-    this.kind.classList.toggle("approximate", !this.map.certified);
+    this.kind.classList.toggle("approximate", !this.map.blocked);
     this.differs.textContent = "";
     this.draw();
     this.timer = window.setTimeout(() => this.advance(this.map!), 0);
@@ -225,7 +222,7 @@ export class PosturePanel {
         }
         from = row;
       }
-      c.fillStyle = map.certified ? fills.get("free")! : OPEN[0];
+      c.fillStyle = OPEN[0];
       for (const [low, high] of map.free(column)) {
         seen.add("free");
         c.fillRect(x, this.y(high) - 0.5, wide, Math.max(1, this.y(low) - this.y(high) + 1));
@@ -234,12 +231,12 @@ export class PosturePanel {
     this.axes(c);
     this.marks(c);
     const shown = STATES.filter((state) => seen.has(state));
-    const told = `${shown.join()} ${map.certified !== null}`;
+    const told = shown.join();
     if (this.legend.dataset.shown !== told) {
       this.legend.dataset.shown = told;
       this.legend.replaceChildren(
         ...shown.map((state) => {
-          const open = state === "free" && !map.certified;
+          const open = state === "free";
           const word = open ? "nothing met (not certified)" : state === "tolerance" ? "within tolerance" : spoken(this.app.meta, state);
           return el("li", {}, swatch(...(open ? OPEN : causeOf(this.app.meta, state))), word);
         }),
@@ -344,7 +341,7 @@ export class PosturePanel {
         const causes = [...map.causes(column)].sort((a, b) => b[1] - a[1]).map(([state]) => spoken(this.app.meta, state));
         return el(
           "tr",
-          { "data-rotation": rotation, "data-certified": String(map.certified !== null) },
+          { "data-rotation": rotation },
           el("th", { scope: "row" }, degrees(rotation)),
           el("td", {}, free.join("; ") || "none"),
           el("td", {}, causes.join(", ")),
@@ -354,9 +351,9 @@ export class PosturePanel {
     const cells = map.grid.rotations.length * map.grid.tilts.length;
     let open = 0;
     map.grid.rotations.forEach((_, k) => map.grid.tilts.forEach((__, i) => (open += map.cell(k, i) === "free" ? 1 : 0)));
-    this.title.textContent = `Posture map: ${percent(open / cells)} ${map.certified ? "free" : "open"}`;
+    this.title.textContent = `Posture map: ${percent(open / cells)} ${map.blocked ? "free" : "open"}`;
     this.compare(map);
-    this.caption.textContent = map.certified ? "Free tilts by rotation" : "Tilts at which nothing is met, not certified";
+    this.caption.textContent = map.blocked ? "Free tilts by rotation" : "Tilts at which nothing is met, not certified";
   }
 
   /** The map names what each posture meets first, the plan what would have to change: where these differ one must know it. */

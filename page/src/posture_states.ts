@@ -1,4 +1,4 @@
-// The map of one sample: what is certified, what the drawn triangles add to it, and what is said of a posture.
+// The map of one sample: what the drawn triangles show of it, and what is said of a posture.
 
 import type { App, Judged } from "./app.ts";
 import { OUTERMOST, STATES } from "./codes.ts";
@@ -6,22 +6,25 @@ import { spoken } from "./colours.ts";
 import { runs } from "./contact.ts";
 import { emptyGrid, fillColumn, type Grid, type Met, type State } from "./live_map.ts";
 import { alike, type Posture, type Sample } from "./samples.ts";
-import type { Certified, StoredMaps } from "./stored_map.ts";
 import { apart } from "./vectors.ts";
 
 const SLICE_MS = 14;
 
 export class SampleMap {
-  readonly certified: Certified | null;
+  /** The verdict is that no searched rotation has a free tilt, or none that is known. */
+  readonly blocked: boolean;
   readonly grid: Grid;
 
   constructor(
     private readonly app: App,
-    stored: StoredMaps,
     readonly sample: Sample,
   ) {
-    this.certified = within(app, sample, stored.of(app.cutter.id, sample.row)) ?? lost(app, sample);
+    this.blocked = ["inaccessible", "undecided", "inside_bodies"].includes(this.verdict);
     this.grid = emptyGrid(app.meta);
+  }
+
+  private get verdict(): string {
+    return this.app.samples.verdict(this.app.cutter.id, this.sample.row);
   }
 
   get complete(): boolean {
@@ -37,20 +40,14 @@ export class SampleMap {
 
   /** The state of a searched rotation at a tilt of the grid; null where it is not known yet. */
   cell(column: number, row: number): State | null {
-    const tilt = this.grid.tilts[row];
-    if (this.freeAt(column, tilt)) return "free";
     if (column >= this.grid.done) return null;
     const state = STATES[this.grid.state[column * this.grid.tilts.length + row]];
-    return this.certified && state === "free" ? this.unsure(column) : state;
+    return this.blocked && state === "free" ? this.unsure : state;
   }
 
-  private freeAt(column: number, tilt: number): boolean {
-    return this.certified?.free[column].some(([low, high]) => tilt >= low && tilt <= high) ?? false;
-  }
-
-  private unsure(column: number): State {
+  private get unsure(): State {
     if (this.buried) return "buried";
-    return this.certified!.undecided[column] > 0 ? "undecided" : "tolerance";
+    return this.verdict === "undecided" ? "undecided" : "tolerance";
   }
 
   /** Whether the sample lies under or within a body: the drawn triangles do not tell what they enclose. */
@@ -58,9 +55,8 @@ export class SampleMap {
     return this.app.samples.reason(this.app.cutter.id, this.sample.row) === "buried";
   }
 
-  /** Free intervals at a rotation: the stored ones, else those of the grid. */
+  /** Free intervals of the grid at a rotation. */
   free(column: number): [number, number][] {
-    if (this.certified) return this.certified.free[column];
     return runs(this.grid.tilts, (_, row) => this.cell(column, row) === "free");
   }
 
@@ -90,9 +86,7 @@ export class SampleMap {
     if ((found && alike(found, posture)) || (planned && alike(planned, posture))) return { state: "free", certified: true };
     const column = this.column(posture.rotation);
     const searched = apart(this.grid.rotations[column], posture.rotation) < 0.02;
-    if (!this.certified || !searched) return { state: met.state, certified: false };
-    if (this.freeAt(column, posture.tilt)) return { state: "free", certified: true };
-    return { state: met.state === "free" ? this.unsure(column) : met.state, certified: false };
+    return { state: this.blocked && searched && met.state === "free" ? this.unsure : met.state, certified: false };
   }
 
   /** A blocked posture that comes near to being free: of the last cause, the one that meets least. */
@@ -115,21 +109,6 @@ export class SampleMap {
     }
     return null;
   }
-}
-
-/** Stored maps hold for any machine: what this one holds of them. */
-function within(app: App, sample: Sample, found: Certified | null): Certified | null {
-  const { machine } = app;
-  if (!found || !machine.limited) return found;
-  return { ...found, free: found.free.map((mine, k) => machine.within(mine, sample, app.meta.rotation_deg[k])) };
-}
-
-/** The verdict on a sample that is not reached is certified, too: no searched rotation has a free tilt. */
-function lost(app: App, sample: Sample): Certified | null {
-  const verdict = app.samples.verdict(app.cutter.id, sample.row);
-  if (!["inaccessible", "undecided", "inside_bodies"].includes(verdict)) return null;
-  const unsure = verdict === "undecided" ? 1 : 0;
-  return { free: app.meta.rotation_deg.map(() => []), undecided: app.meta.rotation_deg.map(() => unsure) };
 }
 
 /** What is said of a posture: `free`, or what is in the way. */

@@ -1,7 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { common, gougeBounds, gouges, heldTilts, modeAt, place, runs } from "../src/contact.ts";
-import { Samples } from "../src/samples.ts";
+import { gougeBounds, gouges, modeAt, place, runs } from "../src/contact.ts";
 import { dot, minus, mixed, norm, plus, RAD, scaled } from "../src/vectors.ts";
 import { away, between, close, direction, endMill, floor, numbers, sampleAt } from "./support.ts";
 
@@ -87,37 +86,6 @@ test("bounds of a corner come to those of a flat end as the corner vanishes", ()
     assert.equal(flat === null, small === null);
     if (flat && small) flat.forEach((bound, i) => close(bound, small[i], 1e-4));
   }
-});
-
-test("a plain limit holds just the tilts whose axes lie within it", () => {
-  const random = numbers(5);
-  for (let k = 0; k < 60; k++) {
-    const [sample, setup] = [sampleAt(random), direction(random)];
-    const [rotation, limit] = [between(random, 0, 360), between(random, 5, 170)];
-    const held = heldTilts(sample, rotation, setup, limit, [0, 180]);
-    const lean = Samples.lean(sample, rotation);
-    for (let tilt = 0.05; tilt < 180; tilt += 0.7) {
-      const axis = mixed(sample.normal, Math.cos(tilt * RAD), lean, Math.sin(tilt * RAD));
-      const over = Math.acos(Math.min(1, Math.max(-1, dot(axis, setup)))) / RAD - limit;
-      if (Math.abs(over) < 1e-6) continue;
-      assert.equal(held.some(([low, high]) => tilt >= low && tilt <= high), over < 0, `${tilt} of ${JSON.stringify(held)}`);
-    }
-  }
-});
-
-test("what intervals have in common is in both, and nothing else is", () => {
-  const random = numbers(6);
-  const some = (): [number, number][] => {
-    const ends = Array.from({ length: 6 }, () => between(random, 0, 90)).sort((a, b) => a - b);
-    return [[ends[0], ends[1]], [ends[2], ends[3]], [ends[4], ends[5]]];
-  };
-  const has = (intervals: [number, number][], x: number): boolean => intervals.some(([low, high]) => x >= low && x <= high);
-  for (let k = 0; k < 40; k++) {
-    const [a, b] = [some(), some()];
-    const both = common(a, b);
-    for (let x = 0; x < 90; x += 0.37) assert.equal(has(both, x), has(a, x) && has(b, x));
-  }
-  assert.deepEqual(common([[0, 1]], [[2, 3]]), []);
 });
 
 test("runs end at tilts that are held", () => {

@@ -46,7 +46,6 @@ from plan_cutters.scene.copied import with_copies
 from plan_cutters.scene.faces import choose
 from plan_cutters.scene.inside_material import inside_bodies, inside_material
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.scene.question import question
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.setups import conditions_of, fixtures_of, places, with_setups
 from plan_cutters.scene.spacing import affordable, sampled, spacing_key
@@ -231,7 +230,8 @@ def _mapped(result: Result, part: JudgedPart, clock: Clock, compiling: Callable[
             verdicts = judge(replace(ready, conditions=ready.conditions.without_machine()), cutter)
         maps = posture_maps(
             ready.samples, Context.of(cutter, ready.conditions), verdicts, part=ready.scene.part.fingerprint, progress=tell,
-            inside=ready.inside_bodies, shut=ready.shut >= 0, about=question(ready, cutter), most=ready.options.map_budget,
+            inside=ready.inside_bodies, shut=ready.shut >= 0, missing=tuple(ready.conditions.surroundings.doubts),
+            most=ready.options.map_budget,
         )  # fmt: skip
     document = result.plan
     if maps.unmapped:

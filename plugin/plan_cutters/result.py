@@ -249,9 +249,9 @@ class Result:
         tool = self.judged(cutter)
         entry = next(each for each in self.cutters if each.id == tool.id)
         verdicts, known = self.reaches[tool.id], self.answers.stick_outs.get(tool.id)
-        if known is not None and known.each is None and known.why != "no holder":
-            known = None  # it is about all faces together
         mine = self.samples.face == number
+        if known is not None and known.why != "no holder":
+            known = None  # it is about all faces together
         if known is None and stick_out and (verdicts.reached & mine).any():
             from plan_cutters.answers.stick_out import least_stick_out
 

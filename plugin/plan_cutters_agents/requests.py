@@ -53,7 +53,7 @@ def _process(value: Any, handler: ValidatorFunctionWrapHandler) -> Any:
 #: The planner's own steps, as a file has them.
 Process = Annotated[ProcessTable, WrapValidator(_process), WithJsonSchema({"type": "object"})]
 #: Files that a plan may write.
-Format = Literal["json", "step", "glb", "merged", "npz", "html", "png", "csv", "vtk", "regions"]
+Format = Literal["json", "step", "glb", "merged", "npz", "html", "png", "csv", "vtk"]
 
 
 class Question(BaseModel):

@@ -21,8 +21,6 @@ _REACHED, _UNJUDGED, _NO_REASON = (1, 2), 255, 255
 FLOOR, WALL, _STRATEGIES, _NEARLY_ALL = 1, 2, ("point", "floor", "wall"), 0.95
 #: Areas that differ by less, as a share, are the same.
 _SAME_AREA = 1e-9
-#: Share of an area that a search may count less than stands free.
-_DOUBT = 0.02
 #: Seconds of an orientation that nothing tells; by how much angles may be off that are rounded for a control, deg.
 _INDEX_TIME, _ROUNDED = 5.0, 0.0015
 
@@ -73,7 +71,6 @@ class Reckoned:
         plans = [self._plan(k, plan) for k, plan in enumerate(written["plans"])]
         many = len(self.considered) > 1
         names = {"fewest": ["fewest"], "fastest": ["fastest"], "both": ["fewest", "fastest"]}[effective["operations"]]
-        names = [*names, *(["largest first"] if many and "fastest" in names else [])]
         names = names if self.own is None else ["process"]
         if [plan["name"] for plan in written["plans"]] != names:
             plans = [{"name": name} for name in names]
@@ -87,7 +84,6 @@ class Reckoned:
             "fewest": None if self.without_fewest else self._fewest(written["fewest"], count),
             "fastest": self._fastest(written) if "fastest" in names else None,
             "cutters": self._cutters(written) if many and "fastest" in names and timed_ else [],
-            "curve": self._curve(written["curve"], count),
             "assumed": {
                 "feed_mm_min": self._feeds(written, effective), "scallop_mm": effective["scallop_mm"],
                 "stepover": effective["stepover"], "overlap_mm": effective["overlap_mm"],
@@ -103,7 +99,6 @@ class Reckoned:
             "found": count, "proof": self._proof(few), "weights": self._weights(few), "bound": total / 1e6,
             "lp": Loose(total / 1e6 - 1e-6, count), "samples": int(self.reached.sum()),
             "candidates": len(self.question.operations["candidate_cutter"]), "at_least": self._at_least(few, total, count),
-            "at_least_any": Loose(0, few["at_least"]),
         }  # fmt: skip
 
     def _feeds(self, written: Mapping[str, Any], effective: Mapping[str, Any]) -> Any:
@@ -134,20 +129,6 @@ class Reckoned:
         good = good and all(0 <= row < len(self.reached) and self.reached[row] for row in rows)
         good = good and all(0 < weight <= 1_000_000 for _, weight in few["weights"])
         return [list(pair) for pair in few["weights"]] if good else "whole numbers on reached samples, one for each"
-
-    def _curve(self, written: Sequence[Mapping[str, Any]], count: int) -> list[dict[str, Any]]:
-        # Shares are of what can be machined in some setup: of what stands in a fixture in all of them it is not known.
-        least = float(self.area[self.reached].sum()) / max(self.whole, 1e-300)
-        steps: list[dict[str, Any]] = []
-        before = 0.0
-        for k in range(count if self.reached.any() else 0):
-            share = written[k]["share"] if k < len(written) else 0.0
-            low = max(before, (1.0 - _DOUBT) * least) if k + 1 == count else before
-            steps.append({"orientations": k + 1, "share": Loose(low, 1.0)})
-            if k < len(written) and written[k]["at_most"] is not None:
-                steps[-1]["at_most"] = Loose(share, 1.0)
-            before = share
-        return steps
 
     def _cutters(self, written: Mapping[str, Any]) -> list[dict[str, Any]]:
         entries = []

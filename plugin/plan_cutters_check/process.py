@@ -15,7 +15,7 @@ from plan_cutters_check.question import axes_of, frame_of
 
 Rows = NDArray[np.int64]
 #: Which plan of operations is the process: the first of these that there is.
-_PREFERRED = ("process", "fastest", "fewest", "largest first")
+_PREFERRED = ("process", "fastest", "fewest")
 #: Verdicts that say that a sample is not reached, and a reason that is none.
 _NOT_REACHED, _NO_REASON = (0, 3), 255
 #: Cosine from the setup axis under which a tool comes from below; areas that differ by a smaller share are the same.

@@ -11,7 +11,7 @@ from plan_cutters_check.bench import Bench
 from plan_cutters_check.clash import FREE, MET, OPEN, Clock
 from plan_cutters_check.expected import Reckoned
 from plan_cutters_check.findings import Finding
-from plan_cutters_check.leaves import Between, Loose
+from plan_cutters_check.leaves import Between
 from plan_cutters_check.moving import put_down
 from plan_cutters_check.question import Question, allowed, axes_of
 from plan_cutters_check.strategies import Contacts, contacts_at
@@ -25,8 +25,6 @@ _AT_ONCE = 2048
 _CLEARANCE_SHARE, _CLEARANCE_STEP, _MOST = 0.05, 0.02, 100.0
 #: The edges of flutes are grown as square ones: there clearances are reported by up to this share too low.
 _EDGE = 0.45
-#: Share of an area that a search may count less than stands free.
-_DOUBT = 0.02
 #: Parts of unit vectors that differ by less are one.
 _SAME = 1e-6
 
@@ -198,7 +196,6 @@ class Trials:
             # A search may take samples for not served that are by a hair.
             strictly = verdict if few["alone"] == not_served else self._chosen(chosen, rows, clock, surely=False)
             entry["fewest"]["alone"] = Between(not_served, int((strictly != FREE).all(axis=0).sum()))
-            self._steps(entry, table, self.reckoned.area[rows])
         late = f"; {open_} were not looked at" if open_ else ""
         words = (
             f"The {len(chosen)} chosen candidates serve {int(served.sum())} of the {len(rows)} samples that are reached"
@@ -214,21 +211,6 @@ class Trials:
             axis = np.repeat(arrays["candidate_axis"][c][None], len(rows), axis=0)
             verdict[k] = self.bench.serves(s, tool, rows, axis, clock, surely=surely)
         return verdict
-
-    def _steps(self, entry: dict[str, Any], table: NDArray[np.bool_], area: Floats) -> None:
-        """Raise what each step of the curve must reach at least: what the chosen candidates do, the largest gain first."""
-        written, steps = self.question.document["operations"]["curve"], entry["curve"]
-        uncovered, have = area.copy(), 0.0
-        whole = float(area[table.any(axis=0)].sum())
-        if not len(steps) or len(written) != len(steps) or whole <= 0.0:
-            return
-        for step in steps:
-            gain = table @ uncovered
-            have += float(gain.max())
-            uncovered = uncovered * ~table[int(gain.argmax())]
-            # A search may count a little less than stands free.
-            least = written[-1]["share"] * have / whole * (1.0 - _DOUBT)
-            step["share"] = Loose(max(step["share"].low, least), step["share"].high)
 
     def alone(self) -> Iterator[Finding]:
         """Samples that an operation alone serves: no other one of the plan stands free there; at others some other one does."""

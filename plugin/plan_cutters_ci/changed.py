@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 _SELF = "plan-cutters changed"
 #: Options of a plan that this command gives itself.
-_OURS = ("-o", "--out", "--formats", "--json", "--junit", "--sarif", "--quiet", "--postures", "--check-operations", "--help",
+_OURS = ("-o", "--out", "--formats", "--json", "--junit", "--sarif", "--quiet", "--check-operations", "--help",
          "-h", "--version")  # fmt: skip
 _PLANNED = (0, 1, 4)
 

@@ -213,7 +213,6 @@ def test_auto_stands_alone(words, cause):
     [
         (("--setup", "+x", "--setup", "auto"), "leave out the other setups"),
         (("--setup", "auto", "--fixture", "table:-5"), "leave out other fixtures"),
-        (("--setup", "auto", "--postures", SAMPLES / "v_groove.step"), "name the setup"),
         (("--setup", "auto", "--check-operations", "x"), "name the setup"),
     ],
 )

@@ -133,7 +133,7 @@ def test_a_forged_entry_is_found_or_listed_as_unchecked(written, kind, of_a_kind
             assert not answer.holds or path in answer.entries.unchecked, (path, value, other)
 
 
-@pytest.mark.parametrize("name", ["plans", "curve", "cutters", "operations", "regions", "weights", "rows", "faces"])
+@pytest.mark.parametrize("name", ["plans", "cutters", "operations", "regions", "weights", "rows", "faces"])
 def test_a_list_that_is_cut_is_found(written, name):
     document, _ = written.copies()
     entry = document["operations"]
@@ -209,8 +209,6 @@ class TestTheForgeriesOfTheTrial:
         arrays["operations.npz"]["chosen"] = np.concatenate([chosen, more])
         few["found"] = few["at_least"] = 50
         few["proof"] = "branch and bound"
-        curve = document["operations"]["curve"]
-        curve += [{**curve[-1], "orientations": k} for k in range(len(curve) + 1, 51)]
         answer = found(written, document, arrays)
         assert any("it finishes all with" in each.words and each.holds is False for each in answer.findings)
 
@@ -244,20 +242,9 @@ class TestTheForgeriesOfTheTrial:
         assert any(line.startswith("not checked:") and word in line for line in answer.lines)
 
     @pytest.mark.slow("checks a plan many times")
-    def test_at_least_any_and_candidates(self, written):
-        document, _ = written.copies()
-        document["operations"]["fewest"]["at_least_any"] = 50
-        assert not found(written, document).holds
+    def test_candidates(self, written):
         document, _ = written.copies()
         document["operations"]["fewest"]["candidates"] = 10**6
-        assert not found(written, document).holds
-
-    @pytest.mark.slow("checks a plan many times")
-    @pytest.mark.parametrize("shares", [[0.1], [1.2], [0.9, 0.8]])
-    def test_a_curve(self, written, shares):
-        document, _ = written.copies()
-        for step, share in zip(document["operations"]["curve"], shares, strict=False):
-            step["share"] = share
         assert not found(written, document).holds
 
     @pytest.mark.slow("checks a plan many times")
@@ -340,7 +327,7 @@ def test_forged_files_are_told_by_their_checksums(written):
 @pytest.mark.slow("checks a plan many times")
 def test_json_can_say_nothing_that_ends_the_checker(written):
     """Entries exchanged for others of any kind end in an answer that fails, never in an exception."""
-    for path in ("plans", "fewest", "fewest.weights", "curve", "assumed", "plans[0].operations", "rotary", "cutters"):
+    for path in ("plans", "fewest", "fewest.weights", "assumed", "plans[0].operations", "rotary", "cutters"):
         for value in (None, 3, "x", [], {}, [3], [None], {"a": 1}):
             document, _ = written.copies()
             put(document["operations"], path, value)

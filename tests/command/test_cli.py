@@ -108,7 +108,7 @@ def test_part_without_faces(tmp_path):
         (["--holder", "R15"], "R15L30"),
         (["--cutter", "R6L80", "--holder", "R5L30"], "narrower than what it holds"),
         (["--cluster", "tcp://x:1", "--check-operations", "p.json"], "--cluster is about planning"),
-        (["--verdicts", "kept", "--postures", "p.npz"], "--verdicts is about planning"),
+        (["--verdicts", "kept", "--check-operations", "p.json"], "--verdicts is about planning"),
         (["--nonsense"], "--nonsense"),
         (["--json", "plan.json"], "standard output"),
     ],

@@ -93,7 +93,6 @@ def shown(capsys, document, *, verbose=False):
         ([GROOVE, "--ignore", "what"], 2, "--ignore what: give sculptured"),
         ([GROOVE, "--fixture", "vise.stl"], 3, "vise.stl: no such file"),
         ([GROOVE, "--fixture", "empty.step"], 3, "empty.step: is empty"),
-        ([GROOVE, "--postures", "postures.npz"], 2, "postures.npz"),
         ([GROOVE, "-o", "text.step"], 2, "text.step: the output must be a folder"),
         ([GROOVE, "-o", ""], 2, "-o"),
         ([GROOVE, WAVES, "--json", "-"], 2, "-o DIR --formats json"),

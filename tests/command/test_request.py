@@ -15,7 +15,7 @@ from plan_cutters_ci.diff import DiffRequest
 COMMANDS = {
     "plan": (request.PlanRequest, ["p.step"], ["--cutter", "R6L80", "--cutters", "a.toml", "--holder", "er32",
              "--assume-stickout", "30", "--skip-bad", "--setup", "+z", "--setup", "auto", "--fixture", "table", "--ignore", "F3",
-             "--unit", "mm", "--spacing", "1", "--grid", "5", "--area-budget", "9", "--map-budget", "9", "--postures", "m.npz",
+             "--unit", "mm", "--spacing", "1", "--grid", "5", "--area-budget", "9", "--map-budget", "9",
              "-o", "out", "--formats", "json", "--json", "-", "--operations", "both", "--feed", "900", "--index-step", "15",
              "--axis-accuracy", "0.1",
              "--index-time", "3", "--most-operations", "2", "--max-orientations", "5", "--no-patterns",
@@ -25,8 +25,6 @@ COMMANDS = {
     "map": (request.MapRequest, ["p.step", "--at", "0,0,0", "--cutter", "R6L80"],
             ["--cutters", "a.toml", "--holder", "er32", "--setup", "-y", "--fixture", "table", "--ignore", "F3", "--unit", "mm",
              "-o", "a.png", "-o", "a.svg", "--json", "-"]),
-    "stored": (request.StoredRequest, ["m.npz"], ["p.step", "--cutter", "R6L80", "--setup", "s.toml", "--grid", "5",
-               "--spacing", "2", "--jobs", "3", "--json", "-"]),
     "diff": (DiffRequest, ["a", "b"], ["--slack", "1", "--despite", "unit", "-o", "out", "--json", "--junit", "j.xml"]),
     "changed": (ChangedRequest, [], ["--junit", "j.xml", "--annotations", "none", "--base", "main", "--staged",
                  "--cache", "c", "--pictures-branch", "p", "--",

@@ -84,7 +84,7 @@ def test_each_help_begins_with_an_imperative():
             assert not re.search(r"\bwhat\b", first, re.IGNORECASE)
 
 
-@pytest.mark.parametrize("name", ["map", "stored", "batch", "diff", "changed", "tools", "machines", "mcp"])
+@pytest.mark.parametrize("name", ["map", "batch", "diff", "changed", "tools", "machines", "mcp"])
 def test_help_loads_neither_numpy_nor_the_kernel(tmp_path, name):
     code = f"import sys; sys.argv = ['x', {name!r}, '--help']\nfrom plan_cutters.command.entry import plan_cutters\n"
     code += "try: plan_cutters()\nexcept SystemExit: pass\n"
@@ -115,8 +115,6 @@ def test_one_help_names_all_subcommands(tmp_path):
         (["plan", "--map"], ["plain,--map-budget"]),
         (["map", "--wi"], ["plain,--within"]),
         (["map", "--machine", "trunnion-a"], ["plain,trunnion-ac"]),
-        (["stored", "--machine", "trunnion-a"], ["plain,trunnion-ac"]),
-        (["stored", "pos"], ["file,"]),
         (["tools", "--list"], ["plain,--list-holders"]),
         (["machines", "trunnion-a"], ["plain,trunnion-ac"]),
     ],
@@ -136,7 +134,6 @@ def test_a_shell_is_offered_subcommands_and_what_they_take(tmp_path, words, offe
         (["plan", GROOVE], [GROOVE]),
         (["plan", GROOVE, "--help"], None),
         (["map", GROOVE], None),
-        (["stored", GROOVE], None),
         (["tools", GROOVE], None),
         (["machines", GROOVE], None),
     ],

@@ -40,7 +40,7 @@ def batch(*words, cwd):
 # Before the work is begun. `bare`: neither kernel nor compiler may be loaded, and no process started.
 
 
-@pytest.mark.slow("imports all of the models of a file once more", only=("words3-", "words10-"))
+@pytest.mark.slow("imports all of the models of a file once more", only=("words3-",))
 @pytest.mark.parametrize(
     ("words", "code", "line"),
     [
@@ -48,8 +48,6 @@ def batch(*words, cwd):
         ((GROOVE, *ONE, "--check-operations", "none.json"), 2, "none.json: no such file: give the plan.json of a plan of"),
         ((GROOVE, *ONE, "--fixture", "visee"), 3, "visee: its name does not say its format; did you mean vise? Give STEP"),
         ((GROOVE, *ONE, "--fixture", "vise.dxf"), 3, "vise.dxf: '.dxf' is no format of fixtures: give STEP"),
-        ((GROOVE, *ONE, "--postures", GROOVE), 2, "v_groove.step: holds no posture maps: give the postures.npz"),
-        (("stored", GROOVE), 2, "v_groove.step: holds no posture maps: give the postures.npz"),
         (("diff", "a.json", "b.json"), 2, "a.json: no such file or folder"),
         ((GROOVE, "--cutter", "R-6L80"), 2, "cutter 'R-6L80': radius must be a positive number of mm, not -6"),
         ((GROOVE, "--cutter", "R6L80rc9"), 2, "cutter 'R6L80rc9': corner radius 9 must lie between 0 and the radius 6"),

@@ -16,7 +16,7 @@ from plan_cutters.files.seal import key_of, seal, stamp
 from plan_cutters.library import read_library
 from plan_cutters.machines import read_machine
 from plan_cutters.machines.setups import read_setup
-from tests.support.places import SAMPLES, real_file
+from tests.support.places import ROOT, SAMPLES, real_file
 
 BIT = {"shape": "endmill.fcstd", "name": "b", "parameter": {"Diameter": "4 mm", "CuttingEdgeHeight": "20 mm", "Length": "50 mm",
                                                             "ShankDiameter": "4 mm"}}  # fmt: skip
@@ -162,3 +162,13 @@ def test_seals_differ_by_content_and_key():
     record = {"a": 1, "b": [2]}
     assert seal(record, None) == seal(record | {"seal": "x"}, None)
     assert len({seal(record, None), seal(record, b"k"), seal(record, b"l"), seal(record | {"a": 2}, None)}) == 4
+
+
+def test_no_other_reader_of_arrays():
+    """Every `.npz` goes through the one door, and `samples.npz` in FreeCAD through a narrower one of its own."""
+    for root in ("plugin/plan_cutters", "cad_io", "freecad"):
+        for path in (ROOT / root).rglob("*"):
+            if path.suffix in (".py", ".FCMacro"):
+                text = path.read_text(encoding="utf-8")
+                for word in ("np.load(", "numpy.load(", "allow_pickle=True"):
+                    assert word not in text, path

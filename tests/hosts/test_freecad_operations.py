@@ -151,7 +151,7 @@ torn = changed("torn")
 open(os.path.join(torn, "plan.json"), "w").write("{")
 found["errors"] = dict(
     nowhere=line_of(os.getcwd()), without=line_of(changed("without", operations=None)), other=line_of(other),
-    gone=line_of(gone), torn=line_of(torn), unknown=line_of(FOLDER, "best"), third=line_of(FOLDER, "largest first"),
+    gone=line_of(gone), torn=line_of(torn), unknown=line_of(FOLDER, "best"),
     full=line_of(FOLDER, document=full), alien=line_of(os.path.join(FOLDER, "annotated.step")),
     inside_out=line_of(reframed("inside_out", frame=dict(origin=[0, 0, 0], x=[1, 0, 0], z=[0, 0, -1]), axis=[0, 0, 1])),
     nan=line_of(reframed("nan", frame=dict(origin=[float("nan"), 0, 0], x=[1, 0, 0], z=[0, 0, 1]), axis=[0, 0, 1])),
@@ -301,7 +301,6 @@ def test_errors_are_one_line_and_leave_nothing(inside):
         "gone": "is missing: plan.json names it",
         "torn": "cannot be read as JSON",
         "unknown": "there is no plan 'best': there are fewest, fastest",
-        "third": "'largest first'",
         "full": "holds 1 objects",
         "alien": "is no model of operations",
         "inside_out": "no frame about its tool axis",

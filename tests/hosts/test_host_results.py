@@ -232,19 +232,10 @@ def test_the_least_stick_out_of_a_face(result):
         assert judge(result.ready, replace(tool, length=length), reached).reached.all() == all_of_them
 
 
-def test_the_map_of_stick_outs_answers_without_a_search(slotted):
-    block = slotted.obj
-    asked = {"cutters": [HELD], "holder": "R8L30", "spacing": 3.0, "tolerance": 0.05, "area_budget": 0}
-    faces = [block.faces(FLOOR), block.faces(">Z")]
-    mapped = plan(slotted, faces=faces, answers="stick-out-map", **asked)
-    each = mapped.answers.stick_outs[mapped.shown].each
-    for face in mapped.faces():
-        assert face.least_stick_out == np.nanmax(each[mapped.samples.face == face.number])
-        searched = replace(mapped, answers=plan(block, faces=faces, **asked).answers).face(face.number, stick_out=True)
-        assert searched.least_stick_out <= face.least_stick_out + EXACT
-        assert face.least_stick_out <= searched.least_stick_out + 0.5 + EXACT  # the map's step
-    bare = plan(slotted, faces=faces, **(asked | {"holder": None})).face(faces[0], stick_out=True)
-    assert (bare.least_stick_out, bare.why_no_stick_out) == (None, "the cutter has no holder")
+def test_without_a_holder_no_stick_out_is_known(slotted):
+    bare = plan(slotted, faces=slotted.obj.faces(FLOOR), cutters=[HELD], spacing=3.0, tolerance=0.05, area_budget=0)
+    (face,) = bare.faces(stick_out=True)
+    assert (face.least_stick_out, face.why_no_stick_out) == (None, "the cutter has no holder")
 
 
 def test_a_result_from_a_pickle_answers_alike(result):

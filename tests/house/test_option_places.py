@@ -16,11 +16,10 @@ import pytest
 
 import cad_io
 import plan_cutters
-from plan_cutters import Options, PostureMaps, Scene, plan, plan_many, posture_map
-from plan_cutters.command import cli, entry, stored_maps
+from plan_cutters import Options, Scene, plan, plan_many, posture_map
+from plan_cutters.command import cli, entry
 from plan_cutters.command import map as of_a_point
 from plan_cutters.command.request import PlanRequest, planning_options
-from plan_cutters.command.validation import NAMED
 from plan_cutters.option_types import ANGLES, PlanOptions, PointOptions, SceneOptions
 from plan_cutters.plan_file.effective import Effective
 from tests.support.places import ROOT
@@ -33,8 +32,7 @@ DEGREES = {f"{word}_deg" for word in ANGLES}
 def test_type_checkers_see_the_options():
     assert set(get_type_hints(PlanOptions)) == WORDS | DEGREES
     assert set(ANGLES) <= WORDS
-    for function, words in ((plan, PlanOptions), (PostureMaps.asked, PlanOptions), (Scene.of, SceneOptions),
-                            (posture_map, PointOptions), (plan_many, PlanOptions)):  # fmt: skip
+    for function, words in ((plan, PlanOptions), (Scene.of, SceneOptions), (posture_map, PointOptions), (plan_many, PlanOptions)):
         assert Unpack[words] in get_type_hints(function).values()
     # Whatever mypy is to check of each option is in this file.
     said = ast.parse((ROOT / "tests/support/typed_calls.py").read_text())
@@ -81,19 +79,17 @@ def test_every_option_can_be_given_on_the_command_line():
     given = cli.command.make_context("plan-cutters", ["part.step", "--setup", "+z", "--setup", "-y"]).params
     # Two come with setup files, the last one with the setup `auto`.
     assert set(planning_options(PlanRequest(**given))) == WORDS - {"placement", "other_placements", "propose"}
-    assert set(NAMED) <= set(given)
 
 
 def test_the_commands_declare_an_option_alike():
     """What several commands have is the same option, but for what is said of it and how often it may be given."""
     commands = {name: entry.module_of(f"plan-cutters {name}").command for name in entry.commands()}
     plans = {each.name: each for each in cli.command.params}
-    for command in (of_a_point.command, stored_maps.command):
-        shared = [each for each in command.params if each.name in plans and each.name not in ("part", "out", "json_out")]
-        assert len(shared) >= 17
-        for each in shared:
-            assert each.opts == plans[each.name].opts
-            assert getattr(each, "group", "") == getattr(plans[each.name], "group", "")
+    shared = [each for each in of_a_point.command.params if each.name in plans and each.name not in ("part", "out", "json_out")]
+    assert len(shared) >= 17
+    for each in shared:
+        assert each.opts == plans[each.name].opts
+        assert getattr(each, "group", "") == getattr(plans[each.name], "group", "")
     for name, command in commands.items():
         assert {"debug"} <= {each.name for each in command.params}, name
         assert {"0", "2", "130"} <= {code for code, _ in command.codes}, name

@@ -242,18 +242,6 @@ def test_turning_the_part_is_turning_the_machine(x):
     assert placed.kinematics.allows(placed.reaches[CUTTER.id].axis[rows]).all()
 
 
-def test_stored_maps_answer_for_a_placement():
-    machine = Machine("m", axes=(Axis("A", "rotary", "part", X, (-0.2, 0.6)), Axis("B", "rotary", "part", Y, (-0.2, 0.6))))
-    placement = Placement(x=(0, 1, 0))
-    found = plan("samples/blade.step", cutters=CUTTER, machine=machine, setup=placement, grid=7, area_budget=0, posture_maps=True)
-    stored = found.maps.within(machine, placement.z, x=placement.x)
-    reach = found.reaches[CUTTER.id]
-    # What stored maps leave undecided aside, they say the same.
-    decided = stored.verdict != 3
-    assert (stored.reached == reach.reached)[decided].all()
-    assert decided.mean() > 0.5
-
-
 def test_other_setups_have_an_x_of_their_own():
     machine = Machine("m", axes=(Axis("A", "rotary", "part", X, (-0.2, 0.6)), Axis("B", "rotary", "part", Y, (-0.2, 0.6))))
     words = {"cutters": CUTTER, "machine": machine, "grid": 9, "area_budget": 0}

@@ -87,7 +87,7 @@ def test_where_nothing_is_reached_all_plans_are_empty_and_say_so_once():
     """A ball is larger than the trough: this ended with an internal error."""
     found = plan(trough(3.0, 10.0), grid=5, cutters=["R6L60rc6", "R8L60rc8"], **OPTIONS).plan
     assert [(each.name, each.seconds, each.operations) for each in found.operations.plans] == [
-        ("fewest", 0.0, []), ("fastest", 0.0, []), ("largest first", 0.0, [])]  # fmt: skip
+        ("fewest", 0.0, []), ("fastest", 0.0, [])]  # fmt: skip
     assert found.operations.fastest.gap == 0.0
     lines = [line.text for line in operations(found)]
     assert len(lines) == 2

@@ -18,7 +18,6 @@ from plan_cutters.operations.free_tilts import cells_of, holding, postures_of
 from plan_cutters.operations.motion import components, motion
 from plan_cutters.plan_file.operations import ForcedStepEntry, MotionEntry
 from plan_cutters.plan_file.words.motion import motion as sentences
-from plan_cutters.plan_file.words.motion import whatever_the_axes
 from plan_cutters.scene.conditions import Context
 from plan_cutters.stages.posture_maps import PostureMaps, posture_maps
 from tests.support.places import SAMPLES
@@ -277,13 +276,3 @@ def test_sentences_say_what_was_found_and_that_it_is_an_estimate(found, words):
     text = "\n".join(sentences(found))
     assert all(word in text for word in words), text
     assert "must turn" not in text or any(each.deg >= 15.0 for each in found.forced_steps)
-
-
-@pytest.mark.parametrize(
-    ("found", "least", "words"), [(5, 5, "No other axes"), (5, 3, "no fewer than 3"), (5, 2, ""), (1, 1, ""), (2, 1, "")]
-)
-def test_the_bound_over_all_axes_is_told_where_it_says_something(found, least, words):
-    few = SimpleNamespace(found=found, at_least_any=least)
-    text = "".join(whatever_the_axes(few))
-    assert words in text
-    assert bool(text) == bool(words)

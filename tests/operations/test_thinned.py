@@ -69,5 +69,4 @@ def test_what_only_one_cutter_reaches_is_told_of_all_samples(few):
 def test_the_fastest_alone_says_nothing_of_the_fewest():
     found = plan(SAMPLES / "v_groove.step", grid=5, **{**OPTIONS, "cutters": "R3L80rc3"}).plan.operations
     assert found.fewest is None
-    assert not found.curve
     assert found.fastest.bound_seconds <= found.fastest.seconds

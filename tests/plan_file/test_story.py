@@ -24,7 +24,6 @@ from plan_cutters.plan_file.reasons import NO_CONTACT, REASONS
 from plan_cutters.plan_file.words import notes
 from plan_cutters.plan_file.words.answers import answers
 from plan_cutters.plan_file.words.next_steps import effect
-from plan_cutters.plan_file.words.operations import _fewest
 from plan_cutters.plan_file.words.scope import not_judged
 from plan_cutters.plan_file.words.story import story_of
 from plan_cutters.report.notebook import text_of as notebook_text
@@ -205,17 +204,6 @@ def test_the_option_that_asks_for_all_faces_is_named():
     asked = document.effective.model_copy(update={"faces": "sculptured"})
     (line,) = not_judged(document.model_copy(update={"effective": asked}))
     assert line.endswith("only an obstacle: --faces all.")
-
-
-def test_no_bound_is_rounded_down():
-    """At most 98.301 % is more than 98.3 %."""
-    few = SimpleNamespace(found=3, candidates=9, spacing_deg=1.0, proof="", at_least=2, at_least_any=0)
-    steps = [
-        SimpleNamespace(orientations=2, share=0.981, at_most=0.98301),
-        SimpleNamespace(orientations=3, share=1.0, at_most=None),
-    ]
-    said = " ".join(_fewest(SimpleNamespace(fewest=few, curve=steps)))
-    assert "no choice of 2 serves more than 98.4 %" in said
 
 
 @pytest.mark.parametrize(("names", "across", "larger", "half", "least"), [

@@ -24,7 +24,6 @@ from plan_cutters.operations.candidates import Orientations
 from plan_cutters.operations.indexing import MOST, Indexing, index_times
 from plan_cutters.plan_file.palette import operation_colour, parts, rgb
 from plan_cutters.report import DEFAULT_FORMATS, operation_models
-from plan_cutters.report.regions import axis_regions
 from plan_cutters.scene.clearance import clearances
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at
@@ -48,7 +47,7 @@ def written(request, tmp_path_factory):
     part, options = CASES[request.param]
     out = tmp_path_factory.mktemp(request.param)
     result = plan(part(), **options, operations="both", feed=2000.0, area_budget=0)
-    return result, result.write(out, (*DEFAULT_FORMATS, "regions")), out
+    return result, result.write(out, DEFAULT_FORMATS), out
 
 
 def unpacked(runs):
@@ -196,11 +195,6 @@ def test_files_are_whole_or_named_and_written_with_the_formats_asked_for(written
     assert all((out / entry.name).is_file() for entry in document.files.values())
     few = result.write(tmp_path / "few", ["json", "glb"])
     assert names & few.files.keys() == {"operations_glb", "fastest_glb"}
-    # The habit is there to be compared with: its models are made where all plans are asked for.
-    assert "largest_first_glb" not in document.files
-    every = result.write(tmp_path / "every", ["json", "glb", "plans"])
-    habit = any(each.name == "largest first" for each in document.operations.plans)
-    assert ("largest_first_glb" in every.files) == habit
 
     def fails(*_):
         raise RuntimeError("no halves")
@@ -210,17 +204,6 @@ def test_files_are_whole_or_named_and_written_with_the_formats_asked_for(written
     assert {"step", "glb"} <= lost.files.keys()
     assert set(lost.not_written) == names
     assert all("no halves" in why for why in lost.not_written.values())
-
-
-def test_axis_regions_have_the_axes_of_the_plan(written):
-    result, document, _ = written
-    found = axis_regions(result)
-    wanted = [each.axis for each in document.operations.plans[0].operations if each.mode == "fixed"]
-    assert [each.axis for each in found.axes][: len(wanted)] == wanted
-    assert [each.samples for each in found.axes][: len(wanted)] == [
-        each.samples for each in document.operations.plans[0].operations if each.mode == "fixed"
-    ]
-    assert found.rest.samples == 0
 
 
 def brute(positions, rate):

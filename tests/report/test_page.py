@@ -9,7 +9,6 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from plan_cutters import plan, posture_map
-from plan_cutters.domain import posture
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.report.page import meta
 from plan_cutters.scene.scene import Scene
@@ -37,7 +36,7 @@ def planned():
     """A closed block with a sculptured top and a vise jaw beside it; two of three cutters fail at the jaw."""
     chromium()
     return plan(
-        PART, grid=21, cutters=["R10L12", "R6L60", "R12L14rc12"], holder="R22L30", machine="tilt:40", posture_maps=True,
+        PART, grid=21, cutters=["R10L12", "R6L60", "R12L14rc12"], holder="R22L30", machine="tilt:40",
         area_budget=0, **SCENE,
     )  # fmt: skip
 
@@ -115,29 +114,6 @@ def scene(planned):
     return planned.scene
 
 
-def clear(map_):
-    """Free intervals of a map, degrees, without slivers that tenths of degrees cannot show."""
-    return [[(a, b) for a, b in np.degrees(free).tolist() if b - a > 0.3] for free in map_.free]
-
-
-def test_the_intervals_shown_are_those_of_the_posture_map(page, planned, scene):
-    rows = seen(page, inner(planned, SHOWN, [1, 2], 60))[::12][:5]
-    assert len(rows) >= 3
-    turns = planned.postures.rotations
-    for row in rows:
-        choose(page, row)
-        shown, certified = intervals(page)
-        assert certified == {"true"}
-        tool = planned.judged(SHOWN)
-        point = planned.samples.point[row]
-        found = posture_map(scene, point=point, cutter=tool, rotations=turns, machine="tilt:40", tilt=planned.postures.tilt)
-        for turn, wanted in zip(np.degrees(turns).round(6), clear(found), strict=True):
-            mine = [each for each in shown[turn] if each[1] - each[0] > 0.3]
-            assert len(mine) == len(wanted), (row, turn, mine, wanted)
-            if wanted:
-                assert np.abs(np.array(mine) - np.array(wanted)).max() <= 0.6, (row, turn, mine, wanted)
-
-
 def near_an_end(ends, tilt):
     return any(abs(tilt - end) < 2.0 for end in ends)
 
@@ -155,7 +131,7 @@ def forbidding(found, k):
 
 
 def test_the_live_map_agrees_with_the_posture_map_away_from_borders(page, planned):
-    """For a cutter without stored maps: every cause, and nothing free that is forbidden two degrees around.
+    """Every cause, and nothing free that is forbidden two degrees around.
 
     The map is requested with the tolerance that the live one keeps: the drawn triangles lie that far from the surface.
     """
@@ -197,31 +173,27 @@ def test_the_live_map_agrees_with_the_posture_map_away_from_borders(page, planne
     assert agree >= 0.995 * total
 
 
-def test_a_map_that_is_not_stored_is_said_to_be_approximate(page, planned):
+def test_a_map_is_said_to_be_approximate(page, planned):
     page.locator(f'#cutters tr[data-cutter="{OTHER}"] button.text').click()
     row = seen(page, inner(planned, OTHER, [1], 20))[0]
     choose(page, row)
     assert "not certified" in page.inner_text("#posture .kind")
-    shown, certified = intervals(page)
-    assert certified == {"false"}
-    assert any(shown.values())
+    assert any(intervals(page).values())
 
 
 def test_the_verdict_on_a_sample_that_is_not_reached_is_kept(page, planned):
     """The drawn triangles alone would leave gaps where the search proved that there are none."""
     for row in seen(page, inner(planned, SHOWN, [0, 3], 60))[:3]:
         choose(page, row)
-        shown, certified = intervals(page)
-        assert certified == {"true"}
-        assert not any(shown.values())
+        assert not any(intervals(page).values())
 
 
 def test_nothing_beyond_the_axis_limit_is_shown_free(page, planned):
-    """Stored maps hold for any machine: this one tilts 40 degrees."""
+    """This machine tilts 40 degrees."""
     for row in seen(page, inner(planned, SHOWN, [1, 2], 60))[::20]:
         choose(page, row)
         normal, first = planned.samples.normal[row], planned.samples.direction_max[row]
-        for turn, free in intervals(page)[0].items():
+        for turn, free in intervals(page).items():
             tilt_direction = np.cos(np.radians(turn)) * first + np.sin(np.radians(turn)) * np.cross(normal, first)
             for end in np.radians([end for each in free for end in each]):
                 axis = np.cos(end) * normal + np.sin(end) * tilt_direction
@@ -499,32 +471,6 @@ def test_the_page_tells_the_positions_of_the_axes(page, name):
         singular = page.evaluate("axis => review.machine.positions(axis)", seen_from.direction[0].tolist())
         assert singular[0]["free"]
         assert all(singular[0]["within"]) == seen_from.allows(seen_from.direction[:1])[0]
-
-
-def test_stored_intervals_are_cut_to_what_rotary_axes_hold(page, planned):
-    """As if the part stood on a trunnion: every tilt shown free is held, and none that is held is missing but at ends."""
-    axes = machines()["trunnion"]
-    page.evaluate("kinematics => Object.assign(review.meta, { kinematics, tilt_limit_deg: null })", meta._kinematics(axes))
-    row = seen(page, inner(planned, SHOWN, [1, 2], 60))[3]
-    choose(page, row)
-    shown, _ = intervals(page)
-    whole = np.degrees(planned.maps.free), planned.maps.offset.reshape(-1)
-    turns, not_reached = np.degrees(planned.postures.rotations).round(6), 0
-    for k, turn in enumerate(turns):
-        first, last = whole[1][row * len(turns) + k : row * len(turns) + k + 2]
-        stored = whole[0][first:last]
-        tilts = np.arange(0.0, 90.0, 0.05)
-        tilt_direction = posture.tilt_direction(planned.samples.normal[row], planned.samples.direction_max[row], np.radians(turn))
-        axis = (
-            np.cos(np.radians(tilts))[:, None] * planned.samples.normal[row] + np.sin(np.radians(tilts))[:, None] * tilt_direction
-        )
-        held = axes.allows(axis) & np.any([(tilts >= a) & (tilts <= b) for a, b in stored] or [tilts < 0], axis=0)
-        mine = np.any([(tilts >= a) & (tilts <= b) for a, b in shown[turn]] or [tilts < 0], axis=0)
-        # The page's frames are rounded to about 0.01 deg.
-        near = np.convolve(held, np.ones(3), "same") > 0
-        assert not (mine & ~near).any(), turn
-        not_reached += int((held & ~mine).sum())
-    assert not_reached < 0.02 * len(turns) * len(tilts)
 
 
 def test_faces_are_filtered_and_sorted(page, planned):

@@ -18,8 +18,6 @@ from plan_cutters.domain.posture import tilt_direction
 from plan_cutters.report.page import write
 from plan_cutters.report.page.atlas import sheet_of
 from plan_cutters.report.page.encode import COARSE, FILTERS, FINE, Stored, filtered, halves, joined, octahedral
-from plan_cutters.report.page.stored_maps import stored
-from plan_cutters.stages.posture_maps import PostureMaps
 from tests.support.places import ROOT
 from tests.support.review_page import Page, decoded, unfold
 
@@ -77,60 +75,9 @@ def test_normals_come_back(vector):
 def test_sixteen_bits_round_to_the_asked_side(values):
     known = np.isfinite(values) & (np.abs(values) < 65504)
     assert (halves(values, "down")[known].astype(float) <= values[known]).all()
-    assert (halves(values, "up")[known].astype(float) >= values[known]).all()
     nearest = halves(values)[known].astype(float)
     assert (np.abs(nearest - values[known]) <= np.maximum(2.0**-11 * np.abs(values[known]), 2.0**-25)).all()
-    assert np.array_equal(np.isnan(halves(values, "up")), np.isnan(values))
-
-
-def maps_of(intervals, undecided):
-    """Maps of samples at rotations from lists of intervals in degrees."""
-    n, k = len(intervals), len(intervals[0])
-    flat = [pair for sample in intervals for turn in sample for pair in turn]
-    count = [len(turn) for sample in intervals for turn in sample]
-    up, along = (np.tile(each, (n, 1)) for each in np.eye(3)[[2, 0]])
-    return PostureMaps(
-        np.linspace(0, 1, k), np.concatenate([[0], np.cumsum(count)]), np.radians(np.array(flat).reshape(-1, 2)),
-        np.radians(undecided).astype(np.float32), up, along, np.zeros(n, np.uint8), np.zeros(n, np.uint8),
-        (0.0, np.pi), 0.01, "R1L2", "",
-    )  # fmt: skip
-
-
-@st.composite
-def some_maps(draw):
-    n, k = draw(st.integers(1, 4)), draw(st.integers(1, 3))
-    ends = st.lists(st.floats(0, 180), max_size=4, unique=True).map(sorted)
-    intervals = [[list(zip(e[::2], e[1::2], strict=False)) for e in (draw(ends) for _ in range(k))] for _ in range(n)]
-    return intervals, np.array([[draw(st.floats(0, 100)) for _ in range(k)] for _ in range(n)])
-
-
-@given(some_maps(), st.data())
-@settings(deadline=None)
-def test_nothing_is_stored_as_free_that_is_not(given, data):
-    intervals, undecided = given
-    rows = np.arange(len(intervals)) * 3 + 5
-    of = np.array(sorted(data.draw(st.sets(st.integers(0, len(rows) - 1)))), np.int64)
-    found = stored(maps_of(intervals, undecided), rows, of)
-    assert found.row.tolist() == rows[of].tolist()
-    end = iter(found.end.tolist())
-    for i, sample in enumerate(of.tolist()):
-        for j, turn in enumerate(intervals[sample]):
-            kept = [next(end) for _ in range(found.count[i, j])]
-            free = sum(high - low for low, high in turn)
-            for low, high in kept:
-                assert any(a - 1e-6 <= low / 10 <= high / 10 <= b + 1e-6 for a, b in turn)
-            # What was free and is not stored as such is at most the rounding of ends, or counts as undecided.
-            rounding = 0.2 * len(kept)
-            width = sum(high - low for low, high in kept) / 10
-            unsure = found.undecided[i, j]
-            assert unsure == 255 or free - width - rounding + undecided[sample, j] <= unsure / 2 + 1e-4
-    assert next(end, None) is None
-
-
-def test_ends_that_are_whole_degrees_come_back():
-    found = stored(maps_of([[[(0.0, 90.0)]]], np.zeros((1, 1))), np.array([0]), np.array([0]))
-    assert found.end.tolist() == [[0, 900]]
-    assert found.undecided.tolist() == [[0]]
+    assert np.array_equal(np.isnan(halves(values, "down")), np.isnan(values))
 
 
 @pytest.mark.parametrize("power", [1.0, 2.0, 4.0])
@@ -168,8 +115,8 @@ def test_what_is_not_finite_is_null():
 @pytest.fixture(scope="module")
 def valley():
     result = plan("samples/peaks_and_valleys.step", cutters=["R12L60", "R6L80", "R2L30"], grid=21, area_budget=0,
-                  posture_maps=True, rotation_step=math.radians(30))  # fmt: skip
-    return result, Page(page(result, maps=result.maps))
+                  rotation_step=math.radians(30))  # fmt: skip
+    return result, Page(page(result))
 
 
 @pytest.fixture(scope="module")
@@ -272,25 +219,6 @@ def test_a_face_without_a_grid_has_one_sample_a_triangle(rounded):
         assert (result.samples.face[atlas[row, column]] == face["number"]).all()
 
 
-def test_maps_come_back_rounded_inward(valley):
-    result, read = valley
-    maps, k = result.maps, len(result.maps.rotations)
-    assert read.meta["maps"] == {"cutter": maps.cutter, "count": len(result.samples), "of": len(result.samples),
-                                 "step_deg": 30.0, "why": None}  # fmt: skip
-    assert read.array("maps.row").tolist() == list(range(len(result.samples)))
-    count, end, at = read.array("maps.count").astype(int), read.array("maps.end") / 10, 0
-    stored_width = 0.0
-    for i in range(len(result.samples)):
-        for j in range(k):
-            free = np.degrees(maps.free[maps.offset[i * k + j] : maps.offset[i * k + j + 1]])
-            for low, high in end[at : at + count[i, j]]:
-                assert ((free[:, 0] - 1e-6 <= low) & (high <= free[:, 1] + 1e-6)).any()
-                stored_width += high - low
-            at += count[i, j]
-    assert at == len(end)
-    assert stored_width == pytest.approx(np.degrees(np.diff(maps.free, axis=1)).sum(), rel=0.02)
-
-
 def test_spots_name_their_samples(valley):
     result, read = valley
     assert read.meta["spots"]
@@ -322,55 +250,23 @@ def test_tools_are_told_as_they_are(rounded):
 
 def test_what_is_left_out_is_said(valley):
     result, whole = valley
-    full = len(page(result, maps=result.maps))
 
-    def parts(read):
-        return {name for name in read.meta["arrays"] if name[:4] in ("tilt", "maps")}
+    def postures(read):
+        return {name for name in read.meta["arrays"] if name[:4] == "tilt"}
 
-    assert "tilt.R12L60" in parts(whole)
+    assert "tilt.R12L60" in postures(whole)
     assert not any("to keep" in note for note in whole.of("li"))
-    smaller = Page(page(result, maps=result.maps, largest=full - 1))
-    assert "tilt.R12L60" not in parts(smaller)
-    assert "tilt.R6L80" in parts(smaller)
+    smaller = Page(page(result, largest=len(page(result)) - 1))
+    assert postures(smaller) == {f"tilt.{result.shown}"}
     assert [c["has_posture"] for c in smaller.meta["cutters"]] == [c["id"] == result.shown for c in smaller.meta["cutters"]]
-    assert smaller.meta["maps"]["why"] is None
     assert any("cutter shown alone" in note for note in smaller.of("li"))
-    most = full - 6000
-    thinned = page(result, maps=result.maps, largest=most)
-    assert len(thinned) <= most
-    told = Page(thinned).meta["maps"]
-    stride = math.ceil(told["of"] / told["count"])
-    assert stride > 1
-    assert Page(thinned).array("maps.row").tolist() == list(range(0, told["of"], stride))
-    assert f"one in {stride} samples" in told["why"]
-    assert any(told["why"] in note for note in Page(thinned).of("li"))
-    none = Page(page(result, maps=result.maps, largest=1))
-    assert (none.meta["maps"]["count"], "maps.row" in none.meta["arrays"]) == (0, False)
-    assert "not stored" in none.meta["maps"]["why"]
-
-
-def test_maps_of_some_samples(valley):
-    result, _ = valley
-    maps, rows = result.maps, np.array([3, 40, 77])
-    k = len(maps.rotations)
-    from dataclasses import replace
-
-    taken = [slice(maps.offset[r * k], maps.offset[(r + 1) * k]) for r in rows]
-    offset = np.concatenate([[0], np.cumsum(np.concatenate([np.diff(maps.offset[r * k : (r + 1) * k + 1]) for r in rows]))])
-    some = replace(maps, offset=offset, free=np.concatenate([maps.free[s] for s in taken]), undecided=maps.undecided[rows],
-                   normal=maps.normal[rows], direction_max=maps.direction_max[rows], verdict=maps.verdict[rows],
-                   reason=maps.reason[rows], inside=maps.inside[rows])  # fmt: skip
-    read, whole = Page(page(result, maps=some, rows=rows)), Page(page(result, maps=maps))
-    assert read.array("maps.row").tolist() == rows.tolist()
-    assert read.array("maps.count").tolist() == whole.array("maps.count")[rows].tolist()
-    assert read.meta["maps"]["count"] == 3
 
 
 def test_the_same_plan_gives_the_same_page(valley):
     result, _ = valley
     again = plan("samples/peaks_and_valleys.step", cutters=["R12L60", "R6L80", "R2L30"], grid=21, area_budget=0,
-                 posture_maps=True, rotation_step=math.radians(30))  # fmt: skip
-    assert page(again, maps=again.maps) == page(result, maps=result.maps)
+                 rotation_step=math.radians(30))  # fmt: skip
+    assert page(again) == page(result)
 
 
 def test_policy_allows_the_page_and_nothing_else(valley):
@@ -494,7 +390,7 @@ def test_a_page_that_cannot_be_made_costs_only_itself(valley, tmp_path, monkeypa
     monkeypatch.setattr(write, "render_mesh", fails)
     document = result.write(tmp_path, ("json", "html", "npz"))
     assert document.not_written == {"html": "the CAD kernel made no triangle of the part"}
-    assert sorted(p.name for p in tmp_path.iterdir()) == ["plan.json", "postures.npz", "process.toml", "samples.npz"]
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["plan.json", "process.toml", "samples.npz"]
 
 
 def test_the_part_keeps_no_mesh(valley):

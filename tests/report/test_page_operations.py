@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 
 from plan_cutters import plan
-from plan_cutters.plan_file.numbers import area, bound
-from plan_cutters.plan_file.operations import CurveStepEntry
+from plan_cutters.plan_file.numbers import area
 from plan_cutters.plan_file.palette import operation_colour
-from plan_cutters.plan_file.words.operations import in_short, of_the_whole, share_text
+from plan_cutters.plan_file.words.operations import in_short, of_the_whole
 from plan_cutters.plan_file.words.story import story_of
 from plan_cutters.report.notebook import text_of
 from plan_cutters.report.page import operations, write
@@ -129,40 +128,6 @@ def test_only_what_no_fixed_axis_reaches_is_said_to_need_simultaneous_motion(pla
     assert told(left + 1).startswith("Simultaneous motion finishes ")
 
 
-def test_the_curve_is_drawn_and_told(planned, read):
-    steps = planned.plan.operations.curve
-    rows = {"".join(text.split()) for tag, _, text in read.elements if tag == "tr"}
-    for step in steps:
-        most = "" if step.at_most is None else bound(step.at_most)
-        assert f"{step.orientations}{share_text(step.share)}{most}".replace(" ", "") in rows
-    (line,) = [a["d"] for tag, a, _ in read.elements if tag == "path" and a.get("class") == "line"]
-    heights = [float(y) for y in re.findall(r"V([\d.]+)", line)]
-    assert len(heights) == len(steps)
-    # A share grows upwards.
-    assert heights == sorted(heights, reverse=True)
-
-
-def steps_of(*pairs):
-    return [CurveStepEntry(orientations=k, share=share, at_most=most) for k, (share, most) in enumerate(pairs, 1)]
-
-
-def test_the_curve_stands_at_its_shares():
-    drawn = operations.curve(steps_of((0.5, 0.75), (1.0, None)))
-    near, far, top, bottom = drawn.edges
-    half, middle = (top + bottom) / 2, (near + far) / 2
-    assert drawn.line == f"M{near} {bottom}V{half}H{middle}V{float(top)}H{float(far)}"
-    assert drawn.bounds == [(near, middle, bottom - 0.75 * (bottom - top))]
-    assert [text for _, text in drawn.across] == ["1", "2"]
-    assert operations.curve([]) is None
-    assert operations.curve(steps_of((1.0, 1.0))).line.count("V") == 1
-    assert len(operations.curve(steps_of(*[(0.5, None)] * 37)).across) <= 10
-
-
-def test_shares_of_the_curve_are_rounded_to_the_safe_side():
-    assert [bound(share) for share in (0.98301, 1.0, 0.75)] == ["98.4 %", "100 %", "75 %"]
-    assert share_text(1.0 - 1e-6) == ">99.9 %"
-
-
 def test_looks_differ(planned):
     """Of so many operations as the colours go round four times."""
     one = planned.plan.operations.plans[0].operations[0]
@@ -187,7 +152,7 @@ def test_a_page_without_operations_has_none_of_it(planned):
     read = Page(write.page(bare, triangles=500))
     assert read.meta["operations"] is None
     assert not any(name.startswith("operation") for name in read.meta["arrays"])
-    assert not any(a.get("id") in ("operations", "curve") for _, a, _ in read.elements)
+    assert not any(a.get("id") == "operations" for _, a, _ in read.elements)
     assert operations.tables(bare.plan, story_of(bare.plan)) is None
 
 
@@ -207,7 +172,7 @@ def test_simultaneous_operations_and_none_are_shown_too(planned):
     changed = replace(
         planned,
         answers=replace(planned.answers, operations=replace(found, plans=(some, none))),
-        plan=planned.plan.model_copy(update={"operations": entry.model_copy(update={"plans": plans, "curve": []})}),
+        plan=planned.plan.model_copy(update={"operations": entry.model_copy(update={"plans": plans})}),
     )
     read = Page(write.page(changed, triangles=500))
     few, nothing = read.meta["operations"]["plans"]
@@ -217,7 +182,6 @@ def test_simultaneous_operations_and_none_are_shown_too(planned):
     assert not read.array(nothing["array"]).any()
     row = next(text for tag, a, text in read.elements if tag == "tr" and "data-operation" in a and "data-plan" not in a)
     assert row.startswith("op1simultaneous–")
-    assert not any(a.get("class") == "curve" for _, a, _ in read.elements)
 
 
 @pytest.fixture(scope="module")

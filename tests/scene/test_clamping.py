@@ -311,17 +311,6 @@ def test_a_scene_and_a_posture_map_take_them_too():
     assert any(len(each) for each in free[1])
 
 
-def test_posture_maps_answer_no_other_setup_than_that_for_which_a_vise_was_placed():
-    how = {"cutters": "D4L60", "grid": 3, "area_budget": 0}
-    maps = plan(box(40, 30, 20), fixtures="vise", posture_maps=True, rotation_step=0.5, **how).maps
-    assert maps.asked(fixtures="vise", setup=UP).reached.any()
-    for words in ({"setup": DOWN}, {"setup": DOWN, "fixtures": "vise"}):
-        with pytest.raises(OptionError, match="a vise that was placed for the setup 0,0,1, not 0,0,-1: plan again"):
-            maps.asked(**words)
-    with pytest.raises(OptionError, match="other fixtures"):
-        maps.asked(fixtures="vise:46x25x65")
-
-
 @pytest.mark.parametrize("words", [["vise", "vise"], ["vise", "chuck"], ["vise", "vise:46x25x65:3:40@30,20,0,0,0,-90"]])
 def test_one_vise_or_chuck_is_placed_on_a_part(words):
     with pytest.raises(OptionError, match="one vise or chuck is placed on a part") as error:

@@ -11,7 +11,7 @@ from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
 import plan_cutters.scene.surroundings as surroundings
 from cad_io import read_part
 from cad_io.tessellate import tessellate
-from plan_cutters import PostureMaps, plan
+from plan_cutters import plan
 from plan_cutters.domain.tolerance import CHORD_REQUESTED, CHORD_SHARE
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INTERFERENCE_FREE, UNDECIDED
 from tests.support.cad_parts import real
@@ -148,18 +148,3 @@ def test_a_hole_whose_wall_is_loose_counts_as_no_material(monkeypatch):
     result = plan(part, cutters="R1L20", faces=f"F{floor}", spacing=2, area_budget=0)
     assert (verdicts(result) != INACCESSIBLE).all()
     assert np.isin(verdicts(result), (ACCESSIBLE, INTERFERENCE_FREE)).any()
-
-
-@pytest.mark.slow("judges a part again with each tolerance")
-@pytest.mark.parametrize("path", [PROPELLER], ids=lambda path: path.stem)
-def test_stored_maps_leave_undecided_what_was_undecided(path, tmp_path, monkeypatch):
-    """Whatever is asked of them: less freedom decides nothing that was in doubt."""
-    monkeypatch.setattr(surroundings, "tessellate", lambda *given, **words: tessellate(*given, **words | {"budget": BUDGET}))
-    result = plan(path, **ASKED | {"spacing": 6}, posture_maps=True)
-    undecided = verdicts(result) == UNDECIDED
-    assert undecided.any()
-    result.write(tmp_path, formats=("json", "npz"))
-    maps = PostureMaps.load(tmp_path / "postures.npz")
-    for asked in ({}, {"machine": "tilt:60"}, {"tilt_deg": (10, 80)}):
-        found = maps.asked(**asked).verdict
-        assert not np.isin(found[undecided], (ACCESSIBLE, INTERFERENCE_FREE)).any()

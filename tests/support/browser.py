@@ -71,13 +71,13 @@ def intervals(page):
     """The free intervals that are shown, degrees, by rotation."""
     rows = page.evaluate(
         """() => [...document.querySelectorAll("#intervals tbody tr")].map(
-             row => [Number(row.dataset.rotation), row.cells[1].textContent, row.dataset.certified])"""
+             row => [Number(row.dataset.rotation), row.cells[1].textContent])"""
     )
     found = {}
-    for rotation, text, _ in rows:
+    for rotation, text in rows:
         parts = [] if text == "none" else [tuple(map(float, part.split(" to "))) for part in text.split("; ")]
         found[rotation] = parts
-    return found, {certified for _, _, certified in rows}
+    return found
 
 
 def touch(page, *ways, steps=12, picture="#picture"):

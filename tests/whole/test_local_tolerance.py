@@ -15,7 +15,6 @@ from plan_cutters import Cutter, PostureRange, plan, posture_map
 from plan_cutters.answers.largest_radius import largest_radius
 from plan_cutters.domain.holder import Holder, Stage
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, REASONS, UNDECIDED
-from plan_cutters.operations.fixed_axes import fixed_axes
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.conditions import Context
@@ -189,7 +188,7 @@ def test_no_posture_of_ten_thousand_lets_the_true_surface_come_too_deep(radius, 
     assert -1e-6 < deepest <= TOLERANCE
 
 
-def test_stored_maps_and_the_map_of_a_point_follow_the_same_rule():
+def test_posture_maps_and_the_map_of_a_point_follow_the_same_rule():
     part = read_part(fillet(0.4999))
     result = plan(part, cutters=[BALL], tolerance=TOLERANCE, grid=3, area_budget=0, posture_maps=True, faces="1")
     (reach,) = result.reaches.values()
@@ -213,7 +212,7 @@ def test_stored_maps_and_the_map_of_a_point_follow_the_same_rule():
     assert any(low <= tilt <= high for low, high in loose.free[turn])
 
 
-def test_largest_radius_fixed_axes_and_nesting_follow_the_same_rule():
+def test_largest_radius_a_fixed_axis_and_nesting_follow_the_same_rule():
     part = read_part(fillet(0.5))
     small, same, large = (Cutter.ball(radius=r, length=20) for r in (0.45, 0.5005, 0.6))
     options = Options.of({"cutters": [small, same, large], "tolerance": TOLERANCE, "grid": 7, "faces": "1"})
@@ -224,10 +223,8 @@ def test_largest_radius_fixed_axes_and_nesting_follow_the_same_rule():
         assert largest > 0.5 * 1.002, row
     reach = judge(ready, same)
     assert reach.reached.all()
-    axes, number = fixed_axes(ready.samples, same, reach, ready.conditions)
-    assert (number >= 0).all()
-    rows = np.flatnonzero(number == 0)
-    assert serves(rows, axes[0], ready.samples, Context.of(same, ready.conditions)).all()
+    axis = ready.samples.normal[0]
+    assert serves(np.array([0]), axis, ready.samples, Context.of(same, ready.conditions)).all()
     result = plan(part, cutters=[small, same, large], tolerance=TOLERANCE, grid=7, faces="1", area_budget=0)
     for cutter in (small, same, large):
         alone = judge(ready, cutter)

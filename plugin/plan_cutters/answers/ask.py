@@ -27,8 +27,6 @@ from plan_cutters.scene.threads import Progress, part_of
 Axis = tuple[float, float, float]
 OtherSetups = Sequence[tuple[Axis, Mapping[str, Verdicts]]]
 
-#: Of every sample the least stick-out is found to this, mm.
-STEP = 0.5
 _ENDS: tuple[Literal["flat", "ball"], ...] = ("flat", "ball")
 #: Cutters that are mended unless all are requested: those that come nearest.
 NEAREST = 3
@@ -77,16 +75,13 @@ def ask(
         answered(answers, unanswered)
         return answers
 
-    if "stick-out" in requested or "stick-out-map" in requested:
-        step = STEP if "stick-out-map" in requested else None
+    if "stick-out" in requested:
         with stage("stick-out") as tell:
             for k, cutter in enumerate(ready.cutters):
                 mine = part_of(tell, k, len(ready.cutters))
-                stick_outs[cutter.id] = stick_out_in_each(
-                    ready, cutter, setups[cutter], together[cutter][1], step=step, progress=mine
-                )
+                stick_outs[cutter.id] = stick_out_in_each(ready, cutter, setups[cutter], together[cutter][1], progress=mine)
                 so_far()
-        so_far("stick-out", "stick-out-map")
+        so_far("stick-out")
     if "radius" in requested:
         with stage("radius") as tell:
             ratio = ready.options.length_over_radius

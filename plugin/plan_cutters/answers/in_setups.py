@@ -18,13 +18,7 @@ from plan_cutters.scene.threads import Progress, part_of
 
 
 def stick_out_in_each(
-    ready: Prepared,
-    cutter: Cutter,
-    verdicts: Sequence[Verdicts],
-    which: Ints,
-    *,
-    step: float | None = None,
-    progress: Progress | None = None,
+    ready: Prepared, cutter: Cutter, verdicts: Sequence[Verdicts], which: Ints, *, progress: Progress | None = None
 ) -> StickOut:
     """The least stick-out with which each setup still reaches all samples that it serves.
 
@@ -36,7 +30,7 @@ def stick_out_in_each(
         In each setup.
     which : (n,) int32
         The setup that serves each sample, -1 for none.
-    step, progress
+    progress
         As for `least_stick_out`.
 
     Returns
@@ -45,19 +39,16 @@ def stick_out_in_each(
         Of the setup that needs most. With another division of the samples among the setups, less might do.
     """
     if len(verdicts) == 1:
-        return least_stick_out(ready, cutter, verdicts[0], step=step, progress=progress)
+        return least_stick_out(ready, cutter, verdicts[0], progress=progress)
     tell = progress or (lambda done, total: None)
     results = list[StickOut]()
     for k, there in enumerate(verdicts):
         mine = replace(there, verdict=np.where(there.reached & (which != k), UNJUDGED, there.verdict).astype(np.uint8))
         part = part_of(tell, k, len(verdicts))
-        results.append(replace(least_stick_out(ready.alone(k), cutter, mine, step=step, progress=part), setup=k))
+        results.append(replace(least_stick_out(ready.alone(k), cutter, mine, progress=part), setup=k))
     # A setup that serves nothing asks for nothing.
     most = max(results, key=lambda each: -np.inf if np.isnan(each.least) else each.least)
-    maps = [each.each for each in results if each.each is not None]
-    # Each sample has a stick-out in the setup that serves it alone.
-    whole = np.fmax.reduce(maps) if maps else None
-    return replace(most, served=sum(each.served for each in results), each=whole, step=most.step if maps else np.nan)
+    return replace(most, served=sum(each.served for each in results))
 
 
 def radius_in_any(ready: Prepared, shape: Shape, *, ratio: float, progress: Progress | None = None) -> RadiusMap:

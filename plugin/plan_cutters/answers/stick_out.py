@@ -33,9 +33,7 @@ _NARROWEST = 1e-5
 Progress = Callable[[int, int], None]
 
 
-def least_stick_out(
-    ready: Prepared, cutter: Cutter, verdicts: Verdicts, *, step: float | None = None, progress: Progress | None = None
-) -> StickOut:
+def least_stick_out(ready: Prepared, cutter: Cutter, verdicts: Verdicts, *, progress: Progress | None = None) -> StickOut:
     """The least stick-out with which a cutter in its holder reaches every sample that it reaches now.
 
     Parameters
@@ -44,8 +42,6 @@ def least_stick_out(
     cutter : Cutter
     verdicts : Verdicts
         What `judge` found for it.
-    step : float, optional
-        Find the least stick-out of every sample, too, to this, mm.
     progress : callable, optional
         Called with the number of samples done, and the number of all.
 
@@ -66,10 +62,7 @@ def least_stick_out(
         longer, row = max((search.one(row, least)[0], row) for row in not_reached.tolist())
         least, limiting = min(longest, max(longer, least + EXACT)), row
     least, beyond, limiting = search.lowered(rows, least, limiting)
-    each = None if step is None else search.each(rows, step)
-    stick_out = StickOut(
-        least, search.floor, longest, "floor" if limiting < 0 else "obstacle", served=len(rows), each=each, step=step or np.nan
-    )
+    stick_out = StickOut(least, search.floor, longest, "floor" if limiting < 0 else "obstacle", served=len(rows))
     return stick_out if limiting < 0 else _limited(ready, cutter, search, stick_out, beyond, limiting)
 
 
@@ -189,9 +182,7 @@ class _Search:
         def work(which: NDArray[np.int64]) -> None:
             for k in which.tolist():
                 piece = pieces[k]
-                at[k] = until_not_reached(
-                    piece, int(at[k]), self.contacts, ranges, tool, solids, False, verdict_arrays_of(verdicts)
-                )
+                at[k] = until_not_reached(piece, int(at[k]), self.contacts, ranges, tool, solids, verdict_arrays_of(verdicts))
                 row = int(piece[at[k] - 1])
                 if verdicts.verdict[row] != ACCESSIBLE:
                     not_reached[k] = row
@@ -268,40 +259,3 @@ class _Search:
             return False
         self.found.take_posture(row, best, 0)
         return True
-
-    def with_margin(self, rows: NDArray[np.int64], posture: VerdictBuffer) -> Floats:
-        """Stick-outs (m,), mm, that known postures need, and `BEYOND` more.
-
-        With no more than they need, no other tilt is left, and a search would miss the posture.
-        """
-        needed = self.needed(rows, posture)[0][rows]
-        return np.where(needed > self.floor, np.minimum(needed + BEYOND, self.cutter.length), needed)
-
-    def each(self, rows: NDArray[np.int64], step: float) -> Floats:
-        """The least stick-out (n,) of each of some samples to a step, nan for the others."""
-        from plan_cutters.kernels.search.search import until_not_reached
-
-        ranges, solids = self.conditions.ranges, self.conditions.obstacles.solids
-        best = np.full(len(self.ready.samples), np.nan)
-        best[rows] = self.with_margin(rows, self.found)
-        low, high = np.full(len(best), -1), np.zeros(len(best), np.int64)
-        high[rows] = np.ceil((best[rows] - self.floor) / step - 1e-9)
-        while len(open_rows := rows[high[rows] - low[rows] > 1]):
-            # The floor first: most samples are free with it.
-            middle = np.where(low[open_rows] < 0, 0, (low[open_rows] + high[open_rows]) // 2)
-            for level in np.unique(middle).tolist():
-                some, buffer = open_rows[middle == level], blank(len(best))
-                tool = self.tool(min(self.cutter.length, self.floor + level * step))
-
-                def work(piece: NDArray[np.int64], tool: Tool = tool, buffer: VerdictBuffer = buffer) -> None:
-                    until_not_reached(piece, 0, self.contacts, ranges, tool, solids, True, verdict_arrays_of(buffer))
-
-                in_chunks(work, some, self.conditions.jobs)
-                reached = some[buffer.verdict[some] == ACCESSIBLE]
-                best[reached] = np.minimum(
-                    np.minimum(best[reached], self.floor + level * step), self.with_margin(reached, buffer)
-                )
-                high[reached] = np.minimum(level, np.ceil((best[reached] - self.floor) / step - 1e-9))
-                low[some[buffer.verdict[some] != ACCESSIBLE]] = level
-                self.progress(len(rows) - len(open_rows), len(rows))
-        return best

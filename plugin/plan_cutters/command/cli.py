@@ -47,10 +47,6 @@ def command(request: PlanRequest) -> int:
 
     parts = request.parts
     requested, _ = check(request)
-    if request.postures is not None:
-        from plan_cutters.command.stored_maps import stored
-
-        return stored(parts[0], request.postures, requested, request, help_groups.named())
     if request.check_operations is not None:
         checked = module_of(f"{_SELF} check").checked
         return int(checked(parts[0], request.check_operations, requested, quiet=request.quiet, read_timeout=request.read_timeout))
@@ -165,7 +161,7 @@ def _watched(words: list[str], name: str) -> int:
         terminal.keep_output()
         return invoked(command, _SELF, words)
     names = {cutter.id: called(cutter) for cutter in requested.judged}
-    display = Display(request.quiet or request.postures is not None, len(names), began(), names=names)
+    display = Display(request.quiet, len(names), began(), names=names)
     for fault in faults:
         terminal.error(f"plan-cutters: {fault}; the other parts are planned")
     memory = default_memory() if request.memory is None else int(request.memory * 1e9)

@@ -18,7 +18,6 @@ _SELF = "plan-cutters"
 OURS = {
     "plan": ("cli", "Find the cutters that finish a part: see below. It is meant where no command is named."),
     "map": ("map", "Draw all postures of one cutter at one point."),
-    "stored": ("stored_maps", "Judge another machine or setup by the posture maps of a plan."),
     "tools": ("tools", "List the tools of a library as they are understood."),
     "batch": ("batch", "Plan many parts, on this machine or on a cluster."),
     "machines": ("machines", "List the built-in machines, or show how a machine file is understood."),

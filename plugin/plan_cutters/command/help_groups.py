@@ -9,7 +9,6 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import click
-from click.core import ParameterSource
 
 from plan_cutters import __version__
 from plan_cutters.command.values import Words
@@ -142,12 +141,6 @@ def _help_all(ctx: click.Context, param: click.Parameter, requested: bool) -> No
     ctx.meta[_ALL] = True
     click.echo(ctx.get_help(), color=ctx.color)
     ctx.exit()
-
-
-def named() -> set[str]:
-    """The parameters that stand on the command line: the others have their defaults."""
-    context = click.get_current_context()
-    return {name for name in context.params if context.get_parameter_source(name) is not ParameterSource.DEFAULT}
 
 
 def colour() -> bool | None:

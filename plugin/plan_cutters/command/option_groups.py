@@ -203,14 +203,12 @@ _OPTIONS = (
         metavar="N",
         help="Samples to map, at most, evenly spread; the others are undecided there.  [default: as many as some minutes allow]",
     ),
-    _postures("--postures", type=File("FILE"), help="Answer from the part's postures.npz alone, as the command `stored` does."),
     _output("-o", "--out", brief=True, type=Folder("DIR"), help="Folder for the files.  [default: <part>-plan]"),
     _output(
         "--formats",
         brief="Of json, step, glb, html, npz, png, csv and more.",
         type=Words("LIST", lambda: FORMATS, listed=True),
-        help=f"Of {', '.join(FORMATS)}; merged is a GLB of one mesh, for parts of thousands of faces; "
-        "plans adds STEP and GLB of each plan of operations.  "
+        help=f"Of {', '.join(FORMATS)}; merged is a GLB of one mesh, for parts of thousands of faces.  "
         f"[default: {','.join(DEFAULT_FORMATS)}]",
     ),
     _output(
@@ -376,11 +374,10 @@ _OPTIONS = (
 )
 
 
-def options(*names: str, defaults: bool = True, **changes: dict[str, Any]) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+def options(*names: str, **changes: dict[str, Any]) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
     """Declare these options, all of them where none is named, in the order above; `changes`: what is otherwise, by name.
 
-    A name is that of the option on the command line, without the dashes and with `_` for `-`. `defaults`: whether help says
-    them.
+    A name is that of the option on the command line, without the dashes and with `_` for `-`.
     """
 
     def declare(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -388,8 +385,6 @@ def options(*names: str, defaults: bool = True, **changes: dict[str, Any]) -> Ca
             name = next(word for word in option.words if word.startswith("--"))[2:].replace("-", "_")
             if not names or name in names or name in changes:
                 more = {**option.more, **changes.get(name, {})}
-                if not defaults:
-                    more["help"] = more["help"].partition("  [default:")[0]
                 function = heading(option.group)(*option.words, **more)(function)
         return function
 

@@ -74,15 +74,6 @@ class JudgingRequest(PostureRequest):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class StoredRequest(JudgingRequest):
-    """Another machine or setup on stored posture maps: `plan-cutters stored`."""
-
-    file: str
-    part: str | None
-    json_out: str | None
-
-
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class PlanningRequest(JudgingRequest):
     """The common fields of all commands that plan parts."""
 
@@ -136,7 +127,6 @@ class PlanRequest(PlanningRequest, Reported):
     """Plans of some parts: `plan-cutters`."""
 
     parts: tuple[str, ...]
-    postures: str | None
     check_operations: str | None
     process: str | None
     out: str | None

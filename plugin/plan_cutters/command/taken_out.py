@@ -1,7 +1,13 @@
 """Words of the command line that are gone, and what to use instead."""
 
 #: Options by their word, commands as "command WORD", values as "--option VALUE": what to use instead.
-TAKEN_OUT: dict[str, str] = {}
+TAKEN_OUT: dict[str, str] = {
+    "command stored": "plan again with the other machine or setup; stored stages make that short",
+    "--postures": "plan again with the other machine or setup; stored stages make that short",
+    "--formats regions": "the regions and axes of --operations stand in plan.json",
+    "--formats plans": "leave it out; STEP and GLB of both plans are written with --operations both",
+    "--answers stick-out-map": "give --answers stick-out; in Python, result.face(F1, stick_out=True) is about a face",
+}
 
 
 def instead(word: str) -> str:

@@ -19,8 +19,6 @@ from plan_cutters.command.request import PlanningRequest, PlanRequest, planning_
 if TYPE_CHECKING:
     from plan_cutters.options import Options
 
-#: Parameters of the commands that `Options` names otherwise.
-NAMED = {"cutter": "cutters", "cutters": "libraries", "fixture": "fixtures"}
 #: Options that count in a plan of operations alone: without one they must not be ignored.
 OF_OPERATIONS = ("feed", "scallop", "stepover", "index_step", "index_time", "change_time", "setup_time",
                  "overlap", "most_operations", "max_orientations")  # fmt: skip
@@ -43,9 +41,8 @@ def check(request: PlanRequest) -> "tuple[Options, list[CadIoError]]":
     faults = _faults(request.parts)
     if len(faults) == len(request.parts):
         raise faults[0]
-    if request.postures is None:
-        for out in folders(request):
-            writable(out)
+    for out in folders(request):
+        writable(out)
     options = options_of(request)
     look_at(options)
     return options, faults
@@ -94,8 +91,6 @@ def _words(request: PlanRequest) -> None:
     _plans_nothing(request)
     if request.check_operations is None:
         refuse_unplanned_operations(request)
-    if request.postures is not None:
-        maps_file(request.postures)
     if request.check_operations is not None and not os.path.isfile(request.check_operations):
         raise OptionError("no such file: give the plan.json of a plan of operations", file=request.check_operations)
     if request.cluster is not None:
@@ -114,26 +109,6 @@ def _words(request: PlanRequest) -> None:
         raise OptionError("--timeout must be a positive number of seconds")
     if request.memory is not None and not LEAST_MEMORY <= request.memory * 1e9 < 1e18:
         raise OptionError("--memory must be at least 2 GB")
-
-
-def maps_file(file: str) -> None:
-    """Refuse what is no file of posture maps by its first bytes.
-
-    Raises
-    ------
-    OptionError
-    """
-    from plan_cutters.errors import OptionError
-
-    if not os.path.isfile(file):
-        raise OptionError("no such file, or it is no file", file=file)
-    try:
-        with open(file, "rb") as opened:
-            begins = opened.read(4)
-    except OSError as error:
-        raise OptionError(f"cannot be read: {error.strerror}", file=file) from None
-    if begins[:2] != b"PK":
-        raise OptionError("holds no posture maps: give the postures.npz that a plan writes with --posture-maps", file=file)
 
 
 def scheduler(address: str) -> None:
@@ -166,20 +141,17 @@ def _plans_nothing(request: PlanRequest) -> None:
     """Refuse what is about planning, and several parts, where something that was planned is looked at."""
     from plan_cutters.errors import OptionError
 
-    for name in ("check_operations", "postures"):
-        if getattr(request, name) is None:
-            continue
-        word = f"--{name.replace('_', '-')}"
-        if any(str(each).lower() == "auto" for each in request.setup):
-            raise OptionError(f"--setup auto plans what it proposes, and {word} plans nothing: name the setup")
-        planning = [
-            each for each in ("cluster", "verdicts", "verdicts_key", "junit", "sarif") if getattr(request, each) is not None
-        ]
-        if planning:
-            one = planning[0].replace("_", "-")
-            raise OptionError(f"--{one} is about planning, and {word} plans nothing: leave one of them out")
-        if len(request.parts) > 1:
-            raise OptionError(f"{word} is about one part")
+    if request.check_operations is None:
+        return
+    word = "--check-operations"
+    if any(str(each).lower() == "auto" for each in request.setup):
+        raise OptionError(f"--setup auto plans what it proposes, and {word} plans nothing: name the setup")
+    planning = [each for each in ("cluster", "verdicts", "verdicts_key", "junit", "sarif") if getattr(request, each) is not None]
+    if planning:
+        one = planning[0].replace("_", "-")
+        raise OptionError(f"--{one} is about planning, and {word} plans nothing: leave one of them out")
+    if len(request.parts) > 1:
+        raise OptionError(f"{word} is about one part")
 
 
 def refuse_unplanned_operations(request: PlanningRequest) -> None:

@@ -46,7 +46,6 @@ def stick_out_entry(stick_out: StickOut, samples: SurfaceSamples, surroundings: 
         obstacle_face=surroundings.called(stick_out.obstacle_face) if stick_out.obstacle_face else None,
         obstacle_point=None if stick_out.obstacle_point is None else vector(stick_out.obstacle_point),
         doubtful=surroundings.doubtful,
-        step_mm=None if stick_out.each is None else stick_out.step,
     )
 
 

@@ -158,7 +158,7 @@ def _of_area(entries: Sequence[CutterEntry], *, doubtful: bool) -> Iterator[Note
 def _of_several_setups(ready: Prepared) -> Iterator[Note]:
     """What is found in each setup by itself, or in the first one alone."""
     options = ready.options
-    if ready.others and {"stick-out", "stick-out-map"} & set(options.answers):
+    if ready.others and "stick-out" in options.answers:
         yield notes.stick_out_each_setup()
     if options.posture_maps and not ready.alike:
         yield notes.maps_first_setup()

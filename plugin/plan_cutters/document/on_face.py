@@ -123,11 +123,9 @@ def _least(entry: FaceEntry, mine: NDArray[np.bool_], reach: Verdicts, stick_out
     if not (reach.reached & mine).any():
         return None, f"the cutter reaches nothing of {entry.id}"
     if stick_out is None:
-        return None, "it was not requested: give stick_out=True here, or plan with answers='stick-out-map'"
+        return None, "it was not requested: give stick_out=True here"
     if stick_out.why == "no holder":
         return None, "the cutter has no holder"
-    if stick_out.each is not None:
-        return float(np.nanmax(stick_out.each[mine])), ""
     return float(stick_out.least), ""
 
 

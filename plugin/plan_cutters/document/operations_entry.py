@@ -20,7 +20,6 @@ from plan_cutters.options import Options
 from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.operations import (
     AssumedEntry,
-    CurveStepEntry,
     CutterUse,
     FastestEntry,
     FewestEntry,
@@ -69,14 +68,12 @@ def operations_entry(
     )
     plans = [_plan(each, operations, samples, area, wanted, reason) for each in operations.plans]
     uses = [_use(each, plans, area) for each in operations.worth]
-    steps = [CurveStepEntry(orientations=s.orientations, share=s.share, at_most=s.at_most) for s in operations.curve]
     return OperationsEntry(
         asked=operations.which,  # type: ignore[arg-type]
         rotary=operations.names,
         plans=plans,
         fewest=None if operations.fewest is None else _fewest(operations.fewest),
         cutters=uses,
-        curve=steps,
         fastest=_fastest(operations),
         assumed=assumed,
         probes=operations.probes,
@@ -90,8 +87,7 @@ def _fewest(fewest: Fewest) -> FewestEntry:
     return FewestEntry(
         found=len(fewest.chosen), at_least=fewest.at_least, proof=fewest.proof, weights=sorted(weights), bound=fewest.bound,
         lp=fewest.relaxed, samples=fewest.samples, candidates=len(fewest.columns), spacing_deg=float(np.degrees(fewest.spacing)),
-        alone=len(fewest.alone), at_least_any=fewest.at_least_any,
-        cells_deg=float(np.degrees(fewest.cells)) if np.isfinite(fewest.cells) else None,
+        alone=len(fewest.alone),
     )  # fmt: skip
 
 

@@ -18,7 +18,6 @@ class AnswerKind(NamedTuple):
 
 KINDS = (
     AnswerKind("stick-out", "how short each cutter can be held", "asking for the least stick-out"),
-    AnswerKind("stick-out-map", "that for every sample, too", "asking for the least stick-out", long=True),
     AnswerKind("radius", "the largest flat and ball end that reaches each sample", "asking for the largest radius"),
     AnswerKind(
         "mend",

@@ -29,7 +29,7 @@ def answers_of(value: Any) -> tuple[str, ...]:
     ('stick-out', 'mend')
     >>> answers_of("radii")
     Traceback (most recent call last):
-    plan_cutters.errors.OptionError: answers: 'radii' is none of stick-out, stick-out-map, radius, mend, mend-all and all
+    plan_cutters.errors.OptionError: answers: 'radii' is none of stick-out, radius, mend, mend-all and all
     """
     if isinstance(value, str):
         words: list[Any] = value.split(",") if value.strip() else []

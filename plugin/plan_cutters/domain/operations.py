@@ -2,7 +2,6 @@
 what proves that there are no fewer.
 """
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal
@@ -60,15 +59,6 @@ def strategy_of(number: NDArray[np.uint8], area: Floats) -> Strategy:
     return STRATEGIES[int(size.argmax())] if size.max() >= _NEARLY_ALL * size.sum() else "mixed"
 
 
-@dataclass(frozen=True, slots=True)
-class Step:
-    """So many fixed orientations serve this share of the judged area, and no choice of as many serves more than `at_most`."""
-
-    orientations: int
-    share: float
-    at_most: float | None
-
-
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Fewest(Record):
     """The fewest orientations found, with what proves how few there can be.
@@ -93,10 +83,6 @@ class Fewest(Record):
         Samples that no candidate serves.
     samples : int
         How many are reached.
-    at_least_any : int
-        No choice of any axes has fewer, candidates or not.
-    cells : float
-        Radius of the smallest cells of directions that this was found with, rad; nan where none were needed.
     """
 
     columns: Columns
@@ -109,8 +95,6 @@ class Fewest(Record):
     spacing: float
     alone: NDArray[np.int64]
     samples: int
-    at_least_any: int = 0
-    cells: float = math.nan
 
     @property
     def proof(self) -> Literal["weights", "branch and bound", "not closed"]:
@@ -260,7 +244,7 @@ class OperationPlan:
     Attributes
     ----------
     name : str
-        `fewest`, `fastest` or `largest first`; `process`: the planner's own steps, and those planned behind them.
+        `fewest` or `fastest`; `process`: the planner's own steps, and those planned behind them.
     operations : tuple of Operation
     label : (n,) int32
         Index into the operations, -1 for none.
@@ -334,7 +318,6 @@ class Operations:
     plans : tuple of OperationPlan
     fewest : Fewest, optional
         None beside a process of the planner's own.
-    curve : tuple of Step
     names : tuple of str
         Of the two rotary axes, or `azimuth` and `tilt`.
     probes : int
@@ -355,7 +338,6 @@ class Operations:
     cutters: tuple[Cutter, ...]
     plans: tuple[OperationPlan, ...]
     fewest: Fewest | None
-    curve: tuple[Step, ...]
     names: tuple[str, str]
     probes: int
     feed: Mapping[Cutter, float] | None

@@ -46,10 +46,6 @@ class StickOut(Record):
     obstacle_point : (3,) float, optional
     served : int
         Samples that were searched with it, and are reached.
-    each : (n,) float, optional
-        For every sample the least stick-out, to `step`, nan where it is not reached.
-    step : float
-        A sample is reached with its `each`, and was not with `step` less, or `each` is the floor.
     setup : int
         The setup of the sample that limits it, from 0.
     """
@@ -68,8 +64,6 @@ class StickOut(Record):
     obstacle_face: int | None = None
     obstacle_point: Floats | None = None
     served: int = 0
-    each: Floats | None = None
-    step: float = math.nan
     setup: int = 0
 
     @property

@@ -1,6 +1,5 @@
 """The plan of operations: fixed orientations, cutters and setups that finish together all that can be reached, with proofs.
 
 The derivation is in `docs/operations.md`. One module for each step: columns that may be chosen (`candidates`), where each of them
-serves (`probes`), the fewest of them with a certificate (`fewest`, `cover`, `certificate`), the share of the area by so many
-(`curve`).
+serves (`probes`), the fewest of them with a certificate (`fewest`, `cover`, `certificate`).
 """

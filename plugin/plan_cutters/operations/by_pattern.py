@@ -7,7 +7,6 @@ samples, like any other.
 import math
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,9 +17,9 @@ from plan_cutters.domain.operations import Fastest, OperationPlan, Worth
 from plan_cutters.operations.at_once import few_enough, fewer, recommended
 from plan_cutters.operations.canonical import canonical
 from plan_cutters.operations.fastest import bounded, cheap
-from plan_cutters.operations.plans import expanded, plan_with, worth_their_turn
+from plan_cutters.operations.plans import plan_with, worth_their_turn
 from plan_cutters.operations.repeated import Copied, repeated, symmetric
-from plan_cutters.operations.rest_areas import allowed, by_size, largest_first, worths
+from plan_cutters.operations.rest_areas import by_size, largest_first, worths
 from plan_cutters.operations.symmetry import Symmetry
 from plan_cutters.operations.task import Task
 from plan_cutters.plan_file.numbers import count, duration
@@ -126,22 +125,19 @@ def planned_by_pattern(task: Task, offer: Repeated) -> PlansTimed | None:
     plan = single if again is None or _better(task, single, again) else again
     if moving_share(task, plan) > copied.not_served + _MOST_MOVING:
         return None
-    plans = [plan]
+    compared = [plan]
     if len(task.cutters) > 1:
         columns = worth_their_turn(offer.one, copied.base.of(largest_first(copied.problem, by_size(task))))
-        rule = partial(allowed, task, expanded(offer.task, columns)[0])
-        by_size_first = plan_with(offer.task, "largest first", columns, rule)
-        if known(by_size_first) < known(plan) and few_enough(task, by_size_first):
-            plans = [replace(by_size_first, name="fastest")]
-        plans.append(by_size_first)
+        compared.append(plan_with(offer.task, "fastest", columns))
+        plan = min([plan, *(each for each in compared if few_enough(task, each))], key=known)
     # What the plan takes that is printed bounds the best from above.
-    bound = min(bounded(copied.apart, alone).bound, np.nan_to_num(plans[0].total, nan=np.inf))
-    timed = Fastest(plans[0].total, bound, min(copied.at_best, bound), copied.area, *copied.apart.cost.shape)
+    bound = min(bounded(copied.apart, alone).bound, np.nan_to_num(plan.total, nan=np.inf))
+    timed = Fastest(plan.total, bound, min(copied.at_best, bound), copied.area, *copied.apart.cost.shape)
     words = (
         "Orientations were chosen by the samples of one copy of the part; --operations both looks for the fewest orientations as "
         "well, by all samples."
     )
-    return plans, timed, worths(task, plans), (words,)
+    return [plan], timed, worths(task, compared), (words,)
 
 
 def _single(task: Task, offer: Repeated, alone: Rows) -> Columns:

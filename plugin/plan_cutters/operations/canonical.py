@@ -6,7 +6,7 @@ time.
 """
 
 import math
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import product
 
@@ -23,8 +23,6 @@ from plan_cutters.scene.threads import Progress
 
 Served = NDArray[np.bool_]
 Rows = NDArray[np.int64]
-#: Says which columns, of those that serve (r, k), a sample may go with.
-Rule = Callable[[Columns, Served], Served]
 #: Times that differ by less are equal, as a share.
 _EQUAL = 0.02
 #: Whole multiples of these that are tried, deg, in this order; and those to which an axis is written within its accuracy.
@@ -41,10 +39,8 @@ class _Choice:
     ----------
     cost : (r, k) float
         Infinite where a column does not serve.
-    ruled : (r, k) float
-        The costs that the rule leaves, infinite where a sample may not go with a column, too.
     best : (r,) int
-        The cheapest column of each sample, by `ruled`.
+        The cheapest column of each sample.
     served : (r,) bool
         Samples that some column serves.
     cutting : float
@@ -52,10 +48,8 @@ class _Choice:
     """
 
     task: Task
-    rule: Rule | None
     columns: Columns
     cost: Floats
-    ruled: Floats
     best: Rows
     served: Served
     cutting: float
@@ -66,11 +60,11 @@ class _Choice:
 
     def own(self, k: int) -> Rows:
         """Samples, numbers in the task's rows, that are cheapest with a column."""
-        return np.flatnonzero(np.isfinite(self.ruled[:, k]) & (self.best == k))
+        return np.flatnonzero(np.isfinite(self.cost[:, k]) & (self.best == k))
 
     def needed(self, k: int) -> Rows:
         """Samples that no other column serves; where there are none, those that are cheapest with this one."""
-        serves = np.isfinite(self.ruled)
+        serves = np.isfinite(self.cost)
         alone = np.flatnonzero(serves[:, k] & (serves.sum(axis=1) == 1))
         return alone if len(alone) else self.own(k)
 
@@ -81,7 +75,7 @@ class _Choice:
     def without(self, k: int) -> "_Choice":
         """The choice without one of its columns."""
         others = np.delete(np.arange(len(self.columns)), k)
-        return _choice(self.task, self.rule, self.columns.of(others), self.cost[:, others])
+        return _choice(self.task, self.columns.of(others), self.cost[:, others])
 
     def exchanged(self, k: int, other: Columns) -> "_Choice":
         """The choice with another column in the place of one."""
@@ -89,24 +83,20 @@ class _Choice:
         place[k] = len(self.columns)
         cost = self.cost.copy()
         cost[:, k] = costs_with(self.task, other)[1][:, 0]
-        return _choice(self.task, self.rule, self.columns.and_(other).of(place), cost)
+        return _choice(self.task, self.columns.and_(other).of(place), cost)
 
     def as_good(self, before: "_Choice", most: float) -> bool:
         """Whether it serves all that another choice does, and cuts it at no more than a cost."""
         return bool(self.served[before.served].all()) and self.cutting <= most
 
 
-def _choice(task: Task, rule: Rule | None, columns: Columns, cost: Floats) -> _Choice:
+def _choice(task: Task, columns: Columns, cost: Floats) -> _Choice:
     """Columns with their costs (r, k), and what follows from these."""
-    serves = np.isfinite(cost)
-    ruled = cost if rule is None else np.where(rule(columns, serves), cost, np.inf)
-    served = np.asarray(serves.any(axis=1))
-    return _Choice(
-        task, rule, columns, cost, ruled, ruled.argmin(axis=1), served, float(ruled[served].min(axis=1, initial=np.inf).sum())
-    )
+    served = np.asarray(np.isfinite(cost).any(axis=1))
+    return _Choice(task, columns, cost, cost.argmin(axis=1), served, float(cost[served].min(axis=1, initial=np.inf).sum()))
 
 
-def canonical(task: Task, columns: Columns, rule: Rule | None = None, *, progress: Progress | None = None) -> Columns:
+def canonical(task: Task, columns: Columns, *, progress: Progress | None = None) -> Columns:
     """Exchange orientations of a choice for canonical ones.
 
     The setup axis comes first, then normals of floors, directions of walls, and whole multiples of 90, 45, 30, 15, 5, 1 and
@@ -117,8 +107,6 @@ def canonical(task: Task, columns: Columns, rule: Rule | None = None, *, progres
     ----------
     task : Task
     columns : Columns
-    rule : callable, optional
-        Says which of the columns that serve a sample it may go with.
     progress : callable, optional
         Called with how much is done, of how much.
 
@@ -129,7 +117,7 @@ def canonical(task: Task, columns: Columns, rule: Rule | None = None, *, progres
     """
     if not len(columns) or task.ready.options.index_step is not None:
         return columns
-    first = choice = _choice(task, rule, columns, costs_with(task, columns)[1])
+    first = choice = _choice(task, columns, costs_with(task, columns)[1])
     most, faces = (1.0 + _EQUAL) * choice.cutting, face_directions(task.ready.samples)
     tell, count = progress or (lambda done, total: None), 2 * len(columns)
     for done, k in enumerate(choice.order()):

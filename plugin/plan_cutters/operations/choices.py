@@ -6,7 +6,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io.arrays import Floats
 from plan_cutters.domain.columns import Columns
 from plan_cutters.operations.candidates import STEP
 from plan_cutters.operations.fastest import cheap, exchanged
@@ -60,15 +59,6 @@ class Choice:
         return self.chosen if self.whole else np.union1d(self.chosen, self.known)
 
 
-def even(task: Task, search: Search, tell: Progress | None = None) -> tuple[Columns, Rows, NDArray[np.bool_], Floats]:
-    """Return the candidates that are known whole, their numbers, where they serve samples all over the part, and these' area."""
-    wanted = np.setdiff1d(task.rows, search.alone)
-    most = _EVEN if task.ready.options.operations == "fewest" else _TIMED
-    search.require(wanted[:: max(1, len(wanted) // most)], tell)
-    active, table = search.whole
-    return search.columns.of(active), active, table, shared_area(task.ready.samples, wanted, search.rows)
-
-
 def quicker(task: Task, search: Search, fewest: Columns) -> Columns:
     """As many columns that cut faster, if they serve all samples as well; else the same."""
 
@@ -116,7 +106,11 @@ def _timed(task: Task, search: Search, fewest: Columns) -> tuple[Columns, Proble
     Where the rotary axes have rates, an orientation counts in the choice what it takes in the mean of the fewest.
     """
     options, indexing = task.ready.options, task.indexing
-    columns, active, table, area = even(task, search)
+    wanted = np.setdiff1d(task.rows, search.alone)
+    most = _EVEN if options.operations == "fewest" else _TIMED
+    search.require(wanted[:: max(1, len(wanted) // most)])
+    active, table = search.whole
+    columns, area = search.columns.of(active), shared_area(task.ready.samples, wanted, search.rows)
     mean = indexing.constant if indexing.rate is None else indexing.together(fewest) / max(1, len(fewest))
     costs = Costs(mean, options.change_time, options.setup_time)
     problem = task.problems.of(columns, active, table, search.rows, area, costs)

@@ -108,11 +108,11 @@ class Search:
         active = np.flatnonzero(self._active)
         return active, self._table[:, active] == 1
 
-    def require(self, rows: Rows, progress: Progress | None = None) -> None:
+    def require(self, rows: Rows) -> None:
         """Take samples into the table."""
         new = np.setdiff1d(rows, np.union1d(self.rows, self.alone))
         if len(new):
-            self._add_rows(new, progress)
+            self._add_rows(new)
 
     def refine(self, cover: Cover, spacing: float, orientations: Sequence[Orientations]) -> None:
         """Lay candidates at a spacing, rad, about those that the weights load most, and about those chosen."""

@@ -12,20 +12,18 @@ from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.lengths import reporting
-from plan_cutters.domain.operations import Fastest, Fewest, OperationPlan, Operations, Step
+from plan_cutters.domain.operations import Fastest, Fewest, OperationPlan, Operations
 from plan_cutters.domain.own_process import OwnProcess, cutter_of
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.operations.at_once import few_enough, recommended
 from plan_cutters.operations.by_pattern import PlansTimed, Repeated, as_quick, planned_by_pattern, repeated_orientations
 from plan_cutters.operations.candidates import STEP, apart, candidates
 from plan_cutters.operations.canonical import canonical
-from plan_cutters.operations.choices import COARSE, even, fastest_choice, largest_first_choice, quicker
+from plan_cutters.operations.choices import COARSE, fastest_choice, largest_first_choice, quicker
 from plan_cutters.operations.companions import accompanied
-from plan_cutters.operations.curve import curve
 from plan_cutters.operations.fastest import bounded
 from plan_cutters.operations.fewest import FINEST, Search, search_fewest
 from plan_cutters.operations.indexing import Indexing
-from plan_cutters.operations.over_all_axes import over_all_axes
 from plan_cutters.operations.own_steps import own_plan
 from plan_cutters.operations.plans import (
     MINOR_AREA,
@@ -39,7 +37,7 @@ from plan_cutters.operations.plans import (
 from plan_cutters.operations.priced import comparable, feeds, without_feed
 from plan_cutters.operations.probes import Probes
 from plan_cutters.operations.proof import proved
-from plan_cutters.operations.rest_areas import allowed, with_and_without, worths
+from plan_cutters.operations.rest_areas import with_and_without, worths
 from plan_cutters.operations.task import Task
 from plan_cutters.operations.thinned import thinned
 from plan_cutters.operations.timing import Paths, Problems
@@ -51,9 +49,8 @@ from plan_cutters.scene.threads import Progress, part_of
 Rows = NDArray[np.int64]
 #: Cutters whose operations are compared, at most: the fewest that reach all, and then by rank.
 _CUTTERS = 4
-#: Parts of the work whose progress is told as one: what may be repeated, the fewest, their bound, the curve, the plans, their
-#: proof.
-_PARTS = 6
+#: Parts of the work whose progress is told as one: what may be repeated, the fewest, the plans, their proof.
+_PARTS = 4
 
 
 @reporting(lambda ready: ready.options.reported_unit)
@@ -79,7 +76,7 @@ def plan_operations(
     task = _task(ready, everywhere, least)
     if options.process is not None:
         return _own(task, options.process, stage)
-    fewest, alone, steps = None, 0, tuple[Step, ...]()
+    fewest, alone = None, 0
     with stage("operations") as tell:
         offer = _offer(task, part_of(tell, 0, _PARTS))
         quick = None if offer is None or options.operations != "fastest" else planned_by_pattern(task, offer)
@@ -88,21 +85,16 @@ def plan_operations(
         elif options.operations == "fastest":
             some = thinned(task)
             search, few = _served(some, part_of(tell, 1, _PARTS))
-            plans, timed, worth, instead = _plans(task, some, search, few, offer, part_of(tell, 4, _PARTS))
+            plans, timed, worth, instead = _plans(task, some, search, few, offer, part_of(tell, 2, _PARTS))
             alone = len(search.alone) * (len(task.rows) // max(1, len(some.rows)))
             task.probes.made += some.probes.made if some is not task else 0
         else:
             search, fewest = _fewest(task, part_of(tell, 1, _PARTS))
-            any_axes, cells = over_all_axes(task.probes, fewest, task.rows, progress=part_of(tell, 2, _PARTS))
-            fewest = replace(fewest, at_least_any=any_axes, cells=cells)
-            whole = float(np.nansum(ready.samples.area[ready.finished]))
-            steps = curve(task.probes, fewest, task.rows, ready.samples.area, whole, partial(even, task, search),
-                          progress=part_of(tell, 3, _PARTS))  # fmt: skip
             few, alone = fewest.columns.of(fewest.chosen), len(fewest.alone)
-            plans, timed, worth, instead = _plans(task, thinned(task), search, few, offer, part_of(tell, 4, _PARTS))
-        plans = _proved(task, plans, part_of(tell, 5, _PARTS))
+            plans, timed, worth, instead = _plans(task, thinned(task), search, few, offer, part_of(tell, 2, _PARTS))
+        plans = _proved(task, plans, part_of(tell, 3, _PARTS))
     notes = (*instead, *_notes(task, least, plans, None if instead else alone))
-    return Operations(options.operations or "", task.cutters, tuple(plans), fewest, steps, task.orientations[0].names,
+    return Operations(options.operations or "", task.cutters, tuple(plans), fewest, task.orientations[0].names,
                       task.probes.made, task.paths.feed, timed, worth=worth,
                       notes=notes, index_from=task.indexing.source)  # fmt: skip
 
@@ -135,15 +127,12 @@ def _offer(task: Task, tell: Progress) -> Repeated | None:
 
 
 def _proved(task: Task, plans: Sequence[OperationPlan], tell: Progress) -> list[OperationPlan]:
-    """Plans with what is proved between the samples: what was found of a plan is not sought again of others that are the same.
-
-    The habit of letting the largest cutter go first is there to be compared with: it is not proved.
-    """
+    """Plans with what is proved between the samples: what was found of a plan is not sought again of others that are the same."""
     result = list[OperationPlan]()
     for k, each in enumerate(plans):
         same = next((other for other in result if each.like(other)), None)
         mine = part_of(tell, k, len(plans))
-        if same is None and each.name != "largest first":
+        if same is None:
             each = proved(task.ready, task.everywhere, each, progress=mine)
         result.append(each if same is None else replace(same, name=each.name))
     return result
@@ -186,13 +175,13 @@ def _own(task: Task, process: OwnProcess, stage: Callable[[str], AbstractContext
             return columns_of(np.zeros((0, 3)), np.zeros((0, 2)))
         some = thinned(rest)
         search, few = _served(some, part_of(tell, 1, _PARTS))
-        plans, *_ = _plans(rest, some, search, few, _offer(rest, part_of(tell, 2, _PARTS)), part_of(tell, 3, _PARTS))
+        plans, *_ = _plans(rest, some, search, few, _offer(rest, part_of(tell, 0, _PARTS)), part_of(tell, 2, _PARTS))
         return _columns_of(rest, next((each for each in plans if each.name == "fastest"), plans[0]))
 
     with stage("operations") as tell:
         plan, outcomes = own_plan(task, process, planned)
-        plan = proved(ready, task.everywhere, plan, progress=part_of(tell, 5, _PARTS))
-    return Operations(options.operations or "", task.cutters, (plan,), None, (), task.orientations[0].names, task.probes.made,
+        plan = proved(ready, task.everywhere, plan, progress=part_of(tell, 3, _PARTS))
+    return Operations(options.operations or "", task.cutters, (plan,), None, task.orientations[0].names, task.probes.made,
                       task.paths.feed, index_from=task.indexing.source, own=outcomes)  # fmt: skip
 
 
@@ -201,7 +190,7 @@ def _plans(task: Task, some: Task, search: Search, few: Columns, offer: Repeated
 
     Choices are compared by some of the samples; the plan of the one that is taken is made of all.
     """
-    which, parts = task.ready.options.operations, [part_of(tell, k, 4) for k in range(4)]
+    which, parts = task.ready.options.operations, [part_of(tell, k, 3) for k in range(3)]
     printed = [] if which == "fastest" else [_capped(task, "fewest", quicker(task, search, few), parts[0])]
     if which == "fewest":
         return printed, None, (), ()
@@ -209,22 +198,19 @@ def _plans(task: Task, some: Task, search: Search, few: Columns, offer: Repeated
     compared = [choice.columns.of(each) for each in (choice.safe, *with_and_without(choice.problem, choice.safe))]
     if len(task.cutters) > 1:
         by_size = largest_first_choice(some, search, few, minor=some is not task)
-        by_size = recommended(some, _worth(some, "largest first", by_size))
-        printed.append(_capped(task, "largest first", by_size, parts[2]))
-        compared.append(by_size)
+        compared.append(recommended(some, _worth(some, "fastest", by_size)))
     compared += [_columns_of(task, each) for each in printed]
     plans = [plan_with(some, "fastest", _worth(some, "fastest", each)) for each in compared]
     best, words = _recommended(some, plans)
-    plan = _capped(task, "fastest", _columns_of(task, best), parts[3])
+    plan = _capped(task, "fastest", _columns_of(task, best), parts[2])
     quickest = min([plan, *(each for each in printed if few_enough(task, each))], key=_seconds)
     fastest, notes = as_quick(task, offer, (replace(quickest, name="fastest"), words), printed)
-    parts[3](1, 1)
+    parts[2](1, 1)
     at_best = float(choice.problem.cost.min(axis=1, initial=np.inf).sum())
     # Canonical orientations need not be candidates: what the plan that is printed takes bounds the best from above.
     bound = min(bounded(choice.problem, choice.safe).bound, np.nan_to_num(fastest.total, nan=np.inf))
     timed = Fastest(fastest.total, bound, min(at_best, bound), choice.area, len(choice.problem.cost), len(choice.columns))
-    of_all = [each for each in printed if each.name == "fewest"]
-    return [*of_all, fastest, *(each for each in printed if each not in of_all)], timed, worths(task, plans), notes
+    return [*printed, fastest], timed, worths(task, plans), notes
 
 
 def _recommended(task: Task, plans: Sequence[OperationPlan]) -> tuple[OperationPlan, tuple[str, ...]]:
@@ -316,10 +302,9 @@ def _stored(task: Task, rows: Rows) -> Columns:
 
 
 def _capped(task: Task, name: str, columns: Columns, tell: Progress) -> OperationPlan:
-    rule = partial(allowed, task) if name == "largest first" else None
-    columns = _worth(task, name, canonical(task, _worth(task, name, columns), rule, progress=tell))
+    columns = _worth(task, name, canonical(task, _worth(task, name, columns), progress=tell))
     columns = accompanied(task, columns) if name == "fewest" else columns
-    return plan_with(task, name, columns, None if rule is None else partial(rule, columns))
+    return plan_with(task, name, columns)
 
 
 def _worth(task: Task, name: str, columns: Columns) -> Columns:

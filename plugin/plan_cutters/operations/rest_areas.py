@@ -1,11 +1,10 @@
-"""Rest areas: what larger cutters leave for smaller ones, what a shop's habit costs, and what each cutter is worth."""
+"""Tell what each cutter of a plan is worth, and choose by a shop's habit, from which the fastest plan is looked for, too."""
 
 from collections.abc import Iterator, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
-from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import OperationPlan, Worth
 from plan_cutters.domain.preference import by_radius
@@ -18,8 +17,7 @@ Rows = NDArray[np.int64]
 
 def by_size(task: Task) -> list[int]:
     """Numbers of the cutters, the largest first."""
-    ordered = by_radius(task.cutters)
-    return [task.cutters.index(cutter) for cutter in ordered]
+    return [task.cutters.index(cutter) for cutter in by_radius(task.cutters)]
 
 
 def largest_first(problem: Problem, order: Sequence[int]) -> Rows:
@@ -72,14 +70,6 @@ def _without_minor_areas(problem: Problem, chosen: Rows, again: NDArray[np.bool_
 def _reached(task: Task, cutter: int) -> NDArray[np.bool_]:
     """Samples (n,) that a cutter reaches in one of the setups."""
     return np.asarray(np.logical_or.reduce([verdicts[task.cutters[cutter]].reached for verdicts in task.everywhere]))
-
-
-def allowed(task: Task, columns: Columns, serves: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Which columns (n, k) a sample may go with by the habit: those of the largest cutter that serves it."""
-    rank = np.empty(len(task.cutters), np.int64)
-    rank[by_size(task)] = np.arange(len(task.cutters))
-    place = np.where(serves, rank[columns.cutter], len(task.cutters))
-    return np.asarray(serves & (place == place.min(axis=1, initial=len(task.cutters))[:, None]))
 
 
 def worths(task: Task, plans: Sequence[OperationPlan]) -> tuple[Worth, ...]:

@@ -27,7 +27,6 @@ class StickOutEntry(Frozen):
     obstacle_face: str | None = Field(description="in the way of a holder that comes lower at that posture")
     obstacle_point: Vector | None
     doubtful: bool = Field(default=False, description="obstacles are missing, which might ask for more")
-    step_mm: float | None = Field(default=None, description="of the least stick-outs of all samples, in samples.npz")
 
 
 class RadiusEntry(Frozen):

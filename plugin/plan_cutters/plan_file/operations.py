@@ -152,7 +152,7 @@ class AssumedEntry(Frozen):
 class OperationPlanEntry(Frozen):
     """A plan of operations: each reached sample goes with one of them."""
 
-    name: Literal["fewest", "fastest", "largest first", "process"] = Field(
+    name: Literal["fewest", "fastest", "process"] = Field(
         description="process: the planner's own steps, and those planned behind them"
     )
     orientations: int = Field(description="fixed ones, each with one cutter and setup")
@@ -196,10 +196,6 @@ class FewestEntry(Frozen):
     candidates: int = Field(description="their angles are in operations.npz")
     spacing_deg: float = Field(description="between candidates where the weights lie")
     alone: int = Field(description="reached samples that no candidate serves: they need simultaneous motion")
-    at_least_any: int = Field(description="no choice of any axes has fewer, candidates or not; as far as was looked")
-    cells_deg: float | None = Field(
-        description="radius of the smallest cells of directions that this bound was found with; null where none were needed"
-    )
 
 
 class FastestEntry(Frozen):
@@ -232,14 +228,6 @@ class CutterUse(Frozen):
         "found without it"
     )
     change_seconds: float = Field(description="that its change costs; 0 where it is the only one")
-
-
-class CurveStepEntry(Frozen):
-    """So many orientations serve this share of the judged area."""
-
-    orientations: int
-    share: float
-    at_most: float | None = Field(description="no choice of as many candidates serves more; null where that is not known")
 
 
 class ForcedStepEntry(Frozen):
@@ -279,7 +267,6 @@ class OperationsEntry(Frozen):
     cutters: list[CutterUse] = Field(
         description="the largest first; empty unless the fastest were requested and several cutters were compared"
     )
-    curve: list[CurveStepEntry]
     assumed: AssumedEntry
     motion: MotionEntry | None = Field(description="null unless posture maps were requested, too")
     probes: int = Field(description="how many times a tool was put down")

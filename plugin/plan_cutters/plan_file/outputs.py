@@ -60,32 +60,6 @@ class MapOutput(Frozen):
     rotations: list[RotationOutput]
 
 
-class VerdictsOutput(Frozen):
-    """Samples by verdict."""
-
-    interference_free: int
-    accessible: int
-    inaccessible: int
-    undecided: int
-    unjudged: int
-
-
-class StoredOutput(Frozen):
-    """Another machine or setup, by stored posture maps (`plan-cutters stored --json -`)."""
-
-    format: Literal["plan-cutters-stored"] = "plan-cutters-stored"
-    format_version: int = FORMAT_VERSION
-    part: str | None
-    cutter: str
-    machine: str
-    setup: Vector
-    samples: VerdictsOutput
-    inside_bodies: int = Field(description="samples inside other bodies of the part, which are not counted in `samples`")
-    missing: list[str]
-    unjudged_faces: list[str]
-    asked: dict[str, Any] = Field(description="what the maps were made with")
-
-
 class HeldOutput(Frozen):
     name: str
     id: str
@@ -190,10 +164,4 @@ class MachinesOutput(Frozen):
 
 
 #: By the beginning of the schema's file in the package.
-OUTPUTS: dict[str, type[Frozen]] = {
-    "map": MapOutput,
-    "stored": StoredOutput,
-    "tools": ToolsOutput,
-    "holders": HoldersOutput,
-    "machines": MachinesOutput,
-}
+OUTPUTS: dict[str, type[Frozen]] = {"map": MapOutput, "tools": ToolsOutput, "holders": HoldersOutput, "machines": MachinesOutput}

@@ -36,10 +36,8 @@ _SIDE_FILES = {
     "operations_glb",
     "fastest_step",
     "fastest_glb",
-    "largest_first_step",
-    "largest_first_glb",
 }
-FORMATS = ("json", *(f for f in WRITERS if f not in _SIDE_FILES), "plans")
+FORMATS = ("json", *(f for f in WRITERS if f not in _SIDE_FILES))
 #: What is written unless asked otherwise (`docs/decisions/0017-formats-on-request.md`).
 DEFAULT_FORMATS = ("json", "html", "step", "glb", "npz")
 

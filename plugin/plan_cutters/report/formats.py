@@ -34,11 +34,8 @@ WRITERS = {
     "operations_glb": ("operations.glb", "operation_models", "write_operations_glb"),
     "fastest_step": ("operations_fastest.step", "operation_models", "write_fastest_step"),
     "fastest_glb": ("operations_fastest.glb", "operation_models", "write_fastest_glb"),
-    "largest_first_step": ("operations_largest_first.step", "operation_models", "write_largest_first_step"),
-    "largest_first_glb": ("operations_largest_first.glb", "operation_models", "write_largest_first_glb"),
     "csv": ("axes.csv", "to_csv", "write_csv"),
     "vtk": ("axes.vtp", "to_vtk", "write_vtk"),
-    "regions": ("axis_regions.json", "regions", "write_regions"),
     "png": ("review.png", "drawing.part", "write_png"),
 }
 #: What is shown on faces that are split, which the CAD kernel has a part in: along the verdicts, or along the operations of the
@@ -47,10 +44,9 @@ _MODELS = {
     "verdicts": ("glb", "merged", "png", "step"),
     "operations": ("operations_glb", "operations_step"),
     "fastest": ("fastest_glb", "fastest_step"),
-    "largest first": ("largest_first_glb", "largest_first_step"),
 }
 #: What follows the plan and the arrays, the easier ones first.
-LATER = ("html", "csv", "vtk", "regions", *(name for models in _MODELS.values() for name in models))
+LATER = ("html", "csv", "vtk", *(name for models in _MODELS.values() for name in models))
 #: Processor time that a copy may take for a file, s: behind it, the file is made here.
 _COPY = 300.0
 
@@ -148,12 +144,8 @@ class Making:
 
 
 def with_operations(formats: Sequence[str], plans: Sequence[str]) -> list[str]:
-    """Formats, and what they stand for with plans of operations of these names: the first one's models have no name of a plan.
-
-    The habit of letting the largest cutter go first is there to be compared with: it has models where `plans` asks for them.
-    """
-    others = [each for each in plans[1:] if "plans" in formats or each != "largest first"]
-    about = ["operations", *others] if plans else []
+    """Formats, and what they stand for with plans of operations of these names: the first one's models have no name of a plan."""
+    about = ["operations", *plans[1:]] if plans else []
     return [*formats, *(name for each in about for name in _MODELS[each] if name.rpartition("_")[2] in formats)]
 
 

@@ -21,7 +21,7 @@ from plan_cutters.plan_file.words.cutters import FEASIBLE
 from plan_cutters.plan_file.words.story import Story, story_of
 from plan_cutters.plan_file.words.text import further, of_the_plan
 from plan_cutters.plan_file.words.text import text_of as made_of
-from plan_cutters.report.page.write import LARGEST_WITHOUT, page
+from plan_cutters.report.page.write import page
 from plan_cutters.report.protocol import Judged
 
 #: Height of the page in a notebook, pixels.
@@ -86,7 +86,7 @@ def card(result: Judged, *, height: int = HEIGHT, size: Size = "full") -> str:
         rest = partial(_rendered, result, story, height, page="", missing=missing, most=_LISTED)
         small = made("small picture", lambda: _small(picture, SMALL - len(rest().encode()))) if picture else ""
         return rest(picture=small, kind="webp")
-    framed = made("review page", lambda: page(result, largest=LARGEST_WITHOUT).decode())
+    framed = made("review page", lambda: page(result).decode())
     return _rendered(result, story, height, picture=picture, page=framed, missing=missing)
 
 
@@ -112,7 +112,7 @@ def show(result: Judged, height: int = HEIGHT, size: Size = "full") -> Path | No
 
         display(HTML(card(result, size=size)))
         return None
-    data = page(result, maps=result.maps)
+    data = page(result)
     if _in_notebook():
         from IPython.display import HTML, display
 

@@ -84,16 +84,6 @@ def write_fastest_glb(result: Judged, split: Any, path: Path) -> None:
     write_operations_glb(result, split, path, number=_place(result, "fastest"))
 
 
-def write_largest_first_step(result: Judged, split: Any, path: Path, *, schema: str = "ap242") -> None:
-    """Write `operations_largest_first.step`: the plan of the habit."""
-    write_operations_step(result, split, path, number=_place(result, "largest first"), schema=schema)
-
-
-def write_largest_first_glb(result: Judged, split: Any, path: Path) -> None:
-    """Write `operations_largest_first.glb`."""
-    write_operations_glb(result, split, path, number=_place(result, "largest first"))
-
-
 def _place(result: Judged, name: str) -> int:
     operations = result.plan.operations
     assert operations is not None, "models of operations are written where these were requested"

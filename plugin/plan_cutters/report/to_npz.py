@@ -23,7 +23,7 @@ def write_npz(result: Judged, _split: object, path: Path) -> None:
     With a machine of rotary axes, also their positions at the posture found, in degrees: both solutions, axis by axis from the
     part to the tool, nan where one is beyond a limit, and which of them is to be taken, -1 where there is none. Where linear
     travel is judged, also the positions of the linear axes, mm, in the machine's order, for the solution to be taken. Where they
-    were requested, its least stick-outs, too, and the largest radii with `flat` and `ball` as suffix.
+    were requested, also the largest radii with `flat` and `ball` as suffix.
     """
     samples = result.samples
     arrays = {
@@ -57,9 +57,6 @@ def write_npz(result: Judged, _split: object, path: Path) -> None:
             each = [verdicts, *(verdicts_there[name] for _, verdicts_there in result.elsewhere)]
             arrays[f"setup_{name}"] = result.served_in[name]
             arrays[f"reached_in_{name}"] = np.stack([one.reached for one in each], axis=1)
-    for name, stick_out in result.answers.stick_outs.items():
-        if stick_out.each is not None:
-            arrays[f"stick_out_{name}"] = stick_out.each
     for radii in result.answers.radius_maps:
         arrays[f"radius_{radii.shape}"] = radii.radius
         arrays[f"radius_beyond_{radii.shape}"] = radii.beyond
@@ -71,12 +68,12 @@ def write_npz(result: Judged, _split: object, path: Path) -> None:
 def write_postures(result: Judged, _split: object, path: Path) -> None:
     """Write `postures.npz`: the free tilts of every sample at every rotation, as in PostureMaps, for the cutter shown.
 
-    Whatever the machine: `PostureMaps.load` reads it, and `within` answers for another machine or setup.
+    Whatever the machine: what one holds of them is for the reader to find. `missing`: obstacles that are missing or guessed.
     """
     maps = result.maps
     name = maps.cutter
-    about = {"format": "plan-cutters-postures", "version": 2, "cutter": name, "part": maps.part, "tilt": maps.tilt,
-             "tolerance": maps.tolerance, "question": dict(maps.about)}  # fmt: skip
+    about = {"format": "plan-cutters-postures", "version": 3, "cutter": name, "part": maps.part, "tilt": maps.tilt,
+             "tolerance": maps.tolerance, "missing": maps.missing, "unmapped": maps.unmapped}  # fmt: skip
     write_arrays({"about": np.array(json.dumps(about)), "rotation": maps.rotations, "normal": maps.normal,
             "direction_max": maps.direction_max, "inside": maps.inside, f"offset_{name}": maps.offset,
             f"free_{name}": maps.free, f"undecided_{name}": maps.undecided, f"verdict_{name}": maps.verdict,

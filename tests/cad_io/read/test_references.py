@@ -8,8 +8,8 @@ import shutil
 import pytest
 
 from cad_io import ReadError, read_part
-from cad_io.files import WITHIN, noted
-from cad_io.read.references import fingerprint_of, followed, in_folder_of, names
+from cad_io.files import WITHIN, checksum, checksums, fingerprint, noted
+from cad_io.read.references import followed, in_folder_of, names
 from tests.support.step_references import BALL, BOX, write_assembly
 
 
@@ -25,6 +25,12 @@ def whole(made, tmp_path):
     return tmp_path / "part" / made.name
 
 
+def fingerprint_of(whole):
+    """Checksum of a file with all that it refers to."""
+    data = whole.read_bytes()
+    return fingerprint(checksum(data), checksums(followed(data, in_folder_of(whole))))
+
+
 def renamed(whole, old, new):
     whole.write_text(whole.read_text().replace(f"'{old}'", f"'{new}'"))
 
@@ -37,19 +43,19 @@ def test_all_files_of_an_assembly_are_read_and_known(whole):
     assert {name for name, _ in part.references} == {BOX, BALL}
     assert {os.path.basename(name) for name in files} == {whole.name, BOX, BALL}
     assert None not in files.values()
-    assert part.fingerprint == fingerprint_of(whole.read_bytes(), in_folder_of(whole)) != part.sha256
+    assert part.fingerprint == fingerprint_of(whole) != part.sha256
     again = pickle.loads(pickle.dumps(part))
     assert (again.references, again.fingerprint) == (part.references, part.fingerprint)
     assert part.without({1: "hangs"}).references == part.references
 
 
 def test_another_content_of_a_file_that_is_referred_to_is_another_fingerprint(whole):
-    before = fingerprint_of(whole.read_bytes(), in_folder_of(whole))
+    before = fingerprint_of(whole)
     other = whole.with_name(BALL)
     other.write_bytes(other.read_bytes() + b" ")
-    changed = fingerprint_of(whole.read_bytes(), in_folder_of(whole))
+    changed = fingerprint_of(whole)
     other.unlink()
-    assert len({before, changed, fingerprint_of(whole.read_bytes(), in_folder_of(whole))}) == 3
+    assert len({before, changed, fingerprint_of(whole)}) == 3
 
 
 def empty(path):

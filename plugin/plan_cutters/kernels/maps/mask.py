@@ -1,63 +1,10 @@
-"""A machine laid over free tilts that are known: which samples it reaches, without any search."""
+"""A machine laid over free tilts that are known: what it holds of them."""
 
 import numpy as np
 
-from plan_cutters.kernels.codes import ACCESSIBLE, INACCESSIBLE, UNDECIDED
 from plan_cutters.kernels.jit import entry
 from plan_cutters.kernels.limits import held_tilts
 from plan_cutters.kernels.linear.vectors import cross, tilt_frame
-
-
-@entry
-def mask(rows, normal, direction_max, ranges, turns, offset, free, undecided, hits):
-    """Decide samples by their free tilts: the first rotation with any that the machine holds serves.
-
-    Parameters
-    ----------
-    rows : (m,) int64
-    normal, direction_max : (n, 3) float64
-    ranges : Ranges
-        Of as many rotations as the maps have, and the tilts asked for.
-    turns : (t,) int64
-        Rotations that are requested.
-    offset, free, undecided
-        As in `PostureMaps`.
-    hits : Found, written
-        ACCESSIBLE with the middle of the widest interval; UNDECIDED where only tilts that are not decided may be left; else
-        INACCESSIBLE.
-    """
-    intervals, e2, f, t = np.empty((64, 2)), np.empty(3), np.empty(3), np.empty(3)
-    count = len(ranges.rotation_cos)
-    for row in rows:
-        n, e1 = normal[row], direction_max[row]
-        cross(n, e1, e2)
-        verdict = INACCESSIBLE
-        for rotation in turns:
-            place = row * count + rotation
-            unsure = undecided[row, rotation] > 0.0
-            if offset[place] == offset[place + 1] and not unsure:
-                continue
-            tilt_frame(e1, e2, ranges.rotation_cos[rotation], ranges.rotation_sin[rotation], f, t)
-            held = held_tilts(n, f, ranges, ranges.tilt_low, ranges.tilt_high, intervals)
-            if held == 0:
-                continue
-            widest, tilt = -1.0, 0.0
-            for i in range(offset[place], offset[place + 1]):
-                for k in range(held):
-                    low, high = max(free[i, 0], intervals[k, 0]), min(free[i, 1], intervals[k, 1])
-                    if high - low > widest:
-                        widest, tilt = high - low, 0.5 * (low + high)
-            if widest >= 0.0:
-                verdict = ACCESSIBLE
-                c, s = np.cos(tilt), np.sin(tilt)
-                hits.tilt[row], hits.rotation[row] = tilt, rotation
-                for k in range(3):
-                    hits.tilt_direction[row, k] = f[k]
-                    hits.axis[row, k] = c * n[k] + s * f[k]
-                break
-            if unsure:
-                verdict = UNDECIDED
-        hits.verdict[row] = verdict
 
 
 @entry
@@ -67,8 +14,12 @@ def held_free(rows, normal, direction_max, ranges, offset, free, place, held_int
 
     Parameters
     ----------
-    rows, normal, direction_max, ranges, offset, free
-        As for `mask`.
+    rows : (m,) int64
+    normal, direction_max : (n, 3) float64
+    ranges : Ranges
+        Of as many rotations as the maps have.
+    offset, free
+        As in `PostureMaps`.
     place : (n * k,) int64
         How many intervals each sample has at each rotation, written; where they begin in `held_intervals`, read if that has rows.
     held_intervals : (m, 2) float64, written

@@ -208,13 +208,13 @@ def search(
     return search_rows(rows, contacts, ranges, (outer_tool, inner_tool), (possible, certain), mode, proof, results)[1]
 
 
-def until_not_reached(rows, at, contacts, ranges, tool, solids, patient, results):
+def until_not_reached(rows, at, contacts, ranges, tool, solids, results):
     """Look for postures of the samples `rows` from the `at`-th on, at which a tool is in nothing's way; where it ended.
 
-    Unless it is `patient`, behind the first sample that has none; such samples are written as UNDECIDED, for nothing was asked
-    about why. Intervals that `search` takes for none are passed over, so that it finds a posture where this does.
+    That is behind the first sample that has none; it is written as UNDECIDED, for nothing was asked about why. Intervals that
+    `search` takes for none are passed over, so that it finds a posture where this does.
     """
-    mode = Mode(at, _ANYWHERE, len(ranges.rotation_cos), _NO_INTERVAL, WITHOUT_END, False, not patient, 0.0)
+    mode = Mode(at, _ANYWHERE, len(ranges.rotation_cos), _NO_INTERVAL, WITHOUT_END, False, True, 0.0)
     proof = Proof(_NOWHERE, 0.0, solids)
     return search_rows(rows, contacts, ranges, (tool, tool), (solids, solids), mode, proof, results)[0]
 

@@ -9,7 +9,7 @@ from plan_cutters.plan_file.numbers import ROUNDING, bound, duration, listed, pe
 from plan_cutters.plan_file.numbers import area as size
 from plan_cutters.plan_file.operations import CutterUse, FewestEntry, OperationEntry, OperationPlanEntry, OperationsEntry
 from plan_cutters.plan_file.words.line import Line
-from plan_cutters.plan_file.words.motion import motion, whatever_the_axes
+from plan_cutters.plan_file.words.motion import motion
 from plan_cutters.plan_file.words.names import named
 
 #: Operations that are listed, and faces that are named of one.
@@ -18,8 +18,8 @@ _LISTED, _FACES = 12, 4
 _SMALL, _NO_GAP = 3, 1e-6
 #: How an operation cuts, where it does not cut in points alone.
 _STRATEGIES = {"floor": "as floors", "wall": "along walls", "mixed": "floors, walls and points"}
-#: A share of the curve that is worth stopping at, and a share of the area for which an orientation is hardly worth its turn.
-_KNEE, _LITTLE = 0.97, 0.005
+#: A share of the area for which an orientation is hardly worth its turn.
+_LITTLE = 0.005
 
 
 def operations(plan: Plan) -> list[Line]:
@@ -33,7 +33,7 @@ def operations(plan: Plan) -> list[Line]:
             *(line for each in operations.plans for line in _plan(operations, each)),
             *_fastest(operations),
             *_assumed(operations),
-            *_largest_first(operations),
+            *_by_cutter(operations),
             *(line for use in operations.cutters for line in _worth(operations, use)),
         ]
     return [Line(named(plan, text)) for text in (*lines, *motion(operations.motion), *operations.notes)]
@@ -73,11 +73,6 @@ def _fewest(operations: OperationsEntry) -> Iterator[str]:
         yield "There is nothing that a fixed orientation reaches."
         return
     yield f"{_times(few.found)} everything that is reached{_proved(few)}"
-    yield from whatever_the_axes(few)
-    part = next((step for step in operations.curve if step.share >= _KNEE * operations.curve[-1].share), None)
-    if part is not None and part.orientations < few.found:
-        end = "" if part.at_most is None else f" (no choice of {part.orientations} serves more than {bound(part.at_most)})"
-        yield f"{part.orientations} of them finish{'es' * (part.orientations == 1)} {some(part.share)} of the area{end}."
 
 
 def _times(number: int) -> str:
@@ -106,9 +101,6 @@ def _plan(operations: OperationsEntry, plan: OperationPlanEntry) -> Iterator[str
         return
     yield f"The {plan.name} plan: {_count(plan.orientations)}, {_work(plan)}."
     small = [each for each in plan.operations if each.mode == "fixed" and each.share < _LITTLE]
-    if plan.name == "largest first":
-        # It is there to be compared: its operations are in the plan file.
-        return
     for each in small[:_SMALL]:
         yield f"  {each.id} is there for {_little(each)}: {_faces(each)}."
     if len(small) > _SMALL:
@@ -155,7 +147,7 @@ def _fastest(operations: OperationsEntry) -> Iterator[str]:
         return
     for plan in operations.plans:
         again = plan is not operations.plans[0] and _choice(plan) == _choice(operations.plans[0])
-        if plan.ratio_at_most is not None and plan.name != "largest first" and not again:
+        if plan.ratio_at_most is not None and not again:
             cutting = sum(each.seconds or 0.0 for each in plan.operations if each.mode == "fixed")
             times = f"at most {_factor(plan.ratio_at_most)} times as long as five axes at once"
             yield f"3+2 ({plan.name}) takes {duration(cutting)} of cutting, {times}."
@@ -177,22 +169,12 @@ def _assumed(operations: OperationsEntry) -> Iterator[str]:
         yield f"{guess}: the machine does not say how fast its rotary axes turn; --index-time tells it."
 
 
-def _largest_first(operations: OperationsEntry) -> Iterator[str]:
-    """What it costs to let the largest cutter go first."""
-    totals = {plan.name: plan.seconds for plan in operations.plans}
-    largest_first, fastest = totals.get("largest first"), totals.get("fastest")
-    if largest_first is None or fastest is None:
-        return
-    if largest_first - fastest >= 1.0:
-        yield f"Largest cutter first costs {duration(largest_first - fastest)} more than the fastest plan."
-    else:
-        yield "Largest cutter first is as fast as the fastest plan."
-    for name in ("largest first", "fastest"):
-        taken = [(use.id, use.takes_mm2[name]) for use in operations.cutters if use.takes_mm2.get(name, 0.0) > 0.0]
-        whole = sum(area for _, area in taken)
-        shares = [f"{share_text(area / whole)} with {cutter}" for cutter, area in taken]
-        if len(shares) > 1:
-            yield f"Of what is cut, the {name} plan cuts {_joined(shares)}."
+def _by_cutter(operations: OperationsEntry) -> Iterator[str]:
+    """What each cutter cuts by the fastest plan."""
+    taken = [(use.id, use.takes_mm2["fastest"]) for use in operations.cutters if use.takes_mm2.get("fastest", 0.0) > 0.0]
+    whole = sum(area for _, area in taken)
+    if len(taken) > 1:
+        yield f"Of what is cut, the fastest plan cuts {_joined([f'{share_text(area / whole)} with {id}' for id, area in taken])}."
 
 
 def _worth(operations: OperationsEntry, use: CutterUse) -> Iterator[str]:

@@ -12,7 +12,6 @@ from plan_cutters.plan_file.numbers import mm
 from plan_cutters.report.page.atlas import Atlas
 from plan_cutters.report.page.encode import COARSE, FINE, Stored, halves, octahedral, placed, turned, unfolded
 from plan_cutters.report.page.facts import NO_TILT, shares, tilt_and_direction
-from plan_cutters.report.page.stored_maps import stored
 from plan_cutters.report.page.surface import Surface
 from plan_cutters.report.protocol import Judged
 
@@ -88,25 +87,13 @@ def scalar_arrays(result: Judged) -> tuple[Arrays, list[dict[str, Any]]]:
         # What is told must not be more than what reaches.
         scalars[f"scalar.{key}"] = Stored.of(halves(each.radius, "down"))
         legends.append(_scalar(key, f"largest {each.shape} end (radius, up to {mm(each.most)} tried)", "mm", each.radius))
-    for name, stick_out in result.answers.stick_outs.items():
-        if stick_out.each is not None:
-            key = f"stick_out.{name}"
-            scalars[f"scalar.{key}"] = Stored.of(halves(stick_out.each, "up"))
-            legends.append(_scalar(key, "least stick-out", "mm", stick_out.each, cutter=name))
     return scalars, legends
 
 
 def _scalar(
-    key: str, label: str, unit: str, values: Floats, *, cutter: str | None = None, array: str | None = None,
-    column: int | None = None,
-) -> dict[str, Any]:  # fmt: skip
+    key: str, label: str, unit: str, values: Floats, *, array: str | None = None, column: int | None = None
+) -> dict[str, Any]:
     known = values[np.isfinite(values)]
     low, high = (float(known.min()), float(known.max())) if len(known) else (None, None)
-    return {"key": key, "label": label, "unit": unit, "cutter": cutter, "low": low, "high": high,
+    return {"key": key, "label": label, "unit": unit, "low": low, "high": high,
             "array": array or f"scalar.{key}", "column": column}  # fmt: skip
-
-
-def map_arrays(maps: Any, rows: NDArray[np.int64], of: NDArray[np.int64]) -> Arrays:
-    """Some posture maps: see `stored`."""
-    result = stored(maps, rows, of)
-    return {f"maps.{word}": Stored.of(getattr(result, word)) for word in ("row", "count", "end", "undecided")}

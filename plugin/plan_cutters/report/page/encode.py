@@ -79,11 +79,6 @@ def joined(arrays: Mapping[str, Stored]) -> tuple[dict[str, dict[str, Any]], str
     return entries, base64.b64encode(b"".join(each.piece for each in arrays.values()) + end).decode("ascii")
 
 
-def size_of(arrays: Mapping[str, Stored]) -> int:
-    """Bytes that arrays take in the page."""
-    return 4 * (sum(len(each.piece) for each in arrays.values()) + 4) // 3
-
-
 def placed(point: Floats, low: Floats, high: Floats) -> NDArray[np.uint16]:
     """Points (n, 3) counted in 65535ths of a box."""
     size = np.where(high > low, high - low, 1.0)
@@ -129,11 +124,9 @@ def turned(direction: Floats, normal: Floats) -> NDArray[np.int16]:
 
 
 def halves(array: Floats, toward: str = "nearest") -> NDArray[np.float16]:
-    """16-bit floats, the nearest ones or none that is larger (`down`) or less (`up`); what is too large as the largest one."""
+    """16-bit floats, the nearest ones or none that is larger (`down`); what is too large as the largest one."""
     most = np.finfo(np.float16).max
     clipped = np.clip(array, -float(most), float(most)).astype(np.float16)
     if toward == "down":
         return np.where(clipped > array, np.nextafter(clipped, -most), clipped)
-    if toward == "up":
-        return np.where(clipped < np.minimum(array, float(most)), np.nextafter(clipped, most), clipped)
     return clipped

@@ -1,6 +1,5 @@
-"""The plan of operations for the page: which sample goes with which operation, their looks, their tables and the curve."""
+"""The plan of operations for the page: which sample goes with which operation, their looks and their tables."""
 
-from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -10,24 +9,18 @@ from scipy.sparse.csgraph import connected_components
 from cad_io.arrays import SurfaceSamples
 from plan_cutters.domain.operations import OperationPlan
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import bound, percent
-from plan_cutters.plan_file.operations import CurveStepEntry, OperationEntry, OperationPlanEntry
+from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry
 from plan_cutters.plan_file.palette import OPERATIONS, operation_colour
 from plan_cutters.plan_file.words.line import Line
-from plan_cutters.plan_file.words.operations import OperationText, of_the_whole, operation_text, share_text
+from plan_cutters.plan_file.words.operations import OperationText, of_the_whole, operation_text
 from plan_cutters.plan_file.words.story import Story
 from plan_cutters.report.page.arrays import Arrays
 from plan_cutters.report.page.encode import Stored
 from plan_cutters.report.page.facts import shares, turned_by
 from plan_cutters.report.protocol import Judged
 
-#: The drawing of the curve: its size, and the edges of what is plotted in it.
-_WIDE, _HIGH = 360, 170
-_LEFT, _RIGHT, _TOP, _BOTTOM = 46, 352, 8, 132
 #: Patterns of operations, another one each time that the colours come round.
 _PATTERNS = ("plain", "hatch", "cross", "dots")
-#: Numbers along the curve, at most.
-_TICKS = 10
 
 
 def key(plan: OperationPlan | OperationPlanEntry) -> str:
@@ -101,29 +94,16 @@ def _shown_at(plan: OperationPlan, samples: SurfaceSamples) -> list[int]:
     return samples_shown
 
 
-class Curve(NamedTuple):
-    """The curve as lines of a drawing, and what stands along its edges: (place, text)."""
-
-    size: tuple[int, int]
-    edges: tuple[int, int, int, int]
-    line: str
-    bounds: list[tuple[float, float, float]]
-    across: list[tuple[float, str]]
-    up: list[tuple[float, str]]
-
-
 class OperationTables(NamedTuple):
     """These are what the template shows of the operations; `process`: the plan and the place in it of each one of the process."""
 
     lines: list[Line]
     plans: list[tuple[OperationPlanEntry, str, list[OperationText], bool]]
-    steps: list[tuple[int, str, str]]
-    curve: Curve | None
     process: dict[str, tuple[str, int]]
 
 
 def tables(plan: Plan, story: Story) -> OperationTables | None:
-    """Sentences, rows of tables and the curve; None where operations were not requested."""
+    """Sentences and rows of tables; None where operations were not requested."""
     operations = plan.operations
     if operations is None:
         return None
@@ -136,35 +116,10 @@ def tables(plan: Plan, story: Story) -> OperationTables | None:
         )
         for each in operations.plans
     ]
-    steps = [(s.orientations, share_text(s.share), "" if s.at_most is None else bound(s.at_most)) for s in operations.curve]
     places = {
         one.id: (key(each), k)
         for each in operations.plans
         if plan.process is not None and each.name == plan.process.plan
         for k, one in enumerate(each.operations)
     }
-    return OperationTables(of_the_whole(story.operations, story.in_short), plans, steps, curve(operations.curve), places)
-
-
-def curve(steps: Sequence[CurveStepEntry]) -> Curve | None:
-    """The step plot of the share by number of orientations; None where there is nothing to plot."""
-    if not steps:
-        return None
-    first, last = steps[0].orientations, steps[-1].orientations
-    wide = (_RIGHT - _LEFT) / (last - first + 1)
-
-    def x(number: float) -> float:
-        return round(_LEFT + wide * (number - first + 0.5), 2)
-
-    def y(share: float) -> float:
-        return round(_BOTTOM - (_BOTTOM - _TOP) * min(1.0, max(0.0, share)), 2)
-
-    line, at = f"M{_LEFT} {_BOTTOM}", _LEFT * 1.0
-    for step, after in zip(steps, [*steps[1:], None], strict=True):
-        at = x(after.orientations - 0.5) if after else float(_RIGHT)
-        line += f"V{y(step.share)}H{at}"
-    bounds = [(x(s.orientations - 0.5), x(s.orientations + 0.5), y(s.at_most)) for s in steps if s.at_most is not None]
-    stride = -(-(last - first + 1) // _TICKS)
-    across = [(x(n), str(n)) for n in range(first, last + 1, stride)]
-    up = [(y(share / 100.0), percent(share / 100.0)) for share in (0, 25, 50, 75, 100)]
-    return Curve((_WIDE, _HIGH), (_LEFT, _RIGHT, _TOP, _BOTTOM), line, bounds, across, up)
+    return OperationTables(of_the_whole(story.operations, story.in_short), plans, places)

@@ -1,13 +1,10 @@
 """The page as a file: data, tables and script in one, within its size."""
 
-import math
 from collections.abc import Iterable
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
-import numpy as np
 from markupsafe import Markup
-from numpy.typing import NDArray
 
 from cad_io.write.render_mesh import render_mesh
 from plan_cutters.domain.lengths import reporting
@@ -17,7 +14,7 @@ from plan_cutters.plan_file.model import Plan
 from plan_cutters.report.page import arrays, tables
 from plan_cutters.report.page.arrays import Arrays
 from plan_cutters.report.page.atlas import atlas_of
-from plan_cutters.report.page.encode import joined, size_of
+from plan_cutters.report.page.encode import joined
 from plan_cutters.report.page.facts import spots_of
 from plan_cutters.report.page.meta import meta_of
 from plan_cutters.report.page.operations import operation_arrays
@@ -25,28 +22,17 @@ from plan_cutters.report.page.surface import box_of, surface_of
 from plan_cutters.report.page.tables import Drawing
 from plan_cutters.report.protocol import Judged
 
-#: Bytes that a page may have, with the posture maps of all samples, and without.
-LARGEST, LARGEST_WITHOUT = 8_000_000, 2_500_000
+#: Bytes that a page may have.
+LARGEST = 2_500_000
 #: Triangles that are drawn, about.
 TRIANGLES = 60_000
-#: Maps of fewer than one in so many samples are rather left out.
-_WIDEST_STRIDE = 64
 #: The kernel's triangles are up to so many times more than the obstacles' of the same chord error (2.5 times was found). A second
 #: mesh takes longer than somewhat fewer triangles do harm.
 _SURELY = 3.0
 _HERE = Path(__file__).parent
 
 
-class Omitted(NamedTuple):
-    """Sentences on what is left out of a page to keep its size: about cutters that are not shown, and about maps."""
-
-    others: str
-    maps: str
-
-
-_SMALLER = ", to keep this page below {:g} MB"
 _OTHERS = "Postures are stored for the cutter shown alone, to keep this page small; samples.npz has all."
-_NO_MAPS = "Certified posture maps are not stored" + _SMALLER + "; postures.npz has all."
 
 
 def write_html(result: Judged, _split: object, path: Path) -> None:
@@ -59,30 +45,18 @@ def write_html(result: Judged, _split: object, path: Path) -> None:
     OSError
         The file cannot be written.
     """
-    path.write_bytes(page(result, maps=result.maps))
+    path.write_bytes(page(result))
 
 
 @reporting(lambda result: result.plan.effective.units)
-def page(
-    result: Judged,
-    *,
-    maps: Any = None,
-    rows: NDArray[np.int64] | None = None,
-    largest: int | None = None,
-    triangles: int = TRIANGLES,
-) -> bytes:
+def page(result: Judged, *, largest: int = LARGEST, triangles: int = TRIANGLES) -> bytes:
     """The page of a plan.
 
     Parameters
     ----------
     result : Result
-    maps : PostureMaps, optional
-        Of the cutter shown.
-    rows : (m,) int, optional
-        Samples that the maps are of, ascending; all by default.
-    largest : int, optional
-        Bytes that it may have: where it has more, first postures of the cutters that are not shown are left out, then maps.
-        Default: LARGEST where there are maps of all samples, else LARGEST_WITHOUT.
+    largest : int
+        Bytes that it may have: where it has more, postures of the cutters that are not shown are left out.
     triangles : int
         To draw, about.
 
@@ -117,32 +91,14 @@ def page(
     }
     about = Drawing(faces.deflection, faces.missing)
 
-    where = np.arange(len(result.samples)) if rows is None else rows
-    largest = largest or (LARGEST if maps is not None and rows is None else LARGEST_WITHOUT)
-    map_data, stride, remaining = _maps(maps, where, 1), 1, Omitted("", "")
-
-    def made() -> bytes:
-        entries, data = joined({**base, **others, **map_data})
+    def made(others: Arrays, omitted: list[str]) -> bytes:
+        entries, data = joined({**base, **others})
         for each in meta["cutters"]:
             each["has_posture"] = f"tilt.{each['id']}" in entries
-        map_meta = None
-        if maps is not None:
-            map_meta = {"cutter": maps.cutter, "count": len(where[::stride]) if map_data else 0, "of": len(result.samples),
-                    "step_deg": round(result.plan.effective.rotation_step_deg, 9), "why": remaining.maps or None}  # fmt: skip
-        shown = tables.of(result, spots, more, about, [why for why in remaining if why])
-        return _rendered({**meta, "maps": map_meta, "arrays": entries}, data, shown)
+        return _rendered({**meta, "arrays": entries}, data, tables.of(result, spots, more, about, omitted))
 
-    data = made()
-    if len(data) > largest and others:
-        others, remaining = {}, remaining._replace(others=_OTHERS)
-        data = made()
-    while len(data) > largest and map_data:
-        available = largest - len(data) + size_of(map_data)
-        stride = max(stride + 1, math.ceil(stride * size_of(map_data) / max(available, 1)))
-        map_data = _maps(maps, where, stride) if stride <= _WIDEST_STRIDE else {}
-        remaining = remaining._replace(maps=_why(stride, largest) if map_data else _NO_MAPS.format(largest / 1e6))
-        data = made()
-    return data
+    data = made(others, [])
+    return made({}, [_OTHERS]) if len(data) > largest and others else data
 
 
 def _chord(plan: Plan, triangles: int) -> float:
@@ -153,14 +109,6 @@ def _chord(plan: Plan, triangles: int) -> float:
     effective = plan.effective
     alike = effective.chord_error_mm * effective.obstacle_triangles / triangles
     return max(0.5 * effective.tolerance_mm, _SURELY * alike)
-
-
-def _maps(maps: Any, where: NDArray[np.int64], stride: int) -> Arrays:
-    return {} if maps is None else arrays.map_arrays(maps, where, np.arange(0, len(where), stride))
-
-
-def _why(stride: int, largest: int) -> str:
-    return f"Certified posture maps are stored for one in {stride} samples{_SMALLER.format(largest / 1e6)}; postures.npz has all."
 
 
 def _together(each: Iterable[Arrays]) -> Arrays:
