@@ -154,7 +154,6 @@ def test_everything_together_is_one_plan(machine):
     for found in (proposed, own):
         assert len(found.plan.setups) >= 2
         assert found.plan.operations is not None
-        assert found.plan.operations.motion is not None
         assert found.maps is not None
         assert len(found.plan.largest_radius) == 2
         assert found.cutters[0].least_stick_out is not None

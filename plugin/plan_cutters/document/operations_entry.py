@@ -24,7 +24,6 @@ from plan_cutters.plan_file.operations import (
     CutterUse,
     FastestEntry,
     FewestEntry,
-    MotionEntry,
     OperationEntry,
     OperationFace,
     OperationPlanEntry,
@@ -80,7 +79,6 @@ def operations_entry(
         fastest=_fastest(operations),
         assumed=assumed,
         probes=operations.probes,
-        motion=None,
         notes=list(operations.notes),
     )
 
@@ -93,13 +91,6 @@ def _fewest(fewest: Fewest) -> FewestEntry:
         alone=len(fewest.alone), at_least_any=fewest.at_least_any,
         cells_deg=float(np.degrees(fewest.cells)) if np.isfinite(fewest.cells) else None,
     )  # fmt: skip
-
-
-def with_motion(plan: OperationsEntry, motion: MotionEntry | str) -> OperationsEntry:
-    """The entry with its motion, or with the words why there is none."""
-    if isinstance(motion, str):
-        return plan.model_copy(update={"notes": [*plan.notes, motion]})
-    return plan.model_copy(update={"motion": motion})
 
 
 def _fastest(operations: Operations) -> FastestEntry | None:

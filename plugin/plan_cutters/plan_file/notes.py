@@ -150,7 +150,7 @@ def maps_partial(unmapped: int, judged: int) -> Note:
 def maps_first_setup() -> Note:
     return Note(
         "maps_first_setup",
-        "The posture maps and the estimate of motion are about the first setup alone: others hold the part differently.",
+        "The posture maps are about the first setup alone: others hold the part differently.",
     )
 
 
