@@ -1,7 +1,9 @@
 """Words of the command line that are gone, and what to use instead."""
 
 #: Options by their word, commands as "command WORD", values as "--option VALUE": what to use instead.
-TAKEN_OUT: dict[str, str] = {}
+TAKEN_OUT: dict[str, str] = {
+    "--answers mend-all": "give --answers mend, for the three nearest cutters, and plan with another one alone to ask for it"
+}
 
 
 def instead(word: str) -> str:

@@ -7,6 +7,8 @@ from typing import Any
 import click
 from click.shell_completion import CompletionItem
 
+from plan_cutters.command.taken_out import instead
+
 #: Where the context of a command says that setups are named behind `auto`.
 _NAMED = "plan_cutters.named_setups"
 #: The same as a type of click: completed by the shell itself, which knows about `~` and blanks.
@@ -34,6 +36,9 @@ class Words(click.ParamType):
         self.name, self.offered, self.files, self.listed = name, offered, files, listed
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
+        for each in str(value).split(",") if self.listed else ():
+            if param is not None and (gone := instead(f"{param.opts[-1]} {each.strip().lower()}")):
+                raise click.UsageError(gone, ctx)
         return str(value)
 
     def added(self, values: Sequence[str]) -> str | None:

@@ -388,7 +388,7 @@ class Plan(Frozen):
     )
     operations: OperationsEntry | None = Field(default=None, description="null unless requested (--operations)")
     not_mended: list[str] = Field(
-        default=[], description="ids of cutters that fail and were left out of `mend`, as others come nearer: mend-all has them"
+        default=[], description="ids of cutters that fail and were left out of `mend`, as others come nearer"
     )
     notes: list[str] = Field(description="what these verdicts do not say")
     note_codes: list[str] = Field(default=[], description="what each note is about; empty in older files")
