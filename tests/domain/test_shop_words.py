@@ -283,6 +283,15 @@ class TestTables:
         both = plan(part, other_setups=["+y"], **how)
         assert any("stays there in the others" in note for note in both.plan.notes)
 
+    @pytest.mark.parametrize(
+        ("fixture", "setups"), [("table:-60", {"second_setup"}), ("box:5,5,5@500,0,0", {"setup", "second_setup"})]
+    )
+    def test_another_setup_is_no_step_where_a_table_would_lie_elsewhere(self, fixture, setups):
+        found = plan(box(40, 30, 20), cutters="D6L60", faces="F4", grid=4, setup="-y", fixtures=fixture, machine="tilt:30",
+                     answers="mend", area_budget=0).plan  # fmt: skip
+        things = {change.thing for step in found.cutters[0].mend.steps for change in step.changes}
+        assert things & {"setup", "second_setup"} == setups
+
     def test_in_a_setup_file_of_inches(self, tmp_path):
         path = tmp_path / "s.toml"
         path.write_text('unit = "in"\naxis = "-y"\nfixtures = ["table"]\n')

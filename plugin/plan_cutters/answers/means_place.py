@@ -117,7 +117,8 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
         _, _, axis, made, missed = best
         move = Move("second_setup", now, axis, change_text.more_setup(axis, _angle(now, axis), len(made.setups)))
         yield scan.found(move, made, np.union1d(blocked, missed), nested=True)
-    if plain or len(state.setups) > 1:
+    # A table that is given with `--fixture` would lie elsewhere.
+    if plain or len(state.setups) > 1 or any(each.follows_setup for each in ready.options.fixtures):
         return
     some = spread(retained)
     other = []
