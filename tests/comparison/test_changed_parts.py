@@ -106,7 +106,7 @@ def test_a_rib_in_place_of_a_slot_is_another_feature():
 def test_a_part_that_moved_as_a_whole_is_told_in_one_line(chiral, moved):
     found = compare(chiral, planned(moved(bracket()), (2,)), name="bracket")
     (line,) = found.why_not
-    assert "the part was moved, turned or mirrored as a whole; export both from one origin" in line
+    assert "it was moved, turned or mirrored as a whole; export both from one origin" in line
     assert (headline(found), list(face_rows(found)), remarks(found)) == ("bracket: not comparable.", [], [])
 
 

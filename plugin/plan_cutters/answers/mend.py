@@ -1,4 +1,4 @@
-"""What to do next with a cutter that does not finish a part: why there is nothing to ask, or the steps and their gain."""
+"""Find what to do next with a cutter that does not finish a part: steps and their gain, or why none is looked for."""
 
 from collections.abc import Mapping, Sequence
 

@@ -7,7 +7,7 @@ TAKEN_OUT: dict[str, str] = {
 
 
 def instead(word: str) -> str:
-    """What a word that is gone has in its place, as the end of an error; "" for a word that never was.
+    """Say what a word that is gone has in its place, as the end of an error; "" for a word that never was.
 
     >>> instead("--never-was")
     ''

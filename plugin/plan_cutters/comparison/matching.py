@@ -88,10 +88,10 @@ def moved_faces(old: Plan, new: Plan, pairs: Matched) -> int:
         Counter((f.shape, f"{f.area_mm2:.4g}") for f in side if f.id not in known)
         for side, known in zip(sides, zip(*stay, strict=True) if stay else ((), ()), strict=True)
     ]
-    elsewhere = rest[0] & rest[1]
-    area = sum(float(each) * number for (_, each), number in elsewhere.items())
+    shifted = rest[0] & rest[1]
+    area = sum(float(each) * number for (_, each), number in shifted.items())
     whole = max(sum(f.area_mm2 for f in side) for side in sides)
-    return elsewhere.total() if area > _MOVED * whole else 0
+    return shifted.total() if area > _MOVED * whole else 0
 
 
 def _trimmed(old: Sequence[FaceEntry], new: Sequence[FaceEntry]) -> Iterator[Pair]:

@@ -63,7 +63,7 @@ def compare(old: Plan, new: Plan, *, name: str = "", slack: float = SLACK, despi
     why_not = [f"{each.what} differs: {each.old} -> {each.new}" for each in changes if each.hinders]
     if moved := moved_faces(old, new, pairs):
         why_not.append(
-            f"{moved} of {count(len(old.faces), 'face')} of the old plan stand elsewhere in the new one: the part was moved, "
+            f"{moved} of {count(len(old.faces), 'face')} of the old plan stand at other places in the new one: it was moved, "
             "turned or mirrored as a whole; export both from one origin"
         )
     elif not _related(old, new, pairs):

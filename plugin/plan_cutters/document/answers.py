@@ -72,7 +72,7 @@ def radius_entry(radius_map: RadiusMap, samples: SurfaceSamples, *, doubtful: bo
 
 
 def advice_entry(advice: Advice) -> MendEntry:
-    """What to do next with a cutter."""
+    """Make the entry of what to do next with a cutter."""
     return filled(
         MendEntry,
         advice,

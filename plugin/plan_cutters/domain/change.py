@@ -71,7 +71,7 @@ class Step:
 
 @dataclass(frozen=True, slots=True)
 class Advice:
-    """What to do next with one cutter.
+    """Advice names what to do next with one cutter.
 
     Attributes
     ----------

@@ -89,7 +89,7 @@ class StepEntry(Frozen):
 
 
 class MendEntry(Frozen):
-    """What to do next with a cutter that does not finish the part."""
+    """Advice names what to do next with a cutter that does not finish the part."""
 
     lost: int = Field(description="samples that are inaccessible or undecided now")
     buried: int = Field(description="those of them that lie within another body: no change is looked for")

@@ -278,7 +278,7 @@ class CutterEntry(VerdictCounts):
     travel: TravelEntry | None = Field(default=None, description="null where linear travel is not judged: see the notes")
     least_stick_out: StickOutEntry | None = Field(default=None, description="null where it was not requested")
     mend: MendEntry | None = Field(
-        default=None, description="what would make it feasible; null where it is, or where that was not requested"
+        default=None, description="what to do next with it; null where it is feasible, or where that was not requested"
     )
     seconds: float = Field(default=0.0, exclude=True, description="dummy tests and search; not written")
 
