@@ -208,3 +208,20 @@ def test_a_free_form_face_that_was_trimmed_anew_is_the_same_one():
     assert match_faces(whole, free("b", (2.0, 600.0))) == match_faces(whole, free("b", (20.0, 850.0))) == []
     # Of two that may be it, neither.
     assert match_faces(whole, free("b", (2.0, 850.0), (-2.0, 850.0))) == []
+
+
+def test_an_export_that_rounds_otherwise_did_not_move():
+    """Areas and middles of two programs differ by more than those of one: the faces stay on their carriers."""
+
+    def block(sha, off):
+        places = [(0.0, 0.0, 15.0), (40.0, 0.0, 0.0), (0.0, 30.0, 0.0), (0.0, 0.0, -15.0), (-40.0, 0.0, 0.0), (0.0, -30.0, 0.0)]
+        faces = [
+            face(k + 1, shape="plane", centre=(x + (off if k % 3 != 1 else 0.0), y, z), area=100.0 * (k + 1),
+                 carrier=carrier("plane", (2, 0, 1)[k % 3], (x, y, z), 0.0, k < 3))
+            for k, (x, y, z) in enumerate(places)
+        ]  # fmt: skip
+        return made(faces, [cutter("R6L80", {})], sha=sha)
+
+    old, close, moved = block("a", 0.0), block("b", 0.01), block("c", 5.0)
+    assert not moved_faces(old, close, match_faces(old, close))
+    assert moved_faces(old, moved, match_faces(old, moved)) == 4

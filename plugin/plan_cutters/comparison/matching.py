@@ -30,6 +30,8 @@ _TRIMMED, _HARDLY = 1.25, 0.25
 _MOST_PAIRS = 1_000_000
 #: Share of the part's area that must be found at other places for a part that was moved as a whole.
 _MOVED = 0.5
+#: A face on the same carrier whose middle is off by less, as a share of the part's diagonal, stays: exports differ by so much.
+_STAYS = 1e-3
 
 Item = TypeVar("Item")
 Pair = tuple[FaceEntry, FaceEntry]
@@ -47,7 +49,7 @@ def match_faces(old: Plan, new: Plan) -> Matched:
     if old.part.sha256 and bytes_of[0] == bytes_of[1]:
         there = {face.id: face for face in new.faces}
         return [(face, there[face.id], "same file") for face in old.faces if face.id in there]
-    size = math.hypot(*(max(a, b) for a, b in zip(old.part.size_mm, new.part.size_mm, strict=True)))
+    size = _size(old, new)
     pairs: Matched = []
     open_faces = list(old.faces), list(new.faces)
 
@@ -76,13 +78,19 @@ def match_faces(old: Plan, new: Plan) -> Matched:
     return sorted(pairs, key=lambda pair: int(pair[0].id[1:]))
 
 
+def _size(old: Plan, new: Plan) -> float:
+    """The diagonal of a box that holds either part, mm."""
+    return math.hypot(*(max(a, b) for a, b in zip(old.part.size_mm, new.part.size_mm, strict=True)))
+
+
 def moved_faces(old: Plan, new: Plan, pairs: Matched) -> int:
     """How many faces of both plans stand at other places, where they are most of the part; else 0.
 
     The part was moved, turned or mirrored as a whole then, or drawn about another origin. Two faces on one carrier of which one
     is the other one shifted count as well: of a part that moved these are two features as often as one.
     """
-    stay = [(a.id, b.id) for a, b, how in pairs if how != "carrier"]
+    off = _STAYS * _size(old, new)
+    stay = [(a.id, b.id) for a, b, how in pairs if how != "carrier" or _away(a, b) <= off]
     sides = [[f for f in plan.faces if 0.0 < f.area_mm2 < math.inf] for plan in (old, new)]
     rest = [
         Counter((f.shape, f"{f.area_mm2:.4g}") for f in side if f.id not in known)
@@ -94,13 +102,18 @@ def moved_faces(old: Plan, new: Plan, pairs: Matched) -> int:
     return shifted.total() if area > _MOVED * whole else 0
 
 
+def _away(a: FaceEntry, b: FaceEntry) -> float:
+    """How far the middles of two faces are from each other, mm; infinite where one is not known."""
+    return math.dist(a.centre_mm, b.centre_mm) if a.centre_mm and b.centre_mm else math.inf
+
+
 def _trimmed(old: Sequence[FaceEntry], new: Sequence[FaceEntry]) -> Iterator[Pair]:
     """Free-form faces that have nearly the same place and area."""
     for mine, theirs in _of_one_form(*([face for face in faces if face.shape == "sculptured"] for faces in (old, new))):
         if len(mine) * len(theirs) > _MOST_PAIRS:
             continue
         for a, b in product(mine, theirs):
-            ratio, away = a.area_mm2 / b.area_mm2, math.dist(a.centre_mm or (), b.centre_mm or ())
+            ratio, away = a.area_mm2 / b.area_mm2, _away(a, b)
             if 1.0 / _TRIMMED <= ratio <= _TRIMMED and away <= _HARDLY * math.sqrt(max(a.area_mm2, b.area_mm2)):
                 yield a, b
 
@@ -122,7 +135,7 @@ def _on_carriers(
 
 def _nearest(pairs: Sequence[Pair], size: float) -> Iterator[Pair]:
     """Of pairs those whose faces are nearer to each other than to any other, by far."""
-    away = [math.dist(a.centre_mm, b.centre_mm) if a.centre_mm and b.centre_mm else math.inf for a, b in pairs]
+    away = [_away(*pair) for pair in pairs]
     rows, columns = defaultdict[str, list[float]](list), defaultdict[str, list[float]](list)
     for (a, b), far in zip(pairs, away, strict=True):
         rows[a.id].append(far)
