@@ -27,7 +27,7 @@ ANGLES = {"tilt": TILTS, "rotation": ROTATIONS, "rotation_step": STEP, "index_st
 OF_CALLS = ("part", "progress", "cache", "client", "verdicts", "verdicts_key")
 #: Words of options that take no other text.
 Operations = Literal["fewest", "fastest", "both"]
-Answer = Literal["stick-out", "radius", "mend", "mend-all", "all"]
+Answer = Literal["stick-out", "radius", "mend", "all"]
 SharpEdges = Literal["asked", "left"]
 
 

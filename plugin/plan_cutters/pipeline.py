@@ -19,7 +19,6 @@ from plan_cutters.answers.ask import ask
 from plan_cutters.answers.least_set import least_set
 from plan_cutters.document.clock import Clock, Progress
 from plan_cutters.document.notes import noted
-from plan_cutters.document.operations_entry import with_motion
 from plan_cutters.document.over_setups import OtherSetup
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.checks import shown
@@ -236,12 +235,6 @@ def _mapped(result: Result, part: JudgedPart, clock: Clock, compiling: Callable[
     document = result.plan
     if maps.unmapped:
         document = noted(document, maps_partial(maps.unmapped, int((maps.verdict != UNJUDGED).sum())))
-    if document.operations is not None:
-        from plan_cutters.operations.motion import motion
-
-        with clock.stage("motion"):
-            moved = motion(maps, ready)
-        document = document.model_copy(update={"operations": with_motion(document.operations, moved)})
     return replace(result, plan=clock.stamp(with_text(document)), maps=maps)
 
 

@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from plan_cutters.plan_file.answers import MendEntry, StepEntry
+from plan_cutters.plan_file.answers import MendEntry
 from plan_cutters.plan_file.model import CutterEntry, Plan, WitnessEntry
 from plan_cutters.plan_file.nearest import leaves
 from plan_cutters.plan_file.reasons import REASONS
@@ -120,7 +120,7 @@ def _cutter(plan: Plan, c: CutterEntry, text: str, most: int) -> CutterAnswer:
 
 
 def helps(plan: Plan, c: CutterEntry) -> list[Help]:
-    """Changes that gain something: steps, then changes of one thing that no step says."""
+    """The steps that gain something."""
     mend = c.mend
     if mend is None:
         return []
@@ -128,9 +128,6 @@ def helps(plan: Plan, c: CutterEntry) -> list[Help]:
         Help(what=named(plan, each.why), things=[move.thing for move in each.changes],
              finishes=None if mend.unsure and not each.left else not each.left,
              lost_before=each.lost_before, lost_after=each.lost_after, gained_samples=each.gained, option=each.option)
-        if isinstance(each, StepEntry)
-        else Help(what=named(plan, each.why), things=[each.thing], finishes=each.helps, lost_before=each.lost_before,
-                  lost_after=each.lost_after, option=each.option)
         for each in helping(mend)
     ]  # fmt: skip
 
@@ -194,10 +191,10 @@ def _of_point(postures: Postures | None, sample: Sample | None) -> Iterator[str]
         )
 
 
-def _reason(code: str, share: float, what_if: MendEntry | None = None) -> Reason:
+def _reason(code: str, share: float, advice: MendEntry | None = None) -> Reason:
     known = REASONS.get(code)
     return Reason(
-        code=code, name=reason(code), meaning=known.sentence if known else "", try_first=first_tries(code, what_if), share=share
+        code=code, name=reason(code), meaning=known.sentence if known else "", try_first=first_tries(code, advice), share=share
     )
 
 
@@ -209,6 +206,6 @@ def _helping(plan: Plan, cutter: CutterEntry, *, alone: bool, lost: bool) -> tup
         return found, "this face" if alone else "all faces of the plan", why
     if not lost:
         return [], "nothing", "nothing is lost"
-    if {"mend", "mend-all"} & {*plan.effective.answers}:
+    if "mend" in plan.effective.answers:
         return [], "nothing", "it was not asked about this cutter, for others come nearer: ask with `part`"
     return [], "nothing", "the plan was made without --answers mend: ask with `part`"

@@ -5,7 +5,6 @@ from collections import defaultdict
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from plan_cutters.plan_file.model import FaceEntry
@@ -39,7 +38,7 @@ def on_one_carrier(
         for a, rows in zip(mine, near, strict=True):
             for j in sorted({row % len(theirs) for row in rows}):
                 b = theirs[j]
-                if not opposed(a, b) and _angle(a, b) and (not radius or same_radii(a, b, within)):
+                if not opposed(a, b) and _angle(a, b) and (not radius or _same_radii(a, b, within)):
                     yield a, b
 
 
@@ -48,29 +47,19 @@ def opposed(a: FaceEntry, b: FaceEntry) -> bool:
 
     What one of them does not state opposes nothing.
     """
-    return bool(opposing([a], [b])[0, 0])
+    if a.carrier is None or b.carrier is None:
+        return False
+    way, other = a.carrier.direction, b.carrier.direction
+    stated = way is not None and other is not None and any(way) and any(other)
+    inner = float(np.dot(way, other)) if stated else 1.0  # type: ignore[arg-type]
+    known = None not in (a.carrier.outward, b.carrier.outward)
+    same = a.carrier.outward == b.carrier.outward
+    if a.shape == "plane":
+        return (abs(inner) if not (known and stated) else inner if same else -inner) < _AGREE
+    return (known and not same) or abs(inner) < _AGREE
 
 
-def opposing(old: Sequence[FaceEntry], new: Sequence[FaceEntry]) -> NDArray[np.bool_]:
-    """`opposed` of each of some faces (n) and each of others (m) of one form, as (n, m)."""
-    (way, side), (other_way, other_side) = _ways(old), _ways(new)
-    stated = (way != 0.0).any(axis=1)[:, None] & (other_way != 0.0).any(axis=1)
-    inner = np.where(stated, way @ other_way.T, 1.0)
-    sides = side[:, None] * other_side
-    if old[0].shape == "plane":
-        return np.asarray(np.where((sides == 0) | ~stated, np.abs(inner), inner * sides) < _AGREE)
-    return np.asarray((sides < 0) | (np.abs(inner) < _AGREE))
-
-
-def _ways(faces: Sequence[FaceEntry]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Directions (n, 3), zero where there is none, and sides (n,): 1 outward, -1 inward, 0 not known."""
-    carriers = [face.carrier for face in faces]
-    way = np.array([(0.0, 0.0, 0.0) if each is None else each.direction or (0.0, 0.0, 0.0) for each in carriers])
-    known = [0 if each is None or each.outward is None else 1 if each.outward else -1 for each in carriers]
-    return way, np.array(known)
-
-
-def same_radii(a: FaceEntry, b: FaceEntry, within: float) -> bool:
+def _same_radii(a: FaceEntry, b: FaceEntry, within: float) -> bool:
     """Whether the radii of two faces agree, mm; a face without one has none to differ in."""
     if a.carrier is None or b.carrier is None:
         return True

@@ -1,102 +1,57 @@
 """Which face of one plan is which of another one, and which cutter: the numbers of faces shift as soon as one is added.
 
-Each step pairs what is left of those before it, and what has two candidates is paired with neither: a wrong pair would tell a
-loss that is none, or hide one.
+Faces are matched as the same surface only: where they stood, or on the same carrier. Each step pairs what is left of those before
+it, and what has two candidates is paired with neither: a wrong pair would tell a loss that is none, or hide one.
 """
 
 import math
-from collections import defaultdict
+from collections import Counter, defaultdict
 from collections.abc import Callable, Hashable, Iterable, Iterator, Sequence
-from typing import NamedTuple, TypeVar
+from itertools import product
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
-from plan_cutters_ci.carriers import on_one_carrier, opposed, opposing
+from plan_cutters_ci.carriers import on_one_carrier, opposed
 from plan_cutters_ci.model import CutterMatch, FaceMatch
-from plan_cutters_ci.motion import PlanMotion, motions_of
 from plan_cutters_ci.neighbours import Surroundings, alone, near
 
 #: Areas that differ by less than this share, and places by less than this share of the part's diagonal, are the same.
 SAME = 1e-5
-#: Likeness: how far a face may have moved, in diagonals of the part, plus the logarithm of how much its area grew or shrank.
-FARTHEST = 0.25
-#: The next best candidate must be as many times less like it.
+#: The next best candidate must be as many times farther off.
 CLEARLY = 1.5
-#: Pairs that are looked at for likeness, at most: beyond, faces stay unknown and are told.
-_MOST_PAIRS = 4_000_000
+#: A free-form face has no carrier: trimmed anew, its area changes by less than this factor, and its middle hardly moves, as a
+#: share of how long it is.
+_TRIMMED, _HARDLY = 1.25, 0.25
+#: Pairs of free-form faces that are looked at, at most: beyond, faces stay unknown and are told.
+_MOST_PAIRS = 1_000_000
+#: Share of the part's area that must be found at other places for a part that was moved as a whole.
+_MOVED = 0.5
+#: A face on the same carrier whose middle is off by less, as a share of the part's diagonal, stays: exports differ by so much.
+_STAYS = 1e-3
 
 Item = TypeVar("Item")
 Pair = tuple[FaceEntry, FaceEntry]
 Matched = list[tuple[FaceEntry, FaceEntry, FaceMatch]]
 
 
-class KnownFaces(NamedTuple):
-    """Pairs of faces, and how the new part lies to the old one where it was mirrored, moved or turned as a whole.
-
-    Of several motions nobody knows which it was.
-    """
-
-    pairs: Matched
-    motions: tuple[PlanMotion, ...] = ()
-    #: Whether the pairs are those that the motion makes.
-    moved: bool = False
-
-
 def match_faces(old: Plan, new: Plan) -> Matched:
-    """Pairs of faces, in the order of the old numbers, and how each was known again: see `known_faces`."""
-    return known_faces(old, new).pairs
-
-
-def known_faces(old: Plan, new: Plan) -> KnownFaces:
     """Pairs of faces, in the order of the old numbers, and how each was known again.
 
     In turn: both plans are of the same bytes in the same unit, so that numbers agree; form, area and place agree; a plan of an
-    older version says no place, then number, form and area agree; carriers agree, or neighbours that are paired; a name stands
-    once on each side and the form agrees; of what is left, two are each other's nearest in place and area, by far, and of one
-    form. Where faces are left over, and the part was mirrored, moved or turned as a whole, the old faces are compared at the
-    places to which that brings them.
+    older version says no place, then number, form and area agree; carriers agree; a name stands once on each side and the form
+    agrees; of free-form faces place and area agree nearly.
     """
     bytes_of = [(plan.part.sha256, plan.part.references, plan.effective.unit) for plan in (old, new)]
     if old.part.sha256 and bytes_of[0] == bytes_of[1]:
         there = {face.id: face for face in new.faces}
-        return KnownFaces([(face, there[face.id], "same file") for face in old.faces if face.id in there])
-    size = math.hypot(*(max(a, b) for a, b in zip(old.part.size_mm, new.part.size_mm, strict=True)))
-    still = _pairs(old.faces, new.faces, size)
-    placed = sum(how == "place" for _, _, how in still)
-    if placed == len(old.faces) == len(new.faces):
-        return KnownFaces(still)
-    motions = motions_of(old.faces, new.faces, size)
-    if not any(face.shape == "sculptured" for face in old.faces):
-        # A part of simple shapes that several motions carry onto the new one is its own image: each of them is right.
-        motions = motions[:1]
-    if not motions or motions[0].carried <= placed:
-        return KnownFaces(still)
-    carried = motions[0].carried
-    if len(still) == len(old.faces) == len(new.faces) and 2 * placed > len(still):
-        # A hole that moved to the other side: most of the part is where it was.
-        return KnownFaces(still, tuple(motions))
-    whole = carried == len(old.faces) == len(new.faces)
-    # Pairs by carrier or likeness count for nothing here: in a part that moved they are of two features.
-    if not whole and 2 * placed > carried:
-        return KnownFaces(still)
-    own = {face.id: face for face in old.faces}
-    every = [_pairs([motion.face(face) for face in old.faces], new.faces, size) for motion in motions]
-    agreed = set.intersection(*({(a.id, b.id) for a, b, _ in pairs} for pairs in every))
-    # Half of the pairs at least, or else the first motion is as good as any: of a flat part whose both sides are alike, all pairs
-    # differ between a turn and a mirror.
-    if 2 * len(agreed) < carried:
-        agreed = {(a.id, b.id) for a, b, _ in every[0]}
-    moved = [(own[a.id], b, how) for a, b, how in every[0] if (a.id, b.id) in agreed]
-    return KnownFaces(moved, tuple(motions), moved=True)
-
-
-def _pairs(old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: float) -> Matched:
-    """Pairs of faces that stand at their places, in the order of the old numbers."""
+        return [(face, there[face.id], "same file") for face in old.faces if face.id in there]
+    size = _size(old, new)
     pairs: Matched = []
-    open_faces = list(old), list(new)
+    open_faces = list(old.faces), list(new.faces)
 
     def take(matched: Iterable[Pair], how: FaceMatch) -> bool:
         nonlocal open_faces
@@ -106,31 +61,61 @@ def _pairs(old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: float) -> M
         open_faces = [f for f in open_faces[0] if f.id not in mine], [f for f in open_faces[1] if f.id not in theirs]
         return bool(more)
 
-    def surroundings() -> Surroundings:
-        return Surroundings({f.id: f for f in old}, {f.id: f for f in new}, ((a, b) for a, b, _ in pairs), size)
-
     def spread() -> None:
-        """Go on from what is paired: what is surest first, and again from the first as soon as one is paired."""
+        """Go on from what is paired: same radii first, and again as soon as one is paired."""
         again = True
         while again and all(open_faces):
-            by = surroundings()
-            again = (
-                any(take(_on_carriers(*open_faces, size, by, radius=radius), "carrier") for radius in (True, False))
-                or take(by.pairs(*open_faces, lambda _, every: every), "neighbours")
-                or take(by.pairs(*open_faces, lambda shared, _: shared > 1), "neighbours")
-                or take(by.pairs(*open_faces, lambda shared, _: shared > 0), "neighbours")
-            )
+            by = Surroundings(((a, b) for a, b, _ in pairs), size)
+            again = any(take(_on_carriers(*open_faces, size, by, radius=radius), "carrier") for radius in (True, False))
 
     take(_in_place(*open_faces, size), "place")
-    if any(all(face.centre_mm is None for face in faces) for faces in (old, new)):
+    if any(all(face.centre_mm is None for face in faces) for faces in (old.faces, new.faces)):
         take(_alone(*open_faces, _numbered), "number")
     spread()
-    by = surroundings()
-    take((pair for pair in _alone(*open_faces, _named) if not opposed(*pair) and by.consistent(*pair)), "name")
-    by = surroundings()
-    take((pair for pair in _alike(*open_faces, size) if by.consistent(*pair)), "likeness")
+    take((pair for pair in _alone(*open_faces, _named) if not opposed(*pair)), "name")
+    take(alone(_trimmed(*open_faces)), "trim")
     spread()
     return sorted(pairs, key=lambda pair: int(pair[0].id[1:]))
+
+
+def _size(old: Plan, new: Plan) -> float:
+    """The diagonal of a box that holds either part, mm."""
+    return math.hypot(*(max(a, b) for a, b in zip(old.part.size_mm, new.part.size_mm, strict=True)))
+
+
+def moved_faces(old: Plan, new: Plan, pairs: Matched) -> int:
+    """How many faces of both plans stand at other places, where they are most of the part; else 0.
+
+    The part was moved, turned or mirrored as a whole then, or drawn about another origin. Two faces on one carrier of which one
+    is the other one shifted count as well: of a part that moved these are two features as often as one.
+    """
+    off = _STAYS * _size(old, new)
+    stay = [(a.id, b.id) for a, b, how in pairs if how != "carrier" or _away(a, b) <= off]
+    sides = [[f for f in plan.faces if 0.0 < f.area_mm2 < math.inf] for plan in (old, new)]
+    rest = [
+        Counter((f.shape, f"{f.area_mm2:.4g}") for f in side if f.id not in known)
+        for side, known in zip(sides, zip(*stay, strict=True) if stay else ((), ()), strict=True)
+    ]
+    shifted = rest[0] & rest[1]
+    area = sum(float(each) * number for (_, each), number in shifted.items())
+    whole = max(sum(f.area_mm2 for f in side) for side in sides)
+    return shifted.total() if area > _MOVED * whole else 0
+
+
+def _away(a: FaceEntry, b: FaceEntry) -> float:
+    """How far the middles of two faces are from each other, mm; infinite where one is not known."""
+    return math.dist(a.centre_mm, b.centre_mm) if a.centre_mm and b.centre_mm else math.inf
+
+
+def _trimmed(old: Sequence[FaceEntry], new: Sequence[FaceEntry]) -> Iterator[Pair]:
+    """Free-form faces that have nearly the same place and area."""
+    for mine, theirs in _of_one_form(*([face for face in faces if face.shape == "sculptured"] for faces in (old, new))):
+        if len(mine) * len(theirs) > _MOST_PAIRS:
+            continue
+        for a, b in product(mine, theirs):
+            ratio, away = a.area_mm2 / b.area_mm2, _away(a, b)
+            if 1.0 / _TRIMMED <= ratio <= _TRIMMED and away <= _HARDLY * math.sqrt(max(a.area_mm2, b.area_mm2)):
+                yield a, b
 
 
 def _on_carriers(
@@ -150,7 +135,7 @@ def _on_carriers(
 
 def _nearest(pairs: Sequence[Pair], size: float) -> Iterator[Pair]:
     """Of pairs those whose faces are nearer to each other than to any other, by far."""
-    away = [math.dist(a.centre_mm, b.centre_mm) if a.centre_mm and b.centre_mm else math.inf for a, b in pairs]
+    away = [_away(*pair) for pair in pairs]
     rows, columns = defaultdict[str, list[float]](list), defaultdict[str, list[float]](list)
     for (a, b), far in zip(pairs, away, strict=True):
         rows[a.id].append(far)
@@ -219,30 +204,6 @@ def _placed(faces: Sequence[FaceEntry], size: float) -> NDArray[np.float64]:
     """Rows (n, 4): places in sizes of the part, and logarithms of areas."""
     at = np.array([face.centre_mm for face in faces]) / max(size, 1e-300)
     return np.column_stack([at, np.log([face.area_mm2 for face in faces])])
-
-
-def _alike(old: Sequence[FaceEntry], new: Sequence[FaceEntry], size: float) -> list[Pair]:
-    """Pairs of one form that are each other's nearest, by far."""
-    pairs = []
-    for mine, theirs in _of_one_form(old, new):
-        if len(mine) * len(theirs) > _MOST_PAIRS:
-            continue
-        one, other = _placed(mine, size), _placed(theirs, size)
-        unlike = np.linalg.norm(one[:, None, :3] - other[None, :, :3], axis=2) + np.abs(one[:, None, 3] - other[None, :, 3])
-        unlike[opposing(mine, theirs)] = np.inf
-        ends = [_two_least(unlike), _two_least(unlike.T)]
-        column = unlike.argmin(axis=1)
-        for i, j in enumerate(column.tolist()):
-            best, others = unlike[i, j], min(ends[0][i, 1], ends[1][j, 1])
-            # `best` is 0 where a place agrees, but other faces stand there, too.
-            if best == ends[1][j, 0] and best <= FARTHEST and others >= CLEARLY * max(best, SAME):
-                pairs.append((mine[i], theirs[j]))
-    return pairs
-
-
-def _two_least(values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The two least values of each row (n, m), as (n, 2); infinite where there is no second one."""
-    return np.partition(np.column_stack([values, np.full(len(values), np.inf)]), 1, axis=1)[:, :2]
 
 
 def _of_one_form(old: Sequence[FaceEntry], new: Sequence[FaceEntry]) -> Iterator[tuple[list[FaceEntry], list[FaceEntry]]]:

@@ -13,7 +13,7 @@ FORMAT_VERSION = 1
 #: How much of a face is reached by the cutter that reaches most of it.
 Reach = Literal["reached", "undecided", "partly", "not reached", "not judged", "not asked", "inside other bodies"]
 #: How a face is known again.
-FaceMatch = Literal["same file", "place", "number", "carrier", "neighbours", "name", "likeness"]
+FaceMatch = Literal["same file", "place", "number", "carrier", "name", "trim"]
 CutterMatch = Literal["id", "name", "cutting part"]
 #: Changes of what was asked: as long as one is not named by `--despite`, verdicts are answers to two questions.
 REQUESTED = ("unit", "faces", "sampling", "postures", "tolerance", "clearance", "machine", "setup", "fixtures")
@@ -88,9 +88,6 @@ class PlanDifference(Frozen):
     changes: list[Change]
     selected: tuple[str | None, str | None] = Field(description="ids of the cutters to take, old and new")
     matched: dict[str, int] = Field(description="how many faces were known again, by how")
-    motion: str = Field(
-        default="", description="a sentence where the part was mirrored, moved or turned as a whole; empty where not"
-    )
     faces: list[FaceDifference] = Field(
         description="first those of which less is reached, by the area; then new ones that are not reached, changed, won, new "
         "and gone ones"
@@ -106,7 +103,7 @@ class PlanDifference(Frozen):
     def same(self) -> bool:
         """Nothing differs but what the run itself says."""
         other = self.selected[0] != self.selected[1]
-        return not (self.why_not or self.changes or self.motion or self.faces or self.cutters or other)
+        return not (self.why_not or self.changes or self.faces or self.cutters or other)
 
 
 class Comparison(Frozen):

@@ -10,7 +10,7 @@ from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
 from plan_cutters.plan_file.numbers import count
 from plan_cutters.plan_file.part_info import FixtureEntry, PartInfo
 from plan_cutters.plan_file.words.names import called
-from plan_cutters_ci.matching import KnownFaces, known_faces, match_cutters
+from plan_cutters_ci.matching import Matched, match_cutters, match_faces, moved_faces
 from plan_cutters_ci.model import REQUESTED, Change, CutterDifference, FaceDifference, FaceState, PlanDifference
 from plan_cutters_ci.states import cutter_falls, cutter_state, face_state, falls, reached_whole, remaining_area, unreachable
 
@@ -19,8 +19,6 @@ SLACK = 0.001
 #: Plans of which fewer faces are known again, as a share of those of the plan with fewer of them, are of two parts, unless so
 #: large a share of the area is the same.
 UNRELATED = 0.25
-#: Motions that are named where several explain a part.
-_MOST_MOTIONS = 3
 #: Entries of a cutter that say how it is made.
 _FORM = (
     "radius",
@@ -52,11 +50,15 @@ def compare(old: Plan, new: Plan, *, name: str = "", slack: float = SLACK, despi
         Codes of `model.ASKED`: the plans are compared although these differ.
     """
     changes = list(_changes(old, new, despite))
-    known = known_faces(old, new)
-    pairs = known.pairs
+    pairs = match_faces(old, new)
     tools = match_cutters(old, new)
     why_not = [f"{each.what} differs: {each.old} -> {each.new}" for each in changes if each.hinders]
-    if not _related(old, new, known):
+    if moved := moved_faces(old, new, pairs):
+        why_not.append(
+            f"{moved} of {count(len(old.faces), 'face')} of the old plan stand at other places in the new one: it was moved, "
+            "turned or mirrored as a whole; export both from one origin"
+        )
+    elif not _related(old, new, pairs):
         why_not.append(
             f"of {count(len(old.faces), 'face')} of the old plan and {len(new.faces)} of the new one {len(pairs) or 'none'} "
             f"{'are' if len(pairs) > 1 else 'is'} known again: they seem to be of two parts"
@@ -73,7 +75,6 @@ def compare(old: Plan, new: Plan, *, name: str = "", slack: float = SLACK, despi
         changes=changes,
         selected=(taken(old), taken(new)),
         matched=dict(sorted(Counter(str(how) for _, _, how in pairs).items())),
-        motion=_motion(old, known),
         faces=face_rows,
         cutters=cutter_rows,
         unreachable=unreachable(new),
@@ -82,11 +83,11 @@ def compare(old: Plan, new: Plan, *, name: str = "", slack: float = SLACK, despi
     )
 
 
-def _related(old: Plan, new: Plan, known: KnownFaces) -> bool:
+def _related(old: Plan, new: Plan, pairs: Matched) -> bool:
     """Whether two plans are of one part: enough of their faces are known again, or enough area is the same at the same place."""
-    if len(known.pairs) >= UNRELATED * min(len(old.faces), len(new.faces)):
-        return bool(known.pairs)
-    same = [(a.id, b.id) for a, b, how in known.pairs if how == "place"]
+    if len(pairs) >= UNRELATED * min(len(old.faces), len(new.faces)):
+        return bool(pairs)
+    same = [(a.id, b.id) for a, b, how in pairs if how == "place"]
     shares = (_share_of(plan.faces, names) for plan, names in zip((old, new), zip(*same, strict=True), strict=False))
     return bool(same) and min(shares) >= UNRELATED
 
@@ -95,17 +96,6 @@ def _share_of(faces: Sequence[FaceEntry], names: Collection[str]) -> float:
     """Share of the area of all faces that some of them have."""
     area = {face.id: face.area_mm2 for face in faces if math.isfinite(face.area_mm2)}
     return sum(area.get(name, 0.0) for name in names) / max(sum(area.values()), 1e-300)
-
-
-def _motion(old: Plan, known: KnownFaces) -> str:
-    """How the part was moved as a whole, and what is compared for it; empty where it was not."""
-    if not known.motions:
-        return ""
-    carried, every = known.motions[0].carried, len(old.faces)
-    number = f"All {every}" if carried == every else f"{carried} of {every}"
-    texts = " or ".join(list(dict.fromkeys(each.text for each in known.motions))[:_MOST_MOTIONS])
-    where = "each face is compared with its image" if known.moved else "faces are compared where they stand"
-    return f"{number} faces of the old part are {texts} in the new one: {where}."
 
 
 def taken(plan: Plan) -> str | None:

@@ -112,7 +112,7 @@ def page(difference: PlanDifference, old: Side, new: Side) -> bytes:
         found=difference,
         outcome=_outcome(difference),
         headline=headline(difference),
-        remarks=[line for line in (difference.motion, choice(difference), known(difference)) if line and difference.comparable],
+        remarks=[line for line in (choice(difference), known(difference)) if line and difference.comparable],
         changes=[change(each) for each in difference.changes if not each.hinders],
         faces=list(zip(shown, face_rows(difference), strict=True)),
         cutters=list(cutter_rows(difference)),

@@ -1,5 +1,6 @@
 """A comparison is told here, once: sentences and rows of tables, which the terminal and Markdown lay out."""
 
+from collections import Counter
 from collections.abc import Iterator
 
 from plan_cutters.plan_file.numbers import area, count, listed, percent
@@ -41,12 +42,12 @@ def mark_of(difference: PlanDifference) -> str:
 
 
 def remarks(difference: PlanDifference) -> list[str]:
-    """Lines before the tables: what lies otherwise as a whole, which cutter is to be taken, how faces were known again, and what
+    """Lines before the tables: which cutter is to be taken, how faces were known again, and what
     else changed. Of plans that are not comparable nothing but the reasons is told.
     """
     if not difference.comparable:
         return []
-    lines = [difference.motion, choice(difference), known(difference)]
+    lines = [choice(difference), known(difference)]
     return [*filter(None, lines), *(change(each) for each in difference.changes if not each.hinders)]
 
 
@@ -57,14 +58,17 @@ def choice(difference: PlanDifference) -> str:
 
 
 def known(difference: PlanDifference) -> str:
-    """How faces were known again, where numbers did not say."""
+    """How faces were known again, where numbers did not say, and which may have moved."""
     if difference.same:
         return ""
     how = {name: number for name, number in difference.matched.items() if name != "same file"}
-    sides = (("old", [f for f in difference.faces if f.new is None]), ("new", [f for f in difference.faces if f.old is None]))
-    alone = [f"{count(len(faces), 'face')} of the {word} plan alone" for word, faces in sides if faces]
+    sides = {"old": [f for f in difference.faces if f.new is None], "new": [f for f in difference.faces if f.old is None]}
+    alone = [f"{count(len(faces), 'face')} of the {word} plan alone" for word, faces in sides.items() if faces]
     if not how and not alone:
         return ""
+    old, new = (Counter((f.kind, f"{f.area_mm2:.4g}") for f in faces if f.area_mm2) for faces in sides.values())
+    if alike := (old & new).total():
+        alone.append(f"of these {count(alike, 'face')} with the same kind and area in both: moved or mirrored")
     text = ", ".join(f"{number} by {name}" for name, number in how.items())
     return f"Faces known again: {'; '.join([text or 'all by number', *alone])}."
 

@@ -204,20 +204,6 @@ def test_a_new_face_that_no_cutter_reaches_is_lost_and_a_gone_one_is_told():
     assert (gone.lost, gone.won) == (False, False)
 
 
-def test_likeness_needs_one_candidate():
-    """A moved wall is known again; of two that are as like, neither."""
-
-    def plan(sha, *at):
-        return made([face(k + 1, centre=(x, 0.0, 0.0)) for k, x in enumerate(at)], [cutter("R6L80", {})], sha=sha)
-
-    def pairs(old, new):
-        return [(a.id, b.id, how) for a, b, how in match_faces(old, new)]
-
-    assert pairs(plan("a", 0.0, 50.0), plan("b", 50.0, 3.0)) == [("F1", "F2", "likeness"), ("F2", "F1", "place")]
-    assert pairs(plan("a", 0.0), plan("b", -3.0, 3.0)) == []
-    assert pairs(plan("a", 0.0), plan("b", 90.0)) == []
-
-
 def test_a_plan_without_places_is_known_by_numbers():
     """Plans of an older version say no centre."""
     new = made([face(1, area=50.0), face(2, area=60.0)], [cutter("R6L80", {})], sha="b")

@@ -154,7 +154,7 @@ def completed(words, cwd):
         (["--machine", "trunnion-a"], ["plain,trunnion-ac"]),
         (["--machine", "shop.f"], ["file,"]),
         (["--formats", "json,g"], ["plain,json,glb"]),
-        (["--answers", "m"], ["plain,mend", "plain,mend-all"]),
+        (["--answers", "m"], ["plain,mend"]),
         (["--faces", "s"], ["plain,sculptured"]),
         (["--unit", "i"], ["plain,in"]),
         (["--out", ""], ["dir,"]),

@@ -20,6 +20,7 @@ WORDS = (
     ("stored", "p.npz"),
     ("p.step", "--postures", "p.npz"),
     ("p.step", "--cutter", "D2L9", "--answers", "mend,stick-out-map"),
+    ("p.step", "--answers", "stick-out,Mend-All"),
 )
 
 

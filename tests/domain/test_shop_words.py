@@ -276,16 +276,21 @@ class TestTables:
             assert reach.reached[~bottom].all()
             assert any("along the setup axis" in note for note in found.plan.notes)
 
-    def test_several_setups_and_mend_say_that_it_stays(self):
+    def test_several_setups_say_that_it_stays(self):
         part = box(40, 30, 20)
         how = {"cutters": "D6L60", "faces": "all", "grid": 3, "setup": "-y", "fixtures": "table:-500", "machine": "tilt:30",
                "area_budget": 0}  # fmt: skip
         both = plan(part, other_setups=["+y"], **how)
         assert any("stays there in the others" in note for note in both.plan.notes)
-        found = plan(part, answers="mend", **how)
-        (change,) = [each for each in found.plan.cutters[0].mend.changes if each.thing == "setup"]
-        assert change.helps is None
-        assert "a table lies across the setup axis" in change.why
+
+    @pytest.mark.parametrize(
+        ("fixture", "setups"), [("table:-60", {"second_setup"}), ("box:5,5,5@500,0,0", {"setup", "second_setup"})]
+    )
+    def test_another_setup_is_no_step_where_a_table_would_lie_elsewhere(self, fixture, setups):
+        found = plan(box(40, 30, 20), cutters="D6L60", faces="F4", grid=4, setup="-y", fixtures=fixture, machine="tilt:30",
+                     answers="mend", area_budget=0).plan  # fmt: skip
+        things = {change.thing for step in found.cutters[0].mend.steps for change in step.changes}
+        assert things & {"setup", "second_setup"} == setups
 
     def test_in_a_setup_file_of_inches(self, tmp_path):
         path = tmp_path / "s.toml"

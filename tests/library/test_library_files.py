@@ -1,6 +1,5 @@
 """Files that are no tool libraries, or dangerous ones: one line each. Real files are read, or refused by their format's name."""
 
-import base64
 import csv
 import json
 import os
@@ -72,7 +71,7 @@ HTML = "<!DOCTYPE html>\n<html><head><title>Sign in</title></head><body></body><
         ("a.ctr", "; old\n[DeskProto Cutter]\nVersion = 7\n", "a DeskProto cutter"),
         ("a.xml", "<?xml version='1.0'?><MTConnectAssets></MTConnectAssets>", "MTConnect"),
         ("a.tl", "<?xml version='1.0'?><Tools/>", "an Estlcam"),
-        ("a.km", base64.b64encode(json.dumps({"version": "3", "tools": [{"shaft_diam": 3}]}).encode()), "Kiri:Moto"),
+        ("a.km", json.dumps({"version": "3", "tools": [{"shaft_diam": 3}]}), "Kiri:Moto"),
         ("a.bin", b"\x00\x01\x02\x03", "no tool library that is known"),
     ],
 )  # fmt: skip

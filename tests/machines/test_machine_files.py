@@ -19,7 +19,6 @@ from plan_cutters.options import Options
 from tests.support.machine_files import (  # fmt: skip
     HEAD,
     TABLE,
-    component,
     fcm,
     fcm_axis,
     ini,
@@ -27,7 +26,6 @@ from tests.support.machine_files import (  # fmt: skip
     mch_axis,
     moved,
     own,
-    probe,
     rotary,
     shifted,
     tool_in_part,
@@ -293,43 +291,6 @@ def test_a_fusion_table_with_uneven_limits_is_asked_about(tmp_path):
     assert (both[0] == both[2]).all()
 
 
-# MTConnect
-
-
-def test_a_probe_is_read_by_its_names_and_units(tmp_path):
-    speed = '<Specification type="ANGULAR_VELOCITY" units="DEGREE/SECOND"><Maximum>40</Maximum></Specification>'
-    text = probe(component("X", 0, 10, "INCH"), component("Z", -100), component("X2", 0, 5), component("C"), component("S"),
-                 component("A", -30, 120, inside=speed))  # fmt: skip
-    machine = read_machine(write(tmp_path, "probe.xml", text), "C,A")
-    assert limits(machine) == {"C": None, "A": (-30, 120), "X": (0, 254), "Z": (-100, math.inf)}
-    assert machine.rotary[1].rate == math.radians(40)
-    for words in ("X2 is none of", "S is a spindle", "Z has no largest position", "no limits in the file for C:"):
-        assert any(words in note for note in machine.notes), words
-    for c, a in ANGLES:
-        assert held_by(machine, (c, a)) == pytest.approx(turn(Z, c) @ turn(X, a) @ Z, abs=1e-12)
-
-
-def test_a_spindle_that_is_called_c_turns_nothing(tmp_path):
-    spindle = component("C", inside='<DataItems><DataItem type="ROTARY_VELOCITY" id="v"/></DataItems>')
-    machine = read_machine(
-        write(tmp_path, "probe.xml", probe(component("X", 0, 1), component("Y", 0, 1), component("Z", 0, 1), spindle))
-    )
-    assert machine.fixed
-    assert not machine.rotary
-
-
-def test_a_slanted_axis_of_a_probe_is_asked_about(tmp_path):
-    slanted = component("B", -180, 180, inside='<Motion type="REVOLUTE"><Axis>0 1 1</Axis><Origin>1 2 3</Origin></Motion>')
-    path = write(tmp_path, "probe.xml", probe(component("C"), slanted))
-    with pytest.raises(MachineError, match=r"axis B runs along .* FILE#table or FILE#tool-relative"):
-        read_machine(path, "C/B")
-    machine = read_machine(path, "C/B,tool-relative")
-    assert machine.rotary[1].point == (1.0, 2.0, 3.0)
-    for c, b in ANGLES:
-        slant = np.array([0, 1, 1]) / math.sqrt(2)
-        assert held_by(machine, (c, b)) == pytest.approx(turn(Z, c) @ turn(slant, b) @ Z, abs=1e-12)
-
-
 # Our own format
 
 NUMBERS = st.floats(-1e6, 1e6)
@@ -427,11 +388,11 @@ BAD = [
     ("list.json", [1, 2], "is JSON, but no machine"),
     ("broken.mch", '{"kinematics": {', "looks like JSON"),
     ("deep.json", '{"part_chain": ' + NESTED + "}", "nested too deeply|looks like JSON|is a value of type list"),
-    ("other.xml", "<a><b/></a>", "is XML, but no MTConnect"),
+    ("other.xml", "<a><b/></a>", "is XML, but no machine file that is known; write the machine as TOML"),
     ("words.txt", "hello", "no machine file that is known"),
     ("mill.hal", "setp a.b 1\n", "LinuxCNC HAL file"),
-    ("bomb.xml", '<!DOCTYPE a [<!ENTITY b "c">]><MTConnectDevices>&b;</MTConnectDevices>', "document type or entities"),
-    ("open.xml", "<MTConnectDevices><Devices>", "no well-formed XML"),
+    ("bomb.xml", '<!DOCTYPE a [<!ENTITY b "c">]><MTConnectDevices>&b;</MTConnectDevices>', "is MTConnect data, which"),
+    ("probe.xml", "<MTConnectDevices><Devices>", "write the machine as TOML .docs/machines.md., ten lines do"),
     # Our own format
     ("units.json", {k: v for k, v in own(AC).items() if k != "units"}, "units is missing, as units"),
     ("length.json", own(AC, units={"angle": "deg"}), "units: length is missing"),
@@ -496,12 +457,6 @@ BAD = [
     ("order.ini#A,C", ini("trivkins", "XYZAB"), "its rotary axes are A, B"),
     ("known.ini#C,A", ini("xyzac-trt-kins", "XYZAC"), "leave out #C,A"),
     ("nothing.ini#", ini("trivkins", "XYZA"), "says nothing of a machine"),
-    # MTConnect
-    ("unit.xml", probe(component("A", -3, 4, "")), "unit of its limits is missing"),
-    ("order.xml", probe(component("A"), component("C")), "FILE#C,A"),
-    ("letter.xml", probe(component("Q"), '<Rotary id="q" name="Q"/>'), "rotary axis 'Q' is none of A, B, C"),
-    ("none.xml", probe(), "no device of it has axes"),
-    ("number.xml", probe(component("A", "low", 3)), "Minimum 'low' is no number"),
 ]  # fmt: skip
 
 
@@ -537,8 +492,7 @@ def test_what_is_no_file_is_one_line(tmp_path):
 
 SEEDS = [
     json.dumps(own(AC)), json.dumps(fcm(A=fcm_axis("table_rotary", X))), json.dumps(mch(mch_axis("A", X, TABLE), HEAD)),
-    ini("xyzac-trt-kins", "XYZAC", "[JOINT_3]", "TYPE = ANGULAR"), probe(component("X", 0, 9), component("A", -3, 4)),
-    to_toml(machine_of("trunnion-ac")),
+    ini("xyzac-trt-kins", "XYZAC", "[JOINT_3]", "TYPE = ANGULAR"), to_toml(machine_of("trunnion-ac")),
 ]  # fmt: skip
 
 

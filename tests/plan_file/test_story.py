@@ -15,7 +15,7 @@ from plan_cutters.command.summary import summary
 from plan_cutters.domain.verdicts import REASONS as CODES
 from plan_cutters.errors import OptionError
 from plan_cutters.hosts.viewer import _posture
-from plan_cutters.plan_file.answers import ChangeEntry, MendEntry, RadiusEntry, StepEntry
+from plan_cutters.plan_file.answers import MendEntry, RadiusEntry, StepEntry
 from plan_cutters.plan_file.model import WitnessEntry
 from plan_cutters.plan_file.notes import NoteCode
 from plan_cutters.plan_file.palette import MEANING, PALETTE, label
@@ -165,28 +165,9 @@ def test_each_verdict_has_a_name_and_a_colour():
     assert all(label(word) and ":" not in label(word) for word in PALETTE)
 
 
-def unsure(thing, why, **more):
-    return ChangeEntry(**({"thing": thing, "helps": None, "now": 1.0, "asked": None, "beyond": None, "left": 3, "looked": 3,
-                           "verified": 0, "cutter": None, "why": why} | more))  # fmt: skip
-
-
-def test_what_is_not_decided_is_said_once_and_of_what():
-    one, other = ("3 of 3 samples are not reached without any limit of the axis", "with 0.0025 mm, 3 samples are undecided")
-    changes = [
-        unsure("tolerance", f"is not decided: {other}"),
-        unsure("setup", f"is not decided: {one}"),
-        unsure("tilt_limit", f"is not decided: {one}"),
-        unsure("stick_out", "a stick-out of 42 mm instead of 12 mm, unless a face is in the way", doubted=True),
-    ]
-    entry = MendEntry(lost=3, buried=0, why="no change of one thing is known to help", changes=changes)
-    mended = cutter("R6L80", {"F1": verdicts(3)}).model_copy(update={"mend": entry})
-    nothing, undecided = answers(made([face(1)], [mended]))
-    assert nothing.text == "No change of one thing is known to make flat end D12 x 80 finish."
-    assert undecided.text == (
-        f"  Not decided: a finer tolerance ({other}); another setup axis, a machine that tilts further ({one}); a stick-out of "
-        "42 mm instead of 12 mm, unless a face is in the way."
-    )
-    inside = MendEntry(lost=3, buried=3, why="3 samples are within another body", changes=[])
+def test_where_nothing_was_looked_for_the_cause_is_said():
+    mended = cutter("R6L80", {"F1": verdicts(3)})
+    inside = MendEntry(lost=3, buried=3, why="3 samples are within another body", steps=[])
     (line,) = answers(made([face(1)], [mended.model_copy(update={"mend": inside})]))
     assert line.text == "Nothing sure would make flat end D12 x 80 finish: 3 samples are within another body."
 

@@ -7,7 +7,7 @@ import pytest
 
 import plan_cutters.scene.surroundings as surroundings
 from plan_cutters import plan
-from plan_cutters.answers import ask as asking
+from plan_cutters.answers import mend as mending
 from plan_cutters.answers.undecidable import undecidable
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import INACCESSIBLE, UNDECIDED, blank
@@ -52,8 +52,7 @@ def test_share_and_faces_are_the_plans(coarse):
 
 def test_nothing_is_sought_that_no_change_decides(coarse, monkeypatch):
     calls = []
-    monkeypatch.setattr(asking, "mend", lambda *given, **words: calls.append(given))
-    monkeypatch.setattr(asking, "steps", lambda *given, **words: calls.append(given))
+    monkeypatch.setattr(mending, "steps", lambda *given, **words: calls.append(given))
     found = plan(SAMPLES / "peaks_and_valleys.step", cutters=["R1L40"], grid=9, area_budget=0, answers="mend").plan
     mended = found.cutters[0].mend
     assert not calls

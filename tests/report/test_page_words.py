@@ -7,11 +7,9 @@ import pytest
 
 from plan_cutters import plan
 from plan_cutters.library import read_library
-from plan_cutters.plan_file.answers import ChangeEntry
 from plan_cutters.plan_file.frozen import Posture
 from plan_cutters.plan_file.model import WitnessEntry
 from plan_cutters.plan_file.numbers import up
-from plan_cutters.plan_file.words.answers import change
 from plan_cutters.plan_file.words.cutters import spot
 from plan_cutters.report.page import write
 from tests.support.places import ROOT
@@ -63,27 +61,6 @@ def test_the_first_lines_name_the_holder_and_how_short_it_may_be(planned, text):
     assert entry.holder == "ER32 chuck"
     assert f"{entry.length:g} mm out of its holder ER32 chuck" in head
     assert f"It can be held as short as {up(entry.least_stick_out.least_mm)}." in head
-
-
-@pytest.mark.slow("plans whole parts")
-def test_what_would_help_is_told_once_and_in_sentences(planned, text):
-    assert "does not help: does not help" not in text.lower()
-    assert "Does not help:" not in text
-    told = [change(each) for c in planned.plan.cutters if c.mend for each in c.mend.changes]
-    for subject, rest in told:
-        assert subject[0].isupper()
-        assert rest.startswith(("helps: ", "may help: ", "does not help: ", "is not decided: "))
-        assert rest.endswith(".")
-
-
-@pytest.mark.parametrize(
-    ("helps", "doubted", "said"),
-    [(True, False, "helps: is not decided."), (None, True, "may help: is not decided."), (None, False, "is not decided.")],
-)
-def test_a_change_is_told_by_its_fields_and_not_by_its_words(helps, doubted, said):
-    entry = ChangeEntry(thing="radius", helps=helps, now=6.0, asked=4.0, beyond=None, left=0, looked=1, verified=1, cutter=None,
-                        why="is not decided", doubted=doubted)  # fmt: skip
-    assert change(entry) == ("A smaller radius", said)
 
 
 def witness(**more):

@@ -73,20 +73,6 @@ def ini(kinematics, coordinates, *lines, units="mm", limits=(-500, 500)):
                       f"LINEAR_UNITS = {units}", *sections, *lines, ""])  # fmt: skip
 
 
-def probe(*components, name="mill"):
-    return ('<?xml version="1.0"?><MTConnectDevices xmlns="urn:mtconnect.org:MTConnectDevices:1.7"><Devices>'
-            f'<Device id="d" name="{name}"><Components><Axes id="a"><Components>{"".join(components)}'
-            "</Components></Axes></Components></Device></Devices></MTConnectDevices>")  # fmt: skip
-
-
-def component(name, low=None, high=None, units=None, inside=""):
-    tag, what = ("Rotary", "ANGLE") if name[0] in "ABCS" else ("Linear", "POSITION")
-    units = units if units is not None else "DEGREE" if tag == "Rotary" else "MILLIMETER"
-    ends = "".join(f"<{t}>{v}</{t}>" for t, v in (("Maximum", high), ("Minimum", low)) if v is not None)
-    spec = f'<Configuration><Specifications><Specification type="{what}" units="{units}">{ends}</Specification></Specifications>'
-    return f'<{tag} id="{name}" name="{name}">{spec if ends else "<Configuration>"}{inside}</Configuration></{tag}>'
-
-
 def write(folder, name, content):
     """A file of a text, bytes, or what JSON has."""
     path = folder / name

@@ -1,1 +1,1 @@
-"""Answer the planner's next questions: the least stick-out, the largest radius at each place, and the what-if answers."""
+"""Answer the planner's next questions: the least stick-out, the largest radius at each place, and the next steps."""

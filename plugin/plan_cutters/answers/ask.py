@@ -10,10 +10,8 @@ from numpy.typing import NDArray
 from plan_cutters.answers.areas import Finished
 from plan_cutters.answers.in_setups import radius_in_any, stick_out_in_each
 from plan_cutters.answers.mend import mend
-from plan_cutters.answers.steps import steps, worth
-from plan_cutters.answers.undecidable import undecidable
 from plan_cutters.domain.answers import Answers
-from plan_cutters.domain.change import WhatIfAnswer
+from plan_cutters.domain.change import Advice
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.lengths import reporting
@@ -28,7 +26,7 @@ Axis = tuple[float, float, float]
 OtherSetups = Sequence[tuple[Axis, Mapping[str, Verdicts]]]
 
 _ENDS: tuple[Literal["flat", "ball"], ...] = ("flat", "ball")
-#: Cutters that are mended unless all are requested: those that come nearest.
+#: Cutters that are mended: those that come nearest.
 NEAREST = 3
 
 
@@ -61,7 +59,7 @@ def ask(
     requested = ready.options.answers
     setups = {c: [reaches[c], *(there[c.id] for _, there in other_setups)] for c in reaches}
     together = {cutter: over_setups(each) for cutter, each in setups.items()}
-    stick_outs, mends = dict[str, StickOut](), dict[str, WhatIfAnswer]()
+    stick_outs, mends = dict[str, StickOut](), dict[str, Advice]()
     radius_maps: list[RadiusMap] = []
     near: list[Cutter] = []
     failing: list[Cutter] = []
@@ -89,32 +87,16 @@ def ask(
                 radius_in_any(ready, shape, ratio=ratio, progress=part_of(tell, k, 2)) for k, shape in enumerate(_ENDS)
             ]
         so_far("radius")
-    if "mend" in requested or "mend-all" in requested:
+    if "mend" in requested:
         failing = nearest(ready, reaches, other_setups)
-        near = failing if "mend-all" in requested else failing[:NEAREST]
+        near = failing[:NEAREST]
         with stage("mend") as tell:
             for k, cutter in enumerate(near):
-                over = together[cutter][0]
-                mends[cutter.id] = _what_if(ready, cutter, over, reaches, other_setups, part_of(tell, k, len(near)))
+                mends[cutter.id] = mend(
+                    ready, cutter, together[cutter][0], reaches, other_setups, progress=part_of(tell, k, len(near))
+                )
                 so_far()
     return so_far(*unanswered)
-
-
-def _what_if(
-    ready: Prepared, cutter: Cutter, over: Verdicts, reaches: Mapping[Cutter, Verdicts], other_setups: OtherSetups, tell: Progress
-) -> WhatIfAnswer:
-    """Mend one cutter; `over`: what it reaches in all setups together."""
-    finished, missed = Finished.of(ready), over.not_reached
-    unfinished = missed & ready.finished
-    share = finished.of_rows(np.flatnonzero(unfinished))
-    why = undecidable(ready, cutter, over)
-    if not why and unfinished.any() and not worth(finished, share):
-        why = "what it leaves is too little for advice: less than 0.1 % of the area, or than 1 mm²"
-    if why:
-        within = int((ready.inside_bodies & missed).sum())
-        return WhatIfAnswer(cutter.id, int(unfinished.sum()) + within, within, (), why, share)
-    alone = mend(ready, cutter, over, progress=part_of(tell, 0, 2))
-    return steps(ready, alone, cutter, reaches, other_setups, progress=part_of(tell, 1, 2))
 
 
 def _missed(reaches: Mapping[Cutter, Verdicts], other_setups: OtherSetups, cutter: Cutter) -> NDArray[np.bool_]:

@@ -3,6 +3,7 @@
 import math
 from collections.abc import Iterator
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 
@@ -10,14 +11,16 @@ from cad_io.arrays import Floats
 from plan_cutters.answers.option import Axis
 from plan_cutters.answers.scan import Candidate, Rows, Scan, spread, under
 from plan_cutters.answers.state import SetupOf, State
-from plan_cutters.answers.trial import Case, Trials
-from plan_cutters.answers.what_if_place import FINER, angle, closer, directions, flip_of
+from plan_cutters.answers.trial import Case
 from plan_cutters.domain.change import Move
 from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.verdicts import UNDECIDED
 from plan_cutters.options import LEAST_TOLERANCE
 from plan_cutters.plan_file.words import change_text
+from plan_cutters.scene.inside_material import inside_bodies, inside_material
+from plan_cutters.scene.preparation import Prepared
+from plan_cutters.scene.setups import conditions_of, with_setups
 
 #: A direction along the part's own axes is taken where another one gains no more than this share more.
 _OWN = 0.1
@@ -27,6 +30,10 @@ _TURN = 5.0
 _MOST = 120.0
 #: Share of the samples not reached that must be undecided for a finer tolerance to be worth its triangles.
 _UNSURE = 0.1
+#: Share of the tolerance that is tried: the triangles grow in number as it falls.
+_FINER = 0.5
+#: Directions closer to each other than this are one, deg.
+_ALIKE = 0.5
 
 
 def tolerance(scan: Scan) -> Iterator[Candidate]:
@@ -36,10 +43,10 @@ def tolerance(scan: Scan) -> Iterator[Candidate]:
     if not len(few) or (Case(ready, cutter).look(few).verdict == UNDECIDED).mean() < _UNSURE:
         return
     now = ready.scene.asked
-    tried = float(f"{now * FINER[0]:.6g}")
+    tried = float(f"{now * _FINER:.6g}")
     if tried < LEAST_TOLERANCE:
         return
-    state = replace(scan.state, ready=closer(Case(ready, cutter), tried).ready)
+    state = replace(scan.state, ready=_closer(ready, tried))
     missed = scan.known.glance(state, scan.few)
     if len(missed) < len(scan.few):
         yield scan.found(Move("tolerance", now, tried, change_text.tolerance(tried, now)), state, missed, nested=False)
@@ -95,7 +102,7 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
     state, known, ready = scan.state, scan.known, scan.state.ready
     blocked = np.setdiff1d(scan.few, gained, assume_unique=True)
     retained = np.setdiff1d(np.flatnonzero(scan.finished.wanted), scan.left, assume_unique=True)
-    axes = [axis for axis in directions(ready, Trials(scan.left, retained)) if all(angle(axis, own) > 1.0 for own in state.axes)]
+    axes = [axis for axis in _directions(ready, scan.left, retained) if all(_angle(axis, own) > 1.0 for own in state.axes)]
     now = state.axes[0]
     if plain:
         axes = [axis for axis in axes if _own(axis)]
@@ -104,26 +111,27 @@ def _setups(scan: Scan, gained: Rows, *, plain: bool) -> Iterator[Candidate]:
     for axis in axes:
         made = replace(state, setups=(*state.setups, SetupOf(axis)))
         missed = known.glance(made, gained)
-        second.append((scan.estimate(missed), angle(facing, axis), axis, made, missed))
+        second.append((scan.estimate(missed), _angle(facing, axis), axis, made, missed))
     best = _plain(second, scan.estimate(gained))
     if best is not None:
         _, _, axis, made, missed = best
-        move = Move("second_setup", now, axis, change_text.more_setup(axis, angle(now, axis), len(made.setups)))
+        move = Move("second_setup", now, axis, change_text.more_setup(axis, _angle(now, axis), len(made.setups)))
         yield scan.found(move, made, np.union1d(blocked, missed), nested=True)
-    if plain or len(state.setups) > 1:
+    # A table that is given with `--fixture` would lie elsewhere.
+    if plain or len(state.setups) > 1 or any(each.follows_setup for each in ready.options.fixtures):
         return
     some = spread(retained)
     other = []
     for open_count, _, axis, _, missed in second:
-        if open_count < scan.estimate(gained) and flip_of(ready, axis) == ready.options.flip:
+        if open_count < scan.estimate(gained) and ready.scene.same_sides(axis):
             made = replace(state, setups=(SetupOf(axis),))
             worse = known.glance(made, some)
             share = scan.finished.of_rows(retained) * len(worse) / max(1, len(some))
-            other.append((scan.estimate(np.union1d(blocked, missed)) + share, angle(now, axis), axis, made))
+            other.append((scan.estimate(np.union1d(blocked, missed)) + share, _angle(now, axis), axis, made))
     if other:
         estimate, _, axis, made = min(other, key=lambda each: (round(each[0], 3), each[1]))
         if estimate < scan.finished.of_rows(scan.left):
-            move = Move("setup", now, axis, f"{change_text.clamped(axis, angle(now, axis))} instead")
+            move = Move("setup", now, axis, f"{change_text.clamped(axis, _angle(now, axis))} instead")
             yield Candidate((move,), made, estimate, nested=False)
 
 
@@ -150,3 +158,44 @@ def towards(vector: Floats, otherwise: Axis) -> Axis:
 def _own(axis: Axis) -> bool:
     """Whether it is one of the part's own."""
     return sorted(map(abs, axis)) == [0.0, 0.0, 1.0]
+
+
+def _directions(ready: Prepared, missed: Rows, kept: Rows) -> list[Axis]:
+    """Give directions to try: faces, edges and corners of a cube, and the mean normals of what is not reached and of all; the
+    nearest to the present axis first.
+    """
+    now = ready.scene.setup
+    means = [ready.samples.normal[rows].mean(axis=0) for rows in (missed, np.sort([*missed, *kept]))]
+    cube = [np.array(each, float) for each in product((-1, 0, 1), repeat=3) if any(each)]
+    axes: list[Axis] = []
+    for vector in [*means, *cube]:
+        if np.linalg.norm(vector) > 1e-6:
+            axis = _axis(vector)
+            if all(_angle(axis, other) > _ALIKE for other in [now, *axes]):
+                axes.append(axis)
+    return sorted(axes, key=lambda axis: (round(_angle(now, axis), 6), axis))
+
+
+def _axis(vector: Floats) -> Axis:
+    """Round a direction as it is told: what is judged is what is told."""
+    x, y, z = (float(each) + 0.0 for each in np.round(vector / np.linalg.norm(vector), 6))
+    return x, y, z
+
+
+def _angle(a: Axis, b: Axis) -> float:
+    """Measure the angle between two directions, deg."""
+    return math.degrees(math.atan2(float(np.linalg.norm(np.cross(a, b))), float(np.dot(a, b))))
+
+
+def _closer(ready: Prepared, requested: float) -> Prepared:
+    """Make the same, surrounded anew for a finer tolerance."""
+    scene, now = replace(ready.scene, asked=requested), ready.conditions
+    # On all threads: what is found stays in the scene, and the setups take it from there.
+    scene.surround(jobs=now.jobs)
+    # What another step changes of the conditions stays changed.
+    each = [replace(one, machine=now.machine, postures=now.postures) for one in conditions_of(scene, ready.options)]
+    conditions, surroundings = each[0], each[0].surroundings
+    within = inside_material(ready.samples, scene.orientation, surroundings.enclosing, surroundings.certain, conditions.tolerance)
+    inside = inside_bodies(within, surroundings.bodies, scene.orientation)
+    closely = replace(ready, scene=scene, conditions=conditions, inside=within, inside_bodies=inside)
+    return with_setups(closely, each)

@@ -4,18 +4,20 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 
+import numpy as np
+
 from plan_cutters.answers.scan import HALF, NEARLY, Candidate, Rows, Scan
 from plan_cutters.answers.state import State
-from plan_cutters.answers.what_if_cutter import highest, longer, made_of
 from plan_cutters.domain.change import Move
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.preference import group_of
-from plan_cutters.domain.shapes import SAME
+from plan_cutters.domain.shapes import SAME, flute_length
 from plan_cutters.domain.standard_holders import NOSES, chuck
 from plan_cutters.domain.standard_tools import MOST, USUAL, corners, is_standard, smaller
 from plan_cutters.errors import CutterError
 from plan_cutters.plan_file.words import change_text
+from plan_cutters.scene.preparation import Prepared
 
 #: Samples on which the cutters that are sold are compared, at most about so many.
 _LOOKED_AT = 48
@@ -48,6 +50,26 @@ def stick_out(scan: Scan) -> Iterator[Candidate]:
                 seen.add(at)
                 words = change_text.stick_out(value(at), cutter)
                 yield scan.found(Move("stick_out", cutter.length, value(at), words), state, missed, nested=False)
+
+
+def highest(ready: Prepared, cutter: Cutter) -> float:
+    """Give a stick-out with which the nose is above all obstacles wherever the cutter touches them, mm."""
+    each = [conditions.obstacles.triangles.vertex for conditions in ready.setups]
+    size = max(float(np.linalg.norm(vertex.max(axis=(0, 1)) - vertex.min(axis=(0, 1)))) for vertex in each)
+    return size + 2.0 * cutter.radius + flute_length(cutter) + (cutter.clearance or 0.0)
+
+
+def longer(cutter: Cutter, length: float) -> Cutter | None:
+    """Make the same with its nose so far from the tip; what is right below it goes on, and it cuts no higher up than it does."""
+    ends = {} if cutter.shape in ("lollipop", "form") else {"flutes": flute_length(cutter)}
+    return made_of(cutter, length=length, **ends)
+
+
+def made_of(cutter: Cutter, **changes: object) -> Cutter | None:
+    try:
+        return replace(cutter, **changes)  # type: ignore[arg-type]
+    except CutterError:
+        return None
 
 
 def holder(scan: Scan) -> Iterator[Candidate]:

@@ -21,8 +21,7 @@ Axis = tuple[float, float, float]
 
 def option(
     ready: Prepared, cutter: Cutter, *, cutters: Sequence[Cutter], setups: Sequence[Axis] | None = None,
-    conditions: Conditions | None = None, tolerance: float | None = None, flip: bool | None = None,
-    faces: Sequence[int] | None = None,
+    conditions: Conditions | None = None, tolerance: float | None = None, faces: Sequence[int] | None = None,
 ) -> str | None:  # fmt: skip
     """Write the command-line options that differ from now, so that a plan has these cutters, setups and so on.
 
@@ -35,7 +34,7 @@ def option(
     if words is None:
         return None
     auto = proposed(ready)
-    if auto and (setups is not None or flip is not None or not _nameable(ready)):
+    if auto and (setups is not None or not _nameable(ready)):
         return None
     if setups is not None:
         if options.placement is not None or any(options.other_placements):
@@ -45,10 +44,6 @@ def option(
         words += _within(ready.conditions, conditions)
     if tolerance is not None:
         words += ["--tolerance", f"{tolerance:.6g}"]
-    if flip is not None and flip != options.flip:
-        if not flip:
-            return None
-        words.append("--flip")
     if auto and (words or faces is not None):
         # Another cutter might make `auto` choose otherwise.
         words += _pinned(ready, ready.chosen.targets if faces is None else faces)

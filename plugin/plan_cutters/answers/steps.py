@@ -15,7 +15,7 @@ from plan_cutters.answers.scan import Candidate, Scan
 from plan_cutters.answers.state import Judgements, State
 from plan_cutters.domain.answer_kinds import WORTH
 from plan_cutters.domain.area import Patch
-from plan_cutters.domain.change import MEANS, Means, Move, Step, WhatIfAnswer
+from plan_cutters.domain.change import MEANS, Advice, Means, Move, Step
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.standard_tools import USUAL, slenderness
 from plan_cutters.domain.verdicts import Verdicts
@@ -55,13 +55,13 @@ _APART = {
 
 def steps(
     ready: Prepared,
-    what_if: WhatIfAnswer,
+    advice: Advice,
     cutter: Cutter,
     reaches: Mapping[Cutter, Verdicts],
     other_setups: Sequence[tuple[Axis, Mapping[str, Verdicts]]] = (),
     *,
     progress: Progress | None = None,
-) -> WhatIfAnswer:
+) -> Advice:
     """Find what to do next, and what it gains.
 
     Values are compared on a few samples; each of those that may gain most is judged on all samples that are not reached and,
@@ -70,7 +70,7 @@ def steps(
     Parameters
     ----------
     ready : Prepared
-    what_if : Mend
+    advice : Advice
         What was found of the cutter so far.
     cutter : Cutter
         One of `reaches`.
@@ -83,14 +83,14 @@ def steps(
 
     Returns
     -------
-    Mend
+    Advice
         With `share`, `steps` and `areas`.
     """
     finished, known = Finished.of(ready), Judgements.of(ready, reaches, other_setups)
     state = State.of(ready, cutter)
     open_rows = known.left(state, np.flatnonzero(finished.wanted))
     if not len(open_rows):
-        return what_if
+        return advice
     count, most = 0, _SINGLES + _PAIRS * _BEST + _JOINED
 
     def tell() -> None:
@@ -114,7 +114,7 @@ def steps(
     result = [_step(base, finished, open_rows, each, rows) for each, rows in (*singles, *pairs)]
     result = in_order(result, ready.cutters)
     return replace(
-        what_if,
+        advice,
         share=before,
         steps=(*result, _excluded(base, finished, open_rows, areas)),
         areas=tuple(areas[:_AREAS]),

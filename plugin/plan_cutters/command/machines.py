@@ -49,8 +49,8 @@ _questions, _output = heading("Questions"), heading("Output")
 def command(request: MachinesRequest) -> int:
     """Show how each machine is understood: a built-in one by its name, or a file.
 
-    It reads our own TOML and JSON, FreeCAD .fcm, LinuxCNC .ini, Fusion .mch, and MTConnect probes. Where a file does not say how
-    rotary axes stand on each other, add it: FILE#C,A (from the part to the tool), FILE#C/B (C carries the part, B the tool).
+    It reads our own TOML and JSON, FreeCAD .fcm, LinuxCNC .ini and Fusion .mch. Where a file does not say how rotary axes stand
+    on each other, add it: FILE#C,A (from the part to the tool), FILE#C/B (C carries the part, B the tool).
     Without an argument, the machines that are built in are listed.
     """
     from plan_cutters.domain.machine import builtin_machines

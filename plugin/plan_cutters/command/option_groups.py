@@ -96,8 +96,8 @@ _OPTIONS = (
         default="unlimited",
         type=Words("NAME|FILE", values.machine_names, files=True),
         help="`unlimited`; `tilt:DEG`, a limit of the tool axis from the setup axis; a built-in machine "
-        "(the command `machines` lists them); or a machine file: TOML, JSON, FreeCAD .fcm, LinuxCNC .ini, Fusion .mch, "
-        "MTConnect.  [default: unlimited]",
+        "(the command `machines` lists them); or a machine file: TOML, JSON, FreeCAD .fcm, LinuxCNC .ini, Fusion .mch.  "
+        "[default: unlimited]",
     ),
     _machine(
         "--setup",

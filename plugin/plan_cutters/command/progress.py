@@ -36,7 +36,6 @@ _WORDS = {
     "operations": "planning the operations",
     "area": "looking between the samples",
     "maps": "mapping all postures",
-    "motion": "joining postures over the surface",
     "files": "writing the plan and the samples",
     "write": "writing the models",
     "check": "checking the operations",

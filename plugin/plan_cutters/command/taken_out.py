@@ -7,6 +7,7 @@ TAKEN_OUT: dict[str, str] = {
     "--formats regions": "the regions and axes of --operations stand in plan.json",
     "--formats plans": "leave it out; STEP and GLB of both plans are written with --operations both",
     "--answers stick-out-map": "give --answers stick-out; in Python, result.face(F1, stick_out=True) is about a face",
+    "--answers mend-all": "give --answers mend, for the three nearest cutters, and plan with another one alone to ask for it",
 }
 
 

@@ -4,14 +4,13 @@ import numpy as np
 
 from cad_io.arrays import SurfaceSamples
 from plan_cutters.domain.area import Patch
-from plan_cutters.domain.change import Change, Step, Value, WhatIfAnswer
+from plan_cutters.domain.change import Advice, Step
 from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.radius_map import RadiusMap
 from plan_cutters.domain.stick_out import StickOut
 from plan_cutters.domain.verdicts import INACCESSIBLE, NO_REASON, REASONS, UNDECIDED
 from plan_cutters.plan_file.answers import (
     Beyond,
-    ChangeEntry,
     LeastSetEntry,
     LostAreaEntry,
     MendEntry,
@@ -71,16 +70,15 @@ def radius_entry(radius_map: RadiusMap, samples: SurfaceSamples, *, doubtful: bo
     )
 
 
-def what_if_entry(what_if: WhatIfAnswer) -> MendEntry:
-    """Make the entry of a what-if answer: the changes that would make a cutter feasible, and the next steps."""
+def advice_entry(advice: Advice) -> MendEntry:
+    """Make the entry of what to do next with a cutter."""
     return filled(
         MendEntry,
-        what_if,
-        changes=[_change_entry(each) for each in what_if.changes],
-        lost_share=what_if.share,
-        steps=[_step_entry(each) for each in what_if.steps],
-        lost_areas=[_area_entry(each) for each in what_if.areas],
-        more_lost_areas=what_if.more_areas,
+        advice,
+        lost_share=advice.share,
+        steps=[_step_entry(each) for each in advice.steps],
+        lost_areas=[_area_entry(each) for each in advice.areas],
+        more_lost_areas=advice.more_areas,
     )
 
 
@@ -115,15 +113,3 @@ def _step_entry(step: Step) -> StepEntry:
         why=_joined([each.words for each in step.moves]),
         remains=[_area_entry(each) for each in step.remains],
     )
-
-
-def _change_entry(change: Change) -> ChangeEntry:
-    return filled(
-        ChangeEntry, change, now=_plain(change.now), asked=_plain(change.asked), beyond=_plain(change.beyond),
-        cutter=None if change.cutter is None else change.cutter.id, lost_before=change.before, lost_after=change.after,
-    )  # fmt: skip
-
-
-def _plain(value: Value) -> Value:
-    """JSON has no infinity."""
-    return None if isinstance(value, float) and not np.isfinite(value) else value

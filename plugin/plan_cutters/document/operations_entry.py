@@ -23,7 +23,6 @@ from plan_cutters.plan_file.operations import (
     CutterUse,
     FastestEntry,
     FewestEntry,
-    MotionEntry,
     OperationEntry,
     OperationFace,
     OperationPlanEntry,
@@ -77,7 +76,6 @@ def operations_entry(
         fastest=_fastest(operations),
         assumed=assumed,
         probes=operations.probes,
-        motion=None,
         notes=list(operations.notes),
     )
 
@@ -89,13 +87,6 @@ def _fewest(fewest: Fewest) -> FewestEntry:
         lp=fewest.relaxed, samples=fewest.samples, candidates=len(fewest.columns), spacing_deg=float(np.degrees(fewest.spacing)),
         alone=len(fewest.alone),
     )  # fmt: skip
-
-
-def with_motion(plan: OperationsEntry, motion: MotionEntry | str) -> OperationsEntry:
-    """The entry with its motion, or with the words why there is none."""
-    if isinstance(motion, str):
-        return plan.model_copy(update={"notes": [*plan.notes, motion]})
-    return plan.model_copy(update={"motion": motion})
 
 
 def _fastest(operations: Operations) -> FastestEntry | None:

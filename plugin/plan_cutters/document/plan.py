@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from plan_cutters.document.answers import least_set_entry, radius_entry, stick_out_entry, what_if_entry
+from plan_cutters.document.answers import advice_entry, least_set_entry, radius_entry, stick_out_entry
 from plan_cutters.document.build import degrees, face_entries, missing_entries, part_info, scope_of, versions
 from plan_cutters.document.effective import effective
 from plan_cutters.document.fixtures import fixture_entries
@@ -185,7 +185,7 @@ def completed(
             "travel": None if moved is None else travel_entry(ready.options.machine, moved, here, samples),
             "sources": [source_entry(*place) for place in sources.get(entry.id, ())],
             "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples, surroundings),
-            "mend": None if mend is None else what_if_entry(mend),
+            "mend": None if mend is None else advice_entry(mend),
         }
         completed_entries.append(entry.model_copy(update=more))
     return completed_entries

@@ -81,9 +81,9 @@ def process_entry(
                   seconds=None, clearance_mm=None)
             for setup, cutter, mine in runs
         ]  # fmt: skip
-    what_if = answers.mends.get(shown)
+    advice = answers.mends.get(shown)
     left = remaining(
-        ready, done, reasons(entries, over, steps, done), area, requested, () if what_if is None else what_if.steps, fitting
+        ready, done, reasons(entries, over, steps, done), area, requested, () if advice is None else advice.steps, fitting
     )
     finished = float(area[done].sum())
     share = exact(finished / max(1e-300, requested), some=bool(done.any()), whole=not left)

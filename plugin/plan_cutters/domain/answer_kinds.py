@@ -24,7 +24,6 @@ KINDS = (
         "the next steps where no cutter finishes, and their gain, for the three that come nearest",
         "asking what to do next",
     ),
-    AnswerKind("mend-all", "that for every cutter", "asking what to do next", long=True),
 )
 #: What takes less off what is left is no advice, a share of the area.
 WORTH = 0.001

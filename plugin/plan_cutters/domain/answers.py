@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from plan_cutters.domain.answer_kinds import ANSWERS, LONG
-from plan_cutters.domain.change import WhatIfAnswer
+from plan_cutters.domain.change import Advice
 from plan_cutters.domain.checks import items, shown
 from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.operations import Operations
@@ -29,7 +29,7 @@ def answers_of(value: Any) -> tuple[str, ...]:
     ('stick-out', 'mend')
     >>> answers_of("radii")
     Traceback (most recent call last):
-    plan_cutters.errors.OptionError: answers: 'radii' is none of stick-out, radius, mend, mend-all and all
+    plan_cutters.errors.OptionError: answers: 'radii' is none of stick-out, radius, mend and all
     """
     if isinstance(value, str):
         words: list[Any] = value.split(",") if value.strip() else []
@@ -54,7 +54,7 @@ class Answers:
     radius_maps : tuple of RadiusMap
         For flat ends, and for ball ends.
     mends : mapping
-        Cutter id -> Mend, of those that do not finish the part, or of the nearest of them.
+        Cutter id -> Advice, of those that do not finish the part, or of the nearest of them.
     not_mended : tuple of str
         Ids of the others of them, where that was asked.
     least_set : LeastSet, optional
@@ -65,7 +65,7 @@ class Answers:
 
     stick_outs: Mapping[str, StickOut] = field(default_factory=dict)
     radius_maps: tuple[RadiusMap, ...] = ()
-    mends: Mapping[str, WhatIfAnswer] = field(default_factory=dict)
+    mends: Mapping[str, Advice] = field(default_factory=dict)
     not_mended: tuple[str, ...] = ()
     least_set: LeastSet | None = None
     operations: Operations | None = None

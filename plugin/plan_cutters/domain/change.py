@@ -1,8 +1,7 @@
-"""What-if answers name the change that would make a cutter finish a part: the thing, the amount, and how far that is known."""
+"""The next steps for a cutter that does not finish a part: what each changes, by how much, and what it gains."""
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,76 +9,9 @@ from numpy.typing import NDArray
 from plan_cutters.domain.area import Patch
 from plan_cutters.domain.cutter import Cutter
 
-#: What may be changed, from what asks a planner for least to what asks for most: time to compute, how far the tool is tilted, how
-#: it is held, how the part is clamped, another tool, another machine, something left undone.
-Thing = Literal["tolerance", "tilt_range", "stick_out", "setup", "corner_radius", "radius", "tilt_limit", "faces"]
-THINGS: tuple[Thing, ...] = ("tolerance", "tilt_range", "stick_out", "setup", "corner_radius", "radius", "tilt_limit", "faces")
-
-#: How the cause begins of a change that could not be decided.
-UNDECIDED = "is not decided: "
-#: How the cause goes on where the holder would have to stand farther from the tip than any cutter is held.
-NO_USUAL = "no usual stick-out does"
-
-#: Lengths in mm, angles in degrees, a range of them, a direction, or the ids of faces.
-Value = float | tuple[float, ...] | tuple[str, ...] | None
-
-
-@dataclass(frozen=True, slots=True)
-class Change:
-    """One thing changed, all else as it is.
-
-    Attributes
-    ----------
-    thing : str
-        One of THINGS.
-    now : float or tuple, optional
-        Its value now: mm, deg, a range of deg, or a unit vector; of faces, the ids of those with samples that are not reached.
-    asked : float or tuple, optional
-        The change that asks least of those with which the cutter finishes; of faces, the ids of those to leave out. None
-        where there is none.
-    helps : bool, optional
-        True: every sample of the finished surface was judged with it, and each has a posture. False: no value that was
-        tried does that. None: it could not be decided, as samples stay undecided or obstacles are missing.
-    left, looked : int
-        Samples still inaccessible or undecided with the best value that was tried, of those looked at: of the samples that are
-        lost now all or, where these are thousands and there is no help, some of them, spread evenly.
-    verified : int
-        Target samples that were judged with `asked`.
-    beyond : float or tuple, optional
-        The value that asks a step less, which was tried and does not serve; None where there is none.
-    cutter : Cutter, optional
-        The cutter with it, where that is another one.
-    why : str
-        One sentence for a planner.
-    options : mapping
-        The options of a plan, by name, that differ with it; none where nothing is asked.
-    before, after : float, optional
-        Share of the finished area that is not reached now, and with `asked`; `after` is None where nothing is asked or known.
-    option : str, optional
-        What to say on the command line; None where nothing is asked, or where no option says it.
-    doubted : bool
-        It would help, but a face that is missing from the obstacles may be in the way.
-    """
-
-    thing: Thing
-    now: Value
-    asked: Value
-    helps: bool | None
-    left: int
-    looked: int
-    verified: int
-    beyond: Value
-    cutter: Cutter | None
-    why: str
-    options: Mapping[str, Any] = field(default_factory=dict)
-    before: float | None = None
-    after: float | None = None
-    option: str | None = None
-    doubted: bool = False
-
-
-#: What a step may change: any of THINGS, a slimmer holder, a second setup beside the present one, another cutter for the
-#: rest, or an area that is left to other means. What asks a planner for least comes first among steps that leave as much.
+#: What a step may change, from what asks a planner for least to what asks for most: time to compute, how far the tool is tilted,
+#: how it is held, another tool, how the part is clamped, another machine, an area that is left to other means. What asks for
+#: least comes first among steps that leave as much.
 Means = Literal[
     "tolerance", "tilt_range", "stick_out", "cutter", "corner_radius", "radius", "holder", "setup", "second_setup",
     "tilt_limit", "area"
@@ -138,8 +70,8 @@ class Step:
 
 
 @dataclass(frozen=True, slots=True)
-class WhatIfAnswer:
-    """A what-if answer: the changes that would make one cutter finish a part, and the next steps.
+class Advice:
+    """Advice names what to do next with one cutter.
 
     Attributes
     ----------
@@ -148,10 +80,8 @@ class WhatIfAnswer:
     lost, buried : int
         Samples that are inaccessible or undecided now, and those of them that lie within another body of the part: these are no
         surface of the finished part, and nothing is asked about them.
-    changes : tuple of Change
-        Those that help first, then those that could not be decided, then those that do not; within each in the order of THINGS.
     why : str
-        A remark that comes before all of them; may be empty.
+        Why no steps were looked for; empty where they were.
     share : float
         Of the finished area that is not reached now, in all setups of the plan.
     steps : tuple of Step
@@ -165,15 +95,9 @@ class WhatIfAnswer:
     cutter: str
     lost: int
     buried: int
-    changes: tuple[Change, ...]
     why: str
     share: float = 0.0
     steps: tuple[Step, ...] = ()
     areas: tuple[Patch, ...] = ()
     more_areas: int = 0
     unsure: bool = False
-
-    @property
-    def least(self) -> Change | None:
-        """The change that helps and asks least; None if none does."""
-        return next((each for each in self.changes if each.helps), None)

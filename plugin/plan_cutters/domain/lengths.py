@@ -88,8 +88,8 @@ class Notation(NamedTuple):
 
     >>> Notation("D", True).across(6.35), Notation("D", True).length(80.0), Notation("R").across(6.35)
     ('0.5in', '80', '6.35')
-    >>> Notation("D").size(6.35), Notation("R", True).size(6.35), Notation("D", True).mm(12.345)
-    ('a diameter of 12.7 mm', 'a radius of 0.25 in', '0.486024 in')
+    >>> Notation("D", True).mm(12.345)
+    '0.486024 in'
     """
 
     by: Literal["R", "D"]
@@ -110,7 +110,3 @@ class Notation(NamedTuple):
             return f"{value:g} mm"
         # What was given in mm is no round number of inches.
         return f"{value / INCH:.6g} in" if self.inches else f"{value / INCH:.4g} in"
-
-    def size(self, radius: float) -> str:
-        """How thick a tool of a radius, mm, is, in a sentence."""
-        return f"a radius of {self.mm(radius)}" if self.by == "R" else f"a diameter of {self.mm(2.0 * radius)}"

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from plan_cutters.domain.machine import Machine
 from plan_cutters.files import formats
 from plan_cutters.files.formats import Foreign, Format
-from plan_cutters.machines import freecad, fusion, linuxcnc, mtconnect, toml_in
+from plan_cutters.machines import freecad, fusion, linuxcnc, toml_in
 from plan_cutters.machines.files import Added, Content
 
 Reader = Callable[[Content, Added], Machine]
@@ -20,7 +20,6 @@ FORMATS: tuple[Format[Reader], ...] = (
     Format("Fusion machine", (".mch",), fusion.is_mch, fusion.read_mch),
     Format("LinuxCNC configuration", (".ini",), linuxcnc.is_ini, linuxcnc.read_ini),
     Format("LinuxCNC configuration", (".ini",), linuxcnc.includes, linuxcnc.read_ini),
-    Format("MTConnect probe", (".xml",), mtconnect.is_probe, mtconnect.read_probe),
     # By its name alone, so that it is said where it is no TOML or what is missing.
     Format("plan-cutters TOML", (".toml",), toml_in.is_named, toml_in.read_toml),
 )
@@ -46,8 +45,8 @@ FOREIGN = (
             "download the machine itself: perhaps a log-in stands before it"),
     Foreign("a robot (URDF)", _root("robot"), f"no machine tool is known in it; {_TOML}"),
     Foreign("a robot (SDF)", _root("sdf"), f"no machine tool is known in it; {_TOML}"),
-    Foreign("MTConnect data", _root("MTConnectStreams", "MTConnectAssets", "MTConnectError"),
-            "give the answer to a probe (MTConnectDevices)"),
+    Foreign("MTConnect data", _root("MTConnectDevices", "MTConnectStreams", "MTConnectAssets", "MTConnectError"),
+            f"it does not say how the axes stand on each other; {_TOML}, ten lines do"),
     Foreign("a PowerMill machine", _suffix(".mtd"), _TOML),
     Foreign("a LinuxCNC HAL file", _suffix(".hal", ".tcl"), "give the .ini that names it"),
     Foreign("a LinuxCNC tool table", _suffix(".tbl"), "give the .ini as the machine; its tools go with --cutters"),
@@ -73,6 +72,6 @@ def recognised(content: Content) -> Format[Reader]:
         FORMATS,
         FOREIGN[1:],
         first=FOREIGN[:1],
-        xml="no MTConnect probe (MTConnectDevices)",
+        xml=f"no machine file that is known; {_TOML}",
         json="no machine of Fusion (kinematics), FreeCAD (machine.axes) or ours (part_chain)",
     )

@@ -16,7 +16,7 @@ def read_machine(path: str | os.PathLike[str], added: str = "") -> Machine:
     Parameters
     ----------
     path : path
-        Our own TOML or JSON, FreeCAD `.fcm`, LinuxCNC `.ini`, Fusion `.mch`, MTConnect probe. What the file holds decides.
+        Our own TOML or JSON, FreeCAD `.fcm`, LinuxCNC `.ini`, Fusion `.mch`. What the file holds decides.
     added : str
         What some files leave open: rotary axes from the part to the tool, as `C,A`, or `C/B` where C carries the part and B the
         tool; `table` or `tool-relative`: how angles of a table are counted.

@@ -1,4 +1,4 @@
-"""Entries of the answers after the plan: what helps, least stick-outs, largest radii, the least set of runs."""
+"""Entries of the answers after the plan: next steps, least stick-outs, largest radii, the least set of runs."""
 
 from typing import Literal
 
@@ -48,29 +48,6 @@ class RadiusEntry(Frozen):
     reason: str | None = Field(description="and why it does not reach that sample")
 
 
-class ChangeEntry(Frozen):
-    """One thing changed, all else as it is."""
-
-    thing: str
-    helps: bool | None = Field(description="true: all target samples were judged with it and are reached; null: not decided")
-    now: float | tuple[float, ...] | tuple[str, ...] | None = Field(description="mm, deg, a direction, or faces")
-    asked: float | tuple[float, ...] | tuple[str, ...] | None = Field(description="the least change with which it finishes")
-    beyond: float | tuple[float, ...] | tuple[str, ...] | None = Field(description="a step less, which was tried and fails")
-    left: int = Field(description="samples that stay unreached with the best value tried, of those looked at")
-    looked: int = Field(description="samples that are not reached now on which values were tried")
-    verified: int = Field(description="target samples that were judged with `asked`")
-    cutter: str | None = Field(description="id of the cutter with it, where that is another one")
-    why: str
-    lost_before: float | None = Field(default=None, description="share of the finished area that is not reached now, 0 to 1")
-    lost_after: float | None = Field(default=None, description="and with `asked`; null where nothing is requested or known")
-    option: str | None = Field(
-        default=None, description="what to write on the command line; null where nothing is requested, or no option says it"
-    )
-    doubted: bool = Field(
-        default=False, description="it would help, unless a face that is missing from the obstacles is in the way"
-    )
-
-
 class MoveEntry(Frozen):
     """One change of a step."""
 
@@ -111,12 +88,11 @@ class StepEntry(Frozen):
 
 
 class MendEntry(Frozen):
-    """A what-if answer gives the changes that would make a cutter finish the part, those that help first, and the next steps."""
+    """Advice names what to do next with a cutter that does not finish the part."""
 
     lost: int = Field(description="samples that are inaccessible or undecided now")
     buried: int = Field(description="those of them that lie within another body: no change is looked for")
-    why: str
-    changes: list[ChangeEntry]
+    why: str = Field(description="why no steps were looked for; empty where they were")
     lost_share: float = Field(default=0.0, description="of the finished area that is not reached now in all setups, 0 to 1")
     steps: list[StepEntry] = Field(
         default=[],

@@ -278,7 +278,7 @@ class CutterEntry(VerdictCounts):
     travel: TravelEntry | None = Field(default=None, description="null where linear travel is not judged: see the notes")
     least_stick_out: StickOutEntry | None = Field(default=None, description="null where it was not requested")
     mend: MendEntry | None = Field(
-        default=None, description="what would make it feasible; null where it is, or where that was not requested"
+        default=None, description="what to do next with it; null where it is feasible, or where that was not requested"
     )
     seconds: float = Field(default=0.0, exclude=True, description="dummy tests and search; not written")
 
@@ -388,7 +388,7 @@ class Plan(Frozen):
     )
     operations: OperationsEntry | None = Field(default=None, description="null unless requested (--operations)")
     not_mended: list[str] = Field(
-        default=[], description="ids of cutters that fail and were left out of `mend`, as others come nearer: mend-all has them"
+        default=[], description="ids of cutters that fail and were left out of `mend`, as others come nearer"
     )
     notes: list[str] = Field(description="what these verdicts do not say")
     note_codes: list[str] = Field(default=[], description="what each note is about; empty in older files")

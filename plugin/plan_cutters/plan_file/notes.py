@@ -148,10 +148,7 @@ def maps_partial(unmapped: int, judged: int) -> Note:
 
 
 def maps_first_setup() -> Note:
-    return Note(
-        "maps_first_setup",
-        "The posture maps and the estimate of motion are about the first setup alone: others hold the part differently.",
-    )
+    return Note("maps_first_setup", "The posture maps are about the first setup alone: others hold the part differently.")
 
 
 def stick_out_each_setup() -> Note:

@@ -230,32 +230,6 @@ class CutterUse(Frozen):
     change_seconds: float = Field(description="that its change costs; 0 where it is the only one")
 
 
-class ForcedStepEntry(Frozen):
-    """Some step of the rotary axes between neighbours of a grid line is at least so large, whatever postures are taken."""
-
-    along: Literal["u", "v"] = Field(description="the direction of the grid lines")
-    deg: float = Field(description="the larger angle of the two axes; the first one does not count within 2 deg of its direction")
-    turning_deg: float = Field(description="the same where that counts, too")
-    face: str = Field(description="where that line is")
-    looked_at: int = Field(description="lines that were looked at")
-    lines: int
-
-
-class MotionEntry(Frozen):
-    """How the free postures of one cutter in the first setup hang together over the surface. An estimate: it proves nothing."""
-
-    cutter: str
-    components: int = Field(description="sets of postures between which no way in contact was found")
-    components_strict: int = Field(description="the same where ways between two rotations count only if both are free")
-    largest_share: float = Field(description="of the judged area, 0 to 1: what the largest of them touches")
-    needed: int = Field(description="fewest of them that touch every sample with a posture")
-    needed_at_least: int
-    outside: int = Field(description="samples with a posture that the largest does not touch")
-    without: int = Field(description="judged samples without a posture in the maps")
-    forced_steps: list[ForcedStepEntry] = Field(description="empty without two rotary axes")
-    resolution_deg: float = Field(description="of the forced steps")
-
-
 class OperationsEntry(Frozen):
     """Operations with fixed orientations that finish together all that is reached. All is about samples, at their contacts."""
 
@@ -268,6 +242,5 @@ class OperationsEntry(Frozen):
         description="the largest first; empty unless the fastest were requested and several cutters were compared"
     )
     assumed: AssumedEntry
-    motion: MotionEntry | None = Field(description="null unless posture maps were requested, too")
     probes: int = Field(description="how many times a tool was put down")
     notes: list[str]

@@ -10,14 +10,13 @@ from typing import NamedTuple
 class Reason(NamedTuple):
     """A reason has words, a hint, a colour and patterns; the samples for which it holds are not stored here.
 
-    `name` is a label, `noun` stands after "lost to", `tries` are the things to try first (they are not computed), each with the
+    `name` is a label, `tries` are the things to try first (they are not computed), each with the
     changes of an answer (`domain.change.MEANS`) that are this: none where no answer tries it. `colour` is sRGB; `pattern`, on the
     page, and `hatch`, on sheets as matplotlib writes it, show the same without colour.
     """
 
     code: str
     name: str
-    noun: str
     sentence: str
     tries: tuple[tuple[str, tuple[str, ...]], ...]
     colour: str
@@ -35,33 +34,33 @@ _ANOTHER_SETUP = ("another setup", ("setup", "second_setup"))
 _LONGER = ("a longer stick-out", ("stick_out",))
 
 _ROWS = (
-    Reason("axis_limit", "axis limit", "the limits of axis and tilt",
+    Reason("axis_limit", "axis limit",
            "A posture would serve, but the machine cannot hold it as the part is set up.",
            (_ANOTHER_SETUP, ("a machine that tilts further", ("tilt_limit",))), "#9A9A9A", "lines", "--"),
-    Reason("local_gouge", "local gouge", "local gouge", "The surface curves more than the cutter, right at the contact.",
+    Reason("local_gouge", "local gouge", "The surface curves more than the cutter, right at the contact.",
            _SMALLER, "#E69F00", "hatch", "//"),
-    Reason("rear_gouge", "rear gouge", "rear gouge", "The flutes cut into the part within a cutter's diameter of the contact.",
+    Reason("rear_gouge", "rear gouge", "The flutes cut into the part within a cutter's diameter of the contact.",
            _SMALLER, "#D55E00", "back", "\\\\"),
-    Reason("collision", "flute collision", "collision", "The flutes meet the part farther away.",
+    Reason("collision", "flute collision", "The flutes meet the part farther away.",
            (("a thinner cutter", ("radius", "cutter")),), "#CC79A7", "cross", "xx"),
-    Reason("buried", "inside material", "a body around them",
+    Reason("buried", "inside material",
            "The surface lies under or within a body, so nothing can be machined there.",
            (("--ignore, if that body is not there when the part is machined", ()),), "#5C3A21", "cross", "**"),
-    Reason("tolerance", "tolerance", "the tolerance",
+    Reason("tolerance", "tolerance",
            "The tolerance is no smaller than the cutter's own features, or triangles cannot follow the face closely enough.",
            (("a smaller --tolerance", ("tolerance",)),), "#B8A94A", "dots", ".."),
-    Reason("neck", "neck collision", "the neck", "The neck is in the way, the flutes are not.",
+    Reason("neck", "neck collision", "The neck is in the way, the flutes are not.",
            (("a thinner or longer neck", ()),), "#882255", "bars", "||"),
-    Reason("shank", "shank collision", "the shank", "The shank is in the way, the flutes are not.",
+    Reason("shank", "shank collision", "The shank is in the way, the flutes are not.",
            (("a thinner shank", ()), _LONGER), "#0072B2", "bars", "++"),
-    Reason("holder", "holder collision", "the holder", "The holder is in the way, the flutes are not.",
+    Reason("holder", "holder collision", "The holder is in the way, the flutes are not.",
            (_LONGER, ("a slimmer holder", ("holder",))), "#332288", "hatch", "oo"),
-    Reason("fixture", "fixture", "the fixtures", "Without the fixtures the sample would be reached.",
+    Reason("fixture", "fixture", "Without the fixtures the sample would be reached.",
            (("another place for the fixture", ()),), "#117733", "lines", "--"),
-    Reason("sharp_edge", "sharp inside edge", "sharp inside edges",
+    Reason("sharp_edge", "sharp inside edge",
            "Two faces meet without a fillet, and the cutter leaves one of its own radius there.",
            (("a fillet in the model", ()), *_SMALLER), "#44AA99", "dots", ".."),
-    Reason("another_setup", "for another setup", "what was proposed to hold the part",
+    Reason("another_setup", "for another setup",
            "The face stands on a table that was proposed, or a vise or chuck grips it; it is left for another setup.",
            (("a clamping that leaves the face free", _ANOTHER_SETUP[1]),), "#88CCEE", "lines", "--"),
 )  # fmt: skip
@@ -74,7 +73,7 @@ MET = ("local_gouge", "rear_gouge", "collision", "neck", "shank", "holder")
 CAUSES = ("axis_limit", *MET, "buried")
 #: Why a posture map has nothing at a tilt where nothing is in the way: that is no reason for a sample.
 NO_CONTACT = Reason(
-    "no_contact", "no contact", "no contact", "The cutter does not touch at this tilt.", (("another tilt", ()),), "#E5E5E5",
+    "no_contact", "no contact", "The cutter does not touch at this tilt.", (("another tilt", ()),), "#E5E5E5",
     "plain", "."
 )  # fmt: skip
 #: Those whose tilts a map of a point lists as intervals: local gouge is a least and a largest tilt.

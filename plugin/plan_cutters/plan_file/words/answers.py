@@ -1,33 +1,21 @@
-"""Put the answers after the plan into words: least stick-outs, largest radii, what-if answers and next steps."""
+"""Put the answers after the plan into words: least stick-outs, largest radii and next steps."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 
-from plan_cutters.domain.change import NO_USUAL, UNDECIDED
 from plan_cutters.domain.spec import notation
-from plan_cutters.plan_file.answers import ChangeEntry, MendEntry, RadiusEntry, StickOutEntry
+from plan_cutters.plan_file.answers import MendEntry, RadiusEntry, StickOutEntry
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.numbers import capital, down, mm, place, some, up
 from plan_cutters.plan_file.words.cutters import reason
 from plan_cutters.plan_file.words.headline import every
 from plan_cutters.plan_file.words.line import Line
 from plan_cutters.plan_file.words.names import named
-from plan_cutters.plan_file.words.next_steps import cures, is_excluded, remaining, step_text
+from plan_cutters.plan_file.words.next_steps import is_excluded, remaining, step_text
 
 #: Steps that are said of a cutter.
 _STEPS = 5
 #: Stick-outs that differ by less are the same, mm.
 SAME = 0.02
-#: What `mend` changes, as the subject of a sentence.
-_THINGS = {
-    "tolerance": "A finer tolerance",
-    "tilt_range": "A wider range of tilts",
-    "stick_out": "Another stick-out",
-    "setup": "Another setup axis",
-    "corner_radius": "Another corner radius",
-    "radius": "A smaller radius",
-    "tilt_limit": "A machine that tilts further",
-    "faces": "Leaving out faces",
-}
 
 
 def answers(plan: Plan) -> list[Line]:
@@ -96,50 +84,25 @@ def _radii(plan: Plan) -> Iterator[Line]:
         yield Line("Stick-outs and largest radii hold provided that no missing obstacle is in the way.")
 
 
-def change(change: ChangeEntry) -> tuple[str, str]:
-    """Say which thing is changed, and whether that helps: subject and rest of a sentence."""
-    subject = _THINGS.get(change.thing, change.thing.replace("_", " "))
-    return subject, f"{'helps: ' * bool(change.helps)}{'may help: ' * change.doubted}{change.why}."
-
-
 def _mends(plan: Plan) -> Iterator[Line]:
     for c in sorted((c for c in plan.cutters if c.mend), key=lambda c: c.mend.lost_share if c.mend else 0.0):
         if c.mend is None:
             continue
         yield from _next(c, c.mend)
-        helping = [each.why for each in cures(c.mend) if each.helps]
-        unsure = _unsure([each for each in cures(c.mend) if each.helps is None])
-        if helping:
-            yield Line(f"{c.id} would finish with {'; or with '.join(helping)}.")
-            continue
-        if not c.mend.steps and c.mend.changes:
-            yield Line(f"No change of one thing is known to make {c.id} finish.")
-        elif not c.mend.steps:
+        if not c.mend.steps:
             yield Line(f"Nothing sure would make {c.id} finish: {c.mend.why}.")
-        if unsure:
-            yield Line(f"  Not decided: {unsure}.")
     if omitted := len(plan.not_mended):
         which = "cutter that leaves more was" if omitted == 1 else "cutters that leave more were"
-        yield Line(f"{omitted} more {which} not asked about: --answers mend-all.")
+        yield Line(f"{omitted} more {which} not asked about: plan with one of them alone.")
 
 
-def _unsure(changes: Sequence[ChangeEntry]) -> str:
-    """What could not be decided, each cause once behind the things that it is about."""
-    by_cause: dict[str, list[str]] = {}
-    for each in changes:
-        thing, _ = change(each)
-        things = by_cause.setdefault(each.why.removeprefix(UNDECIDED), [])
-        things += [] if each.doubted else [thing[:1].lower() + thing[1:]]
-    return "; ".join(f"{', '.join(things)} ({cause})" if things else cause for cause, things in by_cause.items())
-
-
-def _next(c: CutterEntry, what_if: MendEntry) -> Iterator[Line]:
+def _next(c: CutterEntry, advice: MendEntry) -> Iterator[Line]:
     """Steps for a cutter, the best first, with the option that each takes."""
-    if not what_if.steps:
+    if not advice.steps:
         return
-    unsure = " (provided that no missing obstacle is in the way)" if what_if.unsure else ""
-    yield Line(f"What next for {c.id}, which leaves {some(what_if.lost_share)} of the area{unsure}:")
-    steps = [step for step in what_if.steps if not is_excluded(step)]
+    unsure = " (provided that no missing obstacle is in the way)" if advice.unsure else ""
+    yield Line(f"What next for {c.id}, which leaves {some(advice.lost_share)} of the area{unsure}:")
+    steps = [step for step in advice.steps if not is_excluded(step)]
     for k, step in enumerate(steps[:_STEPS], 1):
         typed = f" [{'add ' * step.option.startswith('--cutter')}{step.option}]" if step.option else ""
         yield Line(f"  {k}. {step_text(step)}.", typed=typed)
@@ -147,11 +110,8 @@ def _next(c: CutterEntry, what_if: MendEntry) -> Iterator[Line]:
         yield Line(f"  and {len(steps) - _STEPS} more in plan.json.")
     if not steps:
         yield Line("  No step was found that frees any of it.")
-    for each in what_if.changes:
-        if each.thing == "stick_out" and NO_USUAL in each.why:
-            yield Line(f"  A longer stick-out would free more, but {each.why[each.why.index(NO_USUAL) :]}.")
-    if rest := remaining(what_if):
+    if rest := remaining(advice):
         yield Line(f"  After step 1 stays: {rest}.")
-    for step in what_if.steps:
+    for step in advice.steps:
         if is_excluded(step):
             yield Line(f"  Or {step.why}.")

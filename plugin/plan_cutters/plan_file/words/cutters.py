@@ -11,7 +11,7 @@ from plan_cutters.plan_file.shares import VERDICTS, AreaShare, part_of, reached,
 from plan_cutters.plan_file.words.headline import area, between, every
 from plan_cutters.plan_file.words.names import described, named
 from plan_cutters.plan_file.words.needs import first_tries
-from plan_cutters.plan_file.words.next_steps import cures, first_step, step_text
+from plan_cutters.plan_file.words.next_steps import first_step, step_text
 
 #: Faces that are named on which a cutter leaves something.
 _FACES = 3
@@ -121,15 +121,12 @@ def _besides(c: CutterEntry) -> str:
 
 
 def _next(plan: Plan, c: CutterEntry) -> str:
-    """Say in a sentence the next step, or else a change that would help."""
+    """Say in a sentence the next step, or why there is none."""
     if c.mend is None:
         return ""
     if (step := first_step(c)) is not None:
         return f"Next: {named(plan, step_text(step))}."
-    helping = [named(plan, change.why) for change in cures(c.mend) if change.helps]
-    if helping:
-        return f"It would finish with {'; or with '.join(helping)}."
-    return "No change of one thing was found with which it would finish."
+    return "No step was found that frees any of it." if c.mend.steps else f"Nothing sure would make it finish: {c.mend.why}."
 
 
 def reasons(c: CutterEntry) -> list[str]:

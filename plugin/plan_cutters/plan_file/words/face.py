@@ -4,7 +4,7 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from plan_cutters.plan_file.answers import ChangeEntry, MendEntry, StepEntry
+from plan_cutters.plan_file.answers import MendEntry, StepEntry
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan, WitnessEntry
 from plan_cutters.plan_file.numbers import count, mm, percent
 from plan_cutters.plan_file.shares import FaceVerdicts, by_share, part_of, unreached
@@ -34,12 +34,9 @@ def in_the_way(witnesses: Sequence[WitnessEntry]) -> list[InTheWay]:
     return sorted(places_hit, key=lambda each: (-each.places, -(each.depth_mm or 0.0), each.face))
 
 
-def helping(what_if: MendEntry) -> list[StepEntry | ChangeEntry]:
-    """Changes that gain something: the steps, then changes of one thing that no step says."""
-    steps = [step for step in what_if.steps if not is_excluded(step) and step.gained]
-    known = {step.why for step in steps}
-    changes = [c for c in what_if.changes if (c.helps or c.doubted) and c.asked is not None and c.why not in known]
-    return [*steps, *changes]
+def helping(advice: MendEntry) -> list[StepEntry]:
+    """The steps that gain something."""
+    return [step for step in advice.steps if not is_excluded(step) and step.gained]
 
 
 def face_text(plan: Plan, cutter: CutterEntry, face: FaceEntry, unhelped: str) -> str:
@@ -90,13 +87,9 @@ def _loss(cutter: CutterEntry, face: FaceEntry, verdicts: FaceVerdicts) -> str:
     return text
 
 
-def _gain(change: StepEntry | ChangeEntry) -> str:
-    option = f" [{change.option}]" if change.option else ""
-    if isinstance(change, StepEntry):
-        return f"{change.why}: {effect(change)}{option}"
-    if change.lost_before is None or change.lost_after is None:
-        return f"{change.why}{option}"
-    return f"{change.why}: lost {percent(change.lost_before)} to {percent(change.lost_after)} of the area{option}"
+def _gain(step: StepEntry) -> str:
+    option = f" [{step.option}]" if step.option else ""
+    return f"{step.why}: {effect(step)}{option}"
 
 
 def posture_text(face: str, free: float, undecided: float, forbidden: Sequence[tuple[str, float]], *, certified: bool) -> str:

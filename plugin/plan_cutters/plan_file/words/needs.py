@@ -3,7 +3,6 @@
 import math
 import re
 
-from plan_cutters.domain.change import THINGS
 from plan_cutters.plan_file.answers import MendEntry
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.numbers import listed, percent, reported
@@ -32,11 +31,11 @@ def needs(plan: Plan, entry: RemainingEntry) -> str:
         if len(shut) == len(entry.faces):
             return CLOSED_VOID
         return f"{CLOSED_VOID} at {listed(shut, _NAMED)}; for the rest {REASONS[entry.cause].hint}"
-    what_if = shown_cutter(plan).mend
-    hint = first_tries(entry.cause, what_if)
-    if what_if is not None and (best := _best(entry, what_if)) is not None:
-        what = re.sub(r" \([^()]*\)|,? for the rest$", "", what_if.steps[best.step].why)
-        first, share = f"{what} {'may finish' if what_if.unsure else 'finishes'} {_share(best.share)} of it", best.share
+    advice = shown_cutter(plan).mend
+    hint = first_tries(entry.cause, advice)
+    if advice is not None and (best := _best(entry, advice)) is not None:
+        what = re.sub(r" \([^()]*\)|,? for the rest$", "", advice.steps[best.step].why)
+        first, share = f"{what} {'may finish' if advice.unsure else 'finishes'} {_share(best.share)} of it", best.share
     elif hint and entry.fits is not None:
         # What was judged says more than a hint; a size that reaches next to nothing is none that fits.
         first = _sizes(entry.fits)
@@ -47,32 +46,31 @@ def needs(plan: Plan, entry: RemainingEntry) -> str:
     return "; ".join(filter(None, (first or ("" if points else "no usual size fits"), points)))
 
 
-def _best(entry: RemainingEntry, what_if: MendEntry) -> HelpEntry | None:
+def _best(entry: RemainingEntry, advice: MendEntry) -> HelpEntry | None:
     """The step that does most of an area; where others do hardly less, one on the same machine, of fewer changes."""
-    known = [each for each in entry.helped if each.step < len(what_if.steps) and each.share >= _HELPS]
+    known = [each for each in entry.helped if each.step < len(advice.steps) and each.share >= _HELPS]
 
     def effort(each: HelpEntry) -> tuple[bool, int, float, int]:
-        things = [change.thing for change in what_if.steps[each.step].changes]
+        things = [change.thing for change in advice.steps[each.step].changes]
         return "tilt_limit" in things, len(things), -each.share, each.step
 
     return min((each for each in known if each.share >= known[0].share - _ALIKE), key=effort, default=None)
 
 
-def first_tries(cause: str, what_if: MendEntry | None) -> str:
+def first_tries(cause: str, advice: MendEntry | None) -> str:
     """Say what to try first against a cause, but for what an answer found to be of no use; empty where that is all of it."""
     if cause not in REASONS:
         return ""
-    return ", or ".join(
-        words for words, means in REASONS[cause].tries if not (means and all(_refuted(what_if, m) for m in means))
+    return ", or ".join(words for words, means in REASONS[cause].tries if not (means and all(_refuted(advice, m) for m in means)))
+
+
+def _refuted(advice: MendEntry | None, means: str) -> bool:
+    """Whether steps were looked for, and none of them is such a change."""
+    return (
+        advice is not None
+        and bool(advice.steps)
+        and all(change.thing != means for step in advice.steps for change in step.changes)
     )
-
-
-def _refuted(what_if: MendEntry | None, means: str) -> bool:
-    """Whether a change was looked for, and neither finishes nor is a step."""
-    if what_if is None or not what_if.steps or any(change.thing == means for step in what_if.steps for change in step.changes):
-        return False
-    changes = [change for change in what_if.changes if change.thing == means]
-    return (bool(changes) or means not in THINGS) and all(change.helps is False for change in changes)
 
 
 def _sizes(fits: list[FitEntry]) -> str:

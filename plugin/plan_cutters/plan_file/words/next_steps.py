@@ -1,7 +1,7 @@
 """Put the next steps into words."""
 
 from plan_cutters.domain.placement import axis_words
-from plan_cutters.plan_file.answers import ChangeEntry, MendEntry, RunEntry, StepEntry
+from plan_cutters.plan_file.answers import MendEntry, RunEntry, StepEntry
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import ANOTHER_SETUP
 from plan_cutters.plan_file.numbers import percent
@@ -84,17 +84,9 @@ def first_step(entry: CutterEntry) -> StepEntry | None:
     return next((step for step in (entry.mend.steps if entry.mend else []) if not is_excluded(step)), None)
 
 
-def cures(what_if: MendEntry) -> list[ChangeEntry]:
-    """Changes of one thing of which it is known or open that they let a cutter finish.
-
-    Whole faces to leave out say nothing more where steps name the area that is left.
-    """
-    return [change for change in what_if.changes if change.helps is not False and not (change.thing == "faces" and what_if.steps)]
-
-
-def remaining(what_if: MendEntry) -> str:
+def remaining(advice: MendEntry) -> str:
     """Say in a clause which areas are still not reached after the best step; empty where there are none."""
-    best = next((step for step in what_if.steps if not is_excluded(step)), None)
+    best = next((step for step in advice.steps if not is_excluded(step)), None)
     if best is None or not best.remains:
         return ""
     return "; ".join(each.why for each in best.remains)

@@ -9,7 +9,6 @@ from plan_cutters.plan_file.numbers import ROUNDING, bound, duration, listed, pe
 from plan_cutters.plan_file.numbers import area as size
 from plan_cutters.plan_file.operations import CutterUse, FewestEntry, OperationEntry, OperationPlanEntry, OperationsEntry
 from plan_cutters.plan_file.words.line import Line
-from plan_cutters.plan_file.words.motion import motion
 from plan_cutters.plan_file.words.names import named
 
 #: Operations that are listed, and faces that are named of one.
@@ -36,7 +35,7 @@ def operations(plan: Plan) -> list[Line]:
             *_by_cutter(operations),
             *(line for use in operations.cutters for line in _worth(operations, use)),
         ]
-    return [Line(named(plan, text)) for text in (*lines, *motion(operations.motion), *operations.notes)]
+    return [Line(named(plan, text)) for text in (*lines, *operations.notes)]
 
 
 def in_short(plan: Plan) -> list[str]:

@@ -191,19 +191,19 @@ def _next_entries(plan: Plan) -> Iterator[NextEntry]:
     process = plan.process
     if process is None or all(each.cause == UNJUDGED_CAUSE or each.needs == CLOSED_VOID for each in process.left):
         return
-    what_if, left = shown_cutter(plan).mend, 1.0 - process.finished_share
-    if what_if is not None:
+    advice, left = shown_cutter(plan).mend, 1.0 - process.finished_share
+    if advice is not None:
         reported = list[tuple[set[str], float]]()
         # What changes less comes first where it does as much.
-        after = {k: _after(process, k, step) for k, step in enumerate(what_if.steps) if not is_excluded(step)}
+        after = {k: _after(process, k, step) for k, step in enumerate(advice.steps) if not is_excluded(step)}
         for k in after:
-            things = {change.thing for change in what_if.steps[k].changes}
-            fewer = [(each, after[j]) for j in after if (each := {c.thing for c in what_if.steps[j].changes}) < things]
+            things = {change.thing for change in advice.steps[k].changes}
+            fewer = [(each, after[j]) for j in after if (each := {c.thing for c in advice.steps[j].changes}) < things]
             alike = any(each <= things and then - after[k] < WORTH for each, then in (*reported, *fewer))
             if left - after[k] >= WORTH - _ROUNDING and not alike:
                 reported.append((things, after[k]))
-                option = what_if.steps[k].option
-                yield NextEntry(words=what_if.steps[k].why, argv=shlex.split(option) if option else [], left_share=after[k])
+                option = advice.steps[k].option
+                yield NextEntry(words=advice.steps[k].why, argv=shlex.split(option) if option else [], left_share=after[k])
     elif "mend" not in plan.effective.answers:
         yield NextEntry(words="ask what would help", argv=["--answers", "mend"], left_share=None)
 

@@ -62,7 +62,6 @@ def of(result: Judged, spots: list[Spot], more: dict[str, int], drawing: Drawing
         "step_told": step_text,
         "limit": answers.limit,
         "narrowest": answers.narrowest,
-        "told": answers.change,
         "called": cutters.called,
         "chip": chip(plan, story),
         "chips": CHIPS,
