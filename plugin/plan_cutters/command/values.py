@@ -36,10 +36,9 @@ class Words(click.ParamType):
         self.name, self.offered, self.files, self.listed = name, offered, files, listed
 
     def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str:
-        if self.listed and param is not None:
-            for each in str(value).split(","):
-                if gone := instead(f"{param.opts[-1]} {each.strip().lower()}"):
-                    raise click.UsageError(gone, ctx)
+        for each in str(value).split(",") if self.listed else ():
+            if param is not None and (gone := instead(f"{param.opts[-1]} {each.strip().lower()}")):
+                raise click.UsageError(gone, ctx)
         return str(value)
 
     def added(self, values: Sequence[str]) -> str | None:
