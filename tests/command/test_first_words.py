@@ -151,7 +151,7 @@ def test_a_list_of_parts_comes_through_a_pipe(tmp_path):
     assert "pocket_top" in told
 
 
-@pytest.mark.parametrize("option", ["--json", "--junit", "-o", "--verdicts", "--cluster"])
+@pytest.mark.parametrize("option", ["--json", "--junit", "-o"])
 def test_behind_an_option_with_a_value_the_word_is_that_value(option):
     words = ["part.step", option, "-", "--quiet"]
     with spooled(entry.module_of("plan-cutters").command, words) as named:

@@ -47,14 +47,11 @@ class Terms:
         Seconds for a part.
     memory : float, optional
         Bytes for a part.
-    secret : bytes, optional
-        Seals what is kept in the output (`files.seal`).
     """
 
     force: bool = False
     timeout: float | None = None
     memory: float | None = None
-    secret: bytes | None = None
     packed: dict[int, tuple[Settings, Handed, str]] = field(default_factory=dict)
 
     def of(self, settings: Settings) -> tuple[Handed, str]:
@@ -138,7 +135,7 @@ def outcomes(
                 here = content(job.file) if in_memory(job.file) else None
                 task = Task(job.name, job.file, here, job.part, there,
                             _words(job.settings, terms), key, where, token, terms.force, terms.timeout, versions,
-                            job.file if "://" in job.file else os.path.abspath(job.file), terms.secret)  # fmt: skip
+                            job.file if "://" in job.file else os.path.abspath(job.file))  # fmt: skip
                 if travels and out is not None and not terms.force and (row := _cached(task, out)):
                     faulty.append(Outcome(row, {}))
                     continue

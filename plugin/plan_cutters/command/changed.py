@@ -83,10 +83,9 @@ class PartRequest:
         settings = Settings(options, formats, requested.step_schema, read=tuple(filter(None, files.values())))
         handed_on = ["--formats", ",".join(formats), *(["--debug"] if requested.debug else [])]
         handed_on += [] if requested.cache else ["--no-cache"]
-        for name in ("step_schema", "read_timeout", "timeout", "memory", "cluster", "verdicts", "verdicts_key"):
+        for name in ("step_schema", "read_timeout", "timeout", "memory"):
             if (value := getattr(requested, name)) is not None:
-                here = name in ("cluster", "verdicts", "verdicts_key") and "://" not in value
-                handed_on += [f"--{name.replace('_', '-')}", os.path.abspath(value) if here else str(value)]
+                handed_on += [f"--{name.replace('_', '-')}", str(value)]
         return cls(settings, handed(options), tuple(handed_on))
 
 

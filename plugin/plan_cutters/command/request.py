@@ -109,8 +109,6 @@ class PlanningRequest(JudgingRequest):
     formats: str | None
     step_schema: str
     cache: bool
-    cluster: str | None
-    verdicts_key: str | None
     read_timeout: float
 
 
@@ -142,7 +140,6 @@ class PlanRequest(PlanningRequest, _Reported):
     out: str | None
     json_out: str | None
     verbose: bool
-    verdicts: str | None
     fail_under: float | None
     timeout: float | None
     memory: float | None
@@ -154,6 +151,7 @@ class BatchRequest(PlanningRequest, _Reported):
 
     sources: tuple[str, ...]
     out: str
+    cluster: str | None
     workers: int | None
     timeout_part: float | None
     limit_memory: float | None

@@ -1,7 +1,11 @@
 """Words of the command line that are gone, and what to use instead."""
 
 #: Options by their word, commands as "command WORD", values as "--option VALUE": what to use instead.
-TAKEN_OUT: dict[str, str] = {}
+TAKEN_OUT: dict[str, str] = {
+    "--cluster": "one part is judged here; `plan-cutters batch PART... --out DIR --cluster ADDRESS` plans whole parts elsewhere",
+    "--verdicts": "leave it out: verdicts are kept in the user's cache folder, with all else of a part (PLAN_CUTTERS_CACHE)",
+    "--verdicts-key": "leave it out: what is kept in a folder that others may write to is not read",
+}
 
 
 def instead(word: str) -> str:

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import CONVEX, FIXTURE, INSIDE, Verdicts
 from plan_cutters.scene.conditions import Context
-from plan_cutters.scene.ground import Ground
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import with_company
 from plan_cutters.scene.work import Work
@@ -28,7 +27,7 @@ class Judge(Protocol):
 
 
 def judge(
-    ready: Prepared | Ground,
+    ready: Prepared,
     cutter: Cutter,
     rows: NDArray[np.int64] | None = None,
     known: Verdicts | None = None,
@@ -40,7 +39,7 @@ def judge(
 
     Parameters
     ----------
-    ready : Prepared or Ground
+    ready : Prepared
     cutter : Cutter
     rows : (m,) int64, optional
         Samples, ascending. However they are divided, each gets the same answer, bit for bit: the search of its neighbours is

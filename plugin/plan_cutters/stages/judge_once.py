@@ -16,7 +16,7 @@ from plan_cutters.domain.verdicts import ACCESSIBLE, UNJUDGED, VerdictBuffer, Ve
 from plan_cutters.scene.conditions import Context, rotations_of
 from plan_cutters.scene.copied import some_of
 from plan_cutters.scene.copies import Copies
-from plan_cutters.scene.ground import Ground
+from plan_cutters.scene.ground import made_of, same
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import in_chunks, part_of
 from plan_cutters.scene.work import Work
@@ -72,8 +72,8 @@ class JudgeOnce:
 
     def _split(self, ready: Prepared, copies: Copies) -> tuple[Rows, Prepared, Rows, Prepared]:
         """Samples that are judged first and those that follow, each with the part that has these alone."""
-        of = Ground.made_of(ready)
-        if self._parts is None or not Ground.same(of, self._of):
+        of = made_of(ready)
+        if self._parts is None or not same(of, self._of):
             early = ~copies.copy | copies.verified
             first, rest = np.flatnonzero(early), np.flatnonzero(~early)
             self._of, self._parts = of, (first, some_of(ready, first), rest, some_of(ready, rest))
