@@ -4,7 +4,7 @@ import pytest
 from distributed import Client, LocalCluster
 
 from plan_cutters import PlanError
-from plan_cutters.batch import cluster
+from plan_cutters.batch import cluster, keys
 
 
 @pytest.fixture(scope="module")
@@ -31,9 +31,15 @@ def test_a_scheduler_without_workers_is_one_line(monkeypatch):
 
 
 def test_workers_with_other_versions_are_refused_with_both_named(running, monkeypatch):
-    def versions(self, **_):
-        return {"client": {"packages": {"plan_cutters": "1.0"}}, "workers": {"w": {"packages": {"plan_cutters": "0.9"}}}}
-
-    monkeypatch.setattr(Client, "get_versions", versions)
-    with pytest.raises(PlanError, match=r"plan-cutters 0\.9, this machine 1\.0"), cluster.opened(running):
+    with cluster.opened(running):
         pass
+    here = keys.versions()
+    for there, said in (
+        ({**here, "numba": "0.1"}, rf"has numba 0\.1, this machine {here['numba']}: install the same"),
+        ({**here, "plan-cutters": "0.0.9+a"}, r"has plan-cutters 0\.0\.9\+a, this machine 0\.1"),
+        ({"python": here["python"]}, r"None, this machine"),
+        (ModuleNotFoundError("plan_cutters"), r"cannot load plan-cutters \(ModuleNotFoundError\)"),
+    ):
+        monkeypatch.setattr(Client, "run", lambda self, *_, there=there, **__: {"tcp://w": there})
+        with pytest.raises(PlanError, match=said), cluster.opened(running):
+            pass

@@ -7,7 +7,6 @@ import threading
 import time
 from typing import ClassVar
 
-import fsspec
 import psutil
 import pytest
 
@@ -144,19 +143,11 @@ def test_a_lost_worker_loses_nothing_and_leaves_nothing(client, tmp_path):
     assert alive == []
 
 
-@pytest.mark.slow("starts servers or clusters")
-def test_from_memory_to_memory(client):
-    fs = fsspec.filesystem("memory")
-    fs.pipe_file("/shelf/a.step", GROOVE)
-    out = Store("memory://plans")
-    try:
-        job = Job("a", "memory:///shelf/a.step", settings())
-        assert ran([job], client, out)["a"].status == "planned"
-        assert ran([job], client, out)["a"].status == "kept"
-        written = [f"/plans/a-plan/{name}" for name in ("done.json", "plan.json", "process.toml")]
-        assert sorted(fs.ls("/plans/a-plan", detail=False)) == written
-    finally:
-        fs.rm("/", recursive=True)
+def test_the_memory_of_one_process_is_refused(client):
+    with pytest.raises(PlanError, match=r"memory://plans: memory:// is the memory of one process"):
+        next(plan_many(["a.step"], client, out="memory://plans"))
+    (row,) = (each.row for each in plan_many(["memory:///shelf/a.step"], client, **QUICK))
+    assert (row.status, row.code) == ("failed", 2)
 
 
 @pytest.mark.slow("starts servers or clusters")
@@ -179,13 +170,6 @@ def test_versions_that_differ_are_refused_with_both_named(client, tmp_path, monk
     assert found.row.code == 2
     assert "numba 0." in found.row.error
     assert "0.1 where the batch was begun" in found.row.error
-    assert cluster.differs({"numba": "1", "dask": "2"}, {"numba": "1", "dask": "3"}) == "dask 3, this machine 2"
-    cluster._same(client)
-    said = client.get_versions(packages=["plan_cutters", "numba"])
-    said["client"]["packages"]["plan_cutters"] = "9.9"
-    monkeypatch.setattr(client, "get_versions", lambda packages: said)
-    with pytest.raises(PlanError, match=r"worker tcp://\S+ has plan-cutters 0\.1\.0, this machine 9\.9"):
-        cluster._same(client)
 
 
 def test_a_worker_that_does_not_see_the_output_writes_nothing(client, tmp_path):
@@ -290,7 +274,7 @@ def test_what_another_version_planned_is_not_taken(tmp_path, monkeypatch):
     out = Store(str(tmp_path / "out"))
     (job,) = parts = jobs(tmp_path, "a")
     there, key = Terms().of(job.settings)
-    task = works.Task(job.name, job.file, None, None, there, (), key, out.root_url, out.begin(), False, None, {})
+    task = works.Task(job.name, job.file, None, there, (), key, out.root_url, out.begin(), False, None, {})
     monkeypatch.setattr(works, "_ready", lambda: "")
     assert works.work(task).row.status == "planned"
     assert [row.status for row in foreseen(parts, out, Terms())] == ["kept"]
@@ -309,7 +293,7 @@ def test_a_full_disk_on_a_worker_is_one_line(tmp_path, monkeypatch):
     out = Store(str(tmp_path / "out"))
     (job,) = jobs(tmp_path, "a")
     there, key = Terms().of(job.settings)
-    task = works.Task(job.name, job.file, None, None, there, (), key, out.root_url, out.begin(), False, None, {})
+    task = works.Task(job.name, job.file, None, there, (), key, out.root_url, out.begin(), False, None, {})
     monkeypatch.setattr(works, "_ready", lambda: "")
     monkeypatch.setattr(Path, "write_bytes", full)
     row = works.work(task).row

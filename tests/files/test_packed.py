@@ -88,7 +88,7 @@ class Pair(NamedTuple):
 
 @pytest.mark.parametrize("value", [Foreign(), Pair(), print, np.array([None]), np.zeros(2, [("a", "f8")]), {1: object()}])
 def test_what_is_none_of_ours_is_not_written(value):
-    with pytest.raises(TypeError, match=r"(is|are) not kept"):
+    with pytest.raises(TypeError, match=r"(is|are) not stored"):
         b"".join(packed(value))
 
 

@@ -13,6 +13,7 @@ import pytest
 
 import cad_io
 import plan_cutters
+from cad_io.errors import CacheWarning
 from plan_cutters.files import stage_cache
 from plan_cutters.files.digest import sources
 from plan_cutters.files.stage_cache import NO_CACHE, StageCache, settle
@@ -91,7 +92,8 @@ def test_what_others_may_write_is_not_read(cache, monkeypatch):
     assert made(cache, 1)[1] == 1
     cache.folder.chmod(0o777)
     monkeypatch.setenv(stage_cache.FOLDER, str(cache.folder))
-    assert StageCache.of_user() is None
+    with pytest.warns(CacheWarning, match="nobody else may write there"):
+        assert StageCache.of_user() is None
 
 
 def test_an_entry_of_another_question_is_none_under_this_name(cache):

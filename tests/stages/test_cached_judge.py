@@ -97,13 +97,11 @@ def test_another_program_and_other_company_judge_again(before, told, monkeypatch
     assert len(told) == 2
 
 
-def test_rows_and_work_are_as_of_judge(before, told):
+def test_verdicts_and_work_are_as_of_judge(before, told):
     _, ready = before
-    cutter, rows, one, other = ready.cutters[0], np.arange(100, 300), Work(), Work()
+    cutter, one, other = ready.cutters[0], Work(), Work()
     whole = judge(ready, cutter, work=one)
     assert CachedJudge()(ready, cutter, work=other) == whole
     assert told == []
     assert one.looked == other.looked > 0
-    assert CachedJudge()(ready, cutter, rows) == whole.of(rows)
-    assert len(told) == 1
     assert (whole.verdict != UNJUDGED).any()

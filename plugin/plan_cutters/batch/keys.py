@@ -9,9 +9,6 @@ from plan_cutters.batch.job import Handed, Settings
 from plan_cutters.files.digest import digest
 from plan_cutters.files.stage_cache import PACKAGES, installed, made_by
 
-#: Packages whose results may differ from version to version: they count in a key, and must be the same on all machines.
-COMPARED = {"plan-cutters": "plan_cutters", "python": "python", "numba": "numba", "dask": "dask"}
-
 
 def versions() -> dict[str, str]:
     """The versions that must be the same on all machines of a batch: of this program with its checksum, for an edit counts."""

@@ -93,8 +93,10 @@ def plan_many(
     from plan_cutters.batch import cluster
     from plan_cutters.batch.run import Terms, outcomes
     from plan_cutters.batch.store import Store
+    from plan_cutters.files.folder import refuse_memory
     from plan_cutters.report.folder import read_formats
 
+    refuse_memory(os.fspath(out or ""))
     if isinstance(parts, str | os.PathLike):
         raise OptionError("parts is one path: give a list of parts, or use the command `batch` for folders")
     if isinstance(parts, Sequence) and not parts:

@@ -41,8 +41,6 @@ class Task:
     ----------
     name, file : str
         As of the `Job`.
-    content : Content, optional
-        Of the file, where workers cannot read it.
     part : bytes, optional
         The pickled part, where it is no file.
     handed : Handed
@@ -65,7 +63,6 @@ class Task:
 
     name: str
     file: str
-    content: Content | None
     part: bytes | None
     handed: Handed
     words: tuple[str, ...]
@@ -167,7 +164,7 @@ def content_of(task: Task) -> Content:
     PlanError
         It cannot be read.
     """
-    return Content(task.part) if task.part else task.content or content(task.source or task.file)
+    return Content(task.part) if task.part else content(task.source or task.file)
 
 
 def cached(output: store.Store, folder: str, key: str, name: str, file: str) -> PartRow | None:

@@ -149,15 +149,10 @@ def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
 def _seen_by_workers(request: BatchRequest) -> None:
     """Refuse parts and an output that no worker could reach, before anything is begun."""
     from plan_cutters.command.validation import scheduler, writable
-    from plan_cutters.errors import OptionError
-    from plan_cutters.files.folder import in_memory
+    from plan_cutters.files.folder import refuse_memory
 
     for word in (*request.sources, request.out):
-        if in_memory(word):
-            raise OptionError(
-                "memory:// is the memory of one process, and each part has its own: give a folder, or a URL that all reach",
-                file=word,
-            )
+        refuse_memory(word)
     if request.cluster is not None:
         scheduler(request.cluster)
     if "://" not in request.out and not request.dry_run:

@@ -247,7 +247,7 @@ def _planned(content: "Content", path: str, request: PartRequest, cache: Path) -
     if work.cached(store, folder, key, name, path) is not None:
         return cache / folder
     cache.mkdir(parents=True, exist_ok=True)
-    task = work.Task(name, path, None, None, request.handed, request.words, key, None, "", False, None, {})
+    task = work.Task(name, path, None, request.handed, request.words, key, None, "", False, None, {})
     with tempfile.TemporaryDirectory(dir=cache, prefix=".") as place:
         code, line = work.planned(task, content, Path(place))
         made = work.files_of(Path(place) / "out")

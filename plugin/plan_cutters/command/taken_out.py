@@ -2,9 +2,9 @@
 
 #: Options by their word, commands as "command WORD", values as "--option VALUE": what to use instead.
 TAKEN_OUT: dict[str, str] = {
-    "--cluster": "one part is judged here; `plan-cutters batch PART... --out DIR --cluster ADDRESS` plans whole parts elsewhere",
-    "--verdicts": "leave it out: verdicts are kept in the user's cache folder, with all else of a part (PLAN_CUTTERS_CACHE)",
-    "--verdicts-key": "leave it out: what is kept in a folder that others may write to is not read",
+    "--cluster": "one part is judged here; `plan-cutters batch PART... --out DIR --cluster ADDRESS` plans whole parts on others",
+    "--verdicts": "leave it out: verdicts are stored in the user's cache folder, with all else of a part (PLAN_CUTTERS_CACHE)",
+    "--verdicts-key": "leave it out: what is stored in a folder that others may write to is not read",
 }
 
 

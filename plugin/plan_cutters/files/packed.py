@@ -93,13 +93,13 @@ class _Packer:
         if type(value) in _SERIES.values():
             return [type(value).__name__, *map(self.form, value)]
         if (names := _names(value)) is None:
-            raise TypeError(f"{type(value).__qualname__} is not kept")
+            raise TypeError(f"{type(value).__qualname__} is not stored")
         kind = type(value)
         return [f"{kind.__module__}:{kind.__qualname__}", *([name, self.form(getattr(value, name))] for name in names)]
 
     def _array(self, array: NDArray[Any]) -> list[Any]:
         if array.dtype.kind not in "biufcSU":
-            raise TypeError(f"arrays of {array.dtype} are not kept")
+            raise TypeError(f"arrays of {array.dtype} are not stored")
         turned = array.flags.f_contiguous and not array.flags.c_contiguous
         self.arrays.append(flat := np.ascontiguousarray(array.T if turned else array))
         place, self._end = self._end, self._end + flat.nbytes + -flat.nbytes % _ALIGNED

@@ -11,6 +11,7 @@ import functools
 import hashlib
 import os
 import time
+import warnings
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -20,6 +21,7 @@ from typing import Any, Self, TypeVar, cast
 
 import cad_io
 import plan_cutters
+from cad_io.errors import CacheWarning
 from cad_io.user_cache import own, roots, writable
 from cad_io.whole import whole
 from plan_cutters.files.digest import digest, sources
@@ -55,16 +57,23 @@ class StageCache:
 
     @classmethod
     def of_user(cls) -> Self | None:
-        """The cache of this user; None where nothing is to be kept, or no folder is safe and can be written."""
+        """The cache of this user; None where nothing is to be kept, or no folder is safe and can be written.
+
+        A folder that was named and is refused is warned of.
+        """
         named, size = os.environ.get(FOLDER), os.environ.get(SIZE, "")
         if named == "" or (size and not size.isdecimal()):
             return None
-        most = int(size) << 20 if size else MOST
+        if not (most := int(size) << 20 if size else MOST):
+            return None
         for folder in [Path(named)] if named else [root / "stages" for root in roots()]:
             with contextlib.suppress(OSError):
                 folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-                if most and writable(folder) and own(folder.stat()):
+                if writable(folder) and own(folder.stat()):
                     return cls(folder, most)
+        if named:
+            why = "it must be yours, and nobody else may write there"
+            warnings.warn(f"{FOLDER} {named}: the folder is not used: {why}", CacheWarning, stacklevel=2)
         return None
 
     def cached(

@@ -18,11 +18,11 @@ from plan_cutters.stages.decompose import decompose
 
 
 class Judge(Protocol):
-    """`judge`, and whatever gives the same verdicts in another way."""
+    """`judge` at all samples, and whatever gives the same verdicts in another way."""
 
     def __call__(
-        self, ready: Prepared, cutter: Cutter, rows: NDArray[np.int64] | None = None, known: Verdicts | None = None,
-        *, progress: Callable[[int, int], None] | None = None, work: Work | None = None,
+        self, ready: Prepared, cutter: Cutter, *, known: Verdicts | None = None,
+        progress: Callable[[int, int], None] | None = None, work: Work | None = None,
     ) -> Verdicts: ...  # fmt: skip
 
 

@@ -50,13 +50,13 @@ class JudgeOnce:
         self._parts: tuple[Rows, Prepared, Rows, Prepared] | None = None
 
     def __call__(
-        self, ready: Prepared, cutter: Cutter, rows: Rows | None = None, known: Verdicts | None = None,
-        *, progress: Callable[[int, int], None] | None = None, work: Work | None = None,
+        self, ready: Prepared, cutter: Cutter, *, known: Verdicts | None = None,
+        progress: Callable[[int, int], None] | None = None, work: Work | None = None,
     ) -> Verdicts:  # fmt: skip
         """Find the verdicts of a cutter; parameters and result as of `judge`."""
         copies = ready.copies
-        if copies is None or rows is not None or not copies.follow.any():
-            return self._judged(ready, cutter, rows, known, progress=progress, work=work)
+        if copies is None or not copies.follow.any():
+            return self._judged(ready, cutter, known=known, progress=progress, work=work)
         first, some, rest, others = self._split(ready, copies)
         n = len(ready.samples)
         known = blank(n).freeze() if known is None else known
