@@ -74,7 +74,6 @@ def test_a_part_whose_name_is_like_a_command_is_planned(tmp_path):
         ({"machine": "Trunnion-AC"}, "did you mean trunnion-ac?"),
         ({"machine": "xyz"}, "is not known: give unlimited"),
         ({"progres": print}, "no option is called progres; did you mean progress?"),
-        ({"verdict": "x"}, "no option is called verdict; did you mean verdicts?"),
         ({"gird": 3}, "no option is called gird; did you mean grid?"),
         ({"cutters": []}, "cutters: the list is empty"),
         ({"cutters": ()}, "cutters: the list is empty"),
