@@ -1,12 +1,10 @@
-"""What do more workers bring, and what does the scheduler cost? Points a, b and d of `docs/scaling.md`.
+"""What do more workers bring, and what does the scheduler cost? Points a and d of `docs/scaling.md`.
 
     python benchmarks/scaling.py parts FOLDER [--parts 200] [--grid 31] [--workers 1 2]
-    python benchmarks/scaling.py rows [--grid 1000] [--workers 1 2]
     python benchmarks/scaling.py queue [--parts 100000] [--seconds 0.1] [--threads 32]
 
 `parts`: CAD files of FOLDER and of `samples`, again and again until there are so many, planned one by one by workers of one
-thread. `rows`: one part of GRID x GRID samples and six cutters, judged by this process on one thread and by workers of one
-thread; verdicts must be equal. `queue`: parts that only wait, handed out to a scheduler and workers in processes of their
+thread. `queue`: parts that only wait, handed out to a scheduler and workers in processes of their
 own; memory of this process and of the scheduler on the way.
 
 Clocks tell little on a busy machine: processor seconds of the workers stand beside them. Machine code is made before.
@@ -16,7 +14,6 @@ import argparse
 import contextlib
 import itertools
 import os
-import pickle
 import subprocess
 import sys
 import tempfile
@@ -28,8 +25,7 @@ import psutil
 from distributed import Client, LocalCluster, wait
 
 ROOT = Path(__file__).resolve().parent.parent
-CUTTERS = ("R10L100", "R8L80", "R6L60", "R6L60rc1", "R4L50", "R4L50rc4")
-OPTIONS = {"cutters": CUTTERS[2:4], "grid": 31, "jobs": 1, "area_budget": 2000}
+OPTIONS = {"cutters": ("R6L60", "R6L60rc1"), "grid": 31, "jobs": 1, "area_budget": 2000}
 CAD = (".step", ".stp", ".igs", ".iges", ".brep")
 
 
@@ -45,7 +41,6 @@ def local(workers: int) -> Iterator[Client]:
 
 def ready() -> None:
     """Load all that a plan needs, so that it is not counted."""
-    import plan_cutters.batch.distributed_judge  # noqa: F401
     from plan_cutters.pipeline import prepare
 
     prepare(ROOT / "samples/v_groove.step", options())
@@ -83,60 +78,6 @@ def parts(folder: Path, count: int, grid: int, workers: list[int]) -> None:
         print(f"{each} workers: {clock:.1f} s, {count / clock:.3f} parts/s ({count / clock / first:.2f} times), "
               f"processor {used:.1f} s, "
               f"not within a part {100 * (1 - inside / (each * clock)):.1f} %, failed {failed}", flush=True)  # fmt: skip
-
-
-def rows(grid: int, workers: list[int]) -> None:
-    """(b) One part: this process against workers."""
-    from plan_cutters.batch.distributed_judge import DistributedJudge
-    from plan_cutters.domain.nesting import handed, order
-    from plan_cutters.pipeline import prepare
-    from plan_cutters.scene.ground import Ground
-    from plan_cutters.scene.work import Work
-    from plan_cutters.stages.judge import judge
-
-    began = time.perf_counter()
-    part = prepare(
-        ROOT / "samples/peaks_and_valleys.step", options(cutters=CUTTERS, grid=grid, rotation_step=0.17453292519943295)
-    )
-    prepared = time.perf_counter() - began
-    began = time.perf_counter()
-    packed = pickle.dumps(Ground.of(part), protocol=5)
-    packing = time.perf_counter() - began
-    began = time.perf_counter()
-    pickle.loads(packed).conditions.surroundings.build(1)
-    print(f"{len(part.samples)} samples x {len(part.cutters)} cutters; prepared in {prepared:.2f} s; "
-          f"ground {len(packed) / 1e6:.1f} MB, packed in {packing:.2f} s, "
-          f"unpacked with its tree in {time.perf_counter() - began:.2f} s")  # fmt: skip
-
-    def judged(how):  # type: ignore[no-untyped-def]
-        found, work = {}, Work()
-        for cutter in order(part.cutters):
-            known = handed(cutter, {c: found[c] for c in part.cutters if c in found}, len(part.samples))
-            found[cutter] = how(part, cutter, known=known, work=work)
-        return found, work.looked
-
-    began, used = time.perf_counter(), time.process_time()
-    alone = judged(judge)
-    print(f"here, one thread: {time.perf_counter() - began:.1f} s, processor {time.process_time() - used:.1f} s")
-    first = 0.0
-    for each in workers:
-        with local(each) as client:
-            before, mine, began = sum(client.run(spent).values()), time.process_time(), time.perf_counter()
-            found = judged(DistributedJudge(client, large=0))
-            clock, here = time.perf_counter() - began, time.process_time() - mine
-            used = sum(client.run(spent).values()) - before
-            peak = max(client.run(peak_of).values())
-        if found != alone:
-            raise SystemExit("verdicts or work differ")
-        first = first or clock
-        print(f"{each} workers: {clock:.1f} s ({first / clock:.2f} times), processor of workers {used:.1f} s, "
-              f"of this process {here:.1f} s, memory of a worker {peak / 1e6:.0f} MB at most; equal")  # fmt: skip
-
-
-def peak_of() -> int:
-    import resource
-
-    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024
 
 
 def rest(task: tuple[int, float]) -> tuple[int, bytes]:
@@ -205,10 +146,7 @@ def main() -> None:
     many.add_argument("folder", type=Path)
     many.add_argument("--parts", type=int, default=200)
     many.add_argument("--grid", type=int, default=31)
-    one = what.add_parser("rows")
-    one.add_argument("--grid", type=int, default=1000)
-    for each in (many, one):
-        each.add_argument("--workers", type=int, nargs="+", default=[1, 2])
+    many.add_argument("--workers", type=int, nargs="+", default=[1, 2])
     waits = what.add_parser("queue")
     waits.add_argument("--parts", type=int, default=100_000)
     waits.add_argument("--seconds", type=float, default=0.1)
@@ -217,8 +155,6 @@ def main() -> None:
     match given.what:
         case "parts":
             parts(given.folder, given.parts, given.grid, given.workers)
-        case "rows":
-            rows(given.grid, given.workers)
         case "queue":
             queue(given.parts, given.seconds, given.threads)
 

@@ -2,6 +2,7 @@
 
 import contextlib
 import os
+import stat
 import tempfile
 from collections.abc import Iterator
 from pathlib import Path
@@ -19,6 +20,11 @@ def roots() -> Iterator[Path]:
         shared.mkdir(mode=0o700, exist_ok=True)
         if user is None or shared.stat().st_uid == user:
             yield shared
+
+
+def own(status: os.stat_result) -> bool:
+    """Whether only this user can have written what a file or folder holds."""
+    return not hasattr(os, "getuid") or (status.st_uid == os.getuid() and not status.st_mode & (stat.S_IWGRP | stat.S_IWOTH))
 
 
 def writable(folder: Path) -> bool:

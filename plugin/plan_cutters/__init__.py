@@ -17,7 +17,7 @@ _HOME = {
     "Options": "options",
     "Scene": "scene.scene",
     "PostureRange": "domain.posture",
-    "plan": "batch.one",
+    "plan": "pipeline",
     "plan_many": "batch.many",
     "Result": "result",
     "posture_map": "point",

@@ -1,7 +1,6 @@
 """What type checkers see of the names that `__init__.py` hands on lazily."""
 
 from plan_cutters.batch.many import plan_many
-from plan_cutters.batch.one import plan
 from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fixture import Fixture
@@ -11,6 +10,7 @@ from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.errors import CutterError, FixtureError, LibraryError, MachineError, OptionError, PlanError
 from plan_cutters.options import Options
+from plan_cutters.pipeline import plan
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.point import posture_map
 from plan_cutters.result import Result

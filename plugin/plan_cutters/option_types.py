@@ -24,7 +24,7 @@ ANGLES = {"tilt": TILTS, "rotation": ROTATIONS, "rotation_step": STEP, "index_st
 
 
 #: What calls take beside options: it may be meant where a name is mistyped.
-OF_CALLS = ("part", "progress", "cache", "client", "verdicts", "verdicts_key")
+OF_CALLS = ("part", "progress", "cache")
 #: Words of options that take no other text.
 Operations = Literal["fewest", "fastest", "both"]
 Answer = Literal["stick-out", "radius", "mend", "all"]

@@ -64,9 +64,7 @@ _PLANNING = 7200.0
 
 
 @spelled_out(PlanOptions, Options)
-def plan(
-    part: Any, *, progress: Progress | None = None, judged: Judge = judge, cache: bool = True, **options: Unpack[PlanOptions]
-) -> Result:
+def plan(part: Any, *, progress: Progress | None = None, cache: bool = True, **options: Unpack[PlanOptions]) -> Result:
     """Judge each cutter on the target faces of a part.
 
     Parameters
@@ -76,8 +74,6 @@ def plan(
         faces and tolerance with it.
     progress : callable, optional
         Called with the stage, the number of pieces done, and the number of all pieces.
-    judged : callable, optional
-        Gives the verdicts of each cutter as `stages.judge.judge` does: `plan_cutters.plan` has `client` and `verdicts` for it.
     cache : bool
         Keep what stages make of a part that was read from a file, for the next question about it (`files.stage_cache`).
     **options
@@ -109,26 +105,24 @@ def plan(
     if progress is not None and not callable(progress):
         raise OptionError(f"progress must be a function of (stage, done, total), not {shown(progress)}")
     settings = {**part.options, **options} if isinstance(part, Scene) else options
-    return run(part, Options.of(settings), Clock(progress), judged=judged, cache=StageCache.of_user() if cache else None)
+    return run(part, Options.of(settings), Clock(progress), cache=StageCache.of_user() if cache else None)
 
 
 def run(
     part: Any, options: Options, clock: Clock, *, read_timeout: float = TIMEOUT, at: At = lambda whose, face: None,
-    compiling: Callable[[str], None] = lambda entry: None, excluded: Mapping[int, str] | None = None, judged: Judge = judge,
+    compiling: Callable[[str], None] = lambda entry: None, excluded: Mapping[int, str] | None = None,
     interim: Interim | None = None, folder: str = "", cache: StageCache | None = None, remark: Describe | None = None,
 ) -> Result:  # fmt: skip
     """`plan` with its options gathered.
 
     `read_timeout` is the most seconds that a faulty file may take to read; `at` is told whose work goes on at which face;
     `compiling` waits for the machine code of an entry that is made meanwhile; `excluded` says by number why faces are not
-    to be worked on at all; `judged` gives the verdicts of each cutter in each setup, as `judge` does; `interim` keeps what is
-    found, from the moment on at which the verdicts stand. `folder` is where files of setups that are proposed will be, as a
-    command in it is to name them. `cache` keeps what stages make of a part of a file. `remark` adds to each plan what its
-    options do not say.
+    to be worked on at all; `interim` keeps what is found, from the moment on at which the verdicts stand. `folder` is where
+    files of setups that are proposed will be, as a command in it is to name them. `cache` keeps what stages make of a part of a
+    file. `remark` adds to each plan what its options do not say.
     """
     begun = partial(prepare, read_timeout=read_timeout, at=at, compiling=compiling, cache=cache)
-    if cache is not None and judged is judge:
-        judged = CachedJudge(judged)
+    judged: Judge = judge if cache is None else CachedJudge()
     interim, describe = interim or Interim(clock), remark or _as_it_is
 
     def remarked(part: JudgedPart, proposed: Describe) -> tuple[JudgedPart, Describe]:

@@ -83,10 +83,9 @@ class PartRequest:
         settings = Settings(options, formats, requested.step_schema, read=tuple(filter(None, files.values())))
         handed_on = ["--formats", ",".join(formats), *(["--debug"] if requested.debug else [])]
         handed_on += [] if requested.cache else ["--no-cache"]
-        for name in ("step_schema", "read_timeout", "timeout", "memory", "cluster", "verdicts", "verdicts_key"):
+        for name in ("step_schema", "read_timeout", "timeout", "memory"):
             if (value := getattr(requested, name)) is not None:
-                here = name in ("cluster", "verdicts", "verdicts_key") and "://" not in value
-                handed_on += [f"--{name.replace('_', '-')}", os.path.abspath(value) if here else str(value)]
+                handed_on += [f"--{name.replace('_', '-')}", str(value)]
         return cls(settings, handed(options), tuple(handed_on))
 
 
@@ -265,7 +264,7 @@ def _planned(content: "Content", path: str, request: PartRequest, cache: Path) -
     if work.cached(store, folder, key, name, path) is not None:
         return cache / folder
     cache.mkdir(parents=True, exist_ok=True)
-    task = work.Task(name, path, None, None, request.handed, request.words, key, None, "", False, None, {})
+    task = work.Task(name, path, None, request.handed, request.words, key, None, "", False, None, {})
     with tempfile.TemporaryDirectory(dir=cache, prefix=".") as place:
         code, line = work.planned(task, content, Path(place))
         made = work.files_of(Path(place) / "out")

@@ -186,7 +186,7 @@ def test_of_many_failures_the_summary_names_the_first():
 
 
 def test_tables_come_before_the_summary_that_has_their_checksums(files):
-    assert list(files) == ["index.csv", "index.parquet", "index.html", "summary.json"]
+    assert list(files) == ["index.csv", "index.html", "summary.json"]
     for name, entry in json.loads(files["summary.json"])["files"].items():
         assert entry == {"name": f"index.{name}", "sha256": hashlib.sha256(files[f"index.{name}"]).hexdigest()}
 
@@ -207,7 +207,6 @@ def test_a_write_that_fails_leaves_the_summary_unwritten():
 def test_the_order_in_which_parts_came_changes_nothing():
     forth, back = written(ROWS), written(ROWS[::-1])
     assert forth["index.csv"] == back["index.csv"]
-    assert forth["index.parquet"] == back["index.parquet"]
     timeless = [re.sub(rb"<time.*?</time>", b"", each["index.html"]) for each in (forth, back)]
     assert timeless[0] == timeless[1]
 
@@ -233,26 +232,6 @@ def test_no_text_is_a_formula_and_each_comes_back(text):
     (cells,) = cells_of([part(verdict=text)])
     assert not re.match(r"[=+\-@＝＋－＠\s]", cells["verdict"])
     assert cells["verdict"].removeprefix("'") == text
-
-
-def test_parquet_has_the_same_cells_with_types(files):
-    parquet = pytest.importorskip("pyarrow.parquet")
-    found = parquet.read_table(io.BytesIO(files["index.parquet"]))
-    assert found.column_names == list(table.columns())
-    assert {str(found.schema.field(name).type) for name in ("name", "outcome", "key")} == {"string"}
-    assert [str(found.schema.field(name).type) for name in ("code", "share", "seconds")] == [
-        "int64", "double", "double"]  # fmt: skip
-    lines = csv.DictReader(io.StringIO(files["index.csv"].decode(), newline=""))
-    for cells, row in zip(lines, found.to_pylist(), strict=True):
-        assert cells == {k: "" if v is None else f"{v}" for k, v in row.items()}
-
-
-def test_without_pyarrow_there_is_no_parquet(monkeypatch):
-    monkeypatch.setattr(table, "find_spec", lambda name: None)
-    found = written()
-    assert list(found) == ["index.csv", "index.html", "summary.json"]
-    assert b"index.parquet" not in found["index.html"]
-    assert list(json.loads(found["summary.json"])["files"]) == ["csv"]
 
 
 # The page

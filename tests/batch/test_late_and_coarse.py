@@ -47,7 +47,7 @@ def task_of(out, options=QUICK, **more):
     settings = Settings(Options(**options, jobs=1))
     there = handed(settings.options)
     words = ("--formats", "json", "--no-cache")
-    return work.Task("groove", GROOVE, None, None, there, words, keys.settings_key(settings, there), out.root_url,
+    return work.Task("groove", GROOVE, None, there, words, keys.settings_key(settings, there), out.root_url,
                      out.begin(), more.pop("force", False), 240.0, keys.versions(), GROOVE, **more)  # fmt: skip
 
 

@@ -105,13 +105,12 @@ def test_a_marker_that_was_edited_is_none(store):
     assert store.row("a-plan") == ROW
 
 
-def test_with_a_key_only_markers_of_it_count(tmp_path):
-    mine, others, plain = (Store(str(tmp_path), key) for key in (b"k" * 16, b"l" * 16, None))
-    for writer in (mine, others, plain):
-        writer.publish("a-plan", FILES, ROW)
-        assert [reader.row("a-plan") is not None for reader in (mine, others, plain)] == [
-            reader is writer for reader in (mine, others, plain)
-        ]
+def test_what_another_user_wrote_is_not_taken(tmp_path):
+    store, other = Store(str(tmp_path)), Store(str(tmp_path))
+    store.publish("a-plan", FILES, ROW)
+    assert (tmp_path / "a-plan" / MARKER).stat().st_mode & 0o022 == 0
+    other._user = store._user + 1
+    assert (store.row("a-plan"), other.row("a-plan")) == (ROW, None)
 
 
 @pytest.mark.parametrize("name", ["plan.json", MARKER])

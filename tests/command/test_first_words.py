@@ -74,7 +74,6 @@ def test_a_part_whose_name_is_like_a_command_is_planned(tmp_path):
         ({"machine": "Trunnion-AC"}, "did you mean trunnion-ac?"),
         ({"machine": "xyz"}, "is not known: give unlimited"),
         ({"progres": print}, "no option is called progres; did you mean progress?"),
-        ({"verdict": "x"}, "no option is called verdict; did you mean verdicts?"),
         ({"gird": 3}, "no option is called gird; did you mean grid?"),
         ({"cutters": []}, "cutters: the list is empty"),
         ({"cutters": ()}, "cutters: the list is empty"),
@@ -151,7 +150,7 @@ def test_a_list_of_parts_comes_through_a_pipe(tmp_path):
     assert "pocket_top" in told
 
 
-@pytest.mark.parametrize("option", ["--json", "--junit", "-o", "--verdicts", "--cluster"])
+@pytest.mark.parametrize("option", ["--json", "--junit", "-o"])
 def test_behind_an_option_with_a_value_the_word_is_that_value(option):
     words = ["part.step", option, "-", "--quiet"]
     with spooled(entry.module_of("plan-cutters").command, words) as named:

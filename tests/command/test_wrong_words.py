@@ -44,7 +44,7 @@ def batch(*words, cwd):
 @pytest.mark.parametrize(
     ("words", "code", "line"),
     [
-        ((GROOVE, *ONE, "--cluster", "nohost"), 2, "--cluster nohost: no such file, and no address as tcp://HOST:8786"),
+        ((GROOVE, *ONE, "--cluster", "nohost"), 2, "--cluster was taken out: one part is judged here"),
         ((GROOVE, *ONE, "--check-operations", "none.json"), 2, "none.json: no such file: give the plan.json of a plan of"),
         ((GROOVE, *ONE, "--fixture", "visee"), 3, "visee: its name does not say its format; did you mean vise? Give STEP"),
         ((GROOVE, *ONE, "--fixture", "vise.dxf"), 3, "vise.dxf: '.dxf' is no format of fixtures: give STEP"),

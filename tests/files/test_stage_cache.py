@@ -1,12 +1,21 @@
 """What stages made is found again if nothing that it follows from has changed, and is made anew if it is damaged."""
 
+import hashlib
+import math
 import os
+import pickle
 import stat
+from pathlib import Path
+from typing import ClassVar
 
 import numpy as np
 import pytest
 
+import cad_io
+import plan_cutters
+from cad_io.errors import CacheWarning
 from plan_cutters.files import stage_cache
+from plan_cutters.files.digest import sources
 from plan_cutters.files.stage_cache import NO_CACHE, StageCache, settle
 
 
@@ -83,7 +92,61 @@ def test_what_others_may_write_is_not_read(cache, monkeypatch):
     assert made(cache, 1)[1] == 1
     cache.folder.chmod(0o777)
     monkeypatch.setenv(stage_cache.FOLDER, str(cache.folder))
-    assert StageCache.of_user() is None
+    with pytest.warns(CacheWarning, match="nobody else may write there"):
+        assert StageCache.of_user() is None
+
+
+def test_an_entry_of_another_question_is_none_under_this_name(cache):
+    """As somebody copies it, or a file system mixes up its names."""
+    made(cache, 1)
+    (one,) = entries(cache)
+    made(cache, 2, 2.0)
+    other = next(each for each in entries(cache) if each != one)
+    one.write_bytes(other.read_bytes())
+    result, calls = made(cache, 1, 3.0)
+    assert calls == 1
+    assert (result == 3.0).all()
+
+
+def test_nothing_is_unpickled(cache):
+    """Even with its checksum made anew: what would run code where it is unpickled is made again."""
+    made(cache, 1)
+    (entry,) = entries(cache)
+    content = pickle.dumps(Trap())
+    entry.write_bytes(hashlib.sha256(entry.name.encode() + content).digest() + content)
+    assert made(cache, 1)[1] == 1
+    assert not Trap.sprung
+
+
+class Trap:
+    sprung: ClassVar[list[int]] = []
+
+    def __reduce__(self):
+        return Trap.sprung.append, (1,)
+
+
+def test_nan_is_a_value_of_its_own_in_questions_and_answers(cache):
+    assert made(cache, [math.nan], math.nan)[1] == 1
+    result, calls = made(cache, [math.nan], 0.0)
+    assert calls == 0
+    assert np.isnan(result).all()
+    assert made(cache, [0.0])[1] == made(cache, [None])[1] == made(cache, [math.inf])[1] == 1
+
+
+def test_an_edit_of_any_file_of_the_program_counts(tmp_path):
+    for name in ("a/one.py", "a/page.css", "a/__pycache__/one.pyc"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("1")
+    first = sources(tmp_path / "a")
+    (tmp_path / "a/__pycache__/one.pyc").write_text("2")
+    assert sources(tmp_path / "a") == first
+    seen = {first}
+    for name in ("a/one.py", "a/page.css", "a/new.py"):
+        (tmp_path / name).write_text("2")
+        seen.add(sources(tmp_path / "a"))
+    assert len(seen) == 4
+    assert sources(tmp_path / "none") is None
+    assert sources(*(Path(each.__file__).parent for each in (cad_io, plan_cutters)))
 
 
 def test_what_may_not_be_kept_is_made_each_time(cache):

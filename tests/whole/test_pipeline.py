@@ -117,7 +117,7 @@ def test_records_print_their_shapes_and_compare_by_their_numbers():
 def test_an_option_is_declared_once():
     words = [each.name for each in fields(Options)]
     given = list(inspect.signature(plan).parameters)
-    own = ["part", "progress", "client", "verdicts", "verdicts_key", "cache"]
+    own = ["part", "progress", "cache"]
     assert given[: len(own) + len(words)] == [*own, *words]
     degrees = given[len(own) + len(words) :]
     assert all(name.endswith("_deg") and name.removesuffix("_deg") in words for name in degrees)

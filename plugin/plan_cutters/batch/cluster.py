@@ -4,7 +4,7 @@ import contextlib
 import logging
 import os
 import signal
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import Any
 
 from plan_cutters.batch import keys
@@ -137,29 +137,13 @@ def _reached(distributed: Any, address: str) -> Iterator[Any]:
 
 def _same(client: Any) -> None:
     """An error where a worker has other versions than this process."""
-    versions = client.get_versions(packages=["plan_cutters", "numba"])
-    for where, worker in versions["workers"].items():
-        if fault := differs(_flat(versions["client"]), _flat(worker)):
-            raise PlanError(f"worker {where} has {fault}: install the same on both")
-
-
-def _flat(versions: Mapping[str, Any]) -> dict[str, str]:
-    packages, host = dict(versions["packages"]), versions.get("host", {})
-    python = host.get("python") or packages.get("python")
-    return {shown: str(python if name == "python" else packages.get(name)) for shown, name in keys.COMPARED.items()}
-
-
-def differs(client: Mapping[str, str], worker: Mapping[str, str]) -> str:
-    """The first version that differs, with both named; empty where none does.
-
-    >>> differs({"numba": "0.62.0"}, {"numba": "0.61.2"})
-    'numba 0.61.2, this machine 0.62.0'
-    """
-    for name, here in client.items():
-        if worker.get(name) != here:
-            there = worker.get(name)
-            return f"{name if there not in (None, 'None') else f'no {name}'} {there}, this machine {here}".replace(" None,", ",")
-    return ""
+    here = keys.versions()
+    for where, there in client.run(keys.versions, on_error="return").items():
+        if isinstance(there, BaseException):
+            raise PlanError(f"worker {where} cannot load plan-cutters ({type(there).__name__}): install it there, as it is here")
+        for name, version in here.items():
+            if there.get(name) != version:
+                raise PlanError(f"worker {where} has {name} {there.get(name)}, this machine {version}: install the same on both")
 
 
 def facts(client: Any) -> dict[str, object]:

@@ -1,4 +1,4 @@
-"""The index of many parts: a page for people, tables for programs, and a summary, in the folder above theirs."""
+"""The index of many parts: a page for people, a table for programs, and a summary, in the folder above theirs."""
 
 import hashlib
 import math
@@ -15,14 +15,14 @@ from plan_cutters.batch.part_tools import PartTools
 from plan_cutters.batch.row import PartRow
 from plan_cutters.batch.shop_text import shop_lines
 from plan_cutters.batch.summary import OUTCOMES, BatchRun, Outcome, Summary, Table, cause, fault, outcome, summary_of
-from plan_cutters.batch.table import csv_of, parquet_of
+from plan_cutters.batch.table import csv_of
 from plan_cutters.document.build import versions
 from plan_cutters.files.markup import finite, plain, policy, template
 from plan_cutters.plan_file import numbers
 from plan_cutters.plan_file.numbers import percent
 from plan_cutters.plan_file.words.cutters import reason
 
-PAGE, CSV, PARQUET, SUMMARY = "index.html", "index.csv", "index.parquet", "summary.json"
+PAGE, CSV, SUMMARY = "index.html", "index.csv", "summary.json"
 _HERE = Path(__file__).parent
 
 
@@ -34,7 +34,7 @@ def write_index(
     Parameters
     ----------
     rows : sequence of PartRow
-        In any order: the tables have them by name, the page with failures on top.
+        In any order: the table has them by name, the page with failures on top.
     put : callable
         Called with the name of a file and its content; it lets the file appear whole or not at all, or raises.
     title : str
@@ -45,8 +45,7 @@ def write_index(
         Where it ran, as words and numbers: what is no JSON is told by its `str`.
     """
     rows = sorted((_clean(row) for row in rows), key=lambda row: (row.name, row.file, row.key))
-    made = {CSV: csv_of(rows), PARQUET: parquet_of(rows)}
-    tables = {name: data for name, data in made.items() if data is not None}
+    tables = {CSV: csv_of(rows)}
     summary = summary_of(
         rows,
         title=plain(title),

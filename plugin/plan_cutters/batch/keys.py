@@ -1,35 +1,21 @@
 """The key of a part: two runs that have the same one give the same files."""
 
-import functools
 import platform
 from dataclasses import fields
-from pathlib import Path
 
+import plan_cutters
 from cad_io.files import checksum
 from plan_cutters.batch.job import Handed, Settings
-from plan_cutters.files.digest import digest, sources
-from plan_cutters.files.stage_cache import PACKAGES, installed
-
-#: Packages whose results may differ from version to version: they count in a key, and must be the same on all machines.
-COMPARED = {"plan-cutters": "plan_cutters", "python": "python", "numba": "numba", "dask": "dask"}
-
-
-@functools.cache
-def version() -> str:
-    """Version of this program with a checksum of its sources: an edit counts, whoever forgot to raise the number."""
-    import cad_io
-    import plan_cutters
-
-    digest = sources(*(Path(str(module.__file__)).parent for module in (cad_io, plan_cutters)))
-    return f"{plan_cutters.__version__}+{digest}"
+from plan_cutters.files.digest import digest
+from plan_cutters.files.stage_cache import PACKAGES, installed, made_by
 
 
 def versions() -> dict[str, str]:
-    """The versions that must be the same on all machines of a batch."""
+    """The versions that must be the same on all machines of a batch: of this program with its checksum, for an edit counts."""
     return {
-        "plan-cutters": version(),
         "python": platform.python_version(),
-        **{name: installed(name) for name in ("numba", "dask", "distributed", "cadquery-ocp-proxy")},
+        **{name: installed(name) for name in (*PACKAGES, "dask", "distributed")},
+        "plan-cutters": f"{plan_cutters.__version__}+{made_by().hex()[:12]}",
     }
 
 
@@ -41,14 +27,7 @@ def settings_key(settings: Settings, there: Handed) -> str:
     """
     options = {each.name: getattr(settings.options, each.name) for each in fields(settings.options)}
     del options["jobs"]
-    parts = [
-        options,
-        sorted(settings.formats),
-        sorted(settings.read),
-        settings.step_schema,
-        version(),
-        [installed(name) for name in PACKAGES],
-    ]
+    parts = [options, sorted(settings.formats), sorted(settings.read), settings.step_schema, made_by()]
     return digest([parts, there.outside, *there.files]).hex()
 
 

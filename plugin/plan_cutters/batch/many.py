@@ -53,7 +53,7 @@ class Planned:
 def plan_many(
     parts: Iterable[Any], client: Any = None, *, out: str | os.PathLike[str] | None = None,
     formats: Sequence[str] = ("json",), force: bool = False, timeout_part: float | None = None,
-    limit_memory: float | None = None, verdicts_key: str | os.PathLike[str] | None = None, **options: Unpack[PlanOptions],
+    limit_memory: float | None = None, **options: Unpack[PlanOptions],
 ) -> Iterator[Planned]:  # fmt: skip
     """Plan many parts, each in a process of its own; results as they come, a failed part among them.
 
@@ -74,8 +74,6 @@ def plan_many(
         Seconds for a part.
     limit_memory : float, optional
         GB for a part.
-    verdicts_key : path, optional
-        File with a key (`files.seal`): what nobody with this key wrote into `out` is not taken, but planned again.
     **options
         As of `plan`; `jobs` is 1 unless it is given.
 
@@ -95,9 +93,10 @@ def plan_many(
     from plan_cutters.batch import cluster
     from plan_cutters.batch.run import Terms, outcomes
     from plan_cutters.batch.store import Store
-    from plan_cutters.files.seal import key_of
+    from plan_cutters.files.folder import refuse_memory
     from plan_cutters.report.folder import read_formats
 
+    refuse_memory(os.fspath(out or ""))
     if isinstance(parts, str | os.PathLike):
         raise OptionError("parts is one path: give a list of parts, or use the command `batch` for folders")
     if isinstance(parts, Sequence) and not parts:
@@ -107,8 +106,7 @@ def plan_many(
     settings = Settings(
         base, tuple(dict.fromkeys(("json", *read_formats(",".join(formats))))), read=tuple(filter(None, files.values()))
     )
-    secret = None if verdicts_key is None else key_of(os.fspath(verdicts_key))
-    store = None if out is None else Store(os.fspath(out), secret)
+    store = None if out is None else Store(os.fspath(out))
     token = store.begin() if store else ""
     with contextlib.ExitStack() as stack:
         if store:
@@ -118,7 +116,7 @@ def plan_many(
             count, memory = cluster.workers_of(None, memory, settings.options.jobs)
             client = stack.enter_context(cluster.opened(None, count))
         faults: list[PartRow] = []
-        terms = Terms(force, timeout_part, memory, secret)
+        terms = Terms(force, timeout_part, memory)
         jobs = _jobs(parts, settings, terms, faults)
         for outcome in outcomes(jobs, client, terms, out=store, token=token):
             yield Planned(outcome.row, dict(outcome.files), None if store is None else store.root_url)

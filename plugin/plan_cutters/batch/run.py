@@ -6,18 +6,17 @@ import queue
 import secrets
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from plan_cutters.batch import cluster as clusters
 from plan_cutters.batch import keys
-from plan_cutters.batch.content import content
 from plan_cutters.batch.job import UNREADABLE, USAGE, Fault, Handed, Job, Settings, handed
 from plan_cutters.batch.row import PartRow
 from plan_cutters.batch.store import Store
 from plan_cutters.batch.work import Outcome, Task, cached, content_of, work
 from plan_cutters.errors import PlanError
-from plan_cutters.files.folder import in_memory, read
+from plan_cutters.files.folder import read, refuse_memory
 
 #: Tasks in flight for each thread of the cluster, and at least so many: the next one is there when a thread is free.
 _QUEUED, _LEAST = 2, 8
@@ -47,14 +46,11 @@ class Terms:
         Seconds for a part.
     memory : float, optional
         Bytes for a part.
-    secret : bytes, optional
-        Seals what is kept in the output (`files.seal`).
     """
 
     force: bool = False
     timeout: float | None = None
     memory: float | None = None
-    secret: bytes | None = None
     packed: dict[int, tuple[Settings, Handed, str]] = field(default_factory=dict)
 
     def of(self, settings: Settings) -> tuple[Handed, str]:
@@ -127,35 +123,24 @@ def outcomes(
     if total is None and isinstance(jobs, Sequence):
         total = len(jobs)
     versions = keys.versions()
-    travels = out is not None and in_memory(out.url)
-    where = None if out is None or travels else out.root_url
+    where = None if out is None else out.root_url
     faulty: list[Outcome] = []
 
     def tasks() -> Iterator[Task]:
         for job in jobs:
             try:
+                refuse_memory(job.file)
                 there, key = terms.of(job.settings)
-                here = content(job.file) if in_memory(job.file) else None
-                task = Task(job.name, job.file, here, job.part, there,
-                            _words(job.settings, terms), key, where, token, terms.force, terms.timeout, versions,
-                            job.file if "://" in job.file else os.path.abspath(job.file), terms.secret)  # fmt: skip
-                if travels and out is not None and not terms.force and (row := _cached(task, out)):
-                    faulty.append(Outcome(row, {}))
-                    continue
             except PlanError as error:
                 faulty.append(Outcome(_failed(job, str(error), USAGE), {}))
                 continue
-            yield task
+            yield Task(job.name, job.file, job.part, there,
+                       _words(job.settings, terms), key, where, token, terms.force, terms.timeout, versions,
+                       job.file if "://" in job.file else os.path.abspath(job.file))  # fmt: skip
 
     for task, outcome in handed_out(client, tasks(), work, board=board, total=total):
         if isinstance(outcome, BaseException):
             yield Outcome(_failed(task, _lost_worker(task, outcome), UNREADABLE), {})
-        elif travels and out is not None and outcome.files:
-            try:
-                out.publish(task.folder, dict(outcome.files), outcome.row)
-                yield replace(outcome, files={})
-            except PlanError as error:
-                yield Outcome(_failed(task, str(error), USAGE), {})
         else:
             yield outcome
         while faulty:
@@ -311,10 +296,6 @@ def _words(settings: Settings, terms: Terms) -> tuple[str, ...]:
     return (*words, *(() if terms.memory is None else ("--memory", repr(terms.memory / 1e9))))
 
 
-def _cached(task: Task, out: Store) -> PartRow | None:
-    return cached(out, task.folder, keys.key(content_of(task).key, task.settings), task.name, task.file)
-
-
 def foreseen(parts: Iterable[Job | Fault], out: Store, terms: Terms) -> Iterator[PartRow]:
     """Say of each part what a run would do, and do nothing: `planned` with no verdict yet, `kept` or `failed`."""
     for part in parts:
@@ -323,8 +304,9 @@ def foreseen(parts: Iterable[Job | Fault], out: Store, terms: Terms) -> Iterator
             continue
         try:
             there, key = terms.of(part.settings)
-            task = Task(part.name, part.file, None, part.part, there, (), key, out.url, "", False, None, {})
-            row = None if terms.force else _cached(task, out)
+            task = Task(part.name, part.file, part.part, there, (), key, out.url, "", False, None, {})
+            key = keys.key(content_of(task).key, task.settings)
+            row = None if terms.force else cached(out, task.folder, key, task.name, task.file)
             if row is None:
                 read(part.file) if part.part is None and terms.force else None
             yield row or PartRow(name=part.name, file=part.file, status="planned", code=0)

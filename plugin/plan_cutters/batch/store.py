@@ -4,18 +4,22 @@ On this machine the folder of a part is made aside and takes its place by renami
 there the marker of a part is removed first and written last, so that a part without one is not done, whatever files lie there.
 """
 
+import contextlib
+import functools
 import json
 import os
 import secrets
 import shutil
+import tempfile
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
+from cad_io.files import checksum, open_regular
 from plan_cutters.batch.row import PartRow
 from plan_cutters.errors import PlanError
 from plan_cutters.files.folder import Folder, cause, checksum_of
 from plan_cutters.files.lock import Lock
-from plan_cutters.files.seal import seal
 
 #: In the folder of a part that is done: its row, and the checksums of its files.
 MARKER = "done.json"
@@ -32,8 +36,6 @@ class Store(Folder):
     ----------
     url : str
         Path or URL of its folder.
-    key : bytes, optional
-        Seals the markers of parts: one without its seal is none (`files.seal`).
 
     Raises
     ------
@@ -41,9 +43,9 @@ class Store(Folder):
         There is no such file system.
     """
 
-    def __init__(self, url: str, key: bytes | None = None) -> None:
+    def __init__(self, url: str) -> None:
         super().__init__(url)
-        self._key, self._token = key, ""
+        self._token = ""
         self._lock: Lock | None = None
 
     def begin(self) -> str:
@@ -99,14 +101,16 @@ class Store(Folder):
             raise PlanError(cause(error, "written"), file=f"{self.url}/{name}") from None
 
     def row(self, folder: str) -> PartRow | None:
-        """The row of a part that is done: None where it is not, or where one of its files is no longer there as it was."""
-        content = self._content(f"{folder}/{MARKER}")
+        """The row of a part that is done: None where it is not, where one of its files is no longer there as it was, or where
+        another user of this machine or share wrote it.
+        """
+        content = self._content(f"{folder}/{MARKER}", mine=True)
         if content is None:
             return None
         try:
             marker = json.loads(content)
             row, files = PartRow(**marker["row"]), dict(marker["sha256"])
-            if marker["seal"] != seal(marker, self._key) or not files:
+            if not files or marker["seal"] != _seal(marker):
                 return None
             if all(self.checksum(f"{folder}/{name}") == sha256 for name, sha256 in files.items()):
                 return row
@@ -124,7 +128,7 @@ class Store(Folder):
         """
         try:
             options = {"row": row.model_dump(mode="json"), "sha256": {name: checksum_of(what) for name, what in files.items()}}
-            marker = json.dumps(options | {"seal": seal(options, self._key)}, indent=1).encode()
+            marker = json.dumps(options | {"seal": _seal(options)}, indent=1).encode()
             if self.local:
                 self._rename(folder, files, marker)
             else:
@@ -144,6 +148,8 @@ class Store(Folder):
                 else:
                     (new / name).write_bytes(what)
             (new / MARKER).write_bytes(marker)
+            with contextlib.suppress(OSError):  # some shares have no rights of files
+                (new / MARKER).chmod(0o644)
             target.parent.mkdir(parents=True, exist_ok=True)
             if target.exists():
                 os.rename(target, old)
@@ -161,8 +167,25 @@ class Store(Folder):
             self.remove(f"{folder}/{name}")
         super().put(f"{folder}/{MARKER}", marker)
 
-    def _content(self, name: str) -> bytes | None:
+    def _content(self, name: str, *, mine: bool = False) -> bytes | None:
         try:
+            if mine and self.local:
+                with open_regular(self._at(name)) as file:
+                    if os.fstat(file.fileno()).st_uid != self._user:
+                        return None
+                    return file.read(_MARKER_BYTES)
             return self.get(name, _MARKER_BYTES)
-        except (OSError, PlanError):
+        except (OSError, ValueError, PlanError):
             return None
+
+    @functools.cached_property
+    def _user(self) -> int:
+        """The owner of what this process writes there: on a share it may be another one than the user of this process."""
+        with contextlib.suppress(OSError), tempfile.TemporaryFile(dir=self.root) as probe:
+            return os.fstat(probe.fileno()).st_uid
+        return int(getattr(os, "getuid", int)())
+
+
+def _seal(marker: Mapping[str, Any]) -> str:
+    """The checksum of a marker, all but its own entry `seal`."""
+    return checksum(json.dumps({name: value for name, value in marker.items() if name != "seal"}, sort_keys=True).encode())

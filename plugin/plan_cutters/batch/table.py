@@ -1,13 +1,11 @@
-"""The rows of all parts as tables for programs and spreadsheets: `index.csv` and `index.parquet`, the same columns in both."""
+"""The rows of all parts as a table for programs and spreadsheets: `index.csv`."""
 
 import csv
 import io
 import math
 import re
-import types
 from collections.abc import Sequence
-from importlib.util import find_spec
-from typing import Any, Literal, Union, get_args, get_origin
+from typing import Any
 
 from plan_cutters.batch.row import PartRow
 from plan_cutters.batch.summary import cause, outcome
@@ -20,10 +18,9 @@ _FIRST = ("name", "file", "outcome")
 _NESTED = frozenset({"tools"})
 
 
-def columns() -> dict[str, type]:
-    """The columns in their order: name -> str, int or float."""
-    fields = {name: _kind(field.annotation) for name, field in PartRow.model_fields.items() if name not in _NESTED}
-    return {**{name: fields.get(name, str) for name in _FIRST}, **fields}
+def columns() -> list[str]:
+    """The columns in their order."""
+    return list(dict.fromkeys((*_FIRST, *(name for name in PartRow.model_fields if name not in _NESTED))))
 
 
 def values(row: PartRow) -> dict[str, Any]:
@@ -48,32 +45,5 @@ def csv_of(rows: Sequence[PartRow]) -> bytes:
     return text.getvalue().encode()
 
 
-def parquet_of(rows: Sequence[PartRow]) -> bytes | None:
-    """The table for columnar engines, texts as they are; None where pyarrow is not installed."""
-    if find_spec("pyarrow") is None:
-        return None
-    import pyarrow
-    from pyarrow import parquet
-
-    types_of = {str: pyarrow.string(), int: pyarrow.int64(), float: pyarrow.float64()}
-    schema = pyarrow.schema([(name, types_of[kind]) for name, kind in columns().items()])
-    sink = io.BytesIO()
-    parquet.write_table(pyarrow.Table.from_pylist([values(row) for row in rows], schema=schema), sink)
-    return sink.getvalue()
-
-
 def _guarded(cell: Any) -> Any:
     return f"'{cell}" if isinstance(cell, str) and _FORMULA.match(cell) else cell
-
-
-def _kind(annotation: Any) -> type:
-    """The type of a field's values, whether they may be missing or not."""
-    origin = get_origin(annotation)
-    if origin is Literal:
-        return type(get_args(annotation)[0])
-    if origin in (Union, types.UnionType):
-        (kind,) = (each for each in get_args(annotation) if each is not type(None))
-        return _kind(kind)
-    if annotation not in (str, int, float):
-        raise TypeError(f"no column can hold {annotation}")
-    return annotation

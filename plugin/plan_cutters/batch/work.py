@@ -15,10 +15,9 @@ from typing import TYPE_CHECKING, Any
 from plan_cutters.batch import keys, store
 from plan_cutters.batch.content import Content, content
 from plan_cutters.batch.job import UNREADABLE, USAGE, Handed
-from plan_cutters.batch.job_input import JobInput, Offer
 from plan_cutters.batch.row import PartRow
 from plan_cutters.errors import PlanError
-from plan_cutters.workers.assignment import INTERRUPTED, TIMED_OUT, Assignment
+from plan_cutters.workers.assignment import INTERRUPTED, TIMED_OUT, Assignment, JobInput
 from plan_cutters.workers.child import Child, can_supervise, compiler
 from plan_cutters.workers.supervise import WRITING
 
@@ -26,8 +25,6 @@ if TYPE_CHECKING:
     from plan_cutters.plan_file.model import Plan
 
 PLAN = "plan.json"
-#: Folder of the output with the verdicts of each cutter on each part.
-VERDICTS = ".verdicts"
 #: Exit codes with which a plan is there.
 _PLANNED = (0, 1, 4)
 #: How often a child is looked after, s, and how long it may take to end in order.
@@ -44,8 +41,6 @@ class Task:
     ----------
     name, file : str
         As of the `Job`.
-    content : Content, optional
-        Of the file, where workers cannot read it.
     part : bytes, optional
         The pickled part, where it is no file.
     handed : Handed
@@ -64,13 +59,10 @@ class Task:
         Of where the batch was begun.
     source : str
         The file as workers find it, in whatever folder they run.
-    secret : bytes, optional
-        Seals what is kept in the output (`files.seal`).
     """
 
     name: str
     file: str
-    content: Content | None
     part: bytes | None
     handed: Handed
     words: tuple[str, ...]
@@ -82,7 +74,6 @@ class Task:
     versions: Mapping[str, str]
 
     source: str = ""
-    secret: bytes | None = None
 
     @property
     def folder(self) -> str:
@@ -128,7 +119,7 @@ def work(task: Task) -> Outcome:
     try:
         if why := _unfit(task.versions):
             return unfit(why)
-        output = None if task.store is None else store.Store(task.store, task.secret)
+        output = None if task.store is None else store.Store(task.store)
         if output is not None and not output.seen(task.token):
             return unfit(
                 f"{_here()}: this worker does not see {task.store} (give a folder that all machines share, or a URL), "
@@ -173,7 +164,7 @@ def content_of(task: Task) -> Content:
     PlanError
         It cannot be read.
     """
-    return Content(task.part) if task.part else task.content or content(task.source or task.file)
+    return Content(task.part) if task.part else content(task.source or task.file)
 
 
 def cached(output: store.Store, folder: str, key: str, name: str, file: str) -> PartRow | None:
@@ -262,21 +253,6 @@ def _wanted() -> Callable[[], bool]:
     return wanted
 
 
-def _offered(folder: Path) -> Offer | None:
-    """The cluster of this worker, for a part that turns out to be large; None where another process cannot reach it."""
-    worker = _worker()
-    if worker is None or not worker.scheduler.address.startswith("tcp://"):
-        return None
-    return Offer(worker.scheduler.address, str(Path(worker.local_directory, "large-part")), str(folder / ".lent"))
-
-
-def _free_memory() -> None:
-    """Give this task's place at the worker to another one: it only waits while others judge for it."""
-    from distributed import secede
-
-    secede()
-
-
 def planned(task: Task, content: Content, folder: Path) -> tuple[int, str]:
     """Run the command in a folder; its exit code, and the last line that it said."""
     name = PurePosixPath(task.file.replace("\\", "/")).name or "part"
@@ -288,13 +264,9 @@ def planned(task: Task, content: Content, folder: Path) -> tuple[int, str]:
             return USAGE, f"{task.file}: a fixture's file is called like the part: rename one"
         there.parent.mkdir(parents=True, exist_ok=True)
         there.write_bytes(data)
-    offer = _offered(folder)
-    handed = JobInput(task.handed.options, task.part, offer, task.secret)
+    handed = JobInput(task.handed.options, task.part)
     (folder / ".handed").write_bytes(pickle.dumps(handed, protocol=5))
     words = ["-m", "plan_cutters", "plan", f"./{name}", "-o", "out", "--quiet", *task.words]
-    if task.store is not None:
-        # A cutter that joins later is judged alone: the verdicts of the others are there.
-        words += ["--verdicts", f"{task.store.rstrip('/')}/{VERDICTS}"]
     limit = float("inf")
     if task.timeout:
         limit = task.timeout
@@ -306,7 +278,6 @@ def planned(task: Task, content: Content, folder: Path) -> tuple[int, str]:
     with open(folder / ".said", "wb") as log:
         knows = Assignment(parent=os.getpid(), job=str(folder / ".handed"))
         child = Child(words, knows, cwd=folder, stdin=subprocess.DEVNULL, stdout=log, stderr=log)
-    shared = False
     try:
         ends = time.monotonic() + limit
         while (code := child.ended(_LOOK)) is None:
@@ -314,9 +285,6 @@ def planned(task: Task, content: Content, folder: Path) -> tuple[int, str]:
                 return TIMED_OUT, _out_of_time(task)
             if not wanted():
                 return INTERRUPTED, f"{task.file}: interrupted"
-            if offer is not None and not shared and os.path.exists(offer.said):
-                _free_memory()
-                shared = True
     finally:
         child.end(_GRACE)
     log_lines = (folder / ".said").read_text(encoding="utf-8", errors="replace").strip().splitlines()

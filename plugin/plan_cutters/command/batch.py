@@ -99,7 +99,7 @@ _many = heading("Many parts")
 )
 @_many("--force", brief=True, is_flag=True, help="Plan again what is done already.")
 @_many("--dry-run", brief=True, is_flag=True, help="Say what would be planned, and do nothing.")
-@options("no_cache", "verdicts_key", "read_timeout", "debug", jobs={"help": "Threads of each part.  [default: 1]"})
+@options("no_cache", "read_timeout", "debug", jobs={"help": "Threads of each part.  [default: 1]"})
 @takes(BatchRequest)
 def command(request: BatchRequest) -> int:
     """Plan many parts: files, folders, globs, lists, and manifests (TOML, CSV) with options of each part; here or at URLs.
@@ -111,7 +111,6 @@ def command(request: BatchRequest) -> int:
     from plan_cutters.batch.run import Terms
     from plan_cutters.batch.store import Store
     from plan_cutters.errors import OptionError
-    from plan_cutters.files.seal import key_of
 
     if (files := request.case_files) is not None:
         files.check()
@@ -136,9 +135,8 @@ def command(request: BatchRequest) -> int:
         raise OptionError("--limit-memory must be at least 2 GB")
     if request.cluster is not None and request.workers is not None:
         raise OptionError("--workers is about this machine: leave it out with --cluster")
-    secret = None if request.verdicts_key is None else key_of(request.verdicts_key)
-    out = Store(request.out, secret)
-    terms = Terms(request.force, request.timeout_part, memory, secret)
+    out = Store(request.out)
+    terms = Terms(request.force, request.timeout_part, memory)
     if request.dry_run:
         return _foreseen(parts, out, terms)
     return _all(parts, out, terms, request, fail_on)
@@ -152,15 +150,10 @@ def main(args: Sequence[str] | None = None, name: str = _SELF) -> NoReturn:
 def _seen_by_workers(request: BatchRequest) -> None:
     """Refuse parts and an output that no worker could reach, before anything is begun."""
     from plan_cutters.command.validation import scheduler, writable
-    from plan_cutters.errors import OptionError
-    from plan_cutters.files.folder import in_memory
+    from plan_cutters.files.folder import refuse_memory
 
     for word in (*request.sources, request.out):
-        if in_memory(word):
-            raise OptionError(
-                "memory:// is the memory of one process, and each part has its own: give a folder, or a URL that all reach",
-                file=word,
-            )
+        refuse_memory(word)
     if request.cluster is not None:
         scheduler(request.cluster)
     if "://" not in request.out and not request.dry_run:

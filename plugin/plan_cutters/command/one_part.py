@@ -1,17 +1,16 @@
 """One part: planned, written, summarised."""
 
+import copy
 import gc
 import pickle
 import signal
 import time
 import traceback
-from collections.abc import Callable, Iterator, Mapping
-from contextlib import ExitStack, closing, contextmanager
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from plan_cutters.batch.job_input import default_density, job_input
 from plan_cutters.command import terminal
 from plan_cutters.command.codes import UNREADABLE, code_of, held_interrupts, is_interrupt
 from plan_cutters.command.partial_plan import remaining_text, verdicts_text
@@ -19,7 +18,7 @@ from plan_cutters.command.progress import Display, Teller
 from plan_cutters.command.summary import summary, written
 from plan_cutters.plan_file.words.details import others
 from plan_cutters.plan_file.words.names import called
-from plan_cutters.workers.assignment import INTERRUPTED, assignment, is_child, report, report_work
+from plan_cutters.workers.assignment import INTERRUPTED, assignment, is_child, job_input, report, report_work
 
 if TYPE_CHECKING:
     from plan_cutters.command.part_cases import PartCases
@@ -27,7 +26,6 @@ if TYPE_CHECKING:
     from plan_cutters.options import Options
     from plan_cutters.plan_file.model import Plan
     from plan_cutters.result import Result
-    from plan_cutters.stages.judge import Judge
 
 
 def one_part(
@@ -76,25 +74,24 @@ def one_part(
         interim = Interim(clock, stands if staging else None, lambda: report("stands", ""))
         handed = job_input().part
         source = pickle.loads(handed) if handed else part
-        with _judging(request) as judged:
-            planned = partial(run, source, clock=clock, read_timeout=request.read_timeout, at=report_work, compiling=compiling,
-                              excluded=omitted, judged=judged, interim=interim,
-                              folder=_folder(out), cache=StageCache.of_user() if request.cache else None)  # fmt: skip
-            try:
-                result = planned(options)
-            except TooManySamplesError:
-                if assignment().job is None:
-                    raise
-                # One density for all parts of a batch asks too much of this one: its row says so (`batch.work.coarser`).
-                from plan_cutters.document.notes import noted_coarser
+        planned = partial(run, source, clock=clock, read_timeout=request.read_timeout, at=report_work, compiling=compiling,
+                          excluded=omitted, interim=interim,
+                          folder=_folder(out), cache=StageCache.of_user() if request.cache else None)  # fmt: skip
+        try:
+            result = planned(options)
+        except TooManySamplesError:
+            if assignment().job is None:
+                raise
+            # One density for all parts of a batch asks too much of this one: its row says so (`batch.work.coarser`).
+            from plan_cutters.document.notes import noted_coarser
 
-                result = planned(default_density(options), remark=partial(noted_coarser, options))
-            except (Exception, KeyboardInterrupt) as error:
-                if not is_interrupt(error) or (stood := interim.interrupted(watch.tell.work)) is None:
-                    raise
-                result = stood
-                interrupts.append(signal.SIGINT)
-                watch.judged = lambda plan, code: None  # a report on this part says that it was interrupted
+            result = planned(_default_density(options), remark=partial(noted_coarser, options))
+        except (Exception, KeyboardInterrupt) as error:
+            if not is_interrupt(error) or (stood := interim.interrupted(watch.tell.work)) is None:
+                raise
+            result = stood
+            interrupts.append(signal.SIGINT)
+            watch.judged = lambda plan, code: None  # a report on this part says that it was interrupted
         document = result.plan
         if out is None:
             watch.judged(document, code_of(document, request.fail_under))
@@ -160,34 +157,12 @@ def _compiling(options: "Options", quiet: bool) -> Callable[[str], None]:
     return wait or (lambda entry: None)
 
 
-@contextmanager
-def _judging(request: "PlanRequest") -> "Iterator[Judge]":
-    """What judges the cutters, with the cluster and the kept verdicts that were requested; it says what came of these."""
-    from plan_cutters.batch.one import judging
-    from plan_cutters.files.seal import key_of
-
-    with ExitStack() as stack:
-        client = None
-        if request.cluster is not None:
-            from plan_cutters.batch import cluster
-
-            client = stack.enter_context(cluster.opened(request.cluster))
-        shared = None
-        if (offer := job_input().offer) is not None:
-            from plan_cutters.batch.shared_cluster import SharedCluster
-
-            shared = stack.enter_context(closing(SharedCluster(offer)))
-        key = job_input().key if request.verdicts_key is None else key_of(request.verdicts_key)
-        judged = judging(client, request.verdicts, shared, key)
-        yield judged
-    if request.verdicts is not None:
-        from plan_cutters.batch.verdicts import VerdictCache
-
-        assert isinstance(judged, VerdictCache)
-        for fault in judged.faults:
-            terminal.error(f"plan-cutters: {fault}")
-        if not request.quiet:
-            terminal.say(f"Verdicts: {judged.found} reused, {judged.judged} judged now.")
+def _default_density(options: "Options") -> "Options":
+    """The same options with the default density of samples, in place of a spacing or a grid: a copy past the checks."""
+    made = copy.copy(options)
+    for word in ("spacing", "grid"):
+        object.__setattr__(made, word, None)
+    return made
 
 
 class ProgressListener:

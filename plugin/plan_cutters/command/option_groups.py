@@ -331,23 +331,6 @@ _OPTIONS = (
         help="Neither use nor keep what stages made of a part: mesh, trees, samples, verdicts, in the user's cache folder.",
     ),
     _run(
-        "--cluster",
-        metavar="ADDRESS",
-        help="A running Dask scheduler, as tcp://HOST:8786, whose workers judge the samples of a large part, too.",
-    ),
-    _run(
-        "--verdicts",
-        type=Folder("DIR"),
-        help="Folder or URL (s3://...) in which the verdicts of each cutter are stored: with another cutter, only "
-        "that one is judged.",
-    ),
-    _run(
-        "--verdicts-key",
-        type=File("FILE"),
-        help="File with a key of 16 bytes or more that seals stored verdicts: those that nobody with this key wrote are not "
-        "taken.",
-    ),
-    _run(
         "--read-timeout",
         type=float,
         default=120.0,

@@ -100,8 +100,6 @@ class PlanningRequest(JudgingRequest):
     formats: str | None
     step_schema: str
     cache: bool
-    cluster: str | None
-    verdicts_key: str | None
     read_timeout: float
 
 
@@ -132,7 +130,6 @@ class PlanRequest(PlanningRequest, Reported):
     out: str | None
     json_out: str | None
     verbose: bool
-    verdicts: str | None
     fail_under: float | None
     timeout: float | None
     memory: float | None
@@ -144,6 +141,7 @@ class BatchRequest(PlanningRequest, Reported):
 
     sources: tuple[str, ...]
     out: str
+    cluster: str | None
     workers: int | None
     timeout_part: float | None
     limit_memory: float | None

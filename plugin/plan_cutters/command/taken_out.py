@@ -8,6 +8,9 @@ TAKEN_OUT: dict[str, str] = {
     "--formats plans": "leave it out; STEP and GLB of both plans are written with --operations both",
     "--answers stick-out-map": "give --answers stick-out; in Python, result.face(F1, stick_out=True) is about a face",
     "--answers mend-all": "give --answers mend, for the three nearest cutters, and plan with another one alone to ask for it",
+    "--cluster": "one part is judged here; `plan-cutters batch PART... --out DIR --cluster ADDRESS` plans whole parts on others",
+    "--verdicts": "leave it out: verdicts are stored in the user's cache folder, with all else of a part (PLAN_CUTTERS_CACHE)",
+    "--verdicts-key": "leave it out: what is stored in a folder that others may write to is not read",
 }
 
 

@@ -93,16 +93,8 @@ def _words(request: PlanRequest) -> None:
         refuse_unplanned_operations(request)
     if request.check_operations is not None and not os.path.isfile(request.check_operations):
         raise OptionError("no such file: give the plan.json of a plan of operations", file=request.check_operations)
-    if request.cluster is not None:
-        scheduler(request.cluster)
     if not 0.0 < request.read_timeout < math.inf:
         raise OptionError("--read-timeout must be a positive number of seconds")
-    if request.verdicts_key is not None:
-        from plan_cutters.files.seal import key_of
-
-        if request.verdicts is None:
-            raise OptionError("--verdicts-key seals stored verdicts: give it with --verdicts, or leave it out")
-        key_of(request.verdicts_key)
     if request.fail_under is not None and not 0.0 < request.fail_under <= 100.0:
         raise OptionError("--fail-under must be a percentage above 0 and up to 100")
     if request.timeout is not None and not 0.0 < request.timeout < math.inf:
@@ -146,10 +138,9 @@ def _plans_nothing(request: PlanRequest) -> None:
     word = "--check-operations"
     if any(str(each).lower() == "auto" for each in request.setup):
         raise OptionError(f"--setup auto plans what it proposes, and {word} plans nothing: name the setup")
-    planning = [each for each in ("cluster", "verdicts", "verdicts_key", "junit", "sarif") if getattr(request, each) is not None]
+    planning = [each for each in ("junit", "sarif") if getattr(request, each) is not None]
     if planning:
-        one = planning[0].replace("_", "-")
-        raise OptionError(f"--{one} is about planning, and {word} plans nothing: leave one of them out")
+        raise OptionError(f"--{planning[0]} is about planning, and {word} plans nothing: leave one of them out")
     if len(request.parts) > 1:
         raise OptionError(f"{word} is about one part")
 
@@ -181,7 +172,7 @@ def refuse_unplanned_operations(request: PlanningRequest) -> None:
 def _faults(parts: Sequence[str]) -> list[CadIoError]:
     """Why parts cannot be read, as far as their first bytes tell."""
     from cad_io.read.sniff import kind
-    from plan_cutters.batch.job_input import job_input
+    from plan_cutters.workers.assignment import job_input
 
     errors: list[CadIoError] = []
     for part in () if job_input().part else parts:
@@ -244,8 +235,8 @@ def options_of(request: PlanningRequest) -> "Options":
     """The options of a plan, from the words of the command line; a PlanError for what has no meaning."""
     import pickle
 
-    from plan_cutters.batch.job_input import job_input
     from plan_cutters.options import Options
+    from plan_cutters.workers.assignment import job_input
 
     # A batch has looked at its words already, perhaps on another machine.
     handed = job_input().options

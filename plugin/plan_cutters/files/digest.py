@@ -10,14 +10,15 @@ from typing import Any
 import numpy as np
 
 
-def sources(*folders: Path) -> str:
-    """A short checksum of all Python sources in some folders, with their names."""
-    paths = [
-        (f"{home.name}/{source.relative_to(home).as_posix()}", source.read_bytes())
+def sources(*folders: Path) -> bytes | None:
+    """A checksum of all files in some folders, with their names, but for what Python makes of them; None where there are none."""
+    files = {
+        f"{home.name}/{file.relative_to(home).as_posix()}": file.read_bytes()
         for home in folders
-        for source in sorted(home.rglob("*.py"))
-    ]
-    return digest(paths).hex()[:12]
+        for file in home.rglob("*")
+        if "__pycache__" not in file.parts and file.is_file()
+    }
+    return digest(files) if files else None
 
 
 def digest(value: Any) -> bytes:

@@ -36,9 +36,17 @@ def file_system(url: str) -> tuple[Any, str]:
     return fs, path
 
 
-def in_memory(url: str) -> bool:
-    """Whether a URL names the memory of this process, which no worker sees: its content travels with the task."""
-    return url.startswith("memory://")
+def refuse_memory(url: str) -> None:
+    """Refuse a URL that names the memory of this process, which no worker sees.
+
+    Raises
+    ------
+    PlanError
+    """
+    if url.startswith("memory://"):
+        raise PlanError(
+            "memory:// is the memory of one process, and each part has its own: give a folder, or a URL that all reach", file=url
+        )
 
 
 def read(url: str) -> bytes:

@@ -1,29 +1,31 @@
 """Results of stages are kept for the next question about a part: in the cache folder of this user, by all that they follow from.
 
-An entry's name is a checksum of the stage, of what the stage was given, and of this program and its packages. What is read back
-has the checksum that it was written with, so what a full disk or a power cut damaged is made again; what cannot be written
-costs time alone. Only what lies in a folder of this user, which nobody else may write to, is read: it is unpickled.
+It is the one store of kept work. An entry's name is a checksum of the stage, of what the stage was given, and of this program and
+its packages. What is read back has the checksum, over its name too, that it was written with: what a full disk or a power cut
+damaged, and what belongs to another name, is made again; what cannot be written costs time alone. Entries are arrays and JSON.
+Only what lies in a folder of this user, which nobody else may write to, is read: whoever may write there may give any answer.
 """
 
 import contextlib
 import functools
 import hashlib
 import os
-import pickle
-import stat
 import time
+import warnings
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
-from typing import Any, BinaryIO, Self, TypeVar, cast
+from typing import Any, Self, TypeVar, cast
 
+import cad_io
 import plan_cutters
-from cad_io.fingerprint import fingerprint
-from cad_io.user_cache import roots, writable
+from cad_io.errors import CacheWarning
+from cad_io.user_cache import own, roots, writable
 from cad_io.whole import whole
-from plan_cutters.files.digest import digest
+from plan_cutters.files.digest import digest, sources
+from plan_cutters.files.packed import packed, unpacked
 
 Made = TypeVar("Made")
 
@@ -55,16 +57,23 @@ class StageCache:
 
     @classmethod
     def of_user(cls) -> Self | None:
-        """The cache of this user; None where nothing is to be kept, or no folder is safe and can be written."""
+        """The cache of this user; None where nothing is to be kept, or no folder is safe and can be written.
+
+        A folder that was named and is refused is warned of.
+        """
         named, size = os.environ.get(FOLDER), os.environ.get(SIZE, "")
         if named == "" or (size and not size.isdecimal()):
             return None
-        most = int(size) << 20 if size else MOST
+        if not (most := int(size) << 20 if size else MOST):
+            return None
         for folder in [Path(named)] if named else [root / "stages" for root in roots()]:
             with contextlib.suppress(OSError):
                 folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-                if most and writable(folder) and _mine(folder.stat()):
+                if writable(folder) and own(folder.stat()):
                     return cls(folder, most)
+        if named:
+            why = "it must be yours, and nobody else may write there"
+            warnings.warn(f"{FOLDER} {named}: the folder is not used: {why}", CacheWarning, stacklevel=2)
         return None
 
     def cached(
@@ -103,13 +112,15 @@ class StageCache:
         with contextlib.suppress(Exception), whole(path) as temporary, temporary.open("r+b") as file:
             # By its owner alone.
             os.chmod(temporary, 0o600)
-            summed = _Summed(file)
+            state = hashlib.sha256(path.name.encode())
             file.write(bytes(_CHECKSUM))
-            pickle.dump(result, summed, protocol=5)
+            for piece in packed(result):
+                state.update(piece)
+                file.write(piece)
             if file.tell() > self.most:
                 raise OSError("an entry larger than the cache")
             file.seek(0)
-            file.write(summed.state.digest())
+            file.write(state.digest())
         self._trim()
 
     def _trim(self) -> None:
@@ -167,48 +178,33 @@ def settle() -> None:
     _writer().submit(lambda: None).result()
 
 
-class _Summed:
-    """A file that adds up a checksum of what is written to it."""
-
-    def __init__(self, file: BinaryIO) -> None:
-        self.file, self.state = file, hashlib.sha256()
-
-    def write(self, piece: Any) -> int:
-        self.state.update(piece)
-        return self.file.write(piece)
-
-
 def _read(path: Path) -> tuple[Any] | None:
     """An entry as it was written, in a tuple of its own; None where there is none, or it is damaged."""
     try:
         with path.open("rb") as file:
-            if not _mine(os.fstat(file.fileno())):
+            status = os.fstat(file.fileno())
+            if not own(status):
                 return None
-            checksum, content = file.read(_CHECKSUM), file.read()
-        if hashlib.sha256(content).digest() != checksum:
+            checksum, content = file.read(_CHECKSUM), bytearray(max(0, status.st_size - _CHECKSUM))
+            file.readinto(content)
+        state = hashlib.sha256(path.name.encode())
+        state.update(content)
+        if state.digest() != checksum:
             path.unlink(missing_ok=True)
             return None
         os.utime(path)
-        return (pickle.loads(content),)
+        return (unpacked(content),)
     except Exception:
         # Whatever is wrong with it, it is made again.
         return None
 
 
-def _mine(status: os.stat_result) -> bool:
-    """Whether only this user can have written what a file or folder holds."""
-    return not hasattr(os, "getuid") or (status.st_uid == os.getuid() and not status.st_mode & (stat.S_IWGRP | stat.S_IWOTH))
-
-
 @functools.cache
 def made_by() -> bytes:
-    """A checksum of this program, by what its sources mean, and of the packages that results may differ with."""
-    home = Path(str(plan_cutters.__file__)).parent
-    notes = next((root / "sources" for root in roots() if writable(root)), None)
-    ours = frozenset({"plan_cutters", "cad_io"})
-    sources = fingerprint("plan_cutters.pipeline", "plan_cutters", str(home / "pipeline.py"), ours, notes)
-    # Without sources there is nothing to tell one program from another: then nothing is found again.
-    return digest([sources or os.urandom(16), [installed(name) for name in PACKAGES]])
+    """A checksum of this program, all files of its packages, and of the packages that results may differ with."""
+    # Without files there is nothing to tell one program from another: then nothing is found again.
+    program = sources(*(Path(str(each.__file__)).parent for each in (cad_io, plan_cutters))) or os.urandom(16)
+    return digest([program, [installed(name) for name in PACKAGES]])
 
 
 def installed(name: str) -> str:

@@ -3,42 +3,34 @@
 from collections.abc import Callable
 from dataclasses import replace
 
-import numpy as np
-from numpy.typing import NDArray
-
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.scene.ground import GroundDigests
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.work import Work
-from plan_cutters.stages.judge import Judge
+from plan_cutters.stages.judge import judge
 
 
 class CachedJudge:
-    """Judge as another does, but for what a part's cache holds.
+    """Judge as `judge` does, but for what a part's cache holds.
 
-    An entry belongs to the ground, the cutter, the samples that were asked for, and what was known of them from other cutters.
-
-    Parameters
-    ----------
-    judged : Judge
-        Judges what is not there.
+    An entry belongs to the ground, the cutter, and what was known of its samples from other cutters.
     """
 
-    def __init__(self, judged: Judge) -> None:
-        self._judged, self._grounds = judged, GroundDigests()
+    def __init__(self) -> None:
+        self._grounds = GroundDigests()
 
     def __call__(
-        self, ready: Prepared, cutter: Cutter, rows: NDArray[np.int64] | None = None, known: Verdicts | None = None,
-        *, progress: Callable[[int, int], None] | None = None, work: Work | None = None,
+        self, ready: Prepared, cutter: Cutter, *, known: Verdicts | None = None,
+        progress: Callable[[int, int], None] | None = None, work: Work | None = None,
     ) -> Verdicts:  # fmt: skip
         """Find the verdicts of a cutter; parameters and result as of `judge`. The work is that of the run that judged."""
 
         def searched() -> tuple[Verdicts, int]:
             counted = Work()
-            return self._judged(ready, cutter, rows, known, progress=progress, work=counted), counted.looked
+            return judge(ready, cutter, known=known, progress=progress, work=counted), counted.looked
 
-        follows_from = (self._grounds.of(ready), replace(cutter, name=""), rows, known)
+        follows_from = (self._grounds.of(ready), replace(cutter, name=""), known)
         verdicts, looked = ready.cache.cached("verdicts", follows_from, searched)
         if work is not None:
             work.add(looked)

@@ -10,7 +10,6 @@ from numpy.typing import NDArray
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import CONVEX, FIXTURE, INSIDE, Verdicts
 from plan_cutters.scene.conditions import Context
-from plan_cutters.scene.ground import Ground
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import with_company
 from plan_cutters.scene.work import Work
@@ -19,16 +18,16 @@ from plan_cutters.stages.decompose import decompose
 
 
 class Judge(Protocol):
-    """`judge`, and whatever gives the same verdicts in another way."""
+    """`judge` at all samples, and whatever gives the same verdicts in another way."""
 
     def __call__(
-        self, ready: Prepared, cutter: Cutter, rows: NDArray[np.int64] | None = None, known: Verdicts | None = None,
-        *, progress: Callable[[int, int], None] | None = None, work: Work | None = None,
+        self, ready: Prepared, cutter: Cutter, *, known: Verdicts | None = None,
+        progress: Callable[[int, int], None] | None = None, work: Work | None = None,
     ) -> Verdicts: ...  # fmt: skip
 
 
 def judge(
-    ready: Prepared | Ground,
+    ready: Prepared,
     cutter: Cutter,
     rows: NDArray[np.int64] | None = None,
     known: Verdicts | None = None,
@@ -40,7 +39,7 @@ def judge(
 
     Parameters
     ----------
-    ready : Prepared or Ground
+    ready : Prepared
     cutter : Cutter
     rows : (m,) int64, optional
         Samples, ascending. However they are divided, each gets the same answer, bit for bit: the search of its neighbours is

@@ -16,7 +16,7 @@ from plan_cutters.domain.verdicts import ACCESSIBLE, UNJUDGED, VerdictBuffer, Ve
 from plan_cutters.scene.conditions import Context, rotations_of
 from plan_cutters.scene.copied import some_of
 from plan_cutters.scene.copies import Copies
-from plan_cutters.scene.ground import Ground
+from plan_cutters.scene.ground import made_of, same
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import in_chunks, part_of
 from plan_cutters.scene.work import Work
@@ -50,13 +50,13 @@ class JudgeOnce:
         self._parts: tuple[Rows, Prepared, Rows, Prepared] | None = None
 
     def __call__(
-        self, ready: Prepared, cutter: Cutter, rows: Rows | None = None, known: Verdicts | None = None,
-        *, progress: Callable[[int, int], None] | None = None, work: Work | None = None,
+        self, ready: Prepared, cutter: Cutter, *, known: Verdicts | None = None,
+        progress: Callable[[int, int], None] | None = None, work: Work | None = None,
     ) -> Verdicts:  # fmt: skip
         """Find the verdicts of a cutter; parameters and result as of `judge`."""
         copies = ready.copies
-        if copies is None or rows is not None or not copies.follow.any():
-            return self._judged(ready, cutter, rows, known, progress=progress, work=work)
+        if copies is None or not copies.follow.any():
+            return self._judged(ready, cutter, known=known, progress=progress, work=work)
         first, some, rest, others = self._split(ready, copies)
         n = len(ready.samples)
         known = blank(n).freeze() if known is None else known
@@ -72,8 +72,8 @@ class JudgeOnce:
 
     def _split(self, ready: Prepared, copies: Copies) -> tuple[Rows, Prepared, Rows, Prepared]:
         """Samples that are judged first and those that follow, each with the part that has these alone."""
-        of = Ground.made_of(ready)
-        if self._parts is None or not Ground.same(of, self._of):
+        of = made_of(ready)
+        if self._parts is None or not same(of, self._of):
             early = ~copies.copy | copies.verified
             first, rest = np.flatnonzero(early), np.flatnonzero(~early)
             self._of, self._parts = of, (first, some_of(ready, first), rest, some_of(ready, rest))

@@ -41,7 +41,7 @@ class Assignment:
     excluded : mapping
         Of the next one, by face number, why nothing more is to be asked about a face.
     job : str, optional
-        The file with a job of a batch (`batch.job_input`).
+        The file with a job of a batch (`job_input`).
     """
 
     parent: int | None = None
@@ -67,6 +67,32 @@ def assignment() -> Assignment:
     """The record of this process; an empty one where nobody of ours has started it."""
     text = os.environ.get(VARIABLE)
     return _decoded(text) if text else Assignment()
+
+
+@dataclass(frozen=True)
+class JobInput:
+    """Options and a part of a batch, for the process that plans it; in a file, for the words of a command cannot hold them.
+
+    Only the `Assignment` names the file: a pickle must come from nobody but ourselves.
+
+    Attributes
+    ----------
+    options, part : bytes, optional
+        Pickled; None where the words of the command have them. To unpickle a part loads the CAD kernel.
+    """
+
+    options: bytes | None = None
+    part: bytes | None = None
+
+
+def job_input() -> JobInput:
+    """Return what was handed to this process: nothing where no batch has started it."""
+    if (file := assignment().job) is None:
+        return JobInput()
+    import pickle
+
+    result: JobInput = pickle.loads(Path(file).read_bytes())
+    return result
 
 
 def is_child() -> bool:
