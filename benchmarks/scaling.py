@@ -88,7 +88,7 @@ def rest(task: tuple[int, float]) -> tuple[int, bytes]:
 
 def queue(count: int, seconds: float, threads: int) -> None:
     """(d) Parts that only wait: how fast they are handed out, and the memory of client and scheduler."""
-    from plan_cutters.batch.run import handed_out
+    from plan_cutters_batch.run import handed_out
 
     with tempfile.TemporaryDirectory() as folder:
         file = f"{folder}/scheduler.json"

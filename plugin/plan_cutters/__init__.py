@@ -5,31 +5,32 @@ Names are handed on lazily: importing the package loads neither the CAD kernel n
 
 __version__ = "0.1.0"
 
+#: The module of each name, behind `plan_cutters`.
 _HOME = {
-    "Cutter": "domain.cutter",
-    "Holder": "domain.holder",
-    "Segment": "domain.holder",
-    "Stage": "domain.holder",  # its former name
-    "Machine": "domain.machine",
-    "Axis": "domain.axis",
-    "Placement": "domain.placement",
-    "Fixture": "domain.fixture",
-    "Options": "options",
-    "Scene": "scene.scene",
-    "PostureRange": "domain.posture",
-    "plan": "pipeline",
-    "plan_many": "batch.many",
-    "Result": "result",
-    "posture_map": "point",
-    "PostureMap": "stages.posture_map",
-    "PostureMaps": "stages.posture_maps",
-    "Plan": "plan_file.model",
-    "PlanError": "errors",
-    "CutterError": "errors",
-    "MachineError": "errors",
-    "FixtureError": "errors",
-    "LibraryError": "errors",
-    "OptionError": "errors",
+    "Cutter": ".domain.cutter",
+    "Holder": ".domain.holder",
+    "Segment": ".domain.holder",
+    "Stage": ".domain.holder",  # its former name
+    "Machine": ".domain.machine",
+    "Axis": ".domain.axis",
+    "Placement": ".domain.placement",
+    "Fixture": ".domain.fixture",
+    "Options": ".options",
+    "Scene": ".scene.scene",
+    "PostureRange": ".domain.posture",
+    "plan": ".pipeline",
+    "plan_many": "_batch.many",  # a package of its own
+    "Result": ".result",
+    "posture_map": ".point",
+    "PostureMap": ".stages.posture_map",
+    "PostureMaps": ".stages.posture_maps",
+    "Plan": ".plan_file.model",
+    "PlanError": ".errors",
+    "CutterError": ".errors",
+    "MachineError": ".errors",
+    "FixtureError": ".errors",
+    "LibraryError": ".errors",
+    "OptionError": ".errors",
 }
 __all__ = ["__version__", *sorted(_HOME)]
 
@@ -39,7 +40,7 @@ def __getattr__(name: str) -> object:
         raise AttributeError(f"module 'plan_cutters' has no attribute {name!r}")
     from importlib import import_module
 
-    return getattr(import_module(f"plan_cutters.{_HOME[name]}"), name)
+    return getattr(import_module(f"plan_cutters{_HOME[name]}"), name)
 
 
 def __dir__() -> list[str]:

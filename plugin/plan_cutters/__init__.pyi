@@ -1,6 +1,5 @@
 """What type checkers see of the names that `__init__.py` hands on lazily."""
 
-from plan_cutters.batch.many import plan_many
 from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fixture import Fixture
@@ -17,6 +16,7 @@ from plan_cutters.result import Result
 from plan_cutters.scene.scene import Scene
 from plan_cutters.stages.posture_map import PostureMap
 from plan_cutters.stages.posture_maps import PostureMaps
+from plan_cutters_batch.many import plan_many
 
 __version__: str
 __all__ = [

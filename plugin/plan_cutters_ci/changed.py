@@ -29,8 +29,8 @@ from plan_cutters_ci.changed_row import RULES, Row, row_cases
 from plan_cutters_ci.repository import Changed, changed, content, publish
 
 if TYPE_CHECKING:
-    from plan_cutters.batch.content import Content
-    from plan_cutters.batch.job import Handed, Settings
+    from plan_cutters_batch.content import Content
+    from plan_cutters_batch.job import Handed, Settings
 
 _SELF = "plan-cutters changed"
 #: Options of a plan that this command gives itself.
@@ -67,9 +67,9 @@ class PartRequest:
             An option has no meaning, or a file cannot be used.
         """
         from cad_io.files import noted
-        from plan_cutters.batch.job import Settings, handed
         from plan_cutters.command.cli import command as plan
         from plan_cutters.command.validation import look_at, options_of, refuse_unplanned_operations
+        from plan_cutters_batch.job import Settings, handed
 
         with plan.make_context(_SELF, ["part", *words]) as context:
             requested = PlanRequest(**context.params)
@@ -197,9 +197,9 @@ def _compared(part: Changed, began: str, head: str, request: PartRequest | None,
     """Plan a part as it was and as it is; what cannot be planned is told in the row. A part that is gone is not planned."""
     if part.new is None or request is None:
         return Row(part)
-    from plan_cutters.batch.content import content as all_of
-    from plan_cutters.batch.store import MARKER
     from plan_cutters.plan_file.load import PLAN, load_plan
+    from plan_cutters_batch.content import content as all_of
+    from plan_cutters_batch.store import MARKER
     from plan_cutters_ci.pictures import picture_of
     from plan_cutters_ci.plans import compare
     from plan_cutters_ci.review import PAGE, Side, page
@@ -251,10 +251,10 @@ def _planned(content: "Content", path: str, request: PartRequest, cache: Path) -
     PlanError
         It cannot be planned.
     """
-    from plan_cutters.batch import keys, work
-    from plan_cutters.batch.rows_of_plans import row_of
-    from plan_cutters.batch.store import Store
     from plan_cutters.plan_file.load import load_plan
+    from plan_cutters_batch import keys, work
+    from plan_cutters_batch.rows_of_plans import row_of
+    from plan_cutters_batch.store import Store
 
     name = Path(path).name
     key = keys.key(content.key, keys.settings_key(request.settings, request.handed))

@@ -12,8 +12,8 @@ import time
 import psutil
 import pytest
 
-from plan_cutters.command import batch as of_many
 from plan_cutters.command.codes import guarded, invoked
+from plan_cutters_batch import command as of_many
 from tests.support.forked import ENV
 from tests.support.junit import cases
 from tests.support.places import ROOT

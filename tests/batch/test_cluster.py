@@ -4,7 +4,7 @@ import pytest
 from distributed import Client, LocalCluster
 
 from plan_cutters import PlanError
-from plan_cutters.batch import cluster, keys
+from plan_cutters_batch import cluster, keys
 
 
 @pytest.fixture(scope="module")

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from plan_cutters.command import batch
+from plan_cutters_batch import command as batch
 from tests.support.forked import ENV
 from tests.support.places import ROOT
 

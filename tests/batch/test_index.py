@@ -15,13 +15,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plan_cutters import plan
-from plan_cutters.batch import table
-from plan_cutters.batch.index import write_index
-from plan_cutters.batch.row import PartRow
-from plan_cutters.batch.rows_of_plans import row_of
-from plan_cutters.batch.summary import NAMED, OUTCOMES, Summary, code_of, outcome, schema_text
 from plan_cutters.plan_file.model import CutterEntry
 from plan_cutters.plan_file.shares import reached_share
+from plan_cutters_batch import table
+from plan_cutters_batch.index import write_index
+from plan_cutters_batch.row import PartRow
+from plan_cutters_batch.rows_of_plans import row_of
+from plan_cutters_batch.summary import NAMED, OUTCOMES, Summary, code_of, outcome, schema_text
 from tests.support.browser import opened
 from tests.support.places import ROOT
 
@@ -160,7 +160,7 @@ def test_no_row_is_lost_and_no_failure_is_silent(rows):
 
 
 def test_the_summary_keeps_to_its_schema(files):
-    stored = (ROOT / "plugin/plan_cutters/batch_summary.schema.json").read_text()
+    stored = (ROOT / "plugin/plan_cutters_batch/summary.schema.json").read_text()
     assert stored == schema_text()
     summary = json.loads(files["summary.json"], parse_constant=pytest.fail)
     jsonschema.Draft202012Validator(json.loads(stored)).validate(summary)

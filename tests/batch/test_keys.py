@@ -9,10 +9,10 @@ from dataclasses import replace
 import pytest
 
 from plan_cutters import Options
-from plan_cutters.batch import keys
-from plan_cutters.batch.content import content
-from plan_cutters.batch.job import Settings, handed
 from plan_cutters.errors import OptionError, PlanError
+from plan_cutters_batch import keys
+from plan_cutters_batch.content import content
+from plan_cutters_batch.job import Settings, handed
 from tests.support.places import ROOT
 from tests.support.step_references import BALL, BOX, write_assembly
 
@@ -77,8 +77,8 @@ def test_fixtures_travel_under_names_of_their_own(tmp_path):
 
 def test_every_process_makes_the_same_key():
     code = (
-        "from plan_cutters import Options\nfrom plan_cutters.batch import keys\n"
-        "from plan_cutters.batch.job import Settings, handed\n"
+        "from plan_cutters import Options\nfrom plan_cutters_batch import keys\n"
+        "from plan_cutters_batch.job import Settings, handed\n"
         "s = Settings(Options(cutters='R6L80', machine='trunnion-ac', holder='er32'))\n"
         "print(keys.settings_key(s, handed(s.options)))"
     )

@@ -7,14 +7,6 @@ from types import SimpleNamespace
 import pytest
 
 from plan_cutters import Options, plan
-from plan_cutters.batch import cluster, keys, work
-from plan_cutters.batch.index import write_index
-from plan_cutters.batch.job import Settings, handed
-from plan_cutters.batch.row import PartRow
-from plan_cutters.batch.run import Terms, foreseen
-from plan_cutters.batch.store import Store
-from plan_cutters.batch.summary import FAIL_ON, fault
-from plan_cutters.command import batch as of_many
 from plan_cutters.command.codes import guarded, invoked
 from plan_cutters.document.clock import Clock
 from plan_cutters.errors import TooManySamplesError
@@ -23,6 +15,14 @@ from plan_cutters.pipeline import run
 from plan_cutters.report.folder import Staging, write_unfinished
 from plan_cutters.scene.spacing import MOST
 from plan_cutters.workers.assignment import TIMED_OUT
+from plan_cutters_batch import cluster, keys, work
+from plan_cutters_batch import command as of_many
+from plan_cutters_batch.index import write_index
+from plan_cutters_batch.job import Settings, handed
+from plan_cutters_batch.row import PartRow
+from plan_cutters_batch.run import Terms, foreseen
+from plan_cutters_batch.store import Store
+from plan_cutters_batch.summary import FAIL_ON, fault
 from tests.support.commands import in_lines
 from tests.support.places import ROOT
 
@@ -174,7 +174,7 @@ def test_the_code_is_the_largest_of_what_the_batch_fails_on(monkeypatch, capsys,
     facts = {"address": "here", "workers": 1, "threads": 1, "dashboard": None}
     monkeypatch.setattr(cluster, "opened", lambda *_: contextlib.nullcontext(SimpleNamespace()))
     monkeypatch.setattr(cluster, "facts", lambda client: facts)
-    monkeypatch.setattr("plan_cutters.batch.run.run_batch", lambda *_, **__: iter(rows))
+    monkeypatch.setattr("plan_cutters_batch.run.run_batch", lambda *_, **__: iter(rows))
     args = (GROOVE, "--out", str(tmp_path / "out"), "--cutter", "R6L80", "--formats", "json", *words)
     code, line = guarded(lambda: (invoked(of_many.command, "plan-cutters batch", args), ""), False)
     assert (code, line) == (expected, "")
@@ -200,7 +200,7 @@ def test_an_address_on_object_storage_is_not_opened_in_a_browser():
 
 
 def test_a_dry_run_plans_what_was_late(out, monkeypatch):
-    from plan_cutters.batch.job import Job
+    from plan_cutters_batch.job import Job
 
     monkeypatch.setattr(work, "planned", late)
     work.work(task_of(out))

@@ -7,10 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters.batch.progress import EACH, Board, Screen
-from plan_cutters.batch.row import PartRow
-from plan_cutters.batch.summary import cause
 from plan_cutters.files.terminal_text import clean
+from plan_cutters_batch.progress import EACH, Board, Screen
+from plan_cutters_batch.row import PartRow
+from plan_cutters_batch.summary import cause
 
 GOOD = PartRow(name="blade", file="blade.step", status="planned", code=0, verdict="Take flat end D12 x 60")
 BAD = PartRow(name="rim\n\x1b[2J", file="rim.step", status="failed", code=3, error="rim.step: not a STEP file")

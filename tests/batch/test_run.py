@@ -11,14 +11,14 @@ import psutil
 import pytest
 
 from plan_cutters import Options, plan_many
-from plan_cutters.batch import cluster, keys
-from plan_cutters.batch.job import Fault, Job, Settings
-from plan_cutters.batch.row import PartRow
-from plan_cutters.batch.run import Terms, foreseen, handed_out, outcomes, run_batch
-from plan_cutters.batch.store import Store
-from plan_cutters.batch.work import Outcome
 from plan_cutters.errors import PlanError
 from plan_cutters.workers.assignment import TIMED_OUT
+from plan_cutters_batch import cluster, keys
+from plan_cutters_batch.job import Fault, Job, Settings
+from plan_cutters_batch.row import PartRow
+from plan_cutters_batch.run import Terms, foreseen, handed_out, outcomes, run_batch
+from plan_cutters_batch.store import Store
+from plan_cutters_batch.work import Outcome
 from tests.support.places import ROOT
 
 GROOVE = (ROOT / "samples/v_groove.step").read_bytes()
@@ -269,7 +269,7 @@ def test_workers_by_cores_and_memory():
 @pytest.mark.slow("starts servers or clusters")
 def test_what_another_version_planned_is_not_taken(tmp_path, monkeypatch):
     """Neither by a batch nor, whose keys are the same, by `changed`."""
-    from plan_cutters.batch import work as works
+    from plan_cutters_batch import work as works
 
     out = Store(str(tmp_path / "out"))
     (job,) = parts = jobs(tmp_path, "a")
@@ -285,7 +285,7 @@ def test_what_another_version_planned_is_not_taken(tmp_path, monkeypatch):
 def test_a_full_disk_on_a_worker_is_one_line(tmp_path, monkeypatch):
     from pathlib import Path
 
-    from plan_cutters.batch import work as works
+    from plan_cutters_batch import work as works
 
     def full(*words):
         raise OSError(28, "No space left on device")

@@ -3,10 +3,10 @@
 import fsspec
 import pytest
 
-from plan_cutters.batch.job import Fault
-from plan_cutters.batch.manifest import manifest
-from plan_cutters.batch.sources import Source, sources
 from plan_cutters.errors import PlanError
+from plan_cutters_batch.job import Fault
+from plan_cutters_batch.manifest import manifest
+from plan_cutters_batch.sources import Source, sources
 
 KNOWN = ("cutter", "faces", "flip", "spacing", "tolerance")
 

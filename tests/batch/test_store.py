@@ -6,10 +6,10 @@ import os
 import fsspec
 import pytest
 
-from plan_cutters.batch.row import PartRow
-from plan_cutters.batch.store import MARKER, Store
 from plan_cutters.errors import PlanError
 from plan_cutters.files.folder import read
+from plan_cutters_batch.row import PartRow
+from plan_cutters_batch.store import MARKER, Store
 
 ROW = PartRow(name="a", file="a.step", key="k1", status="planned", code=0, folder="a-plan")
 FILES = {"review.html": b"page", "plan.json": b"{}"}

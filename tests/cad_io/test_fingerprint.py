@@ -28,7 +28,7 @@ SEARCH, HIT, CODES, MASK, REFINE = (
     "plan_cutters.kernels.search.search",
     "plan_cutters.kernels.tool.hit",
     "plan_cutters.kernels.codes",
-    "plan_cutters.kernels.maps.mask",
+    "plan_cutters.kernels.maps.points",
     "cad_io.tessellate.refine",
 )
 

@@ -4,10 +4,10 @@ import itertools
 
 import pytest
 
-from plan_cutters.batch.cases import part_case
-from plan_cutters.batch.row import PartRow
 from plan_cutters.cases.junit import document
 from plan_cutters.report.to_json import dumps
+from plan_cutters_batch.cases import part_case
+from plan_cutters_batch.row import PartRow
 from plan_cutters_ci.cases import comparison_cases
 from plan_cutters_ci.changed_row import RULES, Row, row_cases
 from plan_cutters_ci.folders import compare_folders

@@ -11,9 +11,9 @@ import cadquery as cq
 import pytest
 import yaml
 
-from plan_cutters.batch import keys
 from plan_cutters.cases.case import Case
 from plan_cutters.errors import PlanError
+from plan_cutters_batch import keys
 from plan_cutters_ci.annotations import annotations, requested
 from plan_cutters_ci.changed import RULES, PartRequest, Row
 from plan_cutters_ci.repository import Changed, changed, content

@@ -8,6 +8,7 @@ from pydantic import ConfigDict, TypeAdapter
 
 from plan_cutters.command import entry, request
 from plan_cutters_agents.command import McpRequest
+from plan_cutters_batch.command import BatchRequest
 from plan_cutters_ci.changed import ChangedRequest
 from plan_cutters_ci.diff import DiffRequest
 
@@ -31,7 +32,7 @@ COMMANDS = {
     "tools": (request.ToolsRequest, [], ["a.toml", "--cutter", "D12L80", "--holder", "er32", "--assume-stickout", "30",
               "--to-toml", "b.toml", "--draw", "out", "--json"]),
     "machines": (request.MachinesRequest, [], ["trunnion-ac", "--angles", "0,0,1", "--axis", "A=3", "--to-toml", "m.toml"]),
-    "batch": (request.BatchRequest, ["parts", "--out", "plans"], ["--cutter", "R6L80", "--setup", "+x", "--workers", "2",
+    "batch": (BatchRequest, ["parts", "--out", "plans"], ["--cutter", "R6L80", "--setup", "+x", "--workers", "2",
               "--timeout-part", "9", "--limit-memory", "4", "--cluster", "tcp://h:1", "--force", "--dry-run", "--jobs", "1",
               "--junit", "j.xml"]),
     "mcp": (McpRequest, [], ["--root", "parts", "--client-roots", "--most-mb", "3", "--memory", "4", "--timeout", "9"]),

@@ -16,7 +16,7 @@ KNOWN = {
     "cad_io/forks.py": {"os.fork": 2},
     "cad_io/whole.py": {"os.replace": 1},
     # All files of a folder at once, or one that is whole already.
-    "plugin/plan_cutters/batch/store.py": {"os.rename": 2},
+    "plugin/plan_cutters_batch/store.py": {"os.rename": 2},
     "plugin/plan_cutters/report/folder.py": {"os.replace": 1},
     "cad_io/jit.py": {"os.rename": 1},  # a folder in place of a file of machine code, moved away
 }

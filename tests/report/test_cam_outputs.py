@@ -4,7 +4,6 @@ import csv
 import math
 import re
 import shutil
-from dataclasses import replace
 from itertools import pairwise
 
 import cadquery as cq
@@ -13,13 +12,11 @@ import pytest
 import trimesh
 
 import plan_cutters.report.to_csv as to_csv
-from plan_cutters import Cutter, Machine, plan, posture_map
-from plan_cutters.domain.axis import Axis
+from plan_cutters import Cutter, plan, posture_map
 from plan_cutters.domain.clearance import MOST, grown, working_height
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.kinematics import Kinematics
-from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.posture import tilt_direction
 from plan_cutters.domain.shapes import flute_length
 from plan_cutters.domain.travel import tips
@@ -254,40 +251,6 @@ def test_a_fixed_axis_serves_just_where_a_map_of_the_point_has_it_free(peaks):
     assert agreed[True] + agreed[False] >= 8
     assert agreed[True]
     assert agreed[False]
-
-
-NARROW = Machine(
-    "narrow", axes=(Axis("C", "rotary", "part", (0, 0, 1), (-1.2, 2.0)), Axis("A", "rotary", "part", (1, 0, 0), (-0.1, 0.5)))
-)
-
-
-@pytest.mark.parametrize(("machine", "x"), [("tilt:20", None), (NARROW, None), (NARROW, (0, 1, 0)), ("3-axis", None)])
-def test_free_tilts_of_maps_are_within_the_limits_of_the_machine(peaks, machine, x):
-    """What is held of the maps is what the machine holds: here by its angles, tilt by tilt."""
-    machine = Machine.of(machine)
-    conditions = replace(peaks.conditions, machine=machine, x=None if x is None else np.array(x, float))
-    frame = frame_of(conditions.setup, conditions.x)
-    maps, samples, k = peaks.maps, peaks.samples, len(peaks.maps.rotations)
-    held = maps.held(conditions)
-    cells = 0
-    assert len(held.free) < len(maps.free) or (np.diff(held.free) < 1e-3).all() or held.free.max() < maps.free.max()
-    rng = np.random.default_rng(3)
-    for cell in rng.choice(len(maps.offset) - 1, 300).tolist():
-        row, turn = divmod(cell, k)
-        f = tilt_direction(samples.normal[row], samples.direction_max[row], float(maps.rotations[turn]))
-        for low, high in maps.free[maps.offset[cell] : maps.offset[cell + 1]].tolist():
-            tilt = np.linspace(low, high, 23)[1:-1]
-            axis = np.cos(tilt)[:, None] * samples.normal[row] + np.sin(tilt)[:, None] * f
-            mine = held.free[held.offset[cell] : held.offset[cell + 1]]
-            within = ((mine[:, :1] <= tilt) & (mine[:, 1:] >= tilt)).any(axis=0)
-            near = (np.abs(mine.reshape(-1, 1) - tilt) < 1e-5).any(axis=0)
-            assert (within == machine.allows(axis, frame))[~near].all()
-            cells += 1
-    assert cells > 50
-
-
-def test_without_limits_the_machine_leaves_all_tilts(peaks):
-    assert peaks.maps.held(peaks.conditions.without_machine()) is peaks.maps
 
 
 def test_names_that_no_file_can_hold_cost_no_file(tmp_path):

@@ -6,7 +6,6 @@ import math
 import pytest
 
 from plan_cutters import plan
-from plan_cutters.batch.rows_of_plans import row_of
 from plan_cutters.command.summary import summary
 from plan_cutters.plan_file.load import plan_of
 from plan_cutters.plan_file.nearest import leaves, nearest
@@ -15,6 +14,7 @@ from plan_cutters.plan_file.words.story import shown as shown_of
 from plan_cutters.plan_file.words.story import story_of
 from plan_cutters.report.page.tables import Drawing, of
 from plan_cutters_agents.plan_answers import planned, ranked
+from plan_cutters_batch.rows_of_plans import row_of
 from tests.support import shapes
 from tests.support.plan_files import cutter, face, made, verdicts
 

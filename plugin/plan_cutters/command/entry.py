@@ -19,7 +19,6 @@ OURS = {
     "plan": ("cli", "Find the cutters that finish a part: see below. It is meant where no command is named."),
     "map": ("map", "Draw all postures of one cutter at one point."),
     "tools": ("tools", "List the tools of a library as they are understood."),
-    "batch": ("batch", "Plan many parts, on this machine or on a cluster."),
     "machines": ("machines", "List the built-in machines, or show how a machine file is understood."),
 }
 

@@ -244,8 +244,7 @@ _OPTIONS = (
         brief="More questions to answer, or all.",
         default="",
         type=Words("LIST", values.answers, listed=True),
-        help=f"More questions to answer: {', '.join(f'{kind.word} ({kind.meaning})' for kind in KINDS)}, or all (all but "
-        f"{' and '.join(kind.word for kind in KINDS if kind.long)}).",
+        help=f"More questions to answer: {', '.join(f'{kind.word} ({kind.meaning})' for kind in KINDS)}, or all.",
     ),
     _answers(
         "--length-over-radius",

@@ -136,21 +136,6 @@ class PlanRequest(PlanningRequest, Reported):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class BatchRequest(PlanningRequest, Reported):
-    """Plans of many parts on workers: `plan-cutters batch`."""
-
-    sources: tuple[str, ...]
-    out: str
-    cluster: str | None
-    workers: int | None
-    timeout_part: float | None
-    limit_memory: float | None
-    fail_on: str | None
-    force: bool
-    dry_run: bool
-
-
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class MapRequest(PostureRequest):
     """All postures of one cutter at one point: `plan-cutters map`."""
 

@@ -8,12 +8,11 @@ from typing import NamedTuple
 
 
 class AnswerKind(NamedTuple):
-    """A question: its word, its meaning for the help, the name of its work, and whether `all` leaves it out as too long."""
+    """A question: its word, its meaning for the help, and the name of its work."""
 
     word: str
     meaning: str
     work: str
-    long: bool = False
 
 
 KINDS = (
@@ -28,5 +27,3 @@ KINDS = (
 #: What takes less off what is left is no advice, a share of the area.
 WORTH = 0.001
 ANSWERS = tuple(each.word for each in KINDS)
-#: What `all` leaves out.
-LONG = frozenset(each.word for each in KINDS if each.long)

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from plan_cutters.domain.answer_kinds import ANSWERS, LONG
+from plan_cutters.domain.answer_kinds import ANSWERS
 from plan_cutters.domain.change import Advice
 from plan_cutters.domain.checks import items, shown
 from plan_cutters.domain.least_set import LeastSet
@@ -15,8 +15,7 @@ from plan_cutters.errors import OptionError
 
 
 def answers_of(value: Any) -> tuple[str, ...]:
-    """Words of ANSWERS, each once and in that order; `all` for all but those that take long (LONG); a text may hold several,
-    joined by commas.
+    """Words of ANSWERS, each once and in that order; `all` for all of them; a text may hold several, joined by commas.
 
     Raises
     ------
@@ -38,9 +37,7 @@ def answers_of(value: Any) -> tuple[str, ...]:
     result = {word.strip().lower() if isinstance(word, str) else word for word in words}
     for word in sorted(result - {*ANSWERS, "all"}, key=str):
         raise OptionError(f"answers: {shown(word)} is none of {', '.join(ANSWERS)} and all")
-    if "all" in result:
-        result |= {*ANSWERS} - LONG
-    return tuple(word for word in ANSWERS if word in result)
+    return tuple(word for word in ANSWERS if word in result or "all" in result)
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -1,6 +1,6 @@
 """Every free tilt of every sample at every rotation, with certified ends."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,8 +9,7 @@ from cad_io.arrays import Floats, Record, SurfaceSamples
 from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.posture import tilt_direction
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.kernels.rows import Ranges
-from plan_cutters.scene.conditions import Conditions, Context, contacts_of, require_finite
+from plan_cutters.scene.conditions import Context, contacts_of, require_finite
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.threads import Progress, in_chunks
 from plan_cutters.stages.map_budget import chosen
@@ -72,24 +71,6 @@ class PostureMaps(Record):
     inside: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, bool))
     missing: tuple[str, ...] = ()
     unmapped: int = 0
-
-    def held(self, conditions: Conditions) -> "PostureMaps":
-        """The maps of one machine and setup: of the free tilts those that it holds. The verdicts stay what they are."""
-        from plan_cutters.kernels.maps.mask import held_free
-
-        machine = conditions.machine
-        if not machine.limited:
-            return self
-        rotary = conditions.ranges.rotary
-        ranges = Ranges(np.cos(self.rotations), np.sin(self.rotations), *self.tilt, conditions.setup, machine.limit_cos, rotary)
-        rows, place = np.arange(len(self.normal)), np.zeros(len(self.offset) - 1, np.int64)
-        maps = self.normal, self.direction_max, ranges, self.offset, self.free, place
-        in_chunks(lambda piece: held_free(piece, *maps, np.zeros((0, 2))), rows, conditions.jobs)
-        offset = np.concatenate([[0], np.cumsum(place)])
-        tilts = np.empty((offset[-1], 2))
-        place[:] = offset[:-1]
-        in_chunks(lambda piece: held_free(piece, *maps, tilts), rows if len(tilts) else rows[:0], conditions.jobs)
-        return replace(self, offset=offset, free=tilts)
 
 
 def posture_maps(

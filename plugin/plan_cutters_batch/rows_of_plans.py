@@ -1,7 +1,5 @@
 """The line of a part in the table of all, made of its plan."""
 
-from plan_cutters.batch.part_tools import part_tools
-from plan_cutters.batch.row import PartRow, Status
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.shares import reached_share
 from plan_cutters.plan_file.words.cutters import main_reason
@@ -9,6 +7,8 @@ from plan_cutters.plan_file.words.headline import headline
 from plan_cutters.plan_file.words.names import short_names
 from plan_cutters.plan_file.words.scope import headline_cutter
 from plan_cutters.report.folder import file_name
+from plan_cutters_batch.part_tools import part_tools
+from plan_cutters_batch.row import PartRow, Status
 
 
 def row_of(

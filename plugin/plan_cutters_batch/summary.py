@@ -8,10 +8,10 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from plan_cutters.batch.part_tools import PartTools
-from plan_cutters.batch.row import PartRow
-from plan_cutters.batch.shop import fewest
 from plan_cutters.workers.assignment import TIMED_OUT
+from plan_cutters_batch.part_tools import PartTools
+from plan_cutters_batch.row import PartRow
+from plan_cutters_batch.shop import fewest
 
 FORMAT_VERSION = 1
 #: Failures that the summary names; the table has all.
@@ -275,4 +275,4 @@ def schema_text() -> str:
 
 
 if __name__ == "__main__":
-    (Path(__file__).parent.parent / "batch_summary.schema.json").write_text(schema_text(), encoding="utf-8")
+    Path(__file__).with_name("summary.schema.json").write_text(schema_text(), encoding="utf-8")

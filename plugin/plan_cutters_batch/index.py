@@ -11,16 +11,16 @@ from urllib.parse import quote
 from markupsafe import Markup
 from pydantic_core import to_jsonable_python
 
-from plan_cutters.batch.part_tools import PartTools
-from plan_cutters.batch.row import PartRow
-from plan_cutters.batch.shop_text import shop_lines
-from plan_cutters.batch.summary import OUTCOMES, BatchRun, Outcome, Summary, Table, cause, fault, outcome, summary_of
-from plan_cutters.batch.table import csv_of
 from plan_cutters.document.build import versions
 from plan_cutters.files.markup import finite, plain, policy, template
 from plan_cutters.plan_file import numbers
 from plan_cutters.plan_file.numbers import percent
 from plan_cutters.plan_file.words.cutters import reason
+from plan_cutters_batch.part_tools import PartTools
+from plan_cutters_batch.row import PartRow
+from plan_cutters_batch.shop_text import shop_lines
+from plan_cutters_batch.summary import OUTCOMES, BatchRun, Outcome, Summary, Table, cause, fault, outcome, summary_of
+from plan_cutters_batch.table import csv_of
 
 PAGE, CSV, SUMMARY = "index.html", "index.csv", "summary.json"
 _HERE = Path(__file__).parent

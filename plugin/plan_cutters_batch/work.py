@@ -12,14 +12,14 @@ from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any
 
-from plan_cutters.batch import keys, store
-from plan_cutters.batch.content import Content, content
-from plan_cutters.batch.job import UNREADABLE, USAGE, Handed
-from plan_cutters.batch.row import PartRow
 from plan_cutters.errors import PlanError
 from plan_cutters.workers.assignment import INTERRUPTED, TIMED_OUT, Assignment, JobInput
 from plan_cutters.workers.child import Child, can_supervise, compiler
 from plan_cutters.workers.supervise import WRITING
+from plan_cutters_batch import keys, store
+from plan_cutters_batch.content import Content, content
+from plan_cutters_batch.job import UNREADABLE, USAGE, Handed
+from plan_cutters_batch.row import PartRow
 
 if TYPE_CHECKING:
     from plan_cutters.plan_file.model import Plan
@@ -334,8 +334,8 @@ def files_of(folder: Path) -> dict[str, Path]:
 
 def _row(task: Task, content: bytes, key: str, code: int, seconds: float) -> PartRow:
     """The line of the table that a plan makes; what could not be written beside it is said there."""
-    from plan_cutters.batch.rows_of_plans import row_of
     from plan_cutters.plan_file.load import plan_of
+    from plan_cutters_batch.rows_of_plans import row_of
 
     plan = plan_of(content, PLAN)
     row = row_of(plan, name=task.name, file=task.file, code=code, key=key, folder=task.folder, seconds=seconds)

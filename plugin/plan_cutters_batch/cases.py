@@ -1,9 +1,9 @@
 """Test cases of many parts: one for each."""
 
-from plan_cutters.batch.row import PartRow
-from plan_cutters.batch.summary import Outcome, cause, outcome
 from plan_cutters.cases import case
 from plan_cutters.cases.case import Case
+from plan_cutters_batch.row import PartRow
+from plan_cutters_batch.summary import Outcome, cause, outcome
 
 #: What is not sure is neither reached nor known not to be.
 _OUTCOMES: dict[Outcome, case.Outcome] = {"failed": "error", "not_finished": "failure", "not_sure": "error", "finished": "passed"}

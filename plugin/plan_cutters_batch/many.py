@@ -9,16 +9,16 @@ from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Any, Unpack
 
 from cad_io.files import noted
-from plan_cutters.batch.job import UNREADABLE, USAGE, Fault, Job, Settings, faced
-from plan_cutters.batch.row import PartRow
 from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.option_types import PlanOptions
 from plan_cutters.options import Options
+from plan_cutters_batch.job import UNREADABLE, USAGE, Fault, Job, Settings, faced
+from plan_cutters_batch.row import PartRow
 
 if TYPE_CHECKING:
-    from plan_cutters.batch.run import Terms
     from plan_cutters.plan_file.model import Plan
+    from plan_cutters_batch.run import Terms
 
 
 @dataclass(frozen=True)
@@ -90,11 +90,11 @@ def plan_many(
     -----
     Workers of this machine are started with `spawn`, as dask does: a script calls this below `if __name__ == "__main__":`.
     """
-    from plan_cutters.batch import cluster
-    from plan_cutters.batch.run import Terms, outcomes
-    from plan_cutters.batch.store import Store
     from plan_cutters.files.folder import refuse_memory
     from plan_cutters.report.folder import read_formats
+    from plan_cutters_batch import cluster
+    from plan_cutters_batch.run import Terms, outcomes
+    from plan_cutters_batch.store import Store
 
     refuse_memory(os.fspath(out or ""))
     if isinstance(parts, str | os.PathLike):

@@ -2,8 +2,8 @@
 
 from collections.abc import Sequence
 
-from plan_cutters.batch.summary import LeastTools, Summary
 from plan_cutters.plan_file.numbers import count
+from plan_cutters_batch.summary import LeastTools, Summary
 
 #: Tools that a sentence names.
 _NAMED = 8

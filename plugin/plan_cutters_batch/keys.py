@@ -5,9 +5,9 @@ from dataclasses import fields
 
 import plan_cutters
 from cad_io.files import checksum
-from plan_cutters.batch.job import Handed, Settings
 from plan_cutters.files.digest import digest
 from plan_cutters.files.stage_cache import PACKAGES, installed, made_by
+from plan_cutters_batch.job import Handed, Settings
 
 
 def versions() -> dict[str, str]:

@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import BaseModel, ConfigDict
 
-from plan_cutters.batch.part_tools import PartTools
+from plan_cutters_batch.part_tools import PartTools
 
 #: `planned` in this run, `kept` from an earlier one, or `failed`: then `error` says why.
 Status = Literal["planned", "kept", "failed"]

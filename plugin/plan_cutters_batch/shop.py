@@ -5,7 +5,7 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from plan_cutters.batch.part_tools import PartTools
+from plan_cutters_batch.part_tools import PartTools
 
 #: Seconds that each of the two searches may take; then the best set so far is reported, with the bound that is proved by then.
 _SECONDS = 10.0

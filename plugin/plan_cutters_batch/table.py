@@ -7,8 +7,8 @@ import re
 from collections.abc import Sequence
 from typing import Any
 
-from plan_cutters.batch.row import PartRow
-from plan_cutters.batch.summary import cause, outcome
+from plan_cutters_batch.row import PartRow
+from plan_cutters_batch.summary import cause, outcome
 
 #: What a spreadsheet takes for the beginning of a formula (the wide forms too), or drops before one; and our own mark.
 _FORMULA = re.compile(r"[=+\-@＝＋－＠'\s\x00-\x1f\x7f]")

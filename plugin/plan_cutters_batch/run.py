@@ -9,14 +9,14 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from plan_cutters.batch import cluster as clusters
-from plan_cutters.batch import keys
-from plan_cutters.batch.job import UNREADABLE, USAGE, Fault, Handed, Job, Settings, handed
-from plan_cutters.batch.row import PartRow
-from plan_cutters.batch.store import Store
-from plan_cutters.batch.work import Outcome, Task, cached, content_of, work
 from plan_cutters.errors import PlanError
 from plan_cutters.files.folder import read, refuse_memory
+from plan_cutters_batch import cluster as clusters
+from plan_cutters_batch import keys
+from plan_cutters_batch.job import UNREADABLE, USAGE, Fault, Handed, Job, Settings, handed
+from plan_cutters_batch.row import PartRow
+from plan_cutters_batch.store import Store
+from plan_cutters_batch.work import Outcome, Task, cached, content_of, work
 
 #: Tasks in flight for each thread of the cluster, and at least so many: the next one is there when a thread is free.
 _QUEUED, _LEAST = 2, 8
@@ -94,7 +94,7 @@ def run_batch(
     PlanError
         The output cannot be written.
     """
-    from plan_cutters.batch.index import write_index
+    from plan_cutters_batch.index import write_index
 
     began = time.monotonic()
     token = out.begin()

@@ -1,10 +1,10 @@
-"""`plan-cutters batch`: many parts on the workers of this machine or of a cluster, and a table of all."""
+"""Plan many parts, on this machine or on a cluster."""
 
 import functools
 import os
 from collections import Counter
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -14,19 +14,19 @@ from plan_cutters.command import terminal
 from plan_cutters.command.codes import CODES, FEASIBLE, run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import options
-from plan_cutters.command.request import BatchRequest, takes
+from plan_cutters.command.request import PlanningRequest, Reported, takes
 from plan_cutters.command.values import File, Words
 from plan_cutters.files.pictures import with_pictures
 from plan_cutters.files.terminal_text import clean
 from plan_cutters.report.folder import DEFAULT_FORMATS
 
 if TYPE_CHECKING:
-    from plan_cutters.batch.job import Fault, Job, Settings
-    from plan_cutters.batch.row import PartRow
-    from plan_cutters.batch.run import Terms
-    from plan_cutters.batch.sources import Source
-    from plan_cutters.batch.store import Store
     from plan_cutters.cases.files import CaseFiles
+    from plan_cutters_batch.job import Fault, Job, Settings
+    from plan_cutters_batch.row import PartRow
+    from plan_cutters_batch.run import Terms
+    from plan_cutters_batch.sources import Source
+    from plan_cutters_batch.store import Store
 
 _SELF = "plan-cutters batch"
 #: Groups of options that a part of a manifest may have of its own.
@@ -34,6 +34,21 @@ _OF_A_PART = {"Cutters", "Machine and setup", "Faces", "Sampling and tolerances"
 #: The picture is what the table shows of a part.
 
 _many = heading("Many parts")
+
+
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+class BatchRequest(PlanningRequest, Reported):
+    """Plans of many parts on workers: `plan-cutters batch`."""
+
+    sources: tuple[str, ...]
+    out: str
+    cluster: str | None
+    workers: int | None
+    timeout_part: float | None
+    limit_memory: float | None
+    fail_on: str | None
+    force: bool
+    dry_run: bool
 
 
 @click.command(
@@ -107,10 +122,10 @@ def command(request: BatchRequest) -> int:
     Each part is planned in a process of its own on a Dask cluster. What is done is not done again: not after an interrupt, nor
     after parts are added. A part that fails is a row of the table, with its cause.
     """
-    from plan_cutters.batch.job import Fault
-    from plan_cutters.batch.run import Terms
-    from plan_cutters.batch.store import Store
     from plan_cutters.errors import OptionError
+    from plan_cutters_batch.job import Fault
+    from plan_cutters_batch.run import Terms
+    from plan_cutters_batch.store import Store
 
     if (files := request.case_files) is not None:
         files.check()
@@ -162,8 +177,8 @@ def _seen_by_workers(request: BatchRequest) -> None:
 
 def _fail_on(words: str | None) -> frozenset[str]:
     """What gives an exit code other than 0."""
-    from plan_cutters.batch.summary import FAIL_ON
     from plan_cutters.errors import OptionError
+    from plan_cutters_batch.summary import FAIL_ON
 
     if words is None:
         return frozenset(FAIL_ON)
@@ -178,7 +193,7 @@ def _fail_on(words: str | None) -> frozenset[str]:
 
 def _code(row: "PartRow", fail_on: frozenset[str]) -> int:
     """The exit code that a part gives the batch."""
-    from plan_cutters.batch.summary import code_of, fault
+    from plan_cutters_batch.summary import code_of, fault
 
     return code_of(row) if fault(row) in fail_on else FEASIBLE
 
@@ -187,12 +202,12 @@ def _all(
     parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", request: BatchRequest, fail_on: frozenset[str]
 ) -> int:  # fmt: skip
     """Plan them under the eyes of a board; the largest exit code of what the batch fails on."""
-    from plan_cutters.batch import cluster
-    from plan_cutters.batch.index import PAGE
-    from plan_cutters.batch.progress import Board
-    from plan_cutters.batch.run import run_batch
-    from plan_cutters.batch.summary import OUTCOMES, outcome
     from plan_cutters.plan_file.numbers import count as counted
+    from plan_cutters_batch import cluster
+    from plan_cutters_batch.index import PAGE
+    from plan_cutters_batch.progress import Board
+    from plan_cutters_batch.run import run_batch
+    from plan_cutters_batch.summary import OUTCOMES, outcome
 
     out.begin()  # what is wrong with it is said before any worker is started
     board = Board(request.quiet, len(parts))
@@ -233,13 +248,13 @@ def _report(files: "CaseFiles | None", rows: "Sequence[PartRow]") -> None:
     """Write the test cases of the parts, where a file for them is named."""
     if files is None:
         return
-    from plan_cutters.batch.cases import part_case
+    from plan_cutters_batch.cases import part_case
 
     files.write(_SELF, map(part_case, sorted(rows, key=lambda row: row.name)))
 
 
 def _foreseen(parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms") -> int:
-    from plan_cutters.batch.run import foreseen
+    from plan_cutters_batch.run import foreseen
 
     code = FEASIBLE
     for row in foreseen(parts, out, terms):
@@ -255,11 +270,11 @@ def _progress_line(line: str) -> None:
 
 def _parts(request: BatchRequest) -> "list[Job | Fault]":
     """Jobs of all that is meant, with the settings of each."""
-    from plan_cutters.batch.job import Fault, Job
-    from plan_cutters.batch.manifest import manifest
-    from plan_cutters.batch.sources import sources
     from plan_cutters.command.piped import listed
     from plan_cutters.errors import PlanError
+    from plan_cutters_batch.job import Fault, Job
+    from plan_cutters_batch.manifest import manifest
+    from plan_cutters_batch.sources import sources
 
     own = {p.opts[0][2:]: p for p in command.params if getattr(p, "group", "") in _OF_A_PART and p.expose_value}
     settled = functools.cache(lambda key: _settings(replace(request, **dict(key))))
@@ -315,9 +330,9 @@ def _formats() -> tuple[str, ...]:
 def _settings(request: BatchRequest) -> "Settings":
     """The settings of parts, from the words of the command line: what is wrong with them is said before anything is begun."""
     from cad_io.files import noted
-    from plan_cutters.batch.job import Settings
     from plan_cutters.command.validation import look_at, options_of, refuse_unplanned_operations
     from plan_cutters.report.folder import read_formats
+    from plan_cutters_batch.job import Settings
 
     refuse_unplanned_operations(request)
     with noted() as files:

@@ -12,10 +12,10 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
-from plan_cutters.batch.job import UNREADABLE, USAGE, Fault
-from plan_cutters.batch.sources import Source
 from plan_cutters.errors import PlanError
 from plan_cutters.files.folder import file_system, read
+from plan_cutters_batch.job import UNREADABLE, USAGE, Fault
+from plan_cutters_batch.sources import Source
 
 #: Most bytes of a manifest: a hundred thousand parts with long options.
 _LARGEST = 64 << 20

@@ -5,9 +5,9 @@ from dataclasses import dataclass, field
 from pathlib import PurePosixPath
 from typing import Any
 
-from plan_cutters.batch.job import UNREADABLE, USAGE, Fault
 from plan_cutters.errors import PlanError
 from plan_cutters.files.folder import cause, file_system
+from plan_cutters_batch.job import UNREADABLE, USAGE, Fault
 
 #: What files of parts are called.
 SUFFIXES = (".step", ".stp", ".iges", ".igs", ".brep", ".brp")

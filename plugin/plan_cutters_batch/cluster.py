@@ -7,9 +7,9 @@ import signal
 from collections.abc import Iterator
 from typing import Any
 
-from plan_cutters.batch import keys
 from plan_cutters.errors import PlanError, extra_hint
 from plan_cutters.files.temporary import require_temporary
+from plan_cutters_batch import keys
 
 #: Bytes of memory for a part where nothing else is said, at least, and the share of a machine's memory that all parts may take.
 LEAST_MEMORY, _SHARE = 4_000_000_000, 0.75
