@@ -24,11 +24,11 @@ for name in sys.argv[3:]:
     package = name.rpartition(".")[0]
     print(name, fingerprint(name, package, file, frozenset({"cad_io", "plan_cutters"}), notes))
 """
-SEARCH, HIT, CODES, MASK, REFINE = (
+SEARCH, HIT, CODES, MAP, REFINE = (
     "plan_cutters.kernels.search.search",
     "plan_cutters.kernels.tool.hit",
     "plan_cutters.kernels.codes",
-    "plan_cutters.kernels.maps.points",
+    "plan_cutters.kernels.maps.free_map",
     "cad_io.tessellate.refine",
 )
 
@@ -104,15 +104,15 @@ def test_words_and_blank_lines_change_nothing(sources):
     assert looked(sources, names) == before
 
 
-@pytest.mark.slow("copies the sources for each change", but=("mask",))
+@pytest.mark.slow("copies the sources for each change", but=("map",))
 @pytest.mark.parametrize(("name", "old", "new"), [
     (SEARCH, "_FINEST = 1e-5", "_FINEST = 1e-6"),
     (HIT, "return", "1 + 1\n    return"),
     (CODES, "= 1", "= 1 + 0"),
-    (MASK, "import numpy as np", "import numpy as np\n_NEW = 1"),
+    (MAP, "import numpy as np", "import numpy as np\n_NEW = 1"),
     ("cad_io.surface.bspline", "import numpy as np", "import numpy as np\n_NEW = 1"),
     ("cad_io.jit", "_CHECKSUM = 32", "_CHECKSUM = 16"),
-], ids=["search", "hit", "codes", "mask", "bspline", "jit"])  # fmt: skip
+], ids=["search", "hit", "codes", "map", "bspline", "jit"])  # fmt: skip
 def test_a_change_counts_for_the_module_and_its_users_alone(sources, name, old, new):
     names = with_machine_code(sources)
     before = looked(sources, names)
@@ -191,7 +191,7 @@ def test_two_versions_side_by_side_have_each_its_own(sources, tmp_path):
     other = tmp_path / "other"
     shutil.copytree(sources, other)
     edit(other, HIT, "return", "1 + 1\n    return")
-    names, notes = [SEARCH, MASK], tmp_path / "notes"
+    names, notes = [SEARCH, MAP], tmp_path / "notes"
     one, two = looked(sources, names, notes), looked(other, names, notes)
     assert (looked(sources, names, notes), looked(other, names, notes)) == (one, two)
     assert one[SEARCH] != two[SEARCH]
