@@ -14,6 +14,7 @@ from plan_cutters.answers.fitting import fitting
 from plan_cutters.document.build import cutter_entry
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.inside_radii import inside_radius_entries
+from plan_cutters.document.notes import noted
 from plan_cutters.document.over_setups import OtherSetup, OverSetups
 from plan_cutters.document.patterns import pattern_entries
 from plan_cutters.document.plan import completed, plan_of, selection
@@ -25,10 +26,11 @@ from plan_cutters.domain.fillet import Fit
 from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.spec import notation
 from plan_cutters.domain.travel import Travel
-from plan_cutters.domain.verdicts import CONVEX, Verdicts
+from plan_cutters.domain.verdicts import CONVEX, UNJUDGED, Verdicts
 from plan_cutters.files.stage_cache import NO_CACHE
 from plan_cutters.plan_file.model import AreaEntry, CutterEntry
 from plan_cutters.plan_file.nearest import nearest
+from plan_cutters.plan_file.notes import maps_partial
 from plan_cutters.plan_file.sharp_edges import SharpEdgeEntry
 from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.result import Result
@@ -40,6 +42,8 @@ from plan_cutters.scene.threads import Progress, part_of
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.between import in_each
 from plan_cutters.stages.decompose import march_differs
+from plan_cutters.stages.judge import judge
+from plan_cutters.stages.posture_maps import posture_maps
 from plan_cutters.stages.reasons import Explained, Reasons
 from plan_cutters.stages.setups import within_limits
 from plan_cutters.stages.sharp_edges import exempt, may_be_at_edge, strips, with_sharp_edges
@@ -248,6 +252,26 @@ def assembled(part: JudgedPart, clock: Clock, answers: Answers, between: Mapping
         document = plan_of(ready, entries, selected, chosen, part.started, answers, over, table, its.strips, radii, equal,
                            partial(_fitting, ready))  # fmt: skip
     return Result(clock.stamp(with_text(document)), ready, over, part.travels, answers)
+
+
+def with_maps(result: Result, part: JudgedPart, clock: Clock, compiling: Callable[[str], None]) -> Result:
+    """Add the posture maps of the cutter shown, whatever the machine."""
+    ready = part.ready
+    with clock.stage("maps") as tell:
+        compiling("free_map.free_map")
+        cutter = next(c for c in ready.cutters if c.id == result.shown)
+        verdicts = part.cutters[cutter].here
+        if ready.conditions.machine.limited:
+            verdicts = judge(replace(ready, conditions=ready.conditions.without_machine()), cutter)
+        maps = posture_maps(
+            ready.samples, Context.of(cutter, ready.conditions), verdicts, part=ready.scene.part.fingerprint, progress=tell,
+            inside=ready.inside_bodies, shut=ready.shut >= 0, missing=tuple(ready.conditions.surroundings.doubts),
+            most=ready.options.map_budget,
+        )  # fmt: skip
+    document = result.plan
+    if maps.unmapped:
+        document = noted(document, maps_partial(maps.unmapped, int((maps.verdict != UNJUDGED).sum())))
+    return replace(result, plan=clock.stamp(with_text(document)), maps=maps)
 
 
 def _fitting(ready: Prepared, cutter: Cutter, rows: NDArray[np.int64], area: Floats) -> tuple[Fit, ...] | None:

@@ -3,7 +3,7 @@
 import datetime
 import time
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any, Unpack
 
@@ -18,7 +18,6 @@ from cad_io.tessellate.triangles import At
 from plan_cutters.answers.ask import ask
 from plan_cutters.answers.least_set import least_set
 from plan_cutters.document.clock import Clock, Progress
-from plan_cutters.document.notes import noted
 from plan_cutters.document.over_setups import OtherSetup
 from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.checks import shown
@@ -28,15 +27,14 @@ from plan_cutters.domain.nesting import handed, order
 from plan_cutters.domain.operations import Operations
 from plan_cutters.domain.preference import wanted
 from plan_cutters.domain.signatures import spelled_out
-from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
+from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.files.stage_cache import NO_CACHE, StageCache
 from plan_cutters.interim import Describe, Interim
-from plan_cutters.judged_part import ExplainedIn, JudgedPart, assembled
+from plan_cutters.judged_part import ExplainedIn, JudgedPart, assembled, with_maps
 from plan_cutters.option_types import PlanOptions
 from plan_cutters.options import Options
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.notes import maps_partial
 from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.proposal import Stand, judged_proposed
 from plan_cutters.result import Result
@@ -55,7 +53,6 @@ from plan_cutters.stages.classify import classify, regions
 from plan_cutters.stages.judge import Judge, judge
 from plan_cutters.stages.judge_once import JudgeOnce
 from plan_cutters.stages.other_setups import in_setup
-from plan_cutters.stages.posture_maps import posture_maps
 
 #: Faces from which on they are sampled in a copy of the process, and the processor time that it may take, s.
 _MANY_FACES, _SAMPLING = 12, 60.0
@@ -121,84 +118,125 @@ def run(
     files of setups that are proposed will be, as a command in it is to name them. `cache` keeps what stages make of a part of a
     file. `remark` adds to each plan what its options do not say.
     """
-    begun = partial(prepare, read_timeout=read_timeout, at=at, compiling=compiling, cache=cache)
     judged: Judge = judge if cache is None else CachedJudge()
-    interim, describe = interim or Interim(clock), remark or _as_it_is
-
-    def remarked(part: JudgedPart, proposed: Describe) -> tuple[JudgedPart, Describe]:
-        return part, proposed if remark is None else lambda plan: remark(proposed(plan))
-
-    if options.propose:
-        prepared, judging = partial(begun, part, excluded=excluded), partial(_judge, begun, judged=judged)
-        proposal = judged_proposed(
-            prepared, judging, options, clock, folder, lambda made: interim.verdicts(lambda: remarked(*made()))
-        )
-        judged_part, describe = remarked(*proposal)
-    else:
-        begun, alone = partial(begun, excluded=excluded), describe
-        judged_part = _judge(begun, part, options, clock, lambda made: interim.verdicts(lambda: (made(), alone)), judged=judged)
-    return _completed(judged_part, clock, describe, compiling, interim)
+    stages = Run(
+        clock, interim or Interim(clock), remark or _as_it_is, folder, compiling, judged, read_timeout, at, excluded, cache
+    )
+    return stages.plan(part, options)
 
 
 def _as_it_is(plan: Plan) -> Plan:
     return plan
 
 
-def _judge(
-    begun: Callable[..., Prepared], part: Any, options: Options, clock: Clock, stand: Stand[JudgedPart], *, judged: Judge
-) -> JudgedPart:
-    """Judge all cutters in all setups; `stand` is told how the part is made of the verdicts alone, as soon as there are all."""
-    started = datetime.datetime.now(datetime.UTC)
-    ready = begun(part, options, clock)
-    here: dict[Cutter, Verdicts] = {}
-    seconds: dict[Cutter, float] = {}
-    searched, judged = Work(), (once := JudgeOnce(judged, sum(len(each.motions) for each in ready.patterns if each.whole)))
-    for cutter in order(ready.cutters):
-        with clock.stage(cutter.id) as tell:
-            # In the order of rank, whatever the order of work.
-            earlier = {c: here[c] for c in ready.cutters if c in here}
-            began = time.perf_counter()
-            here[cutter] = judged(ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell, work=searched)
-            seconds[cutter] = time.perf_counter() - began
-    others = _in_other_setups(ready, here, clock, judged) if options.other_setups else []
-    of_verdicts = partial(JudgedPart.of, ready, here, others, seconds, clock, searched, started, once.carried)
-    reasons: dict[Cutter, ExplainedIn] = {}
-    stand(lambda: of_verdicts(dict(reasons), explain=False))
-    return of_verdicts(reasons)
+@dataclass(frozen=True, slots=True, eq=False)
+class Run:
+    """A question on its way from a part to its plan: the order of its stages, and what goes with them. Attributes as of `run`."""
 
+    clock: Clock
+    interim: Interim
+    remark: Describe
+    folder: str
+    compiling: Callable[[str], None]
+    judged: Judge
+    read_timeout: float
+    at: At
+    excluded: Mapping[int, str] | None
+    cache: StageCache | None
 
-def _completed(part: JudgedPart, clock: Clock, describe: Describe, compiling: Callable[[str], None], interim: Interim) -> Result:
-    """Do what follows the verdicts, stage by stage; `describe` adds to each plan how its setups were found."""
-    options, least = part.ready.options, least_set(part.ready, part.here, part.other_setups)
-    interim.judged(part, describe, Answers(least_set=least))
-    interim.looked(part.between(clock, compiling))
-    job = partial(_operations, part, least)
-    # Answers and operations need nothing of each other, and neither keeps all threads at work.
-    both = options.jobs > 1 and options.operations is not None and bool(options.answers)
-    planned = Gauge()
-    with SideProcess(partial(job, Clock(lambda _, *counts: planned.tell(*counts))), _PLANNING, worth=both) as side:
-        try:
-            ask(part.ready, part.here, clock.stage, part.other_setups, least=least, answered=interim.answered)
-        except KeyboardInterrupt:
-            if (planned_by_now := side.ended()) is not None:
-                interim.planned(planned_by_now[0])
-            raise
-        if side.works:
+    def plan(self, part: Any, options: Options) -> Result:
+        """Prepare the part, judge all cutters, and do what follows the verdicts; without a setup, propose some first."""
+        if not options.propose:
+            return self.complete(self.judge(part, options, self._stands), self.remark)
+        proposal = judged_proposed(self, part, options, self.folder, self._stands_proposed)
+        return self.complete(proposal[0], self._remarked(proposal[1]))
+
+    def prepare(self, part: Any, options: Options) -> Prepared:
+        """Read, sample, classify and surround with obstacles."""
+        return prepare(
+            part, options, self.clock, read_timeout=self.read_timeout, at=self.at, compiling=self.compiling,
+            excluded=self.excluded, cache=self.cache,
+        )  # fmt: skip
+
+    def judge(self, part: Any, options: Options, stand: Stand[JudgedPart]) -> JudgedPart:
+        """Judge all cutters in all setups; `stand` is told how the part is made of the verdicts alone, as soon as these stand."""
+        started, clock = datetime.datetime.now(datetime.UTC), self.clock
+        ready = self.prepare(part, options)
+        here: dict[Cutter, Verdicts] = {}
+        seconds: dict[Cutter, float] = {}
+        once = JudgeOnce(self.judged, sum(len(each.motions) for each in ready.patterns if each.whole))
+        searched = Work()
+        for cutter in order(ready.cutters):
+            with clock.stage(cutter.id) as tell:
+                # In the order of rank, whatever the order of work.
+                earlier = {c: here[c] for c in ready.cutters if c in here}
+                began = time.perf_counter()
+                here[cutter] = once(
+                    ready, cutter, known=handed(cutter, earlier, len(ready.samples)), progress=tell, work=searched
+                )
+                seconds[cutter] = time.perf_counter() - began
+        others = _in_other_setups(ready, here, clock, once) if options.other_setups else []
+        reasons: dict[Cutter, ExplainedIn] = {}
+
+        def combined(by_cutter: dict[Cutter, ExplainedIn], *, explain: bool) -> JudgedPart:
+            return JudgedPart.of(ready, here, others, seconds, clock, searched, started, once.carried, by_cutter, explain=explain)
+
+        stand(lambda: combined(dict(reasons), explain=False))
+        return combined(reasons, explain=True)
+
+    def complete(self, part: JudgedPart, describe: Describe) -> Result:
+        """Do what follows the verdicts, stage by stage; `describe` adds to each plan how its setups were found."""
+        clock, interim, options = self.clock, self.interim, part.ready.options
+        least = least_set(part.ready, part.here, part.other_setups)
+        interim.judged(part, describe, Answers(least_set=least))
+        interim.looked(part.between(clock, self.compiling))
+        interim.planned(self._answered(part, least))
+        result = assembled(part, clock, interim.answers, interim.between)
+        if options.posture_maps:
+            result = with_maps(result, part, clock, self.compiling)
+        if describe is not _as_it_is:
+            result = replace(result, plan=clock.stamp(with_text(describe(result.plan))))
+        return result
+
+    def _answered(self, part: JudgedPart, least: LeastSet | None) -> Operations | None:
+        """Answer the questions, and plan the operations beside that: neither needs the other, nor keeps all threads at work."""
+        clock, interim, options = self.clock, self.interim, part.ready.options
+        both = options.jobs > 1 and options.operations is not None and bool(options.answers)
+        planned = Gauge()
+        with SideProcess(
+            lambda: _operations(part, least, Clock(lambda _, *counts: planned.tell(*counts))), _PLANNING, worth=both
+        ) as side:
+            try:
+                ask(part.ready, part.here, clock.stage, part.other_setups, least=least, answered=interim.answered)
+            except KeyboardInterrupt:
+                if (planned_by_now := side.ended()) is not None:
+                    interim.planned(planned_by_now[0])
+                raise
+            if not side.works:
+                return _operations(part, least, clock)[0]
             with clock.stage("operations") as tell:
                 operations, seconds, boxes = side.result(
-                    partial(job, Clock(clock.progress)), waiting=lambda: tell(*planned.counts)
+                    lambda: _operations(part, least, Clock(clock.progress)), waiting=lambda: tell(*planned.counts)
                 )
             clock.seconds |= seconds
             clock.boxes |= boxes
-        else:
-            operations, *_ = job(clock)
-        interim.planned(operations)
-    result = assembled(part, clock, interim.answers, interim.between)
-    if options.posture_maps:
-        result = _mapped(result, part, clock, compiling)
-    if describe is not _as_it_is:
-        result = replace(result, plan=clock.stamp(with_text(describe(result.plan))))
-    return result
+            return operations
+
+    def _stands(self, made: Callable[[], JudgedPart]) -> None:
+        """The verdicts stand in the setups that were named."""
+        self.interim.verdicts(lambda: (made(), self.remark))
+
+    def _stands_proposed(self, made: Callable[[], tuple[JudgedPart, Describe]]) -> None:
+        """The verdicts stand in setups that are proposed, which say so in the plan."""
+
+        def described() -> tuple[JudgedPart, Describe]:
+            part, proposed = made()
+            return part, self._remarked(proposed)
+
+        self.interim.verdicts(described)
+
+    def _remarked(self, proposed: Describe) -> Describe:
+        return proposed if self.remark is _as_it_is else lambda plan: self.remark(proposed(plan))
 
 
 def _operations(
@@ -210,26 +248,6 @@ def _operations(
     from plan_cutters.operations.planning import plan_operations
 
     return plan_operations(part.ready, part.everywhere(), least, clock.stage), clock.seconds, clock.boxes
-
-
-def _mapped(result: Result, part: JudgedPart, clock: Clock, compiling: Callable[[str], None]) -> Result:
-    """Add the posture maps of the cutter shown, and the motion that they allow."""
-    ready = part.ready
-    with clock.stage("maps") as tell:
-        compiling("free_map.free_map")
-        cutter = next(c for c in ready.cutters if c.id == result.shown)
-        verdicts = part.cutters[cutter].here
-        if ready.conditions.machine.limited:
-            verdicts = judge(replace(ready, conditions=ready.conditions.without_machine()), cutter)
-        maps = posture_maps(
-            ready.samples, Context.of(cutter, ready.conditions), verdicts, part=ready.scene.part.fingerprint, progress=tell,
-            inside=ready.inside_bodies, shut=ready.shut >= 0, missing=tuple(ready.conditions.surroundings.doubts),
-            most=ready.options.map_budget,
-        )  # fmt: skip
-    document = result.plan
-    if maps.unmapped:
-        document = noted(document, maps_partial(maps.unmapped, int((maps.verdict != UNJUDGED).sum())))
-    return replace(result, plan=clock.stamp(with_text(document)), maps=maps)
 
 
 def _in_other_setups(ready: Prepared, here: Mapping[Cutter, Verdicts], clock: Clock, judged: Judge) -> list[OtherSetup]:

@@ -4,7 +4,7 @@ promised."""
 from collections.abc import Callable, Collection
 from dataclasses import replace
 from functools import partial
-from typing import TypeVar
+from typing import Any, Protocol, TypeVar
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -37,11 +37,23 @@ Made = TypeVar("Made")
 Stand = Callable[[Callable[[], Made]], None]
 
 
+class Stages(Protocol):
+    """The stages that are gone through for each proposal: read and sample a part; judge a scene, and tell how its part is made of
+    the verdicts alone.
+    """
+
+    @property
+    def clock(self) -> Clock: ...
+
+    def prepare(self, part: Any, options: Options) -> Prepared: ...
+
+    def judge(self, part: Scene, options: Options, stand: Stand[JudgedPart]) -> JudgedPart: ...
+
+
 def judged_proposed(
-    prepare: Callable[[Options, Clock], Prepared],
-    judge: Callable[[Scene, Options, Clock, Stand[JudgedPart]], JudgedPart],
+    stages: Stages,
+    part: Any,
     options: Options,
-    clock: Clock,
     folder: str = "",
     stand: Stand[tuple[JudgedPart, Callable[[Plan], Plan]]] = lambda made: None,
 ) -> tuple[JudgedPart, Callable[[Plan], Plan]]:
@@ -49,11 +61,10 @@ def judged_proposed(
 
     Parameters
     ----------
-    prepare, judge : callable
-        Read and sample a part under options; judge a scene under options, and tell how its part is made of the verdicts alone.
+    stages : Stages
+    part : anything that `plan` takes
     options : Options
         With `propose`.
-    clock : Clock
     folder : str
         Where the setups will be written; empty where they will not be.
     stand : callable, optional
@@ -73,35 +84,34 @@ def judged_proposed(
     """
     words = _words(options)
     unproposed = replace(options, propose=False, fixtures=())
-    ready = prepare(unproposed, clock)
+    ready = stages.prepare(part, unproposed)
     ready = replace(ready, scene=ready.scene.for_targets(ready.chosen.targets))
-    with clock.stage("proposal"):
+    with stages.clock.stage("proposal"):
         ranking = ranked(ready, MOST_PROPOSED, words)
     best: tuple[float, JudgedPart, Callable[[Plan], Plan]] | None = None
     failed, why = frozenset[int](), ""
     for tried in range(1, _TRIES + 1):
         chosen = ranking.choose(MOST_PROPOSED, failed)
-        with clock.stage("proposal"):
+        with stages.clock.stage("proposal"):
             ranking.settle(chosen)
         promised = np.logical_or.reduce([ranking.served(k) for k in chosen]) if chosen else np.zeros(0, bool)
         if not promised.any():
             break
         proposed = partial(_proposed, ranking=ranking, chosen=chosen, tried=tried)
         try:
-            part = judge(
+            judged = stages.judge(
                 ready.scene.turned_to(_axis(ranking, chosen[0])),
                 _options(unproposed, ranking, chosen, folder),
-                clock,
                 partial(_stand, stand, proposed) if best is None else lambda made: None,
             )
         except PlanError as error:
             why, failed = error.cause, failed | {chosen[0]}
             continue
-        (reached_share, held_share, worst), describe = proposed(part)
+        (reached_share, held_share, worst), describe = proposed(judged)
         if held_share >= _ENOUGH:
-            return part, describe
+            return judged, describe
         if best is None or reached_share > best[0]:
-            best = reached_share, part, describe
+            best = reached_share, judged, describe
         failed |= {worst}
     if best is not None:
         return best[1:]

@@ -3,6 +3,7 @@
 import json
 import math
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -190,7 +191,7 @@ def test_where_nothing_is_within_the_limits_it_is_one_line():
         raise AssertionError
 
     with pytest.raises(OptionError, match=r"in none of \d+ directions does machine 3-axis hold") as caught:
-        judged_proposed(lambda options, clock: prepare(box(), options, clock), never, flat, Clock())
+        judged_proposed(SimpleNamespace(prepare=prepare, judge=never, clock=Clock()), box(), flat)
     assert "\n" not in str(caught.value)
 
 
