@@ -66,9 +66,18 @@ def samples_lie_on_the_skin(setting: Setting):
         assert np.abs(height - point[:, 2]).max() < 1e-5
         return
     assert np.abs(material.value(point)).max() < 1e-5
-    # On an edge it may lie on both sides, or on none.
-    front, back = (material.value(point + way * normal) / abs(way) for way in (1e-3, -1e-3))
-    wrong = rows[(front < -0.3) & (back > 0.3)]
+    # On an edge it may lie on both sides, or on none; at a corner it may seem inside out, and its face beside it does not.
+    one = np.cross(normal, np.eye(3)[np.abs(normal).argmin(axis=1)])
+    one /= np.linalg.norm(one, axis=1)[:, None]
+    other, turns = np.cross(normal, one), np.arange(8) * (math.pi / 4)
+
+    def sides(at):
+        return [material.value(at + way * normal) / abs(way) for way in (1e-3, -1e-3)]
+
+    beside = [sides(point + 0.01 * (math.cos(turn) * one + math.sin(turn) * other)) for turn in turns]
+    right = np.any([(front > 0.3) & (back < -0.3) for front, back in beside], axis=0)
+    front, back = sides(point)
+    wrong = rows[(front < -0.3) & (back > 0.3) & ~right]
     assert not len(wrong), told(samples, int(wrong[0]), "inside out")
 
 
