@@ -69,7 +69,7 @@ def samples_lie_on_the_skin(setting: Setting):
     # On an edge it may lie on both sides, or on none; at a corner it may seem inside out, and its face beside it does not.
     one = np.cross(normal, np.eye(3)[np.abs(normal).argmin(axis=1)])
     one /= np.linalg.norm(one, axis=1)[:, None]
-    other, turns = np.cross(normal, one), np.arange(8) * (math.pi / 4)
+    other, turns = np.cross(normal, one), np.linspace(0.0, 2.0 * math.pi, 64)
 
     def sides(at):
         return [material.value(at + way * normal) / abs(way) for way in (1e-3, -1e-3)]
