@@ -247,6 +247,25 @@ def test_the_forced_step_is_that_of_the_best_path_by_brute_force(seed):
     assert answer == 0 or grid.forces(bits, answer - 1, cone=True)
 
 
+@given(st.integers(0, 2**31), st.sampled_from([(-720.0, 0.0), (0.0, 720.0), (-360.0, 360.0), (-200.0, 100.0), (-2000.0, 2000.0)]))
+@settings(max_examples=25, deadline=None)
+def test_each_position_of_the_grid_is_marked_by_its_own_axis_in_whatever_turn_it_lies(seed, limit):
+    """And all that is marked has that axis, as near as the grid is fine."""
+    grid = Positions.of(machine(np.array([np.radians(limit), TRUNNION[1]])))
+    rng = np.random.default_rng(seed)
+    for _ in range(4):
+        i, j = int(rng.integers(0, grid.axis.shape[0])), int(rng.integers(0, grid.axis.shape[1]))
+        bits = np.zeros(grid.axis.shape[:2], np.uint8)
+        grid._mark(bits, grid.axis[i, j][None])
+        off = np.degrees(np.arccos(np.clip(grid.axis[bits > 0] @ grid.axis[i, j], -1.0, 1.0)))
+        assert off.max() <= 1.5 * RESOLUTION
+        if not grid.cone[j]:
+            assert bits[i, j]
+            # Each whole turn within the limits is another position.
+            turns = grid.first[(np.abs((grid.first - grid.first[i] + 180.0) % 360.0 - 180.0) < 0.5 * RESOLUTION)]
+            assert bits[:, j].sum() >= len(turns)
+
+
 # Sentences
 
 

@@ -123,6 +123,19 @@ def test_axes_that_are_free_lie_in_no_cell_that_is_called_blocked(part, cutter, 
     assert blocked[-1] > 0.0
 
 
+@pytest.mark.parametrize("most", [20.0, 60.0])
+def test_no_cell_is_open_that_the_machine_cannot_tilt_to(most):
+    """Over a ball every direction is somewhere free: what is left is within the limit, but for the size of a cell."""
+    ready = prepare(ball(), Options(cutters=[BALL], grid=7, faces="all", machine=f"tilt:{most:g}"))
+    probes = Probes(ready.samples, ready.cutters, ready.setups, [ready.finished])
+    cells = Cells.whole(3)
+    open_ = OpenCells(probes, np.flatnonzero(ready.finished)).table(cells)[:, 0].any(axis=1)
+    tilt = np.degrees(np.arccos(np.clip(cells.middle[:, 2], -1.0, 1.0)))
+    wide = math.degrees(cells.radius.max())
+    assert tilt[open_].max() <= most + wide + 1e-6
+    assert open_[tilt <= most].all()
+
+
 def test_more_than_the_tilts_is_called_blocked():
     """A holder over a groove: cells find obstacles, and not tilts alone."""
     ready = prepare(SAMPLES / "v_groove.step", Options(cutters=["R6L40rc6"], holder="R25L60", grid=9))
