@@ -60,11 +60,12 @@ def test_what_is_joined_to_its_neighbours_is_as_small_as_what_is_told(monkeypatc
 
 
 def test_no_step_is_planned_with_a_cutter_without_a_feed(monkeypatch):
-    """Of two cutters the second has none: a person's step with the first, and what is left, are planned with that alone."""
-    monkeypatch.setattr(planning, "without_feed", lambda ready: ready.cutters[1:])
-    found = plan(box(40, 30, 20), **HOW, operations="fastest", process={**STEPS, "rest": "plan"})
+    """Of two cutters the larger has none: a person's step with the other, and what is left, are planned with that alone."""
+    monkeypatch.setattr(planning, "without_feed", lambda ready: ready.cutters[:1])
+    steps = {"step": [{"cutter": "D6L40rc3F16", "angles": {"C": 0.0, "A": 0.0}, "faces": ["F6"]}], "rest": "plan"}
+    found = plan(box(40, 30, 20), **HOW, operations="fastest", process=steps)
     used = {each.cutter for one in found.answers.operations.plans for each in one.operations}
-    assert used == set(found.ready.cutters[:1])
+    assert used == set(found.ready.cutters[1:])
 
 
 def times_of(cost, moving, *, change=7.0, setup=11.0):
