@@ -140,8 +140,8 @@ def test_about_a_loop_that_makes_a_whole_turn_an_axis_must_turn_back(turns):
 @settings(max_examples=60, deadline=None)
 def test_a_span_lies_within_the_limits_wherever_whole_turns_can_bring_it(seed, wide, low):
     rng = np.random.default_rng(seed)
-    walk = np.column_stack([np.sort(rng.uniform(0.0, wide, 6)), np.zeros(6)])
-    walk[[0, -1], 0] = 0.0, wide
+    # No step is half a turn.
+    walk = np.column_stack([np.linspace(0.0, wide, 6), np.zeros(6)])
     told = walk + np.array([WHOLE * float(rng.integers(-2, 3)), 0.0])
     limit = np.array([[low, low + 7.0], [-1.0, 1.0]])
     made = _span(told, chain(6), limit)

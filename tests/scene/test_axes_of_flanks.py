@@ -10,10 +10,11 @@ from hypothesis import strategies as st
 from cad_io.arrays import Triangles
 from plan_cutters import Machine, PostureRange
 from plan_cutters.domain.kinematics import Kinematics
+from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene import solids
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.fixed_axis import tilt_direction_of
-from plan_cutters.scene.flats_and_flanks import _at_angle, _nearest, _special, _turned
+from plan_cutters.scene.flats_and_flanks import _at_angle, _axes, _nearest, _special, _turned
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
 
@@ -140,3 +141,37 @@ def test_a_tilt_direction_is_what_of_the_axis_lies_across_the_normal(seed):
     assert np.linalg.norm(made[2:], axis=1) == pytest.approx(1.0)
     cosine = n @ axis
     assert cosine[:, None] * n + np.sqrt(1.0 - cosine**2)[:, None] * made[2:] == pytest.approx(np.broadcast_to(axis, (2, 3)))
+
+
+@settings(max_examples=20, deadline=None)
+@given(SEEDS, st.sampled_from(["3-axis", "4-axis-a", "trunnion-ac", "unlimited", "tilt:30"]), st.floats(1.2, 1.6))
+def test_along_a_flank_every_axis_is_tried_that_the_machine_holds_at_its_tilt(seed, machine, tilt):
+    """One rotary axis has two of them, wherever they lie between the rotations of a search; each is held, at that tilt."""
+    rng, there = np.random.default_rng(seed), conditions(machine)
+    normal = np.concatenate([units(rng, 12), np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.6, 0.8]])])
+    direction = np.cross(normal, units(rng, 15))
+    direction /= np.linalg.norm(direction, axis=1)[:, None]
+    contacts = Contacts(np.zeros((15, 3)), normal, direction, np.zeros((15, 2)))
+    flank = SimpleNamespace(tilt=tilt, length=20.0)
+    made = list(_axes(contacts, np.ones(15, np.int32), np.arange(15), flank, there))
+    tried = np.concatenate([np.column_stack([rows, axis]) for rows, axis, _ in made])
+    assert there.allows(tried[:, 1:]).all()
+    exact = np.abs((tried[:, 1:] * normal[tried[:, 0].astype(int)]).sum(axis=1) - np.cos(tilt)) < 1e-6
+    kinematics = None if there.kinematics is None else there.kinematics.turning()[0]
+    if kinematics is None or len(kinematics.direction) > 1:
+        # At all rotations that are searched.
+        for row in range(15):
+            turn, across = there.postures.rotations[:, None], np.cross(normal[row], direction[row])
+            lean = np.cos(turn) * direction[row] + np.sin(turn) * across
+            axes = np.cos(tilt) * normal[row] + np.sin(tilt) * lean
+            assert there.allows(axes).sum() <= (exact & (tried[:, 0] == row)).sum()
+        return
+    for axes in _at_angle(normal, np.cos(tilt), kinematics):
+        held = np.isfinite(axes).all(axis=1)
+        held[held] = there.allows(axes[held])
+        for row in np.flatnonzero(held).tolist():
+            own = tried[tried[:, 0] == row, 1:]
+            assert np.abs(own - axes[row]).max(axis=1).min(initial=9.0) < 1e-9
+    # Without a length the flank lies along nothing that it does not hold at once.
+    bare = list(_axes(contacts, np.ones(15, np.int32), np.arange(15), SimpleNamespace(tilt=tilt, length=0.0), there))
+    assert sum(len(rows) for rows, _, _ in bare) <= sum(len(rows) for rows, _, _ in made)
