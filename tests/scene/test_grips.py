@@ -15,6 +15,7 @@ from plan_cutters.domain.clamping import requested
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.errors import FixtureError
 from plan_cutters.scene import solids
+from plan_cutters.scene.chuck_places import _degrees_of
 from plan_cutters.scene.vise_places import vise_places
 from plan_cutters.scene.workpiece import Workpiece, clipped
 from tests.support.cad_parts import box, rod
@@ -193,3 +194,17 @@ def test_the_faces_of_one_cylinder_are_gripped_together():
     hold = hold_of(bar, "chuck")
     assert len(hold.grips) == 2
     assert hold.fixture.placement[:2] == pytest.approx((0.0, 0.0), abs=1e-6)
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.floats(-400.0, 400.0), st.floats(3.0, 170.0), st.permutations(range(3)), st.floats(0.5, 60.0))
+def test_triangles_on_a_cylinder_take_the_degrees_from_their_first_to_their_last(first, wide, order, radius):
+    """Whichever corner comes first, and where the angle begins anew."""
+    turn = np.radians([first, first + 0.4 * wide, first + wide])
+    centre = np.array([3.0, -4.0, 0.0])
+    vertex = centre + np.column_stack([radius * np.cos(turn), radius * np.sin(turn), [0.0, 1.0, 0.0]])[list(order)]
+    taken = _degrees_of(vertex[None], centre)
+    within = (np.arange(360) + 0.5 - first) % 360.0
+    # A degree whose middle is in it is taken, but for rounding.
+    sure = (np.abs(within - wide) > 1e-6) & (within > 1e-6) & (within < 360.0 - 1e-6)
+    assert ((taken > 0.5) == (within < wide))[sure].all()

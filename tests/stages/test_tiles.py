@@ -89,6 +89,10 @@ def test_the_cells_of_a_face_are_all_of_it_in_both_parameters(ready):
             nodes = (grid.u, grid.v)[k]
             assert line[0] == pytest.approx(min(low, first, nodes[0]))
             assert line[-1] == pytest.approx(max(high, last, nodes[-1]))
+        if part.faces[grid.face - 1].shape == "cylinder":
+            # All of it is about some sample.
+            assert (field.index >= 0).all()
+            assert not len(bare.area)
         assert mine.area.sum() + bare.area.sum() == pytest.approx(part.faces[grid.face - 1].area)
 
 
