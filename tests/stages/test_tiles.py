@@ -15,7 +15,7 @@ from plan_cutters.stages.access import access
 from plan_cutters.stages.cells import _halved, _rectangles, _tiles, laid
 from plan_cutters.stages.connected import _key
 from plan_cutters.stages.judge import judge
-from tests.support.cad_parts import box
+from tests.support.cad_parts import box, ring
 
 LINE = np.array([1.0, 2.0, 4.0, 5.0])
 
@@ -69,14 +69,13 @@ def test_each_tile_of_each_level_has_a_number_of_its_own(shape):
     assert len(np.unique(every)) == len(every)
 
 
-@pytest.fixture(scope="module")
-def ready():
-    rod = read_part(BRepPrimAPI_MakeCylinder(30.0, 2.0).Shape())
-    return prepare(rod, Options.of({"cutters": "R3L40", "faces": "all", "grid": 5, "area_budget": 0}))
+@pytest.fixture(scope="module", params=[lambda: BRepPrimAPI_MakeCylinder(30.0, 2.0).Shape(), ring], ids=["rod", "ring"])
+def ready(request):
+    return prepare(read_part(request.param()), Options.of({"cutters": "R3L40", "faces": "all", "grid": 5, "area_budget": 0}))
 
 
 def test_the_cells_of_a_face_are_all_of_it_in_both_parameters(ready):
-    """A low wide rod: around its axis from 0 to 2 pi, and 2 mm along it; the plane ends go to its radius."""
+    """A low wide rod, around its axis from 0 to 2 pi, and 2 mm along it; and a ring, which is closed both ways."""
     context = Context.of(ready.cutters[0], ready.conditions)
     verdicts = judge(ready, ready.cutters[0])
     part = ready.scene.part
@@ -89,7 +88,7 @@ def test_the_cells_of_a_face_are_all_of_it_in_both_parameters(ready):
             nodes = (grid.u, grid.v)[k]
             assert line[0] == pytest.approx(min(low, first, nodes[0]))
             assert line[-1] == pytest.approx(max(high, last, nodes[-1]))
-        if part.faces[grid.face - 1].shape == "cylinder":
+        if part.faces[grid.face - 1].shape in ("cylinder", "torus"):
             # All of it is about some sample.
             assert (field.index >= 0).all()
             assert not len(bare.area)
