@@ -15,9 +15,9 @@ from plan_cutters.domain.outline import outline, points
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import served_by
+from plan_cutters_check.asking import _sizes
 from plan_cutters_check.bench import Bench
 from plan_cutters_check.clash import FREE, MET, Clock, met, nearest
-from plan_cutters_check.command import _sizes
 from plan_cutters_check.question import MachineAxes, Setup, axes_of, other_angles
 from plan_cutters_check.surface import Cells, Face
 from plan_cutters_check.tool import tool_of
@@ -206,7 +206,7 @@ def test_the_search_and_the_checker_agree(words):
     options = Options(machine="trunnion-ac", **{name: each for name, each in words.items() if name != "part"})
     ready = prepare(part, options)
     samples, cutter = ready.samples, ready.cutters[0]
-    from plan_cutters_check.command import _bodies
+    from plan_cutters_check.asking import _bodies
     from plan_cutters_check.question import MachineAxes, Question
 
     machine = MachineAxes(

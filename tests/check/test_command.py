@@ -7,7 +7,7 @@ import pytest
 
 from plan_cutters import Options
 from plan_cutters.errors import OptionError
-from plan_cutters_check.command import question_of
+from plan_cutters_check.asking import question_of
 from tests.support.forked import run
 from tests.support.written_plan import FILES, PART, TYPED, WORDS
 

@@ -2,117 +2,25 @@
 
 import json
 import math
-import time
 from dataclasses import fields, replace
 
 import jsonschema
 import numpy as np
 import pytest
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
-from OCP.TopLoc import TopLoc_Location
 
 from cad_io import CadIoError, read_part
-from cad_io.arrays import FaceInfo
-from cad_io.kernel.assembly import Node
 from plan_cutters import Cutter, Machine, Options, PlanError, PostureRange, plan, posture_map
 from plan_cutters.command import cli, validation
 from plan_cutters.command.request import PlanRequest
 from plan_cutters.command.validation import OF_OPERATIONS
 from plan_cutters.errors import CutterError, MachineError, OptionError
 from plan_cutters.option_types import ANGLES
-from plan_cutters.scene.faces import select_faces
 from tests.support.cad_parts import compound
 from tests.support.commands import assert_one_line, in_lines
 from tests.support.forked import run
 from tests.support.places import ROOT
 from tests.support.shapes import plane
-
-NOWHERE = TopLoc_Location()
-RIM, HUB = Node("ring", "rim", NOWHERE, faces=(1, 2)), Node("hub", "hub", NOWHERE, faces=(3,))
-SPARE = Node("wheel", "spare", NOWHERE, children=(Node("ring", "rim", NOWHERE, faces=(4,)),))
-CAR = Node("car", "", NOWHERE, children=(Node("wheel", "left", NOWHERE, children=(RIM, HUB)), SPARE))
-TREE = (CAR, Node("rim", "", NOWHERE, faces=(5,)))
-FACES = tuple(FaceInfo(i, f"n{i}", "plane", "plane", 1.0) for i in range(1, 7))
-
-
-@pytest.mark.parametrize(
-    ("text", "numbers"),
-    [
-        ("F2", (2,)),
-        ("f2-F4", (2, 3, 4)),
-        ("2 - 3, F6", (2, 3, 6)),
-        ("007", None),
-        ("!2-3", (1, 4, 5, 6)),
-        ("!F2-F3,6", (1, 4, 5)),
-        ("!name:[12]$", (3, 4, 5, 6)),
-        ("!sculptured", (1, 2, 3, 4, 5, 6)),
-        ("component:car/left/rim", (1, 2)),
-        ("component:left/rim", (1, 2)),
-        ("component:left", (1, 2, 3)),
-        ("component:car", (1, 2, 3, 4)),
-        ("component:wheel", (1, 2, 3, 4)),  # the product of both instances
-        ("component:ring", (1, 2, 4)),
-        ("component:rim", (5,)),  # an exact path counts alone
-        ("!component:car", (5, 6)),
-    ],
-)
-def test_the_words_for_faces(text, numbers):
-    if numbers is None:
-        with pytest.raises(OptionError, match="no face F7"):
-            select_faces(FACES, text, tree=TREE)
-    else:
-        assert select_faces(FACES, text, tree=TREE) == numbers
-
-
-@pytest.mark.parametrize(
-    ("text", "cause"),
-    [
-        ("F0", "no face F0"),
-        ("5-2", "backwards"),
-        ("F7", "F1 to F6"),
-        ("3,", "give sculptured"),
-        ("F", "give sculptured"),
-        ("!", "give sculptured"),
-        ("!!3", "give sculptured"),
-        ("!all", "selects no face"),
-        ("!name:nobody", "selects no face"),  # mistyped, it would be everything
-        ("component:", "no component"),
-        ("component:im", "car/left/hub, car/left/rim, car/spare/rim, rim"),
-        ("component:*", "no component"),
-        ("name:(", "regular expression"),
-        ("F1\nF2", "F1 F2"),
-        ("x" * 5000, "xxx..."),
-    ],
-)
-def test_words_for_faces_that_mean_nothing(text, cause):
-    with pytest.raises(OptionError) as error:
-        select_faces(FACES, text, tree=TREE)
-    assert cause in str(error.value)
-    assert "\n" not in str(error.value)
-    assert len(str(error.value)) < 300
-
-
-@pytest.mark.parametrize("text", ["1-9999999999", "!1-9999999999", f"F1-F{'9' * 5000}", f"{'9' * 5000}-1"])
-def test_no_range_is_built_that_the_part_has_not(text):
-    began = time.process_time()
-    with pytest.raises(OptionError, match="no face F9"):
-        select_faces(FACES, text)
-    assert time.process_time() - began < 0.5
-
-
-def test_components_without_names():
-    with pytest.raises(OptionError, match="have no names"):
-        select_faces(FACES, "component:hub", tree=(Node("", "", NOWHERE, faces=(1, 2, 3, 4, 5, 6)),))
-
-
-def test_an_ignored_face_is_no_target():
-    assert select_faces(FACES, "all", ignored=(2,)) == (1, 3, 4, 5, 6)
-    assert select_faces(FACES, "sculptured", ignored=(2,)) == (1, 3, 4, 5, 6)
-    assert select_faces(FACES, "component:left", tree=TREE, ignored=(2,)) == (1, 3)
-    with pytest.raises(OptionError, match="F2 is ignored"):
-        select_faces(FACES, "1-3", ignored=(2, 5))
-    with pytest.raises(OptionError, match="leaves none"):
-        select_faces(FACES, "name:n2", ignored=(2,))
 
 
 def covered():

@@ -8,8 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plan_cutters.domain.columns import columns_of
-from plan_cutters.operations.cover import fewest
-from plan_cutters.operations.fewest import Search
+from plan_cutters.operations.cover import Cover, fewest
+from plan_cutters.operations.fewest import Search, search_fewest, spread
 
 UNIT = 1_000_000
 
@@ -107,3 +107,91 @@ def test_nothing_to_serve_needs_nothing():
     search = Search(Table(np.zeros((3, 2), bool)), columns([0, 1]), np.zeros(0, np.int64), lambda bare: columns([]))
     found = search.solve()
     assert len(found.chosen) == found.at_least == 0
+
+
+@given(st.integers(0, 2**31), st.integers(1, 40), st.integers(1, 40))
+@settings(max_examples=40, deadline=None)
+def test_samples_that_are_spread_are_each_as_far_as_can_be_from_those_before(seed, count, most):
+    rng = np.random.default_rng(seed)
+    point, rows = rng.uniform(-1.0, 1.0, (60, 3)), np.sort(rng.choice(60, count, replace=False))
+    some = spread(rows, point, most)
+    assert len(some) == min(count, most)
+    assert set(some.tolist()) <= set(rows.tolist())
+    assert (np.diff(some) > 0).all()
+    if count <= most:
+        return
+    assert rows[0] in some
+    if most == 1:
+        return
+    # All others are no farther from those taken than these are from each other.
+    away = np.linalg.norm(point[rows][:, None] - point[some], axis=2).min(axis=1)
+    among = np.linalg.norm(point[some][:, None] - point[some], axis=2) + 9.0 * np.eye(len(some))
+    assert away.max() <= among.min() + 1e-12
+
+
+def test_of_samples_at_one_place_one_is_enough():
+    point = np.repeat([[1.0, 2.0, 3.0], [5.0, 2.0, 3.0]], 5, axis=0)
+    assert spread(np.arange(10), point, 4).tolist() == [0, 5]
+
+
+class Levels:
+    """A stand-in for a search that notes what it is asked, and has a cover of so many candidates."""
+
+    def __init__(self, chosen):
+        self.columns, self.rows, self.alone, self.wanted = columns(range(9)), np.arange(4), np.zeros(0, np.int64), 4
+        self.cover = Cover(np.arange(chosen), 1, np.zeros(4, np.int64), 1.0, 1.0)
+        self.proved, self.spacings, self.known = [], [], []
+
+    def solve(self, known=None, *, prove=True):
+        self.proved.append(prove)
+        self.known.append(known)
+        return self.cover
+
+    def refine(self, cover, spacing, orientations):
+        assert cover is self.cover
+        self.spacings.append(spacing)
+
+
+@pytest.mark.parametrize(("spacing", "finest"), [(0.16, 0.02), (0.1, 0.07), (0.3, 0.3), (0.35, 0.01)])
+def test_candidates_are_laid_down_to_the_finest_spacing_in_equal_shares_and_the_last_cover_is_proved(spacing, finest):
+    search, told = Levels(3), []
+    found = search_fewest(search, (), spacing, finest, lambda done, of: told.append((done, of)))
+    levels = len(search.spacings)
+    assert [spacing, *search.spacings] == pytest.approx(np.geomspace(spacing, finest, levels + 1) if levels else [spacing])
+    # Each halving is a level, the last ones joined.
+    assert 2.0**-0.5 <= 2.0**levels * finest / spacing <= 2.0**0.5 or levels == 0
+    assert search.proved == [False] * levels + [True]
+    assert found.spacing == pytest.approx(finest if levels else spacing)
+    assert told == [(k, levels) for k in range(levels)]
+    assert search.known[0] is None
+    assert all(each is search.cover.chosen for each in search.known[1:])
+
+
+def test_one_candidate_for_all_needs_no_finer_ones():
+    search = Levels(1)
+    assert search_fewest(search, (), 0.16, 0.02, lambda done, of: None).spacing == 0.16
+    assert search.spacings == []
+
+
+@given(st.integers(0, 2**31))
+@settings(max_examples=5, deadline=None)
+def test_where_the_rounds_do_not_do_the_cover_serves_all_the_same(seed):
+    table = caps(seed, 400, 50, 0.9)
+    wanted = np.flatnonzero(table.any(axis=1))
+    search = Search(Table(table), columns(range(50)), wanted, lambda bare: columns([]))
+    found = search._patched()
+    assert table[np.ix_(wanted, found.chosen)].any(axis=1).all()
+
+
+@given(st.integers(0, 2**31))
+@settings(max_examples=5, deadline=None)
+def test_candidates_that_wait_enter_where_they_could_make_a_cover_smaller(seed):
+    """Few serve little, and one that waits serves all."""
+    table = np.concatenate([caps(seed, 60, 20, 0.4), np.ones((60, 1), bool)], axis=1)
+    table[:, 0] |= ~table[:, :20].any(axis=1)
+    search = Search(Table(table), columns(range(20)), np.arange(60), lambda bare: columns([]))
+    assert len(search.solve(prove=False).chosen) > 1
+    search._add_columns(columns([20]))
+    found = search.solve()
+    assert np.rint(search.columns.angle[found.chosen, 0]).tolist() == [20]
+    assert found.at_least == 1

@@ -20,8 +20,8 @@ from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
 from plan_cutters.result import Result
 from plan_cutters.stages.judge import judge
+from plan_cutters_check.asking import question_of
 from plan_cutters_check.check import check
-from plan_cutters_check.command import question_of
 from tests.support.patterns import impeller
 
 WORDS = {"cutters": ["D4L30rc2F16S4"], "holder": "er16", "faces": "all", "spacing": 6.0, "jobs": 2, "machine": "trunnion-ac",

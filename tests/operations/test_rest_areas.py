@@ -146,3 +146,33 @@ def test_a_ball_in_a_plane_trough_takes_the_seconds_of_its_width():
     entry = result.plan.operations.plans[0]
     area = sum(one.area_mm2 for one in entry.operations)
     assert entry.cutting_seconds == pytest.approx(area / (each * feed / 60.0), rel=0.01)
+
+
+def test_a_smaller_cutter_takes_nothing_that_a_larger_one_has_taken():
+    """Two orientations of the large cutter serve half each; the small one serves all, and is needed for one sample alone."""
+    cost = np.array([[10.0, math.inf, 11.0], [10.0, math.inf, 11.0], [math.inf, 10.0, 11.0], [math.inf, 10.0, 11.0]])
+    kind = np.array([0, 0, 1], np.int32)
+    problem = Problem(cost, kind, np.zeros(3, np.int32), Costs(1.0, 5.0, 0.0))
+    assert largest_first(problem, [0, 1]).tolist() == [0, 1]
+    rest = Problem(np.concatenate([cost, [[math.inf, math.inf, 3.0]]]), kind, np.zeros(3, np.int32), Costs(1.0, 5.0, 0.0))
+    assert largest_first(rest, [0, 1]).tolist() == [0, 1, 2]
+    # The other way round the first takes all.
+    assert largest_first(rest, [1, 0]).tolist() == [2]
+
+
+def test_by_the_habit_all_is_served_that_anything_serves():
+    rng = np.random.default_rng(5)
+    for _ in range(60):
+        n, m = int(rng.integers(1, 9)), int(rng.integers(1, 7))
+        cost = np.where(rng.random((n, m)) < 0.6, 10.0 * rng.random((n, m)), math.inf)
+        cost = cost[np.isfinite(cost).any(axis=1)]
+        kind = rng.integers(0, 3, m).astype(np.int32)
+        problem = Problem(cost, kind, np.zeros(m, np.int32), Costs(float(5.0 * rng.random()), 1.0, 0.0))
+        chosen = largest_first(problem, [2, 0, 1])
+        assert np.isfinite(cost[:, chosen]).any(axis=1).all()
+        assert (np.diff(chosen) > 0).all()
+        # Each serves something that no cutter before it has taken.
+        rank = {2: 0, 0: 1, 1: 2}
+        for each in chosen.tolist():
+            before = [k for k in chosen.tolist() if rank[int(kind[k])] < rank[int(kind[each])]]
+            assert (np.isfinite(cost[:, each]) & ~np.isfinite(cost[:, before]).any(axis=1)).any()

@@ -8,7 +8,7 @@ from plan_cutters import plan
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.report import models
 from plan_cutters.report.clamping_shapes import clamping_shape
-from plan_cutters_check.command import _bodies
+from plan_cutters_check.asking import _bodies
 from plan_cutters_check.fixtures import PlacedFixture
 from plan_cutters_check.question import Setup
 from tests.support import gltf

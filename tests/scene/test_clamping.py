@@ -10,20 +10,14 @@ from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
 
 from cad_io import read_part
 from plan_cutters import Scene, plan, posture_map
-from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.verdicts import ANOTHER_SETUP
 from plan_cutters.errors import FixtureError, OptionError
 from plan_cutters.plan_file.words.text import text_of
 from tests.support.cad_parts import ball, box, compound, moved, real, rod
+from tests.support.vises import hold_of
 
 UP, DOWN = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
 HOW = {"faces": "all", "area_budget": 0, "machine": "tilt:110", "cutters": "D4L60", "spacing": 1.5}
-
-
-def hold_of(part, word, setup=UP, targets=()):
-    scene = Scene.of(part).for_targets(targets)
-    scene.surround()
-    return scene.hold(Fixture.parse(word), setup)
 
 
 def turned(shape, motion):

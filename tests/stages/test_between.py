@@ -9,16 +9,20 @@ import pytest
 from cad_io import read_part
 from cad_io.part.orient import orient
 from cad_io.tessellate import tessellate
-from plan_cutters import Cutter, Machine
+from plan_cutters import Cutter, Machine, Options
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.kernels.codes import NEVER
-from plan_cutters.scene.conditions import Conditions
+from plan_cutters.pipeline import prepare
+from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
+from plan_cutters.stages import between as between_module
 from plan_cutters.stages.cells import CellContacts, Field, quartered
 from plan_cutters.stages.face_cells import FaceCells, _cover
+from plan_cutters.stages.judge import judge
 from plan_cutters.stages.nodes import tensors
 from tests.support import shapes
+from tests.support.cad_parts import box
 from tests.support.contacts import UP, deepest, dense, served
 from tests.support.places import SAMPLES
 
@@ -163,6 +167,23 @@ def test_axes_between_samples_keep_the_machines_limit():
     assert 0 < within.sum() < 4
     assert (np.isfinite(quarters.axis).all(axis=1) == within).all()
     assert quarters.axis[within] == pytest.approx(quarters.normal[within])
+
+
+@pytest.mark.parametrize("most", [math.inf, 40_000.0])
+def test_each_face_books_the_work_that_its_contacts_took(monkeypatch, most):
+    """All work is that of some face; where it is limited, the last contacts that are begun may go beyond."""
+    made, part = [], read_part(box(30, 20, 10))
+    monkeypatch.setattr(between_module, "FaceCells", lambda *given: made.append(FaceCells(*given)) or made[-1])
+    ready = prepare(part, Options.of({"cutters": "R3L40", "faces": "all", "grid": 5, "area_budget": 0}))
+    context = Context.of(ready.cutters[0], ready.conditions)
+    found = between_module.between(
+        ready.samples, judge(ready, ready.cutters[0]), context, part, ready.scene.orientation, budget=2000, most=most
+    )
+    work = made[0].work
+    assert len(made) == 6
+    assert all(each.work is work for each in made)
+    assert sum(each.spent for each in made) == work.looked > 0
+    assert sum(each.seen for each in made) == found.contacts > 50
 
 
 def test_what_a_wall_hides_between_samples_is_not_served():

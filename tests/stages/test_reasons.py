@@ -59,6 +59,23 @@ def test_what_turning_the_part_frees_is_kept_by_the_axis_limit(plate):
     assert below.reached[misled].mean() > 0.9
 
 
+def test_who_listens_is_told_of_each_search_and_what_is_found_is_the_same():
+    part = cut(box(30, 30, 20), rod(8, 8, (15, 15, 14)))
+    ready = prepare(part, Options.of({**HOW, "cutters": "R3L30HR12L30", "machine": "tilt:10", "grid": 5}))
+    [cutter], told = ready.cutters, []
+    verdicts = judge(ready, cutter)
+    assert verdicts.not_reached.any()
+
+    def explained(progress):
+        reasons = finding.Reasons(ready.samples, ready.setups, ready.finished, ready.machinable)
+        return reasons.of(cutter, verdicts, progress)
+
+    listened, alone = explained(lambda done, total: told.append((done, total))), explained(None)
+    assert told == [(1, 3), (2, 3), (3, 3)]
+    assert np.array_equal(listened.verdicts.reason, alone.verdicts.reason)
+    assert np.array_equal(listened.besides, alone.besides)
+
+
 def test_a_holder_is_the_reason_where_bare_flutes_serve():
     part = read_part(cut(box(60, 60, 40), rod(14, 40, (30, 30, 12))))
     cutter = replace(Cutter.parse("R4L20"), holder=Holder.parse("R25L40"))

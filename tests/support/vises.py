@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from plan_cutters import Scene
+from plan_cutters.domain.fixture import Fixture
 from plan_cutters.scene.obstacles import divided
 from plan_cutters.scene.solids import box
 
@@ -20,3 +22,10 @@ def vise(size, depth=15.0, jaw=30.0, longest=np.inf):
         block((-jaw, -jaw, 0), (x + jaw, 0, depth), longest),
         block((-jaw, y, 0), (x + jaw, y + jaw, depth), longest),
     ])  # fmt: skip
+
+
+def hold_of(part, word, setup=(0.0, 0.0, 1.0), targets=()):
+    """How a vise or chuck is placed on a part for a setup axis."""
+    scene = Scene.of(part).for_targets(targets)
+    scene.surround()
+    return scene.hold(Fixture.parse(word), setup)

@@ -165,10 +165,11 @@ def _span(angle: Floats, edge: Rows, limit: Floats) -> tuple[Floats, Floats] | N
             return None
         least, most = placed[order].min(axis=0), placed[order].max(axis=0)
         for k in range(2):
-            shift = turn * np.ceil((limit[k, 0] - least[k] - _CLOSED) / turn) if np.isfinite(limit[k, 0]) else 0.0
-            near = turn * np.round(-0.5 * (least[k] + most[k]) / turn)
-            shift = max(shift, near) if most[k] + max(shift, near) <= limit[k, 1] + _CLOSED else shift
-            if most[k] + shift > limit[k, 1] + _CLOSED:
+            # Whole turns that its limits allow; of these that which is nearest to zero.
+            fewest = turn * np.ceil((limit[k, 0] - least[k] - _CLOSED) / turn)
+            most_turns = turn * np.floor((limit[k, 1] - most[k] + _CLOSED) / turn)
+            if fewest > most_turns:
                 return None
+            shift = np.clip(turn * np.round(-0.5 * (least[k] + most[k]) / turn), fewest, most_turns)
             low[k], high[k] = min(low[k], least[k] + shift), max(high[k], most[k] + shift)
     return low, high

@@ -6,7 +6,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from plan_cutters import plan
-from plan_cutters.domain.verdicts import INACCESSIBLE
+from plan_cutters.domain.verdicts import INACCESSIBLE, UNDECIDED
 from plan_cutters.scene.clearance import least_clearance
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at, served_by
@@ -125,6 +125,16 @@ def test_a_cutter_that_is_too_wide_for_a_bore_is_proved_to_be():
     floor = floor_of(samples)
     assert (verdicts.verdict[floor] == INACCESSIBLE).all()
     assert len(floor) > 100
+
+
+def test_where_the_triangles_do_not_tell_whether_there_is_a_place_nothing_is_proved():
+    """The bore is 0.017 mm narrower than the cutter: its wall lies 0.0085 mm deep all around, and its chords nearly 0.01 mm."""
+    shape = cq.Workplane("XY").box(40, 40, 20).faces(">Z").workplane().hole(11.983, 8.0).val()
+    result = plan(shape, cutters="D12L40", faces="all", grid=9, area_budget=0, machine="3-axis", tolerance=0.01)
+    samples, verdicts = result.samples, result.reaches[result.plan.cutters[0].id]
+    floor = floor_of(samples)
+    assert len(floor) > 20
+    assert (verdicts.verdict[floor] == UNDECIDED).all()
 
 
 def test_a_rounded_corner_cuts_only_with_what_is_flat(bore):
