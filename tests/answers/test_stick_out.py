@@ -113,8 +113,8 @@ def test_every_sample_agrees_with_a_slow_twin():
     cutter = Cutter.bull(radius=3, corner_radius=1, length=60, flutes=8, shank_radius=2.5, holder="R10:16L12+R16L40")
     ready = prepare(part, Options(cutters=(cutter,), faces=[1], area_budget=0, grid=4, jobs=1))
     reach = judge(ready, cutter)
-    found = least_stick_out(ready, cutter, reach, step=0.5)
-    rows = np.flatnonzero(reach.reached)
+    found = least_stick_out(ready, cutter, reach)
+    rows, each = np.flatnonzero(reach.reached), []
     for row in rows.tolist():
         low, high = 8.0, 60.0
         if judge(ready, held(cutter, low), np.array([row])).reached[0]:
@@ -123,10 +123,9 @@ def test_every_sample_agrees_with_a_slow_twin():
             middle = 0.5 * (low + high)
             one = judge(ready, held(cutter, middle), np.array([row])).reached[0]
             low, high = (low, middle) if one else (middle, high)
-        assert high - 0.01 <= found.each[row] <= high + 0.5
-        assert judge(ready, held(cutter, float(found.each[row])), np.array([row])).reached[0]
-    assert found.least == pytest.approx(max(found.each[rows]), abs=0.5)
-    assert found.least <= max(found.each[rows]) + BEYOND
+        each.append(high)
+    assert found.least == pytest.approx(max(each), abs=0.02)
+    assert each[rows.tolist().index(found.sample)] == max(each)
     assert found.least > found.floor
 
 
@@ -154,14 +153,12 @@ def beside_a_wall():
     ids=["bull", "taper", "neck"],
 )  # fmt: skip
 def test_a_judgement_says_the_same_where_a_hair_of_tilts_is_left(part, cutter, options):
-    """With the least stick-out of each sample it is reached, and with less than the least of all it is not."""
+    """With the least stick-out all is reached, and with less it is not."""
     cutter = replace(Cutter.parse(cutter["spec"]), holder=Holder.parse(cutter["holder"]))
     ready = prepare(part(), Options(cutters=(cutter,), faces="all", area_budget=0, jobs=1, **options))
-    found = least_stick_out(ready, cutter, judge(ready, cutter), step=0.5)
+    found = least_stick_out(ready, cutter, judge(ready, cutter))
     assert found.verdict in (INACCESSIBLE, UNDECIDED)
     certain(found, ready, cutter)
-    for row in np.flatnonzero(~np.isnan(found.each)).tolist():
-        assert judge(ready, held(cutter, float(found.each[row])), np.array([row])).reached[0]
 
 
 @pytest.mark.parametrize("clearance", [0.0, 1.0])
@@ -181,7 +178,7 @@ def test_the_same_on_any_number_of_threads():
     found = []
     for jobs in (1, 3):
         ready = prepare("samples/peaks_and_valleys.step", Options(cutters=(cutter,), grid=21, area_budget=0, jobs=jobs))
-        found.append(least_stick_out(ready, cutter, judge(ready, cutter), step=1.0))
+        found.append(least_stick_out(ready, cutter, judge(ready, cutter)))
     assert found[0] == found[1]
     certain(found[0], ready, cutter)
 
