@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 from hypothesis import strategies as st
+from OCP.ShapeAnalysis import ShapeAnalysis_ShapeTolerance
 
 from plan_cutters import posture_map
 from plan_cutters.domain.assembly import assembly
@@ -56,7 +57,8 @@ def safe_is_safe(setting: Setting):
 @law(settings())
 def samples_lie_on_the_skin(setting: Setting):
     """Samples lie on the exact skin, and their normals point out of the material."""
-    samples = setting.planned().samples
+    result = setting.planned()
+    samples = result.samples
     rows = np.flatnonzero(samples.unjudged < 0)
     point, normal = samples.point[rows], samples.normal[rows]
     material = setting.part.material
@@ -65,7 +67,8 @@ def samples_lie_on_the_skin(setting: Setting):
         height = setting.part.steps[0][1].patch.at(*np.clip(point[:, :2] / size, 0, 1).T)[:, 2]
         assert np.abs(height - point[:, 2]).max() < 1e-5
         return
-    assert np.abs(material.value(point)).max() < 1e-5
+    # A face ends within the tolerance of its edges, as far as the CAD kernel found where two faces meet.
+    assert np.abs(material.value(point)).max() < max(1e-5, ShapeAnalysis_ShapeTolerance().Tolerance(result.scene.part.shape, 1))
     # On an edge it may lie on both sides, or on none; at a corner it may seem inside out, and its face beside it does not.
     one = np.cross(normal, np.eye(3)[np.abs(normal).argmin(axis=1)])
     one /= np.linalg.norm(one, axis=1)[:, None]
