@@ -6,7 +6,7 @@ import pytest
 from plan_cutters import Cutter
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.kernels.linear import lanes
-from plan_cutters.kernels.maps import bounds, planes
+from plan_cutters.kernels.maps import bounds, cuts, planes
 from plan_cutters.kernels.search.search import probe
 from plan_cutters.scene.conditions import tool_of
 from tests.support import slow_map, waves
@@ -171,3 +171,40 @@ def test_what_planes_call_clear_never_enters(kind):
             for lane in np.flatnonzero(clear):
                 assert deepest(sides[lane, 0] + cube @ sides[lane, 1:], ends, offset, piece[k]) <= 1e-9
     assert 0.1 * asked < passed < asked
+
+
+@pytest.mark.parametrize("kind", ["flat", "bull with stages", "tapered ball", "barrel", "lens"])
+def test_an_interval_shrinks_until_a_triangle_passes_and_no_more(kind):
+    """From its first tilt up and from its last one down."""
+    made = assembly(TOOLS[kind], DEPTH, DEPTH)
+    rng, work, shrunk = np.random.default_rng(3), cuts.cut_workspace(), {1.0: 0, -1.0: 0}
+    weights = np.array([(i, j, 8 - i - j) for i in range(9) for j in range(9 - i)]) / 8
+
+    def passes(corner, first, last, turning, k):
+        return cuts._out(corner, np.cos(first), np.sin(first), np.cos(last), np.sin(last), turning, k, work)
+
+    for _ in range(250):
+        mode = rng.integers(len(made.mode))
+        offset, piece = made.mode[mode, 0], made.piece[mode]
+        turning = bounds.Turning(offset, piece, *bounds.turning_of(piece, offset, 0.0, made.mode[mode, 3]))
+        k = rng.integers(len(piece))
+        first, last = np.sort(rng.uniform(0, made.mode[mode, 3], 2))
+        tilt, turn, size = rng.choice([first, last]), rng.uniform(0, 7), 10 ** rng.uniform(-2, 0.5)
+        q, height = piece[k, 9] - 0.1 * size * rng.exponential(), rng.uniform(piece[k, 7], min(piece[k, 8], piece[k, 7] + 60))
+        x, y, c, s = q * np.cos(turn) - offset, q * np.sin(turn), np.cos(tilt), np.sin(tilt)
+        corner = np.array([c * x + s * height, y, c * height - s * x]) + size * rng.standard_normal((3, 3))
+        if passes(corner, first, last, turning, k):
+            continue
+        interval = np.array([[first, last, np.cos(first), np.sin(first), np.cos(last), np.sin(last), 0.0, 0.0]] * 2)
+        for sign in shrunk:
+            passed, failed = cuts._shrink(corner, interval, 0, sign, NARROWEST, turning, k, work)
+            ends = [(first + move, last) if sign > 0 else (first, last - move) for move in (passed, failed)]
+            if passed == np.inf:
+                assert failed == last - first
+                continue
+            assert 0 < passed - failed <= NARROWEST
+            assert passes(corner, *ends[0], turning, k)
+            assert deepest(weights @ corner, ends[0], offset, piece[k]) <= 1e-9
+            assert not passes(corner, *ends[1], turning, k)
+            shrunk[sign] += 1
+    assert min(shrunk.values()) > 10
