@@ -50,8 +50,8 @@ def mapped(scene, tool):
     return waves.mapped(np.arange(len(contacts.point)), contacts, ranges, tool, tree, ROOM)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_no_tilt_of_a_free_interval_is_hit(kind, scene):
+def assert_free(kind, scene):
+    """That no tilt of a free interval is hit; how wide the intervals are at each rotation, rad."""
     contacts, tree, ranges = scene
     made = assembly(TOOLS[kind], DEPTH, DEPTH)
     part, count, _ = mapped(scene, tool_of(made))
@@ -71,6 +71,22 @@ def test_no_tilt_of_a_free_interval_is_hit(kind, scene):
     hit, piece = np.zeros(len(tilt), np.int32), np.zeros(len(tilt), np.int32)
     probe(np.arange(len(tilt)), contacts.point[place], n, axis, tilt_direction, tool, tree, hit, piece)
     assert (hit == -1).all()
+    return width(part, count)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_no_tilt_of_a_free_interval_is_hit(kind, scene):
+    assert_free(kind, scene)
+
+
+@pytest.mark.parametrize("kind", ["flat with stages", "bull with stages"])
+def test_what_is_farther_away_than_the_flutes_reach_is_in_the_way_of_the_holder(kind):
+    """A wall alone, more than 18 mm from every contact."""
+    a, b, c, d = np.array([(52.0, -20, 20), (52, 60, 20), (52, 60, 90), (52, -20, 90)])
+    wall, contacts, turns = np.array([[a, b, c], [a, c, d]]), waves.samples(4), waves.ranges(2 * np.pi * np.arange(12) / 12)
+    free = assert_free(kind, (contacts, waves.tree_of(wall), turns))
+    away = contacts, waves.tree_of(wall + np.array([500.0, 0.0, 0.0])), turns
+    assert (free < assert_free(kind, away) - 0.1).mean() > 0.1
 
 
 @pytest.mark.slow("draws many cases", only=("flat", "bull"))
