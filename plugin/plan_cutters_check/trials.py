@@ -277,7 +277,8 @@ class Trials:
                     continue
                 true, part = clearance
                 share = _EDGE if part == "flutes" else _CLEARANCE_SHARE
-                least = (true - _CLEARANCE_STEP - self.question.tolerance) / (1.0 + share) if part else true
+                # Triangles lie within their chord error of the surface, and are thickened by it: both within the tolerance.
+                least = (true - _CLEARANCE_STEP - 2.0 * self.question.tolerance) / (1.0 + share) if part else true
                 entry["plans"][k]["operations"][i]["clearance_mm"] = Between(
                     max(0.0, min(_MOST, least)), max(0.0, min(_MOST, true)), 2.0 * self.bench.grain
                 )

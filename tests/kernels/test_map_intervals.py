@@ -106,6 +106,30 @@ def test_points_that_cut_are_in_the_cutter_and_others_are_not():
     assert 200 < cutting < 3800
 
 
+def test_a_box_is_out_of_reach_only_where_all_of_it_is():
+    rng, cube = np.random.default_rng(6), np.stack(np.meshgrid(*[np.linspace(-1, 1, 7)] * 3), -1).reshape(-1, 3)
+    view, blocks, near, far = np.zeros((1, 16, lanes.LANES)), np.zeros((1, 16, lanes.LANES)), 0, 0
+    for _ in range(60):
+        contact, frame, reach = rng.normal(0, 5, 3), np.linalg.qr(rng.standard_normal((3, 3)))[0], 10.0 ** rng.uniform(0, 1)
+        centre = contact + reach * rng.normal(0, 1, (lanes.LANES, 3))
+        halves = reach * 10.0 ** rng.uniform(-1.5, 0, (lanes.LANES, 3))
+        sides = np.linalg.qr(rng.standard_normal((lanes.LANES, 3, 3)))[0] * halves[:, :, None]
+        blocks[0, :3], blocks[0, 3:12] = centre.T, sides.reshape(-1, 9).T
+        lanes._see(view, 0, blocks, 0, contact, *frame, reach)
+        for lane in range(lanes.LANES):
+            points = (centre[lane] + cube @ sides[lane] - contact) @ frame.T
+            assert view[0, :3, lane] == pytest.approx(frame @ (centre[lane] - contact))
+            if view[0, 12, lane] == -np.inf:
+                assert np.linalg.norm(points, axis=1).min() > reach
+                far += 1
+            else:
+                assert view[0, 12, lane] == pytest.approx(points[:, 2].max())
+                # From a ball around the box.
+                assert np.linalg.norm(centre[lane] - contact) - np.linalg.norm(halves[lane]) <= reach
+                near += 1
+    assert min(near, far) > 50
+
+
 def test_blocks_hold_every_triangle():
     for size in (2, 3, 12, 31):
         vertex = waves.triangles(size)

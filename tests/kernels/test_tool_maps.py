@@ -6,7 +6,7 @@ import pytest
 from plan_cutters import Cutter
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.kernels.linear import lanes
-from plan_cutters.kernels.maps import bounds, planes
+from plan_cutters.kernels.maps import bounds, cuts, planes
 from plan_cutters.kernels.search.search import probe
 from plan_cutters.scene.conditions import tool_of
 from tests.support import slow_map, waves
@@ -50,8 +50,8 @@ def mapped(scene, tool):
     return waves.mapped(np.arange(len(contacts.point)), contacts, ranges, tool, tree, ROOM)
 
 
-@pytest.mark.parametrize("kind", KINDS)
-def test_no_tilt_of_a_free_interval_is_hit(kind, scene):
+def assert_free(kind, scene):
+    """That no tilt of a free interval is hit; how wide the intervals are at each rotation, rad."""
     contacts, tree, ranges = scene
     made = assembly(TOOLS[kind], DEPTH, DEPTH)
     part, count, _ = mapped(scene, tool_of(made))
@@ -71,6 +71,22 @@ def test_no_tilt_of_a_free_interval_is_hit(kind, scene):
     hit, piece = np.zeros(len(tilt), np.int32), np.zeros(len(tilt), np.int32)
     probe(np.arange(len(tilt)), contacts.point[place], n, axis, tilt_direction, tool, tree, hit, piece)
     assert (hit == -1).all()
+    return width(part, count)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_no_tilt_of_a_free_interval_is_hit(kind, scene):
+    assert_free(kind, scene)
+
+
+@pytest.mark.parametrize("kind", ["flat with stages", "bull with stages"])
+def test_what_is_farther_away_than_the_flutes_reach_is_in_the_way_of_the_holder(kind):
+    """A wall alone, more than 18 mm from every contact."""
+    a, b, c, d = np.array([(52.0, -20, 20), (52, 60, 20), (52, 60, 90), (52, -20, 90)])
+    wall, contacts, turns = np.array([[a, b, c], [a, c, d]]), waves.samples(4), waves.ranges(2 * np.pi * np.arange(12) / 12)
+    free = assert_free(kind, (contacts, waves.tree_of(wall), turns))
+    away = contacts, waves.tree_of(wall + np.array([500.0, 0.0, 0.0])), turns
+    assert (free < assert_free(kind, away) - 0.1).mean() > 0.1
 
 
 @pytest.mark.slow("draws many cases", only=("flat", "bull"))
@@ -171,3 +187,40 @@ def test_what_planes_call_clear_never_enters(kind):
             for lane in np.flatnonzero(clear):
                 assert deepest(sides[lane, 0] + cube @ sides[lane, 1:], ends, offset, piece[k]) <= 1e-9
     assert 0.1 * asked < passed < asked
+
+
+@pytest.mark.parametrize("kind", ["flat", "bull with stages", "tapered ball", "barrel", "lens"])
+def test_an_interval_shrinks_until_a_triangle_passes_and_no_more(kind):
+    """From its first tilt up and from its last one down."""
+    made = assembly(TOOLS[kind], DEPTH, DEPTH)
+    rng, work, shrunk = np.random.default_rng(3), cuts.cut_workspace(), {1.0: 0, -1.0: 0}
+    weights = np.array([(i, j, 8 - i - j) for i in range(9) for j in range(9 - i)]) / 8
+
+    def passes(corner, first, last, turning, k):
+        return cuts._out(corner, np.cos(first), np.sin(first), np.cos(last), np.sin(last), turning, k, work)
+
+    for _ in range(250):
+        mode = rng.integers(len(made.mode))
+        offset, piece = made.mode[mode, 0], made.piece[mode]
+        turning = bounds.Turning(offset, piece, *bounds.turning_of(piece, offset, 0.0, made.mode[mode, 3]))
+        k = rng.integers(len(piece))
+        first, last = np.sort(rng.uniform(0, made.mode[mode, 3], 2))
+        tilt, turn, size = rng.choice([first, last]), rng.uniform(0, 7), 10 ** rng.uniform(-2, 0.5)
+        q, height = piece[k, 9] - 0.1 * size * rng.exponential(), rng.uniform(piece[k, 7], min(piece[k, 8], piece[k, 7] + 60))
+        x, y, c, s = q * np.cos(turn) - offset, q * np.sin(turn), np.cos(tilt), np.sin(tilt)
+        corner = np.array([c * x + s * height, y, c * height - s * x]) + size * rng.standard_normal((3, 3))
+        if passes(corner, first, last, turning, k):
+            continue
+        interval = np.array([[first, last, np.cos(first), np.sin(first), np.cos(last), np.sin(last), 0.0, 0.0]] * 2)
+        for sign in shrunk:
+            passed, failed = cuts._shrink(corner, interval, 0, sign, NARROWEST, turning, k, work)
+            ends = [(first + move, last) if sign > 0 else (first, last - move) for move in (passed, failed)]
+            if passed == np.inf:
+                assert failed == last - first
+                continue
+            assert 0 < passed - failed <= NARROWEST
+            assert passes(corner, *ends[0], turning, k)
+            assert deepest(weights @ corner, ends[0], offset, piece[k]) <= 1e-9
+            assert not passes(corner, *ends[1], turning, k)
+            shrunk[sign] += 1
+    assert min(shrunk.values()) > 10

@@ -9,6 +9,8 @@ from plan_cutters import Cutter, CutterError
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.holder import Stage
 from plan_cutters.domain.nesting import inside
+from plan_cutters.kernels.area import moved_cutter, zone
+from plan_cutters.kernels.codes import COLUMNS
 from plan_cutters.kernels.rows import Frame
 from plan_cutters.kernels.tool import apart, extrusion, hit
 from plan_cutters.scene.conditions import tool_of
@@ -142,6 +144,40 @@ def test_a_tool_drawn_out_meets_every_triangle_that_reaches_into_it(kind):
                 assert deepest[k] > -side / 12 - 1e-9
         met, missed = met + (mask != 0), missed + (mask == 0)
     assert min(met, missed) > 50
+
+
+@pytest.mark.slow("another kind of the same law", but=("bull", "barrel"))
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_a_tool_that_wanders_reaches_its_parts_reach(kind):
+    """The whole, and the finest parts along the tilt direction, each drawn out across it."""
+    rng = np.random.default_rng(KINDS.index(kind))
+    reached, apart_from = 0, 0
+    for _ in range(400):
+        made = assembly(random_cutter(rng, kind), 0.02, -0.01)
+        body, mode, tilt = stood(rng, made)
+        body[apart.HALF] = 0.0
+        count, h, size = made.piece.shape[1], 10.0 ** rng.uniform(-1, 0.7), 10.0 ** rng.uniform(-2, 0.5)
+        bodies, pieces = np.empty((moved_cutter.BODIES, apart.BODY)), np.empty((moved_cutter.BODIES, count, COLUMNS))
+        work = moved_cutter.Workspace(
+            ALONG, LEFT, bodies, pieces, np.empty((count, COLUMNS)), np.empty(9), zone.seen(), hit.scratch()
+        )
+        frame = Frame(np.zeros(3), UP, ALONG, LEFT)
+        moved_cutter.extruded(body, made.piece[mode], frame, h, (math.sin(tilt), math.cos(tilt)), (1.0, 0.0, 0.0, 1.0, 0.0), 0.0,
+                              work, 18)  # fmt: skip
+        turn = rng.uniform(0, 2 * math.pi)
+        step = h * rng.choice([1.0, math.sqrt(rng.random())]) * (math.cos(turn) * ALONG + math.sin(turn) * LEFT)
+        corner = near(rng, made, mode, tilt, size) + size * rng.standard_normal((3, 3))
+        q, w = seen(GRID @ corner, made, mode, tilt)
+        vertex = (corner + step)[None].copy()
+        whole = extrusion.extruded_hit(vertex, 0, bodies[0], pieces[0], (1 << count) - 1, work.scratch)
+        for k, row in enumerate(made.piece[mode]):
+            parts = moved_cutter._reaches(vertex, 0, 1 << k, work)
+            if in_row(row, q, w).max() > 1e-9:
+                assert (whole >> k) & 1, (kind, k)
+                assert parts, (kind, k)
+                reached += 1
+            apart_from += not parts
+    assert min(reached, apart_from) > 50
 
 
 def end_mill(rng, larger=None):

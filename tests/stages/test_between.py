@@ -127,10 +127,7 @@ def test_no_smaller_patch_is_served_where_none_is_said_to_be():
 def test_leans_too_small_to_know_their_side_serve_no_cell_beside_a_wall():
     """A ridge beside a wall, tilts of a quarter degree: within a cell the cutter would swing over to the wall, but in few small
     ones."""
-    x, y = np.meshgrid(np.linspace(-6, 6, 11), np.linspace(0, 12, 5), indexing="ij")
-    ridge = shapes.Patch(np.stack([x, y, 30 * np.cos(x / 30) - 30], axis=-1)).face()
-    part = read_part(shapes.shell(ridge, shapes.plane((-10, 22), (-3, 20), (9, 0, 0), (-1, 0, 0), (0, 1, 0))))
-    cutter = Cutter.flat(radius=5.0, length=30.0)
+    part, cutter = ridge_beside_a_wall(), Cutter.flat(radius=5.0, length=30.0)
     turn = math.pi / 2
     for low, high in ((0.1, 0.4), (0.5, 20.0)):
         found, geometry, whole = served(part, cutter, budget=20_000, spacing=4.0, faces="1", rotation=(turn, turn + 0.01),
@@ -140,6 +137,21 @@ def test_leans_too_small_to_know_their_side_serve_no_cell_beside_a_wall():
         # Farther than a diameter from the wall, at x = 9, it does not matter on which side the cutter stands.
         near = geometry(1, found.cells.uv)[0][:, 0] > 9.0 - 2.0 * cutter.radius
         assert low > 0.4 or found.cells.area[near].sum() < 0.05 * found.surrounding_area.sum()
+
+
+def ridge_beside_a_wall():
+    x, y = np.meshgrid(np.linspace(-6, 6, 11), np.linspace(0, 12, 5), indexing="ij")
+    ridge = shapes.Patch(np.stack([x, y, 30 * np.cos(x / 30) - 30], axis=-1)).face()
+    return read_part(shapes.shell(ridge, shapes.plane((-10, 22), (-3, 20), (9, 0, 0), (-1, 0, 0), (0, 1, 0))))
+
+
+def test_a_cutter_that_leans_along_a_ridge_moves_farther_across_it_than_its_contact():
+    """Twice as far: as the ridge bends, the cutter swings over to the wall."""
+    part, cutter, tilt = ridge_beside_a_wall(), Cutter.flat(radius=5.0, length=30.0), math.radians(10.0)
+    found, geometry, whole = served(part, cutter, budget=6000, spacing=2.0, faces="1", rotation=(0.0, 0.01),
+                                    tilt=(tilt, tilt + 0.001))  # fmt: skip
+    assert len(found.cells.face) > 800
+    assert deepest(found, geometry, whole, cutter, dense(whole, 0.4), 1000, np.random.default_rng(0)) < 0.01
 
 
 def test_axes_between_samples_keep_the_machines_limit():

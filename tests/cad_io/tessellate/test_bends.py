@@ -183,6 +183,25 @@ def test_no_two_points_are_farther_apart_than_lines_between_them_are_long(seed, 
             assert (off <= row[9:12] * (1 + 1e-9) + 1e-9 * np.abs(derivative).max()).all()
 
 
+@pytest.mark.parametrize("ends", [(2.0, 20.0), (20.0, 2.0)])
+@pytest.mark.parametrize("axis", [0, 1])
+def test_lines_over_many_cells_are_as_long_as_the_longest_of_them(axis, ends):
+    """Of a flat trapezoid, whose lines one way are as long as the ends at its ends: over any range of parameters."""
+    pole = np.zeros((2, 2, 3))
+    pole[1, :, 0] = 10.0
+    pole[0, 1, 1], pole[1, 1, 1] = ends
+    knots, times = array(TColStd_Array1OfReal, [0.0, 50.0]), array(TColStd_Array1OfInteger, [2, 2])
+    surface = Geom_BSplineSurface(
+        array(TColgp_Array2OfPnt, pole if axis else pole.swapaxes(0, 1), 3), knots, knots, times, times, 1, 1
+    )
+    table, _ = table_of(Ground.of(Surface(BRepBuilderAPI_MakeFace(surface, 1e-6).Face()), (0.0, 50.0, 0.0, 50.0)), FINE)
+    assert len(table.u) == len(table.v) > 60
+    long = table.node[window(table, 0.0, 50.0, 0.0, 50.0)][14:]
+    true = np.array([20.0, np.hypot(10.0, 18.0)] if axis == 0 else [np.hypot(10.0, 18.0), 20.0])
+    assert (long >= true * (1 - 1e-12)).all()
+    assert long == pytest.approx(true, rel=0.01)
+
+
 def test_bounds_of_small_triangles_are_near_what_is_measured():
     """Within a factor of two: else triangles would be laid where none is needed."""
     for shape in (ring(), as_nurbs(ring()), patch(), turned(), as_nurbs(ball())):
@@ -249,6 +268,22 @@ def test_no_border_strays_farther_than_said(seed, degree, spans, rational):
         true = np.array([curve.Value(a + s * (b - a)).Coord() for s in share])
         off = np.abs(true - ends[0] - share[:, None] * (ends[1] - ends[0])).max(axis=0)
         assert (off <= np.array(strays(curves, 0, a, b)) * (1 + 1e-9) + 1e-9).all()
+
+
+@pytest.mark.parametrize(("degree", "middle"), [(1, 0.5), (1, 0.3), (2, None)])
+def test_how_far_a_border_with_one_kink_or_one_bend_strays_is_exact(degree, middle):
+    """From the chord over all of it: as a corner of a triangle, or a parabola. A kink is known by its size alone."""
+    pole = array(TColgp_Array1OfPnt2d, [gp_Pnt2d(0.0, 0.0), gp_Pnt2d(5.0, 2.0), gp_Pnt2d(8.0, -1.0)])
+    knots, times = ([0.0, middle, 1.0], [2, 1, 2]) if degree == 1 else ([0.0, 1.0], [3, 3])
+    curve = Geom2d_BSplineCurve(pole, array(TColStd_Array1OfReal, knots), array(TColStd_Array1OfInteger, times), degree)
+    curves, exact = packed([Geom2dAdaptor_Curve(curve)], [(0.0, 1.0)])
+    assert exact
+    t = np.linspace(0.0, 1.0, 1001)
+    off = np.abs(np.array([curve.Value(each).Coord() for each in t]) - t[:, None] * (8.0, -1.0))
+    if degree == 1:
+        off = np.hypot(*off.T)[:, None].repeat(2, axis=1)
+    assert np.array(strays(curves, 0, 0.0, 1.0)) == pytest.approx(off.max(axis=0), rel=1e-9)
+    assert strays(curves, 0, 1.0, 0.0) == strays(curves, 0, 0.0, 1.0)
 
 
 def test_a_narrow_ridge_is_seen():

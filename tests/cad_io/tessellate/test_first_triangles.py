@@ -18,9 +18,12 @@ from OCP.BRepBuilderAPI import (
 )
 from OCP.BRepLib import BRepLib
 from OCP.GCE2d import GCE2d_MakeSegment
+from OCP.Geom import Geom_BSplineSurface
 from OCP.Geom2d import Geom2d_Circle
 from OCP.gp import gp_Ax22d, gp_Dir2d, gp_Pln, gp_Pnt, gp_Pnt2d
 from OCP.IGESControl import IGESControl_Writer
+from OCP.TColgp import TColgp_Array2OfPnt
+from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopLoc import TopLoc_Location
 from OCP.TopoDS import TopoDS
 
@@ -30,6 +33,7 @@ from cad_io.tessellate import start, tessellate
 from cad_io.tessellate.planar import bounded_by, odd, triangulated
 from tests.support.cad_parts import SHAPES, as_nurbs, ball, box, compound, patch, pocketed, real, ring, spring
 from tests.support.distances import ROUNDING, farthest, farthest_from
+from tests.support.splines import array
 
 
 def never(*_):
@@ -126,6 +130,20 @@ def test_a_cut_into_the_region_bounds_nothing():
     assert areas(*found).sum() == pytest.approx(1.0)
 
 
+@pytest.mark.parametrize("wide", [(0.1, 0.01), (0.01, 0.1)])
+@pytest.mark.parametrize("beside", [0.25, 0.35])
+def test_cells_stay_three_tenths_of_their_width_away_from_the_border(wide, beside):
+    uv, chords = loop(SQUARE)
+    lines = tuple(np.arange(beside * width, 1.0 - 0.05 * width, width) for width in wide)
+    found, _ = triangulated(uv, chords, lines, np.ones(2))
+    # At the far end it is the rest of a cell that they stay away.
+    near = [line if beside > 0.3 else line[1:] for line in lines]
+    near = [line[line < 1.0 - 0.3 * width] for line, width in zip(near, wide, strict=True)]
+    grid = np.stack([each.ravel() for each in np.meshgrid(*near, indexing="ij")], axis=1)
+    assert len(grid) > 100
+    assert found[len(uv) :] == pytest.approx(grid)
+
+
 # --- faces ------------------------------------------------------------------------------------------------------------------
 
 
@@ -219,6 +237,50 @@ def test_trimmed_surfaces_are_covered(holes, seed, outer):
     u0, u1, v0, v1 = surface.Bounds()
     points = values(part.adaptor(1), u0 + x[inside] * (u1 - u0), v0 + y[inside] * (v1 - v0))
     assert farthest_from(points, triangles.vertex, triangles.chord_error + ROUNDING) <= triangles.chord_error + ROUNDING
+
+
+def bent_in_places(along):
+    """A patch over a rectangle of parameters that is straight one way, and the other way flat but for its last part."""
+    pole = np.zeros((8, 2, 3))
+    pole[..., 0], pole[..., 1] = np.array([6, 7, 9, 12, 15, 18, 20, 21])[:, None] / 3, np.array([0.0, 5.0])
+    pole[:, :, 2] = np.array([0, 0, 0, 0, 0, 3, -3, 3.0])[:, None]
+    knots, times = [[2.0, 3.0, 4.0, 5.0, 6.0, 7.0], [-9.0, -7.0]], [[4, 1, 1, 1, 1, 4], [2, 2]]
+    way = (0, 1) if along == 0 else (1, 0)
+    more = [array(kind, each[k]) for kind, each in ((TColStd_Array1OfReal, knots), (TColStd_Array1OfInteger, times)) for k in way]
+    surface = Geom_BSplineSurface(array(TColgp_Array2OfPnt, pole.swapaxes(0, along), 3), *more, *((3, 1)[k] for k in way))
+    return BRepBuilderAPI_MakeFace(surface, 1e-6).Face()
+
+
+def test_lines_are_near_to_each_other_where_the_surface_bends():
+    """Whichever way the surface is bent, along u or along v."""
+    one, other = (start.own_start(read_part(bent_in_places(along)), 1, 0.02).uv for along in (0, 1))
+    lines = np.unique(one[:, 0])
+    assert lines == pytest.approx(np.unique(other[:, 1]))
+    assert set(one[:, 1]) == set(other[:, 0]) == {-9.0, -7.0}
+    # It is flat as far as 4: its first five poles lie in a line.
+    assert (lines < 4.0).sum() < 0.1 * (lines > 4.0).sum()
+
+
+@pytest.mark.parametrize("corner", [(-5.0, -5.0), (3.0, -8.0)])
+@pytest.mark.parametrize("pieces", [1, 3, 40])
+def test_a_rectangle_has_its_border_at_its_sides(corner, pieces):
+    """Also where a side is of more edges than there are lines of a grid: then it takes no grid."""
+    (u, v), size = corner, 10.0
+    sides = [(u + k * size / pieces, v) for k in range(pieces)] + [(u + size, v), (u + size, v + size), (u, v + size)]
+    wire = BRepBuilderAPI_MakePolygon()
+    for x, y in sides:
+        wire.Add(gp_Pnt(x, y, 0))
+    wire.Close()
+    mesh = start.own_start(read_part(BRepBuilderAPI_MakeFace(gp_Pln(), wire.Wire()).Face()), 1, 0.1)
+    assert {tuple(each) for each in np.round(mesh.uv, 9)} >= {tuple(each) for each in np.round(sides, 9)}
+    for border in mesh.border:
+        on = [border.curve.Value(t).Coord() for t in border.parameter.tolist()]
+        assert mesh.uv[border.nodes] == pytest.approx(np.array(on), abs=1e-9)
+    assert (areas(mesh.uv, mesh.corner) > 0).all()
+    assert areas(mesh.uv, mesh.corner).sum() == pytest.approx(size * size)
+    if pieces < 40:
+        # Nodes of a grid alone.
+        assert len(mesh.uv) == len(np.unique(mesh.uv[:, 0])) * len(np.unique(mesh.uv[:, 1]))
 
 
 def test_holes_that_nearly_touch_are_seen_apart():

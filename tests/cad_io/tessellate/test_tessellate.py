@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 from OCP.BRep import BRep_Builder, BRep_Tool
-from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeFace
+from OCP.BRepBuilderAPI import BRepBuilderAPI_MakeEdge, BRepBuilderAPI_MakeFace, BRepBuilderAPI_MakeWire
+from OCP.BRepLib import BRepLib
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
-from OCP.Geom import Geom_BSplineSurface
-from OCP.gp import gp_Pnt
+from OCP.Geom import Geom_BezierSurface, Geom_BSplineSurface
+from OCP.Geom2d import Geom2d_Circle
+from OCP.gp import gp_Ax22d, gp_Dir2d, gp_Pnt, gp_Pnt2d
 from OCP.TColgp import TColgp_Array2OfPnt
 from OCP.TColStd import TColStd_Array1OfInteger, TColStd_Array1OfReal
 from OCP.TopLoc import TopLoc_Location
@@ -16,7 +18,7 @@ from cad_io import read_part
 from cad_io.tessellate import tessellate
 from cad_io.tessellate import triangles as module
 from tests.support.cad_parts import SHAPES, as_nurbs, ball, box, compound, drilled, holed_patch, patch, pocketed, real, ring, rod
-from tests.support.distances import ROUNDING, farthest
+from tests.support.distances import ROUNDING, farthest, farthest_from
 
 
 def triangle_points(triangles, count=4000, seed=0):
@@ -175,3 +177,38 @@ def test_a_face_without_room_is_laid_in_a_second_pass(monkeypatch):
     kept = tessellate(read_part(ring()), 0.02)
     monkeypatch.setattr(module, "_LARGEST", 100)
     assert tessellate(read_part(ring()), 0.02) == kept
+
+
+@pytest.mark.parametrize("spoilt", [
+    lambda laid: laid._replace(off=np.inf), lambda laid: laid._replace(off=np.nan),
+    lambda laid: laid._replace(point=np.where(np.arange(len(laid.point))[:, None] == 0, np.nan, laid.point)),
+], ids=["endless", "unknown", "no place"])  # fmt: skip
+def test_a_face_of_which_a_place_or_the_distance_is_not_known_is_missing(spoilt, monkeypatch):
+    laid = module.Patch.laid
+    monkeypatch.setattr(module.Patch, "laid", lambda self, *_: spoilt(laid(self, *_)) if self.number == 2 else laid(self, *_))
+    triangles = tessellate(read_part(box()), 0.1)
+    assert triangles.missing == ((2, "its surface cannot be evaluated everywhere"),)
+    assert set(dict(triangles.errors)) == {1, 3, 4, 5, 6}
+    assert triangles.chord_error < 1e-12
+    assert np.isfinite(triangles.vertex).all()
+
+
+@pytest.mark.parametrize("along", [0, 1])
+def test_a_round_border_is_near_where_a_step_along_one_parameter_is_much_longer(along, monkeypatch):
+    """A circle of the parameter plane that is a narrow ellipse on the surface: however coarse its chords are to begin with."""
+    monkeypatch.setattr(module, "_COARSER", 1e5)
+    long = np.roll([400.0, 4.0], along)
+    poles = TColgp_Array2OfPnt(1, 2, 1, 2)
+    for i in range(2):
+        for j in range(2):
+            poles.SetValue(i + 1, j + 1, gp_Pnt(i * long[0], j * long[1], 0.0))
+    surface = Geom_BezierSurface(poles)
+    circle = BRepBuilderAPI_MakeEdge(Geom2d_Circle(gp_Ax22d(gp_Pnt2d(0.5, 0.5), gp_Dir2d(1, 0), gp_Dir2d(0, 1)), 0.5), surface)
+    face = BRepBuilderAPI_MakeFace(surface, BRepBuilderAPI_MakeWire(circle.Edge()).Wire(), True).Face()
+    BRepLib.BuildCurves3d_s(face)
+    triangles = tessellate(read_part(face), 0.1)
+    assert not triangles.missing
+    assert triangles.chord_error <= 0.1
+    angle = np.linspace(0.0, 2 * np.pi, 999)
+    border = np.column_stack([0.5 * long[0] * (1 + np.cos(angle)), 0.5 * long[1] * (1 + np.sin(angle)), np.zeros(999)])
+    assert farthest_from(border, triangles.vertex, 0.1) <= 0.1
