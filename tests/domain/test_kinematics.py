@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plan_cutters.domain.axis import Axis
-from plan_cutters.domain.kinematics import Kinematics
+from plan_cutters.domain.kinematics import PARALLEL, Kinematics
 from plan_cutters.domain.machine import Machine, builtin_machines
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.errors import MachineError
@@ -348,3 +348,17 @@ def axis(name, *direction, carries="part"):
 def test_machines_that_cannot_be(axes, message):
     with pytest.raises(MachineError, match=message):
         Machine("mine", axes=axes)
+
+
+@pytest.mark.parametrize(("limit", "ends"), [((-0.5, 2.0), 2), ((-4.0, 4.0), 0), ((-math.inf, math.inf), 0)])
+def test_what_a_single_rotary_axis_holds_ends_at_its_circles(limit, ends):
+    """A band about the circle on which its tool turns, and half planes through its direction at either end."""
+    first = np.array([0.6, 0.0, 0.8])
+    four = Kinematics(first[None], np.array([limit]), UP)
+    circles = four.circles()
+    assert circles[:2, 3] == pytest.approx([0.8 - PARALLEL, 0.8 + PARALLEL], abs=1e-12)
+    assert (circles[:2, :3] == first).all()
+    assert len(circles) == 2 + ends
+    for circle, end in zip(circles[2:], limit, strict=False):
+        assert circle[3] == 0.0
+        assert circle[:3] @ np.stack([first, four.axis(np.array([[end]]))[0]], axis=1) == pytest.approx([0.0, 0.0], abs=1e-12)
