@@ -52,7 +52,9 @@ class Reckoned:
         #: Whether each sample that is reached must go with an operation.
         self.all_planned = process is None or (process["rest"] == "plan" and not process["forbid"])
         reached = {name: self.finished & np.isin(self.verdict[name], _REACHED) for name in self.ids}
-        self.considered = compared(document, self.ids, reached)
+        index = question.operations.get("candidate_cutter", np.zeros(0, int))
+        tried = {name for k, name in enumerate(self.ids) if (index == k).any()}
+        self.considered = compared(document, self.ids, reached, None if self.without_fewest else tried)
         self.reached_by = {name: reached[name] for name in self.considered}
         self.reached = np.logical_or.reduce([*self.reached_by.values()])
         self.area: Floats = np.where(self.finished, np.nan_to_num(samples["area"]), 0.0)
