@@ -30,3 +30,8 @@ def test_a_finding_is_known_again_when_its_share_changed():
         return result["partialFingerprints"]
 
     assert mark("12 % is lost") == mark("13 % is lost")
+
+
+def test_a_file_whose_name_is_no_text_is_a_finding_all_the_same():
+    (found,) = findings(document("plan", [Case("p\udcff\ud800.step", "F1", "failure", "holder", "lost", "")]))
+    assert found.level == "error"

@@ -113,7 +113,9 @@ def test_the_way_out_of_a_body_leads_through_its_nearest_skin_that_faces_that_wa
         through = max(0.0, into.max()) <= out[1].min()
         ends = [out[0].min(), out[1].min()] if through else [out[0].min()]
         assert cover(point, way, obstacles).point == pytest.approx(point + min(ends) * way, abs=1e-9)
-        assert cover(point, way, obstacles, bodies[2]) is None
+        far = [np.where(way > 0, one, other) + 40.0 - point for one, other in ((low, high), (high, low))]
+        meets = max(0.0, (far[0] / way).max()) <= (far[1] / way).min()
+        assert (cover(point, way, obstacles, bodies[2]) is None) == (not meets)
         # A skin that runs the other way round is left from the other side.
         turned = Body(bodies[0].faces, (-1,) * 6, True, NONE)
         assert cover(point, way, obstacles, turned) is None

@@ -74,7 +74,7 @@ def uri(file: str) -> str:
     >>> uri("parts/a b.step"), uri("/in/a#1.stp"), uri("C:\\in\\a.stp"), uri("s3://in/a.step")
     ('parts/a%20b.step', 'file:///in/a%231.stp', 'file:///C:/in/a.stp', 's3://in/a.step')
     """
-    path = quote(file.replace("\\", "/"), safe="/:")
+    path = quote(file.replace("\\", "/"), safe="/:", errors="surrogatepass")
     if "://" in file:
         return path
     if re.match("[A-Za-z]:/", path):
