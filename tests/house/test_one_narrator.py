@@ -7,17 +7,17 @@ from collections.abc import Iterator
 from plan_cutters.plan_file.reasons import REASONS
 from tests.support.places import ROOT
 
-HOUSE = ROOT / "plugin" / "plan_cutters"
+HOUSE = ROOT / "plugin"
 #: What follows a number in a text.
 UNIT = re.compile(r"\s?(?:mm²|mm2|mm3|mm|%|deg|°)(?![a-z])")
 #: Files whose texts have units of their own, and why.
 APART = {
-    "checker": "it shares nothing with what it checks",
-    "domain/lengths.py": "lengths as they are typed, in mm or inches",
-    "library/cutting.py": "fields of a tool file, in the file's unit",
-    "library/presets.py": "fields of a tool file, in the file's unit",
-    "report/drawing/tool_notes.py": "dimensions of a drawing",
-    "report/drawing/tool_sheet.py": "lengths of SVG",
+    "plan_cutters_check": "it shares nothing with what it checks",
+    "plan_cutters/domain/lengths.py": "lengths as they are typed, in mm or inches",
+    "plan_cutters/library/cutting.py": "fields of a tool file, in the file's unit",
+    "plan_cutters/library/presets.py": "fields of a tool file, in the file's unit",
+    "plan_cutters/report/drawing/tool_notes.py": "dimensions of a drawing",
+    "plan_cutters/report/drawing/tool_sheet.py": "lengths of SVG",
 }
 #: Those whose texts may name a code: the tables of codes themselves, and what is written for programs.
 CODES = re.compile("|".join(rf"\b{code}\b" for code in REASONS if "_" in code))
@@ -26,7 +26,7 @@ CODES = re.compile("|".join(rf"\b{code}\b" for code in REASONS if "_" in code))
 def modules() -> Iterator[tuple[str, ast.Module]]:
     for path in sorted(HOUSE.rglob("*.py")):
         name = path.relative_to(HOUSE).as_posix()
-        if not name.startswith("plan_file/") and not any(name == each or name.startswith(f"{each}/") for each in APART):
+        if not name.startswith("plan_cutters/plan_file/") and not any(name == each or name.startswith(f"{each}/") for each in APART):
             yield name, ast.parse(path.read_text(encoding="utf-8"))
 
 
