@@ -15,7 +15,7 @@ from email import message_from_string
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
-OURS = ("plan_cutters/", "plan_cutters_agents/", "plan_cutters_batch/", "plan_cutters_check/", "plan_cutters_ci/", "cad_io/")
+OURS = (*(f"{path.parent.name}/" for path in ROOT.glob("plugin/*/__init__.py")), "cad_io/")
 #: What an environment with the wheel may take, MB, and who must not be in it (`docs/install.md`).
 MOST_MB, NOT_THERE = 700, ("matplotlib", "cadquery", "build123d", "vtk", "casadi", "pandas", "dask")
 #: What a package index shows.

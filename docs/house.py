@@ -45,6 +45,12 @@ def place(package: str) -> Path:
     return ROOT / package if package == "cad_io" else ROOT / "plugin" / package
 
 
+def wall(package: str) -> str:
+    """Find the contract that parts a package from others: that about the fewest packages."""
+    about = [each for each in CONTRACTS if package in each.get("source_modules", ())]
+    return min(about, key=lambda each: len(each["source_modules"]))["name"]
+
+
 def floors(package: str) -> list[list[str]]:
     """List the rooms of a package, floor by floor, the highest first."""
     (contract,) = (each for each in CONTRACTS if each.get("containers") == [package])
@@ -53,12 +59,9 @@ def floors(package: str) -> list[list[str]]:
 
 def drawn() -> Iterator[str]:
     """Draw the page, line by line."""
-    yield "| package | imports | for |\n|---|---|---|"
-    for name in LEAVES:
-        imports = "`cad_io`, errors" if name.endswith("check") else "plan file and its words, files, workers, command line"
-        yield f"| `{name}` | {imports} | {sentence(place(name) / '__init__.py')} |"
-    yield f"| `plan_cutters` | `cad_io` | {sentence(place('plan_cutters') / '__init__.py')} |"
-    yield f"| `cad_io` | the CAD kernel | {sentence(place('cad_io') / '__init__.py')} |"
+    yield "| package | for | its wall |\n|---|---|---|"
+    for name in (*LEAVES, "plan_cutters", "cad_io"):
+        yield f"| `{name}` | {sentence(place(name) / '__init__.py')} | {wall(name)} |"
     yield ENTRY
     for package in ("plan_cutters", "cad_io"):
         yield f"\n## Floors of {package}\n\n{BELOW}\n"

@@ -1,13 +1,25 @@
 """The key of a part: two runs that have the same one give the same files."""
 
+import functools
 import platform
 from dataclasses import fields
+from pathlib import Path
 
 import plan_cutters
 from cad_io.files import checksum
-from plan_cutters.files.digest import digest
+from plan_cutters.files.digest import digest, sources
 from plan_cutters.files.stage_cache import PACKAGES, installed, made_by
 from plan_cutters_batch.job import Handed, Settings
+
+
+@functools.cache
+def _own() -> bytes | None:
+    return sources(Path(__file__).parent)
+
+
+def program() -> bytes:
+    """A checksum of what makes plans, and of this package, which makes rows of them."""
+    return digest([made_by(), _own()])
 
 
 def versions() -> dict[str, str]:
@@ -15,7 +27,7 @@ def versions() -> dict[str, str]:
     return {
         "python": platform.python_version(),
         **{name: installed(name) for name in (*PACKAGES, "dask", "distributed")},
-        "plan-cutters": f"{plan_cutters.__version__}+{made_by().hex()[:12]}",
+        "plan-cutters": f"{plan_cutters.__version__}+{program().hex()[:12]}",
     }
 
 
@@ -27,7 +39,7 @@ def settings_key(settings: Settings, there: Handed) -> str:
     """
     options = {each.name: getattr(settings.options, each.name) for each in fields(settings.options)}
     del options["jobs"]
-    parts = [options, sorted(settings.formats), sorted(settings.read), settings.step_schema, made_by()]
+    parts = [options, sorted(settings.formats), sorted(settings.read), settings.step_schema, program()]
     return digest([parts, there.outside, *there.files]).hex()
 
 

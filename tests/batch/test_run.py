@@ -282,6 +282,15 @@ def test_what_another_version_planned_is_not_taken(tmp_path, monkeypatch):
     assert [row.status for row in foreseen(parts, out, Terms())] == ["planned"]
 
 
+@pytest.mark.parametrize("name", ["made_by", "_own"])
+def test_an_edit_of_the_core_or_of_the_batch_makes_another_program(monkeypatch, name):
+    before = keys.program()
+    assert getattr(keys, name)()
+    monkeypatch.setattr(keys, name, lambda: b"another")
+    assert keys.program() != before
+    assert keys.versions()["plan-cutters"].endswith(keys.program().hex()[:12])
+
+
 def test_a_full_disk_on_a_worker_is_one_line(tmp_path, monkeypatch):
     from pathlib import Path
 

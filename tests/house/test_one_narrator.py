@@ -26,7 +26,9 @@ CODES = re.compile("|".join(rf"\b{code}\b" for code in REASONS if "_" in code))
 def modules() -> Iterator[tuple[str, ast.Module]]:
     for path in sorted(HOUSE.rglob("*.py")):
         name = path.relative_to(HOUSE).as_posix()
-        if not name.startswith("plan_cutters/plan_file/") and not any(name == each or name.startswith(f"{each}/") for each in APART):
+        if not name.startswith("plan_cutters/plan_file/") and not any(
+            name == each or name.startswith(f"{each}/") for each in APART
+        ):
             yield name, ast.parse(path.read_text(encoding="utf-8"))
 
 

@@ -33,7 +33,7 @@ import pytest
 
 from tests.mutants.faults import Mutant, drawn
 from tests.mutants.plugins import Reach, Verdict, preload
-from tests.support.places import PACKAGES
+from tests.support.places import PACKAGES, git
 
 ROOT = Path(__file__).resolve().parents[2]
 EQUIVALENT = Path(__file__).with_name("equivalent.txt")
@@ -375,9 +375,7 @@ def main() -> None:
 
         overlaid(next(roots()), asked.work / "common" / "plan-cutters")
     reached = reach(asked.tests or [ROOMS[asked.room][1]], asked.work)
-    commit = subprocess.run(
-        ["git", "rev-parse", "--short", "HEAD"], cwd=ROOT, capture_output=True, text=True, check=True
-    ).stdout.strip()
+    commit = git("rev-parse", "--short", "HEAD")
     modules = [name for name in listed(ROOMS[asked.room][0]) if name.endswith(".py")]
     mutants = list(islice(drawn(ROOT, modules, f"{asked.room} {asked.seed}"), asked.count))
     waiting = [each for each in mutants if each.name not in known and asked.only in each.name]

@@ -3,6 +3,7 @@
 Each names a module that has the `command` of click and `main`; the first line of its text is the sentence in the help.
 """
 
+import contextlib
 import sys
 from functools import cache
 from importlib.util import find_spec
@@ -20,7 +21,10 @@ def leaves() -> dict[str, str]:
     modules: dict[str, str] = {}
     for folder in sys.path:
         for file in sorted(Path(folder or ".").glob("*.dist-info/entry_points.txt")):
-            group = file.read_text(encoding="utf-8", errors="replace").partition(f"[{GROUP}]\n")[2].partition("\n[")[0]
+            text = ""
+            with contextlib.suppress(OSError):  # what nobody may read adds no command
+                text = file.read_text(encoding="utf-8", errors="replace")
+            group = text.partition(f"[{GROUP}]\n")[2].partition("\n[")[0]
             for line in filter(None, map(str.strip, group.splitlines())):
                 name, equals, module = map(str.strip, line.partition("="))
                 if equals and name.isidentifier():
