@@ -1,6 +1,6 @@
 """Sharing rows out over threads: kernels release the GIL and write only their own rows."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor, as_completed
 
 import numpy as np
@@ -49,25 +49,27 @@ def in_chunks(
     """
     ends = np.flatnonzero(np.diff(rows // chunk)) + 1 if fixed else np.arange(chunk, len(rows), chunk)
     pieces = [piece for piece in np.split(rows, ends) if len(piece)]
-    total = 0
     if jobs == 1 or len(pieces) <= 1:  # a thread costs more than many a piece
-        for done, piece in enumerate(pieces, 1):
-            total += work(piece) or 0
-            if progress:
-                progress(done, len(pieces))
-        METER.add(total)
-        return total
-    with ThreadPoolExecutor(jobs) as pool:
-        futures = [pool.submit(work, piece) for piece in pieces]
-        try:
-            for done, future in enumerate(as_completed(futures), 1):
-                total += future.result() or 0
-                if progress:
-                    progress(done, len(pieces))
-        except BaseException:
-            pool.shutdown(cancel_futures=True)
-            raise
+        total = _total(map(work, pieces), len(pieces), progress)
+    else:
+        with ThreadPoolExecutor(jobs) as pool:
+            futures = [pool.submit(work, piece) for piece in pieces]
+            try:
+                total = _total((future.result() for future in as_completed(futures)), len(pieces), progress)
+            except BaseException:
+                pool.shutdown(cancel_futures=True)
+                raise
     METER.add(total)
+    return total
+
+
+def _total(results: Iterable[int | None], count: int, progress: Progress | None) -> int:
+    """Add up what pieces return, as they come."""
+    total = 0
+    for done, result in enumerate(results, 1):
+        total += result or 0
+        if progress:
+            progress(done, count)
     return total
 
 
