@@ -14,7 +14,7 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
-from tests.support import record, seconds, slow
+from tests.support import kept, record, seconds, slow
 from tests.support.skips import strict
 
 # A machine that is busy with something else is no fault; what else holds here, as in CI, stays.
@@ -40,6 +40,7 @@ def _rank(path):
 
 def pytest_addoption(parser):
     parser.addoption("--slow", default="none", help="which slow tests take part: none, all, commit, or a part such as 3/11")
+    parser.addoption("--keep", action="store_true", help="write anew what is kept of the program's answers (tests/*/kept)")
     parser.addoption("--record", action="store_true", help="write what a whole run found into docs/nightly.md")
 
 
@@ -111,6 +112,12 @@ def pytest_xdist_make_scheduler(config, log):
 
     config.option.loadscopereorder = False
     return LoadFileScheduling(config, log)
+
+
+@pytest.fixture
+def keeps(request):
+    """`keeps(name, found)`: what is found agrees with what is kept of it in the folder `kept` beside the file of tests."""
+    return lambda name, found: kept.compare(request.config, request.path.parent / "kept" / f"{name}.json", found)
 
 
 @pytest.fixture(scope="module")
