@@ -1,0 +1,77 @@
+"""What is kept of triangles, profiles about an axis and proxies of faces of many kinds."""
+
+import numpy as np
+import pytest
+
+from cad_io import read_part
+from cad_io.part.unjudged import NO_AREA
+from cad_io.tessellate import tessellate
+from cad_io.tessellate.flips import delaunay
+from cad_io.tessellate.meridian import meridian
+from cad_io.tessellate.proxies import stand_ins
+from cad_io.tessellate.start import expected
+from tests.support.cad_parts import (
+    as_nurbs, ball, box, compound, cone, cut, drilled, holed_patch, loose, patch, pocketed, ring, rod, spring,
+)  # fmt: skip
+from tests.support.splines import bspline
+
+
+def _random(seed, degrees, spans, *, rational=True):
+    return bspline(np.random.default_rng(seed), degrees, spans, rational)[0]
+
+
+SHAPES = {
+    "ball": lambda: ball(9.7), "ring": lambda: ring(19.3, 5.1), "cone": lambda: cone(8.1, 2.3, 10.7),
+    "point": lambda: cone(8.1, 0, 10.7), "rod": lambda: cut(rod(5.3, 17.1), rod(2.1, 9.3, (4.1, 0.7, 11.9))),
+    "patch": lambda: patch(3), "holed": lambda: holed_patch(2), "pocketed": lambda: pocketed(5.3), "drilled": drilled,
+    "ball as B-spline": lambda: as_nurbs(ball(9.7)), "ring as B-spline": lambda: as_nurbs(ring(19.3, 5.1)),
+    "cone as B-spline": lambda: as_nurbs(cone(8.1, 0, 10.7)),
+    "cut ring": lambda: cut(ring(19.3, 5.1), box(50, 50, 50, (3.1, -7.3, -2.9))),
+    "bored ring": lambda: cut(ring(19.3, 5.1), rod(3.3, 60, (18.9, 1.3, -30))), "spring": lambda: spring(2, 10.3, 1.7, 6.1, 33),
+    "loose": lambda: loose(pocketed(5.3), 0.013), "sharp": lambda: _random(5, (1, 3), (4, 3)),
+    "smooth": lambda: _random(6, (4, 3), (2, 3)), "polynomial": lambda: _random(7, (2, 2), (5, 4), rational=False),
+}  # fmt: skip
+CHORDS = (0.71, 0.053, 0.011)
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_triangles_are_those_that_are_kept(keeps, name):
+    part = read_part(SHAPES[name]())
+    numbers = [face.number for face in part.faces]
+    made = [tessellate(part, chord) for chord in CHORDS]
+    few = tessellate(part, CHORDS[-1], budget=300)
+    guess = [expected(part, numbers, chord) for chord in CHORDS]
+    keeps(f"triangles_{name.replace(' ', '_')}", {"made": made, "few": few, "expected": guess})
+
+
+AXES = (((0.3, -0.7, 4.1), (0, 0, -2.3)), ((2.1, 1.3, -3.7), (1, 2, 2)), ((0, 0, 0.9), (0, 0, 1.7)))
+BODIES = {
+    **{name: SHAPES[name] for name in ("ball", "ring", "cone", "rod", "cut ring", "cone as B-spline")},
+    "two": lambda: compound(rod(5.3, 17.1), ball(7.1, (0, 0, 29.3))), "on a box": lambda: compound(rod(), box(4, 4, 4, (-2, -2, -6))),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", BODIES)
+def test_profiles_about_an_axis_are_those_that_are_kept(keeps, name):
+    part = read_part(BODIES[name]())
+    keeps(f"profile_{name.replace(' ', '_')}", [meridian(part, *axis, chord) for axis in AXES for chord in (0.31, 0.023)])
+
+
+def test_proxies_are_those_that_are_kept(keeps):
+    part = read_part(compound(*(make() for name, make in SHAPES.items() if name in ("ball", "cut ring", "holed", "rod"))))
+    every = [(face.number, "tried") for face in part.faces]
+    areas = [(face.number, NO_AREA) for face in part.faces]
+    keeps("proxies", [stand_ins(part, which, chord) for which in (every, areas) for chord in (0.31, 0.023)])
+
+
+def test_flipped_triangles_are_those_that_are_kept(keeps):
+    rng = np.random.default_rng(3)
+    found = []
+    for n in (4, 9, 14):
+        x, y = np.meshgrid(np.arange(n, dtype=float), 0.37 * np.arange(n), indexing="ij")
+        uv = np.stack([x + 0.31 * rng.random(x.shape), y + 0.12 * rng.random(x.shape)], -1)
+        point = np.concatenate([uv, rng.normal(0, 0.2, (n, n, 1))], -1).reshape(-1, 3)
+        at = np.arange(n * n).reshape(n, n)
+        a, b, c, d = (each.ravel() for each in (at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]))
+        found.append(delaunay(point, np.concatenate([np.stack([a, b, c], 1), np.stack([a, c, d], 1)]).astype(np.int32)))
+    keeps("flips", found)
