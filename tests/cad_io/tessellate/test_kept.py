@@ -11,7 +11,20 @@ from cad_io.tessellate.meridian import meridian
 from cad_io.tessellate.proxies import stand_ins
 from cad_io.tessellate.start import expected
 from tests.support.cad_parts import (
-    as_nurbs, ball, box, compound, cone, cut, drilled, holed_patch, loose, patch, pocketed, ring, rod, spring,
+    as_nurbs,
+    ball,
+    box,
+    compound,
+    cone,
+    cut,
+    drilled,
+    holed_patch,
+    loose,
+    patch,
+    pocketed,
+    ring,
+    rod,
+    spring,
 )  # fmt: skip
 from tests.support.splines import bspline
 
@@ -47,7 +60,8 @@ def test_triangles_are_those_that_are_kept(keeps, name):
 AXES = (((0.3, -0.7, 4.1), (0, 0, -2.3)), ((2.1, 1.3, -3.7), (1, 2, 2)), ((0, 0, 0.9), (0, 0, 1.7)))
 BODIES = {
     **{name: SHAPES[name] for name in ("ball", "ring", "cone", "rod", "cut ring", "cone as B-spline")},
-    "two": lambda: compound(rod(5.3, 17.1), ball(7.1, (0, 0, 29.3))), "on a box": lambda: compound(rod(), box(4, 4, 4, (-2, -2, -6))),
+    "two": lambda: compound(rod(5.3, 17.1), ball(7.1, (0, 0, 29.3))),
+    "on a box": lambda: compound(rod(), box(4, 4, 4, (-2, -2, -6))),
 }  # fmt: skip
 
 

@@ -299,6 +299,7 @@ def free_map(rows, contacts, ranges, tool, narrowest, tree, wide, most, part, co
     rows : (m,) int64
     contacts : Contacts
     ranges : Ranges
+        Of no machine: rotary axes may leave more intervals of tilt than there is room for.
     tool : Tool
         Without what does not matter.
     narrowest : float
