@@ -9,6 +9,7 @@ What has been imported stays to the end: the collector of garbage passes over it
 import gc
 import os
 import signal
+import sys
 from pathlib import Path
 
 import pytest
@@ -23,6 +24,14 @@ settings.load_profile("suite")
 
 # No test finds what another one left, and what a test puts in place of a stage is called.
 os.environ["PLAN_CUTTERS_CACHE"] = ""
+
+# Byte code is made once, for this process and for all that tests start.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+# glibc reads it when a process starts, those that share the tests included: they keep the memory that they have freed, in large
+# pages, instead of asking the system for it again.
+_KEPT = "glibc.malloc.hugetlb=1:glibc.malloc.mmap_threshold=1073741824:glibc.malloc.trim_threshold=4294967296"
+os.environ.setdefault("GLIBC_TUNABLES", _KEPT)
 
 #: What begins: a file of tests that has all kernels compiled, and beside it folders that need none. Then the longest files.
 COMPILING, BESIDE = "ahead", ("domain", "house", "library", "machines")

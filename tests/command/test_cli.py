@@ -14,7 +14,7 @@ import pytest
 
 from plan_cutters.report import Staging
 from tests.support.commands import assert_one_line, in_lines, leftovers, said_until
-from tests.support.forked import ENV, run
+from tests.support.forked import ENV, run, start
 from tests.support.places import ROOT, SAMPLES
 
 
@@ -211,11 +211,8 @@ def test_several_parts_the_largest_code(tmp_path):
 @pytest.mark.parametrize("ignored", [False, True], ids=["", "in the background"])
 def test_an_interrupt_leaves_nothing(tmp_path, ignored):
     """A shell lets what it runs in the background ignore interrupts; asked for in person, one still counts."""
-    process = subprocess.Popen(
-        [sys.executable, "-m", "plan_cutters", str(SAMPLES / "peaks_and_valleys.step"), "--grid", "401"],
-        cwd=tmp_path, env=ENV, stderr=subprocess.PIPE, text=True,
-        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_IGN if ignored else signal.default_int_handler),
-    )  # fmt: skip
+    process = start(SAMPLES / "peaks_and_valleys.step", "--grid", "401", cwd=tmp_path,
+                    ignored=(signal.SIGINT,) if ignored else ())  # fmt: skip
     said_until(process, "judging")
     time.sleep(0.2)
     process.send_signal(signal.SIGINT)
@@ -227,10 +224,7 @@ def test_an_interrupt_leaves_nothing(tmp_path, ignored):
 
 
 def test_a_read_that_hangs_is_ended(tmp_path):
-    process = subprocess.Popen(
-        [sys.executable, "-m", "plan_cutters", str(SAMPLES / "peaks_and_valleys.step"), "--read-timeout", "1"],
-        cwd=tmp_path, env=ENV, stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
+    process = start(SAMPLES / "peaks_and_valleys.step", "--read-timeout", "1", cwd=tmp_path)
     said_until(process, "reading")
     children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
     os.kill(int(children[0]), signal.SIGSTOP)
@@ -242,10 +236,7 @@ def test_a_read_that_hangs_is_ended(tmp_path):
 
 
 def test_a_crash_of_the_kernel_is_one_line(tmp_path):
-    process = subprocess.Popen(
-        [sys.executable, "-m", "plan_cutters", str(SAMPLES / "peaks_and_valleys.step"), "--grid", "401"],
-        cwd=tmp_path, env=ENV, stderr=subprocess.PIPE, text=True,
-    )  # fmt: skip
+    process = start(SAMPLES / "peaks_and_valleys.step", "--grid", "401", cwd=tmp_path)
     said_until(process, "taking samples")
     children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text().split()
     os.kill(int(children[0]), signal.SIGSEGV)

@@ -34,7 +34,7 @@ from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.workers.assignment import VARIABLE, Assignment
 from plan_cutters.workers.supervise import _Watch
 from tests.support.commands import assert_one_line, in_lines, leftovers, said_until
-from tests.support.forked import ENV, run
+from tests.support.forked import ENV, run, start
 from tests.support.places import SAMPLES
 
 GROOVE = SAMPLES / "v_groove.step"
@@ -417,8 +417,8 @@ def test_what_the_child_says_comes_through_whatever_it_holds():
 
 def test_it_speaks_soon_and_shows_a_clock_on_a_terminal(tmp_path):
     parent, child = pty.openpty()
-    words = [sys.executable, "-m", "plan_cutters", str(GROOVE), *QUICK, *FILES]
-    process = subprocess.Popen(words, cwd=tmp_path, env=ENV | {"TERM": "xterm", "COLUMNS": "80"}, stdout=child, stderr=child)
+    environment = ENV | {"TERM": "xterm", "COLUMNS": "80"}
+    process = start(GROOVE, *QUICK, *FILES, cwd=tmp_path, environment=environment, out=child, err=child)
     os.close(child)
     said = b""
     while True:
@@ -500,13 +500,18 @@ def test_closed_streams(tmp_path):
 
 
 def test_a_reader_that_has_seen_enough_ends_it_quietly(tmp_path):
-    for words in ((GROOVE, *QUICK, "--json", "-", "--quiet"), ("--list-cutters",)):
-        process = subprocess.Popen([sys.executable, "-m", "plan_cutters", *map(str, words)], cwd=tmp_path, env=ENV,
-                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE)  # fmt: skip
-        process.stdout.close()
-        assert process.stderr.read() == b""
-        process.stderr.close()
-        assert process.wait(120) == 141
+    reading, writing = os.pipe()
+    os.close(reading)
+    process = start(GROOVE, *QUICK, "--json", "-", "--quiet", cwd=tmp_path, out=writing)
+    os.close(writing)
+    assert process.communicate(120) == (None, "")
+    assert process.returncode == 141
+    process = subprocess.Popen([sys.executable, "-m", "plan_cutters", "--list-cutters"], cwd=tmp_path, env=ENV,
+                               stdout=subprocess.PIPE, stderr=subprocess.PIPE)  # fmt: skip
+    process.stdout.close()
+    assert process.stderr.read() == b""
+    process.stderr.close()
+    assert process.wait(120) == 141
 
 
 @pytest.mark.slow("starts commands and ends them on the way")

@@ -25,7 +25,7 @@ from cad_io.write import write_gltf
 from cad_io.write.canonical import canonical
 from plan_cutters import Cutter, plan
 from plan_cutters.report import models
-from tests.support.forked import run
+from tests.support.forked import run, start
 from tests.support.places import ROOT, SAMPLES
 from tests.support.split_parts import labels
 
@@ -290,10 +290,9 @@ def test_a_plan_that_names_files_of_others_removes_none(result, tmp_path):
 # ---- the command
 
 
-def start(*words, cwd):
+def begun(*words, cwd, out=os.devnull):
     """The command, as far as it has begun to write models, and what it has said until then."""
-    process = subprocess.Popen([sys.executable, "-m", "plan_cutters", *map(str, words)], cwd=cwd, env=ENV,
-                               stderr=subprocess.PIPE, stdout=subprocess.PIPE, text=True)  # fmt: skip
+    process = start(*words, cwd=cwd, out=str(out))
     said = []
     for line in process.stderr:
         said.append(line)
@@ -324,10 +323,12 @@ def child_of(process):
 @pytest.mark.slow("starts commands and ends them on the way", only=("19",))
 @pytest.mark.parametrize(("number", "word"), [(signal.SIGSEGV, "SIGSEGV"), (signal.SIGSTOP, "within")])
 def test_a_crash_or_hang_while_splitting_costs_the_models_alone(tmp_path, number, word):
-    process, said = start(*WORDS, "--read-timeout", "10", "--json", "-", "-o", "out", cwd=tmp_path)
+    printed = tmp_path.with_suffix(".printed")
+    printed.touch()
+    process, said = begun(*WORDS, "--read-timeout", "10", "--json", "-", "-o", "out", cwd=tmp_path, out=printed)
     assert "flat end D8 x 60" in said
     os.kill(child_of(process), number)
-    shown, rest = process.communicate(timeout=120)
+    _, rest = process.communicate(timeout=120)
     document = read(tmp_path / "out")
     assert process.returncode == (0 if document["selected"] else 1)
     assert "Traceback" not in rest
@@ -335,14 +336,14 @@ def test_a_crash_or_hang_while_splitting_costs_the_models_alone(tmp_path, number
     assert "annotated.step" in rest
     assert sorted(document["not_written"]) == ["glb", "step"]
     assert all(word in why for why in document["not_written"].values())
-    assert json.loads(shown) == document
+    assert json.loads(printed.read_text()) == document
     check_files(tmp_path / "out")
     assert [p.name for p in tmp_path.iterdir()] == ["out"]
 
 
 @pytest.mark.slow("starts commands and ends them on the way")
 def test_an_interrupt_while_splitting_leaves_the_plan(tmp_path):
-    process, _ = start(*WORDS, "-o", "out", cwd=tmp_path)
+    process, _ = begun(*WORDS, "-o", "out", cwd=tmp_path)
     process.send_signal(signal.SIGINT)
     _, rest = process.communicate(timeout=120)
     assert process.returncode == 130
@@ -356,7 +357,7 @@ def test_an_interrupt_while_splitting_leaves_the_plan(tmp_path):
 
 @pytest.mark.slow("starts a command and ends its child on the way")
 def test_a_crash_at_one_part_is_not_taken_for_the_end_of_all(tmp_path):
-    process, _ = start(*WORDS, SAMPLES / "v_groove.step", "-o", "out", cwd=tmp_path)
+    process, _ = begun(*WORDS, SAMPLES / "v_groove.step", "-o", "out", cwd=tmp_path)
     os.kill(child_of(process), signal.SIGSEGV)
     _, rest = process.communicate(timeout=120)
     assert process.returncode == 3

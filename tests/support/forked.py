@@ -8,6 +8,7 @@ process, about signals to it or about what it imports start a real one.
 import faulthandler
 import functools
 import importlib
+import multiprocessing
 import os
 import select
 import signal
@@ -17,6 +18,7 @@ import tempfile
 import time
 import traceback
 import warnings
+from pathlib import Path
 from types import SimpleNamespace
 
 from plan_cutters.command import entry
@@ -25,30 +27,49 @@ from tests.support.places import PACKAGES, ROOT
 ENV = {**os.environ, "PYTHONPATH": f"{ROOT / 'plugin'}{os.pathsep}{ROOT}"}
 
 
-def run(*words, cwd=None, command="plan-cutters", environment=None, bare=False, timeout=240):
+def run(*words, cwd=None, command="plan-cutters", environment=None, bare=False, data=b"", timeout=240):
     """Run a command with its words: the `subprocess.CompletedProcess` that a process of its own would give.
 
-    `bare`: what imports the CAD kernel or the compiler, or starts a process, fails.
+    `bare`: what imports the CAD kernel or the compiler, or starts a process, fails. `data`: what its standard input holds.
     """
     if not bare:
         _warm(command)
     words = [str(word) for word in words]
     assert bare or words[:1] != ["batch"], "dask's loop does not outlive a fork: start a real process"
-    with tempfile.TemporaryFile() as out, tempfile.TemporaryFile() as err:
-        pid = os.fork()
-        if pid == 0:
-            _live(lambda: _command(command, words, cwd, ENV if environment is None else environment, (out, err), bare))
-        copy = _Copy(pid)
-        try:
-            code = copy.wait(timeout)
-        finally:
-            if copy.poll() is None:
-                os.kill(pid, signal.SIGKILL)
-        said = []
-        for stream in (out, err):
-            stream.seek(0)
-            said.append(stream.read().decode(errors="backslashreplace").replace("\r\n", "\n"))
+    with tempfile.TemporaryDirectory() as folder:
+        streams = [os.path.join(folder, name) for name in ("in", "out", "err")]
+        for path, held in zip(streams, (data, b"", b""), strict=True):
+            Path(path).write_bytes(held)
+        if not data:
+            streams[0] = os.devnull
+        asked = (command, words, cwd or os.getcwd(), ENV if environment is None else environment, streams)
+        if bare:
+            code = _bare().run(asked, timeout)
+        else:
+            copy = _copied(lambda: _command(*asked))
+            try:
+                code = copy.wait(timeout)
+            finally:
+                if copy.poll() is None:
+                    os.kill(copy.pid, signal.SIGKILL)
+        said = [Path(path).read_bytes().decode(errors="backslashreplace").replace("\r\n", "\n") for path in streams[1:]]
     return subprocess.CompletedProcess([command, *words], code, *said)
+
+
+def start(*words, cwd, out=os.devnull, err=None, ignored=(), environment=None):
+    """Begin `plan-cutters` with its words: a copy of this process that runs, with the text stream of its standard error.
+
+    `out`, `err`: descriptors or files in place of standard output and standard error. `ignored`: signals that it is to pass over.
+    """
+    _warm("plan-cutters")
+    here, there = os.pipe() if err is None else (None, err)
+    words = [str(word) for word in words]
+    streams = (os.devnull, out, there)
+    copy = _copied(lambda: _command("plan-cutters", words, cwd, ENV if environment is None else environment, streams, ignored))
+    if err is None:
+        os.close(there)
+        copy.stderr = os.fdopen(here, encoding="utf-8", errors="backslashreplace")
+    return copy
 
 
 @functools.cache
@@ -61,6 +82,52 @@ def _warm(command):
         with tempfile.TemporaryDirectory() as folder:
             found = plan(ROOT / "samples/v_groove.step", cutters=["R6L80"], grid=5, posture_maps=True)
             found.write(folder)
+
+
+class _Bare:
+    """A copy of this process without what of ours it had imported, in which the kernel and the compiler cannot be imported and
+    no process can be started. It has imported anew what the words of a command need, and is copied for each command."""
+
+    def __init__(self):
+        self._asks, answers = multiprocessing.Pipe()
+        self._copy = _copied(lambda: self._serve(answers))
+        answers.close()
+
+    def run(self, asked, timeout):
+        self._asks.send(asked)
+        if not self._asks.poll(timeout):
+            os.kill(self._copy.pid, signal.SIGKILL)
+            _bare.cache_clear()
+            raise subprocess.TimeoutExpired(asked[1], timeout)
+        return self._asks.recv()
+
+    def _serve(self, answers):
+        self._asks.close()
+        for number in (0, 1):
+            os.dup2(os.open(os.devnull, os.O_RDWR), number)
+        sys.stdout = sys.stderr = None
+        for name in [n for n in sys.modules if n.partition(".")[0] in (*PACKAGES, "OCP", "numba")]:
+            del sys.modules[name]
+        sys.modules["OCP"] = sys.modules["numba"] = subprocess.Popen = None
+        importlib.import_module("plan_cutters.workers.child").begin_early = lambda words: None
+        importlib.import_module("plan_cutters.command.entry").module_of("plan-cutters")
+        while True:
+            try:
+                asked = answers.recv()
+            except EOFError:  # the process of the tests has ended
+                return
+            answers.send(_copied(functools.partial(_command, *asked, bare=True)).wait())
+
+
+_bare = functools.cache(_Bare)
+
+
+def _copied(work):
+    """A copy of this process that does some work and ends."""
+    pid = os.fork()
+    if pid == 0:
+        _live(work)
+    return _Copy(pid)
 
 
 def _live(work):
@@ -84,14 +151,14 @@ def _live(work):
             os._exit(code)
 
 
-def _command(command, words, cwd, environment, streams, bare):
-    for number, stream in enumerate((os.open(os.devnull, os.O_RDONLY), *(each.fileno() for each in streams))):
-        os.dup2(stream, number)
+def _command(command, words, cwd, environment, streams, ignored=(), bare=False):
+    for number, stream in enumerate(streams):
+        os.dup2(os.open(stream, os.O_RDWR) if isinstance(stream, str) else stream, number)
     sys.stdin, sys.stdout = os.fdopen(0), os.fdopen(1, "w", encoding="utf-8")
     sys.stderr = os.fdopen(2, "w", encoding="utf-8", errors="backslashreplace")
     os.environ.clear()
     os.environ.update(environment)
-    os.chdir(cwd or os.getcwd())
+    os.chdir(cwd)
     faulthandler.disable()
     warnings.resetwarnings()
     for each in (DeprecationWarning, PendingDeprecationWarning, ImportWarning, ResourceWarning):
@@ -99,15 +166,11 @@ def _command(command, words, cwd, environment, streams, bare):
     for number in (signal.SIGTERM, signal.SIGHUP):
         signal.signal(number, signal.SIG_DFL)
     signal.signal(signal.SIGINT, signal.default_int_handler)
+    for number in ignored:
+        signal.signal(number, signal.SIG_IGN)
     sys.argv = [command, *words]
-    if bare:
-        for name in [n for n in sys.modules if n.partition(".")[0] in (*PACKAGES, "OCP", "numba")]:
-            del sys.modules[name]
-        sys.modules["OCP"] = sys.modules["numba"] = subprocess.Popen = None
-    child = importlib.import_module("plan_cutters.workers.child")
-    if bare:
-        child.begin_early = lambda words: None
-    else:
+    if not bare:
+        child = importlib.import_module("plan_cutters.workers.child")
         child.subprocess = SimpleNamespace(**{**vars(subprocess), "Popen": _worker})
     vars(importlib.import_module("plan_cutters.command.entry"))[_ENTRIES[command]]()
 
@@ -143,17 +206,14 @@ def _worker(words, *, env, start_new_session, pass_fds):
         sys.argv = [name, *words]
         entry.begin(name)
 
-    pid = os.fork()
-    if pid == 0:
-        _live(work)
-    return _Copy(pid)
+    return _copied(work)
 
 
 class _Copy:
     """A copy of this process, with what of `subprocess.Popen` is used here and in `supervise`."""
 
     def __init__(self, pid):
-        self.pid, self.returncode = pid, None
+        self.pid, self.returncode, self.stderr = pid, None, None
 
     def poll(self):
         if self.returncode is None:
@@ -169,6 +229,13 @@ class _Copy:
                 raise subprocess.TimeoutExpired("a copy of the tests' process", timeout)
             select.select([], [], [], 0.005)
         return self.returncode
+
+    def communicate(self, timeout=None):
+        """What else is said on standard error until it ends, behind nothing of standard output."""
+        with self.stderr:
+            rest = self.stderr.read()
+        self.wait(timeout)
+        return None, rest
 
     def send_signal(self, number):
         if self.poll() is None:

@@ -34,10 +34,17 @@ def halves():
     return part, split(part, [labels(part, largest_bspline(part), lambda x, y: x > 0.4 + 0.3 * y)])
 
 
-def test_one_node_a_face_and_below_it_one_a_piece(halves, tmp_path):
+@pytest.fixture(scope="module")
+def drawn(halves, tmp_path_factory):
+    """The file of them."""
+    path = tmp_path_factory.mktemp("halves") / "p.glb"
+    assert write(halves[1], path) == ()
+    return path
+
+
+def test_one_node_a_face_and_below_it_one_a_piece(halves, drawn):
     part, found = halves
-    assert write(found, tmp_path / "p.glb") == ()
-    document, _ = read(tmp_path / "p.glb")
+    document, _ = read(drawn)
     nodes = document["nodes"]
     tops = [nodes[i] for i in nodes[0]["children"]]
     assert [n["name"] for n in tops] == [f.id for f in part.faces]
@@ -51,10 +58,9 @@ def sRGB(light):
     return np.where(light <= 0.0031308, 12.92 * light, 1.055 * light ** (1 / 2.4) - 0.055)
 
 
-def test_each_colour_is_a_material_in_linear_light(halves, tmp_path):
+def test_each_colour_is_a_material_in_linear_light(halves, drawn):
     _, found = halves
-    write(found, tmp_path / "p.glb")
-    document, _ = read(tmp_path / "p.glb")
+    document, _ = read(drawn)
     assert [material["name"] for material in document["materials"]] == [
         str(k) for k in dict.fromkeys(p.label for p in found.pieces)
     ]
@@ -83,10 +89,8 @@ def test_the_merged_mesh_has_vertex_colours_under_white(halves, tmp_path):
     assert seen == pytest.approx(np.unique(np.round([COLOURS[p.label] for p in found.pieces], 3), axis=0), abs=2e-3)
 
 
-def test_trimesh_shows_the_colours(halves, tmp_path):
-    _, found = halves
-    write(found, tmp_path / "p.glb")
-    for name, mesh in trimesh.load(tmp_path / "p.glb").geometry.items():
+def test_trimesh_shows_the_colours(drawn):
+    for name, mesh in trimesh.load(drawn).geometry.items():
         colour = np.ravel(mesh.visual.to_color().vertex_colors)[:3]
         (label,) = (k for k in COLOURS if name.endswith(f"_{k}"))
         assert colour == pytest.approx(np.array(linear(COLOURS[label])) * 255, abs=1)
@@ -105,10 +109,8 @@ def test_metres_and_y_up_in_trimesh(halves, tmp_path):
     assert "F1_-1" in names
 
 
-def test_meshes_of_a_solid_close_and_face_outwards(halves, tmp_path):
-    _, found = halves
-    write(found, tmp_path / "p.glb")
-    whole = trimesh.load(tmp_path / "p.glb").to_mesh()
+def test_meshes_of_a_solid_close_and_face_outwards(drawn):
+    whole = trimesh.load(drawn).to_mesh()
     whole.merge_vertices(merge_norm=True, merge_tex=True)
     assert whole.is_watertight
     assert whole.volume > 0
