@@ -1,4 +1,4 @@
-"""Who reads a file of a user opens it in `cad_io.files`: all kept answers count it, and a service keeps within its folders."""
+"""Who reads a file of a user opens it in `user_files` of the base: kept answers count it, and a service keeps to its folders."""
 
 import ast
 from collections import Counter

@@ -371,7 +371,7 @@ def main() -> None:
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     preload()
     if not (asked.work / "common").exists():
-        from cad_io.user_cache import roots
+        from plan_cutters_base.user_cache import roots
 
         overlaid(next(roots()), asked.work / "common" / "plan-cutters")
     reached = reach(asked.tests or [ROOMS[asked.room][1]], asked.work)

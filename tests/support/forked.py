@@ -104,7 +104,7 @@ def _command(command, words, cwd, environment, streams, bare):
         for name in [n for n in sys.modules if n.partition(".")[0] in (*PACKAGES, "OCP", "numba")]:
             del sys.modules[name]
         sys.modules["OCP"] = sys.modules["numba"] = subprocess.Popen = None
-    child = importlib.import_module("plan_cutters.workers.child")
+    child = importlib.import_module("plan_cutters_base.workers.child")
     if bare:
         child.begin_early = lambda words: None
     else:

@@ -20,7 +20,6 @@ from plan_cutters.domain.posture import unit
 from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.domain.tolerance import CHORD_REQUESTED
 from plan_cutters.errors import OptionError
-from plan_cutters.files.stage_cache import NO_CACHE, NoStageCache, StageCache
 from plan_cutters.option_types import SceneOptions
 from plan_cutters.options import MOST_TOLERANCE, Options
 from plan_cutters.scene.clamping import Workpiece, held
@@ -31,6 +30,7 @@ from plan_cutters.scene.holds import Hold
 from plan_cutters.scene.overlap import overlaps, refuse_overlaps
 from plan_cutters.scene.solids import entered
 from plan_cutters.scene.surroundings import Surroundings, surroundings
+from plan_cutters_base.stage_cache import NO_CACHE, NoStageCache, StageCache
 
 #: The options of a plan that are a scene's.
 _DEFAULTS = {word: getattr(Options(), word) for word in get_type_hints(SceneOptions)}

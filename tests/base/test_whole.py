@@ -6,7 +6,7 @@ import stat
 import pytest
 
 from cad_io.errors import WriteError
-from cad_io.whole import whole
+from plan_cutters_base.whole import whole
 
 
 def test_it_takes_its_place_at_the_end(tmp_path):

@@ -12,9 +12,9 @@ from hypothesis.extra import numpy as arrays
 
 from plan_cutters import Cutter
 from plan_cutters.domain.verdicts import blank
-from plan_cutters.files.packed import packed, unpacked
 from plan_cutters.kernels.rows import Tree
 from plan_cutters.plan_file.model import AreaEntry
+from plan_cutters_base.packed import packed, unpacked
 
 
 def again(value):

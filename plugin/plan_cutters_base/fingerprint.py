@@ -17,6 +17,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
+#: Packages whose sources decide what is judged.
+PROGRAM = ("cad_io", "plan_cutters", "plan_cutters_base")
 #: Level of a relative import (0 for an absolute one), module, and the name taken from it, empty for the module itself.
 Import = tuple[int, str, str]
 

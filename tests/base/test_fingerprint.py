@@ -17,7 +17,7 @@ OURS = ("cad_io", "plan_cutters")
 LOOK = """
 import sys
 from pathlib import Path
-from cad_io.fingerprint import fingerprint
+from plan_cutters_base.fingerprint import fingerprint
 root, notes = sys.argv[1], None if sys.argv[2] == "none" else Path(sys.argv[2])
 for name in sys.argv[3:]:
     file = f"{root}/{name.replace('.', '/')}.py"
@@ -111,7 +111,7 @@ def test_words_and_blank_lines_change_nothing(sources):
     (CODES, "= 1", "= 1 + 0"),
     (MAP, "import numpy as np", "import numpy as np\n_NEW = 1"),
     ("cad_io.surface.bspline", "import numpy as np", "import numpy as np\n_NEW = 1"),
-    ("cad_io.jit", "_CHECKSUM = 32", "_CHECKSUM = 16"),
+    ("plan_cutters_base.jit", "_CHECKSUM = 32", "_CHECKSUM = 16"),
 ], ids=["search", "hit", "codes", "map", "bspline", "jit"])  # fmt: skip
 def test_a_change_counts_for_the_module_and_its_users_alone(sources, name, old, new):
     names = with_machine_code(sources)
@@ -141,7 +141,7 @@ def test_a_change_counts_for_the_module_and_its_users_alone(sources, name, old, 
 def test_every_form_of_import_is_seen(tmp_path, line, zipped):
     """Of `beneath`, whose number changes, each imports it, at some distance."""
     look = (
-        "import sys; from cad_io.fingerprint import fingerprint\n"
+        "import sys; from plan_cutters_base.fingerprint import fingerprint\n"
         "print(fingerprint('room.above', 'room', f'{sys.path[1]}/room/above.py', frozenset({'room'})))"
     )
 
@@ -207,7 +207,7 @@ def test_the_kernels_import_no_module_by_a_computed_name():
         "from cad_io import fingerprint as f; import plan_cutters.kernels.search.search, plan_cutters.kernels.maps.free_map\n"
         "import plan_cutters.kernels.area.cover, cad_io.tessellate.refine, cad_io.surface.net_bends, cad_io.tessellate.flips\n"
         "import cad_io.surface.differential, inspect\n"
-        "from cad_io.jit import cache_folder\n"
+        "from plan_cutters_base.jit import cache_folder\n"
         "seen, ahead = set(), [n for n, m in __import__('sys').modules.items() if hasattr(m, 'kernel') and hasattr(m, 'entry')]\n"
         "while ahead:\n"
         "    each = ahead.pop()\n"

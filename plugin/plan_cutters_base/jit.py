@@ -1,7 +1,7 @@
 """Three decorators, one cache folder for each module as it is: everything that is known of the compiler.
 
 The compiler's own cache looks at one file at a time and misses edits in a module that a kernel calls, so the cache folder's
-name carries the fingerprint of the module and of all that it imports (`cad_io.fingerprint`). The compiler asks for the cache
+name carries the fingerprint of the module and of all that it imports (`fingerprint`). The compiler asks for the cache
 folder when a function is decorated: it is set for that moment alone, so that neither the host's own compiled functions nor the
 environment of its processes change, whoever imports the compiler first.
 
@@ -34,9 +34,9 @@ from numba.core.codegen import JITCodeLibrary
 from numba.core.compiler import Compiler
 from numba.core.types import unliteral  # type: ignore[attr-defined]
 
-from cad_io.errors import CacheWarning
-from cad_io.fingerprint import fingerprint
-from cad_io.user_cache import roots, writable
+from plan_cutters_base.errors import CacheWarning
+from plan_cutters_base.fingerprint import PROGRAM, fingerprint
+from plan_cutters_base.user_cache import roots, writable
 
 VERSION: str = numba.__version__
 
@@ -79,9 +79,9 @@ def cache_folder(name: str, package: str, file: str, ours: frozenset[str] = froz
     name, package, file : str
         The module's `__name__`, `__package__` and `__file__`.
     ours : frozenset of str
-        Top-level packages that count where they are imported, beside that of the module and the compiler's.
+        Top-level packages that count where they are imported, beside that of the module and those of this program.
     """
-    ours |= {each.partition(".")[0] for each in (name, __name__)}
+    ours |= {name.partition(".")[0], *PROGRAM}
     folders = [each for each in roots() if writable(each)]
     made_of = fingerprint(name, package, file, ours, folders[0] / "sources" if folders else None)
     if made_of is not None:

@@ -16,9 +16,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Protocol
 
-from plan_cutters.workers.assignment import INTERRUPTED
-from plan_cutters.workers.child import Worker, early
-from plan_cutters.workers.errors import OutOfTime, Stuck, Supervised, Unfinished
+from plan_cutters_base.workers.assignment import INTERRUPTED
+from plan_cutters_base.workers.child import Worker, early
+from plan_cutters_base.workers.errors import OutOfTime, Stuck, Supervised, Unfinished
 
 
 class Display(Protocol):
@@ -291,7 +291,7 @@ class _Watch:
     def clear(self) -> None:
         """Take away what the child had begun to write and not given to the output."""
         for folder in self.staging:
-            from plan_cutters.files.lock import sweep
+            from plan_cutters_base.system_lock import sweep
 
             if folder.endswith(".lock"):
                 sweep(Path(folder))

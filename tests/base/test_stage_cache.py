@@ -13,10 +13,10 @@ import pytest
 
 import cad_io
 import plan_cutters
-from cad_io.errors import CacheWarning
-from plan_cutters.files import stage_cache
-from plan_cutters.files.digest import sources
-from plan_cutters.files.stage_cache import NO_CACHE, StageCache, settle
+from plan_cutters_base import stage_cache
+from plan_cutters_base.digest import sources
+from plan_cutters_base.errors import CacheWarning
+from plan_cutters_base.stage_cache import NO_CACHE, StageCache, settle
 
 
 @pytest.fixture(autouse=True)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from typing import BinaryIO, Generic, TypeVar, cast
 
-from cad_io.forks import Copy, end_within, tell
+from plan_cutters_base.forks import Copy, end_within, tell
 
 Item = TypeVar("Item")
 Done = TypeVar("Done")

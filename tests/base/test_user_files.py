@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from cad_io.errors import ReadError
-from cad_io.files import WITHIN, IrregularError, OutsideError, content, fingerprint, is_there, note, noted
 from cad_io.read.mesh import read_mesh
 from cad_io.read.sniff import load
 from plan_cutters.errors import LibraryError, MachineError, PlanError
@@ -15,6 +14,7 @@ from plan_cutters.files.arrays import Archive
 from plan_cutters.library import read_library
 from plan_cutters.machines import read_machine
 from plan_cutters.machines.setups import read_setup
+from plan_cutters_base.user_files import WITHIN, IrregularError, OutsideError, content, fingerprint, is_there, note, noted
 from tests.support.places import ROOT, SAMPLES, real_file
 
 BIT = {"shape": "endmill.fcstd", "name": "b", "parameter": {"Diameter": "4 mm", "CuttingEdgeHeight": "20 mm", "Length": "50 mm",

@@ -145,7 +145,7 @@ def began() -> float:
 def follow_parent() -> None:
     """End when the parent does, however it ends: nobody else would wait for what this process makes."""
     if (parent := assignment().parent) is not None:
-        from cad_io.forks import end_with
+        from plan_cutters_base.forks import end_with
 
         end_with(parent)
 

@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-#: Packages whose records are made.
-_OURS = ("cad_io", "plan_cutters")
+from plan_cutters_base.fingerprint import PROGRAM
+
 #: Arrays begin at multiples of so many bytes; bytes of the length of the JSON.
 _ALIGNED, _LENGTH = 64, 8
 _SERIES: dict[str, type] = {each.__name__: each for each in (tuple, list, set, frozenset)}
@@ -54,7 +54,7 @@ def unpacked(data: bytearray) -> Any:
 def _names(record: Any) -> list[str] | None:
     """Fields of a record of ours; None for anything else."""
     kind = type(record)
-    if kind.__module__.partition(".")[0] not in _OURS:
+    if kind.__module__.partition(".")[0] not in PROGRAM:
         return None
     if is_dataclass(record):
         return [each.name for each in fields(record)]
@@ -144,7 +144,7 @@ class _Unpacker:
 def _record(kind: str, values: dict[str, Any]) -> Any:
     """Make a record of one of our classes of its fields."""
     module, _, name = kind.partition(":")
-    if module.partition(".")[0] not in _OURS:
+    if module.partition(".")[0] not in PROGRAM:
         raise ValueError(f"{kind} is none of ours")
     made = getattr(import_module(module), name)
     if not isinstance(made, type):

@@ -15,15 +15,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from cad_io import jit
-from cad_io.jit import cache_folder
+from plan_cutters_base import jit
+from plan_cutters_base.jit import cache_folder
 from tests.support.forked import ENV
 
 SOURCE = """
 import sys
 import tempfile
 import numpy as np
-from cad_io.jit import decorators
+from plan_cutters_base.jit import decorators
 
 entry, kernel, _ = decorators(__name__)
 
@@ -128,7 +128,7 @@ def test_a_line_above_a_function_is_no_other_function(run, tmp_path):
 TWO = """
 import sys
 import numpy as np
-from cad_io.jit import decorators
+from plan_cutters_base.jit import decorators
 entry, kernel, _ = decorators(__name__)
 
 if len(sys.argv) > 1:

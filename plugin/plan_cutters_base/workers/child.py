@@ -9,7 +9,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from plan_cutters.workers.assignment import VARIABLE, Assignment, assignment, began, is_child
+from plan_cutters_base.workers.assignment import VARIABLE, Assignment, assignment, began, is_child
 
 #: Seconds after which a child that was asked to end is asked again.
 _TWICE = 0.5

@@ -10,8 +10,8 @@ from pathlib import Path
 
 import pytest
 
-from plan_cutters.workers import supervise
-from plan_cutters.workers.child import Child
+from plan_cutters_base.workers import supervise
+from plan_cutters_base.workers.child import Child
 from tests.support.commands import leftovers
 from tests.support.forked import ENV
 from tests.support.places import SAMPLES
@@ -41,7 +41,7 @@ def spin():
 
 def trap(name):
     if name == where and how == "copy":
-        from cad_io.copies import limited
+        from plan_cutters_base.copies import limited
         limited(lambda: spin() or b"", 600.0)
     elif name == where and how == "sleep":
         Path(os.environ["STUCK_SIGN"]).touch()
@@ -59,7 +59,7 @@ def patch(module):
     module.Clock.stage = stage
 
 class Finder:
-    after = {"plan_cutters.workers.supervise": lambda module: setattr(module, "WRITING", float(os.environ["WRITING"])),
+    after = {"plan_cutters_base.workers.supervise": lambda module: setattr(module, "WRITING", float(os.environ["WRITING"])),
              "plan_cutters.document.clock": patch, "plan_cutters.point": lambda _: trap("map"),
              "plan_cutters.scene.conditions":
                  lambda _: "plan_cutters.command.background_compile" in sys.orig_argv and trap("ahead"),
@@ -254,9 +254,9 @@ def test_a_script_that_gives_up_is_not_held(tmp_path):
 CALLER = """
 import itertools, os, sys, threading
 from pathlib import Path
-import cad_io.forks as forks
-from cad_io.copies import each
-from cad_io.copies import limited
+import plan_cutters_base.forks as forks
+from plan_cutters_base.copies import each
+from plan_cutters_base.copies import limited
 if sys.argv[3] == "looked after":
     forks._killed_by_the_system = lambda: False
 def spin():
@@ -283,7 +283,7 @@ def test_copies_end_with_the_program_that_plans(tmp_path, how, call):
 
 
 def test_a_parent_that_was_gone_before_it_was_followed(tmp_path):
-    code = "import os; from cad_io.forks import end_with; end_with(os.getppid() + 1); print('alive')"
+    code = "import os; from plan_cutters_base.forks import end_with; end_with(os.getppid() + 1); print('alive')"
     done = subprocess.run([sys.executable, "-c", code], env=ENV, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stdout) == (-signal.SIGKILL, "")
 

@@ -9,6 +9,7 @@ Only what lies in a folder of this user, which nobody else may write to, is read
 import contextlib
 import functools
 import hashlib
+import importlib.util
 import os
 import time
 import warnings
@@ -19,13 +20,12 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any, Self, TypeVar, cast
 
-import cad_io
-import plan_cutters
-from cad_io.errors import CacheWarning
-from cad_io.user_cache import own, roots, writable
-from cad_io.whole import whole
-from plan_cutters.files.digest import digest, sources
-from plan_cutters.files.packed import packed, unpacked
+from plan_cutters_base.digest import digest, sources
+from plan_cutters_base.errors import CacheWarning
+from plan_cutters_base.fingerprint import PROGRAM
+from plan_cutters_base.packed import packed, unpacked
+from plan_cutters_base.user_cache import own, roots, writable
+from plan_cutters_base.whole import whole
 
 Made = TypeVar("Made")
 
@@ -203,7 +203,8 @@ def _read(path: Path) -> tuple[Any] | None:
 def made_by() -> bytes:
     """A checksum of this program, all files of its packages, and of the packages that results may differ with."""
     # Without files there is nothing to tell one program from another: then nothing is found again.
-    program = sources(*(Path(str(each.__file__)).parent for each in (cad_io, plan_cutters))) or os.urandom(16)
+    found = [importlib.util.find_spec(name) for name in PROGRAM]
+    program = sources(*(Path(str(each.origin)).parent for each in found if each is not None)) or os.urandom(16)
     return digest([program, [installed(name) for name in PACKAGES]])
 
 
