@@ -1,7 +1,8 @@
 """Make the gallery anew: `python docs/gallery.py FOLDER [NAME...]` (needs Debian's Chromium and the `dev` extra).
 
 FOLDER has the files of the parts that are not our own; `docs/gallery/parts.toml` says where they come from. Without names all
-parts are made. With `-` as FOLDER nothing is planned: pictures are taken of pages that are there, and `docs/gallery.md` is written.
+parts are made. With `-` as FOLDER nothing is planned: pictures are taken of pages that are there, and `docs/gallery.md` is
+written.
 
 Each part is planned by its command, as a reader types it. The script writes a picture, the headline, `docs/gallery.md`, and the
 review page into `build/gallery`, from where `docs/hooks/review_pages.py` takes it into the site.
