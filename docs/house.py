@@ -22,7 +22,7 @@ HEAD = """# The house
 `python docs/house.py` draws this page from the import contracts in `pyproject.toml`, which each run of CI keeps. The sentence
 about a room is the first one of its own text. [What to touch for which change](maintainers.md) is another page.
 
-A part is read, sampled and tessellated (`cad_io`); each cutter is judged at each sample (`stages` over `scene` and `kernels`);
+A part is read, sampled and tessellated (`cad_io`); each cutter is judged at each sample (`judging` over `scene` and `kernels`);
 what follows from the verdicts is worked out (`operations`, `answers`); the plan file is put together (`document`) and written
 with pictures and models (`report`). `pipeline` alone knows this order. `command` takes words and gives an exit code.
 

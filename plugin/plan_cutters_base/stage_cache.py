@@ -203,8 +203,8 @@ def _read(path: Path) -> tuple[Any] | None:
 def made_by() -> bytes:
     """A checksum of this program, all files of its packages, and of the packages that results may differ with."""
     # Without files there is nothing to tell one program from another: then nothing is found again.
-    found = [importlib.util.find_spec(name) for name in PROGRAM]
-    program = sources(*(Path(str(each.origin)).parent for each in found if each is not None)) or os.urandom(16)
+    specs = [importlib.util.find_spec(name) for name in PROGRAM]
+    program = sources(*(Path(str(each.origin)).parent for each in specs if each is not None)) or os.urandom(16)
     return digest([program, [installed(name) for name in PACKAGES]])
 
 

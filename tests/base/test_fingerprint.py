@@ -12,7 +12,7 @@ import pytest
 from tests.support.forked import ENV
 from tests.support.places import ROOT
 
-OURS = ("cad_io", "plan_cutters")
+OURS = ("cad_io", "plan_cutters", "plan_cutters_base")
 #: In a process of its own, as every run: the fingerprints of all modules with machine code.
 LOOK = """
 import sys
@@ -22,7 +22,7 @@ root, notes = sys.argv[1], None if sys.argv[2] == "none" else Path(sys.argv[2])
 for name in sys.argv[3:]:
     file = f"{root}/{name.replace('.', '/')}.py"
     package = name.rpartition(".")[0]
-    print(name, fingerprint(name, package, file, frozenset({"cad_io", "plan_cutters"}), notes))
+    print(name, fingerprint(name, package, file, frozenset({"cad_io", "plan_cutters", "plan_cutters_base"}), notes))
 """
 SEARCH, HIT, CODES, MAP, REFINE = (
     "plan_cutters.kernels.search.search",
@@ -36,7 +36,7 @@ SEARCH, HIT, CODES, MAP, REFINE = (
 @pytest.fixture
 def sources(tmp_path):
     """A copy of our sources."""
-    for package in (ROOT / "cad_io", ROOT / "plugin" / "plan_cutters"):
+    for package in (ROOT / "cad_io", ROOT / "plugin" / "plan_cutters", ROOT / "plugin" / "plan_cutters_base"):
         shutil.copytree(package, tmp_path / "sources" / package.name, ignore=shutil.ignore_patterns("__pycache__", "*.js"))
     return tmp_path / "sources"
 
@@ -159,7 +159,7 @@ def test_every_form_of_import_is_seen(tmp_path, line, zipped):
             for name, text in texts.items():
                 (folder / "room" / f"{name}.py").write_text(text)
         run = [sys.executable, "-c", look]
-        return subprocess.run(run, env={**ENV, "PYTHONPATH": f"{folder}{os.pathsep}{ROOT}"}, cwd=tmp_path, check=True,
+        return subprocess.run(run, env={**ENV, "PYTHONPATH": f"{folder}{os.pathsep}{ROOT / 'plugin'}"}, cwd=tmp_path, check=True,
                               capture_output=True, text=True).stdout  # fmt: skip
 
     assert printed(1) == printed(1) != printed(2)
@@ -198,13 +198,13 @@ def test_two_versions_side_by_side_have_each_its_own(sources, tmp_path):
 
 
 def test_without_its_source_a_module_has_none(tmp_path):
-    assert looked(tmp_path, ["nowhere"], path=ROOT) == {"nowhere": "None"}
+    assert looked(tmp_path, ["nowhere"], path=ROOT / "plugin") == {"nowhere": "None"}
 
 
 def test_the_kernels_import_no_module_by_a_computed_name():
     """Such an import is not seen: none of the modules that machine code is made of may hide one."""
     script = (
-        "from cad_io import fingerprint as f; import plan_cutters.kernels.search.search, plan_cutters.kernels.maps.free_map\n"
+        "from plan_cutters_base import fingerprint as f; import plan_cutters.kernels.search.search, plan_cutters.kernels.maps.free_map\n"
         "import plan_cutters.kernels.area.cover, cad_io.tessellate.refine, cad_io.surface.net_bends, cad_io.tessellate.flips\n"
         "import cad_io.surface.differential, inspect\n"
         "from plan_cutters_base.jit import cache_folder\n"
@@ -212,7 +212,7 @@ def test_the_kernels_import_no_module_by_a_computed_name():
         "while ahead:\n"
         "    each = ahead.pop()\n"
         "    if each not in seen:\n"
-        "        seen.add(each); ahead += f._direct(each, frozenset({'cad_io', 'plan_cutters'}), None)[1]\n"
+        "        seen.add(each); ahead += f._direct(each, frozenset(f.PROGRAM), None)[1]\n"
         "print(*seen)"
     )
     done = subprocess.run([sys.executable, "-c", script], env=ENV, cwd=ROOT, capture_output=True, text=True, check=True)

@@ -18,6 +18,7 @@ import pytest
 from plan_cutters_base import jit
 from plan_cutters_base.jit import cache_folder
 from tests.support.forked import ENV
+from tests.support.places import ROOT
 
 SOURCE = """
 import sys
@@ -66,7 +67,7 @@ print([{call}], {{each: told(getattr(k, each)) for each in ("deepest", "middle",
 @pytest.fixture
 def run(tmp_path):
     (tmp_path / "kernels_of_test.py").write_text(SOURCE)
-    environment = {**ENV, "NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": str(tmp_path)}
+    environment = {**ENV, "NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": f"{tmp_path}{os.pathsep}{ROOT / 'plugin'}"}
 
     def run(call):
         said = subprocess.run(
@@ -110,7 +111,7 @@ def test_the_same_sources_elsewhere_and_later_are_not_compiled_again(tmp_path):
         room.mkdir(parents=True)
         (room / "kernels_of_test.py").write_text(SOURCE)
         os.utime(room / "kernels_of_test.py", (1e9 + k, 1e9 + k))
-        environment = {**ENV, "NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": str(room)}
+        environment = {**ENV, "NUMBA_CACHE_DIR": str(tmp_path / "cache"), "PYTHONPATH": f"{room}{os.pathsep}{ROOT / 'plugin'}"}
         done = subprocess.run([sys.executable, "-c", RUN.format(call="k.total(x)")], env=environment, capture_output=True,
                               text=True, check=True)  # fmt: skip
         told.append(ast.literal_eval(done.stdout.split("] ", 1)[1])["total"][1:])

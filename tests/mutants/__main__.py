@@ -41,7 +41,7 @@ EQUIVALENT = Path(__file__).with_name("equivalent.txt")
 ROOMS = {
     "kernels": ("plugin/plan_cutters/kernels", "tests/kernels"),
     "scene": ("plugin/plan_cutters/scene", "tests/scene"),
-    "stages": ("plugin/plan_cutters/stages", "tests/stages"),
+    "judging": ("plugin/plan_cutters/judging", "tests/judging"),
     "operations": ("plugin/plan_cutters/operations", "tests/operations"),
     "cad_io/tessellate": ("cad_io/tessellate", "tests/cad_io/tessellate"),
     "domain/kinematics": ("plugin/plan_cutters/domain/kinematics.py", "tests/domain"),

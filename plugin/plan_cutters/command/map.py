@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 
     from cad_io.arrays import Floats
     from plan_cutters.domain.cutter import Cutter
+    from plan_cutters.judging.posture_map import PostureMap
     from plan_cutters.options import Options
-    from plan_cutters.stages.posture_map import PostureMap
 
 _SELF = "plan-cutters map"
 #: Some tilt is free; none is; none is, but some are undecided, or obstacles are missing.
