@@ -29,7 +29,3 @@ class WriteError(CadIoError):
 
 class SampleError(CadIoError):
     """A surface cannot be sampled or located as asked."""
-
-
-class CacheWarning(UserWarning):
-    """Machine code in the compiler's cache is damaged, or cannot be read or written: compiling it anew takes time alone."""

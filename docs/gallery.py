@@ -1,11 +1,11 @@
 """Make the gallery anew: `python docs/gallery.py FOLDER [NAME...]` (needs Debian's Chromium and the `dev` extra).
 
 FOLDER has the files of the parts that are not our own; `docs/gallery/parts.toml` says where they come from. Without names all
-parts are made. With `-` as FOLDER nothing is planned: pictures are taken of the stored pages, and `docs/gallery.md` is written.
+parts are made. With `-` as FOLDER nothing is planned: pictures are taken of pages that are there, and `docs/gallery.md` is
+written.
 
 Each part is planned by its command, as a reader types it. The script writes a picture, the headline, `docs/gallery.md`, and the
-review page without its script and style: these are the same in all pages, so they are stored once, and
-`docs/hooks/review_pages.py` puts the pages together.
+review page into `build/gallery`, from where `docs/hooks/review_pages.py` takes it into the site.
 """
 
 import io
@@ -20,11 +20,9 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-sys.path.insert(0, str(Path(__file__).parent.parent))
-from docs.hooks.review_pages import SHARED, whole
-
 DOCS = Path(__file__).parent
 ROOT, GALLERY, PAGE = DOCS.parent, DOCS / "gallery", DOCS / "gallery.md"
+PAGES = ROOT / "build" / "gallery"
 #: Dots of a picture; a file has at most so many bytes.
 WIDTH, HEIGHT, MOST = 720, 540, 60_000
 #: Without these WebGL shows nothing where there is no graphics card.
@@ -59,8 +57,7 @@ def main(folder: Path | None, names: list[str]) -> None:
                 shutil.copy(folder / row["file"], work)
             if folder:
                 _plan(row, work)
-            (work / "review.html").write_text(whole(GALLERY / f"{row['name']}.page"), encoding="utf-8", newline="")
-            (GALLERY / f"{row['name']}.webp").write_bytes(_picture(work / "review.html", row))
+            (GALLERY / f"{row['name']}.webp").write_bytes(_picture(PAGES / f"{row['name']}.html", row))
     PAGE.write_text(text(), encoding="utf-8")
 
 
@@ -79,17 +76,8 @@ def _plan(row: dict[str, Any], work: Path) -> None:
         json.dumps({"headline": plan["text"]["headline"], "exit_code": done.returncode}, indent=2, ensure_ascii=False) + "\n",
         encoding="utf-8",
     )
-    _split(name, (work / name / "review.html").read_text("utf-8"))
-
-
-def _split(name: str, page: str) -> None:
-    """Write a page without what all pages share, and that once."""
-    for file, (begins, ends) in SHARED.items():
-        start = page.rindex(begins) + len(begins)
-        end = page.index(ends, start)
-        (GALLERY / file).write_text(page[start:end], encoding="utf-8", newline="")
-        page = page[:start] + f"<!-- {file} -->" + page[end:]
-    (GALLERY / f"{name}.page").write_text(page, encoding="utf-8", newline="")
+    PAGES.mkdir(parents=True, exist_ok=True)
+    shutil.copy(work / name / "review.html", PAGES / f"{name}.html")
 
 
 def _picture(page: Path, row: dict[str, Any]) -> bytes:

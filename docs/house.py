@@ -14,14 +14,15 @@ ROOT = Path(__file__).resolve().parents[1]
 PAGE = Path(__file__).with_suffix(".md")
 CONTRACTS = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"]["contracts"]
 #: Packages that only read what the core makes, then the core, then the boundary.
-LEAVES = sorted(path.parent.name for path in ROOT.glob("plugin/plan_cutters_*/__init__.py"))
+BASE = "plan_cutters_base"
+LEAVES = sorted({path.parent.name for path in ROOT.glob("plugin/plan_cutters_*/__init__.py")} - {BASE})
 
 HEAD = """# The house
 
 `python docs/house.py` draws this page from the import contracts in `pyproject.toml`, which each run of CI keeps. The sentence
 about a room is the first one of its own text. [What to touch for which change](maintainers.md) is another page.
 
-A part is read, sampled and tessellated (`cad_io`); each cutter is judged at each sample (`stages` over `scene` and `kernels`);
+A part is read, sampled and tessellated (`cad_io`); each cutter is judged at each sample (`judging` over `scene` and `kernels`);
 what follows from the verdicts is worked out (`operations`, `answers`); the plan file is put together (`document`) and written
 with pictures and models (`report`). `pipeline` alone knows this order. `command` takes words and gives an exit code.
 
@@ -60,7 +61,7 @@ def floors(package: str) -> list[list[str]]:
 def drawn() -> Iterator[str]:
     """Draw the page, line by line."""
     yield "| package | for | its wall |\n|---|---|---|"
-    for name in (*LEAVES, "plan_cutters", "cad_io"):
+    for name in (*LEAVES, "plan_cutters", "cad_io", BASE):
         yield f"| `{name}` | {sentence(place(name) / '__init__.py')} | {wall(name)} |"
     yield ENTRY
     for package in ("plan_cutters", "cad_io"):

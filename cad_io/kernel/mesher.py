@@ -12,8 +12,8 @@ from OCP.BRepTools import BRepTools
 from OCP.TopLoc import TopLoc_Location
 
 from cad_io.arrays import Floats
-from cad_io.copies import Ended, each
 from cad_io.kernel.calls import may_refuse
+from plan_cutters_base.copies import Ended, each
 
 Taken = TypeVar("Taken")
 

@@ -21,7 +21,6 @@ from cad_io.face.carrier import sided, stored_carrier
 from cad_io.face.measure import Measure, measure
 from cad_io.face.recognise import recognise
 from cad_io.face.trim import Trim, trim_of
-from cad_io.files import fingerprint
 from cad_io.kernel import edges_of, explore, faces, is_kernel_error, shape_map, translated
 from cad_io.kernel.assembly import Node
 from cad_io.kernel.natural import ENDLESS, endless
@@ -32,6 +31,7 @@ from cad_io.part.sew import Sewn, edge_uses, neighbours, sew
 from cad_io.part.unjudged import NO_AREA, UNMEASURED, why_unjudged
 from cad_io.surface import Surface
 from cad_io.units import UnitReading, unit_doubt
+from plan_cutters_base.user_files import fingerprint
 
 #: Beyond this, mm, a coordinate has too few digits left for any tolerance.
 FARTHEST = 1e9

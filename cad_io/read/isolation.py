@@ -3,10 +3,10 @@
 import pickle
 from collections.abc import Callable
 
-from cad_io.copies import ChildDied, TimeLimit, limited
 from cad_io.errors import CadIoError, ReadError
 from cad_io.kernel import translated
 from cad_io.part.packing import PartContent, packed, unpacked
+from plan_cutters_base.copies import ChildDied, TimeLimit, limited
 
 
 class Crashed(ReadError):

@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from cad_io import files
 from cad_io.arrays import Floats, Record
 from cad_io.errors import ReadError
 from cad_io.read.shells import Shells, shells
 from cad_io.units import in_mm
+from plan_cutters_base import user_files as files
 
 #: Kinds of files by their suffix.
 KINDS = {".stl": "stl", ".obj": "obj", ".ply": "ply", ".glb": "glb"}

@@ -16,7 +16,6 @@ from OCP.TopoDS import TopoDS_Shape
 
 from cad_io.arrays import LostFace
 from cad_io.errors import ReadError
-from cad_io.files import checksum, checksums
 from cad_io.kernel import explore, faces, silence, translated
 from cad_io.kernel.assembly import Node
 from cad_io.kernel.components import unwrapped
@@ -31,6 +30,7 @@ from cad_io.read.references import followed, in_folder_of, names
 from cad_io.read.referred import Referred, referred
 from cad_io.read.sniff import load
 from cad_io.units import in_mm
+from plan_cutters_base.user_files import checksum, checksums
 
 Loaded = step.Loaded | iges.Loaded
 _LOADERS: dict[str, Callable[..., Loaded]] = {"step": step.Loaded, "iges": iges.Loaded}

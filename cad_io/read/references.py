@@ -7,8 +7,8 @@ import os
 import re
 from collections.abc import Callable, Iterator
 
-from cad_io import files
 from cad_io.errors import ReadError
+from plan_cutters_base import user_files as files
 
 #: The entities that name a file, each by its first text, and their short names (ISO 10303-21; AP214 and AP242 call them
 #: external documents).
@@ -96,7 +96,7 @@ def in_folder_of(file: str | os.PathLike[str]) -> Callable[[str], bytes | None]:
 
     Raises
     ------
-    cad_io.files.OutsideError
+    plan_cutters_base.user_files.OutsideError
         One may not be read.
     ReadError
         One is a pipe or a device, which the kernel would wait for.

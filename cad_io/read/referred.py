@@ -5,13 +5,13 @@ import pickle
 from dataclasses import dataclass, field
 
 from cad_io.arrays import LostFace
-from cad_io.copies import ChildDied, TimeLimit, limited
 from cad_io.errors import ReadError
-from cad_io.files import OutsideError
 from cad_io.kernel import translated
 from cad_io.read.references import DOCUMENTS, in_folder_of, names
 from cad_io.read.sniff import sniff
 from cad_io.read.step import Loaded, distinct_faces
+from plan_cutters_base.copies import ChildDied, TimeLimit, limited
+from plan_cutters_base.user_files import OutsideError
 
 
 @dataclass

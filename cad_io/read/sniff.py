@@ -7,8 +7,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
-from cad_io import files
 from cad_io.errors import ReadError
+from plan_cutters_base import user_files as files
 
 #: Bytes that must tell the kind.
 _HEAD = 4096

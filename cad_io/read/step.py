@@ -30,7 +30,6 @@ from OCP.TopoDS import TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedMapOfShape
 from OCP.XCAFDoc import XCAFDoc_DocumentTool, XCAFDoc_ShapeTool
 
-from cad_io import files
 from cad_io.arrays import LostFace
 from cad_io.errors import ReadError
 from cad_io.kernel import explore, faces
@@ -42,6 +41,7 @@ from cad_io.read.references import names as referred_names
 from cad_io.read.step_text import adopted, readable
 from cad_io.read.unread_faces import UnreadFaces, is_face, is_whole, name_of, repair
 from cad_io.units import UNITS, UnitReading, in_mm
+from plan_cutters_base import user_files as files
 
 #: Each a pattern that starts with plain text, which is searched for ten times as fast as alternatives.
 _FACES = [re.compile(rb"%s\s*\(" % kind) for kind in (b"ADVANCED_FACE", b"FACE_SURFACE")]

@@ -14,13 +14,13 @@ from OCP.gp import gp_Pnt
 from OCP.ShapeAnalysis import ShapeAnalysis_Surface
 
 from cad_io.arrays import Floats, Orientation, SurfaceSamples
-from cad_io.copies import Ended, each
 from cad_io.errors import SampleError
 from cad_io.face.curvature import curvature
 from cad_io.face.trim import Trim
 from cad_io.kernel import translated
 from cad_io.kernel.components import compound
 from cad_io.part import Part
+from plan_cutters_base.copies import Ended, each
 
 _PRECISION = 1e-9  # mm, asked of the projection
 #: Processor seconds that a projection may take, and a distance more for each face: they take milliseconds.

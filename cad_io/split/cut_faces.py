@@ -1,7 +1,7 @@
 """Cut all faces that can be cut, in a copy of the process that can be ended; what fails or hangs costs its own face alone.
 
 Cost is linear in the length of the curves. Time decides nothing but whether a call of the kernel is endless, in processor
-seconds (`cad_io.copies`): what comes out does not depend on how busy the machine is.
+seconds (`plan_cutters_base.copies`): what comes out does not depend on how busy the machine is.
 """
 
 import io
@@ -18,8 +18,6 @@ from OCP.TopAbs import TopAbs_FACE
 from OCP.TopoDS import TopoDS, TopoDS_Shape
 
 from cad_io.arrays import FaceLabels
-from cad_io.copies import ChildDied, TimeLimit, limited
-from cad_io.forks import end_within
 from cad_io.kernel import shape_map
 from cad_io.kernel.components import as_one, children, components
 from cad_io.split.attempt import Attempt, Trial, copied
@@ -27,6 +25,8 @@ from cad_io.split.contour import smoothed
 from cad_io.split.drawing import Drawing, in_words
 from cad_io.split.repair import repair
 from cad_io.surface import Surface
+from plan_cutters_base.copies import ChildDied, TimeLimit, limited
+from plan_cutters_base.forks import end_within
 
 #: Why a face is not cut if the limit ended the work.
 TOO_LONG = "splitting it takes too long"

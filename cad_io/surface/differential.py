@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from cad_io.jit import decorators
+from plan_cutters_base.jit import decorators
 
 entry, kernel, _ = decorators(__name__)
 

@@ -10,9 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from cad_io.arrays import Floats
-from cad_io.jit import decorators
 from cad_io.surface.bends import Bends
 from cad_io.surface.bspline import Net, span, wrapped
+from plan_cutters_base.jit import decorators
 
 entry, kernel, _ = decorators(__name__)
 

@@ -8,7 +8,7 @@ near a surface.
 import numpy as np
 
 from cad_io.arrays import Floats, Ints
-from cad_io.jit import decorators
+from plan_cutters_base.jit import decorators
 
 entry, kernel, _ = decorators(__name__)
 

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from cad_io.jit import decorators
 from cad_io.tessellate.bounds import TORN, bend, most_inside, twist_share, window
 from cad_io.tessellate.curves import point, strays, workspace
+from plan_cutters_base.jit import decorators
 
 entry, kernel, _ = decorators(__name__)
 

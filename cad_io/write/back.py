@@ -11,9 +11,9 @@ from OCP.GProp import GProp_GProps
 from OCP.IFSelect import IFSelect_RetDone
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Reader, STEPControl_Writer
 
-from cad_io.copies import ChildDied, TimeLimit, limited
 from cad_io.kernel import may_refuse, silence
 from cad_io.part import Part
+from plan_cutters_base.copies import ChildDied, TimeLimit, limited
 
 #: Processor seconds that it may take, and more for each face.
 _SECONDS, _A_FACE = 20.0, 0.2

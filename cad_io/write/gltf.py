@@ -23,8 +23,8 @@ from cad_io.kernel import translated
 from cad_io.kernel.mesher import meshed
 from cad_io.split.pieces import MIXED, Piece, Split
 from cad_io.surface import Surface
-from cad_io.whole import whole
 from cad_io.write.render_mesh import ANGLE, FINE, Mesh, diagonal, face_mesh
+from plan_cutters_base.whole import whole
 
 _METRE = 1e-3
 _COMPONENT = {"float32": 5126, "uint32": 5125, "uint16": 5123}

@@ -32,15 +32,15 @@ from OCP.TopTools import TopTools_IndexedMapOfShape
 from OCP.XCAFDoc import XCAFDoc_ColorSurf, XCAFDoc_DocumentTool
 
 from cad_io.arrays import Floats, Style
-from cad_io.copies import ChildDied, TimeLimit, limited
 from cad_io.errors import WriteError
 from cad_io.kernel import edges_of, explore, faces, shape_map, silence, translated
 from cad_io.kernel.assembly import Node
 from cad_io.kernel.bodies import placed
 from cad_io.kernel.components import children, compound, flat
 from cad_io.split.pieces import Piece, Split
-from cad_io.whole import whole
 from cad_io.write.canonical import canonical
+from plan_cutters_base.copies import ChildDied, TimeLimit, limited
+from plan_cutters_base.whole import whole
 
 #: Of every file: a fixed one, so that the same input gives the same bytes.
 TIME_STAMP = "2000-01-01T00:00:00"

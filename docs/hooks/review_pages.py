@@ -1,6 +1,6 @@
-"""Review pages of the gallery get back their script and style, and `<!-- review: NAME -->` becomes a link where the page exists.
+"""Review pages of the gallery go into the site where they were made, and `<!-- review: NAME -->` becomes a link there.
 
-Script and style are the same in all pages and stored once: twelve pages that open without the network take 4 MB in place of 12.
+`python docs/gallery.py` makes them in `build/gallery`: they are too large to be kept with the sources.
 """
 
 import re
@@ -9,35 +9,23 @@ from typing import Any
 
 from mkdocs.structure.files import File
 
-#: What all pages share: the file that has it, what stands before it and what behind it.
-SHARED = {"page.css": ("<style>", "</style>"), "page.js": ("<script>", "</script>")}
 _LINK = re.compile(r" ?<!-- review: ([\w-]+) -->")
 
 
-def whole(page: Path) -> str:
-    """A review page with its script and style.
-
-    Parameters
-    ----------
-    page : Path
-        The page without them; they stand beside it.
-    """
-    text = page.read_text("utf-8")
-    for file in SHARED:
-        before, _, after = text.rpartition(f"<!-- {file} -->")
-        text = before + (page.parent / file).read_text("utf-8") + after
-    return text
+def pages(config: Any) -> Path:
+    """The folder of the review pages, which need not be there."""
+    return Path(config.docs_dir).parent / "build" / "gallery"
 
 
 def on_files(files: Any, config: Any, **_: Any) -> Any:
-    for page in sorted((Path(config.docs_dir) / "gallery").glob("*.page")):
-        files.append(File.generated(config, f"gallery/{page.stem}.html", content=whole(page)))
+    for page in sorted(pages(config).glob("*.html")):
+        files.append(File.generated(config, f"gallery/{page.name}", content=page.read_text("utf-8")))
     return files
 
 
 def on_page_markdown(markdown: str, config: Any, **_: Any) -> str:
     def link(found: re.Match[str]) -> str:
-        there = (Path(config.docs_dir) / "gallery" / f"{found[1]}.page").exists()
+        there = (pages(config) / f"{found[1]}.html").exists()
         return f" [Review page](gallery/{found[1]}.html)" if there else ""
 
     return _LINK.sub(link, markdown)

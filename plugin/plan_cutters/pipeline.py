@@ -10,8 +10,6 @@ from typing import Any, Unpack
 import numpy as np
 
 from cad_io import Part, read_part
-from cad_io.copies import SideProcess
-from cad_io.forks import Gauge
 from cad_io.part.patterns import patterns
 from cad_io.read.read import TIMEOUT
 from cad_io.tessellate.triangles import At
@@ -29,9 +27,13 @@ from plan_cutters.domain.preference import wanted
 from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.errors import OptionError, UnjudgeableError
-from plan_cutters.files.stage_cache import NO_CACHE, StageCache
 from plan_cutters.interim import Describe, Interim
 from plan_cutters.judged_part import ExplainedIn, JudgedPart, assembled, with_maps
+from plan_cutters.judging.cached_judge import CachedJudge
+from plan_cutters.judging.classify import classify, regions
+from plan_cutters.judging.judge import Judge, judge
+from plan_cutters.judging.judge_once import JudgeOnce
+from plan_cutters.judging.other_setups import in_setup
 from plan_cutters.option_types import PlanOptions
 from plan_cutters.options import Options
 from plan_cutters.plan_file.model import Plan
@@ -48,11 +50,9 @@ from plan_cutters.scene.setups import conditions_of, fixtures_of, places, with_s
 from plan_cutters.scene.spacing import affordable, sampled, spacing_key
 from plan_cutters.scene.threads import part_of
 from plan_cutters.scene.work import Work
-from plan_cutters.stages.cached_judge import CachedJudge
-from plan_cutters.stages.classify import classify, regions
-from plan_cutters.stages.judge import Judge, judge
-from plan_cutters.stages.judge_once import JudgeOnce
-from plan_cutters.stages.other_setups import in_setup
+from plan_cutters_base.copies import SideProcess
+from plan_cutters_base.forks import Gauge
+from plan_cutters_base.stage_cache import NO_CACHE, StageCache
 
 #: Faces from which on they are sampled in a copy of the process, and the processor time that it may take, s.
 _MANY_FACES, _SAMPLING = 12, 60.0

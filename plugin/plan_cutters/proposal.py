@@ -19,7 +19,6 @@ from plan_cutters.domain.fixture import TABLE
 from plan_cutters.domain.placement import Placement, axis_words
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.judged_part import JudgedPart
-from plan_cutters.machines.requested_setups import MOST_PROPOSED
 from plan_cutters.options import Options
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.notes import setup_proposed
@@ -27,6 +26,7 @@ from plan_cutters.plan_file.numbers import exact, percent
 from plan_cutters.plan_file.setups import HiddenFaces, ProposedSetup, SetupProposal
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene
+from plan_cutters.setups.requested import MOST_PROPOSED
 
 #: Proposals that are planned, at most, and the share of what was promised that a plan must hold.
 _TRIES, _ENOUGH = 3, 0.99

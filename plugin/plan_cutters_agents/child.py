@@ -12,10 +12,10 @@ from typing import IO, Protocol
 import anyio
 from anyio.to_thread import run_sync
 
-from cad_io.files import WITHIN
-from plan_cutters.workers.assignment import Assignment
-from plan_cutters.workers.child import Child, command
 from plan_cutters_agents.limits import CallError, Limits
+from plan_cutters_base.user_files import WITHIN
+from plan_cutters_base.workers.assignment import Assignment
+from plan_cutters_base.workers.child import Child, command
 
 
 class ProgressListener(Protocol):

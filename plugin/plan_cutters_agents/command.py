@@ -14,7 +14,7 @@ from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import options
 from plan_cutters.command.request import takes
 from plan_cutters.command.values import Folder
-from plan_cutters.workers.assignment import INTERRUPTED
+from plan_cutters_base.workers.assignment import INTERRUPTED
 
 _SELF = "plan-cutters mcp"
 

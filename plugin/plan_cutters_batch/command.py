@@ -17,8 +17,8 @@ from plan_cutters.command.option_groups import options
 from plan_cutters.command.request import PlanningRequest, Reported, takes
 from plan_cutters.command.values import File, Words
 from plan_cutters.files.pictures import with_pictures
-from plan_cutters.files.terminal_text import clean
 from plan_cutters.report.folder import DEFAULT_FORMATS
+from plan_cutters_base.terminal_text import clean
 
 if TYPE_CHECKING:
     from plan_cutters.cases.files import CaseFiles
@@ -329,9 +329,9 @@ def _formats() -> tuple[str, ...]:
 
 def _settings(request: BatchRequest) -> "Settings":
     """The settings of parts, from the words of the command line: what is wrong with them is said before anything is begun."""
-    from cad_io.files import noted
     from plan_cutters.command.validation import look_at, options_of, refuse_unplanned_operations
     from plan_cutters.report.folder import read_formats
+    from plan_cutters_base.user_files import noted
     from plan_cutters_batch.job import Settings
 
     refuse_unplanned_operations(request)

@@ -5,10 +5,10 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from cad_io.files import checksum, checksums, fingerprint
 from cad_io.read.references import followed
 from plan_cutters.errors import PlanError
 from plan_cutters.files import folder as files
+from plan_cutters_base.user_files import checksum, checksums, fingerprint
 
 
 @dataclass(frozen=True)

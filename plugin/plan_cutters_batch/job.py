@@ -8,11 +8,11 @@ from dataclasses import dataclass, replace
 from pathlib import PurePath, PureWindowsPath
 from typing import Any
 
-from cad_io import files as user_files
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
 from plan_cutters.errors import OptionError
 from plan_cutters.options import Options
+from plan_cutters_base import user_files
 from plan_cutters_batch.content import content
 from plan_cutters_batch.row import PartRow
 

@@ -6,9 +6,9 @@ from dataclasses import fields
 from pathlib import Path
 
 import plan_cutters
-from cad_io.files import checksum
-from plan_cutters.files.digest import digest, sources
-from plan_cutters.files.stage_cache import PACKAGES, installed, made_by
+from plan_cutters_base.digest import digest, sources
+from plan_cutters_base.stage_cache import PACKAGES, installed, made_by
+from plan_cutters_base.user_files import checksum
 from plan_cutters_batch.job import Handed, Settings
 
 

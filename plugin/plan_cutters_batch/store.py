@@ -15,10 +15,10 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from cad_io.files import checksum, open_regular
 from plan_cutters.errors import PlanError
 from plan_cutters.files.folder import Folder, cause, checksum_of
 from plan_cutters.files.lock import Lock
+from plan_cutters_base.user_files import checksum, open_regular
 from plan_cutters_batch.row import PartRow
 
 #: In the folder of a part that is done: its row, and the checksums of its files.

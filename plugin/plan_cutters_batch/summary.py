@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field
 
-from plan_cutters.workers.assignment import TIMED_OUT
+from plan_cutters_base.workers.assignment import TIMED_OUT
 from plan_cutters_batch.part_tools import PartTools
 from plan_cutters_batch.row import PartRow
 from plan_cutters_batch.shop import fewest

@@ -13,9 +13,9 @@ from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any
 
 from plan_cutters.errors import PlanError
-from plan_cutters.workers.assignment import INTERRUPTED, TIMED_OUT, Assignment, JobInput
-from plan_cutters.workers.child import Child, can_supervise, compiler
-from plan_cutters.workers.supervise import WRITING
+from plan_cutters_base.workers.assignment import INTERRUPTED, TIMED_OUT, Assignment, JobInput
+from plan_cutters_base.workers.child import Child, can_supervise, compiler
+from plan_cutters_base.workers.supervise import WRITING
 from plan_cutters_batch import keys, store
 from plan_cutters_batch.content import Content, content
 from plan_cutters_batch.job import UNREADABLE, USAGE, Handed

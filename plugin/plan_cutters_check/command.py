@@ -19,7 +19,7 @@ from plan_cutters.command.codes import ENDED, run
 from plan_cutters.command.help_groups import Command
 from plan_cutters.command.option_groups import options
 from plan_cutters.command.progress import Display, Teller
-from plan_cutters.workers.assignment import is_child
+from plan_cutters_base.workers.assignment import is_child
 
 if TYPE_CHECKING:
     from plan_cutters.options import Options

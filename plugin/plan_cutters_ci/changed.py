@@ -14,7 +14,6 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from cad_io.whole import whole
 from plan_cutters.command.codes import ENDED, run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import options
@@ -24,6 +23,7 @@ from plan_cutters.command.values import Folder
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.files.pictures import with_pictures
 from plan_cutters.files.temporary import require_temporary
+from plan_cutters_base.whole import whole
 from plan_cutters_ci.annotations import KINDS, annotations, requested
 from plan_cutters_ci.changed_row import RULES, Row, row_cases
 from plan_cutters_ci.repository import Changed, changed, content, publish
@@ -66,9 +66,9 @@ class PartRequest:
         CadIoError, OptionError, PlanError
             An option has no meaning, or a file cannot be used.
         """
-        from cad_io.files import noted
         from plan_cutters.command.cli import command as plan
         from plan_cutters.command.validation import look_at, options_of, refuse_unplanned_operations
+        from plan_cutters_base.user_files import noted
         from plan_cutters_batch.job import Settings, handed
 
         with plan.make_context(_SELF, ["part", *words]) as context:

@@ -15,7 +15,7 @@ from plan_cutters.command.option_groups import options
 from plan_cutters.command.request import takes
 from plan_cutters.command.terminal import error, hand_out, paper
 from plan_cutters.command.values import File, Folder, Words
-from plan_cutters.files.terminal_text import clean
+from plan_cutters_base.terminal_text import clean
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -96,8 +96,8 @@ def command(request: DiffRequest) -> int:
     OLD and NEW are plan.json files, the folders of two plans, or two folders of many plans, which are paired by name.
     A face whose number shifted is known again by its place, its surface or its neighbours; one that is not known again is told.
     """
-    from cad_io.whole import refusal
     from plan_cutters.errors import OptionError, PlanError
+    from plan_cutters_base.whole import refusal
 
     if request.junit is None:  # where there is one, it says so too
         for path in (request.old, request.new):
@@ -157,9 +157,9 @@ def _pages(old: Path, new: Path, comparison: "Comparison", out: Path) -> dict[st
     PlanError
         A page would take the place of a plan's own, or cannot be written.
     """
-    from cad_io.whole import whole
     from plan_cutters.errors import PlanError
     from plan_cutters.plan_file.load import PLAN
+    from plan_cutters_base.whole import whole
     from plan_cutters_ci.review import PAGE, pages
 
     made = {}

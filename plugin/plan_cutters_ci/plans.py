@@ -5,11 +5,11 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import Any
 
-from cad_io.files import fingerprint
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
 from plan_cutters.plan_file.numbers import count
 from plan_cutters.plan_file.part_info import FixtureEntry, PartInfo
 from plan_cutters.plan_file.words.names import called
+from plan_cutters_base.user_files import fingerprint
 from plan_cutters_ci.matching import Matched, match_cutters, match_faces, moved_faces
 from plan_cutters_ci.model import REQUESTED, Change, CutterDifference, FaceDifference, FaceState, PlanDifference
 from plan_cutters_ci.states import cutter_falls, cutter_state, face_state, falls, reached_whole, remaining_area, unreachable

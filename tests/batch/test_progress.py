@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from plan_cutters.files.terminal_text import clean
+from plan_cutters_base.terminal_text import clean
 from plan_cutters_batch.progress import EACH, Board, Screen
 from plan_cutters_batch.row import PartRow
 from plan_cutters_batch.summary import cause

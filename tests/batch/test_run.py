@@ -12,7 +12,7 @@ import pytest
 
 from plan_cutters import Options, plan_many
 from plan_cutters.errors import PlanError
-from plan_cutters.workers.assignment import TIMED_OUT
+from plan_cutters_base.workers.assignment import TIMED_OUT
 from plan_cutters_batch import cluster, keys
 from plan_cutters_batch.job import Fault, Job, Settings
 from plan_cutters_batch.row import PartRow

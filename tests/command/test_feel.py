@@ -15,7 +15,6 @@ from types import SimpleNamespace
 
 import pytest
 
-from cad_io.errors import CacheWarning
 from plan_cutters import plan
 from plan_cutters.command import entry, one_part
 from plan_cutters.command import map as of_a_point
@@ -25,14 +24,15 @@ from plan_cutters.command.progress import Display
 from plan_cutters.command.rows import _distinct
 from plan_cutters.command.terminal import show
 from plan_cutters.domain.default_tools import builtin
-from plan_cutters.files.terminal_text import clean
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.numbers import percent
 from plan_cutters.plan_file.words.details import others
 from plan_cutters.plan_file.words.story import story_of
 from plan_cutters.plan_file.words.text import with_text
-from plan_cutters.workers.assignment import VARIABLE, Assignment
-from plan_cutters.workers.supervise import _Watch
+from plan_cutters_base.errors import CacheWarning
+from plan_cutters_base.terminal_text import clean
+from plan_cutters_base.workers.assignment import VARIABLE, Assignment
+from plan_cutters_base.workers.supervise import _Watch
 from tests.support.commands import assert_one_line, in_lines, leftovers, said_until
 from tests.support.forked import ENV, run, start
 from tests.support.places import SAMPLES
@@ -402,7 +402,7 @@ def test_what_the_child_says_comes_through_whatever_it_holds():
     watch = _Watch(1.0, display)
     watch.pipe = here
     odd = "a\nsafe 0 /tmp\\x\udcff ü\u2028.step"
-    child = f"from plan_cutters.workers.assignment import report as tell; odd = {odd!r}\n"
+    child = f"from plan_cutters_base.workers.assignment import report as tell; odd = {odd!r}\n"
     child += "tell('part', odd); tell('at', '3 9'); tell('say', odd); tell('show', odd)"
     subprocess.run(
         [sys.executable, "-c", child], env=ENV | {VARIABLE: str(Assignment(report=there))}, pass_fds=(there,), check=True

@@ -15,7 +15,6 @@ import trimesh
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder
 
 from cad_io.arrays import FaceLabels, Style
-from cad_io.copies import TimeLimit, limited
 from cad_io.errors import WriteError
 from cad_io.part import Part
 from cad_io.split import attempt
@@ -25,6 +24,7 @@ from cad_io.write import write_gltf
 from cad_io.write.canonical import canonical
 from plan_cutters import Cutter, plan
 from plan_cutters.report import models
+from plan_cutters_base.copies import TimeLimit, limited
 from tests.support.forked import run, start
 from tests.support.places import ROOT, SAMPLES
 from tests.support.split_parts import labels
@@ -115,7 +115,7 @@ def test_processor_time_is_counted_not_the_clocks():
 
 @pytest.mark.slow("starts commands and ends them on the way")
 def test_a_copy_that_does_nothing_at_all_is_ended(monkeypatch):
-    monkeypatch.setattr("cad_io.forks._ASLEEP", 1)
+    monkeypatch.setattr("plan_cutters_base.forks._ASLEEP", 1)
     began = time.monotonic()
     with pytest.raises(TimeLimit):
         limited(lambda: time.sleep(60) or b"", 100, processor=True)

@@ -16,8 +16,9 @@ from pathlib import Path
 import pytest
 
 from plan_cutters import PlanError, plan
-from plan_cutters.files.lock import Lock, lock_of, sweep
+from plan_cutters.files.lock import Lock, lock_of
 from plan_cutters.report import Staging
+from plan_cutters_base.system_lock import sweep
 from tests.support.forked import ENV
 from tests.support.places import SAMPLES
 

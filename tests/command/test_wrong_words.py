@@ -6,11 +6,11 @@ import sys
 
 import pytest
 
-from cad_io.whole import refusal
 from plan_cutters import Cutter, plan, plan_many
 from plan_cutters.domain.fixture import no_format
 from plan_cutters.errors import CutterError, OptionError
 from plan_cutters.options import Options
+from plan_cutters_base.whole import refusal
 from tests.support.commands import leftovers
 from tests.support.forked import ENV, run
 from tests.support.places import SAMPLES

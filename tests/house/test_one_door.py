@@ -1,4 +1,4 @@
-"""Who reads a file of a user opens it in `cad_io.files`: all kept answers count it, and a service keeps within its folders."""
+"""Who reads a file of a user opens it in `user_files` of the base: kept answers count it, and a service keeps to its folders."""
 
 import ast
 from collections import Counter
@@ -9,7 +9,7 @@ from tests.support.places import ROOT
 
 #: Rooms in which files of users are read, and modules that read none of them: locks, sources, the cache.
 ROOMS = ("cad_io/read", "plugin/plan_cutters/library", "plugin/plan_cutters/machines", "plugin/plan_cutters/files",
-         "plugin/plan_cutters/scene", "plugin/plan_cutters/stages", "plugin/plan_cutters/domain")  # fmt: skip
+         "plugin/plan_cutters/scene", "plugin/plan_cutters/judging", "plugin/plan_cutters/domain")  # fmt: skip
 OTHERS = {f"plugin/plan_cutters/files/{name}.py" for name in ("lock", "markup", "digest", "stage_cache")}
 OPENS = {"open", "fdopen", "read_text", "read_bytes", "fromfile", "loadtxt", "genfromtxt", "memmap", "load", "ReadFile", "Read_s",
          "run", "Popen"}  # fmt: skip

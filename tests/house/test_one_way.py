@@ -11,14 +11,14 @@ from tests.support.places import ROOT
 CALLS = {"subprocess.Popen", "subprocess.run", "subprocess.call", "subprocess.check_output", "os.fork", "os.system", "os.spawnv",
          "os.posix_spawn", "anyio.open_process", "os.killpg", "os.replace", "os.rename", "tempfile.mkstemp"}  # fmt: skip
 KNOWN = {
-    "plugin/plan_cutters/workers/child.py": {"subprocess.Popen": 1, "os.killpg": 1},
+    "plugin/plan_cutters_base/workers/child.py": {"subprocess.Popen": 1, "os.killpg": 1},
     "plugin/plan_cutters_ci/repository.py": {"subprocess.run": 1},  # git
-    "cad_io/forks.py": {"os.fork": 2},
-    "cad_io/whole.py": {"os.replace": 1},
+    "plugin/plan_cutters_base/forks.py": {"os.fork": 2},
+    "plugin/plan_cutters_base/whole.py": {"os.replace": 1},
     # All files of a folder at once, or one that is whole already.
     "plugin/plan_cutters_batch/store.py": {"os.rename": 2},
     "plugin/plan_cutters/report/folder.py": {"os.replace": 1},
-    "cad_io/jit.py": {"os.rename": 1},  # a folder in place of a file of machine code, moved away
+    "plugin/plan_cutters_base/jit.py": {"os.rename": 1},  # a folder in place of a file of machine code, moved away
 }
 
 

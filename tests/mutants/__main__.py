@@ -41,7 +41,7 @@ EQUIVALENT = Path(__file__).with_name("equivalent.txt")
 ROOMS = {
     "kernels": ("plugin/plan_cutters/kernels", "tests/kernels"),
     "scene": ("plugin/plan_cutters/scene", "tests/scene"),
-    "stages": ("plugin/plan_cutters/stages", "tests/stages"),
+    "judging": ("plugin/plan_cutters/judging", "tests/judging"),
     "operations": ("plugin/plan_cutters/operations", "tests/operations"),
     "cad_io/tessellate": ("cad_io/tessellate", "tests/cad_io/tessellate"),
     "domain/kinematics": ("plugin/plan_cutters/domain/kinematics.py", "tests/domain"),
@@ -371,7 +371,7 @@ def main() -> None:
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     preload()
     if not (asked.work / "common").exists():
-        from cad_io.user_cache import roots
+        from plan_cutters_base.user_cache import roots
 
         overlaid(next(roots()), asked.work / "common" / "plan-cutters")
     reached = reach(asked.tests or [ROOMS[asked.room][1]], asked.work)

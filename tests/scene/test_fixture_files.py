@@ -7,12 +7,12 @@ import pytest
 import trimesh
 
 from cad_io import ReadError, read_part
-from cad_io.files import noted
 from cad_io.read.mesh import read_mesh
 from cad_io.read.shells import shells
 from plan_cutters import Fixture, plan
 from plan_cutters.plan_file.palette import PALETTE
 from plan_cutters.report.to_json import schema
+from plan_cutters_base.user_files import noted
 from tests.support import vises
 from tests.support.cad_parts import box, compound
 from tests.support.commands import assert_one_line, in_lines, leftovers

@@ -109,7 +109,7 @@ class _Bare:
         for name in [n for n in sys.modules if n.partition(".")[0] in (*PACKAGES, "OCP", "numba")]:
             del sys.modules[name]
         sys.modules["OCP"] = sys.modules["numba"] = subprocess.Popen = None
-        importlib.import_module("plan_cutters.workers.child").begin_early = lambda words: None
+        importlib.import_module("plan_cutters_base.workers.child").begin_early = lambda words: None
         importlib.import_module("plan_cutters.command.entry").module_of("plan-cutters")
         while True:
             try:
@@ -170,7 +170,7 @@ def _command(command, words, cwd, environment, streams, ignored=(), bare=False):
         signal.signal(number, signal.SIG_IGN)
     sys.argv = [command, *words]
     if not bare:
-        child = importlib.import_module("plan_cutters.workers.child")
+        child = importlib.import_module("plan_cutters_base.workers.child")
         child.subprocess = SimpleNamespace(**{**vars(subprocess), "Popen": _worker})
     vars(importlib.import_module("plan_cutters.command.entry"))[_ENTRIES[command]]()
 

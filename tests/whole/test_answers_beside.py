@@ -6,9 +6,9 @@ import time
 
 import pytest
 
-from cad_io import copies
 from plan_cutters import pipeline, plan
 from plan_cutters.domain.answers import Answers
+from plan_cutters_base import copies
 from tests.support.places import SAMPLES
 
 WORDS = {"cutters": ["R2L30"], "machine": "trunnion-ac", "fixtures": "table", "holder": "er16", "feed": 1000.0,

@@ -8,9 +8,9 @@ import pytest
 
 from plan_cutters import plan
 from plan_cutters.document.clock import Clock
-from plan_cutters.files import stage_cache
 from plan_cutters.options import Options
 from plan_cutters.pipeline import run
+from plan_cutters_base import stage_cache
 from tests.support.places import real_file
 
 PARTS = {"impeller": "cad/hard/turbo3d_impeller.step", "pump": "cad/hard/gmsh_pump_carter_sup.stp"}

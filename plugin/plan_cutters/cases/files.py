@@ -4,11 +4,11 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 
-from cad_io.whole import refusal, whole
 from plan_cutters.cases import junit as junit_xml
 from plan_cutters.cases import sarif as sarif_json
 from plan_cutters.cases.case import Case
 from plan_cutters.errors import OptionError, PlanError
+from plan_cutters_base.whole import refusal, whole
 
 
 @dataclass(frozen=True, slots=True)

@@ -23,11 +23,11 @@ from plan_cutters.command.part_cases import PartCases
 from plan_cutters.command.piped import spooled
 from plan_cutters.command.request import PlanRequest, takes
 from plan_cutters.command.values import File
-from plan_cutters.files.terminal_text import clean
-from plan_cutters.workers.assignment import INTERRUPTED, assignment, began, is_child, limit_memory, report, wait_to_begin
-from plan_cutters.workers.child import can_supervise
-from plan_cutters.workers.errors import Supervised, Unfinished
-from plan_cutters.workers.supervise import default_memory
+from plan_cutters_base.terminal_text import clean
+from plan_cutters_base.workers.assignment import INTERRUPTED, assignment, began, is_child, limit_memory, report, wait_to_begin
+from plan_cutters_base.workers.child import can_supervise
+from plan_cutters_base.workers.errors import Supervised, Unfinished
+from plan_cutters_base.workers.supervise import default_memory
 
 _SELF = "plan-cutters"
 

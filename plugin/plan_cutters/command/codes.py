@@ -14,8 +14,8 @@ import click
 
 from plan_cutters.command import terminal
 from plan_cutters.command.taken_out import instead
-from plan_cutters.workers.assignment import INTERRUPTED
-from plan_cutters.workers.errors import Supervised
+from plan_cutters_base.workers.assignment import INTERRUPTED
+from plan_cutters_base.workers.errors import Supervised
 
 if TYPE_CHECKING:
     from plan_cutters.plan_file.model import Plan

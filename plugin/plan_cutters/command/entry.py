@@ -76,7 +76,7 @@ def begin(name: str, words: Sequence[str] | None = None) -> None:
     """Run a subcommand under the name that it was called by, `plan-cutters map` or `plan-cutters-map`."""
     words = sys.argv[1:] if words is None else words
     try:
-        from plan_cutters.workers.assignment import follow_parent, is_child
+        from plan_cutters_base.workers.assignment import follow_parent, is_child
 
         follow_parent()
         # A child has nothing to say when it is ended.
@@ -85,7 +85,7 @@ def begin(name: str, words: Sequence[str] | None = None) -> None:
         if f"_{name.replace('-', '_').upper()}_COMPLETE" in os.environ:
             import_module("plan_cutters.command.completion").main(name)
         if subcommand(name) == "plan":
-            from plan_cutters.workers.child import begin_early
+            from plan_cutters_base.workers.child import begin_early
 
             begin_early(words)
         module_of(name).main(words, name)

@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from cad_io.whole import whole
 from plan_cutters.command.codes import ENDED, USAGE, faults, run
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import options
@@ -16,8 +15,9 @@ from plan_cutters.command.request import MachinesRequest, takes
 from plan_cutters.command.terminal import error, hand_out, paper
 from plan_cutters.command.values import File, Words, machine_names
 from plan_cutters.errors import PlanError
-from plan_cutters.files.terminal_text import clean
 from plan_cutters.plan_file.numbers import exact_angle
+from plan_cutters_base.terminal_text import clean
+from plan_cutters_base.whole import whole
 
 if TYPE_CHECKING:
     from rich.console import Console

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any, NoReturn
 
 import click
 
-from cad_io.whole import whole
 from plan_cutters.command.codes import ENDED, ended, interrupt, invoked
 from plan_cutters.command.help_groups import Command, heading
 from plan_cutters.command.option_groups import options
@@ -19,18 +18,19 @@ from plan_cutters.command.progress import Display
 from plan_cutters.command.request import MapRequest, posture_options, read_tools, takes
 from plan_cutters.command.terminal import hand_out, paper
 from plan_cutters.command.values import File, Setup, Words, cutter_ids
-from plan_cutters.files.terminal_text import clean
-from plan_cutters.workers.assignment import began, is_child, report
-from plan_cutters.workers.child import can_supervise
-from plan_cutters.workers.supervise import supervise
+from plan_cutters_base.terminal_text import clean
+from plan_cutters_base.whole import whole
+from plan_cutters_base.workers.assignment import began, is_child, report
+from plan_cutters_base.workers.child import can_supervise
+from plan_cutters_base.workers.supervise import supervise
 
 if TYPE_CHECKING:
     from rich.console import Console
 
     from cad_io.arrays import Floats
     from plan_cutters.domain.cutter import Cutter
+    from plan_cutters.judging.posture_map import PostureMap
     from plan_cutters.options import Options
-    from plan_cutters.stages.posture_map import PostureMap
 
 _SELF = "plan-cutters map"
 #: Some tilt is free; none is; none is, but some are undecided, or obstacles are missing.
@@ -86,9 +86,9 @@ def command(request: MapRequest) -> int:
     ones apart.
     """
     from cad_io.read.sniff import kind
-    from cad_io.whole import refusal
     from plan_cutters.errors import OptionError
     from plan_cutters.files.pictures import NO_PICTURES, draws_pictures
+    from plan_cutters_base.whole import refusal
 
     part = request.part
     report("part", part)

@@ -18,7 +18,7 @@ from plan_cutters.command.progress import Display, Teller
 from plan_cutters.command.summary import summary, written
 from plan_cutters.plan_file.words.details import others
 from plan_cutters.plan_file.words.names import called
-from plan_cutters.workers.assignment import INTERRUPTED, assignment, is_child, job_input, report, report_work
+from plan_cutters_base.workers.assignment import INTERRUPTED, assignment, is_child, job_input, report, report_work
 
 if TYPE_CHECKING:
     from plan_cutters.command.part_cases import PartCases
@@ -64,9 +64,9 @@ def one_part(
         compiling = _compiling(options, request.quiet)
         import plan_cutters.report.models  # noqa: F401  all that takes time to load is loaded in the stage `start`
         from plan_cutters.document.clock import Clock
-        from plan_cutters.files.stage_cache import StageCache, settle
         from plan_cutters.interim import Interim
         from plan_cutters.pipeline import run
+        from plan_cutters_base.stage_cache import StageCache, settle
 
         gc.freeze()
         gc.enable()

@@ -5,8 +5,8 @@ from typing import TYPE_CHECKING
 
 from plan_cutters.command import terminal
 from plan_cutters.command.codes import UNREADABLE
-from plan_cutters.workers.assignment import INTERRUPTED
-from plan_cutters.workers.errors import Unfinished
+from plan_cutters_base.workers.assignment import INTERRUPTED
+from plan_cutters_base.workers.errors import Unfinished
 
 if TYPE_CHECKING:
     from plan_cutters.command.request import PlanRequest

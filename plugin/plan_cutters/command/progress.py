@@ -11,9 +11,9 @@ from typing import Any
 from plan_cutters.command import terminal
 from plan_cutters.command.part_cases import PartCases
 from plan_cutters.domain.answer_kinds import KINDS
-from plan_cutters.files.terminal_text import clean
 from plan_cutters.plan_file.numbers import part_done
-from plan_cutters.workers.assignment import report
+from plan_cutters_base.terminal_text import clean
+from plan_cutters_base.workers.assignment import report
 
 #: What stages are called; several may be one to the user. A stage that is none of these is the judging of a cutter.
 _WORDS = {

@@ -9,9 +9,9 @@ from pathlib import Path
 
 from plan_cutters.command import terminal
 from plan_cutters.command.progress import Display
-from plan_cutters.workers.assignment import TIMED_OUT
-from plan_cutters.workers.errors import OutOfTime, Stuck, Unfinished
-from plan_cutters.workers.supervise import supervise
+from plan_cutters_base.workers.assignment import TIMED_OUT
+from plan_cutters_base.workers.errors import OutOfTime, Stuck, Unfinished
+from plan_cutters_base.workers.supervise import supervise
 
 #: Faces that are set aside for a part: with more of them, the file is rather to be exported again.
 MOST = 5

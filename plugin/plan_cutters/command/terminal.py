@@ -14,10 +14,10 @@ from collections.abc import Callable, Iterator
 from io import StringIO, TextIOWrapper
 from typing import IO, TYPE_CHECKING, Any, Literal, TypeVar
 
-from cad_io.errors import CacheWarning
 from plan_cutters.errors import PlanError
-from plan_cutters.files.terminal_text import clean
-from plan_cutters.workers.assignment import is_child, report
+from plan_cutters_base.errors import CacheWarning
+from plan_cutters_base.terminal_text import clean
+from plan_cutters_base.workers.assignment import is_child, report
 
 if TYPE_CHECKING:
     from rich.console import Console

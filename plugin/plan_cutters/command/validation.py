@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from cad_io.errors import CadIoError, ReadError
-from cad_io.whole import refusal
 from plan_cutters.command.entry import commands
 from plan_cutters.command.request import PlanningRequest, PlanRequest, planning_options
+from plan_cutters_base.whole import refusal
 
 if TYPE_CHECKING:
     from plan_cutters.options import Options
@@ -172,7 +172,7 @@ def refuse_unplanned_operations(request: PlanningRequest) -> None:
 def _faults(parts: Sequence[str]) -> list[CadIoError]:
     """Why parts cannot be read, as far as their first bytes tell."""
     from cad_io.read.sniff import kind
-    from plan_cutters.workers.assignment import job_input
+    from plan_cutters_base.workers.assignment import job_input
 
     errors: list[CadIoError] = []
     for part in () if job_input().part else parts:
@@ -236,7 +236,7 @@ def options_of(request: PlanningRequest) -> "Options":
     import pickle
 
     from plan_cutters.options import Options
-    from plan_cutters.workers.assignment import job_input
+    from plan_cutters_base.workers.assignment import job_input
 
     # A batch has looked at its words already, perhaps on another machine.
     handed = job_input().options

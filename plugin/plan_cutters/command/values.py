@@ -102,7 +102,7 @@ def named_setups(ctx: click.Context, _: click.Parameter, value: Any) -> Any:
     """Let setups that are named behind `auto` take its place, as an option of advice that is typed behind the command does."""
     if not isinstance(value, tuple) or value[:1] != ("auto",) or len(value) < 2 or "auto" in value[1:]:
         return value
-    from plan_cutters.workers.assignment import is_child
+    from plan_cutters_base.workers.assignment import is_child
 
     named = value[1:]
     ctx.meta[_NAMED] = named
@@ -124,8 +124,8 @@ def fixtures_of_setups(ctx: click.Context, _: click.Parameter, value: Any) -> An
         return value
     from plan_cutters.domain.fixture import TABLE, Fixture
     from plan_cutters.errors import PlanError
-    from plan_cutters.machines.setups import read_setup
-    from plan_cutters.workers.assignment import is_child
+    from plan_cutters.setups.files import read_setup
+    from plan_cutters_base.workers.assignment import is_child
 
     try:
         first = Fixture.parse(value[0])

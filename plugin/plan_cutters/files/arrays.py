@@ -13,8 +13,8 @@ import numpy as np
 from numpy.lib import format as npy
 from numpy.typing import NDArray
 
-from cad_io import files
 from plan_cutters.errors import PlanError
+from plan_cutters_base import user_files as files
 
 #: Members that are looked at, and bytes of an array's header.
 _MEMBERS, _HEADER = 10_000, 4096

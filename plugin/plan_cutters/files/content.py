@@ -13,9 +13,9 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar, Self
 
-from cad_io import files
 from plan_cutters.errors import PlanError
 from plan_cutters.files.xml_tree import Element, parse
+from plan_cutters_base import user_files as files
 
 #: Most bytes of a file, of what is unpacked from it, and unpacked bytes for each packed one (beyond the first million).
 _FILE, _UNPACKED, _RATIO = 32 << 20, 32 << 20, 300

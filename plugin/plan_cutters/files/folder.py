@@ -7,11 +7,11 @@ import shutil
 from pathlib import Path
 from typing import Any
 
-from cad_io import files as user_files
-from cad_io.files import checksum, open_regular
-from cad_io.whole import whole
 from plan_cutters.errors import PlanError, extra_hint
 from plan_cutters.files.regular import regular_bytes
+from plan_cutters_base import user_files
+from plan_cutters_base.user_files import checksum, open_regular
+from plan_cutters_base.whole import whole
 
 _MISSING = f"is not there: {extra_hint('batch')}"
 

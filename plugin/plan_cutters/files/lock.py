@@ -1,7 +1,6 @@
 """One run at a time writes into a folder: a lock beside it says whose it is, and dies with its owner."""
 
 import contextlib
-import errno
 import json
 import os
 import re
@@ -10,15 +9,10 @@ import socket
 from collections.abc import Callable
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from plan_cutters.errors import PlanError
+from plan_cutters_base.system_lock import acquired, system_lock
 
-if TYPE_CHECKING:
-    from filelock import BaseFileLock
-
-#: Errors that say that a file system has no locks of its own.
-_NONE = {errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.EINVAL}
 _LONGEST = 4096
 
 
@@ -70,9 +64,9 @@ class Lock:
 
     def _take(self, out: Path) -> None:
         """Take it; it is not held after that where its owner has just removed it."""
-        made, self._system = _made(self.file), _system_lock(self.file)
+        made, self._system = _made(self.file), system_lock(self.file)
         try:
-            alone = _acquired(self._system)
+            alone = acquired(self._system)
             if alone is False and not self.file.exists():
                 return
             if alone is False or (alone is None and not made):
@@ -100,42 +94,12 @@ def lock_of(out: Path) -> Path:
     return real.with_name(f".{real.name}.lock")
 
 
-def sweep(file: Path) -> None:
-    """Remove a lock's file that a process which was ended left behind, unless another one has it by now."""
-    with contextlib.suppress(OSError):
-        system = _system_lock(file)
-        if file.exists() and _acquired(system) is not False:
-            file.unlink()
-            system.release()
-
-
 def _made(file: Path) -> bool:
     """Make the file of a lock; False where it is there."""
     try:
         os.close(os.open(file, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644))
     except FileExistsError:
         return False
-    return True
-
-
-def _system_lock(file: Path) -> "BaseFileLock":
-    from filelock import FileLock  # most commands take none
-
-    return FileLock(file, thread_local=False, fallback_to_soft=False)
-
-
-def _acquired(system: "BaseFileLock") -> bool | None:
-    """Whether the system's lock on a file is ours now; None where there are none, and on Windows, where nobody could read it."""
-    if os.name == "nt":
-        return None
-    try:
-        system.acquire(timeout=0)
-    except TimeoutError:
-        return False
-    except OSError as error:
-        if error.errno in _NONE:
-            return None
-        raise
     return True
 
 

@@ -12,7 +12,7 @@ from typing import Any
 import jinja2
 from markupsafe import Markup
 
-from plan_cutters.files.terminal_text import clean
+from plan_cutters_base.terminal_text import clean
 
 _BETWEEN = re.compile("[^\t\n]+")
 _NO_TEXT = re.compile("[\ufffe\uffff]")

@@ -3,8 +3,8 @@
 import os
 from pathlib import Path
 
-from cad_io.files import IrregularError, open_regular
 from plan_cutters.errors import PlanError
+from plan_cutters_base.user_files import IrregularError, open_regular
 
 
 def regular_bytes(path: str | os.PathLike[str], most: int) -> bytes | None:

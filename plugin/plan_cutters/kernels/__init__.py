@@ -1,4 +1,4 @@
-"""Compiled kernels: plain numbers and arrays in, numbers and arrays out. Compiled by `cad_io.jit`.
+"""Compiled kernels: plain numbers and arrays in, numbers and arrays out. Compiled by `plan_cutters_base.jit`.
 
 The kernel language: scalar functions over float64, C-ordered arrays made by the caller, no Python objects, no
 `fastmath` (it breaks `isnan`), no parallel loops (callers share chunks out over threads; the GIL is released).

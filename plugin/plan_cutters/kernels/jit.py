@@ -1,8 +1,8 @@
-"""The decorators of all kernels of cutters; see `cad_io.jit`."""
+"""The decorators of all kernels of cutters; see `plan_cutters_base.jit`."""
 
 from pathlib import Path
 
-from cad_io.jit import VERSION, cache_folder, decorators
+from plan_cutters_base.jit import VERSION, cache_folder, decorators
 
 __all__ = ["VERSION", "at_hand", "entry", "kernel", "maker"]
 

@@ -13,7 +13,6 @@ from itertools import pairwise
 from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Any
 
-from cad_io.files import is_there
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.holder import Holder
 from plan_cutters.errors import CutterError, LibraryError
@@ -33,6 +32,7 @@ from plan_cutters.library.raw_tool import (
     whole_of,
 )
 from plan_cutters.library.records import Entry
+from plan_cutters_base.user_files import is_there
 
 _MM = {"mm": 1.0, "µm": 1e-3, "μm": 1e-3, "um": 1e-3, "nm": 1e-6, "cm": 10.0, "dm": 100.0, "m": 1000.0, "in": 25.4,
        '"': 25.4, "″": 25.4, "inch": 25.4, "mil": 0.0254, "thou": 0.0254, "ft": 304.8, "'": 304.8}  # fmt: skip

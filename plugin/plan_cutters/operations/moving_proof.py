@@ -13,12 +13,12 @@ from plan_cutters.domain.kinematics import SINGULAR, Kinematics
 from plan_cutters.domain.operations import Operation
 from plan_cutters.domain.turning import Turning
 from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.judging.axis_field import angle_between
+from plan_cutters.judging.between import Between, between
 from plan_cutters.operations.moving_axes import fields, moving_axes
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress
-from plan_cutters.stages.axis_field import angle_between
-from plan_cutters.stages.between import Between, between
 
 Rows = NDArray[np.int64]
 #: Pieces are counted, the largest first, until they hold so much of what is proved.

@@ -12,9 +12,9 @@ from plan_cutters.report.protocol import Judged
 
 if TYPE_CHECKING:
     # What formats there are is asked before anything heavy is loaded.
-    from cad_io.copies import SideProcess
     from plan_cutters.document.clock import Clock
     from plan_cutters.plan_file.model import FileEntry
+    from plan_cutters_base.copies import SideProcess
 
 #: Format -> (file name, module, function).
 WRITERS = {
@@ -94,7 +94,7 @@ class Making:
 
         The page is made while the faces are split, the GLB while the STEP file is written.
         """
-        from cad_io.copies import SideProcess
+        from plan_cutters_base.copies import SideProcess
 
         by_model = {about: [name for name in mine if name in formats] for about, mine in _MODELS.items()}
         models = {self._place(about): mine for about, mine in by_model.items() if mine}

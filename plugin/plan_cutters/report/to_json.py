@@ -4,8 +4,8 @@ import json
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from cad_io.whole import whole
 from plan_cutters.errors import PlanError
+from plan_cutters_base.whole import whole
 
 if TYPE_CHECKING:
     # The model takes a second to load: who says why a run was ended has not got that.

@@ -4,9 +4,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from plan_cutters.files.digest import digest
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.surroundings import Surroundings
+from plan_cutters_base.digest import digest
 
 #: Grounds whose checksums are remembered.
 _GROUNDS = 8

@@ -15,8 +15,8 @@ from cad_io.part.bodies import Body
 from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.tolerance import depths
 from plan_cutters.errors import UnjudgeableError
-from plan_cutters.files.stage_cache import NO_CACHE, NoStageCache, StageCache
 from plan_cutters.kernels.rows import Tree
+from plan_cutters_base.stage_cache import NO_CACHE, NoStageCache, StageCache
 
 if TYPE_CHECKING:
     from plan_cutters.kernels.linear.lanes import WideTree

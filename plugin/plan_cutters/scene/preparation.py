@@ -10,13 +10,13 @@ from cad_io import SurfaceSamples
 from cad_io.arrays import Ints, Record
 from cad_io.part.patterns import Pattern
 from plan_cutters.domain.cutter import Cutter
-from plan_cutters.files.stage_cache import NO_CACHE, NoStageCache, StageCache
 from plan_cutters.options import Options
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.copies import Copies
 from plan_cutters.scene.faces import Chosen
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.spacing import Spacing
+from plan_cutters_base.stage_cache import NO_CACHE, NoStageCache, StageCache
 
 #: A unit direction of the part.
 Axis = tuple[float, float, float]

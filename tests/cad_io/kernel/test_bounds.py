@@ -14,7 +14,6 @@ import pytest
 from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox
 
 from cad_io import read_part
-from cad_io.copies import Ended, each
 from cad_io.errors import SampleError, WriteError
 from cad_io.kernel import faces
 from cad_io.part import coincide, curves, sew
@@ -26,6 +25,7 @@ from cad_io.split import split
 from cad_io.tessellate.triangles import tessellate
 from cad_io.write import step
 from plan_cutters import plan
+from plan_cutters_base.copies import Ended, each
 from tests.support.cad_parts import box, compound, loose
 from tests.support.places import ROOT
 

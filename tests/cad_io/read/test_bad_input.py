@@ -11,7 +11,7 @@ import pytest
 
 from cad_io import ReadError, read_part
 from cad_io.read.sniff import load
-from plan_cutters.workers.supervise import _Watch
+from plan_cutters_base.workers.supervise import _Watch
 from tests.support.commands import assert_one_line, leftovers
 from tests.support.forked import run
 from tests.support.places import SAMPLES

@@ -8,8 +8,8 @@ import shutil
 import pytest
 
 from cad_io import ReadError, read_part
-from cad_io.files import WITHIN, checksum, checksums, fingerprint, noted
 from cad_io.read.references import followed, in_folder_of, names
+from plan_cutters_base.user_files import WITHIN, checksum, checksums, fingerprint, noted
 from tests.support.step_references import BALL, BOX, write_assembly
 
 

@@ -24,7 +24,6 @@ from OCP.TopLoc import TopLoc_Location
 from scipy.ndimage import maximum_filter, minimum_filter
 
 from cad_io import read_part
-from cad_io.copies import ChildDied, TimeLimit, limited
 from cad_io.kernel import faces
 from cad_io.kernel.components import compound
 from cad_io.part import Part
@@ -32,6 +31,7 @@ from cad_io.split import attempt, cut_faces, drawing
 from cad_io.split.border import CannotSplit
 from cad_io.split.cut_faces import TOO_LONG
 from cad_io.split.pieces import MIXED, UNKNOWN, split
+from plan_cutters_base.copies import ChildDied, TimeLimit, limited
 from tests.support.split_parts import block, face_count, labels, largest_bspline, patch, waves
 
 

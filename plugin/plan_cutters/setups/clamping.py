@@ -1,0 +1,120 @@
+"""Where does a vise or chuck grip a part in a setup? What it may grip is compared by how little of the target faces it hides."""
+
+import math
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+
+from cad_io.arrays import Floats
+from plan_cutters.domain.clamping import VISE, Clamping, Requested, Vise, chuck_for
+from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.placement import axis_words
+from plan_cutters.plan_file.numbers import area, listed, mm
+from plan_cutters.setups.chuck_places import chuck_places
+from plan_cutters.setups.gripped import held_bodies, on_ledges
+from plan_cutters.setups.holds import Hold, NothingToGripError
+from plan_cutters.setups.vise_places import vise_places
+from plan_cutters.setups.workpiece import Place, Refused, Workpiece
+
+#: Shares of the target area that jaws hide are equal if they differ by less; places that are searched for overlaps, at most.
+_EVEN, _TRIED = 0.05, 12
+Overlaps = Callable[[Fixture, Clamping], bool]
+
+
+def held(fixture: Fixture, part: Workpiece, plainly: Overlaps, overlaps: Overlaps, slack: float = 0.0) -> Hold:
+    """Place a vise or chuck.
+
+    Parameters
+    ----------
+    fixture : Fixture
+        With `to_place`.
+    part : Workpiece
+    plainly, overlaps : callable
+        Whether a fixture in its place, a vise or chuck, stands in the part: where that is seen at once, and by a search.
+    slack : float, optional
+        How far the part's triangles may be off, mm.
+
+    Raises
+    ------
+    NothingToGripError
+        There is nothing that it can grip, in a line that says why and what to try.
+    """
+    requested = fixture.grips
+    assert requested is not None, "only a vise or chuck is placed"
+    places, refused = vise_places(part, requested) if requested.kind == VISE else chuck_places(part, requested)
+    least, step = min((each.hidden for each in places), default=0.0), _EVEN * max(1e-300, part.area)
+    # Of even ones about the middle of the part, then on the larger faces.
+    places.sort(
+        key=lambda each: (each.thin, int((each.hidden - least) / step), -round(each.firm, 6), each.above, round(each.off, 6),
+                          -round(each.size, 6), each.apart,
+                          each.grips)
+    )  # fmt: skip
+    searched = 0
+    for place in places:
+        placed, names = _fixture(fixture, part, place), listed([f"F{n}" for n in place.grips], 4)
+        if searched == _TRIED or plainly(placed, place.clamping):
+            refused.append(Refused(place.rank, f"something of the part is in the way of the jaws at {names}"))
+            continue
+        if len(part.bodies) > 1 and not held_bodies(place.clamping, place.own(part.vertex), part.face, part.bodies, slack):
+            refused.append(Refused(place.rank, f"{names} are of bodies with a gap between them"))
+            continue
+        if not overlaps(placed, place.clamping):
+            return _hold(requested, placed, part, place)
+        refused.append(Refused(place.rank, f"something of the part is in the way of the jaws at {names}"))
+        searched += 1
+    why = min(refused, key=lambda each: each.rank).why
+    error = NothingToGripError(
+        f"{fixture}: nothing to grip with the setup axis {axis_words(part.frame[2].tolist())}: {why}; try another setup, "
+        f"--fixture {'chuck' if requested.kind == VISE else 'vise'} or table, or a file of your own fixture"
+    )
+    error.why = why
+    raise error
+
+
+def _fixture(fixture: Fixture, part: Workpiece, place: Place) -> Fixture:
+    """The vise or chuck in its place, exactly as its text says it."""
+    x = place.x @ part.frame
+    axes = np.stack([x, np.cross(part.frame[2], x), part.frame[2]], axis=1)
+    origin = (place.origin + np.array([0.0, 0.0, part.lowest])) @ part.frame
+    where = (*np.round(origin, 9).tolist(), *np.round(_angles(axes), 9).tolist())
+    written = Fixture(place.clamping.word, tuple(each + 0.0 for each in where)).text
+    return replace(Fixture.parse(written), name=fixture.name)
+
+
+def _angles(axes: Floats) -> Floats:
+    """Turns about the fixed x, y and z axis, deg, that bring x, y and z to the columns of a matrix (3, 3)."""
+    tilt = math.asin(max(-1.0, min(1.0, -axes[2, 0])))
+    if abs(axes[2, 0]) > 1.0 - 1e-12:
+        angles = (0.0, tilt, math.atan2(-axes[0, 1], axes[1, 1]))
+    else:
+        angles = (math.atan2(axes[2, 1], axes[2, 2]), tilt, math.atan2(axes[1, 0], axes[0, 0]))
+    return np.degrees(angles)
+
+
+def _hold(requested: Requested, fixture: Fixture, part: Workpiece, place: Place) -> Hold:
+    clamping, names, rests = place.clamping, [f"F{n}" for n in place.grips], _rests_on(part, place)
+    size = "" if requested.sizes is not None else ", the smallest usual size that takes the part"
+    above = f", from {mm(place.above)} above its lowest point" if place.above > 0.0 else ""
+    on = f"; the part rests on {listed([f'F{n}' for n in rests])}" if rests else ""
+    under = [f"{area(place.hidden)} under the jaws"] if place.hidden > 0.0 else []
+    under += [f"F{n}" for n in rests if n in part.targets]
+    left = f"left for another setup: {' and '.join(under)}" if under else "it holds none of the faces to machine"
+    what, across = _called(clamping)
+    words = f"{what}{size}; it grips {listed(names)}, {across}{above}; the jaws reach {mm(clamping.grip)} above where it rests"
+    return Hold(fixture, place.grips, rests, place.hidden, f"{words}{on}; {left}")
+
+
+def _rests_on(part: Workpiece, place: Place) -> tuple[int, ...]:
+    """Numbers of the planar faces with which a part rests on the ledges of the jaws at a place."""
+    level = part.level(place.above)
+    return tuple(sorted(on_ledges(place.clamping, place.own(part.vertex[level]), part.face[level], part.flat)))
+
+
+def _called(clamping: Clamping) -> tuple[str, str]:
+    """A vise or chuck in its place for people, and how far apart or wide it is where it grips."""
+    if isinstance(clamping, Vise):
+        jaws = f"jaws {mm(clamping.width)} wide and {mm(clamping.height)} high, opening {mm(clamping.opening)}"
+        return f"a self-centring vise, {jaws}", f"{mm(clamping.gap or 0.0)} apart"
+    wide = clamping.diameter or 0.0
+    return f"a chuck of {mm(chuck_for(wide))} with {clamping.jaws} jaws {mm(clamping.height)} high", f"{mm(wide)} wide"

@@ -1,0 +1,143 @@
+"""Setups as a caller gives them: as axes, with what more is known of each as placements, and the fixtures of the first."""
+
+import os
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import Any
+
+from plan_cutters.domain.checks import items, shown
+from plan_cutters.domain.fixture import TABLE, Fixture
+from plan_cutters.domain.host_axes import plane_of
+from plan_cutters.domain.placement import Placement
+from plan_cutters.domain.posture import along, unit
+from plan_cutters.errors import OptionError
+
+#: The word that asks for setups to be proposed.
+AUTO = "auto"
+#: Setups that are proposed together, at most.
+MOST_PROPOSED = 3
+
+
+def is_auto(value: Any) -> bool:
+    """Whether a setup is the word that asks for a proposal."""
+    return isinstance(value, str) and value.strip().lower() == AUTO
+
+
+def same_fixture(one: Fixture, other: Fixture) -> bool:
+    """Whether two fixtures are one, whatever they are called."""
+    return replace(one, name="fixture") == replace(other, name="fixture")
+
+
+def joined_fixtures(fixtures: Sequence[Fixture], more: Sequence[Fixture]) -> tuple[Fixture, ...]:
+    """Fixtures and those of others that are not among them, each with a name of its own."""
+    return Fixture.each_of([*fixtures, *without(more, fixtures)])
+
+
+def without(fixtures: Sequence[Fixture], others: Sequence[Fixture]) -> tuple[Fixture, ...]:
+    """Those fixtures that are none of the others."""
+    return tuple(each for each in fixtures if not any(same_fixture(each, other) for other in others))
+
+
+def setups_requested(
+    setup: Any, placement: Placement | None, others: Any, other_placements: Any, fixtures: Any, *, propose: bool
+) -> dict[str, Any]:
+    """Give the values of the options about setups by their names.
+
+    Parameters
+    ----------
+    setup, placement, others, other_placements, fixtures
+        As `Options` takes them.
+    propose : bool
+        Setups are to be proposed.
+
+    Raises
+    ------
+    OptionError
+        A value has no meaning, or setups are to be proposed beside some that are given.
+    """
+    common = Fixture.each_of(fixtures)
+    if is_auto(setup):
+        setup, propose = (0.0, 0.0, 1.0), True
+    axis, placed = _setup(setup, placement)
+    if placed is not None:
+        if placed is not placement:
+            # What stands in all setups is not this one's own.
+            placed = replace(placed, fixtures=without(placed.fixtures, common))
+        common = joined_fixtures(common, placed.fixtures)
+    listed = items(others, "other setups", "directions")
+    places = items(other_placements, "other placements", "placements") or [None] * len(listed)
+    if len(places) != len(listed):
+        raise OptionError(f"{len(places)} other placements were given for {len(listed)} other setups")
+    if any(is_auto(each) for each in listed) or (propose and (listed or placed is not None)):
+        raise OptionError("setup auto proposes all setups: leave out the other setups, or auto")
+    if propose and not _proposable(common):
+        raise OptionError(
+            "setup auto tries a table, a vise and a chuck in each setup, or the one that --fixture says: leave out other "
+            "fixtures, or name the setup"
+        )
+    shared = without(common, () if placed is None else placed.fixtures)
+    if listed and (gripping := tuple(each for each in shared if each.to_place)):
+        # What grips the part is placed for each setup: it is that one's own.
+        shared = without(shared, gripping)
+        placed = _holding((axis, placed), gripping)
+        places = [_holding(_setup(each, place), gripping) for each, place in zip(listed, places, strict=True)]
+        listed = [each.z for each in places]
+    setups = [_own(_setup(each, place), shared) for each, place in zip(listed, places, strict=True)]
+    known = any(place is not None for _, place in setups)
+    return {"setup": axis, "placement": placed, "fixtures": common, "propose": propose,
+            "other_setups": tuple(each for each, _ in setups),
+            "other_placements": tuple(place for _, place in setups) if known else ()}  # fmt: skip
+
+
+def _proposable(fixtures: Sequence[Fixture]) -> bool:
+    """Whether fixtures are what may be proposed with a setup: nothing, or one word without a place."""
+    if not fixtures:
+        return True
+    (first, *more) = fixtures
+    return not more and (first.to_place or (first.kind == TABLE and not first.sizes and not any(first.placement)))
+
+
+def _holding(setup: tuple[tuple[float, float, float], Placement | None], gripping: Sequence[Fixture]) -> Placement:
+    """A setup that is held by some fixtures of its own, too."""
+    axis, place = setup
+    if place is None:
+        return Placement(axis, fixtures=gripping)
+    return replace(place, fixtures=joined_fixtures(place.fixtures, gripping))
+
+
+def _own(
+    placed: tuple[tuple[float, float, float], Placement | None], shared: Sequence[Fixture]
+) -> tuple[tuple[float, float, float], Placement | None]:
+    """A setup without those fixtures that stand in all setups; a table that lies across its own axis is another one."""
+    axis, place = placed
+    if place is None:
+        return placed
+    own = tuple(each for each in place.fixtures if each.follows_setup or without((each,), shared))
+    return axis, replace(place, fixtures=own)
+
+
+def _setup(value: Any, placed: Placement | None) -> tuple[tuple[float, float, float], Placement | None]:
+    """A setup axis, and what more is known of the setup.
+
+    A word as `+z` is an axis, another text or path a setup file; a host's plane says where the machine's X points, too.
+    """
+    if isinstance(value, os.PathLike) or (isinstance(value, str) and along(value) is None):
+        from plan_cutters.setups.files import read_setup
+
+        if isinstance(value, str) and not value.lower().endswith(".toml") and not os.path.exists(value):
+            raise OptionError(f"setup {value!r} is no direction, as +z, -y or (0, 0, 1), a setup file, or auto")
+        value = read_setup(value)
+    if (plane := plane_of(value)) is not None:
+        if placed is not None:
+            raise OptionError("a plane and a placement were given for one setup: give one of them")
+        value = Placement(*plane)
+    if isinstance(value, Placement):
+        return value.z, value
+    x, y, z = unit(value, "setup axis").tolist()
+    if placed is None:
+        return (x, y, z), None
+    if not isinstance(placed, Placement):
+        raise OptionError(f"a placement must be a Placement, not {shown(placed)}")
+    if not placed.stands_as((x, y, z)):
+        raise OptionError("the setup axis and the placement disagree: give the placement as the setup")
+    return placed.z, placed

@@ -1,0 +1,301 @@
+"""One child process does the whole job; this one only watches it.
+
+The CAD kernel can crash or hang on a bad file, and neither can be caught from inside. A child that dies, takes too long
+to read or too much memory becomes one line and an exit code; what it had begun to write is taken away. On Windows there is
+no such child: the command does the job itself, and a crash of the kernel ends it.
+"""
+
+import contextlib
+import math
+import os
+import select
+import shutil
+import signal
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Protocol
+
+from plan_cutters_base.workers.assignment import INTERRUPTED
+from plan_cutters_base.workers.child import Worker, early
+from plan_cutters_base.workers.errors import OutOfTime, Stuck, Supervised, Unfinished
+
+
+class Display(Protocol):
+    """Who is told what the child reports: `command.progress.Display`."""
+
+    def begins(self, part: str) -> None: ...
+    def stage(self, stage: str) -> None: ...
+    def detail(self, text: str) -> None: ...
+    def say(self, text: str) -> None: ...
+    def show(self, text: str) -> None: ...
+    def at(self, done: int, total: int) -> None: ...
+    def tick(self) -> None: ...
+    def cases(self, text: str) -> None: ...
+    def failed(self, line: str) -> None: ...
+    def interrupted(self) -> None: ...
+
+
+#: Seconds that an interrupted child has to end in order; it has not if the kernel does not come back to it.
+GRACE = 0.25
+#: Seconds that it has where verdicts stand, to write what there is of a plan, its page, samples and models.
+WRITING = 9.0
+#: Stages in which the kernel works on what the file says, and how many times the limit of reading each may take.
+LIMITED = {"read": 1.0, "measure": 5.0, "sew": 5.0, "orient": 5.0, "fixtures": 5.0, "sample": 5.0, "tessellate": 5.0,
+           "write": 5.0}  # fmt: skip
+_WORK = {"measure": "measuring of faces", "sew": "sewing", "orient": "search for the inside", "fixtures": "reading of fixtures",
+         "sample": "sampling", "tessellate": "tessellation", "write": "splitting and writing"}  # fmt: skip
+#: Of these, how many times the limit of reading one face may take, in processor time. Samples may be requested by the million.
+A_FACE = {"measure": 0.25, "sample": 1.0, "tessellate": 0.25}
+
+
+def default_memory() -> int:
+    """Three quarters of the machine's memory, bytes."""
+    return int(0.75 * os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))
+
+
+def supervise(
+    words: Sequence[str], *, read_timeout: float = math.inf, memory: int | None = None, display: Display | None = None,
+    name: str = "plan-cutters", timeout: float = math.inf, since: float | None = None, done: int = 0,
+    excluded: Mapping[int, str] | None = None,
+) -> int:  # fmt: skip
+    """Run a command in a child.
+
+    An interrupt, a request to end or a closed terminal ends it within GRACE, whatever it is doing; where verdicts stand, within
+    WRITING, in which it writes them, and a second one ends it at once. So does the end of `timeout`.
+
+    Parameters
+    ----------
+    words : sequence of str
+        Its arguments.
+    read_timeout : float
+        Seconds that reading one part may take; the limits of later stages follow from it.
+    memory : int, optional
+        Bytes of address space that the child may use.
+    display : Display, optional
+        Told what the child tells.
+    name : str
+        The command's, as `entry.begin` takes it.
+    timeout : float
+        Seconds that the whole of a part may take.
+    since : float, optional
+        When the first part began (`time.monotonic`); default now.
+    done, excluded
+        As of `Assignment`.
+
+    Returns
+    -------
+    int
+        The child's exit code.
+
+    Raises
+    ------
+    Supervised
+        It crashed or was stopped; `Stuck` where this was at a face, `OutOfTime` by the `timeout`.
+    """
+    watch = _Watch(read_timeout, display, began=since)
+    child: Worker | None = None
+    signals: list[int] = []
+    ending, late, announced = 0.0, False, False
+
+    def ask(child: Worker) -> None:
+        nonlocal ending
+        ending = time.monotonic()
+        child.process.send_signal(signal.SIGINT)
+        # The system's timer, for this process may be waiting for its reader just now.
+        signal.setitimer(signal.ITIMER_REAL, GRACE)
+
+    def stop(number: int, _: object) -> None:
+        # Ask once; a child that has not begun, or is asked again, has nothing to tidy that this process does not.
+        signals.append(number)
+        if child is not None and (ending or watch.stage == "start"):
+            child.kill()
+        elif child is not None:
+            ask(child)
+
+    def waited(*_: object) -> None:
+        rest = ending + WRITING - time.monotonic()
+        if watch.stands and rest > 0.0:
+            signal.setitimer(signal.ITIMER_REAL, rest)
+        elif child is not None:
+            child.kill()
+
+    previous = {number: signal.signal(number, stop) for number in _stopping()}
+    previous[signal.SIGALRM] = signal.signal(signal.SIGALRM, waited)
+    try:
+        again = done or excluded
+        child = (None if again else early(words)) or Worker(words, name, memory, done=done, excluded=excluded)
+        watch.pipe, watch.child = child.here, child.process.pid
+        if signals:  # before there was anyone to tell
+            raise KeyboardInterrupt
+        child.begin(memory)
+        while child.process.poll() is None:
+            watch.listen(0.2)
+            if watch.over:  # neither the child nor a copy of it holds the other end: it has ended, or is about to
+                child.ended(0.2)
+            if not ending and time.monotonic() - watch.began > timeout:
+                if not watch.stands:
+                    raise OutOfTime(watch.dones, watch.code, watch.safe and watch.safe[1])
+                late = True
+                ask(child)
+            if ending and watch.stands and not announced:
+                announced = True
+                if display is not None:
+                    display.interrupted()
+            if watch.late():
+                raise watch.ended(*watch.verdict())
+            if display is not None:
+                display.tick()
+    finally:
+        if child is not None:
+            child.end()
+            # What it said last counts, too: a folder is named before it exists.
+            watch.listen(0.0)
+            os.close(child.here)
+        watch.clear()
+        signal.setitimer(signal.ITIMER_REAL, 0.0)
+        for number, handler in previous.items():
+            signal.signal(number, handler)
+    code = child.process.returncode
+    if late and not signals:
+        raise OutOfTime(watch.dones, watch.code, watch.safe and watch.safe[1], watch.summarised)
+    if code == INTERRUPTED and watch.safe is not None:
+        raise watch.ended("interrupted", "", interrupted=True)
+    if code >= 0:
+        return code
+    # Whoever ends all processes of a service, as its manager does, ends the child at the same time.
+    if signals or -code in _stopping():
+        if watch.safe is None:
+            raise KeyboardInterrupt
+        raise watch.ended("interrupted", "", interrupted=True)
+    name = signal.Signals(-code).name
+    if name != "SIGKILL":  # which comes from outside
+        watch.why = f"the CAD kernel crashed ({name}) at its {_WORK.get(watch.stage, watch.stage)}"
+    at = " ".join(filter(None, (watch.stage, watch.face)))
+    raise watch.ended(f"the CAD kernel crashed ({name}, while it was at '{at}')", "the file may be damaged: export it again")
+
+
+def _stopping() -> list[int]:
+    """Signals that end a run in order: an interrupt, a request to end, and a terminal that is closed, unless `nohup` was used."""
+    signals = [signal.SIGINT, signal.SIGTERM]
+    if hasattr(signal, "SIGHUP") and signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:
+        signals.append(signal.SIGHUP)
+    return [int(number) for number in signals]
+
+
+def _processor(child: int | None) -> float:
+    """Processor seconds that a process has used, without its children; 0 where the system does not tell (only Linux does)."""
+    try:
+        fields = Path(f"/proc/{child}/stat").read_text(errors="replace").rpartition(")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    except (OSError, IndexError, ValueError):
+        return 0.0
+
+
+class _Watch:
+    """Keep all that the child has reported so far."""
+
+    def __init__(self, read_timeout: float, display: Display | None = None, *, began: float | None = None) -> None:
+        self.pipe, self.read_timeout, self.display = -1, read_timeout, display
+        self.part, self.stage, self.since = "part", "start", time.monotonic()
+        self.began = self.since if began is None else began
+        self.work, self.spent, self.why = "", 0.0, ""
+        self.child: int | None = None
+        self.staging: set[str] = set()
+        self.rest = b""
+        self.parts, self.dones, self.code = 0, 0, 0
+        self.over = False
+        self.safe: tuple[int, Path] | None = None
+        self.stands = self.summarised = False
+
+    def listen(self, seconds: float) -> None:
+        while select.select([self.pipe], [], [], seconds)[0]:
+            data = os.read(self.pipe, 1 << 16)
+            if not data:
+                self.over = True
+                return
+            *lines, self.rest = (self.rest + data).split(b"\n")
+            for line in lines:
+                word, _, text = line.decode("unicode_escape").partition(" ")
+                self._show(word, text)
+                if word == "stage":
+                    self.stage, self.since, self.work = text, time.monotonic(), ""
+                elif word == "work":
+                    self.work, self.spent = text, _processor(self.child)
+                elif word == "part":
+                    self.part, self.parts, self.safe = text, self.parts + 1, None
+                    self.stands = self.summarised = False
+                elif word in ("stands", "summarised"):
+                    setattr(self, word, True)
+                elif word == "safe":
+                    code, _, folder = text.partition(" ")
+                    self.safe = int(code), Path(folder)
+                elif word == "done":
+                    self.code, self.safe, self.stands = max(self.code, int(text)), None, False
+                    self.dones, self.began = self.dones + 1, time.monotonic()
+                elif word == "staging":
+                    self.staging.add(text)
+
+    def _show(self, word: str, text: str) -> None:
+        if self.display is None:
+            return
+        if word in ("part", "stage", "detail", "say", "show", "cases", "failed"):
+            getattr(self.display, "begins" if word == "part" else word)(text)
+        elif word == "at":
+            done, total = map(int, text.split())
+            self.display.at(done, total)
+
+    @property
+    def limit(self) -> float:
+        return self.read_timeout * LIMITED.get(self.stage, math.inf)
+
+    def late(self) -> bool:
+        if self.stage in A_FACE and self.work.startswith("kernel F"):
+            within = A_FACE[self.stage] * self.read_timeout
+            if _processor(self.child) - self.spent > within:
+                work = _WORK.get(self.stage, self.stage)
+                self.why = f"the CAD kernel did not end its {work} within {within:g} s of processor time"
+                return True
+        return time.monotonic() - self.since > self.limit
+
+    @property
+    def face(self) -> str:
+        """The face that is being worked on, `F12`; empty where no one said."""
+        return self.work.partition(" ")[2]
+
+    def verdict(self) -> tuple[str, str]:
+        """Say which work took too long, whose it was and where; and give advice."""
+        where, within = f"{self.face}: " if self.face else "", f"within {self.limit:g} s"
+        more = "give more time (--read-timeout)"
+        if self.stage == "read":
+            return f"{where}not read {within}", f"the file may be damaged, or {more}"
+        if self.work.startswith("own"):
+            own = f"{where}our own {_WORK.get(self.stage, self.stage)} did not end {within}"
+            return own, f"try a coarser --tolerance, or {more}"
+        fewer = "--faces, " if self.stage == "sample" else ""
+        return (
+            f"{where}the CAD kernel did not end its {_WORK.get(self.stage, self.stage)} {within}",
+            f"the file may be damaged: export it again, or try {fewer}a coarser --tolerance, or {more}",
+        )
+
+    def ended(self, what: str, advice: str, *, interrupted: bool = False) -> Supervised:
+        """Make the error to raise when the child is gone."""
+        if self.safe is None and self.face and self.why and not interrupted:
+            face, before = int(self.face[1:]), self.parts - 1
+            return Stuck(f"{self.part}: {what}; {advice}", self.part, face, self.why, before, self.code, self.began)
+        if self.safe is None:
+            return Supervised(f"{self.part}: {what}; {advice}")
+        code, out = self.safe
+        return Unfinished(what, INTERRUPTED if interrupted else max(self.code, code), out, self.parts, self.summarised)
+
+    def clear(self) -> None:
+        """Take away what the child had begun to write and not given to the output."""
+        for folder in self.staging:
+            from plan_cutters_base.system_lock import sweep
+
+            if folder.endswith(".lock"):
+                sweep(Path(folder))
+            else:
+                with contextlib.suppress(OSError):
+                    Path(folder).unlink()
+                shutil.rmtree(folder, ignore_errors=True)
