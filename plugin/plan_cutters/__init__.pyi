@@ -8,14 +8,14 @@ from plan_cutters.domain.machine import Machine
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.errors import CutterError, FixtureError, LibraryError, MachineError, OptionError, PlanError
+from plan_cutters.judging.posture_map import PostureMap
+from plan_cutters.judging.posture_maps import PostureMaps
 from plan_cutters.options import Options
 from plan_cutters.pipeline import plan
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.point import posture_map
 from plan_cutters.result import Result
 from plan_cutters.scene.scene import Scene
-from plan_cutters.stages.posture_map import PostureMap
-from plan_cutters.stages.posture_maps import PostureMaps
 from plan_cutters_batch.many import plan_many
 
 __version__: str
