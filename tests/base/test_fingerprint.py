@@ -204,7 +204,8 @@ def test_without_its_source_a_module_has_none(tmp_path):
 def test_the_kernels_import_no_module_by_a_computed_name():
     """Such an import is not seen: none of the modules that machine code is made of may hide one."""
     script = (
-        "from plan_cutters_base import fingerprint as f\nimport plan_cutters.kernels.search.search, plan_cutters.kernels.maps.free_map\n"
+        "from plan_cutters_base import fingerprint as f\n"
+        "import plan_cutters.kernels.search.search, plan_cutters.kernels.maps.free_map\n"
         "import plan_cutters.kernels.area.cover, cad_io.tessellate.refine, cad_io.surface.net_bends, cad_io.tessellate.flips\n"
         "import cad_io.surface.differential, inspect\n"
         "from plan_cutters_base.jit import cache_folder\n"

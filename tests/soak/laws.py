@@ -97,7 +97,7 @@ def scaled(cutter: Cutter, scale):
 def _more_in_the_way(draw):
     setting = draw(settings())
     cutter = setting.tool.cutter
-    ways = ["clearance"] if setting.part.sheet else ["clearance", "fixture", "table"]
+    ways = ["clearance"] if setting.part.sheet else ["clearance", "fixture", "table", "vise", "chuck"]
     # Stock left on the surface lifts what stands above the flutes.
     ways += [] if cutter.stages else ["allowance"]
     ways += [] if cutter.holder is None else ["wider", "shorter"]
@@ -111,13 +111,17 @@ def _more_in_the_way(draw):
 
 @law(_more_in_the_way())
 def more_in_the_way_never_gives_more(case: tuple[Setting, str, float, tuple]):
-    """Another fixture, a larger or lower holder, stock or clearance: what was proved to be lost stays lost."""
+    """Another fixture, a vise, a chuck, a larger holder, stock or clearance: what was proved to be lost stays lost."""
     setting, way, share, around = case
+    more = {}
     cutter, harder, tool = setting.tool.cutter, setting, setting.tool.cutter
     if way == "fixture":
         harder = setting.but(fixtures=(*setting.fixtures, *around))
     elif way == "table":
         harder = setting.but(table=True)
+    elif way in ("vise", "chuck"):
+        # Where it may stand is the program's choice: what it holds by, and whether it fits, is refused in words.
+        more = {"fixtures": [*setting.words, way]}
     elif way in ("allowance", "clearance"):
         tool = replace(cutter, **{way: (getattr(cutter, way) or 0.0) + share})
     elif way == "shorter":
@@ -131,7 +135,7 @@ def more_in_the_way_never_gives_more(case: tuple[Setting, str, float, tuple]):
                  for each in cutter.holder.stages]  # fmt: skip
         tool = replace(cutter, holder=replace(cutter.holder, stages=tuple(wider)))
     before = setting.planned(cutters=[cutter])
-    after = refused(lambda: plan(setting.part.shape, **{**harder.options, "cutters": [tool]}))
+    after = refused(lambda: plan(setting.part.shape, **{**harder.options, "cutters": [tool], **more}))
     _comparable(before, after, setting.step)
     (a,), (b,) = before.reaches.values(), after.reaches.values()
     rows = _contradict(b, a)
