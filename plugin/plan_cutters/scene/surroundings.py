@@ -15,10 +15,10 @@ from cad_io.read.mesh import Mesh
 from cad_io.tessellate import tessellate
 from cad_io.tessellate.proxies import StandIn, StandIns, stand_ins
 from cad_io.tessellate.triangles import At
+from plan_cutters.domain.figures import ranges
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.tolerance import effective_tolerance
 from plan_cutters.errors import UnjudgeableError
-from plan_cutters.plan_file.numbers import ranges
 from plan_cutters.scene.obstacles import Obstacles, weights
 from plan_cutters.scene.thickened import boxed, thickened
 from plan_cutters.setups.holds import Hold

@@ -8,9 +8,9 @@ import numpy as np
 
 from cad_io.arrays import Floats
 from plan_cutters.domain.clamping import VISE, Clamping, Requested, Vise, chuck_for
+from plan_cutters.domain.figures import area, listed, mm
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import axis_words
-from plan_cutters.plan_file.numbers import area, listed, mm
 from plan_cutters.setups.chuck_places import chuck_places
 from plan_cutters.setups.gripped import held_bodies, on_ledges
 from plan_cutters.setups.holds import Hold, NothingToGripError

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from plan_cutters.plan_file.numbers import area, count, listed
+from plan_cutters.domain.figures import area, count, listed
 from plan_cutters.plan_file.process import OTHER_ORIENTATION, ProcessEntry, ProcessStep
 from plan_cutters.plan_file.reasons import REASONS
 
