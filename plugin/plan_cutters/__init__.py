@@ -22,8 +22,8 @@ _HOME = {
     "plan_many": "_batch.many",  # a package of its own
     "Result": ".result",
     "posture_map": ".point",
-    "PostureMap": ".stages.posture_map",
-    "PostureMaps": ".stages.posture_maps",
+    "PostureMap": ".judging.posture_map",
+    "PostureMaps": ".judging.posture_maps",
     "Plan": ".plan_file.model",
     "PlanError": ".errors",
     "CutterError": ".errors",

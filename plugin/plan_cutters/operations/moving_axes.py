@@ -1,7 +1,7 @@
 """Tool axes for simultaneous motion: one at each sample, free there, and turning as little as may be from each to the next.
 
 Each begins with the posture that was found, and is drawn to the mean of those around it, as far as the certified test allows.
-What comes out is a proposal: how much of the surface between the samples it serves is proved by `stages.between`.
+What comes out is a proposal: how much of the surface between the samples it serves is proved by `judging.between`.
 """
 
 import math

@@ -71,7 +71,7 @@ class Prepared(Record):
     others : tuple of OtherSetup
         The setups beside the first.
     exempt : (n,) bool, optional
-        Samples at sharp inside edges that no cutter has to reach (`stages.sharp_edges.exempt`); None: all are required.
+        Samples at sharp inside edges that no cutter has to reach (`judging.sharp_edges.exempt`); None: all are required.
     patterns : tuple of Pattern
         Equal faces of the part, and motions that carry it onto itself.
     copies : Copies, optional
