@@ -72,7 +72,7 @@ def plan(part: Any, *, progress: Progress | None = None, cache: bool = True, **o
     progress : callable, optional
         Called with the stage, the number of pieces done, and the number of all pieces.
     cache : bool
-        Keep what stages make of a part that was read from a file, for the next question about it (`plan_cutters_base.stage_cache`).
+        Keep what stages make of a part that was read from a file, for the next question (`plan_cutters_base.stage_cache`).
     **options
         Every attribute of `Options`, by its name: `cutters="R6L80"`, `grid=201`, `machine="tilt:60"`; angles in degrees, too:
         `tilt_deg=(0, 60)`.
