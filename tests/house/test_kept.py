@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from tests.support.kept import differences, plain
+from tests.support.traced import Sums
 
 
 @pytest.mark.parametrize(
@@ -28,3 +29,16 @@ def test_a_change_is_seen(one, other):
 def test_what_a_processor_rounds_is_no_change():
     value = np.linspace(0.1, 7.0, 1000)
     assert not differences(plain({"a": value, "b": 1.0}), plain({"a": value * (1 + 1e-12), "b": 1.0 + 1e-12}))
+
+
+def test_functions_that_return_the_same_in_another_order_are_told_apart():
+    def sums_of(*values):
+        sums = Sums()
+        for each in values:
+            sums.add(np.asarray(each))
+        return sums.told()
+
+    assert sums_of([1.0, 2.0], [3.0]) == sums_of([1.0, 2.0, 3.0])
+    for other in ([2.0, 1.0, 3.0], [1.0, 2.0, np.nan], [1.0, 2.0], [1.0, 2.0, -3.0], [1.0, 2.0, 3.0, 0.0]):
+        assert differences(plain(sums_of([1.0, 2.0, 3.0])), plain(sums_of(other)))
+    assert sums_of([np.inf]) != sums_of([-np.inf]) != sums_of([np.nan])

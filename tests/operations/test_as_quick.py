@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from plan_cutters.operations.by_pattern import as_quick, known
+from plan_cutters.operations.by_pattern import _better, as_quick, known
 
 AREA = np.array([40.0, 30.0, 20.0, 10.0])
 TASK = SimpleNamespace(ready=SimpleNamespace(samples=SimpleNamespace(area=AREA)), rows=np.arange(4))
@@ -85,3 +85,22 @@ def test_where_the_time_of_the_other_is_not_known_nothing_is_said_of_it():
     other = plan_of(100.0, untimed=1), ()
     repeated = plan_of(101.0, untimed=1)
     assert as_quick(TASK, offer_of(repeated), other, []) == (repeated, ())
+
+
+def test_a_twentieth_of_the_area_more_in_motion_is_hardly_more():
+    """Then the time counts, which must be less by more than two in a hundred; above that the motion alone does."""
+    area = np.array([75.0, 5.0, 10.0, 10.0])
+    task = SimpleNamespace(ready=SimpleNamespace(samples=SimpleNamespace(area=area)), rows=np.arange(4))
+
+    def moving(seconds, rows):
+        plan = plan_of(seconds)
+        plan.operations.append(SimpleNamespace(mode="simultaneous", rows=np.array(rows, np.int64)))
+        return plan
+
+    repeated = plan_of(102.0)
+    assert _better(task, moving(99.0, [1]), repeated)
+    assert not _better(task, moving(101.0, [1]), repeated)
+    assert not _better(task, moving(100.0, [1]), repeated)
+    assert not _better(task, moving(9.0, [2]), repeated)
+    assert not _better(task, plan_of(999.0), moving(1.0, [1]))
+    assert _better(task, plan_of(999.0), moving(1.0, [2]))

@@ -85,12 +85,12 @@ def own_plan(task: Task, process: OwnProcess, planned: Callable[[Task], Columns]
         columns, step = columns.and_(more), [*step, *([0] * len(more))]
     number = np.array(step, np.int64)
 
-    shared = {each.number: each.rows for each in judged.outcome if _shares(process, each) and each.mode == "fixed"}
+    taken = {each.number: each.rows for each in judged.outcome}
 
     def rule(serves: NDArray[np.bool_]) -> NDArray[np.bool_]:
         """Each sample goes with the step that takes it, or one of those that share it; what none takes, with what was planned."""
         may = serves & (judged.owner[:, None] == number[None, :])
-        for j, rows in ((j, shared[each]) for j, each in enumerate(step) if each in shared):
+        for j, rows in ((j, taken[each]) for j, each in enumerate(step) if each):
             may[rows, j] = serves[rows, j]
         for c, samples in barred.items():
             may[np.ix_(samples & (judged.owner == 0), (columns.cutter == c) & (number == 0))] = False
@@ -104,12 +104,7 @@ def own_plan(task: Task, process: OwnProcess, planned: Callable[[Task], Columns]
     reserved = Reserved(tuple(step), moving, process.rest == "leave", others.everywhere)
     plan = plan_with(task, "process", columns, rule, reserved)
     place = {each.step: k for k, each in enumerate(plan.operations)}
-    taken = {number: np.flatnonzero(plan.label == place.get(number, -2)) for number in shared}
-    return plan, tuple(replace(each, rows=taken.get(each.number, each.rows)) for each in judged.outcome)
-
-
-def _shares(process: OwnProcess, outcome: OwnResult) -> bool:
-    return process.steps[outcome.number - 1].take == "share"
+    return plan, tuple(replace(each, rows=np.flatnonzero(plan.label == place.get(each.number, -2))) for each in judged.outcome)
 
 
 def _masked(task: Task, barred: Mapping[int, NDArray[np.bool_]]) -> tuple[Mapping[Cutter, Verdicts], ...]:

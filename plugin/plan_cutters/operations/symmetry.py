@@ -71,7 +71,8 @@ class Symmetry:
 
     def sector(self, vector: Floats) -> NDArray[np.int64]:
         """Numbers of the vectors (m, 3) that lie in the first sector about the axis: the images of these are all."""
-        x = np.cross(self.direction, np.eye(3)[int(np.abs(self.direction).argmin())])
+        # Rounding of an axis does not choose where the sectors begin.
+        x = np.cross(self.direction, np.eye(3)[int(np.round(np.abs(self.direction), 6).argmin())])
         x /= np.linalg.norm(x)
         along, across = vector @ x, vector @ np.cross(self.direction, x)
         azimuth = np.remainder(np.arctan2(across, along), 2.0 * math.pi)
