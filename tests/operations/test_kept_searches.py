@@ -22,10 +22,10 @@ from plan_cutters.operations.indexing import Indexing, index_times
 from plan_cutters.operations.labels import joined, labelled, pieces, regions_of
 from plan_cutters.operations.problem import Costs, Problem, Turning
 from plan_cutters.operations.rest_areas import largest_first, with_and_without
-from plan_cutters.scene import solids
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
+from plan_cutters.setups import solids
 from tests.support.tool_kinds import TOOLS
 from tests.support.traced import traced
 

@@ -16,11 +16,11 @@ from plan_cutters import Machine, operations, plan
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
+from plan_cutters.judging.nodes import tensors
 from plan_cutters.operations import at_once, canonical, choices, companions, moving_axes, planning, plans
 from plan_cutters.operations.thinned import thinned
 from plan_cutters.options import Options
 from plan_cutters.scene.conditions import Context
-from plan_cutters.stages.nodes import tensors
 from tests.support.patterns import impeller
 from tests.support.shapes import Patch
 from tests.support.traced import traced
