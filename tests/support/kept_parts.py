@@ -52,10 +52,16 @@ def part(name):
     return read_part(SHAPES[name]())
 
 
+def ready_of(made, **options):
+    """A part that is prepared to be judged at all of its faces."""
+    return prepare(made, Options.of({"faces": "all", "area_budget": 0, "jobs": 2, **options}))
+
+
 @cache
 def _ready(name, options):
-    return prepare(part(name), Options.of({"faces": "all", "area_budget": 0, "jobs": 2, **dict(options)}))
+    return ready_of(part(name), **dict(options))
 
 
 def ready(name, **options):
+    """The same of one of `SHAPES`, once a process."""
     return _ready(name, tuple(options.items()))

@@ -1,0 +1,399 @@
+"""What the scene says of small parts is kept in `kept`: obstacles and fixtures, grips, material, choices of faces, setups."""
+
+import math
+from dataclasses import replace
+
+import cadquery as cq
+import numpy as np
+import pytest
+import trimesh
+
+from cad_io import read_part
+from cad_io.arrays import Triangles
+from cad_io.part.bodies import Body
+from cad_io.part.orient import orient
+from plan_cutters import Cutter, Scene
+from plan_cutters.domain.clamping import Chuck, Vise, requested
+from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.placement import Placement
+from plan_cutters.domain.verdicts import FIXTURE, INACCESSIBLE
+from plan_cutters.errors import PlanError
+from plan_cutters.options import Options
+from plan_cutters.scene import overlap as overlapping
+from plan_cutters.scene import solids, spacing
+from plan_cutters.scene import surroundings as gathered
+from plan_cutters.scene.chuck_places import chuck_places
+from plan_cutters.scene.copied import keeps as keeps_setup
+from plan_cutters.scene.copied import some_of
+from plan_cutters.scene.covering import coverings, sheets
+from plan_cutters.scene.faces import choose, face_numbers, ignored_faces, ignored_words, select_faces
+from plan_cutters.scene.fixtures import body_near, joined
+from plan_cutters.scene.gripped import at_jaws, held_bodies, material_bodies, on_ledges, unheld_bodies
+from plan_cutters.scene.inside_material import cover, inside_bodies, inside_material, voids
+from plan_cutters.scene.obstacles import Obstacles, divided
+from plan_cutters.scene.overlap import overlap, overlaps, refuse_overlaps
+from plan_cutters.scene.setups import for_another_setup, notes_of_setups, stood_on
+from plan_cutters.scene.surroundings import Surroundings, surroundings
+from plan_cutters.scene.thickened import thickened
+from plan_cutters.scene.threads import in_chunks, with_company
+from plan_cutters.scene.vise_places import vise_places
+from plan_cutters.scene.workpiece import Workpiece, clipped, stands
+from plan_cutters.stages.judge import judge
+from tests.support.cad_parts import box, compound, cut, rod
+from tests.support.kept_parts import part, ready
+from tests.support.shapes import plane, shell
+
+UP, DOWN, ASIDE = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (0.6, 0.0, 0.8)
+
+
+def said_by(call, *given, **more):
+    """What a call returns, or the line with which it refuses."""
+    try:
+        return call(*given, **more)
+    except (PlanError, ValueError) as error:
+        return f"{type(error).__name__}: {error}"
+
+
+def of_obstacles(obstacles):
+    """Triangles, what they enclose and their tree; numbers of a process are none of it."""
+    return {
+        "triangles": obstacles.triangles, "weight": obstacles.weight, "boxes": obstacles.open_boxes, "gap": obstacles.gap,
+        "near": obstacles.near, "extent": obstacles._extent, "end": obstacles._end,
+        "solids": obstacles.solids._replace(key=0), "faces": obstacles.faces,
+    }  # fmt: skip
+
+
+def of_surroundings(around):
+    return {
+        "possible": of_obstacles(around.possible), "certain": of_obstacles(around.certain), "bodies": around.bodies,
+        "missing": around.missing, "on": around.on_bodies, "doubts": around.doubts, "loose": around.loose,
+        "tolerance": [around.tolerance(each) for each in (1e-6, 0.01, 0.3)], "one": around.certain is around.possible,
+        "called": [around.called(each) for each in (3, *(-1 - k for k in range(len(around.fixtures))))],
+        "fixtures": [{**{name: getattr(each, name) for name in ("number", "name", "body", "missing", "notes", "shown", "hold", "unheld")},
+                      "words": each.fixture.text, "obstacles": each.obstacles.triangles} for each in around.fixtures],
+    }  # fmt: skip
+
+
+def open_box():
+    """A box without its lid and a sheet beside it."""
+    sides = cq.Workplane("XY").box(13.7, 9.1, 6.3, centered=False).faces("not >Z").vals()
+    return compound(*(each.wrapped for each in sides), plane((1.1, 6.2), (0.7, 5.9), origin=(0, 0, 9.3)))
+
+
+def hollow():
+    """A block with a closed void, and a small one in that."""
+    block = cut(box(21.3, 17.9, 11.1), box(14.1, 9.7, 6.3, (3.1, 4.2, 2.3)))
+    return compound(block, box(3.3, 4.1, 2.7, (6.1, 6.3, 3.9)))
+
+
+OPEN, HOLLOW = read_part(open_box()), read_part(hollow())
+
+
+@pytest.mark.parametrize("name", ["bodies", "open", "hollow", "bracket"])
+def test_what_stands_around_a_part(name, keeps):
+    of = {"open": OPEN, "hollow": HOLLOW}.get(name) or part(name)
+    keeps(f"around_{name}", [of_surroundings(surroundings(of, 0.05)),
+                             of_surroundings(surroundings(of, 0.2, ignored=(2, 3), jobs=2))])  # fmt: skip
+
+
+@pytest.mark.parametrize("errors", [{2: 0.3}, {1: 0.04, 8: 2.5, 13: 9.9}])
+def test_what_stands_around_a_part_with_loose_faces(errors, keeps, monkeypatch):
+    real = gathered.tessellate
+    monkeypatch.setattr(gathered, "tessellate", lambda *given, **more: replace(real(*given, **more), loose=tuple(errors.items())))
+    keeps(f"loose_{len(errors)}", of_surroundings(surroundings(part("bodies"), 0.05)))
+
+
+def mesh(open_=False):
+    whole = trimesh.creation.box((4.2, 5.1, 3.3))
+    other = trimesh.creation.box((1.2, 1.1, 1.3), transform=trimesh.transformations.translation_matrix((7.0, 0.3, 0.1)))
+    other.invert()
+    if open_:
+        whole.update_faces(np.arange(len(whole.faces)) > 1)
+    return trimesh.util.concatenate([whole, other])
+
+
+FIXTURES = {
+    "words": ["box:7,9,11@18.1,1,-3,0,0,12", "cylinder:3,12@-6,4,-2,20,0,0", "table", "table:-4.5@0,0,-3,10,0,0"],
+    "meshes": [mesh(), mesh(open_=True)],
+    "vise": ["vise:46x25x65:3:17.3@8.65,6.95,0"],
+    "chuck": ["chuck:3x20:3:31@8.65,6.95,-9", "table:-30"],
+    "part": [OPEN, "table"],
+}
+
+
+@pytest.mark.parametrize("name", FIXTURES)
+def test_fixtures_around_a_part(name, keeps):
+    """Placed, joined with the part, for two setups and beside those of another one."""
+    words, side = Fixture.each_of(FIXTURES[name]), orient(part("bodies"), towards=UP, flip=False).sign
+    alone = surroundings(part("bodies"), 0.05)
+    both = [joined(alone, words, 0.05, {}, axis, words[:1], DOWN, sign=side) for axis in (UP, ASIDE)]
+    keeps(f"fixtures_{name}", [of_surroundings(both[0]), of_surroundings(both[1])["fixtures"], both[0].alone is alone])
+
+
+def plate_with_boss():
+    return cq.Workplane("XY").box(47.3, 31.1, 9.7).faces(">Z").workplane().rect(13.1, 11.7).extrude(6.2).edges("<Z").chamfer(0.8)
+
+
+def shaft():
+    return (
+        cq.Workplane("XY").circle(13.3).extrude(17.2).faces(">Z").workplane().circle(8.1).extrude(11.4).faces("<Z").chamfer(1.9)
+    )
+
+
+GRIPPED = {
+    "plate": plate_with_boss, "shaft": shaft,
+    "hung": lambda: compound(box(31.3, 22.7, 12.2), box(9.1, 7.7, 5.3, (4.4, 6.2, -5.3))),
+    "two": lambda: compound(box(11.3, 22.7, 12.2), box(9.1, 21.2, 12.2, (11.3, 0.4, 0.0))),
+    "apart": lambda: compound(box(11.3, 22.7, 12.2), box(9.1, 21.2, 12.2, (13.3, 0.4, 0.0))),
+    "tall": lambda: box(5.1, 4.3, 41.7), "thin": lambda: cut(box(3.3, 44.1, 12.2), box(1.1, 40.0, 12.2, (0.0, 2.0, 5.0))),
+    "wide": lambda: rod(171.0, 30.0), "wedge": lambda: cq.Workplane("XZ").polyline([(0, 0), (31, 0), (22, 15), (3, 15)]).close().extrude(19),
+    "flats": lambda: cq.Workplane("XY").circle(15.2).extrude(21.0).intersect(cq.Workplane("XY").rect(24.2, 60).extrude(21.0)),
+}  # fmt: skip
+WORDS = ("vise", "vise:46x25x65:5", "vise:20x12x30:2", "chuck", "chuck:4x30:5", "chuck:2x9:8")
+
+
+@pytest.mark.parametrize("name", GRIPPED)
+def test_how_vises_and_chucks_hold_parts(name, keeps):
+    scene, said = Scene.of(read_part(GRIPPED[name]()), tolerance=0.3), {}
+    scene.surround()
+    for axis in (UP, (1.0, 0.0, 0.0), DOWN):
+        for word in WORDS if axis == UP else ("vise", "chuck"):
+            said[f"{word} {axis}"] = said_by(scene.hold, Fixture.parse(word), axis)
+    first = said["vise (0.0, 0.0, 1.0)"]
+    others = scene.for_targets(getattr(first, "grips", ())[:1] or (1,))
+    said["targets"] = [said_by(others.hold, Fixture.parse(word), UP) for word in ("vise", "chuck")]
+    keeps(f"held_{name}", {key: replace(each, fixture=None) if not isinstance(each, str) else each for key, each in said.items()
+                           if key != "targets"} | {"texts": [getattr(getattr(each, "fixture", None), "text", "") for each in said.values()],
+                                                   "targets": [getattr(each, "words", each) for each in said["targets"]]})  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["plate", "shaft", "hung", "two", "flats"])
+def test_places_of_vises_and_chucks(name, keeps):
+    made = read_part(GRIPPED[name]())
+    side, around = orient(made, towards=UP, flip=False).sign, surroundings(made, 0.05)
+    triangles = around.certain.triangles
+    planes = [face.number for face in made.faces if face.shape == "plane"]
+    bodies = material_bodies(around.bodies, side)
+    said = {"bodies": bodies}
+    for axis, targets in ((UP, ()), (ASIDE, (1, 2)), (DOWN, (3,))):
+        piece = Workpiece.of(triangles.vertex, triangles.face, side, planes, targets, axis, bodies)
+        said[str(axis)] = {
+            "piece": {each: getattr(piece, each) for each in ("frame", "lowest", "normal", "area", "middle", "flat", "lowest_rows")},
+            "outline": len(piece.outline), "level": [piece.level(height) for height in (0.0, piece.flat, 5.3, 9.7)],
+        }  # fmt: skip
+        for kind, text in (("vise", None), ("vise", "46x25x65:1"), ("chuck", None), ("chuck", "5x11:2")):
+            asked = requested(kind, text, 1.0, kind)
+            places, refused = (vise_places if kind == "vise" else chuck_places)(piece, asked)
+            said[str(axis)][f"{kind} {text}"] = [
+                len(places),
+                places[:3],
+                [[each.rank, each.thin, each.firm, each.apart] for each in places[:5]],
+                refused[:4],
+            ]
+    keeps(f"places_{name}", said)
+
+
+def test_what_lies_at_jaws(keeps):
+    rng = np.random.default_rng(4)
+    boxes = [((-9.2, -7.1, 0.0), (3.1, 5.2, 8.3)), ((3.1, -6.0, 0.0), (9.2, 6.6, 7.7)), ((-2.0, -2.0, 8.3), (2.2, 3.1, 12.0)),
+             ((-9.195, 7.0, 0.0), (9.19, 9.0, 2.0))]  # fmt: skip
+    vertex = np.concatenate([solids.box(*np.array(each)) for each in boxes])
+    face = np.repeat(np.arange(1, 5), 12).astype(np.int32)
+    bodies = tuple(frozenset({k}) for k in range(1, 5))
+    said = {}
+    for name, clamping in (("vise", Vise(14.2, 25.0, 65.0, 3.0, 18.4)), ("narrow", Vise(4.0, 9.0, 30.0, 2.0, 18.4)),
+                           ("wide", Vise(30.0, 9.0, 30.0, 2.0, 18.43)), ("chuck", Chuck(3, 20.0, 3.0, 18.4)), ("four", Chuck(4, 20.0, 3.0, 18.2))):  # fmt: skip
+        said[name] = {
+            "at": list(at_jaws(clamping, vertex, face, 0.0, clamping.grip)), "ledges": on_ledges(clamping, vertex, face, 1e-6),
+            "held": [sorted(held_bodies(clamping, vertex, face, bodies[:some], slack)) for some in (1, 2, 3, 4) for slack in (0.0, 0.02, 0.3)],
+            "entered": [solids.entered(clamping, rng.uniform(-30, 30, (50, 3)) * [1, 1, 0.7], deep) for deep in (0.01, 2.0, 9.0)],
+            "triangles": [solids.triangles_of(clamping, chord, shown=shown, above=above) for chord, shown, above in
+                          ((0.05, False, -math.inf), (0.4, True, -math.inf), (0.05, False, -2.0), (0.05, False, 99.0))],
+        }  # fmt: skip
+        fixture = Fixture(clamping.word, (1.0, 0.5, -2.0, 0.0, 0.0, 15.0))
+        triangles = Triangles(fixture.placed(vertex), face, 0.01, ())
+        said[name]["unheld"] = unheld_bodies(clamping, fixture, triangles, bodies)
+        said[name]["near"] = body_near(clamping, fixture, 0.05, Obstacles(triangles)).triangles
+    keeps("jaws", said)
+
+
+def test_triangles_cut_and_divided(keeps):
+    rng = np.random.default_rng(12)
+    vertex, face = rng.uniform(-5, 5, (40, 3, 3)), np.arange(40, dtype=np.int32)
+    vertex[:6, :2, 2] = 1.0  # just on a limit
+    said = {"clipped": [clipped(vertex, face, np.array(axis), low, high) for axis, low, high in
+                        (((0.0, 0.0, 1.0), -1.0, 1.0), ((0.6, 0.0, 0.8), 0.3, 9.0))],
+            "stands": [stands(low, 3.0) for low in (0.0, 1.5, 1.6)]}  # fmt: skip
+    said["divided"] = [divided(vertex, np.full(3, -4.0), np.array([3.0, 4.0, 1.0]), 1.7, most) for most in (None, 30, 40, 41)]
+    needle = vertex[:3].copy()
+    needle[0, 1] = needle[0, 0]
+    needle[1, 2] = 0.5 * (needle[1, 0] + needle[1, 1]) + [0, 0, 1e-12]
+    needle[2, 2] = 0.3 * needle[2, 0] + 0.7 * needle[2, 1] + [0, 0, 1e-3]
+    said["thickened"] = [thickened(each, error) for each in (vertex[:5], needle, vertex[:0]) for error in (0.0, 0.3)]
+    said["sides"] = [
+        solids.sides_of(radius, chord) for radius, chord in ((9.0, 0.01), (1.0, 2.0), (1.0, 0.9), (500.0, 1e-6), (7.7, 0.3))
+    ]
+    said["prisms"] = [solids.cylinder(3.3, 4.1, 9), solids.strip(np.array([[0.0, 0.0], [2.2, 0.1], [3.0, 1.4]]),
+                      np.array([[0.1, 2.0], [2.0, 2.2], [2.4, 3.3]]), -1.0, 2.5)]  # fmt: skip
+    keeps("cut", said)
+
+
+def test_fixtures_in_the_part(keeps, monkeypatch):
+    monkeypatch.setattr(overlapping, "_APART", 1 / 16)
+    alone = surroundings(part("bodies"), 0.05)
+    around, said = alone.certain, {}
+    for name, word in (("deep", "box:6,5,4@-3,2,1"), ("barely", "box:6,5,4@-5.995,2,1"), ("touching", "box:6,5,4@-6,2,1"),
+                       ("far", "box:6,5,4@-60,2,1"), ("round", "cylinder:2.2,9@13.1,3.3,5.5"), ("within", "box:2,2,2@13,1,2"),
+                       ("around", "box:60,60,60@-20,-20,-20"), ("vise", "vise:46x25x65:3:16.9@8.65,6.95,0")):  # fmt: skip
+        both = joined(alone, Fixture.each_of([word]), 0.05, {})
+        mine = both.fixtures[0].obstacles
+        said[name] = [overlap(around, mine, 0.01), overlaps(around, mine, 0.01), said_by(refuse_overlaps, both, 0.01)]
+    said["sheet"] = overlap(Obstacles(around.triangles), mine, 0.01)
+    keeps("overlaps", said)
+
+
+def test_what_lies_in_material(keeps):
+    said = {}
+    for name, of in (("bodies", part("bodies")), ("hollow", HOLLOW), ("open", OPEN)):
+        options = Options.of({"cutters": "D3L18", "faces": "all", "spacing": 1.7, "area_budget": 0, "jobs": 2})
+        around, side = surroundings(of, 0.05), orient(of, towards=UP, flip=False)
+        samples = spacing.sampled(of, side, options, [face.number for face in of.faces], options.judged).samples
+        found = inside_material(samples, side, around.bodies, around.certain, 0.01)
+        loose = replace(around.certain, triangles=replace(around.certain.triangles, loose=((8, 1.0),)))
+        held = joined(around, Fixture.each_of(["box:9,9,4@4,4,6"]), 0.05, {})
+        out = [cover(samples.point[k], samples.normal[k], around.certain, body) for k in range(0, len(samples), 9)
+               for body in (None, *around.bodies)]  # fmt: skip
+        said[name] = {
+            "inside": found, "voids": voids(around.bodies, side), "no surface": inside_bodies(found, around.bodies, side),
+            "loose": inside_material(samples, side, around.bodies, loose, 0.01),
+            "known": inside_material(samples, side, held.enclosing, held.certain, 0.3, 2, known=found), "out": out,
+        }  # fmt: skip
+    made = ready("bodies", cutters=("D3L18",), grid=4)
+    said["covers"] = [*coverings(made), sheets(made)]
+    keeps("material", said)
+
+
+WORD = ("sculptured", "blends", "sculptured,blends", "all", "F2", "2-4,7", "!F1-F9", "all,3", "blends, 5", "name:^B", "color:#ff0000", "!sculptured",
+        "F0", "3-1", "99", "", "nobody", "name:(", "component:x")  # fmt: skip
+
+
+@pytest.mark.parametrize("name", ["bracket", "patch", "drum"])
+def test_choices_of_faces(name, keeps):
+    of, said = part(name), {}
+    for word in WORD:
+        said[word] = [said_by(choose, of, word, ignored, ("x",)) for ignored in ((), (2, 3))]
+    said["none"] = choose(of, None, (), ())
+    said["objects"] = [said_by(face_numbers, of, each) for each in (1, [2, 1], "F1", [of.face(1)], True, 3.5)]
+    said["ignored"] = [said_by(ignored_faces, of, ignored_words(of, each)) for each in (None, "F1", ["F1", "blends"], (2,), "x")]
+    first, other = Placement(UP, clamped=("F1",)), Placement(DOWN, clamped=("F1-F2",))
+    for word in ("all", "F1"):
+        said[f"held {word}"] = [said_by(choose, of, word, (), (), first, others, {3: 1} if others else {})
+                                for others in ((), (other,), (None,))]  # fmt: skip
+    said["repeated"] = [said_by(select_faces, of.faces, word, ignored=(2,), repeated={2: 1}) for word in ("F2", "F1-F2", "all")]
+    keeps(f"faces_{name}", said)
+
+
+def placed():
+    """Two setups of a block: jaws and a table, and jaws at other places; what is held differs."""
+    first = Placement(UP, clamped=("F1",), fixtures=tuple(map(Fixture.parse, ("box:9,20,11@17.3,-3,-7", "table:-7.5"))))
+    other = Placement(ASIDE, x=(0.0, 1.0, 0.0), clamped=("F2",), fixtures=(Fixture.parse("box:5,20,11@-5,-3,-7"),))
+    return {"setup": first, "other_setups": (other, DOWN)}
+
+
+def proposed():
+    held = Placement(UP, fixtures=(Fixture.parse("vise"),), stands_on=("F2",), proposed=True)
+    return {"setup": held, "other_setups": (Placement(DOWN, fixtures=(Fixture.parse("vise"),)),)}
+
+
+@pytest.mark.parametrize("name", ["placed", "proposed", "plain"])
+def test_setups_of_a_part(name, keeps):
+    how = {"placed": placed, "proposed": proposed, "plain": lambda: {"other_setups": (DOWN,), "fixtures": ("table",)}}[name]()
+    made = ready("bodies", cutters=("D3L18",), grid=4, **how)
+    said = {}
+    for k, conditions in enumerate(made.setups):
+        there = made.there(k)
+        said[f"setup {k}"] = {
+            "frame": conditions.frame, "tolerance": conditions.tolerance, "around": of_surroundings(conditions.surroundings)["fixtures"],
+            "inside": there.inside, "clamped": there.clamped, "shut": there.shut, "alike": there.alike, "alone": made.alone(k).axes[:1],
+            "ranges": conditions.ranges,
+        }  # fmt: skip
+    lost = judge(made, made.cutters[0])
+    reason = np.where(np.arange(len(lost.reason)) % 2 == 0, FIXTURE, lost.reason).astype(np.uint8)
+    lost = replace(lost, verdict=np.where(lost.reached, np.uint8(1), np.uint8(INACCESSIBLE)).astype(np.uint8), reason=reason)
+    said |= {
+        "axes": made.axes, "machinable": made.machinable, "somewhere": made.somewhere, "finished": made.finished, "alike": made.alike,
+        "stood on": stood_on(made), "another": for_another_setup(made, lost).reason, "notes": [*notes_of_setups(made)],
+        "under": made.under(tolerance=0.3).others[0].conditions.tolerance,
+        "exempt": replace(made, exempt=np.arange(len(made.samples)) % 3 == 0).finished,
+    }  # fmt: skip
+    keeps(f"setups_{name}", said)
+
+
+def test_scenes(keeps):
+    of, said = part("bodies"), {}
+    scene = Scene.of(of, ignore="F3", tolerance=0.02, fixtures=["table"])
+    for name, options in (("same", {"tolerance": 0.02}), ("other", {"tolerance": 0.01}), ("setup", {"setup": (0, 0, 2)}),
+                          ("aside", {"setup": "x"}), ("flip", {"flip": True}), ("unknown", {"grid": 3}), ("zero", {"tolerance": 0})):  # fmt: skip
+        found = said_by(Scene.of, scene if name != "zero" else of, **options)
+        said[name] = found if isinstance(found, str) else [found is scene, found.options["tolerance"]]
+    for axis in (UP, ASIDE):
+        said[str(axis)] = [of_surroundings(scene.surround_in(axis, (), (Fixture.parse("table:-2"),)))["fixtures"],
+                           of_surroundings(scene.surround_held(axis, "table"))["fixtures"], scene.same_sides(axis)]  # fmt: skip
+    said["closer"] = scene.surround_closer(0.4).possible.triangles
+    double = read_part(compound(box(7.1, 5.2, 3.3), box(7.1, 5.2, 3.3)))
+    again = Scene.of(double, setup=ASIDE, flip=True)
+    said["double"] = [again.ignored, again.repeated, again.doubles, again.turned_faces(), again.turned_to(DOWN).setup]
+    said["sheets"] = [Scene.of(OPEN, setup=axis).turned_faces() for axis in (UP, DOWN, (1.0, 0.0, 0.0))]
+    keeps("scenes", said)
+
+
+def test_samples_where_nobody_says_how_many(keeps, monkeypatch):
+    of, said = part("bracket"), {}
+    side = orient(of, towards=UP, flip=False)
+    faces = [face.number for face in of.faces]
+    for cutters in (("D3L20",), ("D9L20", "D12L20"), ("D40L60",)):
+        said[str(cutters)] = spacing.default_spacing(of, side, faces, [Cutter.parse(each) for each in cutters])
+    monkeypatch.setattr(spacing, "BUDGET", 900)
+    said["coarse"] = spacing.default_spacing(of, side, faces[:5], [Cutter.parse("D3L20")])
+    for asked in ({"grid": 3}, {"spacing": 2.2}, {}):
+        options = Options.of({"cutters": "D9L20", "faces": "all", **asked})
+        found = spacing.sampled(of, side, options, faces[:6], options.judged)
+        said[str(asked)] = [found.samples.point, found.samples.area, found.spacing, found.coarser,
+                            spacing.spacing_key(options, options.judged)]  # fmt: skip
+    for most in ("100", "x", ""):
+        monkeypatch.setenv(spacing.MOST, most)
+        for asked in ({"grid": 3}, {"spacing": 0.01}, {"spacing": 9.0}, {}):
+            said[f"{most} {asked}"] = said_by(spacing.affordable, of, faces[:6], Options.of({"cutters": "D9L20", **asked}))
+    keeps("spacing", said)
+
+
+def test_copies(keeps):
+    made = ready("plate", cutters=("D5.3L17F6S9",), spacing=2.1, machine="tilt:47", other_setups=(DOWN, (1.0, 0.0, 0.0)))
+    rows = np.arange(0, len(made.samples), 7)
+    some, copies = some_of(made, rows), made.copies
+    motions = copies.motions
+    held = replace(
+        made.conditions, surroundings=joined(made.conditions.surroundings, Fixture.each_of(["box:1,1,1@70,0,0"]), 0.05, {})
+    )
+    moved = copies.moved(np.flatnonzero(copies.copy)[:40], made.samples.normal[copies.master[copies.copy][:40]])
+    keeps("copies", {
+        "copies": replace(copies, motions=()), "follow": [copies.there(k).follow for k in range(3)], "moved": moved,
+        "linear": np.array([each.linear for each in motions]), "shift": np.array([each.shift for each in motions]),
+        "some": [some.samples, some.surface_class, some.inside, some.shut],
+        "keeps": [[keeps_setup(made, conditions, each, made.patterns) for each in motions] for conditions in (*made.setups, held)],
+    })  # fmt: skip
+    coarse = ready("plate", cutters=("D5.3L17F6S9",), grid=3)
+    assert coarse.copies is None
+
+
+def test_work_in_pieces(keeps):
+    rows = np.array([0, 5, 99, 100, 101, 250, 511, 512, 513, 1024, 1300])
+    pieces, told = [], []
+
+    def work(piece):
+        pieces.append(piece)
+        return int(piece.sum())
+
+    totals = [in_chunks(work, rows, 1, lambda *each: told.append(each), chunk, fixed=fixed) for chunk in (3, 11, 100, 512)
+              for fixed in (False, True)]  # fmt: skip
+    keeps("pieces", {"pieces": pieces, "told": told, "totals": totals, "company": with_company(rows[:5], 1400)})
