@@ -10,7 +10,6 @@ import trimesh
 
 from cad_io import read_part
 from cad_io.arrays import Triangles
-from cad_io.part.bodies import Body
 from cad_io.part.orient import orient
 from plan_cutters import Cutter, Scene
 from plan_cutters.domain.clamping import Chuck, Vise, requested
@@ -33,7 +32,7 @@ from plan_cutters.scene.inside_material import cover, inside_bodies, inside_mate
 from plan_cutters.scene.obstacles import Obstacles, divided
 from plan_cutters.scene.overlap import overlap, overlaps, refuse_overlaps
 from plan_cutters.scene.setups import for_another_setup, notes_of_setups, stood_on
-from plan_cutters.scene.surroundings import Surroundings, surroundings
+from plan_cutters.scene.surroundings import surroundings
 from plan_cutters.scene.thickened import thickened
 from plan_cutters.scene.threads import in_chunks, with_company
 from plan_cutters.scene.vise_places import vise_places
@@ -41,7 +40,6 @@ from plan_cutters.scene.workpiece import Workpiece, clipped, stands
 from plan_cutters.stages.judge import judge
 from tests.support.cad_parts import box, compound, cut, rod
 from tests.support.kept_parts import part, ready
-from tests.support.shapes import plane, shell
 
 UP, DOWN, ASIDE = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (0.6, 0.0, 0.8)
 
@@ -65,33 +63,33 @@ def of_obstacles(obstacles):
 
 def of_surroundings(around):
     return {
-        "possible": of_obstacles(around.possible), "certain": of_obstacles(around.certain), "bodies": around.bodies,
-        "missing": around.missing, "on": around.on_bodies, "doubts": around.doubts, "loose": around.loose,
-        "tolerance": [around.tolerance(each) for each in (1e-6, 0.01, 0.3)], "one": around.certain is around.possible,
+        "possible": of_obstacles(around.possible),
+        "certain": of_obstacles(around.certain),
+        "bodies": around.bodies,
+        "missing": around.missing,
+        "on": around.on_bodies,
+        "doubts": around.doubts,
+        "loose": around.loose,
+        "tolerance": [around.tolerance(each) for each in (1e-6, 0.01, 0.3)],
+        "one": around.certain is around.possible,
         "called": [around.called(each) for each in (3, *(-1 - k for k in range(len(around.fixtures))))],
-        "fixtures": [{**{name: getattr(each, name) for name in ("number", "name", "body", "missing", "notes", "shown", "hold", "unheld")},
-                      "words": each.fixture.text, "obstacles": each.obstacles.triangles} for each in around.fixtures],
-    }  # fmt: skip
-
-
-def open_box():
-    """A box without its lid and a sheet beside it."""
-    sides = cq.Workplane("XY").box(13.7, 9.1, 6.3, centered=False).faces("not >Z").vals()
-    return compound(*(each.wrapped for each in sides), plane((1.1, 6.2), (0.7, 5.9), origin=(0, 0, 9.3)))
-
-
-def hollow():
-    """A block with a closed void, and a small one in that."""
-    block = cut(box(21.3, 17.9, 11.1), box(14.1, 9.7, 6.3, (3.1, 4.2, 2.3)))
-    return compound(block, box(3.3, 4.1, 2.7, (6.1, 6.3, 3.9)))
-
-
-OPEN, HOLLOW = read_part(open_box()), read_part(hollow())
+        "fixtures": [
+            {
+                **{
+                    name: getattr(each, name)
+                    for name in ("number", "name", "body", "missing", "notes", "shown", "hold", "unheld")
+                },
+                "words": each.fixture.text,
+                "obstacles": each.obstacles.triangles,
+            }
+            for each in around.fixtures
+        ],
+    }
 
 
 @pytest.mark.parametrize("name", ["bodies", "open", "hollow", "bracket"])
 def test_what_stands_around_a_part(name, keeps):
-    of = {"open": OPEN, "hollow": HOLLOW}.get(name) or part(name)
+    of = part(name)
     keeps(f"around_{name}", [of_surroundings(surroundings(of, 0.05)),
                              of_surroundings(surroundings(of, 0.2, ignored=(2, 3), jobs=2))])  # fmt: skip
 
@@ -117,7 +115,7 @@ FIXTURES = {
     "meshes": [mesh(), mesh(open_=True)],
     "vise": ["vise:46x25x65:3:17.3@8.65,6.95,0"],
     "chuck": ["chuck:3x20:3:31@8.65,6.95,-9", "table:-30"],
-    "part": [OPEN, "table"],
+    "part": [part("open"), "table"],
 }
 
 
@@ -141,14 +139,17 @@ def shaft():
 
 
 GRIPPED = {
-    "plate": plate_with_boss, "shaft": shaft,
+    "plate": plate_with_boss,
+    "shaft": shaft,
     "hung": lambda: compound(box(31.3, 22.7, 12.2), box(9.1, 7.7, 5.3, (4.4, 6.2, -5.3))),
     "two": lambda: compound(box(11.3, 22.7, 12.2), box(9.1, 21.2, 12.2, (11.3, 0.4, 0.0))),
     "apart": lambda: compound(box(11.3, 22.7, 12.2), box(9.1, 21.2, 12.2, (13.3, 0.4, 0.0))),
-    "tall": lambda: box(5.1, 4.3, 41.7), "thin": lambda: cut(box(3.3, 44.1, 12.2), box(1.1, 40.0, 12.2, (0.0, 2.0, 5.0))),
-    "wide": lambda: rod(171.0, 30.0), "wedge": lambda: cq.Workplane("XZ").polyline([(0, 0), (31, 0), (22, 15), (3, 15)]).close().extrude(19),
+    "tall": lambda: box(5.1, 4.3, 41.7),
+    "thin": lambda: cut(box(3.3, 44.1, 12.2), box(1.1, 40.0, 12.2, (0.0, 2.0, 5.0))),
+    "wide": lambda: rod(171.0, 30.0),
+    "wedge": lambda: cq.Workplane("XZ").polyline([(0, 0), (31, 0), (22, 15), (3, 15)]).close().extrude(19),
     "flats": lambda: cq.Workplane("XY").circle(15.2).extrude(21.0).intersect(cq.Workplane("XY").rect(24.2, 60).extrude(21.0)),
-}  # fmt: skip
+}
 WORDS = ("vise", "vise:46x25x65:5", "vise:20x12x30:2", "chuck", "chuck:4x30:5", "chuck:2x9:8")
 
 
@@ -162,9 +163,18 @@ def test_how_vises_and_chucks_hold_parts(name, keeps):
     first = said["vise (0.0, 0.0, 1.0)"]
     others = scene.for_targets(getattr(first, "grips", ())[:1] or (1,))
     said["targets"] = [said_by(others.hold, Fixture.parse(word), UP) for word in ("vise", "chuck")]
-    keeps(f"held_{name}", {key: replace(each, fixture=None) if not isinstance(each, str) else each for key, each in said.items()
-                           if key != "targets"} | {"texts": [getattr(getattr(each, "fixture", None), "text", "") for each in said.values()],
-                                                   "targets": [getattr(each, "words", each) for each in said["targets"]]})  # fmt: skip
+    keeps(
+        f"held_{name}",
+        {
+            key: replace(each, fixture=None) if not isinstance(each, str) else each
+            for key, each in said.items()
+            if key != "targets"
+        }
+        | {
+            "texts": [getattr(getattr(each, "fixture", None), "text", "") for each in said.values()],
+            "targets": [getattr(each, "words", each) for each in said["targets"]],
+        },
+    )
 
 
 @pytest.mark.parametrize("name", ["plate", "shaft", "hung", "two", "flats"])
@@ -178,9 +188,12 @@ def test_places_of_vises_and_chucks(name, keeps):
     for axis, targets in ((UP, ()), (ASIDE, (1, 2)), (DOWN, (3,))):
         piece = Workpiece.of(triangles.vertex, triangles.face, side, planes, targets, axis, bodies)
         said[str(axis)] = {
-            "piece": {each: getattr(piece, each) for each in ("frame", "lowest", "normal", "area", "middle", "flat", "lowest_rows")},
-            "outline": len(piece.outline), "level": [piece.level(height) for height in (0.0, piece.flat, 5.3, 9.7)],
-        }  # fmt: skip
+            "piece": {
+                each: getattr(piece, each) for each in ("frame", "lowest", "normal", "area", "middle", "flat", "lowest_rows")
+            },
+            "outline": len(piece.outline),
+            "level": [piece.level(height) for height in (0.0, piece.flat, 5.3, 9.7)],
+        }
         for kind, text in (("vise", None), ("vise", "46x25x65:1"), ("chuck", None), ("chuck", "5x11:2")):
             asked = requested(kind, text, 1.0, kind)
             places, refused = (vise_places if kind == "vise" else chuck_places)(piece, asked)
@@ -195,21 +208,42 @@ def test_places_of_vises_and_chucks(name, keeps):
 
 def test_what_lies_at_jaws(keeps):
     rng = np.random.default_rng(4)
-    boxes = [((-9.2, -7.1, 0.0), (3.1, 5.2, 8.3)), ((3.1, -6.0, 0.0), (9.2, 6.6, 7.7)), ((-2.0, -2.0, 8.3), (2.2, 3.1, 12.0)),
-             ((-9.195, 7.0, 0.0), (9.19, 9.0, 2.0))]  # fmt: skip
+    boxes = [
+        ((-9.2, -7.1, 0.0), (3.1, 5.2, 8.3)),
+        ((3.1, -6.0, 0.0), (9.2, 6.6, 7.7)),
+        ((-2.0, -2.0, 8.3), (2.2, 3.1, 12.0)),
+        ((-9.195, 7.0, 0.0), (9.19, 9.0, 2.0)),
+    ]
     vertex = np.concatenate([solids.box(*np.array(each)) for each in boxes])
     face = np.repeat(np.arange(1, 5), 12).astype(np.int32)
     bodies = tuple(frozenset({k}) for k in range(1, 5))
     said = {}
-    for name, clamping in (("vise", Vise(14.2, 25.0, 65.0, 3.0, 18.4)), ("narrow", Vise(4.0, 9.0, 30.0, 2.0, 18.4)),
-                           ("wide", Vise(30.0, 9.0, 30.0, 2.0, 18.43)), ("chuck", Chuck(3, 20.0, 3.0, 18.4)), ("four", Chuck(4, 20.0, 3.0, 18.2))):  # fmt: skip
+    for name, clamping in (
+        ("vise", Vise(14.2, 25.0, 65.0, 3.0, 18.4)),
+        ("narrow", Vise(4.0, 9.0, 30.0, 2.0, 18.4)),
+        ("wide", Vise(30.0, 9.0, 30.0, 2.0, 18.43)),
+        ("chuck", Chuck(3, 20.0, 3.0, 18.4)),
+        ("four", Chuck(4, 20.0, 3.0, 18.2)),
+    ):
         said[name] = {
-            "at": list(at_jaws(clamping, vertex, face, 0.0, clamping.grip)), "ledges": on_ledges(clamping, vertex, face, 1e-6),
-            "held": [sorted(held_bodies(clamping, vertex, face, bodies[:some], slack)) for some in (1, 2, 3, 4) for slack in (0.0, 0.02, 0.3)],
+            "at": list(at_jaws(clamping, vertex, face, 0.0, clamping.grip)),
+            "ledges": on_ledges(clamping, vertex, face, 1e-6),
+            "held": [
+                sorted(held_bodies(clamping, vertex, face, bodies[:some], slack))
+                for some in (1, 2, 3, 4)
+                for slack in (0.0, 0.02, 0.3)
+            ],
             "entered": [solids.entered(clamping, rng.uniform(-30, 30, (50, 3)) * [1, 1, 0.7], deep) for deep in (0.01, 2.0, 9.0)],
-            "triangles": [solids.triangles_of(clamping, chord, shown=shown, above=above) for chord, shown, above in
-                          ((0.05, False, -math.inf), (0.4, True, -math.inf), (0.05, False, -2.0), (0.05, False, 99.0))],
-        }  # fmt: skip
+            "triangles": [
+                solids.triangles_of(clamping, chord, shown=shown, above=above)
+                for chord, shown, above in (
+                    (0.05, False, -math.inf),
+                    (0.4, True, -math.inf),
+                    (0.05, False, -2.0),
+                    (0.05, False, 99.0),
+                )
+            ],
+        }
         fixture = Fixture(clamping.word, (1.0, 0.5, -2.0, 0.0, 0.0, 15.0))
         triangles = Triangles(fixture.placed(vertex), face, 0.01, ())
         said[name]["unheld"] = unheld_bodies(clamping, fixture, triangles, bodies)
@@ -254,7 +288,7 @@ def test_fixtures_in_the_part(keeps, monkeypatch):
 
 def test_what_lies_in_material(keeps):
     said = {}
-    for name, of in (("bodies", part("bodies")), ("hollow", HOLLOW), ("open", OPEN)):
+    for name, of in (("bodies", part("bodies")), ("hollow", part("hollow")), ("open", part("open"))):
         options = Options.of({"cutters": "D3L18", "faces": "all", "spacing": 1.7, "area_budget": 0, "jobs": 2})
         around, side = surroundings(of, 0.05), orient(of, towards=UP, flip=False)
         samples = spacing.sampled(of, side, options, [face.number for face in of.faces], options.judged).samples
@@ -273,8 +307,27 @@ def test_what_lies_in_material(keeps):
     keeps("material", said)
 
 
-WORD = ("sculptured", "blends", "sculptured,blends", "all", "F2", "2-4,7", "!F1-F9", "all,3", "blends, 5", "name:^B", "color:#ff0000", "!sculptured",
-        "F0", "3-1", "99", "", "nobody", "name:(", "component:x")  # fmt: skip
+WORD = (
+    "sculptured",
+    "blends",
+    "sculptured,blends",
+    "all",
+    "F2",
+    "2-4,7",
+    "!F1-F9",
+    "all,3",
+    "blends, 5",
+    "name:^B",
+    "color:#ff0000",
+    "!sculptured",
+    "F0",
+    "3-1",
+    "99",
+    "",
+    "nobody",
+    "name:(",
+    "component:x",
+)
 
 
 @pytest.mark.parametrize("name", ["bracket", "patch", "drum"])
@@ -313,37 +366,59 @@ def test_setups_of_a_part(name, keeps):
     for k, conditions in enumerate(made.setups):
         there = made.there(k)
         said[f"setup {k}"] = {
-            "frame": conditions.frame, "tolerance": conditions.tolerance, "around": of_surroundings(conditions.surroundings)["fixtures"],
-            "inside": there.inside, "clamped": there.clamped, "shut": there.shut, "alike": there.alike, "alone": made.alone(k).axes[:1],
+            "frame": conditions.frame,
+            "tolerance": conditions.tolerance,
+            "around": of_surroundings(conditions.surroundings)["fixtures"],
+            "inside": there.inside,
+            "clamped": there.clamped,
+            "shut": there.shut,
+            "alike": there.alike,
+            "alone": made.alone(k).axes[:1],
             "ranges": conditions.ranges,
-        }  # fmt: skip
+        }
     lost = judge(made, made.cutters[0])
     reason = np.where(np.arange(len(lost.reason)) % 2 == 0, FIXTURE, lost.reason).astype(np.uint8)
     lost = replace(lost, verdict=np.where(lost.reached, np.uint8(1), np.uint8(INACCESSIBLE)).astype(np.uint8), reason=reason)
     said |= {
-        "axes": made.axes, "machinable": made.machinable, "somewhere": made.somewhere, "finished": made.finished, "alike": made.alike,
-        "stood on": stood_on(made), "another": for_another_setup(made, lost).reason, "notes": [*notes_of_setups(made)],
+        "axes": made.axes,
+        "machinable": made.machinable,
+        "somewhere": made.somewhere,
+        "finished": made.finished,
+        "alike": made.alike,
+        "stood on": stood_on(made),
+        "another": for_another_setup(made, lost).reason,
+        "notes": [*notes_of_setups(made)],
         "under": made.under(tolerance=0.3).others[0].conditions.tolerance,
         "exempt": replace(made, exempt=np.arange(len(made.samples)) % 3 == 0).finished,
-    }  # fmt: skip
+    }
     keeps(f"setups_{name}", said)
 
 
 def test_scenes(keeps):
     of, said = part("bodies"), {}
     scene = Scene.of(of, ignore="F3", tolerance=0.02, fixtures=["table"])
-    for name, options in (("same", {"tolerance": 0.02}), ("other", {"tolerance": 0.01}), ("setup", {"setup": (0, 0, 2)}),
-                          ("aside", {"setup": "x"}), ("flip", {"flip": True}), ("unknown", {"grid": 3}), ("zero", {"tolerance": 0})):  # fmt: skip
+    for name, options in (
+        ("same", {"tolerance": 0.02}),
+        ("other", {"tolerance": 0.01}),
+        ("setup", {"setup": (0, 0, 2)}),
+        ("aside", {"setup": "x"}),
+        ("flip", {"flip": True}),
+        ("unknown", {"grid": 3}),
+        ("zero", {"tolerance": 0}),
+    ):
         found = said_by(Scene.of, scene if name != "zero" else of, **options)
         said[name] = found if isinstance(found, str) else [found is scene, found.options["tolerance"]]
     for axis in (UP, ASIDE):
-        said[str(axis)] = [of_surroundings(scene.surround_in(axis, (), (Fixture.parse("table:-2"),)))["fixtures"],
-                           of_surroundings(scene.surround_held(axis, "table"))["fixtures"], scene.same_sides(axis)]  # fmt: skip
+        said[str(axis)] = [
+            of_surroundings(scene.surround_in(axis, (), (Fixture.parse("table:-2"),)))["fixtures"],
+            of_surroundings(scene.surround_held(axis, "table"))["fixtures"],
+            scene.same_sides(axis),
+        ]
     said["closer"] = scene.surround_closer(0.4).possible.triangles
     double = read_part(compound(box(7.1, 5.2, 3.3), box(7.1, 5.2, 3.3)))
     again = Scene.of(double, setup=ASIDE, flip=True)
     said["double"] = [again.ignored, again.repeated, again.doubles, again.turned_faces(), again.turned_to(DOWN).setup]
-    said["sheets"] = [Scene.of(OPEN, setup=axis).turned_faces() for axis in (UP, DOWN, (1.0, 0.0, 0.0))]
+    said["sheets"] = [Scene.of(part("open"), setup=axis).turned_faces() for axis in (UP, DOWN, (1.0, 0.0, 0.0))]
     keeps("scenes", said)
 
 
@@ -376,12 +451,20 @@ def test_copies(keeps):
         made.conditions, surroundings=joined(made.conditions.surroundings, Fixture.each_of(["box:1,1,1@70,0,0"]), 0.05, {})
     )
     moved = copies.moved(np.flatnonzero(copies.copy)[:40], made.samples.normal[copies.master[copies.copy][:40]])
-    keeps("copies", {
-        "copies": replace(copies, motions=()), "follow": [copies.there(k).follow for k in range(3)], "moved": moved,
-        "linear": np.array([each.linear for each in motions]), "shift": np.array([each.shift for each in motions]),
-        "some": [some.samples, some.surface_class, some.inside, some.shut],
-        "keeps": [[keeps_setup(made, conditions, each, made.patterns) for each in motions] for conditions in (*made.setups, held)],
-    })  # fmt: skip
+    keeps(
+        "copies",
+        {
+            "copies": replace(copies, motions=()),
+            "follow": [copies.there(k).follow for k in range(3)],
+            "moved": moved,
+            "linear": np.array([each.linear for each in motions]),
+            "shift": np.array([each.shift for each in motions]),
+            "some": [some.samples, some.surface_class, some.inside, some.shut],
+            "keeps": [
+                [keeps_setup(made, conditions, each, made.patterns) for each in motions] for conditions in (*made.setups, held)
+            ],
+        },
+    )
     coarse = ready("plate", cutters=("D5.3L17F6S9",), grid=3)
     assert coarse.copies is None
 

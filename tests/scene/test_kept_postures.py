@@ -85,9 +85,11 @@ def test_limits_of_machines(keeps):
 
 
 GROOVES = {
-    "leaning": lambda: leaning_groove(0.03, 9.3, 9.1), "level": lambda: off_level(0.04, 7.0, 6.0), "tee": lambda: tee(3.1, 4.4, 19.1, 21.3),
+    "leaning": lambda: leaning_groove(0.03, 9.3, 9.1),
+    "level": lambda: off_level(0.04, 7.0, 6.0),
+    "tee": lambda: tee(3.1, 4.4, 19.1, 21.3),
     "bracket": "bracket",
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", GROOVES)
@@ -97,8 +99,13 @@ def test_flats_and_flanks(name, keeps):
     samples, said = made.samples, {}
     contacts, rows = contacts_of(samples), np.flatnonzero(samples.unjudged < 0)
     for cutter in ("flat", "taper", "slot", "bull"):
-        for machine, accuracy, posture in (("3-axis", 0.0, {}), ("4-axis-a", 0.002, {}), ("tilt:35", 0.0, {"tilt": (0.0, np.pi)}),
-                                           ("trunnion-ac", 0.001, {"rotation": (0.2, 5.0)}), ("trunnion-ac", 0.0, {})):  # fmt: skip
+        for machine, accuracy, posture in (
+            ("3-axis", 0.0, {}),
+            ("4-axis-a", 0.002, {}),
+            ("tilt:35", 0.0, {"tilt": (0.0, np.pi)}),
+            ("trunnion-ac", 0.001, {"rotation": (0.2, 5.0)}),
+            ("trunnion-ac", 0.0, {}),
+        ):
             conditions = among(made, machine, accuracy=accuracy, **posture)
             context, verdicts, counted = Context.of(CUTTERS[cutter], conditions), blank(len(samples)), Work()
             search(contacts, samples.face, rows, context, verdicts, fixed=True, work=counted)
@@ -175,8 +182,14 @@ def test_clearance(keeps):
     both = two(box())
     (name,) = both.reaches
     [cutter] = both.ready.cutters
-    said["setups"] = [clearances_over(both.samples, cutter, both.reaches[name], setups, which) for setups, which in
-                      ((both.ready.setups, both.served_in[name]), (both.ready.setups[:1], both.served_in[name]), (both.ready.setups, None))]  # fmt: skip
+    said["setups"] = [
+        clearances_over(both.samples, cutter, both.reaches[name], setups, which)
+        for setups, which in (
+            (both.ready.setups, both.served_in[name]),
+            (both.ready.setups[:1], both.served_in[name]),
+            (both.ready.setups, None),
+        )
+    ]
     keeps("clearance", said)
 
 

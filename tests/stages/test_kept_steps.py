@@ -6,12 +6,12 @@ import numpy as np
 import pytest
 
 from cad_io.arrays import FaceGrid
-from plan_cutters import Cutter, Machine, Options, PostureRange
+from plan_cutters import Cutter, Machine, PostureRange
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.verdicts import INACCESSIBLE, REASONS, Witness, blank
+from plan_cutters.errors import OptionError
 from plan_cutters.kernels.codes import NEVER
 from plan_cutters.scene.conditions import Conditions, Context
-from plan_cutters.scene.surroundings import Surroundings
 from plan_cutters.scene.work import Work
 from plan_cutters.stages import map_budget, witness
 from plan_cutters.stages.access import access
@@ -158,8 +158,14 @@ def state(cells, *values):
 def test_cells_with_limits_of_work_and_budget(keeps):
     made = ready("patch", cutters=("D4L40",), grid=19)
     said, whole = {}, 1706.0
-    for name, upto, budget, least in (("all", np.inf, 260, 1e-4), ("short", 90_000.0, 900, 1e-4), ("none", 9_000.0, 900, 1e-4),
-                                      ("poor", np.inf, 9000, 0.4), ("tiny", np.inf, 3, 1e-4), ("four", np.inf, 4, 0.0)):  # fmt: skip
+    for name, upto, budget, least in (
+        ("all", np.inf, 260, 1e-4),
+        ("short", 90_000.0, 900, 1e-4),
+        ("none", 9_000.0, 900, 1e-4),
+        ("poor", np.inf, 9000, 0.4),
+        ("tiny", np.inf, 3, 1e-4),
+        ("four", np.inf, 4, 0.0),
+    ):
         told = []
         cells, contacts = of_face(made, 0, reported=lambda told=told: told.append(1))
         begun = cells.begin(contacts, upto)
@@ -193,7 +199,9 @@ def test_cells_with_axes_that_stay(name, keeps):
     fields = {}
     for grid in samples.grids[:5]:
         normal = samples.normal[np.maximum(grid.index, 0)]
-        fields[grid.face] = AxisField.of(grid, np.where((grid.index >= 0)[..., None], unit(normal + [0.1, 0.2, 0.4]), np.nan))
+        fields[grid.face] = AxisField.of(
+            grid, np.where((grid.index >= 0)[..., None], unit(normal + np.array([0.1, 0.2, 0.4])), np.nan)
+        )
     said["turning"] = between(samples, reach, context, part, side, budget=60, axes=fields)
     own = np.arange(len(samples) + 1) % 3 > 0
     covered = samples.point[:, 2] > 5.0
@@ -261,7 +269,9 @@ def test_maps_of_single_contacts(name, keeps):
         said.append(
             [made_map, made_map.lies_flat, made_map.lies_along, made_map.axis(1, 0.3), moved(made_map, nominal), nominal.free]
         )
-    keeps(f"map_{name}", said)
+    with pytest.raises(OptionError):
+        made_map.axis(1)
+    keeps(f"map_{name}", [*said, made_map.axis(2, tilt_deg=31.0)])
 
 
 def test_witnesses_of_made_groups(keeps):

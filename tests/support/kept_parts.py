@@ -5,6 +5,7 @@ from functools import cache
 import cadquery as cq
 
 from cad_io import read_part
+from cad_io.kernel import faces
 from plan_cutters import Options
 from plan_cutters.pipeline import prepare
 from tests.support.cad_parts import box, compound, cut, holed_patch, patch, rod
@@ -42,8 +43,21 @@ def bodies():
     return compound(*blocks, plane((2.2, 9.1), (1.3, 6.6), origin=(0, 0, 0), z=(0, -1, 0), x=(1, 0, 0)))
 
 
+def open_box():
+    """A box without its lid and a sheet beside it."""
+    sides = sorted(faces(box(13.7, 9.1, 6.3)), key=lambda face: cq.Face(face).Center().z)[:-1]
+    return compound(*sides, plane((1.1, 6.2), (0.7, 5.9), origin=(0, 0, 9.3)))
+
+
+def hollow():
+    """A block with a closed void, and a small one in that."""
+    block = cut(box(21.3, 17.9, 11.1), box(14.1, 9.7, 6.3, (3.1, 4.2, 2.3)))
+    return compound(block, box(3.3, 4.1, 2.7, (6.1, 6.3, 3.9)))
+
+
 SHAPES = {"bracket": bracket, "patch": lambda: patch(3, count=7, width=41.0, height=6.0), "holed": lambda: holed_patch(2),
-          "drum": drum, "plate": lambda: plate(3, 1), "deep": deep, "bodies": bodies,
+          "drum": drum, "plate": lambda: plate(3, 1), "deep": deep, "bodies": bodies, "open": open_box,
+          "hollow": hollow,
           "groove": lambda: tee(3.1, 4.4, 19.1, 21.3)}  # fmt: skip
 
 
