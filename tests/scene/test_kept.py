@@ -7,9 +7,11 @@ import cadquery as cq
 import numpy as np
 import pytest
 import trimesh
+from OCP.TopLoc import TopLoc_Location
 
 from cad_io import read_part
 from cad_io.arrays import Triangles
+from cad_io.kernel.assembly import Node
 from cad_io.part.orient import orient
 from plan_cutters import Cutter, Scene
 from plan_cutters.domain.clamping import Chuck, Vise, requested
@@ -22,6 +24,7 @@ from plan_cutters.scene import overlap as overlapping
 from plan_cutters.scene import solids, spacing
 from plan_cutters.scene import surroundings as gathered
 from plan_cutters.scene.chuck_places import chuck_places
+from plan_cutters.scene.clamping import held as placed_by
 from plan_cutters.scene.copied import keeps as keeps_setup
 from plan_cutters.scene.copied import some_of
 from plan_cutters.scene.covering import coverings, sheets
@@ -206,6 +209,29 @@ def test_places_of_vises_and_chucks(name, keeps):
     keeps(f"places_{name}", said)
 
 
+def so_often(count, asked, which):
+    """What says yes so many times, and notes each."""
+    return lambda *given: asked.append(which) or asked.count(which) <= count
+
+
+def test_places_that_are_searched(keeps):
+    """Ribs with many walls: of the places some are in the way at once, of others that comes out by a search."""
+    ribs = [solids.box(np.array([8.3 * k, 0.3 * k, 0.0]), np.array([8.3 * k + 3.1, 21.0 - k, 9.4])) for k in range(5)]
+    face = np.concatenate([6 * k + np.tile(np.arange(1, 7), 2) for k in range(5)]).astype(np.int32)
+    bodies = [frozenset(range(1 + 6 * k, 7 + 6 * k)) for k in range(5)]
+    said = {}
+    for few, first, second in ((5, 0, 0), (5, 3, 2), (5, 0, 99), (5, 99, 0), (2, 0, 0), (0, 0, 12), (0, 0, 13), (0, 4, 11)):
+        piece = Workpiece.of(np.concatenate(ribs), face, np.ones(30), range(1, 31), (2, 9), UP, bodies[:few])
+        for word in ("vise", "vise:46x25x65:2"):
+            asked = []
+            found = said_by(placed_by, Fixture.parse(word), piece, so_often(first, asked, 0), so_often(second, asked, 1), 0.01)
+            said[f"{few} {first} {second} {word}"] = [
+                found if isinstance(found, str) else [found.fixture.text, found.words],
+                asked,
+            ]
+    keeps("searched", said)
+
+
 def test_what_lies_at_jaws(keeps):
     rng = np.random.default_rng(4)
     boxes = [
@@ -288,7 +314,8 @@ def test_fixtures_in_the_part(keeps, monkeypatch):
 
 def test_what_lies_in_material(keeps):
     said = {}
-    for name, of in (("bodies", part("bodies")), ("hollow", part("hollow")), ("open", part("open"))):
+    for name in ("open", "hollow", "bodies"):
+        of = part(name)
         options = Options.of({"cutters": "D3L18", "faces": "all", "spacing": 1.7, "area_budget": 0, "jobs": 2})
         around, side = surroundings(of, 0.05), orient(of, towards=UP, flip=False)
         samples = spacing.sampled(of, side, options, [face.number for face in of.faces], options.judged).samples
@@ -302,6 +329,11 @@ def test_what_lies_in_material(keeps):
             "loose": inside_material(samples, side, around.bodies, loose, 0.01),
             "known": inside_material(samples, side, held.enclosing, held.certain, 0.3, 2, known=found), "out": out,
         }  # fmt: skip
+    out = [
+        cover(np.array(point), np.array(UP), held.certain, body)
+        for point in ((5.0, 5.0, 7.0), (8.1, 8.2, 9.9), (12.9, 4.1, 6.2), (5.0, 5.0, 11.0)) for body in (None, *held.enclosing)
+    ]  # fmt: skip
+    said["out of a fixture"] = out
     made = ready("bodies", cutters=("D3L18",), grid=4)
     said["covers"] = [*coverings(made), sheets(made)]
     keeps("material", said)
@@ -344,6 +376,16 @@ def test_choices_of_faces(name, keeps):
                                 for others in ((), (other,), (None,))]  # fmt: skip
     said["repeated"] = [said_by(select_faces, of.faces, word, ignored=(2,), repeated={2: 1}) for word in ("F2", "F1-F2", "all")]
     keeps(f"faces_{name}", said)
+
+
+def test_choices_of_components(keeps):
+    rim, hub = Node("ring", "rim", TopLoc_Location(), faces=(1, 2)), Node("hub", "", TopLoc_Location(), faces=(3,))
+    tree = (Node("wheel", "left", TopLoc_Location(), children=(rim, hub)), Node("ring", "", TopLoc_Location(), faces=(4, 5)))
+    faces = part("drum").faces
+    words = ("left/rim", "rim", "ring", "wheel", "hub", "/left/", "left/", "/", "", "nobody")
+    said = {word: said_by(select_faces, faces, f"component:{word}", tree=tree) for word in words}
+    said |= {f"no names {word}": said_by(select_faces, faces, f"component:{word}") for word in ("rim", "")}
+    keeps("components", said | {"long": said_by(select_faces, faces, "x" * 70), "sixty": said_by(select_faces, faces, "x" * 60)})
 
 
 def placed():
@@ -465,6 +507,8 @@ def test_copies(keeps):
             ],
         },
     )
+    shut = ready("plate", cutters=("D5.3L17F6S9",), spacing=2.1, setup=Placement(UP, clamped=("F1", "F3", "F7-F9")))
+    keeps("copies_shut", [replace(shut.copies, motions=()), shut.shut])
     coarse = ready("plate", cutters=("D5.3L17F6S9",), grid=3)
     assert coarse.copies is None
 

@@ -234,6 +234,8 @@ def test_dummies_and_searches_of_some_samples(keeps):
     said["coarse"] = [coarse.judges, access(samples, free, coarse, rows=rows)]
     said["rows"] = judge(made, made.cutters[0], rows=rows[5:90])
     said["edge"] = [may_be_at_edge(said["some"], each) for each in (FLAT_END, BALL, Cutter.parse("D3L20"))]
+    walled = ready("bodies", cutters=("D3L18",), grid=4, fixtures=("box:20,20,9@-3,-4,-9",))
+    said["fixture"] = access(samples, free, Context.of(walled.cutters[0], walled.conditions))
     keeps("some_samples", {**said, "work": counted.looked})
 
 
@@ -250,13 +252,15 @@ def test_how_many_samples_are_mapped(keeps, monkeypatch):
 MAPS = {
     "flat": ("bracket", FLAT_END, under), "ball": ("deep", Cutter.parse("D4L21F7N3.4x8S7HR8.6L20"), lambda: under("tilt:60")),
     "bull": ("bodies", Cutter.parse("D4L26rc0.7"), lambda: under("3-axis")),
+    # What may be in the way is more than what surely is.
+    "open": ("bodies", Cutter.parse("D3L9"), under, {"ignore": "F2"}),
 }  # fmt: skip
 
 
 @pytest.mark.parametrize("name", MAPS)
 def test_maps_of_single_contacts(name, keeps):
-    of, cutter, asked = MAPS[name]
-    made = ready(of, cutters=(cutter,), grid=4)
+    of, cutter, asked, *more = MAPS[name]
+    made = ready(of, cutters=(cutter,), grid=4, **(more[0] if more else {}))
     conditions = replace(asked(), surroundings=made.conditions.surroundings)
     samples, said = made.samples, []
     rotations = np.radians([0.0, 77.0, 200.0])
@@ -279,7 +283,7 @@ def test_witnesses_of_made_groups(keeps):
     point = rng.normal(size=(90, 3))
     groups = [witness._Group(1 + k % 4, REASONS.index(word), body, np.arange(k, 90, 7), area)
               for k, (word, body, area) in enumerate([("collision", -1, 4.0), ("rear_gouge", -1, 9.0), ("buried", -1, 99.0),
-                                                      ("collision", 2, 50.0), ("holder", -1, 3.0), ("shank", -1, 4.0),
+                                                      ("collision", 2, 50.0), ("holder", -1, 3.0), ("shank", -1, 8.0),
                                                       ("tolerance", -1, 7.0)])]  # fmt: skip
     looked = [Witness(k, "collision", obstacle_face=face, depth=depth) for k, (face, depth) in
               enumerate([(1, 0.3), (2, 0.9), (2, None), (1, 0.9), (3, 0.2), (2, 0.1)])]  # fmt: skip
