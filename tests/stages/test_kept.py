@@ -105,6 +105,9 @@ CASES = {
     "deep twice": ("deep", {"cutters": ("D4L21F7N3.4x8S7HR8.6L20", "D5L60F11S9"), "grid": 4,
                             "setup": held(UP, "box:9,40,50@24.5,-5,3"),
                             "other_setups": (held((0.0, 0.6, 0.8), "box:3,40,50@-9,-5,3"),)}, {}),
+    "deep limited": ("deep", {"cutters": ("D4L21F7N3.4x8S7HR8.6L20",), "grid": 4, "machine": "tilt:22",
+                              "setup": held(UP, "box:9,40,50@24.5,-5,3"),
+                              "other_setups": (held((0.0, 0.6, 0.8), "box:3,40,50@-9,-5,3"),)}, {}),
     "deep free": ("deep", {"cutters": ("D4L21F7N3.4x8S7HR8.6L20",), "grid": 4, "tilt": (0.0, 0.4)}, {}),
     # What may be in the way is more than what surely is.
     "open": ("bodies", {"cutters": ("D2.2L12",), "grid": 5, "ignore": "F2", "machine": "tilt:80"}, {"budget": 40, "maps": 40}),
