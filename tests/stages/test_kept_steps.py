@@ -25,6 +25,8 @@ from plan_cutters.stages.judge import judge
 from plan_cutters.stages.margin import margin, roomiest
 from plan_cutters.stages.nodes import from_neighbours, steepest, tensors
 from plan_cutters.stages.posture_map import moved, posture_map_of
+from plan_cutters.stages.posture_maps import posture_maps
+from plan_cutters.stages.setups import within_limits
 from plan_cutters.stages.sharp_edges import may_be_at_edge
 from plan_cutters.stages.travel import travels
 from tests.support.kept_parts import ready
@@ -276,6 +278,27 @@ def test_maps_of_single_contacts(name, keeps):
     with pytest.raises(OptionError):
         made_map.axis(1)
     keeps(f"map_{name}", [*said, made_map.axis(2, tilt_deg=31.0)])
+
+
+def test_maps_within_a_body(keeps):
+    """Of a block that lies in another one, as if nothing were known of that: no cutter that touches no skin is free."""
+    made = ready("sunk", cutters=("D1L3",), grid=3)
+    context, reach = Context.of(made.cutters[0], made.conditions), judge(made, made.cutters[0])
+    within = made.inside >= 0
+    found = posture_maps(made.samples, context, reach, shut=~within)
+    thin = Context.of(Cutter.parse("D1L30"), made.conditions)
+    keeps("sunk", [found, posture_maps(made.samples, thin, reach, shut=~within, most=7)])
+
+
+def test_limits_that_no_cutter_touches_within(keeps):
+    made, tools = ready("bracket", cutters=("D3L20",), grid=4), [FLAT_END, BALL, Cutter.parse("D4L20T5")]
+    said = []
+    for machine in ("unlimited", "tilt:35", "4-axis-a"):
+        for tilt in ((0.0, 0.5), (0.7, 1.2), (1.58, 1.7)):
+            conditions = under(machine, tilt=tilt)
+            said += [within_limits(made.samples, [each], conditions, axis, rows) for each in tools for axis, rows in
+                     ((None, None), ((1.0, 0.0, 0.0), np.arange(0, 200, 3)))]  # fmt: skip
+    keeps("within_limits", said)
 
 
 def test_witnesses_of_made_groups(keeps):

@@ -49,16 +49,33 @@ def open_box():
     return compound(*sides, plane((1.1, 6.2), (0.7, 5.9), origin=(0, 0, 9.3)))
 
 
+def pocket():
+    """A block with two pockets of sharp corners, a square one and one that narrows, a step between them."""
+    part = cut(box(41.3, 33.7, 15.2), box(14.3, 17.1, 20.0, (4.1, 6.3, 6.2)))
+    wedge = cq.Workplane("XY").workplane(offset=5.1).polyline([(22.2, 5.0), (38.1, 9.3), (35.4, 27.1), (22.2, 21.3)]).close()
+    return cut(part, wedge.extrude(20).val().wrapped)
+
+
 def hollow():
     """A block with a closed void, and a small one in that."""
     block = cut(box(21.3, 17.9, 11.1), box(14.1, 9.7, 6.3, (3.1, 4.2, 2.3)))
     return compound(block, box(3.3, 4.1, 2.7, (6.1, 6.3, 3.9)))
 
 
-SHAPES = {"bracket": bracket, "patch": lambda: patch(3, count=7, width=41.0, height=6.0), "holed": lambda: holed_patch(2),
-          "drum": drum, "plate": lambda: plate(3, 1), "deep": deep, "bodies": bodies, "open": open_box,
-          "hollow": hollow,
-          "groove": lambda: tee(3.1, 4.4, 19.1, 21.3)}  # fmt: skip
+SHAPES = {
+    "bracket": bracket,
+    "patch": lambda: patch(3, count=7, width=41.0, height=6.0),
+    "holed": lambda: holed_patch(2),
+    "drum": drum,
+    "plate": lambda: plate(3, 1),
+    "deep": deep,
+    "bodies": bodies,
+    "open": open_box,
+    "hollow": hollow,
+    "pocket": pocket,
+    "sunk": lambda: compound(box(19.0, 18.0, 17.0), box(3.1, 2.9, 2.7, (8.1, 7.3, 6.9))),
+    "groove": lambda: tee(3.1, 4.4, 19.1, 21.3),
+}
 
 
 @cache

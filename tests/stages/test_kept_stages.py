@@ -51,14 +51,19 @@ def told(made, *, budget=None, maps=None):
         reaches[cutter], everywhere[cutter] = with_sharp_edges(explained.verdicts, at_edge), (mine, which)
         context = Context.of(cutter, made.conditions)
         said[cutter.id] = {
-            "here": mine, "others": others, "reasons": explained, "edges": at_edge,
+            "again": reasons.of(cutter, over).verdicts.reason,
+            "here": mine,
+            "others": others,
+            "reasons": explained,
+            "edges": at_edge,
             "march": march_differs(samples, made.surface_class == CONVEX, made.region, mine.interference_free),
             "witnesses": witnesses(samples, reaches[cutter], context, inside=made.shut, part=part),
-        }  # fmt: skip
+        }
         if budget is not None:
             contexts = [Context.of(cutter, each) for each in made.setups]
             said[cutter.id]["between"] = in_each(samples, over, which, contexts, part, made.scene.orientation, budget=budget,
                                                  covered_samples=made.inside_bodies)  # fmt: skip
+            said[cutter.id]["share"] = [said[cutter.id]["between"].share, said[cutter.id]["between"].feasible]
         if maps is not None:
             bare = judge(made.under(machine=Options().machine), cutter)
             said[cutter.id]["maps"] = posture_maps(samples, context, bare, inside=made.inside_bodies, shut=made.shut >= 0,
@@ -88,7 +93,11 @@ CASES = {
     "fixed": ("bracket", {"cutters": ("D4L26", SLIM), "machine": "3-axis", "grid": 6}, {}),
     "setups": ("bracket", {"cutters": ("D4L14F9S8HR9L20",), "machine": "tilt:80", "grid": 5, **pair()}, {"budget": 90}),
     "left over": ("bracket", {"cutters": (SLIM,), "machine": "4-axis-a", "grid": 4, "allowance": 0.3, "holder_clearance": 0.7,
-                              "other_setups": (DOWN,)}, {}),
+                              "setup": Placement(UP, clamped=("F1",)), "other_setups": (DOWN,)}, {}),
+    # Corners that no round cutter enters, in pockets that it enters and does not.
+    "pocket": ("pocket", {"cutters": ("D5L30", "D7.7L30rc1.2", "D14.1L30"), "grid": 9}, {}),
+    "lollipop": ("deep", {"cutters": (Cutter.lollipop(radius=2.2, neck_radius=1.3, length=24, holder="R8.6L20"),), "grid": 4,
+                          "machine": "tilt:60"}, {}),
     "alone": ("bracket", {"cutters": ("D3L20rc0.4",), "grid": 4, "tilt": (0.1, 1.3), "rotation": (0.3, 4.1), "patterns": False},
               {"budget": 120, "maps": 5}),
     "turned": ("drum", {"cutters": ("D3L40rc1.5", "D4L40rc1"), "machine": "trunnion-bc", "grid": 11}, {"budget": 400}),

@@ -11,9 +11,11 @@ from OCP.TopLoc import TopLoc_Location
 
 from cad_io import read_part
 from cad_io.arrays import Triangles
+from cad_io.errors import CadIoError
 from cad_io.kernel.assembly import Node
 from cad_io.part.orient import orient
 from plan_cutters import Cutter, Scene
+from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.clamping import Chuck, Vise, requested
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
@@ -51,7 +53,7 @@ def said_by(call, *given, **more):
     """What a call returns, or the line with which it refuses."""
     try:
         return call(*given, **more)
-    except (PlanError, ValueError) as error:
+    except (PlanError, CadIoError, ValueError) as error:
         return f"{type(error).__name__}: {error}"
 
 
@@ -149,8 +151,12 @@ GRIPPED = {
     "apart": lambda: compound(box(11.3, 22.7, 12.2), box(9.1, 21.2, 12.2, (13.3, 0.4, 0.0))),
     "tall": lambda: box(5.1, 4.3, 41.7),
     "thin": lambda: cut(box(3.3, 44.1, 12.2), box(1.1, 40.0, 12.2, (0.0, 2.0, 5.0))),
-    "wide": lambda: rod(171.0, 30.0),
+    "wide": lambda: rod(471.0, 30.0),
     "wedge": lambda: cq.Workplane("XZ").polyline([(0, 0), (31, 0), (22, 15), (3, 15)]).close().extrude(19),
+    "odd": lambda: (
+        cq.Workplane("XY").circle(14).workplane(offset=22.0).circle(9).loft().cut(cq.Workplane("XY").circle(5.1).extrude(9))
+    ),
+    "round": lambda: cq.Workplane("XY").box(21.3, 17.7, 14.1, centered=False).edges("|Z").fillet(4.4),
     "flats": lambda: cq.Workplane("XY").circle(15.2).extrude(21.0).intersect(cq.Workplane("XY").rect(24.2, 60).extrude(21.0)),
 }
 WORDS = ("vise", "vise:46x25x65:5", "vise:20x12x30:2", "chuck", "chuck:4x30:5", "chuck:2x9:8")
@@ -296,6 +302,38 @@ def test_triangles_cut_and_divided(keeps):
     said["prisms"] = [solids.cylinder(3.3, 4.1, 9), solids.strip(np.array([[0.0, 0.0], [2.2, 0.1], [3.0, 1.4]]),
                       np.array([[0.1, 2.0], [2.0, 2.2], [2.4, 3.3]]), -1.0, 2.5)]  # fmt: skip
     keeps("cut", said)
+
+
+def test_cutters_in_what_encloses(keeps):
+    """Whether cutters that touch no skin lie in a body, with loose skins and open ones, and among fixtures."""
+    rng, said = np.random.default_rng(9), {}
+    for name, around in (
+        ("bodies", surroundings(part("bodies"), 0.05)),
+        ("open", surroundings(part("bodies"), 0.05, ignored=(2,))),
+        ("sunk", surroundings(part("sunk"), 0.05)),
+        ("fixture", joined(surroundings(part("sunk"), 0.05), Fixture.each_of(["box:40,40,9@-9,-9,15"]), 0.05, {})),
+    ):
+        tool = assembly(Cutter.parse("D1L3"), 0.0, 0.0)
+        point, normal = rng.uniform(-2, 19, (60, 3)), np.tile(UP, (60, 1))
+        direction, tilt = np.tile((1.0, 0.0, 0.0), (60, 1)), rng.uniform(0, 1.5, 60)
+        said[name] = [
+            each.holds(tool, point, normal, direction, tilt, certain=certain)
+            for each in (around.possible, around.certain)
+            for certain in (False, True)
+        ]
+        said[name] += [
+            around.possible.skin.weight,
+            [len(around.certain.skin_of(body).triangles) for body in around.bodies],
+            around.possible.wide_tree._asdict(),
+        ]
+        loose = replace(around.possible, gap=3.0)
+        said[name] += [loose.solids._replace(key=0), loose._extent]
+    for broken in (
+        Triangles(np.zeros((0, 3, 3)), np.zeros(0, np.int32), 0.0, ()),
+        Triangles(np.full((1, 3, 3), np.nan), np.ones(1, np.int32), 0.0, ()),
+    ):
+        said[f"broken {len(broken)}"] = said_by(Obstacles, broken)
+    keeps("encloses", said)
 
 
 def test_fixtures_in_the_part(keeps, monkeypatch):
@@ -459,6 +497,27 @@ def test_scenes(keeps):
     said["closer"] = scene.surround_closer(0.4).possible.triangles
     double = read_part(compound(box(7.1, 5.2, 3.3), box(7.1, 5.2, 3.3)))
     again = Scene.of(double, setup=ASIDE, flip=True)
+    said["repeated"] = [
+        said_by(choose, again.part, word, again.ignored, (), repeated=again.repeated) for word in ("all", "F1", "F9")
+    ]
+    several = Scene.of(read_part(compound(box(7.1, 5.2, 3.3), box(7.1, 5.2, 3.3), box(7.1, 5.2, 3.3, (0, 0, 3.3)))))
+    said["several"] = [
+        several.ignored,
+        several.repeated,
+        several.doubles,
+        choose(several.part, "all", several.ignored, (), repeated=several.repeated),
+    ]
+    half = Scene.of(double, ignore=("F1", "F7"))
+    said["half"] = [half.ignored, half.repeated, half.doubles, choose(double, "all", half.ignored, (), repeated=half.repeated)]
+    bare = scene.clamped(())
+    said["clamped"] = [
+        scene.clamped(("table",)) is scene,
+        len(bare.around.fixtures),
+        bare.tolerance,
+        bare.turned,
+        len(bare.surround_closer(0.2).fixtures),
+    ]
+    said["word"] = said_by(Scene.of, of, setup=Placement(UP))
     said["double"] = [again.ignored, again.repeated, again.doubles, again.turned_faces(), again.turned_to(DOWN).setup]
     said["sheets"] = [Scene.of(part("open"), setup=axis).turned_faces() for axis in (UP, DOWN, (1.0, 0.0, 0.0))]
     keeps("scenes", said)
@@ -475,8 +534,13 @@ def test_samples_where_nobody_says_how_many(keeps, monkeypatch):
     for asked in ({"grid": 3}, {"spacing": 2.2}, {}):
         options = Options.of({"cutters": "D9L20", "faces": "all", **asked})
         found = spacing.sampled(of, side, options, faces[:6], options.judged)
-        said[str(asked)] = [found.samples.point, found.samples.area, found.spacing, found.coarser,
-                            spacing.spacing_key(options, options.judged)]  # fmt: skip
+        said[str(asked)] = [
+            found.samples.point,
+            found.samples.area,
+            found.spacing,
+            found.coarser,
+            spacing.spacing_key(options, options.judged),
+        ]
     for most in ("100", "x", ""):
         monkeypatch.setenv(spacing.MOST, most)
         for asked in ({"grid": 3}, {"spacing": 0.01}, {"spacing": 9.0}, {}):
