@@ -22,8 +22,8 @@ from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.verdicts import FIXTURE, INACCESSIBLE
 from plan_cutters.errors import PlanError
 from plan_cutters.options import Options
+from plan_cutters.scene import covering, solids, spacing
 from plan_cutters.scene import overlap as overlapping
-from plan_cutters.scene import solids, spacing
 from plan_cutters.scene import surroundings as gathered
 from plan_cutters.scene.chuck_places import chuck_places
 from plan_cutters.scene.clamping import held as placed_by
@@ -350,7 +350,7 @@ def test_fixtures_in_the_part(keeps, monkeypatch):
     keeps("overlaps", said)
 
 
-def test_what_lies_in_material(keeps):
+def test_what_lies_in_material(keeps, monkeypatch):
     said = {}
     for name in ("open", "hollow", "bodies"):
         of = part(name)
@@ -374,6 +374,15 @@ def test_what_lies_in_material(keeps):
     said["out of a fixture"] = out
     made = ready("bodies", cutters=("D3L18",), grid=4)
     said["covers"] = [*coverings(made), sheets(made)]
+    # The same as components, of which two have one name.
+    rooms = {number: f"a/{'b' if number < 13 else 'c'}" for number in range(1, 19)}
+    monkeypatch.setattr(covering, "component_of", lambda tree: rooms)
+    monkeypatch.setattr(
+        covering, "faces_of", lambda tree, name: {n for n, path in rooms.items() if f"/{path}".endswith(f"/{name}")}
+    )
+    said["named"] = [*coverings(made)]
+    standing = ready("bodies", cutters=("D3L18",), grid=9, patterns=False)
+    said["standing"] = [*coverings(standing), sheets(standing)]
     keeps("material", said)
 
 
@@ -438,9 +447,19 @@ def proposed():
     return {"setup": held, "other_setups": (Placement(DOWN, fixtures=(Fixture.parse("vise"),)),)}
 
 
-@pytest.mark.parametrize("name", ["placed", "proposed", "plain"])
+def standing():
+    held = Placement(UP, fixtures=(Fixture.parse("box:9,20,11@17.3,-3,-7"),), stands_on=("F2", "F4"), proposed=True)
+    return {"setup": held, "other_setups": (Placement(DOWN, stands_on=("F3",)), ASIDE)}
+
+
+@pytest.mark.parametrize("name", ["placed", "proposed", "standing", "plain"])
 def test_setups_of_a_part(name, keeps):
-    how = {"placed": placed, "proposed": proposed, "plain": lambda: {"other_setups": (DOWN,), "fixtures": ("table",)}}[name]()
+    how = {
+        "placed": placed,
+        "proposed": proposed,
+        "standing": standing,
+        "plain": lambda: {"other_setups": (DOWN,), "fixtures": ("table",)},
+    }[name]()
     made = ready("bodies", cutters=("D3L18",), grid=4, **how)
     said = {}
     for k, conditions in enumerate(made.setups):
