@@ -32,7 +32,7 @@ from tests.support.kept_parts import ready, ready_of
 UP, DOWN = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0)
 CUTTERS = {
     "flat": Cutter.parse("D8L40F25S8"), "holder": Cutter.parse("D3.1L23F7N2.7x9S4.4HR9.3L31"), "bull": Cutter.parse("D6L30rc1"),
-    "ball": Cutter.parse("D5L30rc2.5"), 
+    "ball": Cutter.parse("D5L30rc2.5"),
     "necked": Cutter.parse("D7L30rc1.1F6N6x10S7"), "taper": Cutter.flat(radius=2, length=40, taper=0.05),
     "barrel": Cutter.barrel(radius=2, flank_radius=20, tip_radius=0.7, length=40, flutes=7.0),
     "lens": Cutter.lens(radius=3, bottom_radius=15, corner_radius=0.5, length=40),
