@@ -88,8 +88,8 @@ def test_fields_of_axes(keeps):
         said[name] = {"lines": [field.u, field.v], "at": field.at(uv), "within": field.within(uv, span)}
     lone = AxisField(u[:1], v[:1], axis[:1, :1])
     said["lone"] = [lone.at(uv[:4]), lone.within(uv[:4], span[:4])]
-    # Axes 59, 61 and 180 deg apart: the last two have none between them.
-    apart = np.radians([0.0, 59.0, 120.0, 300.0])
+    # Axes 59.9, 60.3 and 179.8 deg apart: the last two have none between them.
+    apart = np.radians([0.0, 59.9, 120.2, 300.0])
     far = np.stack([np.sin(apart), 0.0 * apart, np.cos(apart)], axis=1)[:, None]
     wide = AxisField(np.arange(4.0), np.zeros(1), far)
     said["wide"] = wide.at(np.column_stack([np.linspace(0, 3, 13), np.zeros(13)]))
