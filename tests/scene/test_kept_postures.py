@@ -7,6 +7,7 @@ import pytest
 
 from plan_cutters import Cutter, Machine, PostureRange
 from plan_cutters.domain.assembly import assembly
+from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.verdicts import UNDECIDED, UNJUDGED, blank
 from plan_cutters.scene.clearance import clearances, clearances_over, least_clearance
 from plan_cutters.scene.conditions import (
@@ -22,7 +23,7 @@ from plan_cutters.scene.conditions import (
 )
 from plan_cutters.scene.deepest import deepest, deepest_of, deepest_on
 from plan_cutters.scene.fixed_axis import along, at_fixed_axis, held_at, leaning, served_by, serves
-from plan_cutters.scene.flats_and_flanks import on_the_flank, on_the_flat, search
+from plan_cutters.scene.flats_and_flanks import _at_angle, _nearest, on_the_flank, on_the_flat, search
 from plan_cutters.scene.work import Work
 from plan_cutters.stages.judge import judge
 from tests.support.grooves import leaning as leaning_groove
@@ -139,6 +140,19 @@ def test_axes_that_stay(name, keeps):
                 "none": served_by(rows[:0], axes, samples, context)[1],
             } | ({"point": taken.point, "normal": taken.normal} if not k else {})  # fmt: skip
     keeps(f"axes_{name}", said)
+
+
+def test_axes_at_an_angle_to_normals(keeps):
+    """Of machines with one axis that turns the tool, square to it and askew, and with none."""
+    rng, said = np.random.default_rng(14), []
+    normal = unit(np.concatenate([rng.normal(size=(30, 3)), [UP, (1.0, 0.0, 0.0)]]))
+    for axes in ([], [Axis("A", "rotary", "part", (1, 0, 0))], [Axis("B", "rotary", "tool", (0.6, 0, 0.8), limits=(-1.0, 2.0))]):
+        conditions = replace(among(blocks()), machine=Machine("mine", axes=axes, fixed=True))
+        kinematics = conditions.kinematics.turning()[0]
+        with np.errstate(invalid="ignore"):
+            said += [[*_at_angle(normal, cosine, kinematics)] for cosine in (0.0, 0.3, -0.5)]
+        said.append(_nearest(normal, conditions))
+    keeps("at_an_angle", said)
 
 
 def test_searches(keeps):

@@ -28,7 +28,7 @@ from plan_cutters.scene import surroundings as gathered
 from plan_cutters.scene.chuck_places import chuck_places
 from plan_cutters.scene.clamping import held as placed_by
 from plan_cutters.scene.copied import keeps as keeps_setup
-from plan_cutters.scene.copied import some_of
+from plan_cutters.scene.copied import some_of, with_copies
 from plan_cutters.scene.covering import coverings, sheets
 from plan_cutters.scene.faces import choose, face_numbers, ignored_faces, ignored_words, select_faces
 from plan_cutters.scene.fixtures import body_near, joined
@@ -148,7 +148,7 @@ GRIPPED = {
     "shaft": shaft,
     "hung": lambda: compound(box(31.3, 22.7, 12.2), box(9.1, 7.7, 5.3, (4.4, 6.2, -5.3))),
     "two": lambda: compound(box(11.3, 22.7, 12.2), box(9.1, 21.2, 12.2, (11.3, 0.4, 0.0))),
-    "apart": lambda: compound(box(11.3, 22.7, 12.2), box(9.1, 21.2, 12.2, (13.3, 0.4, 0.0))),
+    "apart": lambda: compound(*(box(11.3, 22.7, 12.2, (14.1 * k, 0, 0)) for k in range(4))),
     "tall": lambda: box(5.1, 4.3, 41.7),
     "thin": lambda: cut(box(3.3, 44.1, 12.2), box(1.1, 40.0, 12.2, (0.0, 2.0, 5.0))),
     "wide": lambda: rod(471.0, 30.0),
@@ -159,7 +159,7 @@ GRIPPED = {
     "round": lambda: cq.Workplane("XY").box(21.3, 17.7, 14.1, centered=False).edges("|Z").fillet(4.4),
     "flats": lambda: cq.Workplane("XY").circle(15.2).extrude(21.0).intersect(cq.Workplane("XY").rect(24.2, 60).extrude(21.0)),
 }
-WORDS = ("vise", "vise:46x25x65:5", "vise:20x12x30:2", "chuck", "chuck:4x30:5", "chuck:2x9:8")
+WORDS = ("vise", "vise:20x12x9:2", "vise:46x25x65:5", "vise:20x12x30:2", "chuck", "chuck:4x30:5", "chuck:2x9:8")
 
 
 @pytest.mark.parametrize("name", GRIPPED)
@@ -546,7 +546,7 @@ def test_samples_where_nobody_says_how_many(keeps, monkeypatch):
     of, said = part("bracket"), {}
     side = orient(of, towards=UP, flip=False)
     faces = [face.number for face in of.faces]
-    for cutters in (("D3L20",), ("D9L20", "D12L20"), ("D40L60",)):
+    for cutters in (("D3L20",), ("D9L20", "D12L20"), ("D40L60",), ("D0.1L2",)):
         said[str(cutters)] = spacing.default_spacing(of, side, faces, [Cutter.parse(each) for each in cutters])
     monkeypatch.setattr(spacing, "BUDGET", 900)
     said["coarse"] = spacing.default_spacing(of, side, faces[:5], [Cutter.parse("D3L20")])
@@ -590,6 +590,8 @@ def test_copies(keeps):
             ],
         },
     )
+    buried = with_copies(replace(made, inside=np.zeros(len(made.samples), np.int32)), made.patterns).copies
+    keeps("copies_inside", [buried.master, buried.motion, buried.frames, buried.verified, buried.group])
     shut = ready("plate", cutters=("D5.3L17F6S9",), spacing=2.1, setup=Placement(UP, clamped=("F1", "F3", "F7-F9")))
     keeps("copies_shut", [replace(shut.copies, motions=()), shut.shut])
     coarse = ready("plate", cutters=("D5.3L17F6S9",), grid=3)

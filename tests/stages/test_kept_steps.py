@@ -173,6 +173,11 @@ def test_cells_with_limits_of_work_and_budget(keeps):
         begun = cells.begin(contacts, upto)
         before = state(cells, begun)
         said[name] = [before, state(cells, cells.refine(budget, least * whole / 1706.0, upto), len(told))]
+    # Cells that are cut often, with other postures on the way.
+    for name, how in (("holed", {"cutters": ("D6L50rc1.1",), "grid": 9}), ("patch", {"cutters": ("D4L40rc1",), "grid": 9})):
+        fine, begin = of_face(ready(name, **how), 0)
+        fine.begin(begin, np.inf)
+        said[f"fine {name}"] = [state(fine, fine.refine(1500, 1e-6)), [each.axis for each, _ in fine.pools]]
     said["begun twice"] = state(cells, cells.begin(contacts.of(np.arange(5)), cells.work.looked + 1e6))
     worth = np.array([0.3, 0.1, 0.3, 0.7, 0.0, 0.7, 0.2])
     said["best"] = [best(worth, most) for most in (-1, 0, 1, 2, 3, 5, 9)]
