@@ -185,6 +185,11 @@ def test_clearance(keeps):
             clearances(samples, cutter, reach, made.conditions),
             least_clearance(samples, cutter, reach, made.conditions),
         ]
+    # Among faces that triangles follow within an error.
+    round_ = ready("bracket", cutters=("D3L20",), grid=4)
+    found = judge(round_, CUTTERS["holder"])
+    said["round"] = [clearances(round_.samples, CUTTERS["holder"], found, round_.conditions),
+                     least_clearance(round_.samples, CUTTERS["holder"], found, round_.conditions)]  # fmt: skip
     nothing = replace(reach, verdict=np.full(len(samples), UNJUDGED, np.uint8))
     said["nothing"] = [
         clearances(samples, cutter, nothing, made.conditions),

@@ -14,7 +14,7 @@ from cad_io.arrays import Triangles
 from cad_io.errors import CadIoError
 from cad_io.kernel.assembly import Node
 from cad_io.part.orient import orient
-from plan_cutters import Cutter, Scene
+from plan_cutters import Cutter, Machine, Scene
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.clamping import Chuck, Vise, requested
 from plan_cutters.domain.fixture import Fixture
@@ -30,7 +30,7 @@ from plan_cutters.scene.clamping import held as placed_by
 from plan_cutters.scene.copied import keeps as keeps_setup
 from plan_cutters.scene.copied import some_of, with_copies
 from plan_cutters.scene.covering import coverings, sheets
-from plan_cutters.scene.faces import choose, face_numbers, ignored_faces, ignored_words, select_faces
+from plan_cutters.scene.faces import choose, face_numbers, grammar, ignored_faces, ignored_words, select_faces
 from plan_cutters.scene.fixtures import body_near, joined
 from plan_cutters.scene.gripped import at_jaws, held_bodies, material_bodies, on_ledges, unheld_bodies
 from plan_cutters.scene.inside_material import cover, inside_bodies, inside_material, voids
@@ -414,6 +414,7 @@ def test_choices_of_faces(name, keeps):
     of, said = part(name), {}
     for word in WORD:
         said[word] = [said_by(choose, of, word, ignored, ("x",)) for ignored in ((), (2, 3))]
+    said["grammar"] = [said_by(grammar, word, "--faces") for word in WORD]
     said["none"] = choose(of, None, (), ())
     said["objects"] = [said_by(face_numbers, of, each) for each in (1, [2, 1], "F1", [of.face(1)], True, 3.5)]
     said["ignored"] = [said_by(ignored_faces, of, ignored_words(of, each)) for each in (None, "F1", ["F1", "blends"], (2,), "x")]
@@ -590,6 +591,12 @@ def test_copies(keeps):
             ],
         },
     )
+    machines = ("tilt:20", "trunnion-ac", "head-head-ca", "3-axis", "4-axis-a")
+    limits = [made.under(machine=Machine.parse(each)).setups for each in machines]
+    by_machine = [[keeps_setup(made, each, motion, made.patterns) for each in setups for motion in motions] for setups in limits]
+    ignoring = ready("plate", cutters=("D5.3L17F6S9",), grid=3, ignore="F1,F8")
+    left_out = [keeps_setup(ignoring, ignoring.conditions, motion, made.patterns) for motion in motions]
+    keeps("copies_limits", {"machines": by_machine, "ignored": left_out})
     buried = with_copies(replace(made, inside=np.zeros(len(made.samples), np.int32)), made.patterns).copies
     keeps("copies_inside", [buried.master, buried.motion, buried.frames, buried.verified, buried.group])
     shut = ready("plate", cutters=("D5.3L17F6S9",), spacing=2.1, setup=Placement(UP, clamped=("F1", "F3", "F7-F9")))
