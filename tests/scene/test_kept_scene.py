@@ -591,13 +591,22 @@ def test_copies(keeps):
             ],
         },
     )
-    machines = ("tilt:20", "trunnion-ac", "head-head-ca", "3-axis", "4-axis-a")
+    machines = ("tilt:20", "trunnion-ac", "head-head-ca", "nutating-bc")
     limits = [made.under(machine=Machine.parse(each)).setups for each in machines]
     by_machine = [[keeps_setup(made, each, motion, made.patterns) for each in setups for motion in motions] for setups in limits]
     ignoring = ready("plate", cutters=("D5.3L17F6S9",), grid=3, ignore="F1,F8")
     left_out = [keeps_setup(ignoring, ignoring.conditions, motion, made.patterns) for motion in motions]
     keeps("copies_limits", {"machines": by_machine, "ignored": left_out})
     buried = with_copies(replace(made, inside=np.zeros(len(made.samples), np.int32)), made.patterns).copies
+    # Points that are nearly where a motion carries others, and some that are not.
+    size = np.linalg.norm(part("plate").size)
+    off = (
+        np.random.default_rng(1).normal(size=made.samples.point.shape)
+        * size
+        * np.where(made.samples.face % 2, 3e-6, 2e-5)[:, None]
+    )
+    nearly = with_copies(replace(made, samples=replace(made.samples, point=made.samples.point + off)), made.patterns).copies
+    keeps("copies_nearly", [nearly.master, nearly.motion, nearly.frames])
     keeps("copies_inside", [buried.master, buried.motion, buried.frames, buried.verified, buried.group])
     shut = ready("plate", cutters=("D5.3L17F6S9",), spacing=2.1, setup=Placement(UP, clamped=("F1", "F3", "F7-F9")))
     keeps("copies_shut", [replace(shut.copies, motions=()), shut.shut])
