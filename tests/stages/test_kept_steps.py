@@ -76,14 +76,14 @@ def test_nodes_of_a_grid(closed_u, closed_v, keeps):
 
 def test_fields_of_axes(keeps):
     rng = np.random.default_rng(8)
-    u, v = np.array([0.0, 1.1, 2.3, 3.0]), np.array([0.0, 0.9, 2.0])
+    u, v = np.array([0.4, 1.5, 2.7, 3.4]), np.array([-0.3, 0.6, 1.7])
     axis = unit(0.3 * rng.normal(size=(4, 3, 3)) + [0.0, 0.0, 1.0])
     axis[3, 2] = np.nan
-    uv = np.concatenate([rng.uniform(-0.5, 4.5, (40, 2)), [[1.1, 0.9], [3.0, 1.0], [2.3, 2.0], [3.75, 2.7]]])
+    uv = np.concatenate([rng.uniform(-0.5, 4.5, (40, 2)), [[1.5, 0.6], [3.4, 1.0], [2.7, 1.7], [4.15, 2.4]]])
     span = np.resize([[0.3, 0.2], [0.9, 0.1], [0.0, 0.0], [1.2, 1.1], [2.5, 0.3]], uv.shape)
     said = {}
     for name, closed in (("open", (False, False)), ("closed", (True, False)), ("torus", (True, True))):
-        grid = FaceGrid(1, u, v, np.zeros((4, 3), np.int32), *closed, (0.0, 3.75, 0.0, 2.7))
+        grid = FaceGrid(1, u, v, np.zeros((4, 3), np.int32), *closed, (0.4, 4.15, -0.3, 2.4))
         field = AxisField.of(grid, axis)
         said[name] = {"lines": [field.u, field.v], "at": field.at(uv), "within": field.within(uv, span)}
     lone = AxisField(u[:1], v[:1], axis[:1, :1])
@@ -106,12 +106,13 @@ def test_room_to_the_gouging_bound(keeps):
     direction = unit(np.cross(normal, rng.normal(size=(30, 3))))
     tensor = tensors(normal, direction, 0.15 * rng.normal(size=(30, 2)))
     axis = unit(normal + 0.8 * rng.normal(size=(30, 3)))
-    axis[0] = normal[0]
+    axis[0], axis[7] = normal[0], -normal[7]
     said = {}
     for name, tool, conditions in (("flat", FLAT_END, under()), ("bull", Cutter.parse("D4L20rc0.6"), under("tilt:40")),
                                    ("ball", BALL, under(tilt=(np.radians(20.0), np.radians(50.0))))):  # fmt: skip
         context = Context.of(tool, conditions)
-        said[name] = [margin(axis, normal, tensor, context), *roomiest(normal, direction, tensor, axis, context)]
+        room = margin(axis, normal, tensor, context)
+        said[name] = [room, np.isneginf(room), *roomiest(normal, direction, tensor, axis, context)]
     keeps("room", said)
 
 
