@@ -300,7 +300,7 @@ def _rear(triangles: Triangles, p: Floats, n: Floats, radius: float) -> tuple[Ob
         # The nearest point of a triangle is no nearer than its nearest corner less its longest side.
         outside = (_least(distance) - side > within) | (_most(height) <= 0)
         inside = (_most(distance) <= within) & (_least(height) > 0)
-        small = ~outside & ~inside & (side <= smallest)
+        small = side <= smallest
         centre = offset[small].mean(axis=1)
         inside[small] = (_length(centre) <= within) & (centre @ n > 0)
         outside |= small & ~inside

@@ -1,0 +1,627 @@
+"""What the scene says of small parts is kept in `kept`: obstacles and fixtures, grips, material, choices of faces, setups."""
+
+import math
+from dataclasses import replace
+
+import cadquery as cq
+import numpy as np
+import pytest
+import trimesh
+from OCP.TopLoc import TopLoc_Location
+
+from cad_io import read_part
+from cad_io.arrays import Triangles
+from cad_io.errors import CadIoError
+from cad_io.kernel.assembly import Node
+from cad_io.part.orient import orient
+from plan_cutters import Cutter, Machine, Scene
+from plan_cutters.domain.assembly import assembly
+from plan_cutters.domain.clamping import Chuck, Vise, requested
+from plan_cutters.domain.fixture import Fixture
+from plan_cutters.domain.placement import Placement
+from plan_cutters.domain.verdicts import FIXTURE, INACCESSIBLE
+from plan_cutters.errors import PlanError
+from plan_cutters.options import Options
+from plan_cutters.scene import covering, solids, spacing
+from plan_cutters.scene import overlap as overlapping
+from plan_cutters.scene import surroundings as gathered
+from plan_cutters.scene.chuck_places import chuck_places
+from plan_cutters.scene.clamping import held as placed_by
+from plan_cutters.scene.copied import keeps as keeps_setup
+from plan_cutters.scene.copied import some_of, with_copies
+from plan_cutters.scene.covering import coverings, sheets
+from plan_cutters.scene.faces import choose, face_numbers, grammar, ignored_faces, ignored_words, select_faces
+from plan_cutters.scene.fixtures import body_near, joined
+from plan_cutters.scene.gripped import at_jaws, held_bodies, material_bodies, on_ledges, unheld_bodies
+from plan_cutters.scene.inside_material import cover, inside_bodies, inside_material, voids
+from plan_cutters.scene.obstacles import Obstacles, divided
+from plan_cutters.scene.overlap import overlap, overlaps, refuse_overlaps
+from plan_cutters.scene.setups import for_another_setup, notes_of_setups, stood_on
+from plan_cutters.scene.surroundings import surroundings
+from plan_cutters.scene.thickened import thickened
+from plan_cutters.scene.threads import in_chunks, with_company
+from plan_cutters.scene.vise_places import vise_places
+from plan_cutters.scene.workpiece import Workpiece, clipped, stands
+from plan_cutters.stages.judge import judge
+from tests.support.cad_parts import box, compound, cut, rod
+from tests.support.kept_parts import part, ready
+
+UP, DOWN, ASIDE = (0.0, 0.0, 1.0), (0.0, 0.0, -1.0), (0.6, 0.0, 0.8)
+
+
+def said_by(call, *given, **more):
+    """What a call returns, or the line with which it refuses."""
+    try:
+        return call(*given, **more)
+    except (PlanError, CadIoError, ValueError) as error:
+        return f"{type(error).__name__}: {error}"
+
+
+def of_obstacles(obstacles):
+    """Triangles, what they enclose and their tree; numbers of a process are none of it."""
+    return {
+        "triangles": obstacles.triangles, "weight": obstacles.weight, "boxes": obstacles.open_boxes, "gap": obstacles.gap,
+        "near": obstacles.near, "extent": obstacles._extent, "end": obstacles._end,
+        "solids": obstacles.solids._replace(key=0), "faces": obstacles.faces,
+    }  # fmt: skip
+
+
+def of_surroundings(around):
+    return {
+        "possible": of_obstacles(around.possible),
+        "certain": of_obstacles(around.certain),
+        "bodies": around.bodies,
+        "missing": around.missing,
+        "on": around.on_bodies,
+        "doubts": around.doubts,
+        "loose": around.loose,
+        "tolerance": [around.tolerance(each) for each in (1e-6, 0.01, 0.3)],
+        "one": around.certain is around.possible,
+        "called": [around.called(each) for each in (3, *(-1 - k for k in range(len(around.fixtures))))],
+        "fixtures": [
+            {
+                **{
+                    name: getattr(each, name)
+                    for name in ("number", "name", "body", "missing", "notes", "shown", "hold", "unheld")
+                },
+                "words": each.fixture.text,
+                "obstacles": each.obstacles.triangles,
+            }
+            for each in around.fixtures
+        ],
+    }
+
+
+@pytest.mark.parametrize("name", ["bodies", "open", "hollow", "bracket"])
+def test_what_stands_around_a_part(name, keeps):
+    of = part(name)
+    keeps(f"around_{name}", [of_surroundings(surroundings(of, 0.05)),
+                             of_surroundings(surroundings(of, 0.2, ignored=(2, 3), jobs=2))])  # fmt: skip
+
+
+@pytest.mark.parametrize("errors", [{2: 0.3}, {1: 0.04, 8: 2.5, 13: 9.9}])
+def test_what_stands_around_a_part_with_loose_faces(errors, keeps, monkeypatch):
+    real = gathered.tessellate
+    monkeypatch.setattr(gathered, "tessellate", lambda *given, **more: replace(real(*given, **more), loose=tuple(errors.items())))
+    keeps(f"loose_{len(errors)}", of_surroundings(surroundings(part("bodies"), 0.05)))
+
+
+def mesh(open_=False):
+    whole = trimesh.creation.box((4.2, 5.1, 3.3))
+    other = trimesh.creation.box((1.2, 1.1, 1.3), transform=trimesh.transformations.translation_matrix((7.0, 0.3, 0.1)))
+    other.invert()
+    if open_:
+        whole.update_faces(np.arange(len(whole.faces)) > 1)
+    return trimesh.util.concatenate([whole, other])
+
+
+FIXTURES = {
+    "words": ["box:7,9,11@18.1,1,-3,0,0,12", "cylinder:3,12@-6,4,-2,20,0,0", "table", "table:-4.5@0,0,-3,10,0,0"],
+    "meshes": [mesh(), mesh(open_=True)],
+    "vise": ["vise:46x25x65:3:17.3@8.65,6.95,0"],
+    "chuck": ["chuck:3x20:3:31@8.65,6.95,-9", "table:-30"],
+    "part": [part("open"), "table"],
+}
+
+
+@pytest.mark.parametrize("name", FIXTURES)
+def test_fixtures_around_a_part(name, keeps):
+    """Placed, joined with the part, for two setups and beside those of another one."""
+    words, side = Fixture.each_of(FIXTURES[name]), orient(part("bodies"), towards=UP, flip=False).sign
+    alone = surroundings(part("bodies"), 0.05)
+    both = [joined(alone, words, 0.05, {}, axis, words[:1], DOWN, sign=side) for axis in (UP, ASIDE)]
+    keeps(f"fixtures_{name}", [of_surroundings(both[0]), of_surroundings(both[1])["fixtures"], both[0].alone is alone])
+
+
+def plate_with_boss():
+    return cq.Workplane("XY").box(47.3, 31.1, 9.7).faces(">Z").workplane().rect(13.1, 11.7).extrude(6.2).edges("<Z").chamfer(0.8)
+
+
+def shaft():
+    return (
+        cq.Workplane("XY").circle(13.3).extrude(17.2).faces(">Z").workplane().circle(8.1).extrude(11.4).faces("<Z").chamfer(1.9)
+    )
+
+
+GRIPPED = {
+    "plate": plate_with_boss,
+    "shaft": shaft,
+    "hung": lambda: compound(box(31.3, 22.7, 12.2), box(9.1, 7.7, 5.3, (4.4, 6.2, -5.3))),
+    "two": lambda: compound(box(11.3, 22.7, 12.2), box(9.1, 21.2, 12.2, (11.3, 0.4, 0.0))),
+    "apart": lambda: compound(*(box(11.3, 22.7, 12.2, (14.1 * k, 0, 0)) for k in range(4))),
+    "tall": lambda: box(5.1, 4.3, 41.7),
+    "thin": lambda: cut(box(3.3, 44.1, 12.2), box(1.1, 40.0, 12.2, (0.0, 2.0, 5.0))),
+    "wide": lambda: rod(471.0, 30.0),
+    "wedge": lambda: cq.Workplane("XZ").polyline([(0, 0), (31, 0), (22, 15), (3, 15)]).close().extrude(19),
+    "odd": lambda: (
+        cq.Workplane("XY").circle(14).workplane(offset=22.0).circle(9).loft().cut(cq.Workplane("XY").circle(5.1).extrude(9))
+    ),
+    "round": lambda: cq.Workplane("XY").box(21.3, 17.7, 14.1, centered=False).edges("|Z").fillet(4.4),
+    "flats": lambda: cq.Workplane("XY").circle(15.2).extrude(21.0).intersect(cq.Workplane("XY").rect(24.2, 60).extrude(21.0)),
+}
+WORDS = ("vise", "vise:20x12x9:2", "vise:46x25x65:5", "vise:20x12x30:2", "chuck", "chuck:4x30:5", "chuck:2x9:8")
+
+
+@pytest.mark.parametrize("name", GRIPPED)
+def test_how_vises_and_chucks_hold_parts(name, keeps):
+    scene, said = Scene.of(read_part(GRIPPED[name]()), tolerance=0.3), {}
+    scene.surround()
+    for axis in (UP, (1.0, 0.0, 0.0), DOWN):
+        for word in WORDS if axis == UP else ("vise", "chuck"):
+            said[f"{word} {axis}"] = said_by(scene.hold, Fixture.parse(word), axis)
+    first = said["vise (0.0, 0.0, 1.0)"]
+    others = scene.for_targets(getattr(first, "grips", ())[:1] or (1,))
+    said["targets"] = [said_by(others.hold, Fixture.parse(word), UP) for word in ("vise", "chuck")]
+    keeps(
+        f"held_{name}",
+        {
+            key: replace(each, fixture=None) if not isinstance(each, str) else each
+            for key, each in said.items()
+            if key != "targets"
+        }
+        | {
+            "texts": [getattr(getattr(each, "fixture", None), "text", "") for each in said.values()],
+            "targets": [getattr(each, "words", each) for each in said["targets"]],
+        },
+    )
+
+
+@pytest.mark.parametrize("name", ["plate", "shaft", "hung", "two", "flats"])
+def test_places_of_vises_and_chucks(name, keeps):
+    made = read_part(GRIPPED[name]())
+    side, around = orient(made, towards=UP, flip=False).sign, surroundings(made, 0.05)
+    triangles = around.certain.triangles
+    planes = [face.number for face in made.faces if face.shape == "plane"]
+    bodies = material_bodies(around.bodies, side)
+    said = {"bodies": bodies}
+    for axis, targets in ((UP, ()), (ASIDE, (1, 2)), (DOWN, (3,))):
+        piece = Workpiece.of(triangles.vertex, triangles.face, side, planes, targets, axis, bodies)
+        said[str(axis)] = {
+            "piece": {
+                each: getattr(piece, each) for each in ("frame", "lowest", "normal", "area", "middle", "flat", "lowest_rows")
+            },
+            "outline": len(piece.outline),
+            "level": [piece.level(height) for height in (0.0, piece.flat, 5.3, 9.7)],
+        }
+        for kind, text in (("vise", None), ("vise", "46x25x65:1"), ("chuck", None), ("chuck", "5x11:2")):
+            asked = requested(kind, text, 1.0, kind)
+            places, refused = (vise_places if kind == "vise" else chuck_places)(piece, asked)
+            said[str(axis)][f"{kind} {text}"] = [
+                len(places),
+                places[:3],
+                [[each.rank, each.thin, each.firm, each.apart] for each in places[:5]],
+                refused[:4],
+            ]
+    keeps(f"places_{name}", said)
+
+
+def so_often(count, asked, which):
+    """What says yes so many times, and notes each."""
+    return lambda *given: asked.append(which) or asked.count(which) <= count
+
+
+def test_places_that_are_searched(keeps):
+    """Ribs with many walls: of the places some are in the way at once, of others that comes out by a search."""
+    ribs = [solids.box(np.array([8.3 * k, 0.3 * k, 0.0]), np.array([8.3 * k + 3.1, 21.0 - k, 9.4])) for k in range(5)]
+    face = np.concatenate([6 * k + np.tile(np.arange(1, 7), 2) for k in range(5)]).astype(np.int32)
+    bodies = [frozenset(range(1 + 6 * k, 7 + 6 * k)) for k in range(5)]
+    said = {}
+    for few, first, second in ((5, 0, 0), (5, 3, 2), (5, 0, 99), (5, 99, 0), (2, 0, 0), (0, 0, 12), (0, 0, 13), (0, 4, 11)):
+        piece = Workpiece.of(np.concatenate(ribs), face, np.ones(30), range(1, 31), (2, 9), UP, bodies[:few])
+        for word in ("vise", "vise:46x25x65:2"):
+            asked = []
+            found = said_by(placed_by, Fixture.parse(word), piece, so_often(first, asked, 0), so_often(second, asked, 1), 0.01)
+            said[f"{few} {first} {second} {word}"] = [
+                found if isinstance(found, str) else [found.fixture.text, found.words],
+                asked,
+            ]
+    keeps("searched", said)
+
+
+def test_what_lies_at_jaws(keeps):
+    rng = np.random.default_rng(4)
+    boxes = [
+        ((-9.2, -7.1, 0.0), (3.1, 5.2, 8.3)),
+        ((3.1, -6.0, 0.0), (9.2, 6.6, 7.7)),
+        ((-2.0, -2.0, 8.3), (2.2, 3.1, 12.0)),
+        ((-9.195, 7.0, 0.0), (9.19, 9.0, 2.0)),
+    ]
+    vertex = np.concatenate([solids.box(*np.array(each)) for each in boxes])
+    face = np.repeat(np.arange(1, 5), 12).astype(np.int32)
+    bodies = tuple(frozenset({k}) for k in range(1, 5))
+    said = {}
+    for name, clamping in (
+        ("vise", Vise(14.2, 25.0, 65.0, 3.0, 18.4)),
+        ("narrow", Vise(4.0, 9.0, 30.0, 2.0, 18.4)),
+        ("wide", Vise(30.0, 9.0, 30.0, 2.0, 18.43)),
+        ("chuck", Chuck(3, 20.0, 3.0, 18.4)),
+        ("four", Chuck(4, 20.0, 3.0, 18.2)),
+    ):
+        said[name] = {
+            "at": list(at_jaws(clamping, vertex, face, 0.0, clamping.grip)),
+            "ledges": on_ledges(clamping, vertex, face, 1e-6),
+            "held": [
+                sorted(held_bodies(clamping, vertex, face, bodies[:some], slack))
+                for some in (1, 2, 3, 4)
+                for slack in (0.0, 0.02, 0.3)
+            ],
+            "entered": [solids.entered(clamping, rng.uniform(-30, 30, (50, 3)) * [1, 1, 0.7], deep) for deep in (0.01, 2.0, 9.0)],
+            "triangles": [
+                solids.triangles_of(clamping, chord, shown=shown, above=above)
+                for chord, shown, above in (
+                    (0.05, False, -math.inf),
+                    (0.4, True, -math.inf),
+                    (0.05, False, -2.0),
+                    (0.05, False, 99.0),
+                )
+            ],
+        }
+        fixture = Fixture(clamping.word, (1.0, 0.5, -2.0, 0.0, 0.0, 15.0))
+        triangles = Triangles(fixture.placed(vertex), face, 0.01, ())
+        said[name]["unheld"] = unheld_bodies(clamping, fixture, triangles, bodies)
+        said[name]["near"] = body_near(clamping, fixture, 0.05, Obstacles(triangles)).triangles
+    keeps("jaws", said)
+
+
+def test_triangles_cut_and_divided(keeps):
+    rng = np.random.default_rng(12)
+    vertex, face = rng.uniform(-5, 5, (40, 3, 3)), np.arange(40, dtype=np.int32)
+    vertex[:6, :2, 2] = 1.0  # just on a limit
+    said = {"clipped": [clipped(vertex, face, np.array(axis), low, high) for axis, low, high in
+                        (((0.0, 0.0, 1.0), -1.0, 1.0), ((0.6, 0.0, 0.8), 0.3, 9.0))],
+            "stands": [stands(low, 3.0) for low in (0.0, 1.5, 1.6)]}  # fmt: skip
+    said["divided"] = [divided(vertex, np.full(3, -4.0), np.array([3.0, 4.0, 1.0]), 1.7, most) for most in (None, 30, 40, 41)]
+    needle = vertex[:3].copy()
+    needle[0, 1] = needle[0, 0]
+    needle[1, 2] = 0.5 * (needle[1, 0] + needle[1, 1]) + [0, 0, 1e-12]
+    needle[2, 2] = 0.3 * needle[2, 0] + 0.7 * needle[2, 1] + [0, 0, 1e-3]
+    said["thickened"] = [thickened(each, error) for each in (vertex[:5], needle, vertex[:0]) for error in (0.0, 0.3)]
+    said["sides"] = [
+        solids.sides_of(radius, chord) for radius, chord in ((9.0, 0.01), (1.0, 2.0), (1.0, 0.9), (500.0, 1e-6), (7.7, 0.3))
+    ]
+    said["prisms"] = [solids.cylinder(3.3, 4.1, 9), solids.strip(np.array([[0.0, 0.0], [2.2, 0.1], [3.0, 1.4]]),
+                      np.array([[0.1, 2.0], [2.0, 2.2], [2.4, 3.3]]), -1.0, 2.5)]  # fmt: skip
+    keeps("cut", said)
+
+
+def test_cutters_in_what_encloses(keeps):
+    """Whether cutters that touch no skin lie in a body, with loose skins and open ones, and among fixtures."""
+    rng, said = np.random.default_rng(9), {}
+    for name, around in (
+        ("bodies", surroundings(part("bodies"), 0.05)),
+        ("open", surroundings(part("bodies"), 0.05, ignored=(2,))),
+        ("sunk", surroundings(part("sunk"), 0.05)),
+        ("fixture", joined(surroundings(part("sunk"), 0.05), Fixture.each_of(["box:40,40,9@-9,-9,15"]), 0.05, {})),
+    ):
+        tool = assembly(Cutter.parse("D1L3"), 0.0, 0.0)
+        point, normal = rng.uniform(-2, 19, (60, 3)), np.tile(UP, (60, 1))
+        direction, tilt = np.tile((1.0, 0.0, 0.0), (60, 1)), rng.uniform(0, 1.5, 60)
+        said[name] = [
+            each.holds(tool, point, normal, direction, tilt, certain=certain)
+            for each in (around.possible, around.certain)
+            for certain in (False, True)
+        ]
+        said[name] += [
+            around.possible.skin.weight,
+            [len(around.certain.skin_of(body).triangles) for body in around.bodies],
+            around.possible.wide_tree._asdict(),
+        ]
+        loose = replace(around.possible, gap=3.0)
+        said[name] += [loose.solids._replace(key=0), loose._extent]
+    for broken in (
+        Triangles(np.zeros((0, 3, 3)), np.zeros(0, np.int32), 0.0, ()),
+        Triangles(np.full((1, 3, 3), np.nan), np.ones(1, np.int32), 0.0, ()),
+    ):
+        said[f"broken {len(broken)}"] = said_by(Obstacles, broken)
+    keeps("encloses", said)
+
+
+def test_fixtures_in_the_part(keeps, monkeypatch):
+    monkeypatch.setattr(overlapping, "_APART", 1 / 16)
+    alone = surroundings(part("bodies"), 0.05)
+    around, said = alone.certain, {}
+    for name, word in (("deep", "box:6,5,4@-3,2,1"), ("barely", "box:6,5,4@-5.995,2,1"), ("touching", "box:6,5,4@-6,2,1"),
+                       ("far", "box:6,5,4@-60,2,1"), ("round", "cylinder:2.2,9@13.1,3.3,5.5"), ("within", "box:2,2,2@13,1,2"),
+                       ("around", "box:60,60,60@-20,-20,-20"), ("vise", "vise:46x25x65:3:16.9@8.65,6.95,0")):  # fmt: skip
+        both = joined(alone, Fixture.each_of([word]), 0.05, {})
+        mine = both.fixtures[0].obstacles
+        said[name] = [overlap(around, mine, 0.01), overlaps(around, mine, 0.01), said_by(refuse_overlaps, both, 0.01)]
+    said["sheet"] = overlap(Obstacles(around.triangles), mine, 0.01)
+    keeps("overlaps", said)
+
+
+def test_what_lies_in_material(keeps, monkeypatch):
+    said = {}
+    for name in ("open", "hollow", "bodies"):
+        of = part(name)
+        options = Options.of({"cutters": "D3L18", "faces": "all", "spacing": 1.7, "area_budget": 0, "jobs": 2})
+        around, side = surroundings(of, 0.05), orient(of, towards=UP, flip=False)
+        samples = spacing.sampled(of, side, options, [face.number for face in of.faces], options.judged).samples
+        found = inside_material(samples, side, around.bodies, around.certain, 0.01)
+        loose = replace(around.certain, triangles=replace(around.certain.triangles, loose=((8, 1.0),)))
+        held = joined(around, Fixture.each_of(["box:9,9,4@4,4,6"]), 0.05, {})
+        out = [cover(samples.point[k], samples.normal[k], around.certain, body) for k in range(0, len(samples), 9)
+               for body in (None, *around.bodies)]  # fmt: skip
+        said[name] = {
+            "inside": found, "voids": voids(around.bodies, side), "no surface": inside_bodies(found, around.bodies, side),
+            "loose": inside_material(samples, side, around.bodies, loose, 0.01),
+            "known": inside_material(samples, side, held.enclosing, held.certain, 0.3, 2, known=found), "out": out,
+        }  # fmt: skip
+    out = [
+        cover(np.array(point), np.array(UP), held.certain, body)
+        for point in ((5.0, 5.0, 7.0), (8.1, 8.2, 9.9), (12.9, 4.1, 6.2), (5.0, 5.0, 11.0)) for body in (None, *held.enclosing)
+    ]  # fmt: skip
+    said["out of a fixture"] = out
+    made = ready("bodies", cutters=("D3L18",), grid=4)
+    said["covers"] = [*coverings(made), sheets(made)]
+    # The same as components, of which two have one name.
+    rooms = {number: f"a/{'b' if number < 13 else 'c'}" for number in range(1, 19)}
+    monkeypatch.setattr(covering, "component_of", lambda tree: rooms)
+    monkeypatch.setattr(
+        covering, "faces_of", lambda tree, name: {n for n, path in rooms.items() if f"/{path}".endswith(f"/{name}")}
+    )
+    said["named"] = [*coverings(made)]
+    standing = ready("bodies", cutters=("D3L18",), grid=9, patterns=False)
+    said["standing"] = [*coverings(standing), sheets(standing)]
+    keeps("material", said)
+
+
+WORD = (
+    "sculptured",
+    "blends",
+    "sculptured,blends",
+    "all",
+    "F2",
+    "2-4,7",
+    "!F1-F9",
+    "all,3",
+    "blends, 5",
+    "name:^B",
+    "color:#ff0000",
+    "!sculptured",
+    "F0",
+    "3-1",
+    "99",
+    "",
+    "nobody",
+    "name:(",
+    "component:x",
+)
+
+
+@pytest.mark.parametrize("name", ["bracket", "patch", "drum"])
+def test_choices_of_faces(name, keeps):
+    of, said = part(name), {}
+    for word in WORD:
+        said[word] = [said_by(choose, of, word, ignored, ("x",)) for ignored in ((), (2, 3))]
+    said["grammar"] = [said_by(grammar, word, "--faces") for word in WORD]
+    said["none"] = choose(of, None, (), ())
+    said["objects"] = [said_by(face_numbers, of, each) for each in (1, [2, 1], "F1", [of.face(1)], True, 3.5)]
+    said["ignored"] = [said_by(ignored_faces, of, ignored_words(of, each)) for each in (None, "F1", ["F1", "blends"], (2,), "x")]
+    first, other = Placement(UP, clamped=("F1",)), Placement(DOWN, clamped=("F1-F2",))
+    for word in ("all", "F1"):
+        said[f"held {word}"] = [said_by(choose, of, word, (), (), first, others, {3: 1} if others else {})
+                                for others in ((), (other,), (None,))]  # fmt: skip
+    said["repeated"] = [said_by(select_faces, of.faces, word, ignored=(2,), repeated={2: 1}) for word in ("F2", "F1-F2", "all")]
+    keeps(f"faces_{name}", said)
+
+
+def test_choices_of_components(keeps):
+    rim, hub = Node("ring", "rim", TopLoc_Location(), faces=(1, 2)), Node("hub", "", TopLoc_Location(), faces=(3,))
+    tree = (Node("wheel", "left", TopLoc_Location(), children=(rim, hub)), Node("ring", "", TopLoc_Location(), faces=(4, 5)))
+    faces = part("drum").faces
+    words = ("left/rim", "rim", "ring", "wheel", "hub", "/left/", "left/", "/", "", "nobody")
+    said = {word: said_by(select_faces, faces, f"component:{word}", tree=tree) for word in words}
+    said |= {f"no names {word}": said_by(select_faces, faces, f"component:{word}") for word in ("rim", "")}
+    keeps("components", said | {"long": said_by(select_faces, faces, "x" * 70), "sixty": said_by(select_faces, faces, "x" * 60)})
+
+
+def placed():
+    """Two setups of a block: jaws and a table, and jaws at other places; what is held differs."""
+    first = Placement(UP, clamped=("F1",), fixtures=tuple(map(Fixture.parse, ("box:9,20,11@17.3,-3,-7", "table:-7.5"))))
+    other = Placement(ASIDE, x=(0.0, 1.0, 0.0), clamped=("F2",), fixtures=(Fixture.parse("box:5,20,11@-5,-3,-7"),))
+    return {"setup": first, "other_setups": (other, DOWN)}
+
+
+def proposed():
+    held = Placement(UP, fixtures=(Fixture.parse("vise"),), stands_on=("F2",), proposed=True)
+    return {"setup": held, "other_setups": (Placement(DOWN, fixtures=(Fixture.parse("vise"),)),)}
+
+
+def standing():
+    held = Placement(UP, fixtures=(Fixture.parse("box:9,20,11@17.3,-3,-7"),), stands_on=("F2", "F4"), proposed=True)
+    return {"setup": held, "other_setups": (Placement(DOWN, stands_on=("F3",)), ASIDE)}
+
+
+@pytest.mark.parametrize("name", ["placed", "proposed", "standing", "plain"])
+def test_setups_of_a_part(name, keeps):
+    how = {
+        "placed": placed,
+        "proposed": proposed,
+        "standing": standing,
+        "plain": lambda: {"other_setups": (DOWN,), "fixtures": ("table",)},
+    }[name]()
+    made = ready("bodies", cutters=("D3L18",), grid=4, **how)
+    said = {}
+    for k, conditions in enumerate(made.setups):
+        there = made.there(k)
+        said[f"setup {k}"] = {
+            "frame": conditions.frame,
+            "tolerance": conditions.tolerance,
+            "around": of_surroundings(conditions.surroundings)["fixtures"],
+            "inside": there.inside,
+            "clamped": there.clamped,
+            "shut": there.shut,
+            "alike": there.alike,
+            "alone": made.alone(k).axes[:1],
+            "ranges": conditions.ranges,
+        }
+    lost = judge(made, made.cutters[0])
+    reason = np.where(np.arange(len(lost.reason)) % 2 == 0, FIXTURE, lost.reason).astype(np.uint8)
+    lost = replace(lost, verdict=np.where(lost.reached, np.uint8(1), np.uint8(INACCESSIBLE)).astype(np.uint8), reason=reason)
+    said |= {
+        "axes": made.axes,
+        "machinable": made.machinable,
+        "somewhere": made.somewhere,
+        "finished": made.finished,
+        "alike": made.alike,
+        "stood on": stood_on(made),
+        "another": for_another_setup(made, lost).reason,
+        "notes": [*notes_of_setups(made)],
+        "under": made.under(tolerance=0.3).others[0].conditions.tolerance,
+        "exempt": replace(made, exempt=np.arange(len(made.samples)) % 3 == 0).finished,
+    }
+    keeps(f"setups_{name}", said)
+
+
+def test_scenes(keeps):
+    of, said = part("bodies"), {}
+    scene = Scene.of(of, ignore="F3", tolerance=0.02, fixtures=["table"])
+    for name, options in (
+        ("same", {"tolerance": 0.02}),
+        ("other", {"tolerance": 0.01}),
+        ("setup", {"setup": (0, 0, 2)}),
+        ("aside", {"setup": "x"}),
+        ("flip", {"flip": True}),
+        ("unknown", {"grid": 3}),
+        ("zero", {"tolerance": 0}),
+    ):
+        found = said_by(Scene.of, scene if name != "zero" else of, **options)
+        said[name] = found if isinstance(found, str) else [found is scene, found.options["tolerance"]]
+    for axis in (UP, ASIDE):
+        said[str(axis)] = [
+            of_surroundings(scene.surround_in(axis, (), (Fixture.parse("table:-2"),)))["fixtures"],
+            of_surroundings(scene.surround_held(axis, "table"))["fixtures"],
+            scene.same_sides(axis),
+        ]
+    said["closer"] = scene.surround_closer(0.4).possible.triangles
+    double = read_part(compound(box(7.1, 5.2, 3.3), box(7.1, 5.2, 3.3)))
+    again = Scene.of(double, setup=ASIDE, flip=True)
+    said["repeated"] = [
+        said_by(choose, again.part, word, again.ignored, (), repeated=again.repeated) for word in ("all", "F1", "F9")
+    ]
+    several = Scene.of(read_part(compound(box(7.1, 5.2, 3.3), box(7.1, 5.2, 3.3), box(7.1, 5.2, 3.3, (0, 0, 3.3)))))
+    said["several"] = [
+        several.ignored,
+        several.repeated,
+        several.doubles,
+        choose(several.part, "all", several.ignored, (), repeated=several.repeated),
+    ]
+    half = Scene.of(double, ignore=("F1", "F7"))
+    said["half"] = [half.ignored, half.repeated, half.doubles, choose(double, "all", half.ignored, (), repeated=half.repeated)]
+    bare = scene.clamped(())
+    said["clamped"] = [
+        scene.clamped(("table",)) is scene,
+        len(bare.around.fixtures),
+        bare.tolerance,
+        bare.turned,
+        len(bare.surround_closer(0.2).fixtures),
+    ]
+    said["word"] = said_by(Scene.of, of, setup=Placement(UP))
+    said["double"] = [again.ignored, again.repeated, again.doubles, again.turned_faces(), again.turned_to(DOWN).setup]
+    said["sheets"] = [Scene.of(part("open"), setup=axis).turned_faces() for axis in (UP, DOWN, (1.0, 0.0, 0.0))]
+    keeps("scenes", said)
+
+
+def test_samples_where_nobody_says_how_many(keeps, monkeypatch):
+    of, said = part("bracket"), {}
+    side = orient(of, towards=UP, flip=False)
+    faces = [face.number for face in of.faces]
+    for cutters in (("D3L20",), ("D9L20", "D12L20"), ("D40L60",), ("D0.1L2",)):
+        said[str(cutters)] = spacing.default_spacing(of, side, faces, [Cutter.parse(each) for each in cutters])
+    monkeypatch.setattr(spacing, "BUDGET", 900)
+    said["coarse"] = spacing.default_spacing(of, side, faces[:5], [Cutter.parse("D3L20")])
+    for asked in ({"grid": 3}, {"spacing": 2.2}, {}):
+        options = Options.of({"cutters": "D9L20", "faces": "all", **asked})
+        found = spacing.sampled(of, side, options, faces[:6], options.judged)
+        said[str(asked)] = [
+            found.samples.point,
+            found.samples.area,
+            found.spacing,
+            found.coarser,
+            spacing.spacing_key(options, options.judged),
+        ]
+    for most in ("100", "x", ""):
+        monkeypatch.setenv(spacing.MOST, most)
+        for asked in ({"grid": 3}, {"spacing": 0.01}, {"spacing": 9.0}, {}):
+            said[f"{most} {asked}"] = said_by(spacing.affordable, of, faces[:6], Options.of({"cutters": "D9L20", **asked}))
+    keeps("spacing", said)
+
+
+def test_copies(keeps):
+    made = ready("plate", cutters=("D5.3L17F6S9",), spacing=2.1, machine="tilt:47", other_setups=(DOWN, (1.0, 0.0, 0.0)))
+    rows = np.arange(0, len(made.samples), 7)
+    some, copies = some_of(made, rows), made.copies
+    motions = copies.motions
+    held = replace(
+        made.conditions, surroundings=joined(made.conditions.surroundings, Fixture.each_of(["box:1,1,1@70,0,0"]), 0.05, {})
+    )
+    moved = copies.moved(np.flatnonzero(copies.copy)[:40], made.samples.normal[copies.master[copies.copy][:40]])
+    keeps(
+        "copies",
+        {
+            "copies": replace(copies, motions=()),
+            "follow": [copies.there(k).follow for k in range(3)],
+            "moved": moved,
+            "linear": np.array([each.linear for each in motions]),
+            "shift": np.array([each.shift for each in motions]),
+            "some": [some.samples, some.surface_class, some.inside, some.shut],
+            "keeps": [
+                [keeps_setup(made, conditions, each, made.patterns) for each in motions] for conditions in (*made.setups, held)
+            ],
+        },
+    )
+    machines = ("tilt:20", "trunnion-ac", "head-head-ca", "nutating-bc")
+    limits = [made.under(machine=Machine.parse(each)).setups for each in machines]
+    by_machine = [[keeps_setup(made, each, motion, made.patterns) for each in setups for motion in motions] for setups in limits]
+    ignoring = ready("plate", cutters=("D5.3L17F6S9",), grid=3, ignore="F1,F8")
+    left_out = [keeps_setup(ignoring, ignoring.conditions, motion, made.patterns) for motion in motions]
+    keeps("copies_limits", {"machines": by_machine, "ignored": left_out})
+    buried = with_copies(replace(made, inside=np.zeros(len(made.samples), np.int32)), made.patterns).copies
+    # Points that are nearly where a motion carries others, and some that are not.
+    size = np.linalg.norm(part("plate").size)
+    off = (
+        np.random.default_rng(1).normal(size=made.samples.point.shape)
+        * size
+        * np.where(made.samples.face % 2, 3e-6, 2e-5)[:, None]
+    )
+    nearly = with_copies(replace(made, samples=replace(made.samples, point=made.samples.point + off)), made.patterns).copies
+    keeps("copies_nearly", [nearly.master, nearly.motion, nearly.frames])
+    keeps("copies_inside", [buried.master, buried.motion, buried.frames, buried.verified, buried.group])
+    shut = ready("plate", cutters=("D5.3L17F6S9",), spacing=2.1, setup=Placement(UP, clamped=("F1", "F3", "F7-F9")))
+    keeps("copies_shut", [replace(shut.copies, motions=()), shut.shut])
+    coarse = ready("plate", cutters=("D5.3L17F6S9",), grid=3)
+    assert coarse.copies is None
+
+
+def test_work_in_pieces(keeps):
+    rows = np.array([0, 5, 99, 100, 101, 250, 511, 512, 513, 1024, 1300])
+    pieces, told = [], []
+
+    def work(piece):
+        pieces.append(piece)
+        return int(piece.sum())
+
+    totals = [in_chunks(work, rows, 1, lambda *each: told.append(each), chunk, fixed=fixed) for chunk in (3, 11, 100, 512)
+              for fixed in (False, True)]  # fmt: skip
+    keeps("pieces", {"pieces": pieces, "told": told, "totals": totals, "company": with_company(rows[:5], 1400)})
