@@ -11,19 +11,19 @@ from plan_cutters.domain.nesting import handed, order
 from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.verdicts import CONVEX
+from plan_cutters.judging.between import in_each
+from plan_cutters.judging.decompose import march_differs
+from plan_cutters.judging.judge import judge
+from plan_cutters.judging.judge_once import JudgeOnce
+from plan_cutters.judging.other_setups import in_setup
+from plan_cutters.judging.posture_maps import posture_maps
+from plan_cutters.judging.reasons import Reasons
+from plan_cutters.judging.setups import AXES, within_limits
+from plan_cutters.judging.sharp_edges import exempt, strips, with_sharp_edges
+from plan_cutters.judging.travel import travels
+from plan_cutters.judging.witness import witnesses
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.work import Work
-from plan_cutters.stages.between import in_each
-from plan_cutters.stages.decompose import march_differs
-from plan_cutters.stages.judge import judge
-from plan_cutters.stages.judge_once import JudgeOnce
-from plan_cutters.stages.other_setups import in_setup
-from plan_cutters.stages.posture_maps import posture_maps
-from plan_cutters.stages.reasons import Reasons
-from plan_cutters.stages.setups import AXES, within_limits
-from plan_cutters.stages.sharp_edges import exempt, strips, with_sharp_edges
-from plan_cutters.stages.travel import travels
-from plan_cutters.stages.witness import witnesses
 from tests.support.kept_parts import ready
 
 SLIM = "D3.1L23F7N2.7x9S4.4HR9.3L31"

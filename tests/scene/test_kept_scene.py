@@ -21,18 +21,16 @@ from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.verdicts import FIXTURE, INACCESSIBLE
 from plan_cutters.errors import PlanError
+from plan_cutters.judging.judge import judge
 from plan_cutters.options import Options
-from plan_cutters.scene import covering, solids, spacing
+from plan_cutters.scene import covering, spacing
 from plan_cutters.scene import overlap as overlapping
 from plan_cutters.scene import surroundings as gathered
-from plan_cutters.scene.chuck_places import chuck_places
-from plan_cutters.scene.clamping import held as placed_by
 from plan_cutters.scene.copied import keeps as keeps_setup
 from plan_cutters.scene.copied import some_of, with_copies
 from plan_cutters.scene.covering import coverings, sheets
 from plan_cutters.scene.faces import choose, face_numbers, grammar, ignored_faces, ignored_words, select_faces
 from plan_cutters.scene.fixtures import body_near, joined
-from plan_cutters.scene.gripped import at_jaws, held_bodies, material_bodies, on_ledges, unheld_bodies
 from plan_cutters.scene.inside_material import cover, inside_bodies, inside_material, voids
 from plan_cutters.scene.obstacles import Obstacles, divided
 from plan_cutters.scene.overlap import overlap, overlaps, refuse_overlaps
@@ -40,9 +38,12 @@ from plan_cutters.scene.setups import for_another_setup, notes_of_setups, stood_
 from plan_cutters.scene.surroundings import surroundings
 from plan_cutters.scene.thickened import thickened
 from plan_cutters.scene.threads import in_chunks, with_company
-from plan_cutters.scene.vise_places import vise_places
-from plan_cutters.scene.workpiece import Workpiece, clipped, stands
-from plan_cutters.stages.judge import judge
+from plan_cutters.setups import solids
+from plan_cutters.setups.chuck_places import chuck_places
+from plan_cutters.setups.clamping import held as placed_by
+from plan_cutters.setups.gripped import at_jaws, held_bodies, material_bodies, on_ledges, unheld_bodies
+from plan_cutters.setups.vise_places import vise_places
+from plan_cutters.setups.workpiece import Workpiece, clipped, stands
 from tests.support.cad_parts import box, compound, cut, rod
 from tests.support.kept_parts import part, ready
 

@@ -19,6 +19,8 @@ import numpy as np
 SHARE, ZERO = 1e-6, 1e-9
 #: Arrays that are longer are told by their shape and sums.
 LONG = 24
+#: Most columns of a line of a file.
+WIDE = 160
 
 
 def _array(value: np.ndarray) -> object:
@@ -75,12 +77,23 @@ def differences(kept: object, found: object, at: str = "") -> list[str]:
     return [] if kept == found and type(kept) is type(found) else [f"{at}: {kept!r} -> {found!r}"]
 
 
+def _text(told: Any, beneath: str = "") -> str:
+    """Write it as JSON: what fits into a line stands in one."""
+    line = json.dumps(told, sort_keys=True)
+    if len(beneath) + len(line) <= WIDE or not isinstance(told, dict | list) or not told:
+        return line
+    pieces = [("", each) for each in told] if isinstance(told, list) else [(f"{json.dumps(k)}: ", told[k]) for k in sorted(told)]
+    lines = [f"{beneath} {name}{_text(each, beneath + ' ')}" for name, each in pieces]
+    brackets = "[]" if isinstance(told, list) else "{}"
+    return "\n".join([brackets[0], ",\n".join(lines), beneath + brackets[1]])
+
+
 def compare(config: Any, path: Path, found: object) -> None:
     """Compare with what is kept in a file, or keep it (`--keep`)."""
     told = json.loads(json.dumps(plain(found)))
     if config.getoption("keep"):
         path.parent.mkdir(exist_ok=True)
-        path.write_text(json.dumps(told, indent=1, sort_keys=True) + "\n")
+        path.write_text(_text(told) + "\n")
         return
     assert path.exists(), f"{path.name} is not kept yet: pytest --keep"
     lines = differences(json.loads(path.read_text()), told)
