@@ -239,10 +239,10 @@ def test_a_name_of_a_face_is_that_face(block):
 
 
 def test_a_choice_says_what_it_left_out(block):
-    """Targets, what is ignored, and in the notes whatever was not asked for by number."""
+    """Targets, what is ignored, and whether any of them is sculptured where they were not asked for by number."""
     chosen = choose(block, None, frozenset({2}), ("F2",))
     assert (chosen.targets, chosen.ignored, chosen.ignore) == ((1, 3, 4, 5, 6), (2,), ("F2",))
-    assert [each.code for each in chosen.notes] == ["faces_none_sculptured", "faces_ignored"]
+    assert (chosen.unshaped, chosen.clamped) == (True, ())
     assert chosen.free_form == 0.0
     alone = choose(block, "F4", frozenset(), ())
-    assert (alone.targets, alone.asked, alone.notes) == ((4,), "F4", ())
+    assert (alone.targets, alone.asked, alone.unshaped) == ((4,), "F4", False)

@@ -18,9 +18,10 @@ from plan_cutters.options import Options
 from plan_cutters.plan_file import notes
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.notes import Note
+from plan_cutters.scene.faces import clamped_faces, repeated_groups
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene
-from plan_cutters.scene.setups import notes_of_setups
+from plan_cutters.scene.setups import places
 from plan_cutters.scene.spacing import BUDGET
 from plan_cutters.scene.surroundings import PlacedFixture, Surroundings
 
@@ -38,8 +39,8 @@ def notes_of(ready: Prepared, entries: Sequence[CutterEntry]) -> list[Note]:
         *_of_obstacles(scene.part, surroundings),
         *_of_fixtures(surroundings.fixtures, options.shared_fixtures, several=bool(options.other_setups)),
         *_of_other_fixtures(ready),
-        *ready.chosen.notes,
-        *notes_of_setups(ready),
+        *_of_choice(ready),
+        *_of_setups(ready),
         *_of_several_setups(ready),
         *_of_spacing(ready),
         *_of_travel(options),
@@ -56,6 +57,35 @@ def noted_coarser(options: Options, plan: Plan) -> Plan:
     """The plan with a note that the density of samples in some options was not taken, for it asks too much of this part."""
     wanted = f"--spacing {options.spacing:g}" if options.grid is None else f"--grid {options.grid}"
     return noted(plan, notes.coarser_than_requested(wanted, plan.samples.count, plan.samples.max_gap_mm))
+
+
+def _of_choice(ready: Prepared) -> Iterator[Note]:
+    """Say what the choice of faces leaves out, and that no target is sculptured."""
+    chosen = ready.chosen
+    if chosen.unshaped:
+        yield notes.faces_none_sculptured(len(chosen.targets))
+    if named := set(chosen.ignored) - chosen.repeated.keys():
+        yield notes.faces_ignored([f"F{n}" for n in sorted(named)])
+    bodies, faces = repeated_groups(ready.scene.part, chosen.repeated)
+    for body, mine, stays, own in bodies:
+        yield notes.repeated_body(body, ranges(mine), stays, ranges(own))
+    if faces:
+        yield notes.repeated_faces(ranges(faces), ranges({chosen.repeated[n] for n in faces}), len(faces))
+    if chosen.clamped:
+        yield notes.faces_clamped([f"F{n}" for n in chosen.clamped])
+
+
+def _of_setups(ready: Prepared) -> Iterator[Note]:
+    """Say which faces are held in some setups alone, and which setups hold the part with nothing."""
+    if not ready.others or ready.options.held_alike:
+        return
+    axes = (ready.scene.setup, *ready.options.other_setups)
+    for axis, place, conditions in zip(axes, places(ready.options), ready.setups, strict=True):
+        held = sorted(clamped_faces(ready.scene.part, place, ready.scene.repeated) & set(ready.chosen.targets))
+        if held:
+            yield notes.faces_clamped_there([f"F{number}" for number in held], axis_words(axis))
+        if not conditions.surroundings.fixtures:
+            yield notes.setup_without_fixtures(axis_words(axis))
 
 
 def _of_process(options: Options) -> Iterator[Note]:

@@ -9,12 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 from cad_io.arrays import FaceInfo
 from plan_cutters.domain.checks import choice
-from plan_cutters.domain.figures import listed, ranges
+from plan_cutters.domain.figures import listed
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.preference import free_form_share
 from plan_cutters.errors import OptionError
-from plan_cutters.plan_file import notes
-from plan_cutters.plan_file.notes import Note
 
 if TYPE_CHECKING:
     from cad_io import Part
@@ -50,8 +48,10 @@ class Chosen:
         The words for `targets`.
     ignore : tuple of str
         The words for `ignored`.
-    notes : tuple of Note
-        What the plan must say of the choice.
+    unshaped : bool
+        The targets are all faces for which no list was given, and none of them that can be judged is sculptured.
+    clamped : tuple of int
+        Targets that are held in all setups.
     blends : frozenset of int
         Faces of the part that are fillets and rounds, whether chosen or not.
     free_form : float
@@ -64,7 +64,8 @@ class Chosen:
     ignored: tuple[int, ...]
     asked: str
     ignore: tuple[str, ...]
-    notes: tuple[Note, ...]
+    unshaped: bool = False
+    clamped: tuple[int, ...] = ()
     blends: frozenset[int] = frozenset()
     free_form: float = 0.0
     repeated: Mapping[int, int] = field(default_factory=dict)
@@ -104,38 +105,39 @@ def choose(
     """
     requested = _word(part, part.picked or DEFAULT if faces is None else faces, "--faces")
     targets = select_faces(part.faces, requested, tree=part.tree, ignored=ignored, blends=part.blends, repeated=repeated)
-    remarks = []
-    if _finished(requested) and _none_sculptured(part.faces[n - 1] for n in targets):
-        remarks.append(notes.faces_none_sculptured(len(targets)))
-    if named := set(ignored) - repeated.keys():
-        remarks.append(notes.faces_ignored([f"F{n}" for n in sorted(named)]))
-    remarks += _repeated(part, repeated)
+    unshaped = _finished(requested) and _none_sculptured(part.faces[n - 1] for n in targets)
     held = clamped_faces(part, placed, repeated).intersection(*[clamped_faces(part, each, repeated) for each in others])
-    if placed is not None and held:
-        if held.issuperset(targets):
-            raise OptionError(f"{placed.where} {_brief(', '.join(placed.clamped))} leaves no target face")
-        if clamped := [f"F{n}" for n in targets if n in held]:
-            remarks.append(notes.faces_clamped(clamped))
+    if placed is not None and held and held.issuperset(targets):
+        raise OptionError(f"{placed.where} {_brief(', '.join(placed.clamped))} leaves no target face")
+    clamped = tuple(n for n in targets if n in held) if placed is not None else ()
     share = free_form_share((part.faces[n - 1].shape, part.faces[n - 1].area) for n in targets)
-    return Chosen(targets, tuple(sorted(ignored)), requested, ignore, tuple(remarks), part.blends, share, dict(repeated))
+    return Chosen(targets, tuple(sorted(ignored)), requested, ignore, unshaped, clamped, part.blends, share, dict(repeated))
 
 
-def _repeated(part: "Part", repeated: Mapping[int, int]) -> Iterator[Note]:
-    """What is left out because it lies where others of the part lie: bodies, then faces of none of these."""
+def repeated_groups(
+    part: "Part", repeated: Mapping[int, int]
+) -> tuple[list[tuple[int, tuple[int, ...], int, tuple[int, ...]]], frozenset[int]]:
+    """What is left out because it lies where others of the part lie.
+
+    Returns
+    -------
+    bodies : list of (int, tuple of int, int, tuple of int)
+        A body and its faces, and the body that stands for it and its faces.
+    faces : frozenset of int
+        Faces of none of these bodies.
+    """
     from cad_io.part.repeats import repeats
 
-    out = set(repeated)
+    out, bodies_out = set(repeated), []
     for each in repeats(part):
         bodies = [*zip(each.bodies, each.faces, strict=False)]
         these = [(body, faces) for body, faces in bodies if out.issuperset(faces)]
         if not these or len(these) == len(bodies):
             continue
         stays, own = next(one for one in bodies if one not in these)
-        for body, faces in these:
-            yield notes.repeated_body(body, ranges(faces), stays, ranges(own))
+        bodies_out += [(body, faces, stays, own) for body, faces in these]
         out -= {n for _, faces in these for n in faces}
-    if out:
-        yield notes.repeated_faces(ranges(out), ranges({repeated[n] for n in out}), len(out))
+    return bodies_out, frozenset(out)
 
 
 def clamped_faces(part: "Part", placed: Placement | None, repeated: Mapping[int, int] = MappingProxyType({})) -> frozenset[int]:

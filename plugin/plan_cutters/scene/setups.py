@@ -1,6 +1,5 @@
 """Each setup with its own fixtures and clamped faces: what is in the way there, and where nothing can be machined."""
 
-from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -12,8 +11,6 @@ from plan_cutters.domain.placement import Placement, axis_words
 from plan_cutters.domain.verdicts import ANOTHER_SETUP, FIXTURE, Verdicts
 from plan_cutters.errors import FixtureError
 from plan_cutters.options import Options
-from plan_cutters.plan_file import notes
-from plan_cutters.plan_file.notes import Note
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.faces import clamped_faces
 from plan_cutters.scene.inside_material import inside_material
@@ -102,16 +99,3 @@ def for_another_setup(ready: Prepared, verdicts: Verdicts) -> Verdicts:
     if not mine.any():
         return verdicts
     return replace(verdicts, reason=np.where(mine, ANOTHER_SETUP, verdicts.reason).astype(np.uint8))
-
-
-def notes_of_setups(ready: Prepared) -> Iterator[Note]:
-    """Say which faces are held in some setups alone, and which setups hold the part with nothing."""
-    if not ready.others or ready.options.held_alike:
-        return
-    axes = (ready.scene.setup, *ready.options.other_setups)
-    for axis, place, conditions in zip(axes, places(ready.options), ready.setups, strict=True):
-        held = sorted(clamped_faces(ready.scene.part, place, ready.scene.repeated) & set(ready.chosen.targets))
-        if held:
-            yield notes.faces_clamped_there([f"F{number}" for number in held], axis_words(axis))
-        if not conditions.surroundings.fixtures:
-            yield notes.setup_without_fixtures(axis_words(axis))
