@@ -17,6 +17,7 @@ from tests.support.traced import Sums
         ({"a": 1.0}, {"a": 1.0, "b": None}),
         ([1, 2], [1, 2, 3]),
         (float("nan"), float("inf")),
+        (np.r_[np.arange(98.0), np.inf], np.r_[np.arange(98.0), -np.inf]),
         (True, 1),
         ("1", 1),
     ],

@@ -15,6 +15,7 @@ from cad_io.errors import CadIoError
 from cad_io.kernel.assembly import Node
 from cad_io.part.orient import orient
 from plan_cutters import Cutter, Machine, Scene
+from plan_cutters.document.notes import notes_of
 from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.clamping import Chuck, Vise, requested
 from plan_cutters.domain.fixture import Fixture
@@ -34,7 +35,7 @@ from plan_cutters.scene.fixtures import body_near, joined
 from plan_cutters.scene.inside_material import cover, inside_bodies, inside_material, voids
 from plan_cutters.scene.obstacles import Obstacles, divided
 from plan_cutters.scene.overlap import overlap, overlaps, refuse_overlaps
-from plan_cutters.scene.setups import for_another_setup, notes_of_setups, stood_on
+from plan_cutters.scene.setups import for_another_setup, stood_on
 from plan_cutters.scene.surroundings import surroundings
 from plan_cutters.scene.thickened import thickened
 from plan_cutters.scene.threads import in_chunks, with_company
@@ -488,7 +489,7 @@ def test_setups_of_a_part(name, keeps):
         "alike": made.alike,
         "stood on": stood_on(made),
         "another": for_another_setup(made, lost).reason,
-        "notes": [*notes_of_setups(made)],
+        "notes": notes_of(made, ()),
         "under": made.under(tolerance=0.3).others[0].conditions.tolerance,
         "exempt": replace(made, exempt=np.arange(len(made.samples)) % 3 == 0).finished,
     }

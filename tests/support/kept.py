@@ -36,7 +36,9 @@ def _array(value: np.ndarray) -> object:
     # the second sum notices what the first does not: values that change places
     sums = [own.sum(), (own * np.cos(at * 1.0)).sum(), np.abs(own).sum()] if len(own) else []
     ends = [own.min(), own.max()] if len(own) else []
-    return {"shape": list(value.shape), "known": int(known.sum()), "sums": [plain(each) for each in sums + ends]}
+    told = {"shape": list(value.shape), "known": int(known.sum()), "sums": [plain(each) for each in sums + ends]}
+    without_end = {"inf": int((flat == np.inf).sum()), "-inf": int((flat == -np.inf).sum())}
+    return told | {word: count for word, count in without_end.items() if count}
 
 
 def plain(value: Any) -> Any:
