@@ -77,8 +77,10 @@ def stated_by(question: "Question", options: "Options") -> "Question":
     }
     try:
         made = with_text(plan_of(json.dumps(question.document), "plan.json")).model_dump(mode="json")
-    except (PlanError, LookupError, ArithmeticError, ValueError) as error:
-        return replace(question, names=names, stated=stated, odd=getattr(error, "cause", None) or str(error))
+    except (PlanError, LookupError, ArithmeticError, ValueError, StopIteration) as error:
+        # Not every error has words.
+        odd = getattr(error, "cause", None) or f"its words cannot be made ({type(error).__name__}: {error})"
+        return replace(question, names=names, stated=stated, odd=odd)
     stated["text"], process = made["text"], made["process"]
     if process is not None:
         own = [{} if each["own"] is None else {"own": {"text": each["own"]["text"]}} for each in process["steps"]]

@@ -151,6 +151,19 @@ def _feasible(document):
     document["selected"] = cutter["id"]
 
 
+@pytest.mark.parametrize("error", [StopIteration(), ValueError()])
+def test_a_plan_whose_words_cannot_be_made_fails(held, monkeypatch, error):
+    """A kind of cutter that there is not has no rank among the others, and no error need have words."""
+
+    def none(plan):
+        raise error
+
+    monkeypatch.setattr("plan_cutters.plan_file.words.text.with_text", none)
+    answer = held.read()
+    assert not answer.holds
+    assert any("its words cannot be made" in line for line in answer.lines[1:])
+
+
 def _first_step(**new):
     return lambda document: document["process"]["steps"][0].update(new)
 
