@@ -1,4 +1,4 @@
-"""Programs that can be scored: an adapter each. Only `plan_cutters` imports the product.
+"""Programs that can be scored: an adapter each. Only `plan_cutters` and those beside it import the product.
 
 A new program is a module with a class `Program` (`protocol.Program`, or `protocol.Claimer`) and a line in `MODULES`.
 """
@@ -14,6 +14,7 @@ MODULES = {
     "plan-cutters": ("plan_cutters", "PointMaps", "plan-cutters, posture maps of single points"),
     "plan-cutters-maps": ("plan_cutters_claims", "Maps", "plan-cutters, posture maps beside a plan: postures of its own"),
     "plan-cutters-plans": ("plan_cutters_claims", "Plans", "plan-cutters, the posture that a plan names at each sample: postures of its own"),
+    "plan-cutters-check": ("plan_cutters_check", "Program", "plan-cutters, the checker of its plans: the exact surfaces, another tool and search"),
     "fcl": ("fcl", "Program", "python-fcl: collision of triangle meshes"),
     "embree": ("embree", "Program", "embreex: rays along the outline of the tool"),
     "trimesh": ("trimesh_", "Program", "trimesh: points of the tool's skin within the part's mesh"),
@@ -27,6 +28,7 @@ NEEDS = {
     "plan-cutters": [("plan_cutters", "plan-cutters")],
     "plan-cutters-maps": [("plan_cutters", "plan-cutters")],
     "plan-cutters-plans": [("plan_cutters", "plan-cutters")],
+    "plan-cutters-check": [("plan_cutters_check", "plan-cutters")],
     "fcl": [("fcl", "python-fcl"), ("OCP", "cadquery-ocp")],
     "embree": [("embreex", "embreex"), ("OCP", "cadquery-ocp")],
     "trimesh": [("trimesh", "trimesh embreex"), ("embreex", "trimesh embreex"), ("OCP", "cadquery-ocp")],

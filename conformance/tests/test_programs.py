@@ -33,7 +33,7 @@ def test_a_program_sees_no_answers(small: Suite):
     np.testing.assert_array_equal(shown.tip, small.postures.tip)
 
 
-@pytest.mark.parametrize("name", ["fcl", "embree", "trimesh", "naive", "opencamlib", "undecided", "plan-cutters"])
+@pytest.mark.parametrize("name", ["fcl", "embree", "trimesh", "naive", "opencamlib", "undecided", "plan-cutters", "plan-cutters-check"])
 def test_an_adapter_answers_each_posture_and_mostly_right(small: Suite, name: str):
     made = available(name)
     some = small.some(6 if name == "plan-cutters" else 72)
@@ -47,7 +47,7 @@ def test_an_adapter_answers_each_posture_and_mostly_right(small: Suite, name: st
         assert counted["score"] == 0.0
     else:
         assert counted["score"] > 0.8
-    if name == "plan-cutters":
+    if name in ("plan-cutters", "plan-cutters-check"):
         assert counted["false_safe"] == 0
 
 

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
+from plan_cutters_check.leaves import same, short
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -44,7 +46,7 @@ def question_of(
     ignored = ignored_faces(part, ignored_words(part, options.ignore))
     sign = orient(part, options.setup, options.flip).sign
     return Question(
-        part, _axes(options.machine), {name: _sizes(cutter) for name, cutter in cutters.items()}, setups,
+        part, _axes(options.machine), {name: sizes_of(cutter) for name, cutter in cutters.items()}, setups,
         ignored | repeated_faces(part, ignored).keys(), sign, tolerance, document, arrays["operations.npz"],
         arrays["samples.npz"], grips=grips,
     )  # fmt: skip
@@ -75,8 +77,10 @@ def stated_by(question: "Question", options: "Options") -> "Question":
     }
     try:
         made = with_text(plan_of(json.dumps(question.document), "plan.json")).model_dump(mode="json")
-    except (PlanError, LookupError, ArithmeticError, ValueError) as error:
-        return replace(question, names=names, stated=stated, odd=getattr(error, "cause", None) or str(error))
+    except (PlanError, LookupError, ArithmeticError, ValueError, StopIteration) as error:
+        # Not every error has words.
+        odd = getattr(error, "cause", None) or f"its words cannot be made ({type(error).__name__}: {error})"
+        return replace(question, names=names, stated=stated, odd=odd)
     stated["text"], process = made["text"], made["process"]
     if process is not None:
         own = [{} if each["own"] is None else {"own": {"text": each["own"]["text"]}} for each in process["steps"]]
@@ -113,13 +117,12 @@ def _effective(question: "Question", options: "Options") -> dict[str, Any]:
 
     written, mine, usual, stated = question.document["effective"], every(options), every(Options()), dict[str, Any]()
     for name, value in mine.items():
-        same = _same(written.get(name), value)
-        if same:
+        if same(value, written.get(name)):
             stated[name] = written.get(name)
         elif name in _SAFETY and written.get(name) is None:
             continue
-        elif name in _SAFETY or not _same(value, usual[name]):
-            words = f"{name}: {_short(written.get(name))} in the plan, {_short(value)} here"
+        elif name in _SAFETY or not same(value, usual[name]):
+            words = f"{name}: {short(written.get(name))} in the plan, {short(value)} here"
             raise OptionError(f"the plan of operations does not fit: {words}")
     ignore = ignored_words(question.part, options.ignore)
     chosen = choose(question.part, written["faces"], question.ignored, ignore)
@@ -127,12 +130,6 @@ def _effective(question: "Question", options: "Options") -> dict[str, Any]:
     fits = ("cutters", "setup", "other_setups", "tilt_deg", "rotation_deg", "tolerance_mm")
     stated |= {name: written[name] for name in fits}
     return stated | {"target_faces": [f"F{n}" for n in chosen.targets], "ignore": list(ignore)}
-
-
-def _same(one: Any, other: Any) -> bool:
-    if isinstance(one, float | int) and isinstance(other, float | int):
-        return math.isclose(one, other, rel_tol=1e-9, abs_tol=1e-12)
-    return bool(one == other)
 
 
 def _places(options: "Options") -> "tuple[Placement | None, ...]":
@@ -166,7 +163,7 @@ def _grip(wanted: "Fixture", placed: "Fixture", faces: tuple[str, ...], setup: i
     same = placed.kind == wanted.kind and clamping is not None and not placed.to_place
     if not same or clamping is None or (sizes and sizes.sizes and clamping.numbers[: len(sizes.sizes)] != sizes.sizes):
         raise OptionError(f"the plan of operations does not fit: {placed} stands where {wanted} was requested; plan again")
-    body, base = _bodies(placed)[0], clamping.height - clamping.grip
+    body, base = bodies_of(placed)[0], clamping.height - clamping.grip
     jaws, width = (2, clamping.width) if isinstance(clamping, Vise) else (0, 0.0)
     if isinstance(clamping, Chuck):
         jaws, width = clamping.jaws, clamping.half_angle
@@ -188,7 +185,8 @@ def _setups(part: "Part", options: "Options", document: Mapping[str, Any]) -> "t
             fixtures.append(placed)
             grips += [_grip(wanted, placed, faces, s)] if wanted.to_place else []
         z = (float(axis[0]), float(axis[1]), float(axis[2]))
-        setups.append(Setup(z, x, origin, tuple(body for each in fixtures for body in _bodies(each)), clamped_faces(part, place)))
+        bodies = tuple(body for each in fixtures for body in bodies_of(each))
+        setups.append(Setup(z, x, origin, bodies, clamped_faces(part, place)))
     return tuple(setups), tuple(grips)
 
 
@@ -209,7 +207,7 @@ def _axes(machine: "Machine") -> "MachineAxes":
     )
 
 
-def _bodies(fixture: "Fixture") -> "tuple[Body, ...]":
+def bodies_of(fixture: "Fixture") -> "tuple[Body, ...]":
     """A fixture as the checker takes it: a vise or chuck by each of its bodies."""
     import numpy as np
 
@@ -232,7 +230,8 @@ def _bodies(fixture: "Fixture") -> "tuple[Body, ...]":
     return tuple(bodies)
 
 
-def _sizes(cutter: "Cutter") -> "ToolSizes":
+def sizes_of(cutter: "Cutter") -> "ToolSizes":
+    """Dimensions of a cutter as the checker takes them."""
     from plan_cutters_check.question import Section, ToolSizes
 
     above = tuple(Section(part, low, each.length, each.radius, each.upper_radius) for part, low, each in cutter.stages)
@@ -268,7 +267,7 @@ def _fits(
         pairs.append((f"{name}s (--{name})", [round(x, 6) for x in effective[f"{name}_deg"]], degrees))
     for what, was, now in pairs:
         if was != now:
-            raise OptionError(f"the plan of operations does not fit: {what}: {_short(was)} in the plan, {_short(now)} here")
+            raise OptionError(f"the plan of operations does not fit: {what}: {short(was)} in the plan, {short(now)} here")
     return tolerance
 
 
@@ -305,8 +304,3 @@ def _of_setups(options: "Options", document: Mapping[str, Any], setups: "tuple[S
             [[] if place is None else list(place.clamped) for place in _places(options)],
         ),
     ]
-
-
-def _short(value: Any) -> str:
-    text = ", ".join(map(str, value)) if isinstance(value, list) else str(value)
-    return text if len(text) <= 60 else f"{text[:57]}..."

@@ -106,10 +106,7 @@ class Bench:
         """
         words = list[str]()
         verdict = np.full(len(rows), MET, np.int8)
-        contact = self._at(rows) if contact is None else contact
-        tip = self._tips(tool, contact, axis, tilt_direction)
-        able = np.isfinite(tip).all(axis=1) & self._can_tilt(tool, rows, contact[1], axis, tilt_direction)
-        able &= ~np.isin(self.question.samples["face"][rows], [*self.question.setups[setup].clamped])
+        tip, able = self._tips(setup, tool, rows, self._at(rows) if contact is None else contact, axis, tilt_direction)
         for each in self.standing[setup]:
             # What is in the way at no place of its surface may still hold all of the tool.
             able &= ~each.holds(np.where(able[:, None], tip + tool.high * axis, 0.0))
@@ -158,8 +155,13 @@ class Bench:
     def _at(self, rows: Rows) -> tuple[Floats, Floats]:
         return self.point[rows], self.normal[rows]
 
-    def _tips(self, tool: Tool, contact: tuple[Floats, Floats], axis: Floats, tilt_direction: Floats) -> Floats:
-        return tool.tips(*contact, axis, tilt_direction, self.accuracy, self.question.tolerance)
+    def _tips(
+        self, setup: int, tool: Tool, rows: Rows, contact: tuple[Floats, Floats], axis: Floats, tilt_direction: Floats
+    ) -> tuple[Floats, NDArray[np.bool_]]:
+        """Tips (m, 3) of a tool at contacts of samples (m,), and where it can stand there, whatever is in the way."""
+        tip = tool.tips(*contact, axis, tilt_direction, self.accuracy, self.question.tolerance)
+        able = np.isfinite(tip).all(axis=1) & self._can_tilt(tool, rows, contact[1], axis, tilt_direction)
+        return tip, able & ~np.isin(self.question.samples["face"][rows], [*self.question.setups[setup].clamped])
 
     def _limits(self, tool: Tool, *, surely: bool, tolerance: float | None = None) -> tuple[float, float]:
         flutes, rest = (1.0, 0.0) if surely else (_DEEP, -_NEAR)
@@ -228,10 +230,7 @@ class Bench:
             tilt_direction = -np.einsum("nk,nkx->nx", place, uv[some]) / tool.flat
             # In the middle of the flat no direction is left: a hair beside it.
             tilt_direction[np.linalg.norm(tilt_direction, axis=1) < _END] = _END
-            contact = self._at(rows[some])
-            tip = self._tips(tool, contact, axis[some], tilt_direction)
-            able = np.isfinite(tip).all(axis=1) & self._can_tilt(tool, rows[some], contact[1], axis[some], tilt_direction)
-            able &= ~np.isin(self.question.samples["face"][rows[some]], [*self.question.setups[setup].clamped])
+            tip, able = self._tips(setup, tool, rows[some], self._at(rows[some]), axis[some], tilt_direction)
             verdict[some[~able]] = MET
             some, place, tip = some[able], place[able], tip[able]
             hits = met(self.cells, self.root[setup], tool, tip, axis[some], limits, self.grain, clock)
@@ -266,7 +265,7 @@ class Bench:
         """The least distance of what does not cut from anything, mm, at contacts, points and normals (m, 3), and which part
         comes nearest.
         """
-        tip = self._tips(tool, contact, axis, tilt_direction)
+        tip = tool.tips(*contact, axis, tilt_direction, self.accuracy, self.question.tolerance)
         return nearest(self.cells, self.root[setup], tool.above(2.0 * tool.radius), tip, axis, beyond, self.grain, clock)
 
     def named(self, index: int) -> Tool:

@@ -1,21 +1,20 @@
 """Check a written plan of operations by means of its own: exact surfaces, an own tool, own kinematics, own sums.
 
-Nothing here is shared with the search that made the plan. What is found is one line for each statement of the plan, whether it
-holds, and how much of it was looked at; what no statement covers is listed as unchecked.
+Nothing here is shared with the search that made the plan. The answer is a line for each statement of the plan, whether it holds,
+and how much of it was looked at; what no statement covers is named as not checked.
 """
 
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from plan_cutters.errors import OptionError
 from plan_cutters_check.bench import Bench
 from plan_cutters_check.clash import Clock
-from plan_cutters_check.document import Document
-from plan_cutters_check.expected import Reckoned
+from plan_cutters_check.document import document_of
+from plan_cutters_check.document import findings as of_words
 from plan_cutters_check.findings import Answer, Finding
 from plan_cutters_check.holding import faults as not_held
 from plan_cutters_check.holding import resting
@@ -25,6 +24,7 @@ from plan_cutters_check.paper import Paper
 from plan_cutters_check.patterns import Patterns
 from plan_cutters_check.question import Question
 from plan_cutters_check.reading import faults
+from plan_cutters_check.reckoned import Reckoned
 from plan_cutters_check.trials import Trials
 from plan_cutters_check.verdicts import postures
 
@@ -68,36 +68,29 @@ def _answer(question: Question, seconds: float, tell: Callable[[str], None]) -> 
     findings += ill_formed(question, reckoned)
     findings += (Finding(False, f"{each}.") for each in not_held(question))
     question = resting(question)
-    written, entry = on_paper(question, reckoned), reckoned.entry()
-    first = _compared(question, [*findings, *written.findings], entry, written.others)
+    findings += of_words(question, reckoned)
+    expected = document_of(question, reckoned)
+    first = _compared(question, findings, compared(expected, question.document))
     if not first.holds:
         last = Finding(None, "No tool was put down: what is written contradicts itself, or the part, already.")
         return replace(first, findings=(*first.findings, last))
     bench = Bench(question, tell)
     clock = {part: Clock(start + seconds * share) for part, share in _PARTS.items()}
-    findings += Trials(question, reckoned, bench, rng, clock.__getitem__, tell).findings(entry)
+    findings += Trials(question, reckoned, bench, rng, clock.__getitem__, tell).findings(expected["operations"])
     # With draws of its own: those of the other checks stay as they are.
     findings += postures(question, reckoned, bench, np.random.default_rng(0), clock["verdicts"])
-    return _compared(question, [*findings, *written.findings], entry, written.others)
+    return _compared(question, findings, compared(expected, question.document))
 
 
-def on_paper(question: Question, reckoned: Reckoned | None = None) -> Answer:
-    """The part of a check that is about all of plan.json but its operations: no tool is put down."""
-    document = Document(question, Reckoned(question) if reckoned is None else reckoned)
-    findings, others = [*document.findings()], document.entries()
-    unknown = [f"{path} is an entry that this checker does not know." for path in others.unknown]
-    findings += (Finding(False, words) for words in (*unknown, *(f"{line}." for line in others.differ)))
-    return Answer(tuple(findings), Compared(), others, question.asked)
+def on_paper(question: Question) -> Answer:
+    """The part of a check that is about what plan.json says: no array is looked at by itself, and no tool is put down."""
+    reckoned = Reckoned(question)
+    return _compared(question, [*of_words(question, reckoned)], compared(document_of(question, reckoned), question.document))
 
 
-def _compared(question: Question, findings: Iterable[Finding], entry: dict[str, Any], others: Compared) -> Answer:
+def _compared(question: Question, findings: list[Finding], entries: Compared) -> Answer:
     """The findings, with those of the entries of plan.json."""
-    entries = compared(entry, question.document["operations"])
-    unknown = [f"operations.{path} is an entry that this checker does not know." for path in entries.unknown]
-    wrong = [Finding(False, words) for words in (*unknown, *(f"operations.{line}." for line in entries.differ))]
-    right = Finding(
-        True,
-        f"{len(entries.agree) + len(others.agree)} numbers and words of the plan follow from its samples and labels, "
-        f"{len(entries.unchecked) + len(others.unchecked)} are not checked.",
-    )
-    return Answer((*findings, *(wrong or [right])), entries, others, question.asked)
+    agree, unchecked = len(entries.agree), len(entries.unchecked)
+    right = f"{agree} numbers and words of the plan follow from its samples and labels, {unchecked} are not checked."
+    last = [Finding(False, f"{each}.") for each in entries.differ] or [Finding(True, right)]
+    return Answer((*findings, *last), entries, question.asked)

@@ -2,7 +2,12 @@
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from plan_cutters_check.clash import MET, OPEN
 from plan_cutters_check.leaves import Compared, pattern
 
 
@@ -29,21 +34,48 @@ class Finding:
     postures: int = 0
 
 
+@dataclass(slots=True)
+class Tally:
+    """Tools that were put down: decided, wrong, not decided, those of them that the plan's own tolerance allows, and words."""
+
+    tested: int = 0
+    wrong: int = 0
+    open_: int = 0
+    beyond: int = 0
+    words: list[str] = field(default_factory=list)
+
+    def add(self, verdict: NDArray[np.int8], beyond: int, words: Sequence[str], name: str = "") -> None:
+        """Count some, as `Bench.put_down` gives them."""
+        self.wrong, self.open_ = self.wrong + int((verdict == MET).sum()), self.open_ + int((verdict == OPEN).sum())
+        self.tested, self.beyond = self.tested + int((verdict != OPEN).sum()), self.beyond + beyond
+        self.words += [f"{name}, {one}" for one in words] if name else words
+
+    @property
+    def some(self) -> str:
+        """The first few words."""
+        return f" {'; '.join(self.words[:3])}." if self.words else ""
+
+    def finding(self, words: str, every: int, *, holds: bool = True) -> Finding:
+        """Whether all is right; None where nothing is wrong, and none was decided or some are deeper than was wanted."""
+        right = holds and not self.wrong
+        undecided = right and (self.beyond or not self.tested) and every
+        return Finding(None if undecided else right, words, self.open_, self.beyond, every)
+
+
 @dataclass(frozen=True, slots=True)
 class Answer:
-    """All findings, and the entries of `operations` and of all else in plan.json that agree, differ and are unchecked.
+    """All findings, and the entries of plan.json that agree, differ and are unchecked.
 
     Attributes
     ----------
     findings : tuple of Finding
-    entries, others : Compared
+    entries : Compared
     wanted : float
         Gouge tolerance that was wanted, mm; 0: any.
     """
 
     findings: tuple[Finding, ...]
     entries: Compared
-    others: Compared = field(default_factory=Compared)
     wanted: float = 0.0
 
     @property
@@ -51,27 +83,29 @@ class Answer:
         """Whether nothing of what was checked is wrong."""
         return all(each.holds is not False for each in self.findings)
 
+    def _sum(self, name: str) -> Any:
+        return sum(getattr(each, name) for each in self.findings)
+
     @property
     def beyond(self) -> int:
         """Postures that hold what the plan keeps, and not what was wanted."""
-        return sum(each.beyond for each in self.findings)
+        return int(self._sum("beyond"))
 
     @property
     def first(self) -> str:
         """The first line: how many postures are not decided and why, and all that is not checked."""
-        every, open_ = sum(each.postures for each in self.findings), sum(each.open_ for each in self.findings)
+        every, open_, beyond = (int(self._sum(name)) for name in ("postures", "open_", "beyond"))
         why = [
-            *([f"at {self.beyond} the tool is deeper than the {self.wanted:g} mm that were wanted"] if self.beyond else []),
-            *([f"{open_ - self.beyond} were not put down in the time"] if open_ > self.beyond else []),
+            *([f"at {beyond} the tool is deeper than the {self.wanted:g} mm that were wanted"] if beyond else []),
+            *([f"{open_ - beyond} were not put down in the time"] if open_ > beyond else []),
         ]
         reasons = f" ({', '.join(why)})" if why else ""
         text = f"{open_:,} of {every:,} postures are not decided{reasons}." if every else "No posture was put down."
-        head = "holds" if self.holds and not self.beyond else "not decided" if self.holds else "FAILS"
+        head = "holds" if self.holds and not beyond else "not decided" if self.holds else "FAILS"
         under: dict[str, list[str]] = {}
-        for entries, before in ((self.others, ""), (self.entries, "operations.")):
-            for name in _short(entries.unchecked, entries.agree):
-                begin, dot, rest = f"{before}{name}".partition(".")
-                under.setdefault(begin, []).extend([rest] if dot else [])
+        for name in _short(self.entries.unchecked, self.entries.agree):
+            begin, dot, rest = name.partition(".")
+            under.setdefault(begin, []).extend([rest] if dot else [])
         names = [f"{name} ({', '.join(some)})" if some else name for name, some in under.items()]
         if not names:
             return f"{head}: {text} Nothing of it was checked."
@@ -81,28 +115,14 @@ class Answer:
     def lines(self) -> list[str]:
         """The answer in lines."""
         words = {True: "holds", False: "FAILS", None: "not checked"}
-        return [
-            self.first,
-            *(f"{words[each.holds]}: {each.words}" for each in self.findings),
-            *_unchecked(self.others),
-            *_unchecked(self.entries),
-        ]
+        return [self.first, *(f"{words[each.holds]}: {each.words}" for each in self.findings)]
 
 
-def _unchecked(entries: Compared) -> Iterator[str]:
-    groups: dict[str, list[str]] = {}
-    for path in entries.unchecked:
-        groups.setdefault(entries.why(path) or "they are empty", []).append(path)
-    for why, paths in groups.items():
-        yield f"not checked: {', '.join(_short(paths, entries.agree, whole=True))} ({len(paths)}): {why}"
-
-
-def _short(unchecked: Sequence[str], checked: Sequence[str], *, whole: bool = False) -> list[str]:
-    """Patterns of unchecked paths, each by its shortest beginning that no checked path has; `whole`: with marks of lists."""
-    known = {begin for path in checked for begin in _beginnings(pattern(path))}
-    plain = dict.fromkeys(map(pattern, unchecked))
-    short = (next((each for each in _beginnings(path) if each not in known), path) for path in plain)
-    return [*dict.fromkeys(each if whole else each.replace("[]", "") for each in short)]
+def _short(unchecked: Sequence[str], checked: Sequence[str]) -> list[str]:
+    """Patterns of unchecked paths without marks of lists, each by its shortest beginning that no checked path has."""
+    known = {begin for path in {*map(pattern, checked)} for begin in _beginnings(path)}
+    every = dict.fromkeys(map(pattern, unchecked))
+    return [*dict.fromkeys(next((b for b in _beginnings(path) if b not in known), path).replace("[]", "") for path in every)]
 
 
 def _beginnings(path: str) -> Iterator[str]:

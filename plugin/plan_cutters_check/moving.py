@@ -1,17 +1,16 @@
 """Axes that a plan proposes for simultaneous motion: is their form right, does the machine hold them, do tools stand free?"""
 
 from collections.abc import Iterator
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from plan_cutters_check.bench import Bench
-from plan_cutters_check.clash import MET, OPEN, Clock
-from plan_cutters_check.expected import Reckoned
-from plan_cutters_check.findings import Finding
+from plan_cutters_check.clash import Clock
+from plan_cutters_check.findings import Finding, Tally
 from plan_cutters_check.question import Question, held
+from plan_cutters_check.reckoned import Reckoned
 
 #: Lengths of unit vectors that differ from 1 by less.
 _SAME = 1e-6
@@ -43,35 +42,23 @@ def ill_formed(question: Question, reckoned: Reckoned) -> Iterator[Finding]:
 def put_down(question: Question, reckoned: Reckoned, bench: Bench, rng: np.random.Generator, clock: Clock) -> Iterator[Finding]:
     """Each simultaneous operation, put down at the samples of its proved pieces with the axes that are proposed there."""
     for k, plan in enumerate(question.document["operations"]["plans"]):
-        tested, wrong, open_, beyond, words = 0, 0, 0, 0, list[str]()
-        for each, rows in _proved(plan, reckoned, k, rng):
+        tally, label, piece = Tally(), reckoned.array(k, "operation"), reckoned.array(k, "moving_piece")
+        for i, each in enumerate(plan["operations"]):
+            # In a drawn order, so that what there is no time for is no part of the surface.
+            rows = rng.permutation(np.flatnonzero((label == i) & (piece >= 0)))
             axis = reckoned.array(k, "moving_axis")[rows]
-            tool, tilted = bench.tools[each["cutter"]], bench.own_tilt_direction(rows, axis)
-            verdicts, some, more = bench.put_down(each["setup"], tool, rows, axis, tilted, clock)
-            wrong, open_ = wrong + int((verdicts == MET).sum()), open_ + int((verdicts == OPEN).sum())
-            tested, beyond = tested + int((verdicts != OPEN).sum()), beyond + some
-            words += [f"{each['id']}, {one}" for one in more]
-        if not tested and not open_:
-            continue
-        late = f" of {tested + open_} (taken by seed 0)" if open_ else ""
-        text = f" {'; '.join(words[:3])}." if words else ""
-        yield Finding(
-            None if not tested or (beyond and not wrong) else wrong == 0,
-            f"The {plan['name']} plan: tools were put down with the axes for simultaneous motion at {tested} samples{late}; "
-            f"at {wrong} the tool is too deep in something, or cannot stand. Between samples the plan alone proves them.{text}",
-            open_, beyond, tested + open_,
-        )  # fmt: skip
-
-
-def _proved(
-    plan: dict[str, Any], reckoned: Reckoned, k: int, rng: np.random.Generator
-) -> Iterator[tuple[dict[str, Any], NDArray[np.int64]]]:
-    """The simultaneous operations of a plan, with the samples of their proved pieces in a drawn order."""
-    label, piece = reckoned.array(k, "operation"), reckoned.array(k, "moving_piece")
-    for i, each in enumerate(plan["operations"]):
-        rows = np.flatnonzero((label == i) & (piece >= 0))
-        if len(rows):
-            yield each, rng.permutation(rows)
+            if len(rows):
+                where = each["setup"], bench.tools[each["cutter"]], rows, axis, bench.own_tilt_direction(rows, axis)
+                tally.add(*bench.put_down(*where, clock), each["id"])
+        every = tally.tested + tally.open_
+        late = f" of {every} (taken by seed 0)" if tally.open_ else ""
+        if every:
+            yield tally.finding(
+                f"The {plan['name']} plan: tools were put down with the axes for simultaneous motion at {tally.tested} "
+                f"samples{late}; at {tally.wrong} the tool is too deep in something, or cannot stand. Between samples the plan "
+                f"alone proves them.{tally.some}",
+                every,
+            )
 
 
 def _unit(axis: Floats) -> NDArray[np.bool_]:

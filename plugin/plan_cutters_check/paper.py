@@ -9,9 +9,9 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from cad_io.kernel import first_derivatives
-from plan_cutters_check.expected import WALL, Reckoned
 from plan_cutters_check.findings import Finding
 from plan_cutters_check.question import Question, allowed, axes_of
+from plan_cutters_check.reckoned import WALL, Reckoned
 from plan_cutters_check.strategies import Strategies
 
 #: Parts of unit vectors, and mm, that differ by less are one; share by which areas of a face may differ.

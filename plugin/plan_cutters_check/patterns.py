@@ -1,4 +1,4 @@
-"""Are the patterns of a plan those of the part, and are repeated operations and steps what they say they are?
+"""Are the patterns of a plan those of the part, and are repeated operations what they say they are?
 
 Each copy of a pattern is expanded: points of its first faces, moved, must lie on the faces that are named, within their borders,
 on their outer side; what is left of a whole part must be carried onto itself.
@@ -21,8 +21,8 @@ from plan_cutters_check.question import Question
 _EXACT, _AREA, _NORMAL, _SAME = 2e-6, 2e-4, 1.0 - 1e-4, 1e-6
 #: Lines of points in a face, points of its border, places from which its points are looked for, and steps that are taken.
 _LINES, _BORDER, _SEEDS, _STEPS = 7, 24, 24, 12
-#: Pairs of faces that are compared, at most, and angles that are written to three digits, deg.
-_MOST, _WRITTEN = 1500, 0.0021
+#: Pairs of faces that are compared, at most.
+_MOST = 1500
 
 Motion = tuple[Floats, Floats]
 
@@ -55,7 +55,6 @@ class Patterns:
         if entries:
             yield Finding(None, "How many samples of a pattern were moved, followed or verified is not looked at.")
         yield from self._operations()
-        yield from self._steps()
 
     def _expanded(self, name: str, entry: dict[str, Any]) -> Finding:
         """Compare each face of each copy with the first one's, and faces that no copy has with themselves."""
@@ -167,59 +166,11 @@ class Patterns:
     def _operations(self) -> Iterator[Finding]:
         """Operations that are images of each other have one cutter, setup and mode."""
         for plan in self.question.document["operations"]["plans"]:
-            for orbit, same in _by_orbit(plan).items():
-                if len({(each["cutter"], each["setup"], each["mode"]) for each in same}) > 1:
-                    names = ", ".join(each["id"] for each in same)
-                    yield Finding(False, f"The {plan['name']} plan: {names} (orbit {orbit}) are no images of each other.")
-
-    def _steps(self) -> Iterator[Finding]:
-        """Steps of the process that are repeated are as many operations, evenly turned, of their area and time together."""
-        plans = self.question.document["operations"]["plans"]
-        process = self.question.document.get("process") or {"steps": []}
-        fixed = [each for each in process["steps"] if each["mode"] == "fixed" and each.get("repeat", 1) > 1]
-        groups = [same for plan in plans for same in _by_orbit(plan).values()]
-        for step in fixed:
-            if not any(_made_of(step, same) for same in groups):
-                angles = " ".join(f"{name} {angle:g}" for name, angle in (step["angles_deg"] or {}).items())
-                yield Finding(False, f"The process: {step['repeat']} x {angles} are no operations of one orbit of a plan.")
-        if fixed:
-            yield Finding(True, f"{len(fixed)} steps of the process are repeated; each was compared with its operations.")
-
-
-def _by_orbit(plan: dict[str, Any]) -> dict[int, list[dict[str, Any]]]:
-    """The operations of a plan that are repeated, by their orbit."""
-    steps: dict[int, list[dict[str, Any]]] = {}
-    for each in plan["operations"]:
-        if each.get("orbit") is not None:
-            steps.setdefault(each["orbit"], []).append(each)
-    return steps
-
-
-def _made_of(step: dict[str, Any], same: list[dict[str, Any]]) -> bool:
-    """Whether a step of the process is some operations: as many, evenly turned, with their area and time."""
-    if len(same) != step["repeat"] or {(each["cutter"], each["setup"]) for each in same} != {(step["cutter"], step["setup"])}:
-        return False
-    if not any(each["angles_deg"] == step["angles_deg"] for each in same):
-        return False
-    sums = [(step["area_mm2"], [each["area_mm2"] for each in same]), (step["seconds"], [each["seconds"] for each in same])]
-    for stated, parts in sums:
-        if (stated is None) != (None in parts) or (
-            stated is not None and not math.isclose(stated, math.fsum(parts), rel_tol=1e-6)
-        ):
-            return False
-    turned = step.get("repeat_deg")
-    if turned is None:
-        return True
-    for name, first in step["angles_deg"].items():
-        by = turned.get(name)
-        away = np.array([each["angles_deg"][name] - first for each in same])
-        near = away if by is None else away - by * np.rint(away / by)
-        # What it is turned by is a whole part of the turn.
-        if np.abs((near + 180.0) % 360.0 - 180.0).max() > _WRITTEN * len(same):
-            return False
-        if by is not None and not (by > 0.0 and abs(360.0 / by - round(360.0 / by)) < 1e-2 and len(set(away)) == len(same)):
-            return False
-    return len(turned) == 1
+            kinds: dict[int, set[Any]] = {}
+            for each in (each for each in plan["operations"] if each.get("orbit") is not None):
+                kinds.setdefault(each["orbit"], set()).add((each["cutter"], each["setup"], each["mode"]))
+            for orbit in (orbit for orbit, some in kinds.items() if len(some) > 1):
+                yield Finding(False, f"The {plan['name']} plan: the operations of orbit {orbit} are no images of each other.")
 
 
 def _ill_formed(entry: dict[str, Any], faces: int) -> str:

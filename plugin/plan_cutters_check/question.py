@@ -1,8 +1,9 @@
 """A check is about a machine, tools and setups, as the user states them in plain numbers, and about the files of a plan."""
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from itertools import product
 from typing import Any
 
 import numpy as np
@@ -45,18 +46,8 @@ class ToolSizes:
 class MachineAxes:
     """The rotary axes of a machine, the one next to the part first, in the machine's frame.
 
-    Attributes
-    ----------
-    names : tuple of str
-    direction : (2, 3) float
-    limits : (2, 2) float
-        rad; infinite: none.
-    tool : (3,) float
-        From the tip to the spindle at zero angles.
-    tilt_limit : float
-        Largest angle of the tool axis from the setup axis, rad; pi: none.
-    rates : bool
-        Whether both axes have a rate.
+    `direction` (2, 3); `limits` (2, 2), rad, infinite: none; `tool` (3,), from the tip to the spindle at zero angles;
+    `tilt_limit`: largest angle of the tool axis from the setup axis, rad, pi: none; `rates`: whether both axes have a rate.
     """
 
     names: tuple[str, ...]
@@ -85,26 +76,11 @@ class Body:
 
 @dataclass(frozen=True, slots=True)
 class Grip:
-    """Jaws whose place a plan states, in their own frame: z up, what they hold rests at z = 0.
+    """Jaws whose place a plan states, in their own frame, that of `body`: z up, what they hold rests at z = 0. Lengths in mm.
 
-    Attributes
-    ----------
-    setup : int
-    name : str
-    body : Body
-        Its `placement` is that of the frame.
-    jaws : int
-        2: a vise that closes along x, of a `width` along y; else those of a chuck, the first along x.
-    width : float
-        Of a vise's jaws, mm; of a chuck, half the angle that a jaw takes, rad.
-    grip, below : float
-        How far jaws reach over what the part rests on, and down to the body, mm.
-    apart : float
-        Distance of a vise's jaws, or diameter of the bore of a chuck's, mm.
-    ledge : float
-        How far inward the jaws support the part, mm.
-    faces : tuple of str
-        That the plan says to be gripped.
+    `jaws`: 2 of a vise that closes along x, of a `width` along y; else those of a chuck, the first along x, each within an angle
+    of `width` rad. They reach `grip` over what the part rests on and `below` it to the body, are `apart` (a chuck: the diameter
+    of the bore), and support the part on a `ledge` inward. `faces`: what the plan says to be gripped.
     """
 
     setup: int
@@ -136,25 +112,16 @@ class Question:
 
     Attributes
     ----------
-    part : Part
-    machine : MachineAxes
-    tools : mapping
-        By id.
-    setups : tuple of Setup
     ignored : frozenset of int
         Numbers of faces that are no obstacles.
     sign : (faces,) float
         Side of each face, as `cad_io.Orientation` has it.
-    tolerance : float
-        Gouge tolerance that the plan keeps, mm.
-    document : mapping
-        plan.json.
-    operations, samples : mapping
-        The arrays of operations.npz and samples.npz.
+    tolerance, asked : float
+        Gouge tolerance that the plan keeps, and that the user wants, mm; 0: any.
+    document, operations, samples : mapping
+        plan.json, and the arrays of operations.npz and samples.npz.
     checksums : mapping
         By file: the SHA-256 that plan.json states, and the file's own.
-    asked : float
-        Gouge tolerance that the user wants, mm; 0: any.
     grips : tuple of Grip
         Vises and chucks of which the plan alone says where they stand.
     names : mapping
@@ -217,6 +184,11 @@ def axes_of(machine: MachineAxes, setup: Setup, degrees: Floats) -> Floats:
     return carried(machine, setup, machine.tool, degrees)
 
 
+def degrees_of(question: Question, each: Mapping[str, Any]) -> Floats:
+    """The angles of a fixed operation, (1, 2), deg."""
+    return np.array([[float(each["angles_deg"][name]) for name in question.machine.names]])
+
+
 def allowed(machine: MachineAxes, setup: Setup, degrees: Floats) -> NDArray[np.bool_]:
     """Which angles (n, 2), deg, are within the machine's limits."""
     low, high = np.degrees(machine.limits).T
@@ -226,32 +198,34 @@ def allowed(machine: MachineAxes, setup: Setup, degrees: Floats) -> NDArray[np.b
 
 
 def held(machine: MachineAxes, setup: Setup, axis: Floats) -> NDArray[np.bool_]:
-    """Which tool axes (n, 3), part coordinates, the machine holds with one of its two solutions, within its limits.
+    """Which tool axes (n, 3), part coordinates, the machine holds with one of its two solutions, within its limits."""
+    tilt = np.arccos(np.clip(np.asarray(axis, float) @ frame_of(setup)[2], -1.0, 1.0))
+    able = [known & _turns_to(b, machine.limits[1]) & (free | _turns_to(a, machine.limits[0]))
+            for a, b, known, free in _solutions(machine, setup, axis)]  # fmt: skip
+    return np.asarray((able[0] | able[1]) & (tilt <= machine.tilt_limit + 1e-9))
+
+
+def _solutions(machine: MachineAxes, setup: Setup, axis: Floats) -> Iterator[tuple[Floats, Floats, NDArray[Any], NDArray[Any]]]:
+    """Twice the angles (n,), rad, of both rotary axes with tool axes (n, 3), whether they give these, and whether any first does.
 
     The axis next to the part changes nothing of the tool axis along itself: that gives the two angles of the second rotary axis,
     and from each the first one's follows.
     """
     (first, second), tool = machine.direction, machine.tool
     wanted = np.asarray(axis, float) @ frame_of(setup).T
-    tilt = np.arccos(np.clip(wanted[:, 2], -1.0, 1.0))
-    able = np.zeros(len(wanted), bool)
     along = (tool @ second) * second
     base, square = tool - along, np.cross(second, tool)
     even, reach = float(first @ along), math.hypot(first @ base, first @ square)
     if reach < 1e-9:
         raise ValueError("the second rotary axis does not turn the tool towards the first one")
-    nearest = math.atan2(first @ square, first @ base)
-    part = (wanted @ first - even) / reach
+    nearest, part = math.atan2(first @ square, first @ base), (wanted @ first - even) / reach
     away = np.arccos(np.clip(part, -1.0, 1.0))
-    for way in (1.0, -1.0):
-        b = nearest + way * away
+    for b in (nearest + away, nearest - away):
         before = along + np.cos(b)[:, None] * base + np.sin(b)[:, None] * square
         p, q = (v - (v @ first)[:, None] * first for v in (before, wanted))
         a = np.arctan2(np.cross(p, q) @ first, (p * q).sum(axis=1))
         # Where the tool axis lies along the first axis, any angle of that one will do.
-        free = np.linalg.norm(q, axis=1) < 1e-9
-        able |= _turns_to(b, machine.limits[1]) & (free | _turns_to(a, machine.limits[0]))
-    return np.asarray(able & (np.abs(part) <= 1.0 + 1e-9) & (tilt <= machine.tilt_limit + 1e-9))
+        yield a, b, np.abs(part) <= 1.0 + 1e-9, np.linalg.norm(q, axis=1) < 1e-9
 
 
 def _turns_to(angle: Floats, limits: Floats) -> NDArray[np.bool_]:
@@ -265,41 +239,19 @@ def _turns_to(angle: Floats, limits: Floats) -> NDArray[np.bool_]:
 def other_angles(question: Question, setup: int, degrees: Floats) -> list[tuple[float, ...]]:
     """The other angles, deg, with the same axis within the machine's limits, as a control shows them: none where there are none,
     and several where they are as large, as half a turn is either way.
-
-    The second axis turns the tool towards the first axis and away: mirrored about where it is nearest, it is as far off.
     """
-    machine = question.machine
-    (first, second), tool = machine.direction, machine.tool
-    base = tool - (tool @ second) * second
-    nearest = math.degrees(math.atan2(first @ np.cross(second, base), first @ base))
-    mirrored = 2.0 * nearest - degrees[1]
-    wanted = axes_of(machine, question.setups[setup], degrees[None])[0]
-    candidates = list[tuple[float, ...]]()
-    for b in (mirrored + 360.0 * k for k in (-2, -1, 0, 1, 2)):
-        if not _within(b, machine.limits[1]):
-            continue
-        at_zero = axes_of(machine, question.setups[setup], np.array([[0.0, b]]))[0]
-        turning = carried_first(question, setup)
-        p, q = (v - (v @ turning) * turning for v in (at_zero, wanted))
-        if np.linalg.norm(p) < 1e-9:
+    machine, others = question.machine, list[tuple[float, ...]]()
+    wanted = axes_of(machine, question.setups[setup], degrees[None])
+    for a, b, known, free in _solutions(machine, question.setups[setup], wanted):
+        if free[0]:
             return []
-        a = math.degrees(math.atan2(np.cross(p, q) @ turning, p @ q))
-        for turn in (a, a - 360.0, a + 360.0):
-            candidate = (turn, b)
-            apart = sum(abs((x - y + 180.0) % 360.0 - 180.0) for x, y in zip(candidate, degrees.tolist(), strict=True))
-            if _within(turn, machine.limits[0]) and apart > 0.01:
-                candidates.append(candidate)
-    least = min(map(_size, candidates), default=0.0)
-    return [tuple(round(x, 3) + 0.0 for x in each) for each in candidates if _size(each) <= least + 1e-6]
-
-
-def carried_first(question: Question, setup: int) -> Floats:
-    """The direction (3,) of the first rotary axis in the part's coordinates."""
-    return np.asarray(question.machine.direction[0] @ frame_of(question.setups[setup]))
-
-
-def _size(angles: Sequence[float]) -> float:
-    return sum(abs(x) for x in angles)
+        turns = product(*(math.degrees(x[0]) + 360.0 * np.arange(-2, 3) for x in (a, b)))
+        for angles in ((round(float(x), 9), round(float(y), 9)) for x, y in turns if known[0]):
+            apart = sum(abs((x - y + 180.0) % 360.0 - 180.0) for x, y in zip(angles, degrees.tolist(), strict=True))
+            if all(map(_within, angles, machine.limits)) and apart > 0.01:
+                others.append(angles)
+    least = min((sum(map(abs, each)) for each in others), default=0.0)
+    return [tuple(round(x, 3) + 0.0 for x in each) for each in others if sum(map(abs, each)) <= least + 1e-6]
 
 
 def _within(degrees: float, limits: Floats) -> bool:

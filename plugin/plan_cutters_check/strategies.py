@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from cad_io.arrays import Floats
-from plan_cutters_check.expected import FLOOR, WALL, Reckoned
 from plan_cutters_check.findings import Finding
-from plan_cutters_check.question import Question, ToolSizes, axes_of
+from plan_cutters_check.question import Question, ToolSizes, axes_of, degrees_of
+from plan_cutters_check.reckoned import FLOOR, WALL, Reckoned
 from plan_cutters_check.tool import tool_of
 
 Rows = NDArray[np.int64]
@@ -82,9 +82,8 @@ class Strategies:
             if each["axis"] is None:
                 odd += sum(map(len, mine))
                 continue
-            names, setup = self.question.machine.names, self.question.setups[each["setup"]]
-            degrees = np.array([[float(each["angles_deg"][name]) for name in names]])
-            axis = axes_of(self.question.machine, setup, degrees)[0]
+            setup = self.question.setups[each["setup"]]
+            axis = axes_of(self.question.machine, setup, degrees_of(self.question, each))[0]
             floors, walls = floors + len(mine[0]), walls + len(mine[1])
             for rows, claim in zip(mine, (self._floor, self._wall), strict=True):
                 if len(rows) and not odd:

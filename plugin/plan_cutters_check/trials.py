@@ -9,15 +9,14 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from plan_cutters_check.bench import Bench
 from plan_cutters_check.clash import FREE, MET, OPEN, Clock
-from plan_cutters_check.expected import Reckoned
-from plan_cutters_check.findings import Finding
+from plan_cutters_check.findings import Finding, Tally
 from plan_cutters_check.leaves import Between
 from plan_cutters_check.moving import put_down
-from plan_cutters_check.question import Question, allowed, axes_of
+from plan_cutters_check.question import Question, allowed, axes_of, degrees_of
+from plan_cutters_check.reckoned import Reckoned, Rows
 from plan_cutters_check.strategies import Contacts, contacts_at
 from plan_cutters_check.tool import Tool
 
-Rows = NDArray[np.int64]
 _UNIT = 1_000_000
 #: Pairs of a sample and an axis that are looked at between two looks at the clock.
 _AT_ONCE = 2048
@@ -77,41 +76,33 @@ class Trials:
         """Each operation, put down at each of its samples."""
         clock = self.clock("placed")
         for k, plan in enumerate(self.plans):
-            label, tilt_direction, words = (self.reckoned.array(k, "operation"), self.reckoned.array(k, "lean"), list[str]())
-            tested, wrong, open_, beyond, wrong_tilts = 0, 0, 0, 0, 0
+            label, tilt_direction = self.reckoned.array(k, "operation"), self.reckoned.array(k, "lean")
+            tally, wrong_tilts = Tally(), 0
             for i, each in enumerate(plan["operations"]):
                 self.tell(f"{plan['name']}: putting {each['id']} down ({i + 1} of {len(plan['operations'])})")
                 # In a drawn order, so that what there was no time for is no part of the surface.
                 rows = self.rng.permutation(np.flatnonzero(label == i))
                 setup, tool = each["setup"], self.bench.tools[each["cutter"]]
                 axis, there = self._axes(each, rows)
-                open_ += len(rows) - len(there)
+                tally.open_ += len(rows) - len(there)
                 at = contacts_at(self.question, self.reckoned, k, each, there, axis)
                 wrong_tilts += self._other_tilt_directions(tool, there, axis, tilt_direction[there], at)
                 contact = at.point, at.normal
-                verdicts, some, more = self.bench.put_down(setup, tool, there, axis, at.tilt_direction, clock, contact)
-                wrong, open_ = wrong + int((verdicts == MET).sum()), open_ + int((verdicts == OPEN).sum())
-                tested, beyond = tested + int((verdicts != OPEN).sum()), beyond + some
-                words += [f"{each['id']}, {one}" for one in more]
+                tally.add(*self.bench.put_down(setup, tool, there, axis, at.tilt_direction, clock, contact), each["id"])
             text = f" {wrong_tilts} have another tilt direction than their axis has." if wrong_tilts else ""
-            text += f" {'; '.join(words[:3])}." if words else ""
-            every = tested + open_
-            late = f" of {every} (taken by seed 0)" if open_ > beyond else f" of {every}" if beyond else ""
-            text += f" At {beyond} more it is deeper than the {self.question.asked:g} mm that were wanted." if beyond else ""
-            holds = wrong == 0 and wrong_tilts == 0
-            yield Finding(
-                None if holds and (beyond or (open_ and not tested)) else holds,
-                f"The {plan['name']} plan: its operations were put down at {tested} samples{late}; at {wrong} the tool "
-                f"is too deep in something, or cannot stand.{text}",
-                open_, beyond, every,
+            every, beyond = tally.tested + tally.open_, tally.beyond
+            late = f" of {every} (taken by seed 0)" if tally.open_ > beyond else f" of {every}" if beyond else ""
+            more = f" At {beyond} more it is deeper than the {self.question.asked:g} mm that were wanted." if beyond else ""
+            yield tally.finding(
+                f"The {plan['name']} plan: its operations were put down at {tally.tested} samples{late}; at {tally.wrong} the "
+                f"tool is too deep in something, or cannot stand.{text}{tally.some}{more}",
+                every, holds=not wrong_tilts,
             )  # fmt: skip
 
     def _axes(self, each: dict[str, Any], rows: Rows) -> tuple[Floats, Rows]:
         """The axes of an operation at some of its samples, and which these are: all, unless an axis is not written."""
         if each["mode"] == "fixed":
-            names = self.question.machine.names
-            degrees = np.array([[float(each["angles_deg"][name]) for name in names]])
-            setup = self.question.setups[each["setup"]]
+            degrees, setup = degrees_of(self.question, each), self.question.setups[each["setup"]]
             if not allowed(self.question.machine, setup, degrees).all():
                 raise ValueError(f"the angles of {each['id']} are beyond the machine's limits")
             return np.repeat(axes_of(self.question.machine, setup, degrees), len(rows), axis=0), rows

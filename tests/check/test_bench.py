@@ -15,7 +15,7 @@ from plan_cutters.domain.outline import outline, points
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import served_by
-from plan_cutters_check.asking import _sizes
+from plan_cutters_check.asking import sizes_of
 from plan_cutters_check.bench import Bench
 from plan_cutters_check.clash import FREE, MET, Clock, met, nearest
 from plan_cutters_check.question import MachineAxes, Setup, axes_of, other_angles
@@ -55,7 +55,7 @@ def polyline_distance(border, q, h):
 @pytest.mark.parametrize("cutter", CUTTERS, ids=NAMES)
 def test_points_lie_within_the_solids_if_they_lie_within_the_outline(cutter):
     """The checker's solids against the outline that the program draws, which is its own."""
-    tool = tool_of(_sizes(cutter))
+    tool = tool_of(sizes_of(cutter))
     border = points(outline(cutter), 1e-4)
     rng = np.random.default_rng(0)
     q, h = rng.uniform(0.0, 1.3 * tool.wide, 4000), rng.uniform(-3.0, tool.high + 3.0, 4000)
@@ -73,7 +73,7 @@ def test_points_lie_within_the_solids_if_they_lie_within_the_outline(cutter):
 @pytest.mark.parametrize("share", [0.3, 0.55])
 def test_what_is_above_a_height_ends_there(cutter, share):
     """Cut off there it is as wide as at that height, not as at its widest: its distance is that of the outline's rest."""
-    tool = tool_of(_sizes(cutter))
+    tool = tool_of(sizes_of(cutter))
     height = share * tool.solids[0].high if cutter.shape != "form" else 2.5
     border = points(outline(cutter), 1e-4)
     (edge,) = [a[0] + (height - a[1]) / (b[1] - a[1]) * (b[0] - a[0]) for a, b in pairwise(border) if a[1] <= height < b[1]]
@@ -90,8 +90,8 @@ def test_what_is_above_a_height_ends_there(cutter, share):
 
 def test_a_tapered_tool_does_not_stand_along_a_wall_that_its_flank_leaves():
     """At the border of a wall it may be free there, beyond its flutes; but a search puts it down at no such tilt."""
-    tool = tool_of(_sizes(Cutter.flat(radius=2, length=10, taper_deg=3)))
-    straight = tool_of(_sizes(Cutter.flat(radius=2, length=10)))
+    tool = tool_of(sizes_of(Cutter.flat(radius=2, length=10, taper_deg=3)))
+    straight = tool_of(sizes_of(Cutter.flat(radius=2, length=10)))
     tilts = np.radians([0.0, 45.0, 87.0, 88.0, 90.0])
     assert tool.touches(tilts).tolist() == [True, True, True, False, False]
     assert straight.touches(tilts).all()
@@ -110,7 +110,7 @@ def test_half_a_turn_either_way_is_as_large():
 def test_the_depth_lies_below_its_tangent_planes(cutter):
     """What the bound over a cell rests on: the depth in each solid is a concave function of the point."""
     rng = np.random.default_rng(1)
-    tool = tool_of(_sizes(cutter))
+    tool = tool_of(sizes_of(cutter))
     p, r = (rng.uniform(-1.0, 1.0, (3000, 3)) * [2 * tool.wide, 2 * tool.wide, tool.high] for _ in range(2))
     for solid in (*tool.solids, *tool.above(2.0 * tool.radius)):
         there, (deep, g_q, g_h) = solid.depth(np.hypot(*r.T[:2]), r[:, 2])[0], solid.depth(np.hypot(*p.T[:2]), p[:, 2])
@@ -122,7 +122,7 @@ def test_the_depth_lies_below_its_tangent_planes(cutter):
 @pytest.mark.parametrize("cutter", CUTTERS, ids=NAMES)
 def test_a_tool_touches_at_its_contact(cutter):
     """Put down on a plane it touches it at the contact, and is nowhere below it."""
-    tool = tool_of(_sizes(cutter))
+    tool = tool_of(sizes_of(cutter))
     border = points(outline(cutter), 1e-3)
     for degrees in (0.0, 0.5, 20.0, 60.0, 80.0):
         tilt = math.radians(degrees)
@@ -156,7 +156,7 @@ def peaks():
 def test_what_is_met_is_what_points_all_over_the_surface_say(peaks, cutter, of):
     """Tools in random places, one of so many, against 250,000 points of the surface: deepest, and nearest."""
     part, cells, root = peaks
-    tool, rng = tool_of(_sizes(cutter)), np.random.default_rng(2)
+    tool, rng = tool_of(sizes_of(cutter)), np.random.default_rng(2)
     u0, u1, v0, v1 = part.trim(1).box
     u, v = (each.ravel() for each in np.meshgrid(np.linspace(u0, u1, 500), np.linspace(v0, v1, 500)))
     exact = values(part.adaptor(1), u, v)
@@ -183,7 +183,7 @@ def test_what_is_met_is_what_points_all_over_the_surface_say(peaks, cutter, of):
 
 def test_a_check_that_has_no_time_decides_nothing(peaks):
     _, cells, root = peaks
-    tool = tool_of(_sizes(CUTTERS[0]))
+    tool = tool_of(sizes_of(CUTTERS[0]))
     found = met(
         cells, root, tool, np.zeros((3, 3)), np.tile([0.0, 0.0, 1.0], (3, 1)), (0.01, 0.0), 5e-4, Clock(time.monotonic() - 1.0)
     )
@@ -206,18 +206,18 @@ def test_the_search_and_the_checker_agree(words):
     options = Options(machine="trunnion-ac", **{name: each for name, each in words.items() if name != "part"})
     ready = prepare(part, options)
     samples, cutter = ready.samples, ready.cutters[0]
-    from plan_cutters_check.asking import _bodies
+    from plan_cutters_check.asking import bodies_of
     from plan_cutters_check.question import MachineAxes, Question
 
     machine = MachineAxes(
         ("C", "A"), np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0]]), np.array([[-math.inf, math.inf], np.radians([-30.0, 120.0])]),
         np.array([0.0, 0.0, 1.0]), math.pi, False,
     )  # fmt: skip
-    setup = Setup((0.0, 0.0, 1.0), None, None, tuple(body for each in options.fixtures for body in _bodies(each)), frozenset())
+    setup = Setup((0.0, 0.0, 1.0), None, None, tuple(body for each in options.fixtures for body in bodies_of(each)), frozenset())
     arrays = {"point": samples.point, "normal": samples.normal, "direction_max": samples.direction_max, "face": samples.face}
     document = {"effective": {"tilt_deg": [0.0, 90.0], "rotation_deg": [0.0, 360.0]}}
     question = Question(
-        read_part(part), machine, {cutter.id: _sizes(cutter)}, (setup,), frozenset(), np.zeros(0), 0.01, document, {}, arrays
+        read_part(part), machine, {cutter.id: sizes_of(cutter)}, (setup,), frozenset(), np.zeros(0), 0.01, document, {}, arrays
     )
     bench = Bench(question, lambda doing: None)
     rng = np.random.default_rng(3)

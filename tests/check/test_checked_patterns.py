@@ -11,6 +11,7 @@ from cad_io.part.orient import orient
 from cad_io.part.patterns import patterns
 from plan_cutters.document.patterns import pattern_entries
 from plan_cutters_check.patterns import Patterns
+from plan_cutters_check.process import evenly
 from plan_cutters_check.question import Question
 from tests.support.patterns import impeller, plate
 
@@ -113,24 +114,21 @@ def _operation(k: int, **changes) -> dict:
     return {**known, "area_mm2": 10.0 + k, "seconds": 5.0, **changes}
 
 
-_STEP = {
-    "mode": "fixed", "repeat": 3, "repeat_deg": {"C": 60.0}, "cutter": "a", "setup": 0,
-    "angles_deg": {"A": 60.0, "C": -100.0}, "area_mm2": 33.0, "seconds": 15.0,
-}  # fmt: skip
+def repeated(*operations: dict) -> list[str]:
+    return wrong("impeller", [], [{"name": "fastest", "operations": list(operations)}])
 
 
-def repeated(step: dict, *operations: dict) -> list[str]:
-    return wrong("impeller", [], [{"name": "fastest", "operations": list(operations)}], {"steps": [step]})
-
-
-def test_a_step_that_is_repeated_is_its_operations():
+def test_images_of_each_other_have_one_cutter_setup_and_mode():
     three = [_operation(k) for k in range(3)]
-    assert repeated(_STEP, *three) == []
-    for forged in (
-        {"repeat": 4}, {"repeat_deg": {"C": 45.0}}, {"repeat_deg": {"A": 60.0}}, {"angles_deg": {"A": 60.0, "C": 0.0}},
-        {"area_mm2": 30.0}, {"seconds": 12.0}, {"seconds": None}, {"cutter": "b"},
-    ):  # fmt: skip
-        assert repeated(_STEP | forged, *three), forged
-    for forged in ({"cutter": "b"}, {"setup": 1}, {"angles_deg": {"A": 60.0, "C": 21.0}}, {"angles_deg": {"A": 61.0, "C": 20.0}},
-                   {"orbit": 1}):  # fmt: skip
-        assert repeated(_STEP, *three[:2], _operation(2, **forged)), forged
+    assert repeated(*three) == []
+    for forged in ({"cutter": "b"}, {"setup": 1}, {"mode": "simultaneous"}):
+        assert repeated(*three[:2], _operation(2, **forged)), forged
+
+
+def test_a_step_that_is_repeated_turns_evenly():
+    three = [_operation(k)["angles_deg"] for k in range(3)]
+    assert evenly({"C": 60.0}, three) == {"C": 60.0}
+    for by in ({"C": 45.0}, {"C": -60.0}, {"C": 30.0}, {"A": 60.0}, {"B": 60.0}, {"A": 0.0, "C": 60.0}, {}):
+        assert evenly(by, three) != by or by == {"C": 30.0}, by
+    for angles in ({"A": 60.0, "C": 21.0}, {"A": 61.0, "C": 20.0}, {"A": 60.0, "C": -100.0}):
+        assert evenly({"C": 60.0}, [*three[:2], angles]) != {"C": 60.0}, angles

@@ -7,10 +7,12 @@ from collections import defaultdict
 import numpy as np
 import pytest
 
+from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.operations import OperationsEntry
 from plan_cutters_check.check import check
-from plan_cutters_check.leaves import UNCHECKED, leaves, pattern
+from plan_cutters_check.leaves import leaves, pattern
 from tests.support.forging import forged, put
+from tests.support.unchecked import UNCHECKED, listed
 
 #: Entries for which the checker puts many tools down.
 _SLOW = ("plans[].operations[].clearance_mm", "fewest.alone")
@@ -58,6 +60,11 @@ def found(written, document=None, arrays=None, seconds=1e6):
     return check(written.question(document, arrays), seconds=seconds)
 
 
+def unchecked(kind):
+    """Whether an entry of operations may be unchecked."""
+    return listed(f"operations.{kind}")
+
+
 #: What is not looked at, whatever the time.
 _OF_PATTERNS = "How many samples of a pattern were moved, followed or verified is not looked at."
 #: Unchecked for want of time alone.
@@ -70,27 +77,43 @@ def test_what_is_written_holds(written):
     assert answer.holds, "\n".join(answer.lines)
     assert not answer.entries.differ
     assert [each.words for each in answer.findings if not each.holds] == [_OF_PATTERNS]
-    assert any("clearance_mm" in path for path in answer.entries.agree)
+    assert any(path.startswith("operations.") and "clearance_mm" in path for path in answer.entries.agree)
 
 
 def test_no_entry_of_the_schema_is_forgotten(written):
     answer = found(written, seconds=0.0)
     assert not answer.entries.differ
-    # What is neither checked in this plan nor listed as unchecked would be an entry that the checker does not know.
+    # What is neither checked in this plan nor listed as unchecked would be an entry that nobody looks at.
     schema = OperationsEntry.model_json_schema()
     checked, every = {pattern(path) for path in answer.entries.agree}, schema_patterns(schema, schema)
-    unknown = sorted(each for each in every if each not in checked | {*UNCHECKED})
-    assert unknown == ["plans[].split.*"] or not unknown
+    assert not sorted(each for each in every if f"operations.{each}" not in checked and not unchecked(each))
     # Nor does the list name entries that there are not.
-    assert {*UNCHECKED} <= every | nulls(schema, schema)
+    whole = Plan.model_json_schema()
+    there = schema_patterns(whole, whole) | nulls(whole, whole)
+    assert not [each for each in UNCHECKED if not any(path.startswith(each.removesuffix("**")) for path in there)]
+    assert all(listed(pattern(path)) for path in answer.entries.unchecked if path.startswith("operations."))
 
 
 def test_a_new_entry_fails(written):
     document, _ = written.copies()
     document["operations"]["plans"][0]["operations"][0]["novel"] = 3.0
-    answer = found(written, document)
+    answer = check(written.asked(document), seconds=0.0)
     assert not answer.holds
-    assert any("novel is an entry that this checker does not know" in line for line in answer.lines)
+    assert any("novel" in line for line in answer.lines[1:])
+
+
+def test_a_new_name_where_a_plan_makes_the_names_fails(written):
+    for name in ("takes_mm2", "angles_deg", "feed_mm_min"):
+        document, _ = written.copies()
+        entry = document["operations"]
+        where = {
+            "takes_mm2": entry["cutters"][0],
+            "angles_deg": entry["plans"][0]["operations"][0],
+            "feed_mm_min": entry["assumed"],
+        }
+        where[name][name]["novel"] = 3.0
+        answer = found(written, document, seconds=0.0)
+        assert any(f"{name}.novel is an entry that no plan has" in line for line in answer.lines)
 
 
 def _kinds():
@@ -111,12 +134,12 @@ def test_a_forged_entry_is_found_or_listed_as_unchecked(written, kind, of_a_kind
     every = of_kind.get(kind, [])
     if not every:
         # An entry that this plan does not have: nothing else is left unforged.
-        assert kind in UNCHECKED
+        assert unchecked(kind)
         return
     many = min(2, of_a_kind) if kind in _IN_TIME or kind in _SLOW else of_a_kind
     picked = {*np.linspace(0, len(every) - 1, many).astype(int).tolist()}
     # What is unchecked whatever is put down needs no tool put down.
-    seconds = 0.0 if kind in {*UNCHECKED} - _IN_TIME else 1e6
+    seconds = 0.0 if unchecked(kind) and kind not in _IN_TIME else 1e6
     for path, value in (every[k] for k in sorted(picked)):
         others = forged(value) + ([None] if value is not None else [])
         # Of one entry of a kind one other value will do, another one for other kinds; of four, all of them.
@@ -130,7 +153,7 @@ def test_a_forged_entry_is_found_or_listed_as_unchecked(written, kind, of_a_kind
             document, _ = written.copies()
             put(document["operations"], path, other)
             answer = found(written, document, seconds=seconds)
-            assert not answer.holds or path in answer.entries.unchecked, (path, value, other)
+            assert not answer.holds or f"operations.{path}" in answer.entries.unchecked, (path, value, other)
 
 
 @pytest.mark.parametrize("name", ["plans", "cutters", "operations", "regions", "weights", "rows", "faces"])
@@ -238,8 +261,8 @@ class TestTheForgeriesOfTheTrial:
             each[word] = 1
         plan[word] = 1 if word == "proved_share" else len(plan["operations"])
         answer = found(written, document, seconds=0.0)
-        assert f"plans[0].operations[0].{word}" in answer.entries.unchecked
-        assert any(line.startswith("not checked:") and word in line for line in answer.lines)
+        assert f"operations.plans[0].operations[0].{word}" in answer.entries.unchecked
+        assert f"plans.operations.{word}" in answer.first
 
     @pytest.mark.slow("checks a plan many times")
     def test_candidates(self, written):
@@ -314,7 +337,7 @@ def test_a_check_without_time_says_what_it_did_not_look_at(written):
     answer = check(written.question(), seconds=0.0)
     assert answer.holds
     assert any("were not looked at" in line for line in answer.lines)
-    assert not any("clearance_mm" in path for path in answer.entries.agree)
+    assert not any(path.startswith("operations.") and "clearance_mm" in path for path in answer.entries.agree)
 
 
 def test_forged_files_are_told_by_their_checksums(written):

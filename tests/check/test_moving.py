@@ -11,9 +11,9 @@ from plan_cutters import plan
 from plan_cutters_check.bench import Bench
 from plan_cutters_check.check import check
 from plan_cutters_check.clash import Clock
-from plan_cutters_check.expected import Reckoned
 from plan_cutters_check.moving import put_down
 from plan_cutters_check.question import MachineAxes, Setup, axes_of, held
+from plan_cutters_check.reckoned import Reckoned
 from tests.support.places import SAMPLES
 from tests.support.written_plan import Written
 

@@ -17,13 +17,14 @@ from plan_cutters_check.asking import question_of, stated_by
 from plan_cutters_check.bench import Bench
 from plan_cutters_check.check import check, on_paper
 from plan_cutters_check.clash import FREE, MET, Clock
-from plan_cutters_check.expected import Reckoned
 from plan_cutters_check.findings import _beginnings
 from plan_cutters_check.holding import faults
 from plan_cutters_check.leaves import leaves, pattern
+from plan_cutters_check.reckoned import Reckoned
 from plan_cutters_check.trials import Trials
 from plan_cutters_check.verdicts import postures
 from tests.support.forging import forged, put
+from tests.support.unchecked import listed
 from tests.support.written_plan import Written
 
 pytestmark = pytest.mark.slow("forges the entries of a second plan", only=("written",))
@@ -71,21 +72,21 @@ def named(answer, path):
     names = answer.first.partition("Not checked: ")[2]
     plain = [each.replace("[]", "") for each in _beginnings(pattern(path))]
     begin = plain[0].partition(".")[0]
-    unchecked = any(each.startswith(path) for each in answer.others.unchecked)
+    unchecked = any(each.startswith(path) for each in answer.entries.unchecked)
     return unchecked and begin in names and any(each.removeprefix(f"{begin}.") in names for each in plain)
 
 
 def test_what_is_written_holds(one):
     answer = one.read()
     assert answer.holds, "\n".join(answer.lines)
-    assert not answer.others.differ
-    assert not answer.others.unknown
+    assert not answer.entries.differ
+    assert not [path for path in answer.entries.unchecked if not listed(pattern(path))]
     # What people read of a plan is checked, all of it.
-    first = {path.split(".")[0].split("[")[0] for path in answer.others.unchecked}
+    first = {path.split(".")[0].split("[")[0] for path in answer.entries.unchecked}
     assert "text" not in first
     # What is advised rests on judgements of other tools, which are not made again.
     advice = ("process.steps", *(f"process.left[{k}].{word}" for k in range(9) for word in ("fits", "points", "helped")))
-    assert not [path for path in answer.others.unchecked if path.startswith("process") and not path.startswith(advice)]
+    assert not [path for path in answer.entries.unchecked if path.startswith("process") and not path.startswith(advice)]
 
 
 def _forgeries(document, one_in):
@@ -148,6 +149,19 @@ def _feasible(document):
         accessible=cutter["area_share"]["accessible"] + cutter["area_share"]["inaccessible"], inaccessible=0
     )
     document["selected"] = cutter["id"]
+
+
+@pytest.mark.parametrize("error", [StopIteration(), ValueError()])
+def test_a_plan_whose_words_cannot_be_made_fails(held, monkeypatch, error):
+    """A kind of cutter that there is not has no rank among the others, and no error need have words."""
+
+    def none(plan):
+        raise error
+
+    monkeypatch.setattr("plan_cutters.plan_file.words.text.with_text", none)
+    answer = held.read()
+    assert not answer.holds
+    assert any("its words cannot be made" in line for line in answer.lines[1:])
 
 
 def _first_step(**new):

@@ -8,7 +8,7 @@ from plan_cutters import plan
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.report import models
 from plan_cutters.report.clamping_shapes import clamping_shape
-from plan_cutters_check.asking import _bodies
+from plan_cutters_check.asking import bodies_of
 from plan_cutters_check.fixtures import PlacedFixture
 from plan_cutters_check.question import Setup
 from tests.support import gltf
@@ -64,7 +64,7 @@ def test_the_checker_builds_the_same_bodies_by_itself(held):
     (fixture,) = held.conditions.surroundings.fixtures
     setup = Setup((0.0, 0.0, 1.0), None, None, (), frozenset())
     low, high = np.array([-60.0, -60.0, -60.0]), np.array([60.0, 60.0, 20.0])
-    placed = [PlacedFixture(each, setup, low, high) for each in _bodies(fixture.fixture)]
+    placed = [PlacedFixture(each, setup, low, high) for each in bodies_of(fixture.fixture)]
     points = np.random.default_rng(7).uniform(low, high, (600, 3))
     theirs = np.logical_or.reduce([each.holds(points) for each in placed])
     number = np.empty(len(points))

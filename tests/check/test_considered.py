@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from plan_cutters_check.compared import compared
+from plan_cutters_check.reckoned import considered
 
 IDS = ["ball", "flat", "small"]
 KINDS = {"ball": "ball", "flat": "flat", "small": "ball"}
@@ -28,4 +28,4 @@ def test_a_kind_that_comes_last_may_be_left_out_where_the_others_reach_all(reach
         "effective": {}, "operations": {"assumed": {"feed_mm_min": None}}, "least_set": {"runs": [{"cutter": "ball"}]},
         "cutters": [{"id": each, "group": KINDS[each]} for each in IDS],
     }  # fmt: skip
-    assert compared(document, IDS, reached, tried) == wanted
+    assert considered(document, IDS, reached, tried) == wanted

@@ -1,0 +1,186 @@
+"""Sets of samples, their areas, and what entries of every kind about a set of samples must be."""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from cad_io.arrays import Floats
+from plan_cutters_check.question import Question
+from plan_cutters_check.reading import suffix
+
+Rows = NDArray[np.int64]
+#: Verdicts of samples.npz by their words; those that say that a posture was found, and that none was; a reason that is none.
+WORDS = {"interference_free": 2, "accessible": 1, "undecided": 3, "inaccessible": 0, "unjudged": 255}
+REACHED, NOT_REACHED, NO_REASON = (1, 2), (0, 3), 255
+#: How a sample is cut, in operations.npz, and cutters that are compared, at most, unless more are needed.
+FLOOR, WALL, _CUTTERS = 1, 2, 4
+#: Areas that differ by less, as a share, are the same.
+_SAME_AREA = 1e-9
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Weights:
+    """Samples stand for areas.
+
+    Attributes
+    ----------
+    samples : mapping
+        The arrays of samples.npz.
+    area : (n,) float
+        mm2; 0 of samples that do not count.
+    whole : float
+        mm2: all of which shares are.
+    """
+
+    samples: Mapping[str, NDArray[Any]]
+    area: Floats
+    whole: float
+
+    def of(self, rows: Rows, *names: str) -> dict[str, Any]:
+        """Entries about samples (m,), each by the kind that its name says."""
+        return {name: _KINDS[name](self, rows) for name in names}
+
+    def faces(self, rows: Rows, written: Sequence[str]) -> list[str]:
+        """Faces of samples, the one with the most of their area first; of equal ones, as they are written."""
+        size = np.bincount(self.samples["face"][rows], self.area[rows], 1)
+        ordered = [f"F{n}" for n in sorted(np.unique(self.samples["face"][rows]).tolist(), key=lambda n: (-size[n], n))]
+        same = sorted(written) == sorted(ordered)
+        return list(written) if same and falling([size[int(name[1:])] for name in written]) else ordered
+
+    def by_face(self, rows: Rows, written: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
+        """The same with their samples and areas."""
+        face = self.samples["face"][rows]
+        names = self.faces(rows, [each["face"] for each in written])
+        return [{"face": name, **self.of(rows[face == int(name[1:])], "samples", "area_mm2")} for name in names]
+
+
+def falling(sizes: Sequence[float]) -> bool:
+    """Whether sizes fall, but for rounding."""
+    return all(a >= b * (1.0 - _SAME_AREA) for a, b in pairwise(sizes))
+
+
+def _runs(rows: Rows) -> list[list[int]]:
+    """First and last of runs of consecutive numbers."""
+    ends = np.flatnonzero(np.diff(rows) != 1)
+    first, last = rows[np.append(0, ends + 1)[: len(rows)]], rows[np.append(ends, len(rows) - 1)[: len(rows)]]
+    return np.column_stack([first, last]).tolist()
+
+
+_KINDS: dict[str, Callable[[Weights, Rows], Any]] = {
+    "samples": lambda by, rows: len(rows),
+    "area_mm2": lambda by, rows: float(by.area[rows].sum()),
+    "share": lambda by, rows: min(1.0, float(by.area[rows].sum()) / by.whole) if by.whole > 0.0 else 0.0,
+    "low": lambda by, rows: by.samples["point"][rows].min(axis=0, initial=np.inf).tolist(),
+    "high": lambda by, rows: by.samples["point"][rows].max(axis=0, initial=-np.inf).tolist(),
+    "rows": lambda by, rows: _runs(rows),
+}
+
+
+class Reckoned:
+    """Sets of samples that a plan's entries are about.
+
+    Attributes
+    ----------
+    finished, reached : (n,) bool
+        Judged samples of the finished part; those that a cutter that was compared reaches.
+    considered : list of str
+        Ids of the cutters that were compared.
+    judged, required : Weights
+        Of the finished samples; of those that are required, so that the samples of a face have its area together.
+    sampled : (n,) float
+        Area of each sample, those of a face having its area together, mm2.
+    not_sampled : float
+        Area of target faces without samples, mm2.
+    """
+
+    def __init__(self, question: Question) -> None:
+        self.question = question
+        document, samples = question.document, question.samples
+        self.ids: list[str] = [each["id"] for each in document["cutters"]]
+        self.verdict = {name: samples[f"verdict_{name}"] for name in self.ids}
+        self.unjudged = np.logical_and.reduce([each == WORDS["unjudged"] for each in self.verdict.values()])
+        self.exempt = samples.get("exempt", np.zeros(len(self.unjudged), bool))
+        self.finished = ~self.unjudged & ~samples["inside_bodies"] & ~self.exempt
+        process = document["effective"].get("process")
+        self.own = None if process is None else process["step"]
+        fastest_alone = document["effective"]["operations"] == "fastest" and document["operations"]["fewest"] is None
+        self.without_fewest = self.own is not None or fastest_alone
+        #: Whether each sample that is reached must go with an operation.
+        self.all_planned = process is None or (process["rest"] == "plan" and not process["forbid"])
+        reached = {name: self.finished & np.isin(self.verdict[name], REACHED) for name in self.ids}
+        index = question.operations.get("candidate_cutter", np.zeros(0, int))
+        tried = {name for k, name in enumerate(self.ids) if (index == k).any()}
+        self.considered = considered(document, self.ids, reached, None if self.without_fewest else tried)
+        self.reached_by = {name: reached[name] for name in self.considered}
+        self.reached = np.logical_or.reduce([*self.reached_by.values()])
+        self.area: Floats = np.where(self.finished, np.nan_to_num(samples["area"]), 0.0)
+        self.judged = Weights(samples, self.area, float(self.area.sum()))
+        self.face_area, self.sampled = face_areas(question), np.zeros(len(self.area))
+        for name in {f"F{n}" for n in np.unique(samples["face"]).tolist()}:
+            mine = samples["face"] == int(name[1:])
+            weight = weighed(samples["area"][mine])
+            self.sampled[mine] = self.face_area[name] * weight / weight.sum()
+        self.not_sampled = float(sum(self.face_area[name] for name in empty(question)))
+        required = np.where(self.exempt | samples["inside_bodies"], 0.0, self.sampled)
+        self.required = Weights(samples, required, float(required.sum()) + self.not_sampled)
+
+    def array(self, k: int, name: str) -> NDArray[Any]:
+        """An array of operations.npz of plan k."""
+        plan = self.question.document["operations"]["plans"][k]["name"]
+        return self.question.operations[f"{name}{suffix(k, plan)}"]
+
+
+def considered(
+    document: Mapping[str, Any], ids: list[str], reached: Mapping[str, NDArray[np.bool_]], tried: set[str] | None = None
+) -> list[str]:
+    """The ids of the cutters that a plan compares: those that its least set and its own steps need, and others by rank.
+
+    A cutter of a kind that comes last on the part's faces may be left out where the others reach all without it.
+
+    Parameters
+    ----------
+    document : mapping
+        plan.json.
+    ids : list of str
+        All that were judged, by rank.
+    reached : mapping
+        Samples (n,) that each of them reaches.
+    tried : set of str, optional
+        Those that have candidates, where the plan has any.
+    """
+    process, written = document["effective"].get("process"), document["operations"]
+    named = (document.get("least_set") or {"runs": []})["runs"]
+    named = named if process is None else [*named, *process["step"], *process["forbid"]]
+    needed = list(dict.fromkeys(each["cutter"] for each in named))
+    wanted = [*needed, *(each for each in ids if each not in needed)][: max(_CUTTERS, len(needed))]
+    fed = written["assumed"]["feed_mm_min"]
+    kind = {each["id"]: each.get("group") for each in document["cutters"]}
+    late = {each for each in ids if tried is not None and each not in tried and kind[each] not in {kind[one] for one in needed}}
+    others = [each for each in ids if each in wanted and (each in needed or (each not in late and (not fed or each in fed)))]
+    whole = np.logical_or.reduce([reached[each] for each in others]) if others else np.zeros(0, bool)
+    if others and all(not (reached[each] & ~whole).any() for each in wanted if each not in others):
+        return others
+    return [each for each in ids if each in wanted]
+
+
+def empty(question: Question) -> list[str]:
+    """Target faces without samples."""
+    sampled = {f"F{n}" for n in np.unique(question.samples["face"]).tolist()}
+    return [name for name in question.document["effective"]["target_faces"] if name not in sampled]
+
+
+def weighed(area: Floats) -> Floats:
+    """Areas as weights: one that is not known weighs nothing; where none is known each weighs as much."""
+    known = np.where(np.isfinite(area) & (area > 0.0), area, 0.0)
+    return known if known.sum() > 0.0 else np.ones(len(area))
+
+
+def face_areas(question: Question) -> dict[str, float]:
+    """Areas of the target faces by their ids, mm2; 1 each where none is known."""
+    names = [f"F{n}" for n in np.unique(question.samples["face"]).tolist()] + empty(question)
+    areas = weighed(np.array([question.part.faces[int(name[1:]) - 1].area for name in names], float))
+    return dict(zip(names, areas.tolist(), strict=True))

@@ -1,0 +1,54 @@
+"""What the checker may leave unchecked of plan.json, and why: each other entry follows from the files, or from the command."""
+
+import re
+
+#: Why, under which path, and the names there; those that end in `**` with all that is under them.
+_LISTED = (
+    ("it rests on a bound of the fastest plan", "operations.plans[].", "ratio_at_most"),
+    ("the area between samples is proved by the plan alone", "operations.plans[].", "proved_share approaches_proved"),
+    ("the models are not read", "operations.plans[].", "split**"),
+    ("widths of passes are taken from operations.npz", "operations.plans[].operations[].", "strip_mm**"),
+    ("the area between samples is proved by the plan alone", "operations.plans[].operations[].",
+     "proved_share approaches_proved turning**"),
+    ("the surroundings are not known, or the time was over", "operations.plans[].operations[].", "clearance_mm"),
+    ("the best order of the rotary axes is not looked for", "operations.plans[].operations[].", "index_s"),
+    ("the models are not read", "operations.plans[].operations[].", "colour"),
+    ("numbers of orbits are names", "operations.plans[].operations[].", "orbit"),
+    ("it is not proved by weights alone", "operations.fewest.", "at_least"),
+    ("the best weights are not looked for", "operations.fewest.", "lp"),
+    ("how near candidates are where the weights lie is not looked at", "operations.fewest.", "spacing_deg"),
+    ("the time was over", "operations.fewest.", "alone"),
+    ("the bound of the fastest plan is not found again", "operations.fastest.",
+     "bound_seconds at_best_seconds gap samples candidates"),
+    ("the plans without a cutter are not there", "operations.cutters[].", "saves_seconds change_seconds"),
+    ("it is what times rest on", "operations.assumed.", "feed_mm_min**"),
+    ("it is how much was looked at", "operations.", "probes"),
+    ("they are sentences", "operations.", "notes**"),
+    ("what they advise rests on judgements of other tools", "process.", "left[].fits** left[].points** left[].helped**"),
+    ("what other orientations would do is not looked for", "process.steps[].", "own** take"),
+    ("of repeated, simultaneous and own steps alone it does not follow from the files", "process.steps[].",
+     "repeat repeat_deg** alone_mm2 below_mm2 angles_deg** axis**"),
+    ("the command that checks does not say it", "", "effective.**"),
+    ("it is no part of the operations", "cutters[].",
+     "axis_limit_with** setups** lost_in_all witnesses** witnesses_untried beyond_setup area** singular travel** "
+     "least_stick_out** mend** march_differs slack_mm seen touches_deg** sources** group flutes_mm"),
+    ("it is no part of the operations", "",
+     "selected_for_setup inside_radii** sharp_edges** setups** setup_proposal** largest_radius** least_set** not_mended** "
+     "selection** samples.max_gap_mm samples.convex samples.concave samples.saddle samples.regions inside_other_bodies** "
+     "missing** patterns**"),
+    ("it describes the input", "faces[].", "kind component carrier** neighbours** centre_mm** gap_mm chord_error_mm unjudged"),
+    ("it describes the input", "", "part.** libraries** machine.linear** machine.rotary[].** fixtures**"),
+    ("it is about the program and its files", "",
+     "legend** legend_words** format_version versions** notes** note_codes** split** files** not_written** run**"),
+)  # fmt: skip
+UNCHECKED = {f"{under}{name}": why for why, under, names in _LISTED for name in names.split()}
+
+
+def listed(plain: str) -> bool:
+    """Whether the pattern of a path may be unchecked."""
+    return any(re.fullmatch(re.escape(each).replace(r"\*\*", ".*"), plain) for each in UNCHECKED)
+
+
+def of_operations() -> set[str]:
+    """The listed patterns below `operations`, without the marks of all that is under them."""
+    return {each.removeprefix("operations.").removesuffix("**") for each in UNCHECKED if each.startswith("operations.")}
