@@ -19,7 +19,7 @@ from plan_cutters.scene.clearance import clearances, clearances_over, least_clea
 from plan_cutters.scene.deepest import deepest, deepest_of, deepest_on
 from plan_cutters.scene.obstacles import Obstacles
 from tests.support import shapes
-from tests.support.cad_parts import box
+from tests.support.cad_parts import ball, box, compound
 from tests.support.two_setups import two
 
 
@@ -53,6 +53,27 @@ def test_a_holder_beside_a_wall_keeps_what_is_between_them(gap):
     every = clearances(ready.samples, cutter, postures, ready.conditions)
     assert least_clearance(ready.samples, cutter, postures, ready.conditions) == every.distance.min()
     assert least_clearance(ready.samples, cutter, mine, ready.conditions) == found.distance[row]
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.37, 1.9, 4.4])
+@pytest.mark.parametrize("gap", [0.7, 2.3])
+def test_a_holder_beside_a_ball_keeps_no_more_than_what_is_between_them(gap, turn):
+    """Triangles lie within a ball, by up to their chord error: the clearance is that of the ball, not that of its triangles."""
+    radius = 11.0
+    away = 15.0 + gap + radius
+    floor = shapes.plane((-5, 5), (-5, 5))
+    round_ = ball(radius, (-4.0 + away * math.cos(turn), away * math.sin(turn), 60.0))
+    asked = {"cutters": "R4L30HR15L50", "faces": "1", "grid": 3, "area_budget": 0, "tolerance": 0.9}
+    ready = prepare(compound(floor, round_), Options.of(asked))
+    [cutter] = ready.cutters
+    row = int(np.linalg.norm(ready.samples.point, axis=1).argmin())
+    assert np.linalg.norm(ready.samples.point[row]) < 1e-9
+    assert ready.conditions.obstacles.triangles.chord_error > 0.05
+    made = upright(len(ready.samples))
+    mine = replace(made, verdict=np.where(np.arange(len(ready.samples)) == row, ACCESSIBLE, 0).astype(np.uint8))
+    found = clearances(ready.samples, cutter, mine, ready.conditions)
+    assert 0.0 < found.distance[row] <= gap
+    assert found.part[row] == HOLDER
 
 
 def test_of_nothing_that_is_reached_no_clearance_is_known():
