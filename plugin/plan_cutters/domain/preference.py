@@ -45,8 +45,13 @@ def ranks(*, free_form: float) -> tuple[tuple[str, ...], ...]:
 
 
 def rank(group: str, *, free_form: float) -> int:
-    """The rank of a group, 0 for the most wanted."""
-    return next(k for k, groups in enumerate(ranks(free_form=free_form)) if group in groups)
+    """The rank of a group, 0 for the most wanted; behind all others for a group that another program wrote.
+
+    >>> rank("ball", free_form=1.0), rank("laser", free_form=1.0)
+    (0, 4)
+    """
+    every = ranks(free_form=free_form)
+    return next((k for k, groups in enumerate(every) if group in groups), len(every))
 
 
 def size(cutter: Cutter) -> tuple[float, float, float]:
