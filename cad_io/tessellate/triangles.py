@@ -179,7 +179,7 @@ def _affordable(
     area = np.array([part.faces[patch.number - 1].area for patch in finer])
     cost = np.array([each.triangles for each in tried]) / np.maximum(area, np.finfo(float).tiny)
     close: dict[int, Tried] = {}
-    own_budget = int(_OWN * budget)
+    own_budget = max(1, int(_OWN * budget))
     remaining, dear = budget - own_budget, 0
     for i in np.argsort(cost, kind="stable").tolist():
         each = finer[i].tried(least, remaining, EMPTY)
