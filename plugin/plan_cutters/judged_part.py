@@ -20,13 +20,13 @@ from plan_cutters.document.patterns import pattern_entries
 from plan_cutters.document.plan import completed, plan_of, selection
 from plan_cutters.document.setup_table import setup_table
 from plan_cutters.document.sharp_edges import sharp_edge_entries
-from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.fillet import Fit
 from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.spec import notation
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import CONVEX, UNJUDGED, Verdicts
+from plan_cutters.found import Answers
 from plan_cutters.plan_file.model import AreaEntry, CutterEntry
 from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.notes import maps_partial

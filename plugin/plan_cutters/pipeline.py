@@ -17,16 +17,15 @@ from plan_cutters.answers.ask import ask
 from plan_cutters.answers.least_set import least_set
 from plan_cutters.document.clock import Clock, Progress
 from plan_cutters.document.over_setups import OtherSetup
-from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.checks import shown
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.nesting import handed, order
-from plan_cutters.domain.operations import Operations
 from plan_cutters.domain.preference import wanted
 from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.errors import OptionError, UnjudgeableError
+from plan_cutters.found import Answers, Operations
 from plan_cutters.interim import Describe, Interim
 from plan_cutters.judged_part import ExplainedIn, JudgedPart, assembled, with_maps
 from plan_cutters.option_types import PlanOptions
@@ -247,7 +246,8 @@ def _operations(
         return None, {}, {}
     from plan_cutters.operations.planning import plan_operations
 
-    return plan_operations(part.ready, part.everywhere(), least, clock.stage), clock.seconds, clock.boxes
+    operations = plan_operations(part.ready, part.everywhere(), least, clock.stage, part.over_setups().reaches)
+    return operations, clock.seconds, clock.boxes
 
 
 def _in_other_setups(ready: Prepared, here: Mapping[Cutter, Verdicts], clock: Clock, judged: Judge) -> list[OtherSetup]:

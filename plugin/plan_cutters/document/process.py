@@ -11,16 +11,15 @@ from plan_cutters.document.over_setups import OverSetups
 from plan_cutters.document.remaining import faces_of, reasons, remaining, remaining_entry
 from plan_cutters.document.repeats import repeats
 from plan_cutters.document.shares import sample_areas
-from plan_cutters.domain.answers import Answers
 from plan_cutters.domain.fillet import Fitting
-from plan_cutters.domain.operations import OperationPlan, Operations
 from plan_cutters.domain.own_results import OwnResult
 from plan_cutters.domain.verdicts import NO_REASON, REASONS, SHARP_EDGE
-from plan_cutters.plan_file.frozen import Vector, vector
+from plan_cutters.found import Answers, OperationPlan, Operations
+from plan_cutters.plan_file.frozen import filled, vector
 from plan_cutters.plan_file.model import CutterEntry
 from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.numbers import exact
-from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry, OperationsEntry
+from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry
 from plan_cutters.plan_file.process import (
     NOT_PLANNED,
     OTHER_ORIENTATION,
@@ -42,8 +41,8 @@ _BELOW = -0.01
 
 
 def process_entry(
-    ready: Prepared, entries: Sequence[CutterEntry], answers: Answers, over: OverSetups, operations: OperationsEntry | None,
-    shown: str, fitting: Fitting | None = None,
+    ready: Prepared, entries: Sequence[CutterEntry], answers: Answers, over: OverSetups, shown: str,
+    fitting: Fitting | None = None,
 ) -> ProcessEntry:  # fmt: skip
     """Put together what the given cutters, setups and operations finish.
 
@@ -55,8 +54,6 @@ def process_entry(
     answers : Answers
         The plan of operations is the process where there is one, else the fewest runs of cutters and setups.
     over : OverSetups
-    operations : OperationsEntry, optional
-        As it is in the plan file.
     shown : str
         Id of the cutter that the plan shows: its next steps are told.
     fitting : callable, optional
@@ -65,8 +62,8 @@ def process_entry(
     sampled, not_sampled = sample_areas(entries[0].faces, ready.samples, ready.scene.part)
     area = np.where(ready.not_required, 0.0, sampled)
     requested, clamping, name = float(area.sum()) + not_sampled, None, ""
-    if answers.operations is not None and operations is not None:
-        chosen, entry = _preferred(answers.operations.plans, operations.plans)
+    if answers.operations is not None:
+        chosen, entry = _preferred(answers.operations)
         done = (chosen.label >= 0) & ready.finished
         steps, seconds = _operated(ready, answers.operations, chosen, entry, over, area, requested), entry.seconds
         name = entry.name
@@ -77,7 +74,7 @@ def process_entry(
         runs, seconds = list(_runs(ready, entries, answers, over)), None
         done = np.logical_or.reduce([mine for *_, mine in runs]) if runs else np.zeros(len(area), bool)
         steps = [
-            _step(ready, over, area, requested, mine, setup=setup, mode="any", cutter=cutter, angles_deg=None, axis=None,
+            _step(ready, over, area, requested, mine, None, setup=setup, mode="any", cutter=cutter, angles_deg=None, axis=None,
                   seconds=None, clearance_mm=None)
             for setup, cutter, mine in runs
         ]  # fmt: skip
@@ -100,10 +97,9 @@ def _exempt(ready: Prepared, sampled: Floats, requested: float) -> RemainingEntr
     return remaining_entry(ready, REASONS[SHARP_EDGE], ready.exempt, np.where(ready.inside_bodies, 0.0, sampled), requested)
 
 
-def _preferred(plans: Sequence[OperationPlan], entries: Sequence[OperationPlanEntry]) -> tuple[OperationPlan, OperationPlanEntry]:
-    """The plan of operations that is recommended, as it was outcome and as it is in the plan file."""
-    k = min(range(len(plans)), key=lambda k: (*_PREFERRED, plans[k].name).index(plans[k].name))
-    return plans[k], entries[k]
+def _preferred(operations: Operations) -> tuple[OperationPlan, OperationPlanEntry]:
+    """The plan of operations that is recommended, in arrays and as it is in the plan file."""
+    return min(zip(operations.plans, operations.entry.plans, strict=True), key=lambda each: _PREFERRED.index(each[0].name))
 
 
 def _operated(
@@ -131,30 +127,27 @@ def _operated(
             [each.seconds for each in same],
             [each.clearance_mm for each in same],
         )
-        step = _step(
-            ready, over, area, requested, mine, setup=first.setup, mode=first.mode, strategy=first.strategy, cutter=first.cutter,
-            angles_deg=first.angles_deg, axis=first.axis, seconds=_sum(seconds),
+        repeat, by = repeats(ready, same, mine)
+        planned.append(_step(
+            ready, over, area, requested, mine, first, seconds=_sum(seconds), repeat=repeat, repeat_deg=by,
             clearance_mm=None if None in clearance else min(each for each in clearance if each is not None),
             operation=first.id, take="share", alone_mm2=_gone(plan, same, ranks, mine, area, alone if operations.own else None),
-        )  # fmt: skip
-        repeat, by = repeats(ready, same, mine)
-        planned.append(step.model_copy(update={"repeat": repeat, "repeat_deg": by}))
+        ))  # fmt: skip
     # Those that are images of others count with all of them.
     planned.sort(key=lambda s: (s.setup, s.mode != "fixed", -by_cutter[s.setup, s.cutter], s.cutter, -s.area_mm2))
     done = {each.step: (k, each) for k, each in enumerate(entry.operations)}
     own, all_done = [], np.concatenate([np.zeros(0, np.int64), *(each.rows for each in operations.own)])
     for outcome in operations.own:
         k, made = done.get(outcome.number, (-2, None))
-        angles = None if outcome.angle is None else dict(zip(operations.names, outcome.angle.tolist(), strict=True))
+        known, names = outcome.angle is not None and np.isfinite(outcome.angle).all(), operations.entry.rotary
+        angles = dict(zip(names, outcome.angle.tolist(), strict=True)) if outcome.angle is not None and known else None
+        none = {"seconds": 0.0, "clearance_mm": None} if made is None else {}
         own.append(
-            _step(ready, over, area, requested, plan.label == k, setup=outcome.setup, mode=outcome.mode,
-                  strategy="point" if made is None else made.strategy, cutter=outcome.cutter.id,
-                  angles_deg=angles if outcome.angle is not None and np.isfinite(outcome.angle).all() else None,
-                  axis=None if outcome.axis is None else vector(outcome.axis),
-                  seconds=0.0 if made is None else made.seconds, clearance_mm=None if made is None else made.clearance_mm,
+            _step(ready, over, area, requested, plan.label == k, made, setup=outcome.setup, mode=outcome.mode,
+                  cutter=outcome.cutter.id, angles_deg=angles, axis=None if outcome.axis is None else vector(outcome.axis),
                   operation="" if made is None else made.id, take=_take(ready, outcome),
                   alone_mm2=float(area[alone & (plan.label == k)].sum()),
-                  own=_own_entry(ready, over, area, requested, outcome, operations.names, all_done))
+                  own=_own_entry(ready, over, area, requested, outcome, names, all_done), **none)
         )  # fmt: skip
     return [*own, *planned]
 
@@ -248,14 +241,18 @@ def _runs(
 
 
 def _step(
-    ready: Prepared, over: OverSetups, area: Floats, requested: float, mine: NDArray[np.bool_], *, setup: int, cutter: str,
-    axis: Vector | None, **fields: Any,
+    ready: Prepared, over: OverSetups, area: Floats, requested: float, mine: NDArray[np.bool_], made: OperationEntry | None,
+    **fields: Any,
 ) -> ProcessStep:  # fmt: skip
-    """A step that finishes some samples (n,): with one axis, or each with that of its posture."""
+    """A step that finishes some samples (n,): with one axis, or each with that of its posture.
+
+    What is not among the `fields` is as in its operation.
+    """
     size = float(area[mine].sum())
+    setup, cutter, axis = (fields[name] if name in fields else getattr(made, name) for name in ("setup", "cutter", "axis"))
     axes = over.each()[setup][1][cutter].axis[mine] if axis is None else np.tile(axis, (int(mine.sum()), 1))
     below = axes @ ready.setups[setup].setup < _BELOW
-    return ProcessStep(
-        faces=faces_of(ready, mine, area), area_mm2=size, share=min(1.0, size / max(1e-300, requested)), setup=setup,
-        cutter=cutter, axis=axis, below_mm2=float(area[mine][below].sum()), **fields,
+    return filled(
+        ProcessStep, made, faces=faces_of(ready, mine, area), area_mm2=size, share=min(1.0, size / max(1e-300, requested)),
+        below_mm2=float(area[mine][below].sum()), **fields,
     )  # fmt: skip

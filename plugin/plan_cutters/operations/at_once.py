@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
 from plan_cutters.domain.columns import Columns
-from plan_cutters.domain.operations import OperationPlan
+from plan_cutters.found import OperationPlan
 from plan_cutters.operations.plans import costs_with, moving_over
 from plan_cutters.operations.task import Task
 from plan_cutters.operations.timing import speed_of
