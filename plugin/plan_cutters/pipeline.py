@@ -27,11 +27,10 @@ from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.found import Answers, Operations
 from plan_cutters.interim import Describe, Interim
-from plan_cutters.judged_part import ExplainedIn, JudgedPart, assembled, with_maps
+from plan_cutters.judged_part import ExplainedIn, JudgedPart, assembled, with_maps, worded
 from plan_cutters.option_types import PlanOptions
 from plan_cutters.options import Options
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.words.text import with_text
 from plan_cutters.proposal import Stand, judged_proposed
 from plan_cutters.result import Result
 from plan_cutters.scene.conditions import Context, contacts_of, warm
@@ -193,9 +192,7 @@ class Run:
         result = assembled(part, clock, interim.answers, interim.between)
         if options.posture_maps:
             result = with_maps(result, part, clock, self.compiling)
-        if describe is not _as_it_is:
-            result = replace(result, plan=clock.stamp(with_text(describe(result.plan))))
-        return result
+        return worded(replace(result, plan=describe(result.plan)), clock)
 
     def _answered(self, part: JudgedPart, least: LeastSet | None) -> Operations | None:
         """Answer the questions, and plan the operations beside that: neither needs the other, nor keeps all threads at work."""

@@ -26,7 +26,7 @@ from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE
 from plan_cutters.found import Answers
 from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.inside_radii import InsideRadiusEntry
-from plan_cutters.plan_file.model import CutterEntry, MachineEntry, Plan, RotaryEntry, Run, SampleCounts, Selection
+from plan_cutters.plan_file.model import AreaEntry, CutterEntry, MachineEntry, Plan, RotaryEntry, Run, SampleCounts, Selection
 from plan_cutters.plan_file.nearest import ANOTHER_SETUP, leaves, nearest
 from plan_cutters.plan_file.palette import MEANING, PALETTE
 from plan_cutters.plan_file.patterns import PatternEntry
@@ -62,7 +62,7 @@ def plan_of(
     shown = selected or nearest(entries).id
     return Plan(
         process=process_entry(ready, entries, answers, over, shown, fitting),
-        part=part_info(scene, surroundings).model_copy(update={"void_faces": void_faces(ready)}),
+        part=part_info(scene, surroundings, void_faces(ready)),
         effective=effective(ready),
         versions=versions(),
         samples=SampleCounts(
@@ -159,13 +159,14 @@ def completed(
     answers: Answers,
     over: OverSetups,
     beyond: NDArray[np.bool_],
-    travels: Mapping[str, Travel] | None = None,
+    travels: Mapping[str, Travel],
+    between: Mapping[str, AreaEntry],
 ) -> list[CutterEntry]:
-    """The entries of cutters with where they are listed, what the limits lose for all (n,), and what was answered about them."""
+    """The entries of cutters with where they are listed, what the limits lose for all (n,), and what was found after them."""
     completed_entries, sources, samples = [], ready.options.sources, ready.samples
     reached_by_none = int(beyond.sum())
     for entry in entries:
-        moved = (travels or {}).get(entry.id)
+        moved, area = travels.get(entry.id), between.get(entry.id)
         stick_out, mend = answers.stick_outs.get(entry.id), answers.mends.get(entry.id)
         here = over.here[entry.id]
         surroundings = ready.setups[0 if stick_out is None else stick_out.setup].surroundings
@@ -177,6 +178,8 @@ def completed(
             "sources": [source_entry(*place) for place in sources.get(entry.id, ())],
             "least_stick_out": None if stick_out is None else stick_out_entry(stick_out, samples, surroundings),
             "mend": None if mend is None else advice_entry(mend),
+            "area": area,
+            "seen": entry.seen or (area is not None and area.feasible),
         }
         completed_entries.append(entry.model_copy(update=more))
     return completed_entries

@@ -2,14 +2,14 @@
 
 import shlex
 import textwrap
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from plan_cutters.domain.answer_kinds import WORTH
 from plan_cutters.plan_file.answers import StepEntry
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.numbers import area, count, duration, listed, mm, percent, place
-from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, NextEntry, ProcessEntry, ProcessStep
+from plan_cutters.plan_file.process import NOT_PLANNED, UNJUDGED_CAUSE, NextEntry, ProcessEntry, ProcessStep, RemainingEntry
 from plan_cutters.plan_file.reasons import CLOSED_VOID, REASONS
 from plan_cutters.plan_file.words.doubts import doubts
 from plan_cutters.plan_file.words.names import named
@@ -118,9 +118,8 @@ def with_process_words(plan: Plan) -> Plan:
         step if step.own is None else step.model_copy(update={"own": step.own.model_copy(update={"text": fault(k, step)})})
         for k, step in enumerate(plan.process.steps, 1)
     ]
-    process = plan.process.model_copy(update={"steps": steps, "left": needed, "doubts": doubts(plan)})
-    plan = plan.model_copy(update={"process": process})
-    return plan.model_copy(update={"process": process.model_copy(update={"next": list(_next_entries(plan))})})
+    words = {"steps": steps, "left": needed, "doubts": doubts(plan), "next": list(_next_entries(plan, plan.process, needed))}
+    return plan.model_copy(update={"process": plan.process.model_copy(update=words)})
 
 
 def cause_text(cause: str) -> str:
@@ -186,10 +185,9 @@ def _remaining(process: ProcessEntry, plan: Plan) -> Iterator[str]:
         yield f"Not required (--sharp-edges left): {area(process.exempt.area_mm2)} at sharp inside edges of {where}."
 
 
-def _next_entries(plan: Plan) -> Iterator[NextEntry]:
-    """The best next steps of the cutter that the plan shows, or the answer to ask for."""
-    process = plan.process
-    if process is None or all(each.cause == UNJUDGED_CAUSE or each.needs == CLOSED_VOID for each in process.left):
+def _next_entries(plan: Plan, process: ProcessEntry, remaining: Sequence[RemainingEntry]) -> Iterator[NextEntry]:
+    """The best next steps of the cutter that the plan shows, or the answer to ask for; `remaining` say what they need."""
+    if all(each.cause == UNJUDGED_CAUSE or each.needs == CLOSED_VOID for each in remaining):
         return
     advice, left = shown_cutter(plan).mend, 1.0 - process.finished_share
     if advice is not None:
