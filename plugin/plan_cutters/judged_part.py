@@ -26,7 +26,7 @@ from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.spec import notation
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import CONVEX, UNJUDGED, Verdicts
-from plan_cutters.found import Answers
+from plan_cutters.outcome import Answers
 from plan_cutters.plan_file.model import AreaEntry, CutterEntry
 from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.plan_file.notes import maps_partial

@@ -25,11 +25,11 @@ from plan_cutters.domain.preference import wanted
 from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.errors import OptionError, UnjudgeableError
-from plan_cutters.found import Answers, Operations
 from plan_cutters.interim import Describe, Interim
 from plan_cutters.judged_part import ExplainedIn, JudgedPart, assembled, with_maps, worded
 from plan_cutters.option_types import PlanOptions
 from plan_cutters.options import Options
+from plan_cutters.outcome import Answers, Operations
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.proposal import Stand, judged_proposed
 from plan_cutters.result import Result

@@ -20,7 +20,7 @@ from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.errors import OptionError
-from plan_cutters.found import Answers, Operations
+from plan_cutters.outcome import Answers, Operations
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import nearest
 from plan_cutters.scene.clearance import Clearances, clearances_over

@@ -7,7 +7,7 @@ import time
 import pytest
 
 from plan_cutters import pipeline, plan
-from plan_cutters.found import Answers
+from plan_cutters.outcome import Answers
 from plan_cutters_base import copies
 from tests.support.places import SAMPLES
 

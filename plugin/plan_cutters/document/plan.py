@@ -23,7 +23,7 @@ from plan_cutters.domain.lengths import reporting
 from plan_cutters.domain.over_setups import positions
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import CONCAVE, CONVEX, REASONS, SADDLE
-from plan_cutters.found import Answers
+from plan_cutters.outcome import Answers
 from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.inside_radii import InsideRadiusEntry
 from plan_cutters.plan_file.model import AreaEntry, CutterEntry, MachineEntry, Plan, RotaryEntry, Run, SampleCounts, Selection

@@ -15,7 +15,7 @@ from plan_cutters.document.shares import sample_areas
 from plan_cutters.domain.fillet import Fitting
 from plan_cutters.domain.own_results import OwnResult
 from plan_cutters.domain.verdicts import NO_REASON, REASONS, SHARP_EDGE
-from plan_cutters.found import Answers, OperationPlan, Operations
+from plan_cutters.outcome import Answers, OperationPlan, Operations
 from plan_cutters.plan_file.frozen import filled, vector
 from plan_cutters.plan_file.model import CutterEntry
 from plan_cutters.plan_file.nearest import nearest

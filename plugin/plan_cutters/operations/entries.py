@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.verdicts import NO_REASON, REASONS
-from plan_cutters.found import Operation, OperationPlan
 from plan_cutters.operations.fewest import Fewest
 from plan_cutters.operations.rest_areas import Worth
 from plan_cutters.operations.task import Task
+from plan_cutters.outcome import Operation, OperationPlan
 from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.operations import (
     AssumedEntry,
@@ -30,8 +30,8 @@ from plan_cutters.plan_file.palette import operation_colour
 Timed = tuple[FastestEntry, float]
 #: Areas differ by less, as a share, where they are of the same samples.
 _SAME_AREA = 1e-3
-#: Fields of an operation of which nothing is found where nothing was looked at, or where it is simultaneous.
-_NOT_FOUND = dict.fromkeys(("proved_share", "approaches_proved", "frame", "index_s", "index_from"))
+#: Fields of an operation that are not known where nothing was looked at, or where it is simultaneous.
+_UNKNOWN = dict.fromkeys(("proved_share", "approaches_proved", "frame", "index_s", "index_from"))
 
 
 def operations_entry(
@@ -141,7 +141,7 @@ def _operation(
         seconds=float(seconds.sum()) if np.isfinite(seconds).all() else None,
         orbit=None if operation.orbit < 0 else operation.orbit, faces=_faces(rows, samples, area),
         regions=[_region(k, np.flatnonzero(plan.region == k), samples, area) for k in np.unique(plan.region[rows]).tolist()],
-        colour=operation_colour(number), **{**_NOT_FOUND, **operation.found},
+        colour=operation_colour(number), **{**_UNKNOWN, **operation.fields},
     )  # fmt: skip
 
 

@@ -11,8 +11,8 @@ from scipy.sparse.csgraph import breadth_first_order
 from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.domain.kinematics import SINGULAR, Kinematics
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.found import Operation
 from plan_cutters.operations.moving_axes import fields, moving_axes
+from plan_cutters.outcome import Operation
 from plan_cutters.plan_file.operations import TurningEntry
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.preparation import Prepared
@@ -65,7 +65,7 @@ def proved_moving(
     whole = float(result.surrounding_area[operation.rows].sum())
     turning, piece = _turning(samples, axis, result, kinematics, [each.name for each in context.conditions.machine.rotary])
     share = proved_share(float(result.cells.area.sum()), whole)
-    return operation.with_found((axis, piece), proved_share=share, approaches_proved=len(turning.pieces_mm2), turning=turning)
+    return operation.with_fields((axis, piece), proved_share=share, approaches_proved=len(turning.pieces_mm2), turning=turning)
 
 
 def proved_share(proved: float, whole: float) -> float:

@@ -14,7 +14,6 @@ from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.lengths import reporting
 from plan_cutters.domain.own_process import OwnProcess, cutter_of
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.found import OperationPlan, Operations
 from plan_cutters.operations.at_once import few_enough, recommended
 from plan_cutters.operations.by_pattern import PlansTimed, Repeated, as_quick, planned_by_pattern, repeated_orientations
 from plan_cutters.operations.candidates import STEP, apart, candidates
@@ -43,6 +42,7 @@ from plan_cutters.operations.task import Task
 from plan_cutters.operations.thinned import thinned
 from plan_cutters.operations.timing import Paths, Problems
 from plan_cutters.operations.walls import Walls
+from plan_cutters.outcome import OperationPlan, Operations
 from plan_cutters.plan_file.numbers import duration, percent
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress, part_of

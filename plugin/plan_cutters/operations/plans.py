@@ -13,12 +13,12 @@ from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.operations import STRATEGIES, strategy_of
 from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
-from plan_cutters.found import Operation, OperationPlan
 from plan_cutters.operations.candidates import Orientations
 from plan_cutters.operations.labels import joined, labelled, regions_of
 from plan_cutters.operations.task import Task
 from plan_cutters.operations.timing import costs_of, tip_widths, widths
 from plan_cutters.operations.workplanes import workplanes
+from plan_cutters.outcome import Operation, OperationPlan
 from plan_cutters.plan_file.numbers import area as size
 from plan_cutters.scene.clearance import least_clearance
 from plan_cutters.scene.conditions import Context
@@ -99,7 +99,7 @@ def plan_with(
         tilt_direction[mine], contact[mine] = stands.held.tilt_direction[mine], stands.contact
         strategy[mine] = stands.strategy
         clearance, word = _clearance(task, operation, stands), strategy_of(stands.strategy, area[mine])
-        operations[k] = operation.with_found(clearance_mm=clearance, strategy=word)
+        operations[k] = operation.with_fields(clearance_mm=clearance, strategy=word)
     region = regions_of(number, edge, area)
     operations = workplanes(operations, task.ready, task.indexing)
     cutting, other = float(seconds[number >= 0].sum()), _other(task, operations)
@@ -112,7 +112,7 @@ def _other(task: Task, operations: Sequence[Operation]) -> float:
     """Seconds of orientations, and of each cutter and each setup after the first, which are there anyway."""
     options = task.ready.options
     # How simultaneous motion begins is not known: it takes the time of an orientation that no rates tell.
-    turns = sum(each.found.get("index_s", task.indexing.constant) for each in operations)
+    turns = sum(each.fields.get("index_s", task.indexing.constant) for each in operations)
     cutters, setups = len({each.cutter for each in operations}), len({each.setup for each in operations})
     return turns + options.change_time * max(0, cutters - 1) + options.setup_time * max(0, setups - 1)
 

@@ -8,10 +8,10 @@ from numpy.typing import NDArray
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.preference import by_radius
-from plan_cutters.found import OperationPlan
 from plan_cutters.operations.fastest import cheap
 from plan_cutters.operations.problem import Problem
 from plan_cutters.operations.task import Task
+from plan_cutters.outcome import OperationPlan
 
 Rows = NDArray[np.int64]
 

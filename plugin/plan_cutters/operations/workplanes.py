@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from plan_cutters.domain.placement import frame_of
-from plan_cutters.found import Operation
 from plan_cutters.operations.indexing import Indexing
+from plan_cutters.outcome import Operation
 from plan_cutters.plan_file.frozen import vector
 from plan_cutters.plan_file.operations import WorkplaneEntry
 from plan_cutters.scene.preparation import Prepared
@@ -37,5 +37,5 @@ def workplanes(operations: Sequence[Operation], ready: Prepared, indexing: Index
             assert angle is not None, "a fixed axis has angles"
             x = frame_of(axis, moved.carried(across, np.radians(angle)[None])[0])[0]
             frame = WorkplaneEntry(origin=vector(origin), x=vector(x), z=vector(axis))
-            planned[i] = operations[i].with_found(frame=frame, index_s=seconds, index_from=indexing.source)
+            planned[i] = operations[i].with_fields(frame=frame, index_s=seconds, index_from=indexing.source)
     return planned

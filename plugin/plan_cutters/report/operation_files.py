@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from plan_cutters.found import OperationPlan
+from plan_cutters.outcome import OperationPlan
 from plan_cutters.report.protocol import Judged
 from plan_cutters.report.to_npz import write_arrays
 

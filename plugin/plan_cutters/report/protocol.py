@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from plan_cutters.domain.posture import PostureRange
     from plan_cutters.domain.travel import Travel
     from plan_cutters.domain.verdicts import Verdicts
-    from plan_cutters.found import Answers
+    from plan_cutters.outcome import Answers
     from plan_cutters.plan_file.model import CutterEntry, Plan
     from plan_cutters.scene.clearance import Clearances
     from plan_cutters.scene.conditions import Conditions

@@ -47,14 +47,14 @@ def called(cutter: "Cutter | CutterEntry", *, plainly: bool = False) -> str:
     from plan_cutters.domain.spec import is_spec, notation
 
     # As it was typed: a D12 is called so in an inch shop, too. Tools of libraries have only names.
-    given = "" if plainly and not is_spec(cutter.name) else cutter.name
-    inches = notation(given).inches if not given or is_spec(given) else in_inches()
+    name = "" if plainly and not is_spec(cutter.name) else cutter.name
+    inches = notation(name).inches if not name or is_spec(name) else in_inches()
 
     def size(length: float, digits: int = 5) -> str:
         return f"{length / 25.4:.{digits}g}in" if inches else f"{length:.{digits}g}"
 
     across = size(2.0 * cutter.radius)
-    name = given.removesuffix(_BUILT_IN_MARK).strip()
+    name = name.removesuffix(_BUILT_IN_MARK).strip()
     if name and not is_spec(name):
         # Where the name says the diameter itself, it need not be said again.
         match = re.search(rf"(?<![\d.,]){re.escape(across)}(?![\d]|[.,]\d)", name)

@@ -1,4 +1,4 @@
-"""What is found after the verdicts: answers that were requested, and the plan of operations with the samples of its steps."""
+"""Answers and the plan of operations follow the verdicts: here they are, with the samples of each operation."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -45,8 +45,8 @@ class Operation:
     moving : ((n, 3) float, (n,) int32), optional
         Of a simultaneous one that was looked at between the samples: the unit tool axis of the proposed field at each sample, nan
         where there is none; and the connected proved piece about it, the largest first, -1: nothing is proved there.
-    found : mapping
-        Fields of its entry in the plan file, as far as they are found.
+    fields : mapping
+        Of its entry in the plan file, by their names, as far as they are known by now.
     """
 
     name: str
@@ -60,11 +60,11 @@ class Operation:
     step: int = 0
     orbit: int = -1
     moving: tuple[Floats, Ints] | None = None
-    found: Mapping[str, Any] = field(default_factory=dict)
+    fields: Mapping[str, Any] = field(default_factory=dict)
 
-    def with_found(self, moving: tuple[Floats, Ints] | None = None, **fields: Any) -> "Operation":
+    def with_fields(self, moving: tuple[Floats, Ints] | None = None, **fields: Any) -> "Operation":
         """The operation with more fields of its entry."""
-        return replace(self, moving=moving or self.moving, found={**self.found, **fields})
+        return replace(self, moving=moving or self.moving, fields={**self.fields, **fields})
 
 
 @dataclass(frozen=True, slots=True, eq=False)
