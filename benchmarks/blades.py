@@ -57,9 +57,9 @@ def ready(what: Any, cutter: str) -> Any:
 def measured(prepared: Any, cutter: Any) -> dict[str, float]:
     """Processor seconds of one cutter, and what they were spent on."""
     from plan_cutters.domain.verdicts import INACCESSIBLE, INSIDE, INTERFERENCE_FREE, UNDECIDED, blank
+    from plan_cutters.judging.judge import judge
+    from plan_cutters.judging.witness import witnesses
     from plan_cutters.scene.conditions import Context, contacts_of, search_postures
-    from plan_cutters.stages.judge import judge
-    from plan_cutters.stages.witness import witnesses
 
     samples, conditions = prepared.samples, prepared.conditions
     began = time.process_time()

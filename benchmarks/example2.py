@@ -19,13 +19,13 @@ from cad_io.arrays import Triangles
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, Machine, plan
 from plan_cutters.domain.posture import PostureRange
+from plan_cutters.judging.access import access
+from plan_cutters.judging.classify import CONVEX
+from plan_cutters.judging.decompose import decompose
+from plan_cutters.judging.posture_maps import posture_maps
 from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
-from plan_cutters.stages.access import access
-from plan_cutters.stages.classify import CONVEX
-from plan_cutters.stages.decompose import decompose
-from plan_cutters.stages.posture_maps import posture_maps
 
 PART = Path(__file__).parent.parent / "samples" / "peaks_and_valleys.step"
 SPECS = ("R12L120", "R10L100", "R8L90", "R6L80")

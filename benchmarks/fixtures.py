@@ -18,9 +18,9 @@ import trimesh
 
 from plan_cutters import Cutter, Fixture, Options, Scene
 from plan_cutters.domain.verdicts import UNJUDGED
+from plan_cutters.judging.judge import judge
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.stages.judge import judge
 
 ROOT = Path(__file__).parent.parent
 sys.path.append(str(ROOT))

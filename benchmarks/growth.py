@@ -36,12 +36,12 @@ def one(grid: int, chord: float) -> dict[str, float]:
     from plan_cutters import Cutter
     from plan_cutters.domain.machine import Machine
     from plan_cutters.domain.posture import PostureRange
+    from plan_cutters.judging.access import access
+    from plan_cutters.judging.classify import CONVEX, classify
+    from plan_cutters.judging.decompose import decompose
     from plan_cutters.scene.conditions import Conditions, Context
     from plan_cutters.scene.obstacles import Obstacles
     from plan_cutters.scene.surroundings import Surroundings
-    from plan_cutters.stages.access import access
-    from plan_cutters.stages.classify import CONVEX, classify
-    from plan_cutters.stages.decompose import decompose
 
     part, cutter = read_part(PART), Cutter.flat(radius=6, length=80)
     orientation = orient(part, towards=(0, 0, 1))

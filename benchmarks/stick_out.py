@@ -13,8 +13,8 @@ from pathlib import Path
 from plan_cutters import Cutter, Options
 from plan_cutters.answers.stick_out import least_stick_out
 from plan_cutters.domain.verdicts import REASONS, UNDECIDED
+from plan_cutters.judging.judge import judge
 from plan_cutters.pipeline import prepare
-from plan_cutters.stages.judge import judge
 
 PART = Path(__file__).parent.parent / "samples" / "peaks_and_valleys.step"
 HOLDER = "R25:40L5+R40L25+R40:80L30+R80L60"

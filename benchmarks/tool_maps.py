@@ -12,11 +12,11 @@ from pathlib import Path
 import numpy as np
 
 from plan_cutters import Cutter
+from plan_cutters.judging.posture_maps import NARROWEST
 from plan_cutters.kernels.maps.free_map import free_map
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.conditions import Context, contacts_of
-from plan_cutters.stages.posture_maps import NARROWEST
 
 PART = Path(__file__).parent.parent / "samples" / "peaks_and_valleys.step"
 HOLDER = "R12.5L6+R13:20L10+R20L10+R18:22L8+R22L10+R30L40"

@@ -22,10 +22,10 @@ from cad_io.part.orient import orient
 from cad_io.sample import sample
 from plan_cutters import Cutter, Holder, Stage, plan
 from plan_cutters.document.clock import Clock
+from plan_cutters.judging.judge import judge
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare, run
 from plan_cutters.scene.conditions import Context
-from plan_cutters.stages.judge import judge
 
 PART = Path(__file__).parent.parent / "samples" / "peaks_and_valleys.step"
 HOLDER = "R12.5L6+R13:20L10+R20L10+R18:22L8+R22L10+R30L40"

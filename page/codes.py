@@ -8,9 +8,9 @@ import math
 import sys
 from pathlib import Path
 
+from plan_cutters.domain.figures import ALL_BUT, HARDLY_ANY, ROUNDING
 from plan_cutters.domain.kinematics import SINGULAR
 from plan_cutters.kernels.codes import ON_LIMIT, PARALLEL
-from plan_cutters.plan_file.numbers import ALL_BUT, HARDLY_ANY, ROUNDING
 from plan_cutters.plan_file.reasons import MET, NO_CONTACT
 
 FILE = Path(__file__).parent / "src" / "codes.ts"

@@ -26,6 +26,15 @@ from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.spec import notation
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import CONVEX, UNJUDGED, Verdicts
+from plan_cutters.judging.between import in_each
+from plan_cutters.judging.decompose import march_differs
+from plan_cutters.judging.judge import judge
+from plan_cutters.judging.posture_maps import posture_maps
+from plan_cutters.judging.reasons import Explained, Reasons
+from plan_cutters.judging.setups import within_limits
+from plan_cutters.judging.sharp_edges import exempt, may_be_at_edge, strips, with_sharp_edges
+from plan_cutters.judging.travel import travels
+from plan_cutters.judging.witness import witnesses
 from plan_cutters.outcome import Answers
 from plan_cutters.plan_file.model import AreaEntry, CutterEntry
 from plan_cutters.plan_file.nearest import nearest
@@ -39,15 +48,6 @@ from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.setups import for_another_setup
 from plan_cutters.scene.threads import Progress, part_of
 from plan_cutters.scene.work import Work
-from plan_cutters.stages.between import in_each
-from plan_cutters.stages.decompose import march_differs
-from plan_cutters.stages.judge import judge
-from plan_cutters.stages.posture_maps import posture_maps
-from plan_cutters.stages.reasons import Explained, Reasons
-from plan_cutters.stages.setups import within_limits
-from plan_cutters.stages.sharp_edges import exempt, may_be_at_edge, strips, with_sharp_edges
-from plan_cutters.stages.travel import travels
-from plan_cutters.stages.witness import witnesses
 from plan_cutters_base.stage_cache import NO_CACHE
 
 #: The work between samples: this share of what came before, and so many boxes in any case, fewer among more than so many

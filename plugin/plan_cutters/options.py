@@ -26,8 +26,8 @@ from plan_cutters.errors import OptionError
 from plan_cutters.library.presets import feed_of
 from plan_cutters.library.records import Entry, Library, libraries_of
 from plan_cutters.machines.requested_operations import operations_requested, process_requested
-from plan_cutters.machines.requested_setups import MOST_PROPOSED, setups_requested, without
 from plan_cutters.option_types import ANGLES, OF_CALLS, Answer, Operations, PlanOptions, SharpEdges
+from plan_cutters.setups.requested import MOST_PROPOSED, setups_requested, without
 
 #: Gouge tolerances that can be requested, mm.
 LEAST_TOLERANCE, MOST_TOLERANCE = 1e-4, 10.0

@@ -27,6 +27,11 @@ from plan_cutters.domain.verdicts import Verdicts
 from plan_cutters.errors import OptionError, UnjudgeableError
 from plan_cutters.interim import Describe, Interim
 from plan_cutters.judged_part import ExplainedIn, JudgedPart, assembled, with_maps, worded
+from plan_cutters.judging.cached_judge import CachedJudge
+from plan_cutters.judging.classify import classify, regions
+from plan_cutters.judging.judge import Judge, judge
+from plan_cutters.judging.judge_once import JudgeOnce
+from plan_cutters.judging.other_setups import in_setup
 from plan_cutters.option_types import PlanOptions
 from plan_cutters.options import Options
 from plan_cutters.outcome import Answers, Operations
@@ -43,11 +48,6 @@ from plan_cutters.scene.setups import conditions_of, fixtures_of, places, with_s
 from plan_cutters.scene.spacing import affordable, sampled, spacing_key
 from plan_cutters.scene.threads import part_of
 from plan_cutters.scene.work import Work
-from plan_cutters.stages.cached_judge import CachedJudge
-from plan_cutters.stages.classify import classify, regions
-from plan_cutters.stages.judge import Judge, judge
-from plan_cutters.stages.judge_once import JudgeOnce
-from plan_cutters.stages.other_setups import in_setup
 from plan_cutters_base.copies import SideProcess
 from plan_cutters_base.forks import Gauge
 from plan_cutters_base.stage_cache import NO_CACHE, StageCache

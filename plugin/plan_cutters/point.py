@@ -21,13 +21,13 @@ from plan_cutters.domain.shapes import largest_tilt
 from plan_cutters.domain.signatures import spelled_out
 from plan_cutters.domain.tolerance import nominal_depth
 from plan_cutters.errors import OptionError
-from plan_cutters.machines.requested_setups import setups_requested
+from plan_cutters.judging.posture_map import SETTLED, PostureMap, moved, posture_map_of
 from plan_cutters.option_types import PointOptions
 from plan_cutters.options import Options, machine_option
 from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.surroundings import Surroundings
-from plan_cutters.stages.posture_map import SETTLED, PostureMap, moved, posture_map_of
+from plan_cutters.setups.requested import setups_requested
 
 #: Width (rad) below which a range of tilts stays undecided: with a tolerance, and for the nominal answer.
 _NARROWEST, _NARROWEST_NOMINAL = 1e-4, 1e-5

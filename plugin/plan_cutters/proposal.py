@@ -15,18 +15,18 @@ from plan_cutters.answers.setup_ranking import Ranking, ranked
 from plan_cutters.document.clock import Clock
 from plan_cutters.document.notes import noted
 from plan_cutters.domain.clamping import CHUCK, VISE
+from plan_cutters.domain.figures import exact, percent
 from plan_cutters.domain.fixture import TABLE
 from plan_cutters.domain.placement import Placement, axis_words
 from plan_cutters.errors import OptionError, PlanError
 from plan_cutters.judged_part import JudgedPart
-from plan_cutters.machines.requested_setups import MOST_PROPOSED
 from plan_cutters.options import Options
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.notes import setup_proposed
-from plan_cutters.plan_file.numbers import exact, percent
 from plan_cutters.plan_file.setups import HiddenFaces, ProposedSetup, SetupProposal
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene
+from plan_cutters.setups.requested import MOST_PROPOSED
 
 #: Proposals that are planned, at most, and the share of what was promised that a plan must hold.
 _TRIES, _ENOUGH = 3, 0.99

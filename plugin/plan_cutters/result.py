@@ -20,6 +20,7 @@ from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.travel import Travel
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
 from plan_cutters.errors import OptionError
+from plan_cutters.judging.posture_maps import PostureMaps
 from plan_cutters.outcome import Answers, Operations
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import nearest
@@ -28,7 +29,6 @@ from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.faces import face_numbers
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene
-from plan_cutters.stages.posture_maps import PostureMaps
 
 if TYPE_CHECKING:
     from pandas import DataFrame

@@ -2,8 +2,8 @@
 
 import re
 
+from plan_cutters.domain.figures import listed
 from plan_cutters.plan_file.model import CutterEntry, Plan
-from plan_cutters.plan_file.numbers import listed
 from plan_cutters_agents.limits import CallError
 
 #: A cutter by its radius or diameter, and its length.

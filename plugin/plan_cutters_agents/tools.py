@@ -10,11 +10,11 @@ from typing import Any
 
 import anyio.to_thread
 
+from plan_cutters.domain.figures import percent
 from plan_cutters.errors import CutterError
 from plan_cutters.files.pictures import draws_pictures
 from plan_cutters.plan_file.load import plan_of
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import percent
 from plan_cutters_agents.answers import (
     Answer,
     Comparison,

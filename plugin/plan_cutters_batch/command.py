@@ -202,7 +202,7 @@ def _all(
     parts: "Sequence[Job | Fault]", out: "Store", terms: "Terms", request: BatchRequest, fail_on: frozenset[str]
 ) -> int:  # fmt: skip
     """Plan them under the eyes of a board; the largest exit code of what the batch fails on."""
-    from plan_cutters.plan_file.numbers import count as counted
+    from plan_cutters.domain.figures import count as counted
     from plan_cutters_batch import cluster
     from plan_cutters_batch.index import PAGE
     from plan_cutters_batch.progress import Board

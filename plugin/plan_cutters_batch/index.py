@@ -12,9 +12,9 @@ from markupsafe import Markup
 from pydantic_core import to_jsonable_python
 
 from plan_cutters.document.build import versions
+from plan_cutters.domain import figures as numbers
+from plan_cutters.domain.figures import percent
 from plan_cutters.files.markup import finite, plain, policy, template
-from plan_cutters.plan_file import numbers
-from plan_cutters.plan_file.numbers import percent
 from plan_cutters.plan_file.words.cutters import reason
 from plan_cutters_batch.part_tools import PartTools
 from plan_cutters_batch.row import PartRow

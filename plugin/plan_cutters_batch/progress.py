@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 from rich.text import Text
 
-from plan_cutters.plan_file.numbers import duration
+from plan_cutters.domain.figures import duration
 from plan_cutters_base.terminal_text import clean
 from plan_cutters_batch.row import PartRow
 from plan_cutters_batch.summary import OUTCOMES, cause, outcome

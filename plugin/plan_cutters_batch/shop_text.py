@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 
-from plan_cutters.plan_file.numbers import count
+from plan_cutters.domain.figures import count
 from plan_cutters_batch.summary import LeastTools, Summary
 
 #: Tools that a sentence names.

@@ -300,7 +300,7 @@ def _summary(rows: Sequence[Row], rule: str, failing: Sequence[Row], links: dict
     """The summary: with links to the files beside it, or to the artifacts of the job, which have them."""
     if not rows:
         return f"## plan-cutters\n\nNo part changed since {began[:12]}.\n"
-    from plan_cutters.plan_file.numbers import count, listed
+    from plan_cutters.domain.figures import count, listed
     from plan_cutters_ci.markdown import escaped, page_link, section, table
 
     lines = ["## plan-cutters", ""]
@@ -334,8 +334,8 @@ def _line(row: Row, fails: bool) -> tuple[str, ...]:
 
 def _bar(folder: Path | None) -> str:
     """What the best cutter reaches of a part, drawn with letters: it needs no picture."""
+    from plan_cutters.domain.figures import percent
     from plan_cutters.plan_file.load import PLAN, load_plan
-    from plan_cutters.plan_file.numbers import percent
     from plan_cutters_ci.states import reached
 
     if folder is None:

@@ -42,7 +42,7 @@ class Row:
 def row_cases(row: Row, rule: str) -> "Iterator[Case]":
     """The test cases of a part; what the rule lets pass is skipped, so that the report agrees with the exit code."""
     from plan_cutters.cases.case import Case
-    from plan_cutters.plan_file.numbers import listed
+    from plan_cutters.domain.figures import listed
     from plan_cutters_ci.cases import difference_cases
 
     name, at = row.part.name, RULES.index(rule)

@@ -5,8 +5,8 @@ from collections import Counter
 from collections.abc import Collection, Iterable, Iterator, Sequence
 from typing import Any
 
+from plan_cutters.domain.figures import count
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
-from plan_cutters.plan_file.numbers import count
 from plan_cutters.plan_file.part_info import FixtureEntry, PartInfo
 from plan_cutters.plan_file.words.names import called
 from plan_cutters_base.user_files import fingerprint

@@ -6,8 +6,8 @@ from typing import NamedTuple
 
 from markupsafe import Markup
 
+from plan_cutters.domain import figures as numbers
 from plan_cutters.files.markup import embedded, policy, template, with_three
-from plan_cutters.plan_file import numbers
 from plan_cutters.plan_file.load import load_plan
 from plan_cutters.plan_file.model import Plan
 from plan_cutters.plan_file.palette import PALETTE

@@ -3,7 +3,7 @@
 from collections import Counter
 from collections.abc import Iterator
 
-from plan_cutters.plan_file.numbers import area, count, listed, percent
+from plan_cutters.domain.figures import area, count, listed, percent
 from plan_cutters.plan_file.reasons import REASONS
 from plan_cutters_ci.model import (
     REQUESTED,

@@ -11,9 +11,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mcp import Client, types
 
+from plan_cutters.domain.figures import percent, size
 from plan_cutters.plan_file.load import plan_of
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import percent, size
 from plan_cutters_agents import child, command
 from plan_cutters_agents.cutter_names import chosen
 from plan_cutters_agents.digits import short

@@ -8,9 +8,9 @@ import pytest
 
 from plan_cutters import Cutter, Options, plan
 from plan_cutters.domain.answers import ANSWERS, answers_of
+from plan_cutters.domain.figures import down, up
 from plan_cutters.errors import LibraryError, OptionError
 from plan_cutters.library import read_library
-from plan_cutters.plan_file.numbers import down, up
 from plan_cutters.report.to_json import schema
 from tests.support.tool_files import fusion, write_json
 

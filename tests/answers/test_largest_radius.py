@@ -19,9 +19,9 @@ from plan_cutters.domain.assembly import assembly
 from plan_cutters.domain.radius_map import PERCENTILES, RadiusMap
 from plan_cutters.domain.verdicts import INACCESSIBLE, INSIDE, NO_REASON, REASONS, UNDECIDED, UNJUDGED
 from plan_cutters.errors import OptionError
+from plan_cutters.judging.judge import judge
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
-from plan_cutters.stages.judge import judge
 from tests.support import reference, shapes
 from tests.support.cad_parts import ball, box, cut, rod
 from tests.support.places import SAMPLES

@@ -14,8 +14,8 @@ from plan_cutters.answers.scan import Scan
 from plan_cutters.answers.state import Judgements, State
 from plan_cutters.answers.trial import Case
 from plan_cutters.domain.standard_tools import METRIC, USUAL, smaller
+from plan_cutters.judging.judge import judge
 from plan_cutters.pipeline import prepare
-from plan_cutters.stages.judge import judge
 from tests.support import shapes
 from tests.support.advice import strip, wall
 from tests.support.bodies import lidded, stacked

@@ -10,10 +10,10 @@ from plan_cutters.command.values import fixtures_of_setups
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.verdicts import ANOTHER_SETUP
 from plan_cutters.errors import OptionError
-from plan_cutters.machines.setups import read_setup
 from plan_cutters.plan_file.words.proposal import proposal
 from plan_cutters.plan_file.words.story import story_of
 from plan_cutters.report.setup_files import setup_toml
+from plan_cutters.setups.files import read_setup
 from tests.support.cad_parts import ball, box, rod
 
 HOW = {"cutters": "R2L60HR15L30", "faces": "all", "grid": 4, "area_budget": 0, "machine": "trunnion-ac", "setup": "auto"}

@@ -11,7 +11,7 @@ from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.stick_out import held
 from plan_cutters.domain.verdicts import FIXTURE, INACCESSIBLE
-from plan_cutters.stages.judge import judge
+from plan_cutters.judging.judge import judge
 from tests.support.cad_parts import box
 from tests.support.two_setups import DOWN, HOW, LOWER, UP, faces_at, name_of, two
 

@@ -15,9 +15,9 @@ from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.stick_out import floor_of, held, outline
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INTERFERENCE_FREE, UNDECIDED
 from plan_cutters.errors import CutterError
+from plan_cutters.judging.judge import judge
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.conditions import Context
-from plan_cutters.stages.judge import judge
 from tests.support import cad_parts, shapes
 from tests.support.closed_forms import floor, wall
 

@@ -13,7 +13,7 @@ from plan_cutters.errors import LibraryError, MachineError, PlanError
 from plan_cutters.files.arrays import Archive
 from plan_cutters.library import read_library
 from plan_cutters.machines import read_machine
-from plan_cutters.machines.setups import read_setup
+from plan_cutters.setups.files import read_setup
 from plan_cutters_base.user_files import WITHIN, IrregularError, OutsideError, content, fingerprint, is_there, note, noted
 from tests.support.places import ROOT, SAMPLES, real_file
 

@@ -24,8 +24,8 @@ from plan_cutters.command.progress import Display
 from plan_cutters.command.rows import _distinct
 from plan_cutters.command.terminal import show
 from plan_cutters.domain.default_tools import builtin
+from plan_cutters.domain.figures import percent
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import percent
 from plan_cutters.plan_file.words.details import others
 from plan_cutters.plan_file.words.story import story_of
 from plan_cutters.plan_file.words.text import with_text

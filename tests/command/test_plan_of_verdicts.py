@@ -15,14 +15,14 @@ from plan_cutters.command import retry
 from plan_cutters.document.clock import Clock
 from plan_cutters.interim import Interim
 from plan_cutters.judged_part import JudgedPart
+from plan_cutters.judging.judge_once import JudgeOnce
+from plan_cutters.judging.reasons import Reasons
 from plan_cutters.operations import planning
 from plan_cutters.options import Options
 from plan_cutters.pipeline import run as run_stages
 from plan_cutters.plan_file.load import plan_of
 from plan_cutters.report import models
 from plan_cutters.report.to_json import dumps
-from plan_cutters.stages.judge_once import JudgeOnce
-from plan_cutters.stages.reasons import Reasons
 from plan_cutters_agents.plan_answers import planned
 from plan_cutters_base.workers import supervise
 from plan_cutters_base.workers.assignment import TIMED_OUT

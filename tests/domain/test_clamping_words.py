@@ -8,7 +8,7 @@ import pytest
 from plan_cutters.domain.clamping import CHUCKS, VISES, Block, Chuck, Disc, Vise, chuck_about, chuck_for, vises_for
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.errors import FixtureError
-from plan_cutters.scene.solids import triangles_of
+from plan_cutters.setups.solids import triangles_of
 
 
 @pytest.mark.parametrize(

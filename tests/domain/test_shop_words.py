@@ -21,10 +21,10 @@ from plan_cutters.domain.standard_holders import NOSES, TAPERS, words
 from plan_cutters.errors import CutterError, OptionError
 from plan_cutters.library.read import holder_of
 from plan_cutters.library.records import Entry, Library
-from plan_cutters.machines.setups import read_setup
 from plan_cutters.options import Options
 from plan_cutters.plan_file.words.names import called, described, kind, short_names
 from plan_cutters.scene.scene import Scene
+from plan_cutters.setups.files import read_setup
 from tests.support import shapes
 from tests.support.cad_parts import box
 from tests.support.forked import run

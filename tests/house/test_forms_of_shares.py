@@ -5,7 +5,7 @@ import re
 from tests.support.places import ROOT
 
 #: Where a share becomes a text.
-PLACES = {"plugin/plan_cutters/plan_file/numbers.py"}
+PLACES = {"plugin/plan_cutters/domain/figures.py"}
 #: A number with a form of its own before the sign, in braces or as `%` writes it, and Python's own form of a percentage.
 FORMATTED = re.compile(r":[^{}\"']*%\}|:[^{}\"']*[defg]\} ?%|%\.?\d*[defg] ?%%")
 

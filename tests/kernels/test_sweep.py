@@ -9,13 +9,13 @@ from cad_io.arrays import Triangles
 from plan_cutters import Cutter, Machine
 from plan_cutters.domain.posture import PostureRange
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, UNDECIDED, blank
+from plan_cutters.judging import witness
 from plan_cutters.kernels import material
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.kernels.search import place, search, sweep
 from plan_cutters.scene.conditions import Conditions, verdict_arrays_of
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
-from plan_cutters.stages import witness
 from tests.support import waves
 
 TURNS, SAFE, BLOCKED, LENGTH = 12, 0.02, 0.03, 20.0

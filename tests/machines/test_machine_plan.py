@@ -12,10 +12,10 @@ from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.machine import builtin_machines
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.verdicts import REASONS
+from plan_cutters.judging.judge import judge
+from plan_cutters.judging.setups import within_limits
 from plan_cutters.machines import to_toml
 from plan_cutters.pipeline import prepare
-from plan_cutters.stages.judge import judge
-from plan_cutters.stages.setups import within_limits
 from tests.support import cad_parts, shapes
 from tests.support.closed_forms import floor, wall
 

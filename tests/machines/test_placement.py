@@ -15,7 +15,7 @@ from plan_cutters.domain.shapes import modes
 from plan_cutters.domain.travel import tips, travel, unjudged
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.errors import OptionError
-from plan_cutters.machines.setups import read_setup
+from plan_cutters.setups.files import read_setup
 from tests.support.commands import assert_one_line
 from tests.support.forked import run
 from tests.support.machine_files import tool_in_part

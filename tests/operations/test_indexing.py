@@ -15,10 +15,10 @@ from plan_cutters.domain.columns import columns_of
 from plan_cutters.domain.operations import INDEX_TIME
 from plan_cutters.operations.candidates import Orientations
 from plan_cutters.operations.indexing import MOST, Indexing, index_times
-from plan_cutters.scene import solids
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
+from plan_cutters.setups import solids
 
 WHOLE = 2.0 * math.pi
 RATE = np.array([1.5, 0.7])

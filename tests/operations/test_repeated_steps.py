@@ -11,6 +11,7 @@ from cad_io import read_part
 from cad_io.part.motion import Motion
 from plan_cutters import plan
 from plan_cutters.domain.columns import columns_of
+from plan_cutters.judging.judge import judge
 from plan_cutters.operations import planning
 from plan_cutters.operations.by_pattern import planned_by_pattern
 from plan_cutters.operations.plans import plan_with
@@ -19,7 +20,6 @@ from plan_cutters.operations.task import Task
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
 from plan_cutters.result import Result
-from plan_cutters.stages.judge import judge
 from plan_cutters_check.asking import question_of
 from plan_cutters_check.check import check
 from tests.support.patterns import impeller

@@ -10,10 +10,10 @@ from plan_cutters import plan
 from plan_cutters.answers import mend as mending
 from plan_cutters.answers.undecidable import undecidable
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.figures import percent
 from plan_cutters.domain.verdicts import INACCESSIBLE, UNDECIDED, blank
 from plan_cutters.plan_file.effective import LocalTolerance
 from plan_cutters.plan_file.model import MissingEntry
-from plan_cutters.plan_file.numbers import percent
 from plan_cutters.plan_file.words.names import short_names
 from plan_cutters.plan_file.words.story import story_of
 from plan_cutters.plan_file.words.undecided import undecided

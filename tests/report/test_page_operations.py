@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from plan_cutters import plan
-from plan_cutters.plan_file.numbers import area
+from plan_cutters.domain.figures import area
 from plan_cutters.plan_file.palette import operation_colour
 from plan_cutters.plan_file.words.operations import in_short, of_the_whole
 from plan_cutters.plan_file.words.story import story_of

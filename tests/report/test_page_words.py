@@ -6,10 +6,10 @@ from html.parser import HTMLParser
 import pytest
 
 from plan_cutters import plan
+from plan_cutters.domain.figures import up
 from plan_cutters.library import read_library
 from plan_cutters.plan_file.frozen import Posture
 from plan_cutters.plan_file.model import WitnessEntry
-from plan_cutters.plan_file.numbers import up
 from plan_cutters.plan_file.words.cutters import spot
 from plan_cutters.report.page import write
 from tests.support.places import ROOT

@@ -11,12 +11,12 @@ from cad_io.arrays import Triangles
 from plan_cutters import Machine, PostureRange
 from plan_cutters.domain.kinematics import Kinematics
 from plan_cutters.kernels.rows import Contacts
-from plan_cutters.scene import solids
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.fixed_axis import tilt_direction_of
 from plan_cutters.scene.flats_and_flanks import _at_angle, _axes, _nearest, _special, _turned
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
+from plan_cutters.setups import solids
 
 SEEDS = st.integers(0, 2**32 - 1)
 AROUND = Surroundings.sheet(Obstacles(Triangles(solids.box(np.zeros(3), np.ones(3)), np.ones(12, np.int32), 0.0, ())))

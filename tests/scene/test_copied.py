@@ -13,12 +13,12 @@ from cad_io.arrays import Triangles
 from cad_io.part.motion import Motion
 from plan_cutters import Fixture, Machine, Options, PostureRange
 from plan_cutters.pipeline import prepare
-from plan_cutters.scene import solids
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.copied import _keeps_fixtures, _keeps_limits, _same_frames, keeps
 from plan_cutters.scene.fixtures import joined
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
+from plan_cutters.setups import solids
 from tests.support.cad_parts import box
 
 AROUND = Surroundings.sheet(Obstacles(Triangles(solids.box(np.zeros(3), np.ones(3)), np.ones(12, np.int32), 0.0, ())))

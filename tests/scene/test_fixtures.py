@@ -159,9 +159,9 @@ def test_what_fixtures_keep_is_what_is_reached_without_them(pocket):
 
 
 def test_rows_are_judged_alike_with_fixtures(pocket):
+    from plan_cutters.judging.judge import judge
     from plan_cutters.options import Options
     from plan_cutters.pipeline import prepare
-    from plan_cutters.stages.judge import judge
 
     ready = prepare(pocket, Options.of({"cutters": "R9L30", "spacing": 1.5, "fixtures": "box:20,50,60@60.5,-5,0"} | FLAT))
     cutter = Cutter.parse("R9L30")
@@ -305,9 +305,9 @@ def test_a_compound_holds_its_part_by_its_own_solids():
 @pytest.mark.slow("searches long")
 def test_a_vise_of_many_triangles_adds_little_to_the_search(pocket):
     """Boxes and triangles that the search of 20 samples looks at, with 50,000 triangles more around 20,000 of the part."""
+    from plan_cutters.judging.judge import judge
     from plan_cutters.options import Options
     from plan_cutters.pipeline import prepare
-    from plan_cutters.stages.judge import judge
     from tests.support.counted import counted
 
     found = vises.vise((60, 40, 24), 15.5, longest=2.0)

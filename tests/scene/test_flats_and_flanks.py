@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from plan_cutters import Cutter, Options, plan, posture_map
 from plan_cutters.domain.holder import Segment
 from plan_cutters.domain.travel import tips
+from plan_cutters.judging.judge import judge
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.scene import Scene
-from plan_cutters.stages.judge import judge
 from tests.support.grooves import HALF, LENGTH, TOP, groove, leaning, off_level, tee
 
 TOLERANCE = 0.01

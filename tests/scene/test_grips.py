@@ -14,10 +14,10 @@ from plan_cutters import Scene
 from plan_cutters.domain.clamping import requested
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.errors import FixtureError
-from plan_cutters.scene import solids
-from plan_cutters.scene.chuck_places import _degrees_of
-from plan_cutters.scene.vise_places import vise_places
-from plan_cutters.scene.workpiece import Workpiece, clipped
+from plan_cutters.setups import solids
+from plan_cutters.setups.chuck_places import _degrees_of
+from plan_cutters.setups.vise_places import vise_places
+from plan_cutters.setups.workpiece import Workpiece, clipped
 from tests.support.cad_parts import box, rod
 from tests.support.vises import hold_of
 

@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from cad_io import Part
 from plan_cutters import Fixture
 from plan_cutters.domain.placement import frame_of
-from plan_cutters.scene import solids
 from plan_cutters.scene.fixtures import TABLE, joined
 from plan_cutters.scene.surroundings import surroundings
+from plan_cutters.setups import solids
 from tests.support import shapes
 from tests.support.cad_parts import box, compound
 

@@ -14,7 +14,7 @@ from cad_io import read_part
 from cad_io.kernel import shape_map
 from plan_cutters import Cutter, plan
 from plan_cutters.command.codes import FEASIBLE, NOT_ALL_JUDGED, code_of
-from plan_cutters.plan_file.numbers import size
+from plan_cutters.domain.figures import size
 from plan_cutters.plan_file.words.names import short_names
 from plan_cutters.plan_file.words.scope import judged, not_judged, not_seen
 from plan_cutters.plan_file.words.story import story_of

@@ -8,7 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from plan_cutters.domain.clamping import Block, Chuck, Disc, Vise
-from plan_cutters.scene.solids import box, cylinder, entered, sides_of, strip, triangles_of
+from plan_cutters.setups.solids import box, cylinder, entered, sides_of, strip, triangles_of
 
 lengths = st.floats(0.1, 500.0)
 chords = st.floats(1e-4, 1.0)

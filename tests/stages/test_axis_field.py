@@ -10,11 +10,11 @@ from hypothesis import strategies as st
 
 from cad_io import read_part
 from plan_cutters import Cutter
+from plan_cutters.judging.axis_field import AxisField, angle_between
 from plan_cutters.kernels.area.moved_cutter import swung
 from plan_cutters.kernels.codes import COLUMNS
 from plan_cutters.kernels.tool.pieces import inset
 from plan_cutters.scene.conditions import tools
-from plan_cutters.stages.axis_field import AxisField, angle_between
 from tests.support import shapes
 from tests.support.contacts import dense
 from tests.support.places import SAMPLES

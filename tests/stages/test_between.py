@@ -11,16 +11,16 @@ from cad_io.part.orient import orient
 from cad_io.tessellate import tessellate
 from plan_cutters import Cutter, Machine, Options
 from plan_cutters.domain.posture import PostureRange
+from plan_cutters.judging import between as between_module
+from plan_cutters.judging.cells import CellContacts, Field, quartered
+from plan_cutters.judging.face_cells import FaceCells, _cover
+from plan_cutters.judging.judge import judge
+from plan_cutters.judging.nodes import tensors
 from plan_cutters.kernels.codes import NEVER
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
-from plan_cutters.stages import between as between_module
-from plan_cutters.stages.cells import CellContacts, Field, quartered
-from plan_cutters.stages.face_cells import FaceCells, _cover
-from plan_cutters.stages.judge import judge
-from plan_cutters.stages.nodes import tensors
 from tests.support import shapes
 from tests.support.cad_parts import box
 from tests.support.contacts import UP, deepest, dense, served

@@ -7,8 +7,8 @@ from cad_io.face.evaluate import evaluate
 from plan_cutters import plan
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import Placement
+from plan_cutters.judging.between import in_each
 from plan_cutters.scene.conditions import Context
-from plan_cutters.stages.between import in_each
 from tests.support.cad_parts import box
 
 #: Jaws of 20 x 30 x 22 mm beside a cube of 10 mm, two at its lower end and two at its upper one: their least corners.

@@ -7,11 +7,11 @@ import pytest
 
 from plan_cutters import Cutter, Machine, Options
 from plan_cutters.domain.verdicts import UNJUDGED
+from plan_cutters.judging import cached_judge
+from plan_cutters.judging.cached_judge import CachedJudge
+from plan_cutters.judging.judge import judge
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.work import Work
-from plan_cutters.stages import cached_judge
-from plan_cutters.stages.cached_judge import CachedJudge
-from plan_cutters.stages.judge import judge
 from plan_cutters_base import stage_cache
 from plan_cutters_base.stage_cache import StageCache, settle
 from tests.support.places import SAMPLES

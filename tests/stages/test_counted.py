@@ -27,10 +27,10 @@ from cad_io.sample.gap import border_probes
 from cad_io.tessellate import tessellate
 from cad_io.tessellate.mesh import folded, upright
 from plan_cutters import Cutter, Machine, plan
+from plan_cutters.judging.between import between
 from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
-from plan_cutters.stages.between import between
 from tests.support import shapes
 from tests.support.cad_parts import box, compound, cut, mirror, real, ring, rod
 from tests.support.contacts import UP, deepest, dense, served

@@ -8,12 +8,12 @@ import pytest
 from cad_io import Part, read_part
 from plan_cutters import plan
 from plan_cutters.domain.verdicts import ACCESSIBLE, FIXTURE
+from plan_cutters.judging.judge import judge
+from plan_cutters.judging.judge_once import JudgeOnce
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.clearance import least_clearance
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.stages.judge import judge
-from plan_cutters.stages.judge_once import JudgeOnce
 from tests.support.patterns import impeller, plate
 
 BALL, FINE = "D6L40rc3F20S6", "D3L25rc1.5F10S6"

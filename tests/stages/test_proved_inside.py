@@ -11,11 +11,11 @@ from OCP.BRepBuilderAPI import BRepBuilderAPI_Transform
 from plan_cutters import Cutter
 from plan_cutters.domain.shapes import depth_along_normal
 from plan_cutters.domain.verdicts import INACCESSIBLE, INSIDE, UNDECIDED
+from plan_cutters.judging.judge import judge
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.work import Work
-from plan_cutters.stages.judge import judge
 from tests.support.cad_parts import box, compound, moved, rod
 from tests.support.tool_reference import Reference
 

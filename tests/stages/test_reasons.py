@@ -11,16 +11,16 @@ from cad_io import read_part
 from plan_cutters import Cutter, Holder, Machine, plan
 from plan_cutters.command.codes import code_of
 from plan_cutters.command.summary import summary
+from plan_cutters.domain.figures import size
 from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.placement import frame_of
 from plan_cutters.domain.verdicts import AXIS_LIMIT, REASONS, UNDECIDED
+from plan_cutters.judging import reasons as finding
+from plan_cutters.judging.judge import judge
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
-from plan_cutters.plan_file.numbers import size
 from plan_cutters.plan_file.words.headline import headline
 from plan_cutters.plan_file.words.names import short_names
-from plan_cutters.stages import reasons as finding
-from plan_cutters.stages.judge import judge
 from tests.support.cad_parts import box, cut, rod
 
 HOW = {"faces": "all", "grid": 7, "area_budget": 0, "jobs": 2}

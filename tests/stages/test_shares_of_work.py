@@ -8,11 +8,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from cad_io.arrays import Triangles
+from plan_cutters.judging.between import _areas
+from plan_cutters.judging.face_cells import _JUDGED, FaceCells, _poor, best
+from plan_cutters.judging.posture_map import _rear, moved
 from plan_cutters.kernels.codes import NEVER
-from plan_cutters.scene import solids
-from plan_cutters.stages.between import _areas
-from plan_cutters.stages.face_cells import _JUDGED, FaceCells, _poor, best
-from plan_cutters.stages.posture_map import _rear, moved
+from plan_cutters.setups import solids
 
 
 def test_a_cell_is_worth_its_area_for_each_contact_that_cutting_it_takes():

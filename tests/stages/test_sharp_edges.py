@@ -14,10 +14,10 @@ from plan_cutters.command.codes import code_of
 from plan_cutters.document.sharp_edges import sharp_edge_entries
 from plan_cutters.domain.verdicts import LOCAL_GOUGE, SHARP_EDGE, UNDECIDED
 from plan_cutters.errors import OptionError
+from plan_cutters.judging.judge import judge
+from plan_cutters.judging.sharp_edges import exempt, strips
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
-from plan_cutters.stages.judge import judge
-from plan_cutters.stages.sharp_edges import exempt, strips
 from tests.support.cad_parts import box, cut
 from tests.support.profiles import grooved, slotted
 

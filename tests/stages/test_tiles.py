@@ -9,12 +9,12 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
 from cad_io import read_part
 from plan_cutters import Options
 from plan_cutters.domain.verdicts import FIXTURE
+from plan_cutters.judging.access import access
+from plan_cutters.judging.cells import _halved, _rectangles, _tiles, laid
+from plan_cutters.judging.connected import _key
+from plan_cutters.judging.judge import judge
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.conditions import Context
-from plan_cutters.stages.access import access
-from plan_cutters.stages.cells import _halved, _rectangles, _tiles, laid
-from plan_cutters.stages.connected import _key
-from plan_cutters.stages.judge import judge
 from tests.support.cad_parts import box, ring
 
 LINE = np.array([1.0, 2.0, 4.0, 5.0])

@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from plan_cutters.domain.verdicts import INSIDE, TOLERANCE
-from plan_cutters.stages.witness import _TRIED_IN_ALL, _Group, _measured, far_apart
+from plan_cutters.judging.witness import _TRIED_IN_ALL, _Group, _measured, far_apart
 
 SEEDS = st.integers(0, 2**32 - 1)
 

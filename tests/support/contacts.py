@@ -9,14 +9,14 @@ from cad_io.part.orient import orient
 from cad_io.sample import sample
 from cad_io.tessellate import tessellate
 from plan_cutters import Machine, Options
+from plan_cutters.judging.between import between
+from plan_cutters.judging.face_cells import Fixed
+from plan_cutters.judging.judge import judge
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.fixed_axis import held_at, served_by
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
-from plan_cutters.stages.between import between
-from plan_cutters.stages.face_cells import Fixed
-from plan_cutters.stages.judge import judge
 
 UP = np.array([0.0, 0.0, 1.0])
 

@@ -6,11 +6,11 @@ from cad_io.face.evaluate import evaluate
 from cad_io.part.orient import orient
 from cad_io.tessellate import tessellate
 from plan_cutters import Machine, plan
+from plan_cutters.judging.axis_field import AxisField
+from plan_cutters.judging.between import between
 from plan_cutters.scene.conditions import Conditions, Context
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.surroundings import Surroundings
-from plan_cutters.stages.axis_field import AxisField
-from plan_cutters.stages.between import between
 from tests.support.contacts import UP
 
 

@@ -5,7 +5,7 @@ import numpy as np
 from plan_cutters import Scene
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.scene.obstacles import divided
-from plan_cutters.scene.solids import box
+from plan_cutters.setups.solids import box
 
 
 def block(low, high, longest=np.inf):

@@ -10,14 +10,14 @@ from cad_io.tessellate.start import starts
 from cad_io.write import render_mesh as drawing
 from cad_io.write.net import Net, cut
 from plan_cutters import Cutter, Options, plan
+from plan_cutters.judging import witness
+from plan_cutters.judging.access import access
+from plan_cutters.judging.between import between
+from plan_cutters.judging.judge import judge
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.inside_material import cover
 from plan_cutters.scene.work import Work
-from plan_cutters.stages import witness
-from plan_cutters.stages.access import access
-from plan_cutters.stages.between import between
-from plan_cutters.stages.judge import judge
 from tests.support import shapes
 from tests.support.cad_parts import box, compound
 from tests.support.places import SAMPLES

@@ -15,11 +15,11 @@ from plan_cutters import Cutter, PostureRange, plan, posture_map
 from plan_cutters.answers.largest_radius import largest_radius
 from plan_cutters.domain.holder import Holder, Stage
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, REASONS, UNDECIDED
+from plan_cutters.judging.judge import judge
 from plan_cutters.options import Options
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import serves
-from plan_cutters.stages.judge import judge
 from tests.support import shapes
 from tests.support.tool_reference import Reference
 

@@ -13,9 +13,9 @@ from cad_io import read_part
 from plan_cutters import Cutter, OptionError, Options, Scene, plan, posture_map
 from plan_cutters.domain.nesting import handed
 from plan_cutters.domain.verdicts import ACCESSIBLE, INACCESSIBLE, INTERFERENCE_FREE
+from plan_cutters.judging.judge import judge
 from plan_cutters.pipeline import prepare
 from plan_cutters.scene import scene as scenes
-from plan_cutters.stages.judge import judge
 from tests.support.places import SAMPLES
 
 CUTTERS = ("R6L60", "R3L40")

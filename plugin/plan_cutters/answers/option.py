@@ -7,10 +7,10 @@ from dataclasses import replace
 import numpy as np
 
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.figures import ranges
 from plan_cutters.domain.spec import is_spec, spelled, written
 from plan_cutters.errors import PlanError
 from plan_cutters.options import Options
-from plan_cutters.plan_file.numbers import ranges
 from plan_cutters.scene.conditions import Conditions
 from plan_cutters.scene.faces import select_faces
 from plan_cutters.scene.preparation import Prepared

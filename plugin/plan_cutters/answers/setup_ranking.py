@@ -21,12 +21,12 @@ from plan_cutters.domain.fixture import TABLE
 from plan_cutters.domain.preference import group_of
 from plan_cutters.domain.verdicts import blank
 from plan_cutters.errors import OptionError
+from plan_cutters.judging.setups import within_limits
 from plan_cutters.scene.conditions import Conditions, Context, contacts_of
 from plan_cutters.scene.flats_and_flanks import search
-from plan_cutters.scene.holds import NothingToGripError
 from plan_cutters.scene.preparation import Axis, Prepared
 from plan_cutters.scene.surroundings import Surroundings
-from plan_cutters.stages.setups import within_limits
+from plan_cutters.setups.holds import NothingToGripError
 
 Rows = NDArray[np.int64]
 Table = NDArray[np.bool_]

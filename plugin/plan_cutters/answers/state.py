@@ -11,10 +11,10 @@ from plan_cutters.answers.candidates import planes_below
 from plan_cutters.answers.trial import Case
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
-from plan_cutters.machines.requested_setups import without
-from plan_cutters.scene.holds import NothingToGripError
 from plan_cutters.scene.inside_material import inside_material
 from plan_cutters.scene.preparation import Prepared
+from plan_cutters.setups.holds import NothingToGripError
+from plan_cutters.setups.requested import without
 
 Rows = NDArray[np.int64]
 Axis = tuple[float, float, float]

@@ -15,13 +15,13 @@ from cad_io.arrays import Floats
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.stick_out import StickOut, floor_of, held, outline
 from plan_cutters.domain.verdicts import ACCESSIBLE, VerdictBuffer, Verdicts, blank
+from plan_cutters.judging.judge import judge
 from plan_cutters.kernels.rows import Contacts, Tool
 from plan_cutters.scene.conditions import Context, contacts_of, laid_tool_of, rotations_of, verdict_arrays_of
 from plan_cutters.scene.deepest import deepest_on
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import CHUNK, in_chunks
 from plan_cutters.scene.work import METER
-from plan_cutters.stages.judge import judge
 
 #: Stick-outs are found to this, mm; and one this much below the least is too short.
 EXACT, BEYOND = 0.005, 0.01

@@ -13,11 +13,11 @@ from numpy.typing import NDArray
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.over_setups import over_setups
 from plan_cutters.domain.verdicts import ACCESSIBLE, CONVEX, FIXTURE, INACCESSIBLE, INSIDE, TOLERANCE, UNDECIDED, Verdicts, blank
+from plan_cutters.judging.judge import judge
 from plan_cutters.kernels.rows import Contacts
 from plan_cutters.scene.conditions import Context, contacts_of
 from plan_cutters.scene.flats_and_flanks import search
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.stages.judge import judge
 
 Rows = NDArray[np.int64]
 

@@ -3,8 +3,8 @@
 import numpy as np
 
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.figures import mm
 from plan_cutters.domain.verdicts import UNDECIDED, Verdicts
-from plan_cutters.plan_file.numbers import mm
 from plan_cutters.scene.preparation import Prepared
 
 #: A tolerance that is larger than asked by more than rounding was raised.

@@ -14,8 +14,8 @@ from plan_cutters.command.option_groups import options
 from plan_cutters.command.request import MachinesRequest, takes
 from plan_cutters.command.terminal import error, hand_out, paper
 from plan_cutters.command.values import File, Words, machine_names
+from plan_cutters.domain.figures import exact_angle
 from plan_cutters.errors import PlanError
-from plan_cutters.plan_file.numbers import exact_angle
 from plan_cutters_base.terminal_text import clean
 from plan_cutters_base.whole import whole
 

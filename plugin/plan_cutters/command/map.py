@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 
     from cad_io.arrays import Floats
     from plan_cutters.domain.cutter import Cutter
+    from plan_cutters.judging.posture_map import PostureMap
     from plan_cutters.options import Options
-    from plan_cutters.stages.posture_map import PostureMap
 
 _SELF = "plan-cutters map"
 #: Some tilt is free; none is; none is, but some are undecided, or obstacles are missing.
@@ -203,8 +203,8 @@ def _text(values: Iterable[float]) -> str:
 
 def _about(result: "PostureMap", face: str, off: float, cutter: "Cutter", request: MapRequest) -> list[str]:
     """Describe the map line by line: its contact, cutter and search; the first line is its title."""
+    from plan_cutters.domain.figures import angle, capital, mm
     from plan_cutters.domain.spec import notation, parted
-    from plan_cutters.plan_file.numbers import angle, capital, mm
     from plan_cutters.plan_file.words.names import called
     from plan_cutters.report.drawing.sheet import printable
 

@@ -11,7 +11,7 @@ from typing import Any
 from plan_cutters.command import terminal
 from plan_cutters.command.part_cases import PartCases
 from plan_cutters.domain.answer_kinds import KINDS
-from plan_cutters.plan_file.numbers import part_done
+from plan_cutters.domain.figures import part_done
 from plan_cutters_base.terminal_text import clean
 from plan_cutters_base.workers.assignment import report
 

@@ -10,8 +10,8 @@ from rich.table import Table
 from rich.text import Text
 
 from plan_cutters.command.terminal import wrapped
+from plan_cutters.domain.figures import unit
 from plan_cutters.plan_file.nearest import leaves
-from plan_cutters.plan_file.numbers import unit
 from plan_cutters.plan_file.words.cutters import FEASIBLE, worst_face_text
 from plan_cutters_base.terminal_text import clean
 

@@ -124,7 +124,7 @@ def fixtures_of_setups(ctx: click.Context, _: click.Parameter, value: Any) -> An
         return value
     from plan_cutters.domain.fixture import TABLE, Fixture
     from plan_cutters.errors import PlanError
-    from plan_cutters.machines.setups import read_setup
+    from plan_cutters.setups.files import read_setup
     from plan_cutters_base.workers.assignment import is_child
 
     try:

@@ -15,13 +15,13 @@ from plan_cutters import __version__
 from plan_cutters.document.fixtures import references
 from plan_cutters.document.shares import counts, face_verdicts, whole_share
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.figures import listed
 from plan_cutters.domain.preference import group_of
 from plan_cutters.domain.shapes import flute_length, modes
 from plan_cutters.domain.verdicts import ANOTHER_SETUP, INACCESSIBLE, REASONS, UNDECIDED, Verdicts, Witness
 from plan_cutters.plan_file.carrier import CarrierEntry
 from plan_cutters.plan_file.frozen import filled, posture, vector
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, MissingEntry, SegmentEntry, WitnessEntry
-from plan_cutters.plan_file.numbers import listed
 from plan_cutters.plan_file.part_info import OrientationInfo, PartInfo, Scope, SewingInfo, UnitEntry
 from plan_cutters.scene.faces import Chosen
 from plan_cutters.scene.scene import Scene

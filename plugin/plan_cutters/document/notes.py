@@ -10,6 +10,7 @@ from cad_io.part.inside_edges import folded_faces
 from cad_io.part.unjudged import CROSSES
 from cad_io.write.back import changed_by_step
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.figures import ranges
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.domain.shapes import modes
@@ -18,7 +19,6 @@ from plan_cutters.options import Options
 from plan_cutters.plan_file import notes
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.notes import Note
-from plan_cutters.plan_file.numbers import ranges
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.scene import Scene
 from plan_cutters.scene.setups import notes_of_setups

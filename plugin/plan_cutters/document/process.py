@@ -12,6 +12,7 @@ from plan_cutters.document.over_setups import OverSetups
 from plan_cutters.document.remaining import faces_of, reasons, remaining, remaining_entry
 from plan_cutters.document.repeats import repeats
 from plan_cutters.document.shares import sample_areas
+from plan_cutters.domain.figures import exact
 from plan_cutters.domain.fillet import Fitting
 from plan_cutters.domain.own_results import OwnResult
 from plan_cutters.domain.verdicts import NO_REASON, REASONS, SHARP_EDGE
@@ -19,7 +20,6 @@ from plan_cutters.outcome import Answers, OperationPlan, Operations
 from plan_cutters.plan_file.frozen import filled, vector
 from plan_cutters.plan_file.model import CutterEntry
 from plan_cutters.plan_file.nearest import nearest
-from plan_cutters.plan_file.numbers import exact
 from plan_cutters.plan_file.operations import OperationEntry, OperationPlanEntry
 from plan_cutters.plan_file.process import (
     NOT_PLANNED,

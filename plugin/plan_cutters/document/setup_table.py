@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from plan_cutters.document.over_setups import OverSetups
+from plan_cutters.judging.setups import AXES, within_limits
 from plan_cutters.plan_file.frozen import Vector
 from plan_cutters.plan_file.setups import SetupEntry
 from plan_cutters.scene.preparation import Prepared
-from plan_cutters.stages.setups import AXES, within_limits
 
 
 def setup_table(ready: Prepared, within: Sequence[NDArray[np.bool_]], over: OverSetups) -> list[SetupEntry]:

@@ -5,10 +5,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from plan_cutters.domain.checks import flag, number, numbers, shown
+from plan_cutters.domain.figures import mm
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.revolution import enclosing_segments
 from plan_cutters.errors import CutterError
-from plan_cutters.plan_file.numbers import mm
 
 #: Axes by their letters.
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}

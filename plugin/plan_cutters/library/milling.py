@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.dimensions import Dimensions
+from plan_cutters.domain.figures import mm
 from plan_cutters.domain.holder import Holder, Segment
 from plan_cutters.domain.shapes import MOST_PIECES, SAME, flute_length, pieces_at_most, top_radius
 from plan_cutters.errors import CutterError, HolderFitError
@@ -14,7 +15,6 @@ from plan_cutters.library.cutting import CUTTING, UnfitError, agree_ball, corner
 from plan_cutters.library.outlines import fewer, joined, up_to
 from plan_cutters.library.raw_tool import Listed, Stated
 from plan_cutters.library.records import Entry
-from plan_cutters.plan_file.numbers import mm
 
 #: Kinds of end mills that are read, by their usual names: what their names promise.
 MILLS = {

@@ -8,10 +8,10 @@ import numpy as np
 from cad_io.arrays import Floats
 from plan_cutters.domain.axis import Axis
 from plan_cutters.domain.checks import shown
+from plan_cutters.domain.figures import angle, exact, percent
 from plan_cutters.domain.kinematics import ON_LIMIT, SINGULAR
 from plan_cutters.domain.machine import Machine
 from plan_cutters.errors import MachineError
-from plan_cutters.plan_file.numbers import angle, exact, percent
 
 #: Directions on which shares are counted; a share is known to about 1 / sqrt(this) or better.
 DIRECTIONS = 40_000

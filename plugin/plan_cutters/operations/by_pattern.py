@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from cad_io.part.motion import Motion
 from plan_cutters.domain.columns import Columns
+from plan_cutters.domain.figures import count, duration
 from plan_cutters.operations.at_once import few_enough, fewer, recommended
 from plan_cutters.operations.canonical import canonical
 from plan_cutters.operations.entries import Timed
@@ -23,7 +24,6 @@ from plan_cutters.operations.rest_areas import Worth, by_size, largest_first, wo
 from plan_cutters.operations.symmetry import Symmetry
 from plan_cutters.operations.task import Task
 from plan_cutters.outcome import OperationPlan
-from plan_cutters.plan_file.numbers import count, duration
 from plan_cutters.scene.copied import keeps
 from plan_cutters.scene.threads import Progress, part_of
 

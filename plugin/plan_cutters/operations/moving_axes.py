@@ -12,11 +12,11 @@ from numpy.typing import NDArray
 
 from cad_io.arrays import FaceGrid, Floats, SurfaceSamples
 from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.judging.axis_field import AxisField, angle_between
+from plan_cutters.judging.margin import margin
+from plan_cutters.judging.nodes import tensors
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.threads import in_chunks
-from plan_cutters.stages.axis_field import AxisField, angle_between
-from plan_cutters.stages.margin import margin
-from plan_cutters.stages.nodes import tensors
 
 Rows = NDArray[np.int64]
 #: How often axes are drawn to their neighbours', at most, and which shares of the way are tried in turn.

@@ -11,14 +11,14 @@ from scipy.sparse.csgraph import breadth_first_order
 from cad_io.arrays import Floats, Ints, SurfaceSamples
 from plan_cutters.domain.kinematics import SINGULAR, Kinematics
 from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.judging.axis_field import angle_between
+from plan_cutters.judging.between import Between, between
 from plan_cutters.operations.moving_axes import fields, moving_axes
 from plan_cutters.outcome import Operation
 from plan_cutters.plan_file.operations import TurningEntry
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress
-from plan_cutters.stages.axis_field import angle_between
-from plan_cutters.stages.between import Between, between
 
 Rows = NDArray[np.int64]
 #: Pieces are counted, the largest first, until they hold so much of what is proved.

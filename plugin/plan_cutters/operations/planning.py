@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from plan_cutters.domain.columns import Columns, columns_of
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.figures import duration, percent
 from plan_cutters.domain.least_set import LeastSet
 from plan_cutters.domain.lengths import reporting
 from plan_cutters.domain.own_process import OwnProcess, cutter_of
@@ -43,7 +44,6 @@ from plan_cutters.operations.thinned import thinned
 from plan_cutters.operations.timing import Paths, Problems
 from plan_cutters.operations.walls import Walls
 from plan_cutters.outcome import OperationPlan, Operations
-from plan_cutters.plan_file.numbers import duration, percent
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress, part_of
 

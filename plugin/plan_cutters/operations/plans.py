@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.columns import Columns
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.figures import area as size
 from plan_cutters.domain.operations import STRATEGIES, strategy_of
 from plan_cutters.domain.preference import NEARLY_ALL, group_of, rank
 from plan_cutters.domain.verdicts import UNJUDGED, Verdicts
@@ -19,7 +20,6 @@ from plan_cutters.operations.task import Task
 from plan_cutters.operations.timing import costs_of, tip_widths, widths
 from plan_cutters.operations.workplanes import workplanes
 from plan_cutters.outcome import Operation, OperationPlan
-from plan_cutters.plan_file.numbers import area as size
 from plan_cutters.scene.clearance import least_clearance
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import at_fixed_axis, held_at

@@ -9,16 +9,16 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats, SurfaceSamples
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.judging.between import between
+from plan_cutters.judging.face_cells import Fixed
+from plan_cutters.judging.margin import margin
+from plan_cutters.judging.nodes import tensors
 from plan_cutters.operations.moving_proof import counted_pieces, proved_moving, proved_share
 from plan_cutters.outcome import Operation, OperationPlan
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.fixed_axis import held_at
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress, part_of
-from plan_cutters.stages.between import between
-from plan_cutters.stages.face_cells import Fixed
-from plan_cutters.stages.margin import margin
-from plan_cutters.stages.nodes import tensors
 
 #: The work of a plan unless a budget was requested: boxes in any case, and for each sample.
 _WORK_LEAST, _WORK_SAMPLE = 2e7, 2500.0

@@ -6,7 +6,7 @@ To add a note, add its code, its function here, and the call where it is found.
 from collections.abc import Mapping, Sequence
 from typing import Literal, NamedTuple
 
-from plan_cutters.plan_file.numbers import angle, area, count, joined, listed, mm, plainly
+from plan_cutters.domain.figures import angle, area, count, joined, listed, mm, plainly
 
 #: What a note is about. A text may be reworded; a code stays.
 NoteCode = Literal[

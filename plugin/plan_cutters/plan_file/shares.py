@@ -5,9 +5,9 @@ from collections.abc import Iterable, Mapping
 
 from pydantic import Field
 
+from plan_cutters.domain.figures import exact, percent
 from plan_cutters.domain.verdicts import WORDS
 from plan_cutters.plan_file.frozen import Frozen
-from plan_cutters.plan_file.numbers import exact, percent
 
 #: Verdicts, from best to worst.
 VERDICTS = tuple(WORDS.values())

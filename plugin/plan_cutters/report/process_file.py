@@ -5,10 +5,10 @@ from collections import Counter
 from pathlib import Path
 from typing import Any
 
+from plan_cutters.domain.figures import area, duration, percent
 from plan_cutters.domain.spec import typed
 from plan_cutters.library.toml_out import toml_text
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import area, duration, percent
 from plan_cutters.plan_file.process import ProcessStep
 from plan_cutters.report.protocol import Judged
 

@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING, Any
 
 from cad_io.arrays import FaceInfo
 from plan_cutters.domain.checks import choice
+from plan_cutters.domain.figures import listed, ranges
 from plan_cutters.domain.placement import Placement
 from plan_cutters.domain.preference import free_form_share
 from plan_cutters.errors import OptionError
 from plan_cutters.plan_file import notes
 from plan_cutters.plan_file.notes import Note
-from plan_cutters.plan_file.numbers import listed, ranges
 
 if TYPE_CHECKING:
     from cad_io import Part

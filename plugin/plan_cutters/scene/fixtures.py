@@ -20,15 +20,15 @@ from cad_io.read.mesh import Mesh, is_mesh, read_mesh
 from cad_io.read.read import TIMEOUT
 from cad_io.tessellate.proxies import StandIn
 from plan_cutters.domain.clamping import Clamping
+from plan_cutters.domain.figures import mm
 from plan_cutters.domain.fixture import CAD, MESH, Fixture, no_format
 from plan_cutters.domain.placement import axis_words, frame_of
 from plan_cutters.errors import UnjudgeableError
-from plan_cutters.plan_file.numbers import mm
-from plan_cutters.scene.gripped import material_bodies, unheld_bodies
-from plan_cutters.scene.holds import Hold
 from plan_cutters.scene.obstacles import Obstacles
-from plan_cutters.scene.solids import box, cylinder, sides_of, triangles_of
 from plan_cutters.scene.surroundings import PlacedFixture, Surroundings, surroundings
+from plan_cutters.setups.gripped import material_bodies, unheld_bodies
+from plan_cutters.setups.holds import Hold
+from plan_cutters.setups.solids import box, cylinder, sides_of, triangles_of
 
 #: A table reaches this much farther than the part, mm: as far as a cutter may.
 TABLE = 2000.0

@@ -15,13 +15,13 @@ from cad_io.read.mesh import Mesh
 from cad_io.tessellate import tessellate
 from cad_io.tessellate.proxies import StandIn, StandIns, stand_ins
 from cad_io.tessellate.triangles import At
+from plan_cutters.domain.figures import ranges
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.tolerance import effective_tolerance
 from plan_cutters.errors import UnjudgeableError
-from plan_cutters.plan_file.numbers import ranges
-from plan_cutters.scene.holds import Hold
 from plan_cutters.scene.obstacles import Obstacles, weights
 from plan_cutters.scene.thickened import boxed, thickened
+from plan_cutters.setups.holds import Hold
 from plan_cutters_base.stage_cache import NO_CACHE, NoStageCache, StageCache
 
 #: Triangles of a loose face that are looked at to tell whether it lies on a body, about.

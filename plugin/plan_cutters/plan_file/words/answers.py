@@ -2,10 +2,10 @@
 
 from collections.abc import Iterator
 
+from plan_cutters.domain.figures import capital, down, mm, place, some, up
 from plan_cutters.domain.spec import notation
 from plan_cutters.plan_file.answers import MendEntry, RadiusEntry, StickOutEntry
 from plan_cutters.plan_file.model import CutterEntry, Plan
-from plan_cutters.plan_file.numbers import capital, down, mm, place, some, up
 from plan_cutters.plan_file.words.cutters import reason
 from plan_cutters.plan_file.words.headline import every
 from plan_cutters.plan_file.words.line import Line

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 
 from plan_cutters.domain.area import Patch
 from plan_cutters.domain.cutter import Cutter
+from plan_cutters.domain.figures import angle, listed, mm
+from plan_cutters.domain.figures import area as size
 from plan_cutters.domain.holder import Holder
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.domain.spec import notation
 from plan_cutters.domain.standard_tools import USUAL, slenderness
-from plan_cutters.plan_file.numbers import angle, listed, mm
-from plan_cutters.plan_file.numbers import area as size
 from plan_cutters.plan_file.words.names import kind
 
 Range = tuple[float, float]

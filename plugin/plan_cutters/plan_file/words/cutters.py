@@ -4,8 +4,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from plan_cutters.domain.figures import angle, capital, figure, listed, mm, percent, place, reported, unit
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan, WitnessEntry
-from plan_cutters.plan_file.numbers import angle, capital, figure, listed, mm, percent, place, reported, unit
 from plan_cutters.plan_file.reasons import REASONS, Reason
 from plan_cutters.plan_file.shares import VERDICTS, AreaShare, part_of, reached, unreached
 from plan_cutters.plan_file.words.headline import area, between, every

@@ -2,9 +2,9 @@
 
 from collections.abc import Iterator
 
+from plan_cutters.domain.figures import angle, capital, count, direction, mm, percent, size
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import leaves
-from plan_cutters.plan_file.numbers import angle, capital, count, direction, mm, percent, size
 from plan_cutters.plan_file.shares import unreached
 from plan_cutters.plan_file.words.cutters import remaining_text
 from plan_cutters.plan_file.words.headline import area

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator, Sequence
 
+from plan_cutters.domain.figures import ROUNDING, consecutive, count, joined, listed, mm, ranges, size
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import ROUNDING, consecutive, count, joined, listed, mm, ranges, size
 from plan_cutters.plan_file.part_info import UnitEntry
 from plan_cutters.plan_file.words.names import named
 from plan_cutters.plan_file.words.scope import shown_cutter

@@ -4,9 +4,9 @@ from collections import Counter
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from plan_cutters.domain.figures import count, mm, percent
 from plan_cutters.plan_file.answers import MendEntry, StepEntry
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan, WitnessEntry
-from plan_cutters.plan_file.numbers import count, mm, percent
 from plan_cutters.plan_file.shares import FaceVerdicts, by_share, part_of, unreached
 from plan_cutters.plan_file.words.cutters import called, reason
 from plan_cutters.plan_file.words.names import named

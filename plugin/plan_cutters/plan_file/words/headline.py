@@ -4,11 +4,11 @@ import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
+from plan_cutters.domain.figures import area as area_text
+from plan_cutters.domain.figures import capital, count, duration, listed, percent, some
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.plan_file.model import AreaEntry, CutterEntry, Plan
 from plan_cutters.plan_file.nearest import nearest
-from plan_cutters.plan_file.numbers import area as area_text
-from plan_cutters.plan_file.numbers import capital, count, duration, listed, percent, some
 from plan_cutters.plan_file.shares import reached_share
 from plan_cutters.plan_file.words.choice import comes_last, first_of
 from plan_cutters.plan_file.words.names import described

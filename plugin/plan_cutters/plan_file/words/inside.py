@@ -2,10 +2,10 @@
 
 from collections.abc import Sequence
 
+from plan_cutters.domain.figures import area as size
+from plan_cutters.domain.figures import listed, percent
 from plan_cutters.plan_file.inside import CoveringBody
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import area as size
-from plan_cutters.plan_file.numbers import listed, percent
 
 
 def inside(plan: Plan, most: int = 5) -> list[str]:

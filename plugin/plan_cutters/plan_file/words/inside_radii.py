@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator, Mapping
 
+from plan_cutters.domain.figures import listed, mm
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import listed, mm
 
 #: Faces that are named.
 _FACES = 3

@@ -3,9 +3,9 @@
 import math
 import re
 
+from plan_cutters.domain.figures import listed, percent, reported
 from plan_cutters.plan_file.answers import MendEntry
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import listed, percent, reported
 from plan_cutters.plan_file.process import UNJUDGED_CAUSE, FitEntry, HelpEntry, RemainingEntry
 from plan_cutters.plan_file.reasons import CLOSED_VOID, REASONS
 from plan_cutters.plan_file.words.scope import shown_cutter

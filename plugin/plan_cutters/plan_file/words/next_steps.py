@@ -1,10 +1,10 @@
 """Put the next steps into words."""
 
+from plan_cutters.domain.figures import percent
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.plan_file.answers import MendEntry, RunEntry, StepEntry
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import ANOTHER_SETUP
-from plan_cutters.plan_file.numbers import percent
 from plan_cutters.plan_file.words.headline import not_sampled
 
 #: Runs that are named one by one.

@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 from itertools import zip_longest
 
+from plan_cutters.domain.figures import count, mm, percent, place
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.plan_file.model import CutterEntry, LibraryEntry, Plan
 from plan_cutters.plan_file.notes import NoteCode
-from plan_cutters.plan_file.numbers import count, mm, percent, place
 from plan_cutters.plan_file.words.line import Line
 from plan_cutters.plan_file.words.names import named
 

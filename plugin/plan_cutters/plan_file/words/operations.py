@@ -4,9 +4,9 @@ import math
 from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
+from plan_cutters.domain.figures import ROUNDING, bound, count, duration, joined, listed, percent, some
+from plan_cutters.domain.figures import area as size
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import ROUNDING, bound, count, duration, joined, listed, percent, some
-from plan_cutters.plan_file.numbers import area as size
 from plan_cutters.plan_file.operations import CutterUse, FewestEntry, OperationEntry, OperationPlanEntry, OperationsEntry
 from plan_cutters.plan_file.words.line import Line
 from plan_cutters.plan_file.words.names import named

@@ -3,8 +3,8 @@
 import re
 from collections.abc import Iterator
 
+from plan_cutters.domain.figures import count, ranges
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import count, ranges
 from plan_cutters.plan_file.patterns import PatternEntry
 
 #: Copies from which on a pattern stands in the summary; faces that are named; patterns that are listed.

@@ -6,9 +6,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from plan_cutters.domain.answer_kinds import WORTH
+from plan_cutters.domain.figures import area, count, duration, listed, mm, percent, place
 from plan_cutters.plan_file.answers import StepEntry
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import area, count, duration, listed, mm, percent, place
 from plan_cutters.plan_file.process import (
     NOT_PLANNED,
     OTHER_ORIENTATION,

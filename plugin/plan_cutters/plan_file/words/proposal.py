@@ -1,8 +1,8 @@
 """Put proposed setups into words: they stand among the first, for all that follows is about them."""
 
+from plan_cutters.domain.figures import listed, percent, some
 from plan_cutters.domain.placement import axis_words
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import listed, percent, some
 from plan_cutters.plan_file.setups import ProposedSetup
 
 

@@ -2,9 +2,9 @@
 
 from collections.abc import Mapping
 
+from plan_cutters.domain.figures import joined, mm, percent, size
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import nearest
-from plan_cutters.plan_file.numbers import joined, mm, percent, size
 from plan_cutters.plan_file.part_info import Scope
 
 #: Choices that name kinds of faces, not faces.

@@ -2,8 +2,8 @@
 
 from collections.abc import Iterator, Mapping
 
+from plan_cutters.domain.figures import area, count, reported
 from plan_cutters.plan_file.model import Plan
-from plan_cutters.plan_file.numbers import area, count, reported
 
 #: Pairs of faces that are named.
 _PAIRS = 3

@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from plan_cutters.domain.figures import sentence
 from plan_cutters.domain.lengths import reporting
 from plan_cutters.plan_file.model import CutterEntry, Plan
 from plan_cutters.plan_file.nearest import nearest
-from plan_cutters.plan_file.numbers import sentence
 from plan_cutters.plan_file.words import notes
 from plan_cutters.plan_file.words.answers import answers
 from plan_cutters.plan_file.words.cutters import CutterStory, cutter_story

@@ -1,8 +1,8 @@
 """The text that stands in a plan file: made once, when the plan is made, and shown by every reader."""
 
+from plan_cutters.domain.figures import count
 from plan_cutters.domain.lengths import reporting
 from plan_cutters.plan_file.model import CutterEntry, Plan, TextEntry, VerdictText
-from plan_cutters.plan_file.numbers import count
 from plan_cutters.plan_file.words.chip import TONES, chip, cutter_chip
 from plan_cutters.plan_file.words.cutters import CutterStory
 from plan_cutters.plan_file.words.doubts import repeated_warnings

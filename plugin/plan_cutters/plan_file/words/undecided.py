@@ -3,8 +3,8 @@
 import math
 from collections.abc import Iterator, Mapping
 
+from plan_cutters.domain.figures import capital, count, listed, mm, percent
 from plan_cutters.plan_file.model import CutterEntry, Plan
-from plan_cutters.plan_file.numbers import capital, count, listed, mm, percent
 from plan_cutters.plan_file.shares import part_of
 from plan_cutters.plan_file.words.scope import headline_cutter
 

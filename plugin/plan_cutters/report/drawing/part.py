@@ -14,8 +14,8 @@ from cad_io.arrays import Floats, Ints
 from cad_io.errors import WriteError
 from cad_io.kernel import translated
 from cad_io.write import meshes_of
+from plan_cutters.domain.figures import mm
 from plan_cutters.domain.posture import unit
-from plan_cutters.plan_file.numbers import mm
 from plan_cutters.plan_file.palette import LABELS, label, rgb
 from plan_cutters.plan_file.shares import VERDICTS, part_of
 from plan_cutters.plan_file.words.details import rendered

@@ -7,8 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from cad_io.arrays import Floats
+from plan_cutters.domain.figures import mm
 from plan_cutters.domain.travel import tips
-from plan_cutters.plan_file.numbers import mm
 from plan_cutters.report.page.atlas import Atlas
 from plan_cutters.report.page.encode import COARSE, FINE, Stored, halves, octahedral, placed, turned, unfolded
 from plan_cutters.report.page.facts import NO_TILT, shares, tilt_and_direction

@@ -4,7 +4,7 @@ import math
 import re
 from typing import Any, NamedTuple
 
-from plan_cutters.plan_file import numbers
+from plan_cutters.domain import figures as numbers
 from plan_cutters.plan_file.model import CutterEntry, FaceEntry, Plan
 from plan_cutters.plan_file.palette import label
 from plan_cutters.plan_file.reasons import REASONS

@@ -7,9 +7,9 @@ import numpy as np
 
 from cad_io.arrays import Floats, rows_by_face
 from plan_cutters.domain.clamping import Chuck, Requested, chuck_about, largest_gripped
-from plan_cutters.plan_file.numbers import mm
-from plan_cutters.scene.gripped import on_ledges
-from plan_cutters.scene.workpiece import (
+from plan_cutters.domain.figures import mm
+from plan_cutters.setups.gripped import on_ledges
+from plan_cutters.setups.workpiece import (
     PARALLEL,
     TOGETHER,
     Place,

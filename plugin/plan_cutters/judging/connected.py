@@ -5,7 +5,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
-from plan_cutters.stages.cells import CellContacts, Field
+from plan_cutters.judging.cells import CellContacts, Field
 
 Indices = NDArray[np.int64]
 

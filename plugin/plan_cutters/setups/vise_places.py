@@ -7,9 +7,9 @@ import numpy as np
 
 from cad_io.arrays import Floats, rows_by_face
 from plan_cutters.domain.clamping import VISES, Requested, Vise, vises_for
-from plan_cutters.plan_file.numbers import listed, mm
-from plan_cutters.scene.gripped import on_ledges
-from plan_cutters.scene.workpiece import (
+from plan_cutters.domain.figures import listed, mm
+from plan_cutters.setups.gripped import on_ledges
+from plan_cutters.setups.workpiece import (
     PARALLEL,
     TOGETHER,
     Place,

@@ -8,14 +8,14 @@ import numpy as np
 
 from cad_io.arrays import Floats
 from plan_cutters.domain.clamping import VISE, Clamping, Requested, Vise, chuck_for
+from plan_cutters.domain.figures import area, listed, mm
 from plan_cutters.domain.fixture import Fixture
 from plan_cutters.domain.placement import axis_words
-from plan_cutters.plan_file.numbers import area, listed, mm
-from plan_cutters.scene.chuck_places import chuck_places
-from plan_cutters.scene.gripped import held_bodies, on_ledges
-from plan_cutters.scene.holds import Hold, NothingToGripError
-from plan_cutters.scene.vise_places import vise_places
-from plan_cutters.scene.workpiece import Place, Refused, Workpiece
+from plan_cutters.setups.chuck_places import chuck_places
+from plan_cutters.setups.gripped import held_bodies, on_ledges
+from plan_cutters.setups.holds import Hold, NothingToGripError
+from plan_cutters.setups.vise_places import vise_places
+from plan_cutters.setups.workpiece import Place, Refused, Workpiece
 
 #: Shares of the target area that jaws hide are equal if they differ by less; places that are searched for overlaps, at most.
 _EVEN, _TRIED = 0.05, 12

@@ -15,13 +15,13 @@ from scipy import ndimage
 from cad_io.arrays import FaceGrid, Floats, Ints, Orientation, Record, SurfaceSamples
 from cad_io.part import Part
 from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.judging.axis_field import AxisField
+from plan_cutters.judging.cells import CellContacts, Field, laid
+from plan_cutters.judging.connected import connected
+from plan_cutters.judging.face_cells import FaceCells, Fixed, best
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.threads import Progress, part_of
 from plan_cutters.scene.work import Work
-from plan_cutters.stages.axis_field import AxisField
-from plan_cutters.stages.cells import CellContacts, Field, laid
-from plan_cutters.stages.connected import connected
-from plan_cutters.stages.face_cells import FaceCells, Fixed, best
 
 #: Least gain, as a share of the target area for each contact, for which cells are cut into four.
 LEAST_GAIN = 1e-7

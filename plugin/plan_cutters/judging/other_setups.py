@@ -4,9 +4,9 @@ import numpy as np
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import ACCESSIBLE, Verdicts, blank
+from plan_cutters.judging.judge import Judge, judge
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import Progress
-from plan_cutters.stages.judge import Judge, judge
 
 
 def in_setup(

@@ -5,10 +5,10 @@ from dataclasses import replace
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.judging.judge import judge
 from plan_cutters.scene.ground import GroundDigests
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.work import Work
-from plan_cutters.stages.judge import judge
 
 
 class CachedJudge:

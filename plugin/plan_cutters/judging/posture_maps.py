@@ -9,10 +9,10 @@ from cad_io.arrays import Floats, Record, SurfaceSamples
 from plan_cutters.domain.assembly import Assembly
 from plan_cutters.domain.posture import tilt_direction
 from plan_cutters.domain.verdicts import Verdicts
+from plan_cutters.judging.map_budget import chosen
 from plan_cutters.scene.conditions import Context, contacts_of, require_finite
 from plan_cutters.scene.obstacles import Obstacles
 from plan_cutters.scene.threads import Progress, in_chunks
-from plan_cutters.stages.map_budget import chosen
 
 #: Ends are certified to this, rad; where that cannot be, the band left is counted as undecided.
 NARROWEST = np.radians(0.1)

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from cad_io.arrays import Floats
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import ACCESSIBLE, UNJUDGED, VerdictBuffer, Verdicts, blank
+from plan_cutters.judging.judge import Judge, judge
 from plan_cutters.scene.conditions import Context, rotations_of
 from plan_cutters.scene.copied import some_of
 from plan_cutters.scene.copies import Copies
@@ -20,7 +21,6 @@ from plan_cutters.scene.ground import made_of, same
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import in_chunks, part_of
 from plan_cutters.scene.work import Work
-from plan_cutters.stages.judge import Judge, judge
 
 Rows = NDArray[np.int64]
 #: A tilt direction that is shorter than 1 by more is that of a contact under the flat of the tip.

@@ -16,8 +16,8 @@ from cad_io.face.evaluate import density, evaluate
 from cad_io.face.trim import Trim
 from cad_io.part import Part
 from plan_cutters.domain.verdicts import INTERFERENCE_FREE, Verdicts, not_reached
+from plan_cutters.judging.nodes import WIDER, WILDER, from_neighbours, steepest, tensors
 from plan_cutters.scene.conditions import Conditions
-from plan_cutters.stages.nodes import WIDER, WILDER, from_neighbours, steepest, tensors
 
 Indices = NDArray[np.int64]
 

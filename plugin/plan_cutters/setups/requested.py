@@ -122,7 +122,7 @@ def _setup(value: Any, placed: Placement | None) -> tuple[tuple[float, float, fl
     A word as `+z` is an axis, another text or path a setup file; a host's plane says where the machine's X points, too.
     """
     if isinstance(value, os.PathLike) or (isinstance(value, str) and along(value) is None):
-        from plan_cutters.machines.setups import read_setup
+        from plan_cutters.setups.files import read_setup
 
         if isinstance(value, str) and not value.lower().endswith(".toml") and not os.path.exists(value):
             raise OptionError(f"setup {value!r} is no direction, as +z, -y or (0, 0, 1), a setup file, or auto")

@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 from plan_cutters.domain.cutter import Cutter
 from plan_cutters.domain.verdicts import CONVEX, FIXTURE, INSIDE, Verdicts
+from plan_cutters.judging.access import access
+from plan_cutters.judging.decompose import decompose
 from plan_cutters.scene.conditions import Context
 from plan_cutters.scene.preparation import Prepared
 from plan_cutters.scene.threads import with_company
 from plan_cutters.scene.work import Work
-from plan_cutters.stages.access import access
-from plan_cutters.stages.decompose import decompose
 
 
 class Judge(Protocol):

@@ -8,7 +8,7 @@ from cad_io.arrays import Floats, Ints, Triangles
 from cad_io.part.bodies import Body
 from plan_cutters.domain.clamping import Clamping, Vise
 from plan_cutters.domain.fixture import Fixture
-from plan_cutters.scene.workpiece import TOGETHER, clipped
+from plan_cutters.setups.workpiece import TOGETHER, clipped
 
 _UP = np.array([0.0, 0.0, 1.0])
 
